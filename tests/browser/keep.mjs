@@ -1,6 +1,6 @@
 // What is kept of a run: links, cases, run folders with the bytes of the command, pictures, clips.
 import assert from 'node:assert/strict';
-import { readdirSync, readFileSync, writeFileSync } from 'node:fs';
+import { existsSync, readdirSync, readFileSync, writeFileSync } from 'node:fs';
 import path from 'node:path';
 import test from 'node:test';
 import { PNG } from 'pngjs';
@@ -86,6 +86,50 @@ test('a run that is saved has the bytes of the command', async (t) => {
   await lab.press('open-keep');
   await lab.find('#save-name').fill('kept');
   await lab.after(() => lab.press('save'), 'refused', ({ of }) => of === 'save');
+});
+
+/** A run that takes longer than a page needs to be loaded: some seconds, or minutes. */
+const takes = (blocks, duration) => SMALL.replace('[20, 20]', `[${blocks}, ${blocks}]`).replace('= 120', `= ${duration}`);
+
+async function beginToSave(lab, name) {
+  await lab.press('open-keep');
+  await lab.find('#save-name').fill(name);
+  await lab.after(() => lab.press('save'), 'saving', ({ under_way: all }) => all.some((one) => one.name === name));
+  await lab.find('#saving li').last().waitFor();
+}
+
+test('a run goes on being saved when its page is loaded again or closed, and is whole', async (t) => {
+  const lab = await open(t, { toml: takes(60, 3000) });
+  await beginToSave(lab, 'reloaded');
+  await lab.after(() => lab.page.reload(), 'saving', ({ under_way: all }) => all.length === 1);
+  assert.match(await lab.find('#saving li span').textContent(), /reloaded/);
+  const folder = path.join(RESULTS, 'reloaded');
+  await lab.notice(say('saved', { folder }));
+  assert.equal(await lab.find('#saving').isVisible(), false);
+  assert.match(await slipfront('verify', folder), /as slipfront [^ ]+ .*wrote them/);
+  // It can be opened without loading the page once more.
+  await lab.press('open-presets');
+  await lab.find('#presets-search').fill('reloaded');
+  await lab.after(() => lab.find('#presets-search').press('Enter'), 'case', ({ name }) => name === 'reloaded');
+  await beginToSave(lab, 'closed');
+  await lab.page.close();
+  const closed = path.join(RESULTS, 'closed');
+  await until(() => existsSync(path.join(closed, 'manifest.json')), 'the run of a page that was closed');
+  assert.match(await slipfront('verify', closed), /as slipfront [^ ]+ .*wrote them/);
+});
+
+test('saves that another page has begun are shown, and can be stopped', async (t) => {
+  const lab = await open(t, { toml: takes(150, 1e5) });
+  await beginToSave(lab, 'one');
+  await beginToSave(lab, 'two');
+  const other = await open(t, { toml: SMALL });
+  await until(async () => (await other.find('#saving li').count()) === 2, 'two rows');
+  await other.find('#saving li[data-name=one] button').click();
+  await until(async () => (await lab.find('#saving li').allTextContents()).join().includes('one') === false, 'one row');
+  await lab.find('#saving li button').click();
+  await until(() => other.last.saving.under_way.length === 0, 'no save');
+  assert.equal(await other.find('#saving').isVisible(), false);
+  assert.deepEqual(readdirSync(RESULTS).filter((name) => ['one', 'two'].includes(name)), []);
 });
 
 test('panels are kept as pictures', async (t) => {

@@ -1,7 +1,8 @@
 // The first picture, and what the page loads for it.
 import assert from 'node:assert/strict';
 import test from 'node:test';
-import { colours, open, until } from './page.mjs';
+import { deflateRawSync } from 'node:zlib';
+import { browser, colours, Lab, open, say, until } from './page.mjs';
 
 test('the page opens with a slider that runs, and draws it', async (t) => {
   const begin = performance.now();
@@ -13,6 +14,36 @@ test('the page opens with a slider that runs, and draws it', async (t) => {
   await until(async () => colours(await lab.find('#canvas').screenshot()) > 16, 'a field of more than 16 colours');
   assert.equal(await lab.find('html').getAttribute('lang'), 'en');
   assert.doesNotMatch(lab.page.url(), /token/);
+});
+
+test('a token that is none is refused with a sentence', async (t) => {
+  const lab = await open(t, {});
+  const address = lab.address.replace(/#.*/, '#token=<script>alert(1)</script>');
+  // The tab has a token already, with which it goes on.
+  await lab.page.goto('about:blank');
+  await lab.after(() => lab.page.goto(address), 'hello');
+  await lab.notice(say('broken_token'));
+  assert.doesNotMatch(lab.page.url(), /token/);
+  // Another one has none.
+  const context = await browser.newContext();
+  t.after(() => context.close());
+  const other = new Lab(await context.newPage(), address);
+  other.alone = true;
+  await other.load(address);
+  await other.notice(say('broken_token'));
+  await other.notice(say('lost'));
+  assert.deepEqual(other.faults, []);
+});
+
+test('the page has no error when a case that is unpacked is none', async (t) => {
+  const lab = await open(t, {});
+  const packed = (content) => deflateRawSync(JSON.stringify(content)).toString('base64url');
+  for (const content of [{ toml: 1 }, { toml: '', name: {} }, { toml: '', files: { a: 1 } }, { toml: ' '.repeat(9e6) }, null]) {
+    await lab.page.evaluate((text) => (location.hash = `#case=${text}`), packed(content));
+    await lab.notice('cannot be read');
+    await lab.find('#notices button').evaluateAll((buttons) => buttons.forEach((button) => button.click()));
+  }
+  assert.equal(lab.sockets, 1);
 });
 
 test('the page has no error when a case of the address is broken, and says so', async (t) => {

@@ -62,6 +62,13 @@ run_slice() {
     local stat finding=
     stat() { sed -n "s/^stat::$1: *//p" "$said" | tail -n 1; }
     [ "$status" -eq 0 ] || finding="$(sed -n 's/.*Test unit written to //p' "$said" | tail -n 1)"
+    # A stack that overflows ends the process before it can write anything: such a target keeps its input itself.
+    local input
+    input="$(ls -t "$TMPDIR"/*/"$name-input" 2> /dev/null | head -n 1 || true)"
+    if [ "$status" -ne 0 ] && [ -z "$finding" ] && [ -n "$input" ]; then
+        finding="$out/artifacts/$name/abort-$(sha1sum "$input" | cut -d ' ' -f 1)"
+        cp "$input" "$finding"
+    fi
     [ "$status" -eq 0 ] || [ -n "$finding" ] || finding="status $status"
     local last
     last="$(grep -E ' cov: [0-9]+ ft: ' "$said" | tail -n 1 || true)"

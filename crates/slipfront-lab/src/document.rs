@@ -2,21 +2,18 @@
 
 use std::collections::BTreeMap;
 use std::io::Write;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use slipfront_case::case::Case;
-use slipfront_case::case_file::{CaseError, CaseFile, partners_of};
-use slipfront_case::disk::read_limited;
+use slipfront_case::case_file::{CaseError, CaseFile, partners_of, parts_of};
+use slipfront_case::text::truncated;
 use toml::{Table, Value};
 
-use crate::files::{Files, plain_name};
+use crate::files::{KeptFile, MAX_FILES, Reach, plain_name, temporary};
 
 /// Most blocks of a case: such that the run, its twin and the pictures stay within the memory of a small machine.
 pub(crate) const MAX_BLOCKS: usize = 1 << 19;
-
-/// Most bytes of all files of a case.
-const MAX_FILES: u64 = 64 << 20;
 
 /// Name of the image that holds a painted texture.
 const PAINTED: &str = "texture.png";
@@ -27,17 +24,15 @@ pub(crate) struct Document {
     /// Name of the case.
     pub(crate) name: String,
     keys: Table,
-    files: Arc<Files>,
+    /// The files that it names, by their plain names.
+    files: BTreeMap<String, Arc<KeptFile>>,
 }
 
-/// The files of a case in a folder of their own.
-fn written(contents: BTreeMap<String, Vec<u8>>) -> Result<Arc<Files>, CaseError> {
-    let files = Files::new(contents).map_err(|error| {
-        refused(format!(
-            "the files of the case cannot be written to a temporary folder: {error}"
-        ))
-    })?;
-    Ok(Arc::new(files))
+/// A file of a case, in a folder of its own.
+fn kept(name: &str, contents: &[u8]) -> Result<Arc<KeptFile>, CaseError> {
+    let file = KeptFile::new(name, contents);
+    file.map(Arc::new)
+        .map_err(|error| refused(format!("{name} cannot be written to a temporary folder: {error}")))
 }
 
 /// A sentence as the error of a case.
@@ -53,7 +48,7 @@ impl Document {
     pub(crate) fn new(
         name: &str,
         text: &str,
-        read: impl Fn(&str) -> std::io::Result<Vec<u8>>,
+        read: impl Fn(&str) -> Result<Vec<u8>, String>,
     ) -> Result<Self, CaseError> {
         // First, since its errors name the place in the text as it was written.
         let mut case = CaseFile::parse(text, name, &[])?;
@@ -83,18 +78,22 @@ impl Document {
         Ok(Self {
             name: name.to_owned(),
             keys,
-            files: written(contents)?,
+            files: contents
+                .into_iter()
+                .map(|(name, contents)| Ok((name.clone(), kept(&name, &contents)?)))
+                .collect::<Result<_, CaseError>>()?,
         })
     }
 
-    /// The case of a file, with the files that stand beside it.
+    /// The case of a file, with the files that stand in its folder or in those that are `allowed`.
     ///
     /// # Errors
-    /// As for [`new`](Self::new).
-    pub(crate) fn load(path: &Path, name: &str) -> Result<Self, CaseError> {
+    /// As for [`new`](Self::new), and when it names a file elsewhere.
+    pub(crate) fn load(path: &Path, name: &str, allowed: &[PathBuf]) -> Result<Self, CaseError> {
         let text = slipfront_case::case_file::read_text(path)?;
         let folder = path.parent().unwrap_or(Path::new(""));
-        Self::new(name, &text, |file| read_limited(&folder.join(file), MAX_FILES))
+        let reach = Reach::new(folder, "the case", allowed).map_err(refused)?;
+        Self::new(name, &text, |file| reach.read(file))
     }
 
     /// The case as a text.
@@ -102,9 +101,14 @@ impl Document {
         self.keys.to_string()
     }
 
-    /// The files that it names.
-    pub(crate) fn files(&self) -> &BTreeMap<String, Vec<u8>> {
-        self.files.contents()
+    /// The files that it names, by their plain names.
+    pub(crate) fn files(&self) -> &BTreeMap<String, Arc<KeptFile>> {
+        &self.files
+    }
+
+    /// Bytes of memory that its keys take, about.
+    pub(crate) fn bytes_of_keys(&self) -> usize {
+        bytes_of_table(&self.keys)
     }
 
     /// The textures, as the page changes them.
@@ -140,12 +144,12 @@ impl Document {
     ) -> Result<Self, String> {
         let mut changed = self.clone();
         for (key, value) in changes {
-            for partner in partners_of(&key) {
-                remove(&mut changed.keys, &partner);
-            }
             match value {
                 Some(value) => put(&mut changed.keys, &key, value)?,
-                None => remove(&mut changed.keys, &key),
+                None => remove(&mut changed.keys, &key)?,
+            }
+            for partner in partners_of(&key) {
+                remove(&mut changed.keys, &partner)?;
             }
         }
         Ok(changed)
@@ -155,14 +159,11 @@ impl Document {
     ///
     /// # Errors
     /// When it cannot be written, or is no case without the image either.
-    pub(crate) fn with_image(&self, png: Vec<u8>, threshold: f64) -> Result<Self, CaseError> {
-        let mut contents = self.files.contents().clone();
+    pub(crate) fn with_image(&self, png: &[u8], threshold: f64) -> Result<Self, CaseError> {
         let mut painted = self.without_texture();
-        let mut case = CaseFile::parse(&painted.toml(), &painted.name, &[])?;
-        let still_named: Vec<&String> = case.files_mut().0.map(|file| &*file.name).collect();
-        contents.retain(|name, _| still_named.contains(&name));
+        painted.drop_unnamed_files()?;
         let mut name = PAINTED.to_owned();
-        while contents.contains_key(&name) {
+        while painted.files.contains_key(&name) {
             name.insert_str(0, "2-");
         }
         let mut texture = Table::new();
@@ -171,12 +172,25 @@ impl Document {
         if threshold != slipfront_case::case_file::DEFAULT_THRESHOLD {
             texture.insert("threshold".to_owned(), threshold.into());
         }
-        contents.insert(name, png);
+        painted.files.insert(name.clone(), kept(&name, png)?);
         painted
             .keys
             .insert("texture".to_owned(), Value::Array(vec![texture.into()]));
-        painted.files = written(contents)?;
         Ok(painted)
+    }
+
+    /// Gives up the files that no key names any more.
+    ///
+    /// # Errors
+    /// When it is no case.
+    pub(crate) fn drop_unnamed_files(&mut self) -> Result<(), CaseError> {
+        if self.files.is_empty() {
+            return Ok(());
+        }
+        let mut case = CaseFile::parse(&self.toml(), &self.name, &[])?;
+        let named: Vec<&String> = case.files_mut().0.map(|file| &*file.name).collect();
+        self.files.retain(|name, _| named.contains(&name));
+        Ok(())
     }
 
     /// The same case with a texture that is this mask, one value per block from y = 0 upwards.
@@ -189,7 +203,7 @@ impl Document {
         }
         let png = mask_image(textured, nx)
             .map_err(|error| refused(format!("the mask cannot be written: {error}")))?;
-        self.with_image(png, slipfront_case::case_file::DEFAULT_THRESHOLD)
+        self.with_image(&png, slipfront_case::case_file::DEFAULT_THRESHOLD)
     }
 
     /// The case that can be run, as `slipfront run` makes it.
@@ -213,7 +227,7 @@ impl Document {
     fn made(&self, overrides: &[&str]) -> Result<Case, CaseError> {
         let overrides: Vec<String> = overrides.iter().map(|&text| text.to_owned()).collect();
         let mut file = CaseFile::parse(&self.toml(), &self.name, &overrides)?;
-        self.refuse_other_files(&mut file)?;
+        self.find_files(&mut file)?;
         let [nx, ny] = file.slider.blocks.map(|count| count as usize);
         if nx.saturating_mul(ny) > MAX_BLOCKS {
             let sentence = format!(
@@ -221,20 +235,22 @@ impl Document {
             );
             return Err(file.source.error("slider.blocks", sentence));
         }
-        Case::to_run(file, &self.name, self.files.folder(), &mut |_| true)
+        Case::to_run(file, &self.name, &temporary(), &mut |_| true)
     }
 
-    /// Refuses a case that names a file which does not belong to it, wherever that may be: keys may come from anybody's link.
-    fn refuse_other_files(&self, case: &mut CaseFile) -> Result<(), CaseError> {
+    /// Names the files where they are kept; refuses one that does not belong to the case, wherever that may be: keys may come
+    /// from anybody's link.
+    fn find_files(&self, case: &mut CaseFile) -> Result<(), CaseError> {
         let (named, source) = case.files_mut();
         for file in named {
-            if !self.files.contents().contains_key(file.name.as_str()) {
+            let Some(kept) = self.files.get(file.name.as_str()) else {
                 let sentence = format!(
                     "{} cannot be read: it is not one of the files of the case",
                     file.name
                 );
                 return Err(source.error(&file.key, sentence));
-            }
+            };
+            *file.name = kept.path();
         }
         Ok(())
     }
@@ -262,46 +278,75 @@ fn mask_image(textured: &[bool], nx: usize) -> Result<Vec<u8>, png::EncodingErro
     Ok(bytes)
 }
 
-/// Sets a key such as `drive.v_star` or `texture.0.center`.
+/// The table that holds the last of the parts of a key such as `texture.0.center`, and that part; the tables on the way are made
+/// if they are to be.
+///
+/// # Errors
+/// A sentence, if it is no key.
+fn table_of<'t, 'k>(
+    mut table: &'t mut Table,
+    key: &'k str,
+    make: bool,
+) -> Result<Option<(&'t mut Table, &'k str)>, String> {
+    let parts = parts_of(key).map_err(|sentence| format!("`{}`: {sentence}", truncated(key)))?;
+    let (last, above) = parts.split_last().ok_or("a key has a name")?;
+    let mut above = above.iter();
+    while let Some(part) = above.next() {
+        if make && !table.contains_key(*part) {
+            table.insert((*part).to_owned(), Table::new().into());
+        }
+        let inner = match table.get_mut(*part) {
+            Some(Value::Array(values)) => {
+                let index = above.next().and_then(|index| index.parse::<usize>().ok());
+                index.and_then(|index| values.get_mut(index))
+            }
+            inner => inner,
+        };
+        let Some(Value::Table(inner)) = inner else {
+            return Ok(None);
+        };
+        table = inner;
+    }
+    Ok(Some((table, last)))
+}
+
+/// Sets a key.
 ///
 /// # Errors
 /// A sentence, if the case has no place for it.
 fn put(table: &mut Table, key: &str, value: Value) -> Result<(), String> {
-    let (above, last) = key.rsplit_once('.').unwrap_or(("", key));
-    let mut place = Some(table);
-    let mut parts = above.split('.').filter(|part| !part.is_empty());
-    while let Some(part) = parts.next() {
-        let Some(table) = place else { break };
-        let inner = table
-            .entry(part.to_owned())
-            .or_insert_with(|| Table::new().into());
-        place = match inner {
-            Value::Table(inner) => Some(inner),
-            Value::Array(values) => {
-                let index = parts.next().and_then(|index| index.parse::<usize>().ok());
-                let element = index.and_then(|index| values.get_mut(index));
-                element.and_then(Value::as_table_mut)
-            }
-            _ => None,
-        };
-    }
-    let table = place.ok_or_else(|| format!("the case has no place for the key `{key}`"))?;
+    let found = table_of(table, key, true)?;
+    let (table, last) =
+        found.ok_or_else(|| format!("the case has no place for the key `{}`", truncated(key)))?;
     table.insert(last.to_owned(), value);
     Ok(())
 }
 
 /// Removes a key, if it is there.
-fn remove(table: &mut Table, key: &str) {
-    match key.split_once('.') {
-        None => {
-            table.remove(key);
-        }
-        Some((first, rest)) => {
-            if let Some(Value::Table(inner)) = table.get_mut(first) {
-                remove(inner, rest);
-            }
-        }
+///
+/// # Errors
+/// A sentence, if it is no key.
+fn remove(table: &mut Table, key: &str) -> Result<(), String> {
+    if let Some((table, last)) = table_of(table, key, false)? {
+        table.remove(last);
     }
+    Ok(())
+}
+
+/// Bytes of memory that a table takes, about.
+fn bytes_of_table(table: &Table) -> usize {
+    let entry = |(key, value): (&String, &Value)| size_of::<String>() + key.len() + bytes_of(value);
+    table.iter().map(entry).sum()
+}
+
+fn bytes_of(value: &Value) -> usize {
+    let inner = match value {
+        Value::String(text) => text.len(),
+        Value::Array(values) => values.iter().map(bytes_of).sum(),
+        Value::Table(table) => bytes_of_table(table),
+        _ => 0,
+    };
+    size_of::<Value>() + inner
 }
 
 #[cfg(test)]
@@ -309,7 +354,7 @@ mod tests {
     use super::*;
 
     fn document(text: &str) -> Document {
-        Document::new("case", text, |_| Err(std::io::ErrorKind::NotFound.into())).unwrap()
+        Document::new("case", text, |_| Err("there is none".to_owned())).unwrap()
     }
 
     #[test]
@@ -364,13 +409,13 @@ mod tests {
     fn an_image_replaces_those_of_the_textures_alone() {
         let text = "friction.mu_static_field = 'mu.csv'\ntexture = [{ shape = 'mask', file = 'texture.png' }, { shape = 'mask', file = 'b.png' }]\n";
         let document = Document::new("case", text, |name| Ok(name.into())).unwrap();
-        let painted = document.with_image(b"image".to_vec(), 0.25).unwrap();
-        let files = [("mu.csv", &b"mu.csv"[..]), ("texture.png", b"image")];
+        let painted = document.with_image(b"image", 0.25).unwrap();
+        let files = [("mu.csv", b"mu.csv".to_vec()), ("texture.png", b"image".to_vec())];
         assert!(
             painted
                 .files()
                 .iter()
-                .map(|(name, bytes)| (name.as_str(), bytes.as_slice()))
+                .map(|(name, file)| (name.as_str(), file.read().unwrap()))
                 .eq(files)
         );
         assert_eq!(

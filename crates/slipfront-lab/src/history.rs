@@ -1,9 +1,17 @@
 //! The cases that were edited one after the other, to go back to.
 
+use std::collections::HashSet;
+use std::sync::Arc;
+
 use crate::document::Document;
+use crate::files::MAX_FILES;
 
 /// Most steps back.
 const MAX_STEPS: usize = 100;
+
+/// Most bytes of keys and files of all cases together: more than the files of one case may have, so that some steps back are
+/// left to a large one.
+const MAX_BYTES: usize = MAX_FILES as usize + (32 << 20);
 
 /// The present case, those before it and those that were undone.
 pub(crate) struct History {
@@ -34,13 +42,23 @@ impl History {
     pub(crate) fn change(&mut self, document: Document, gesture: u64) {
         let before = std::mem::replace(&mut self.present, document);
         if self.gesture != Some(gesture) {
-            if self.before.len() == MAX_STEPS {
-                self.before.remove(0);
-            }
             self.before.push(before);
         }
         self.gesture = Some(gesture);
         self.undone.clear();
+        while self.before.len() > MAX_STEPS || (self.bytes() > MAX_BYTES && !self.before.is_empty()) {
+            self.before.remove(0);
+        }
+    }
+
+    /// Bytes of keys and files of all cases; a file that several of them share counts once.
+    fn bytes(&self) -> usize {
+        let all = || self.before.iter().chain([&self.present]).chain(&self.undone);
+        let mut counted = HashSet::new();
+        let files = all().flat_map(|document| document.files().values());
+        let files = files.filter(|file| counted.insert(Arc::as_ptr(file)));
+        let in_files: usize = files.map(|file| file.bytes).sum();
+        in_files + all().map(Document::bytes_of_keys).sum::<usize>()
     }
 
     pub(crate) fn can_undo(&self) -> bool {
@@ -69,5 +87,69 @@ impl History {
         self.before.push(std::mem::replace(&mut self.present, after));
         self.gesture = None;
         true
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// How many files of the cases there are on the disk, out of some.
+    fn count_of_files(of: &[String]) -> usize {
+        let folder = crate::files::temporary();
+        of.iter().filter(|path| folder.join(path).exists()).count()
+    }
+
+    #[test]
+    fn images_of_many_changes_are_bounded_together_and_files_that_no_case_names_are_removed() {
+        const IMAGE: usize = 3_900_000;
+        let text = "slider.blocks = [2, 2]\nfriction.mu_static_field = 'mu.csv'\n";
+        let first = Document::new("case", text, |_| Ok(b"1,1\n1,1\n".to_vec())).unwrap();
+        let mut history = History::new(first);
+        let mut paths = Vec::new();
+        for number in 0..60 {
+            let image = history.present().with_image(&vec![number; IMAGE], 0.5).unwrap();
+            paths.extend(image.files().get("texture.png").map(|file| file.path()));
+            history.change(image, u64::from(number));
+            assert!(history.bytes() <= MAX_BYTES);
+            // What it does not depend on is not written again.
+            let shared = history.present().files()["mu.csv"].path();
+            assert_eq!(shared, history.before[0].files()["mu.csv"].path());
+        }
+        assert_eq!(paths.len(), 60);
+        assert_eq!(count_of_files(&paths), MAX_BYTES / IMAGE);
+        while history.undo() {}
+        assert_eq!(history.undone.len(), MAX_BYTES / IMAGE - 1);
+        while history.redo() {}
+        assert_eq!(
+            history.present().files()["texture.png"].read().unwrap(),
+            [59; IMAGE]
+        );
+        drop(history);
+        assert_eq!(count_of_files(&paths), 0);
+    }
+
+    /// Cases without files have keys, which may be as long as a message.
+    #[test]
+    fn long_keys_are_bounded_as_well() {
+        const WORDS: usize = 100_000;
+        let empty = Document::new("case", "", |_| Err(String::new())).unwrap();
+        let document = |number: usize| {
+            let words = toml::Value::from(vec![number.to_string(); WORDS]);
+            empty.with([("texture".to_owned(), Some(words))]).unwrap()
+        };
+        let mut history = History::new(document(0));
+        for number in 1..=MAX_STEPS {
+            history.change(document(number), number as u64);
+            assert!(history.bytes() <= MAX_BYTES);
+        }
+        // A word has one to three letters beside its value.
+        let each = WORDS * (size_of::<toml::Value>() + 3);
+        assert!(
+            history.before.len() + 1 >= MAX_BYTES / each,
+            "{}",
+            history.before.len()
+        );
+        assert!(history.before.len() < MAX_STEPS);
     }
 }

@@ -25,6 +25,7 @@ mod protocol;
 mod repeat;
 mod replay;
 mod save;
+mod saves;
 mod server;
 mod session;
 mod shapes;
@@ -34,3 +35,4 @@ mod zip;
 
 pub use opening::{OpeningError, Start};
 pub use server::{Laboratory, Options};
+pub use session::OfflineSession;

@@ -28,19 +28,19 @@ pub(crate) enum Opened {
 pub struct OpeningError(String);
 
 impl Start {
-    /// The case of a file, or of the folder of a complete run.
+    /// The case of a file, or of the folder of a complete run, with the files that it names in its folder or in one that is allowed.
     ///
     /// # Errors
-    /// When there is no such case or run, or it cannot be shown.
-    pub fn of(path: &Path) -> Result<Self, OpeningError> {
+    /// When there is no such case or run, or it cannot be shown, or names a file elsewhere.
+    pub fn of(path: &Path, allow_files: &[PathBuf]) -> Result<Self, OpeningError> {
         let refused = |error: CaseError| OpeningError(error.to_string());
         if path.is_dir() {
-            let (document, _) = replay::read(path).map_err(OpeningError)?;
+            let (document, _) = replay::read(path, allow_files).map_err(OpeningError)?;
             document.case_to_show().map_err(refused)?;
             return Ok(Self(Opened::Folder(path.to_owned())));
         }
         let name = path.file_stem().unwrap_or_default().to_string_lossy();
-        let document = Document::load(path, &name).map_err(refused)?;
+        let document = Document::load(path, &name, allow_files).map_err(refused)?;
         document.case_to_show().map_err(refused)?;
         Ok(Self(Opened::Case(Box::new(document))))
     }

@@ -61,6 +61,11 @@ impl Outbox {
         self.waiting().replies.len() >= MANY
     }
 
+    /// All replies that wait; pictures are left out.
+    pub(crate) fn take_replies(&self) -> Vec<String> {
+        self.waiting().replies.drain(..).collect()
+    }
+
     /// What comes next, as soon as there is something.
     pub(crate) async fn next(&self) -> Outgoing {
         loop {

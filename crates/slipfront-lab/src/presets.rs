@@ -2,6 +2,7 @@
 
 use include_dir::{Dir, include_dir};
 use slipfront_case::case_file::CaseError;
+use slipfront_case::text::truncated;
 use toml::{Table, Value};
 
 use crate::document::Document;
@@ -70,23 +71,21 @@ pub(crate) fn document(name: &str) -> Result<Document, String> {
         let (_, text) = figures()
             .find(|(known, _)| *known == figure)
             .ok_or_else(|| unknown(name))?;
-        return Document::new(figure, &case_of_study(text)?, |_| {
-            Err(std::io::ErrorKind::NotFound.into())
-        })
-        .map_err(sentence);
+        let none = |_: &str| Err("there is no such file".to_owned());
+        return Document::new(figure, &case_of_study(text)?, none).map_err(sentence);
     }
     let (_, text) = cases()
         .find(|(known, _)| *known == name)
         .ok_or_else(|| unknown(name))?;
     let read = |file: &str| {
-        let found = CASES.get_file(file).ok_or(std::io::ErrorKind::NotFound)?;
+        let found = CASES.get_file(file).ok_or("there is no such file")?;
         Ok(found.contents().to_vec())
     };
     Document::new(name, text, read).map_err(sentence)
 }
 
 fn unknown(name: &str) -> String {
-    format!("there is no case `{name}`")
+    format!("there is no case `{}`", truncated(name))
 }
 
 /// The case of a file of the paper: as a whole, or the base of its study. The run goes on to its end, to be seen.

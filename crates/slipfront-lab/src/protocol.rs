@@ -50,8 +50,8 @@ pub(crate) enum Request {
     Repeat { seeds: u64 },
     /// The present case from rest, into a run folder of this name.
     Save { name: String },
-    /// Stops saving.
-    SaveStop,
+    /// Stops saving the run of this name.
+    SaveStop { name: String },
     /// The case as files.
     Export,
     /// A recorded snapshot in place of the live field, or the live field again.
@@ -76,7 +76,7 @@ impl Request {
             Self::Step { .. } => "step",
             Self::Repeat { .. } => "repeat",
             Self::Save { .. } => "save",
-            Self::SaveStop => "save_stop",
+            Self::SaveStop { .. } => "save_stop",
             Self::Export => "export",
             Self::FramesOf { .. } => "frames_of",
             #[cfg(test)]
@@ -116,8 +116,9 @@ pub(crate) enum Reply<'a> {
     Numbers(Box<NumbersReply>),
     Probe(ProbeReply),
     Repeated(RepeatedReply),
+    /// All runs that are being saved, from whichever page.
     Saving {
-        share: f64,
+        under_way: Vec<SavingEntry>,
     },
     Saved {
         name: &'a str,
@@ -142,6 +143,13 @@ pub(crate) enum Reply<'a> {
     Failed {
         sentence: String,
     },
+}
+
+/// A run that is being saved, and the share of it that is done.
+#[derive(Debug, Serialize)]
+pub(crate) struct SavingEntry {
+    pub(crate) name: String,
+    pub(crate) share: f64,
 }
 
 /// A case to choose.

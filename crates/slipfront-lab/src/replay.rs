@@ -3,12 +3,13 @@
 use std::path::{Path, PathBuf};
 
 use slipfront::observe::Field;
+use slipfront_case::text::{display_path, truncated};
 use slipfront_run::fields::{FieldsData, read_fields};
-use slipfront_run::names::{FIELDS, MANIFEST, SERIES};
+use slipfront_run::names::{CASE, FIELDS, MANIFEST, SERIES, SUMMARY};
 use slipfront_run::{series, summary, verify};
 
 use crate::document::Document;
-use crate::files::is_plain_name;
+use crate::files::{Reach, is_plain_name};
 use crate::picture::{Shown, lengths};
 
 /// Largest file of fields whose snapshots are shown, in bytes.
@@ -38,28 +39,41 @@ pub(crate) fn folders(results: &Path) -> Vec<String> {
 /// The folder of a run of this name.
 ///
 /// # Errors
-/// A sentence, if the name is more than a name.
-pub(crate) fn folder(results: &Path, name: &str) -> Result<PathBuf, String> {
-    if is_plain_name(name) {
-        return Ok(results.join(name));
+/// A sentence, if the name is more than a name, or leads out of the results and of what is `allowed`.
+pub(crate) fn folder(results: &Path, name: &str, allowed: &[PathBuf]) -> Result<PathBuf, String> {
+    if !is_plain_name(name) {
+        return Err(format!(
+            "{:?} is no run of the folder of results",
+            truncated(name)
+        ));
     }
-    Err(format!("{name:?} is no run of the folder of results"))
+    let found = Reach::new(results, "the results", allowed).and_then(|reach| reach.resolve(name));
+    found.map_err(|error| format!("{} cannot be read: {error}", display_path(&results.join(name))))
 }
 
 /// Reads a complete run.
 ///
 /// # Errors
-/// A sentence, if it is none, or was changed since it was written.
-pub(crate) fn read(folder: &Path) -> Result<(Document, Recorded), String> {
+/// A sentence, if it is none, or was changed since it was written, or one of its files lies elsewhere and not where it is `allowed`.
+pub(crate) fn read(folder: &Path, allowed: &[PathBuf]) -> Result<(Document, Recorded), String> {
     /// Any error as its sentence.
     fn sentence(error: impl std::fmt::Display) -> String {
         error.to_string()
+    }
+    let reach = Reach::new(folder, "the run", allowed)?;
+    for name in [MANIFEST, CASE, SUMMARY, SERIES, FIELDS] {
+        let path = folder.join(name);
+        if path.symlink_metadata().is_ok() {
+            reach
+                .resolve(name)
+                .map_err(|error| format!("{} cannot be read: {error}", display_path(&path)))?;
+        }
     }
     let run = verify::inspect(folder).map_err(sentence)?;
     verify::expect_as_written(&run, |_| true).map_err(sentence)?;
     let canonical = folder.canonicalize().unwrap_or_else(|_| folder.to_owned());
     let name = canonical.file_name().unwrap_or_default().to_string_lossy();
-    let document = Document::load(&folder.join(slipfront_run::names::CASE), &name).map_err(sentence)?;
+    let document = Document::load(&folder.join(CASE), &name, allowed).map_err(sentence)?;
     let summary = summary::read_summary(folder).map_err(sentence)?;
     let rows = series::read_csv(&folder.join(SERIES)).map_err(sentence)?;
     let fields = folder.join(FIELDS);

@@ -1,11 +1,12 @@
-//! A run from rest into a folder of its own, with the bytes that `slipfront run` writes, in a thread of its own.
+//! A run from rest into a folder of its own, with the bytes that `slipfront run` writes.
 
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-use slipfront_case::text::display_path;
+use slipfront_case::text::{display_path, truncated};
 use slipfront_run::clock;
 use slipfront_run::results;
 use slipfront_run::run_folder::RunFolder;
@@ -13,9 +14,6 @@ use slipfront_run::running::Running;
 
 use crate::document::Document;
 use crate::files::is_plain_name;
-use crate::outbox::Outbox;
-use crate::protocol::Reply;
-use crate::replay;
 
 /// Time from one report of the progress to the next.
 const REPORT: Duration = Duration::from_millis(200);
@@ -27,39 +25,43 @@ const REPORT: Duration = Duration::from_millis(200);
 pub(crate) fn folder(results: &Path, name: &str) -> Result<PathBuf, String> {
     if !is_plain_name(name) {
         return Err(format!(
-            "{name:?} is no name for a folder: take up to 100 letters, digits, blanks and -_.+(), and no dot at the start"
+            "{:?} is no name for a folder: take up to 100 letters, digits, blanks and -_.+(), and no dot at the start",
+            truncated(name)
         ));
     }
     let folder = results.join(name);
     match folder.symlink_metadata() {
         Err(_) => Ok(folder),
-        Ok(_) => Err(format!(
-            "{} exists already: take another name",
-            display_path(&folder)
-        )),
+        Ok(_) => Err(is_taken(&folder)),
     }
 }
 
-/// Runs the case to its end and writes it into a folder of the results; tells how far it is, and where they are.
-pub(crate) fn save(document: &Document, out: &Path, threads: usize, outbox: &Outbox, stop: &AtomicBool) {
-    match saved(document, out, threads, outbox, stop) {
-        Ok(true) => outbox.reply(&Reply::Saved {
-            name: &document.name,
-            folder: display_path(out),
-            folders: out.parent().map(replay::folders).unwrap_or_default(),
-        }),
-        Ok(false) => {}
-        Err(sentence) => outbox.reply(&Reply::Refused { of: "save", sentence }),
-    }
+fn is_taken(folder: &Path) -> String {
+    format!("{} exists already: take another name", display_path(folder))
 }
 
-/// Whether the run came to its end.
-fn saved(
+/// Makes a new folder. What stands there already is not taken for one, not even a link to an empty folder.
+fn make_folder(path: &Path) -> Result<(), String> {
+    let above = path.parent().map_or(Ok(()), std::fs::create_dir_all);
+    above
+        .and_then(|()| std::fs::create_dir(path))
+        .map_err(|error| match error.kind() {
+            ErrorKind::AlreadyExists => is_taken(path),
+            _ => format!("{} cannot be made: {error}", display_path(path)),
+        })
+}
+
+/// Runs the case to its end and writes it into a new folder; tells now and then the share that is done, and looks whether it shall
+/// stop. Gives whether the run is there.
+///
+/// # Errors
+/// A sentence; then there is no folder.
+pub(crate) fn save(
     document: &Document,
     out: &Path,
     threads: usize,
-    outbox: &Outbox,
     stop: &AtomicBool,
+    tell: impl Fn(f64),
 ) -> Result<bool, String> {
     /// Any error as its sentence.
     fn sentence(error: impl std::fmt::Display) -> String {
@@ -70,8 +72,16 @@ fn saved(
     case.budget
         .check_disk(&case.file, out, 0, false)
         .map_err(sentence)?;
-    let mut folder = RunFolder::prepare(out, false, &case.inputs).map_err(sentence)?;
-    results::write_case(&case, &mut folder).map_err(sentence)?;
+    make_folder(out)?;
+    let prepared = RunFolder::prepare(out, false, &case.inputs);
+    let mut folder = prepared.map_err(|error| {
+        let _ = std::fs::remove_dir(out);
+        sentence(error)
+    })?;
+    if let Err(error) = results::write_case(&case, &mut folder) {
+        give_up(folder);
+        return Err(sentence(error));
+    }
     let mut running = Running::start(&case, threads);
     let mut told = Instant::now();
     let reason = loop {
@@ -89,8 +99,7 @@ fn saved(
         }
         if told.elapsed() > REPORT {
             told = Instant::now();
-            let share = running.snapshot().step as f64 / case.time_plan.last_step as f64;
-            outbox.reply(&Reply::Saving { share });
+            tell(running.snapshot().step as f64 / case.time_plan.last_step as f64);
         }
     };
     let mut record = running.record(reason);

@@ -14,6 +14,7 @@ use axum::routing::get;
 use tokio::sync::{Semaphore, watch};
 
 use crate::opening::Start;
+use crate::saves::Saves;
 use crate::session::Setting;
 use crate::socket::{MAX_PAGES, Shared};
 use crate::{assets, guard, presets, socket};
@@ -27,6 +28,10 @@ pub struct Options {
     pub start: Start,
     /// The folder of results: where runs are saved, and of which runs can be shown again.
     pub results: PathBuf,
+    /// Other folders in which files that cases name may lie: else they lie in the folder of the case.
+    pub allow_files: Vec<PathBuf>,
+    /// Tells a sentence in the terminal: what became of a run that was saved.
+    pub tell: fn(&str),
     /// The port; 0 for any that is free.
     pub port: u16,
     /// Threads of a run.
@@ -38,7 +43,7 @@ pub struct Laboratory {
     listener: TcpListener,
     port: u16,
     token: String,
-    setting: Setting,
+    setting: Arc<Setting>,
 }
 
 impl Laboratory {
@@ -55,12 +60,14 @@ impl Laboratory {
             port: listener.local_addr()?.port(),
             listener,
             token: random.iter().map(|byte| format!("{byte:02x}")).collect(),
-            setting: Setting {
+            setting: Arc::new(Setting {
                 start: options.start,
                 results: options.results,
+                allow_files: options.allow_files,
+                saves: Arc::new(Saves::new(options.tell)),
                 threads: options.threads,
                 presets: presets::entries(),
-            },
+            }),
         })
     }
 
@@ -76,15 +83,22 @@ impl Laboratory {
     /// When the system refuses what a server needs.
     pub fn serve(self, stop: impl Future<Output = ()> + Send + 'static) -> io::Result<()> {
         let (working, all_work) = channel();
-        let served = self.answer(stop, working);
+        let setting = Arc::clone(&self.setting);
+        let saves = Arc::clone(&setting.saves);
+        let stopped = async move {
+            stop.await;
+            saves.end();
+        };
+        let served = self.answer(stopped, working);
         wait_for(&all_work);
+        setting.saves.tell_left(&setting.results);
         served
     }
 
     fn answer(self, stop: impl Future<Output = ()> + Send + 'static, working: Sender<()>) -> io::Result<()> {
         let (end, ends) = watch::channel(false);
         let shared = Shared {
-            setting: Arc::new(self.setting),
+            setting: self.setting,
             token: self.token.into(),
             pages: Arc::new(Semaphore::new(MAX_PAGES)),
             ends,

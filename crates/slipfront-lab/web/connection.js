@@ -9,12 +9,16 @@ const LONGEST_WAIT_MS = 5000;
 let socket = null;
 let waitMs = 500;
 
+/** What a token is made of: with anything else there is no WebSocket, only an error. */
+const TOKEN = /^\w+$/;
+
 /** The token of the address, which is then kept for this tab and taken out of what the browser remembers. */
 function token() {
   const parts = new URLSearchParams(location.hash.slice(1));
   const given = parts.get('token');
   if (given) {
-    sessionStorage.setItem('token', given);
+    if (TOKEN.test(given)) sessionStorage.setItem('token', given);
+    else put('problem', { key: 'broken_token' });
     const link = parts.get('case');
     history.replaceState(null, '', link ? `#case=${link}` : location.pathname);
   }

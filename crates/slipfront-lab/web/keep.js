@@ -1,7 +1,7 @@
 // @ts-check
 // What is kept of a run: a link, the case, a run folder, pictures.
 import { send } from './connection.js';
-import { download, find, onPress } from './element.js';
+import { download, find, make, onPress } from './element.js';
 import { drawNow, watchField } from './field.js';
 import { curvesFigure, fieldFigure, kymographFigure } from './figure.js';
 import { fromBase64, makeLink } from './link.js';
@@ -53,15 +53,33 @@ function save(event) {
   find('keep').close();
 }
 
-/** @param {{share: number}} saving */
-function showSaving({ share }) {
-  find('saving').hidden = false;
-  find('saving-progress').value = share;
+/** @param {string} name */
+function savingRow(name) {
+  const label = make('span', { textContent: say('saving_run', { name }) });
+  const stop = make('button', { type: 'button', textContent: say('save_stop') });
+  stop.addEventListener('click', () => send({ do: 'save_stop', name }));
+  const row = make('li', {}, [label, make('progress', { max: 1, 'aria-label': label.textContent }), stop]);
+  row.dataset.name = name;
+  return row;
 }
 
-/** @param {{folder: string, name: string}} saved */
-function showSaved({ folder }) {
-  find('saving').hidden = true;
+/** Shows every run that is being saved, also those that another page has begun, or this one before it was loaded again. @param {{under_way: Array<{name: string, share: number}>}} saving */
+function showSaving({ under_way: all }) {
+  const list = find('saving');
+  const rows = new Map([...list.children].map((row) => [row.dataset.name, row]));
+  // A row stays as it is, so that its button keeps the focus.
+  for (const { name, share } of all) {
+    const row = rows.get(name) ?? list.appendChild(savingRow(name));
+    row.querySelector('progress').value = share;
+    rows.delete(name);
+  }
+  for (const row of rows.values()) row.remove();
+  list.hidden = all.length === 0;
+}
+
+/** @param {{folder: string, folders: string[]}} saved */
+function showSaved({ folder, folders }) {
+  state.hello.folders = folders;
   notice(say('saved', { folder }));
   announce(say('saved', { folder }));
 }
@@ -82,14 +100,7 @@ export function startKeep() {
   closing('png-curves', () => png(curvesFigure(), 'curves'));
   closing('png-kymograph', () => png(kymographFigure(), 'kymograph'));
   find('save-form').addEventListener('submit', save);
-  onPress('save-stop', () => {
-    send({ do: 'save_stop' });
-    find('saving').hidden = true;
-  });
   on('saving', showSaving);
   on('saved', showSaved);
-  on('refused', ({ of }) => {
-    if (of === 'save') find('saving').hidden = true;
-  });
   on('hello', ({ results }) => (find('save-where').textContent = say('save_where', { results })));
 }

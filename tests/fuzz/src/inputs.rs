@@ -34,14 +34,14 @@ impl Target {
         files_of(&own_folder("findings", self.name), "")
     }
 
-    /// The text of its dictionary in the format of libFuzzer, for case and study files with the keys of a case; empty without
+    /// The text of its dictionary in the format of libFuzzer, for case and study files and requests with the keys of a case; empty without
     /// one.
     pub fn words(&self) -> String {
         let Some(name) = self.dictionary else {
             return String::new();
         };
         let mut text = std::fs::read_to_string(own_folder("dictionaries", name)).unwrap();
-        if ["case.dict", "study.dict"].contains(&name) {
+        if ["case.dict", "study.dict", "requests.dict"].contains(&name) {
             for word in words_of_cases() {
                 text += &format!("\"{}\"\n", word.replace('"', "\\x22"));
             }

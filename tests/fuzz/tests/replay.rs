@@ -81,4 +81,5 @@ replay! {
     manifest
     journal
     plot
+    requests
 }

@@ -221,7 +221,7 @@ impl<'t> ParsedCase<'t> {
     /// [`CaseError::Invalid`] for what is not TOML.
     pub fn parse(text: &'t str, name: &str) -> Result<Self, CaseError> {
         let source = Source::new(name, text);
-        let root = DeTable::parse(limit_nesting(text));
+        let root = DeTable::parse(limit_nesting(&source, 0, text)?);
         let root = root.map_err(|error| syntax_error(&source, 0, &error))?;
         Ok(Self {
             root: root.into_inner(),

@@ -29,7 +29,7 @@ mod time;
 mod values;
 mod words;
 
-pub use depth::limit_nesting;
+pub use depth::{limit_nesting, parts_of};
 pub use diagnose::syntax_error;
 pub use drive::{Attached, Drive, DriveSpeed, DriveStiffness, SpeedSegment};
 pub use error::{CaseError, Invalid, Place};

@@ -7,14 +7,11 @@ use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeArray, DeTable, DeValue};
 
-use super::depth::limit_nesting;
+use super::depth::{limit_nesting, parts_of};
 use super::diagnose::syntax_error;
 use super::error::CaseError;
 use super::key_table::partners;
 use super::source::Source;
-
-/// Most parts of a key: `texture.0.center.1` is one number of a pair.
-const MAX_PARTS: usize = 4;
 
 /// A key of a case file and its new value. It replaces a key that excludes it, as `drive.speed` does `drive.v_star`; of
 /// two overrides of one key the later holds.
@@ -68,8 +65,9 @@ impl Override {
         }
         // What opens a string, a list or a table was meant to be one.
         if value.starts_with(['"', '\'', '[', '{']) {
-            DeValue::parse(limit_nesting(value))
-                .map_err(|error| syntax_error(&source, start + value_start, &error))?;
+            let start = start + value_start;
+            DeValue::parse(limit_nesting(&source, start, value)?)
+                .map_err(|error| syntax_error(&source, start, &error))?;
         }
         let key_start = key.len() - key.trim_start().len();
         Ok(Self {
@@ -95,14 +93,7 @@ impl Override {
         let source = &*source;
         let span = start..start + self.text.len();
         let refuse = |sentence: &str| source.error_at(span.clone(), sentence);
-        let path: Vec<&str> = self.key().split('.').map(str::trim).collect();
-        let is_bare = |c: char| c.is_ascii_alphanumeric() || "_-".contains(c);
-        let is_name = |part: &&str| !part.is_empty() && part.chars().all(is_bare);
-        if path.len() > MAX_PARTS || !path.iter().all(is_name) {
-            return Err(refuse(
-                "the key of an override is made of names and dots, such as drive.v_star or texture.0.coverage",
-            ));
-        }
+        let path = parts_of(self.key()).map_err(refuse)?;
         let change = Change {
             source,
             table: path[0],
@@ -111,9 +102,13 @@ impl Override {
         let text = &self.text[self.value.clone()];
         // What is not TOML is a string without quotes, which a shell takes away.
         let string = || Spanned::new(0..text.len(), DeValue::String(Cow::Borrowed(text)));
-        let value = DeValue::parse(limit_nesting(text)).unwrap_or_else(|_| string());
+        let start = start + self.value.start;
+        let parsed = limit_nesting(source, start, text)
+            .ok()
+            .and_then(|text| DeValue::parse(text).ok());
+        let value = parsed.unwrap_or_else(string);
         change
-            .set(root, &path, moved(value, start + self.value.start))
+            .set(root, &path, moved(value, start))
             .map_err(|sentence| refuse(&sentence))
     }
 }

@@ -16,6 +16,7 @@ use crate::threads::{count_from_one, set_worker_threads};
   slipfront lab                                          a circular cavity, sliding
   slipfront lab cases/groove_across.toml                 a case of yours
   slipfront lab results/circle                           a run again, beside what it recorded
+  slipfront lab mine/a.toml --allow-files shared         a case that names files in another folder
   slipfront lab 'http://127.0.0.1:4000/#case=q1Yqyc_NUbJSSinKLEvVK4svLkksUrBVMNAzjMlT0lFKy8xJLVayqq6tBQA'
                                                          the case of a link that was copied there
 
@@ -27,6 +28,10 @@ pub(crate) struct Lab {
     /// Folder of results: runs are saved there, and those that are there can be shown again
     #[arg(short, long, value_name = "DIR", default_value = "results")]
     results: PathBuf,
+    /// Another folder of which files that a case names may be read and become part of links and exports: else those in the
+    /// folder of the case alone; may be given several times
+    #[arg(long, value_name = "DIR")]
+    allow_files: Vec<PathBuf>,
     /// The port [default: one that is free]
     #[arg(long, value_name = "N", default_value_t = 0, hide_default_value = true)]
     port: u16,
@@ -52,12 +57,16 @@ impl Lab {
             .and_then(|case| case.split_once(LINK))
             .map(|(_, link)| link);
         let start = match &self.case {
-            Some(case) if link.is_none() => Start::of(Path::new(case)).map_err(Failure::input)?,
+            Some(case) if link.is_none() => {
+                Start::of(Path::new(case), &self.allow_files).map_err(Failure::input)?
+            }
             _ => Start::default(),
         };
         let laboratory = Laboratory::bind(Options {
             start,
             results: self.results,
+            allow_files: self.allow_files,
+            tell: print_stderr,
             port: self.port,
             threads,
         });

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use slipfront_case::text::truncated;
 use toml::Value;
 
 use super::brush::stroke;
@@ -12,8 +13,9 @@ use crate::files::is_plain_name;
 use crate::history::History;
 use crate::opening::Opened;
 use crate::protocol::{Reply, Source};
+use crate::replay::{self, Recorded};
 use crate::view::AfterChange;
-use crate::{base64, presets, replay};
+use crate::{base64, presets};
 
 impl Session {
     pub(super) fn open(&mut self, source: Source) -> Result<(), String> {
@@ -21,7 +23,7 @@ impl Session {
         let document = if let Some(name) = source.preset {
             presets::document(&name)?
         } else if let Some(name) = source.folder {
-            let (document, found) = replay::read(&replay::folder(&self.setting.results, &name)?)?;
+            let (document, found) = self.recorded_run(&name)?;
             recorded = Some(found);
             document
         } else if let Some(toml) = source.toml {
@@ -32,10 +34,8 @@ impl Session {
                 files.insert(name, base64::decode(&text)?);
             }
             let read = |name: &str| {
-                files
-                    .get(name)
-                    .cloned()
-                    .ok_or_else(|| std::io::ErrorKind::NotFound.into())
+                let missing = || "it is not one of the files that came with the case".to_owned();
+                files.get(name).cloned().ok_or_else(missing)
             };
             Document::new(&name, &toml, read).map_err(|error| error.to_string())?
         } else {
@@ -43,7 +43,7 @@ impl Session {
                 Opened::Preset => presets::opening()?,
                 Opened::Case(document) => Document::clone(document),
                 Opened::Folder(path) => {
-                    let (document, found) = replay::read(path)?;
+                    let (document, found) = replay::read(path, &self.setting.allow_files)?;
                     recorded = Some(found);
                     document
                 }
@@ -68,6 +68,12 @@ impl Session {
         Ok(())
     }
 
+    /// The run of this name among the results.
+    fn recorded_run(&self, name: &str) -> Result<(Document, Recorded), String> {
+        let allowed = &self.setting.allow_files;
+        replay::read(&replay::folder(&self.setting.results, name, allowed)?, allowed)
+    }
+
     pub(super) fn set(
         &mut self,
         keys: serde_json::Map<String, serde_json::Value>,
@@ -80,7 +86,7 @@ impl Session {
                 serde_json::Value::Null => None,
                 value => Some(
                     Value::try_from(value)
-                        .map_err(|error| format!("`{key}` is no value of TOML: {error}"))?,
+                        .map_err(|error| format!("`{}` is no value of TOML: {error}", truncated(&key)))?,
                 ),
             };
             changes.push((key, value));
@@ -117,7 +123,7 @@ impl Session {
         let image = base64::decode(text)?;
         let document = self
             .document()?
-            .with_image(image, threshold)
+            .with_image(&image, threshold)
             .map_err(|error| error.to_string())?;
         self.edited = Some(Edited {
             document,
@@ -169,7 +175,7 @@ impl Session {
     /// Runs the case whose keys were changed.
     fn run_set(&mut self) {
         let Some(Edited {
-            document,
+            mut document,
             gesture,
             of,
         }) = self.edited.take()
@@ -179,6 +185,7 @@ impl Session {
         let from_rest = self.view.after_change == AfterChange::Rest;
         let made = document.case_to_show().map_err(|error| error.to_string());
         let begun = made.and_then(|case| {
+            document.drop_unnamed_files().map_err(|error| error.to_string())?;
             if let Some(history) = &mut self.history {
                 history.change(document, gesture);
             }

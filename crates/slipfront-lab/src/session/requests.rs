@@ -4,10 +4,11 @@ use std::sync::Arc;
 
 use super::state::Session;
 use crate::background::Stoppable;
+use crate::files::KeptFile;
 use crate::history::History;
 use crate::protocol::{Reply, Request};
 use crate::repeat::repeat;
-use crate::{base64, save, zip};
+use crate::{base64, zip};
 
 /// Most seeds of a repetition.
 const MAX_SEEDS: u64 = 32;
@@ -56,9 +57,9 @@ impl Session {
                 Ok(())
             }
             Request::Repeat { seeds } => self.repeat(seeds),
-            Request::Save { name } => self.save(name),
-            Request::SaveStop => {
-                self.saving = None;
+            Request::Save { name } => self.save(&name),
+            Request::SaveStop { name } => {
+                self.setting.saves.stop(&name);
                 Ok(())
             }
             Request::Export => self.export(),
@@ -90,27 +91,28 @@ impl Session {
         Ok(())
     }
 
-    fn save(&mut self, name: String) -> Result<(), String> {
+    fn save(&mut self, name: &str) -> Result<(), String> {
         self.run_edited();
-        let out = save::folder(&self.setting.results, &name)?;
-        let (mut document, outbox) = (self.document()?.clone(), Arc::clone(&self.outbox));
-        document.name = name;
-        let threads = self.setting.threads;
-        let work = Stoppable::begin(&self.working, move |stop| {
-            save::save(&document, &out, threads, &outbox, stop);
-        });
-        self.saving = Some(work.map_err(|error| error.to_string())?);
-        Ok(())
+        let (document, setting) = (self.document()?.clone(), &self.setting);
+        setting
+            .saves
+            .begin(document, name, &setting.results, setting.threads, &self.working)
     }
 
     fn export(&mut self) -> Result<(), String> {
         self.run_edited();
         let document = self.document()?;
         let toml = document.toml();
-        let files = document
-            .files()
+        let read = |(name, file): (&String, &Arc<KeptFile>)| match file.read() {
+            Ok(contents) => Ok((name.clone(), contents)),
+            Err(error) => Err(format!(
+                "{name} cannot be read from the temporary folder any more: {error}"
+            )),
+        };
+        let files: Vec<(String, Vec<u8>)> = document.files().iter().map(read).collect::<Result<_, _>>()?;
+        let files = files
             .iter()
-            .map(|(name, bytes)| (name.as_str(), bytes.as_slice()));
+            .map(|(name, contents)| (name.as_str(), contents.as_slice()));
         let all = [("case.toml", toml.as_bytes())].into_iter().chain(files.clone());
         let archive = zip::archive(all).map_err(|error| format!("the archive cannot be made: {error}"))?;
         self.outbox.reply(&Reply::Exported {

@@ -23,6 +23,7 @@ pub(crate) fn serve(
     working: &Sender<()>,
 ) {
     Session::greet(setting, outbox);
+    setting.saves.add_page(outbox);
     loop {
         let mut session = Session::new(setting, outbox, working);
         match catch_unwind(AssertUnwindSafe(|| session.serve(requests))) {
@@ -95,6 +96,7 @@ mod tests {
     use crate::opening::Start;
     use crate::outbox::Outgoing;
     use crate::protocol::Source;
+    use crate::saves::Saves;
 
     /// The next reply of this name.
     fn wait_for(outbox: &Outbox, runtime: &tokio::runtime::Runtime, name: &str) {
@@ -128,6 +130,8 @@ mod tests {
                 let setting = Arc::new(Setting {
                     start: Start::default(),
                     results: "results".into(),
+                    allow_files: Vec::new(),
+                    saves: Arc::new(Saves::new(|_| {})),
                     threads: 1,
                     presets: Vec::new(),
                 });

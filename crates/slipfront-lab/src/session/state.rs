@@ -14,6 +14,7 @@ use crate::outbox::Outbox;
 use crate::picture::Painter;
 use crate::protocol::PresetEntry;
 use crate::replay::Recorded;
+use crate::saves::Saves;
 use crate::view::View;
 
 /// What all sessions share.
@@ -21,6 +22,9 @@ pub(crate) struct Setting {
     pub(crate) start: Start,
     /// The folder of results.
     pub(crate) results: PathBuf,
+    /// Other folders in which files that cases name may lie.
+    pub(crate) allow_files: Vec<PathBuf>,
+    pub(crate) saves: Arc<Saves>,
     pub(crate) threads: usize,
     pub(crate) presets: Vec<PresetEntry>,
 }
@@ -57,7 +61,6 @@ pub(super) struct Session {
     /// Steps that were asked for one by one.
     pub(super) single_steps: u64,
     pub(super) repeating: Option<Stoppable>,
-    pub(super) saving: Option<Stoppable>,
     /// What is to be told with the next points.
     pub(super) news: News,
 }
@@ -92,7 +95,6 @@ impl Session {
             clock: Clock::new(),
             single_steps: 0,
             repeating: None,
-            saving: None,
             news: News::default(),
         }
     }

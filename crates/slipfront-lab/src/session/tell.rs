@@ -28,7 +28,7 @@ impl Session {
             name: &document.name,
             toml: document.toml(),
             files: document.files().keys().map(String::as_str).collect(),
-            link_files_bytes: document.files().values().map(Vec::len).sum(),
+            link_files_bytes: document.files().values().map(|file| file.bytes).sum(),
             blocks: [lattice.nx, lattice.ny],
             block_size_m: scales.block_size,
             n_blocks: case.model.n_blocks(),

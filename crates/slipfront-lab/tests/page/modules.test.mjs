@@ -117,6 +117,10 @@ test('a link gives the case back, and one that is too long is not made', async (
   const noise = toBase64(randomBytes(20_000));
   assert.ok((await makeLink({ toml: noise, files: {} })) === null);
   await assert.rejects(readLink('broken'));
+  for (const odd of [{ toml: 1 }, { toml: '', name: 1 }, { toml: '', files: { a: 1 } }, { toml: ' '.repeat(8e6) }, null]) {
+    const link = await makeLink(odd);
+    await assert.rejects(readLink(link), JSON.stringify(odd)?.slice(0, 40));
+  }
 });
 
 test('a pixel goes to blocks and back, and zooming keeps what is below the pointer', () => {

@@ -300,6 +300,46 @@ fn cases_beyond_what_is_shown_are_refused() {
     assert!(said.contains("PNG"), "{said}");
 }
 
+/// Tables within tables are read and freed by functions that call themselves: beyond some thousand there is no stack left, and the
+/// process is gone.
+#[test]
+fn deep_keys_and_values_are_refused() {
+    let lab = Served::new();
+    let mut page = Page::with_case(&lab, SMALL);
+    page.reply("case");
+    let long = |parts: usize| vec!["a"; parts].join(".");
+    for key in [
+        long(5),
+        long(4600),
+        long(1_000_000),
+        format!("drive.{}", long(100_000)),
+        ".".repeat(10_000),
+    ] {
+        for value in [json!(1), json!(null)] {
+            let said = page.refusal(&json!({ "do": "set", "keys": { key.as_str(): value }, "gesture": 1 }));
+            assert!(
+                said.contains("up to four names with dots between them") && said.len() < 500,
+                "{said}"
+            );
+        }
+    }
+    // As deep as JSON goes, and then some more with every key.
+    let nested = format!("{}1{}", "{\"a\":".repeat(100), "}".repeat(100));
+    let nested: serde_json::Value = serde_json::from_str(&nested).unwrap();
+    for key in ["drive.v_star", "texture", "a.b.c.d"] {
+        let said = page.refusal(&json!({ "do": "set", "keys": { key: nested }, "gesture": 2 }));
+        assert!(said.contains("more than 64 levels deep"), "{said}");
+        page.reply("case");
+    }
+    // Dotted keys within brackets, of a case that somebody sends.
+    let key = long(79);
+    let toml = format!("x = {}1{}", format!("{{ {key} = ").repeat(75), "}".repeat(75));
+    let said = page.refusal(&json!({ "do": "open", "source": { "toml": toml } }));
+    assert!(said.contains("more than 64 levels deep"), "{said}");
+    page.send(&json!({ "do": "rest" }));
+    page.reply("case");
+}
+
 /// A page that asks without end, and reads nothing.
 #[test]
 fn a_flood_does_not_fill_the_memory() {

@@ -3,6 +3,7 @@
 use std::io::{Read, Write};
 use std::net::TcpStream;
 use std::path::PathBuf;
+use std::sync::Mutex;
 use std::thread::JoinHandle;
 use std::time::Duration;
 
@@ -12,6 +13,9 @@ use tokio::sync::oneshot;
 
 /// Long enough for a slow machine, short enough for a test that fails.
 pub(crate) const TIMEOUT: Duration = Duration::from_secs(30);
+
+/// What all servers have told in their terminals.
+static TOLD: Mutex<Vec<String>> = Mutex::new(Vec::new());
 
 /// A server, which ends with the test.
 pub(crate) struct Served {
@@ -32,6 +36,8 @@ impl Served {
         let laboratory = Laboratory::bind(Options {
             start,
             results: folder.path().join("results"),
+            allow_files: Vec::new(),
+            tell: |sentence| TOLD.lock().unwrap().push(sentence.to_owned()),
             port: 0,
             threads: 1,
         });
@@ -57,6 +63,14 @@ impl Served {
 
     pub(crate) fn results(&self) -> PathBuf {
         self.folder.path().join("results")
+    }
+
+    /// What this server has told of a folder of its results.
+    pub(crate) fn told_of(&self, name: &str) -> Vec<String> {
+        let folder = self.results().join(name).display().to_string();
+        let mut told = TOLD.lock().unwrap().clone();
+        told.retain(|sentence| sentence.contains(&folder));
+        told
     }
 
     pub(crate) fn connect(&self) -> TcpStream {

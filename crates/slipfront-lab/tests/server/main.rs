@@ -2,6 +2,8 @@
 #![expect(clippy::unwrap_used, reason = "a test fails by a panic")]
 
 mod attacks;
+mod files;
 mod laboratory;
 mod page;
 mod pages;
+mod saves;

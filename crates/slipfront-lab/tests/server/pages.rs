@@ -10,6 +10,9 @@ use crate::page::Page;
 const CIRCLE: &str = "slider.blocks = [20, 20]\nfriction.sigma_static_star = 0\ntime.duration_star = 200\n[[texture]]\nshape = 'cavity'\n\
                       coverage = 10\n";
 
+/// The field of a picture.
+const CONTACT_STRESS: u8 = 0;
+
 fn number(value: &Value) -> f64 {
     value.as_f64().unwrap_or_else(|| panic!("{value} is no number"))
 }
@@ -157,8 +160,10 @@ fn paint_undo_and_redo_change_the_texture() {
     );
     // The picture shows it where it is: the row of y = 4 but for the four blocks in its middle and below.
     page.send(&json!({ "do": "view", "field": "contact_stress", "paused": true }));
-    page.reply("numbers");
-    page.next_picture();
+    // It may come before the numbers that were found with it.
+    while page.picture.get(1) != Some(&CONTACT_STRESS) {
+        page.next_picture();
+    }
     let (size, pixels) = page.picture.split_at(36);
     assert_eq!(size[32..36], [10, 0, 8, 0]);
     let textured: Vec<usize> = (0..80).filter(|&b| pixels[b] == 255).collect();
@@ -317,20 +322,4 @@ fn every_case_to_choose_from_can_be_shown() {
         });
         assert_eq!(reply["is"], "case", "{preset}: {reply}");
     }
-}
-
-/// A run that is being saved leaves no half of a folder.
-#[test]
-fn the_end_of_the_server_ends_everything() {
-    let mut lab = Served::new();
-    let mut page = Page::with_case(&lab, "slider.blocks = [300, 300]\ntime.duration_star = 1e5\n");
-    page.reply("case");
-    page.send(&json!({ "do": "save", "name": "long" }));
-    page.reply("saving");
-    lab.stop();
-    assert_eq!(
-        page.end().unwrap().1,
-        "the laboratory was stopped in its terminal"
-    );
-    assert!(!lab.results().join("long").exists());
 }

@@ -196,7 +196,7 @@ impl StudyFile {
     /// The study with its base case inside and its files beside it, for the results folder.
     pub(super) fn portable(&self) -> Result<(String, Vec<Copy>), StudyError> {
         let source = Source::new(&self.base.name, &self.base.text);
-        let base: Result<toml::Table, _> = limit_nesting(&self.base.text).parse();
+        let base: Result<toml::Table, _> = limit_nesting(&source, 0, &self.base.text)?.parse();
         let base = base.map_err(|error| syntax_error(&source, 0, &error))?;
         let mut table = toml::Table::from_iter([("base".to_owned(), base.into())]);
         table.extend(self.table.clone().into_iter().filter(|(key, _)| key != "base"));
@@ -237,8 +237,10 @@ impl StudyFile {
     /// Reads a study file called `file` in messages; a base case that it names stands relative to `folder`.
     pub fn parse(text: &str, file: &str, name: &str, folder: &Path) -> Result<Self, StudyError> {
         let mut source = Source::new(file, text);
-        let root = DeTable::parse(limit_nesting(text)).map_err(|error| syntax_error(&source, 0, &error))?;
-        let root = root.into_inner();
+        let root = DeTable::parse(limit_nesting(&source, 0, text)?);
+        let root = root
+            .map_err(|error| syntax_error(&source, 0, &error))?
+            .into_inner();
         source.note_places(&root);
         let mut tables = Tables {
             root,

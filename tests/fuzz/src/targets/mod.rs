@@ -10,13 +10,14 @@ mod kymograph;
 mod plot;
 mod quantity;
 mod records;
+mod requests;
 mod series;
 mod study;
 
 use crate::Target;
 
 /// All targets, in the order in which a run reads and writes their files.
-pub const TARGETS: [Target; 19] = [
+pub const TARGETS: [Target; 20] = [
     case::CASE_FILE,
     case::CASE,
     study::STUDY_FILE,
@@ -36,4 +37,5 @@ pub const TARGETS: [Target; 19] = [
     json::MANIFEST,
     json::JOURNAL,
     plot::PLOT,
+    requests::REQUESTS,
 ];

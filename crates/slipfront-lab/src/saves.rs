@@ -1,0 +1,215 @@
+//! Runs that are being saved. They belong to the server and not to a page: one that is closed or loaded again ends none of them.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::Path;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::Sender;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
+use std::thread;
+
+use slipfront_case::text::display_path;
+
+use crate::document::Document;
+use crate::outbox::Outbox;
+use crate::protocol::{Reply, SavingEntry};
+use crate::{replay, save};
+
+/// Most runs that are saved at once.
+const MAX_SAVES: usize = 4;
+
+/// All runs that are being saved, and the pages that are told of them.
+pub(crate) struct Saves {
+    list: Mutex<List>,
+    /// Tells a sentence in the terminal.
+    tell: fn(&str),
+}
+
+#[derive(Default)]
+struct List {
+    under_way: Vec<UnderWay>,
+    pages: Vec<Weak<Outbox>>,
+    /// Whether the server ends.
+    ends: bool,
+}
+
+struct UnderWay {
+    name: String,
+    share: f64,
+    stop: Arc<AtomicBool>,
+}
+
+impl List {
+    fn find(&mut self, name: &str) -> Option<&mut UnderWay> {
+        self.under_way.iter_mut().find(|one| one.name == name)
+    }
+
+    fn pages(&mut self) -> Vec<Arc<Outbox>> {
+        self.pages.retain(|page| page.strong_count() > 0);
+        self.pages.iter().filter_map(Weak::upgrade).collect()
+    }
+
+    /// Tells all pages what is under way.
+    fn show(&mut self) {
+        for page in self.pages() {
+            page.reply(&self.reply());
+        }
+    }
+
+    fn reply(&self) -> Reply<'_> {
+        let entry = |one: &UnderWay| SavingEntry {
+            name: one.name.clone(),
+            share: one.share,
+        };
+        Reply::Saving {
+            under_way: self.under_way.iter().map(entry).collect(),
+        }
+    }
+}
+
+impl Saves {
+    /// None are under way.
+    pub(crate) fn new(tell: fn(&str)) -> Self {
+        Self {
+            list: Mutex::default(),
+            tell,
+        }
+    }
+
+    fn list(&self) -> MutexGuard<'_, List> {
+        // Nothing panics while it is locked.
+        self.list.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// A page that is told from now on, and what is under way already.
+    pub(crate) fn add_page(&self, page: &Arc<Outbox>) {
+        let mut list = self.list();
+        list.pages.push(Arc::downgrade(page));
+        page.reply(&list.reply());
+    }
+
+    /// Begins to save a run of a case, in a thread that holds `working`, into a folder of the results of this name.
+    ///
+    /// # Errors
+    /// A sentence, if the name is taken or none, or too many runs are being saved.
+    pub(crate) fn begin(
+        self: &Arc<Self>,
+        mut document: Document,
+        name: &str,
+        results: &Path,
+        threads: usize,
+        working: &Sender<()>,
+    ) -> Result<(), String> {
+        let out = save::folder(results, name)?;
+        let mut list = self.list();
+        if list.ends {
+            return Err("the laboratory ends: nothing is saved any more".to_owned());
+        }
+        if list.find(name).is_some() {
+            return Err(format!(
+                "{} is being saved already: take another name",
+                display_path(&out)
+            ));
+        }
+        if list.under_way.len() == MAX_SAVES {
+            return Err(format!(
+                "{MAX_SAVES} runs are being saved already: wait until one of them is done, or stop it"
+            ));
+        }
+        name.clone_into(&mut document.name);
+        let stop = Arc::new(AtomicBool::new(false));
+        list.under_way.push(UnderWay {
+            name: name.to_owned(),
+            share: 0.0,
+            stop: Arc::clone(&stop),
+        });
+        let (saves, working) = (Arc::clone(self), working.clone());
+        let begun = thread::Builder::new().name("save".to_owned()).spawn(move || {
+            let told = |share| saves.advance(&document.name, share);
+            let work = || save::save(&document, &out, threads, &stop, told);
+            let outcome = catch_unwind(AssertUnwindSafe(work))
+                .unwrap_or_else(|_| Err("a defect of the simulation, which stands above".to_owned()));
+            saves.finish(&document.name, &out, &outcome);
+            drop(working);
+        });
+        if let Err(error) = begun {
+            list.under_way.retain(|one| one.name != name);
+            return Err(format!("the system refuses a thread to save the run: {error}"));
+        }
+        list.show();
+        Ok(())
+    }
+
+    /// The share of a run that is done.
+    fn advance(&self, name: &str, share: f64) {
+        let mut list = self.list();
+        if let Some(one) = list.find(name) {
+            one.share = share;
+        }
+        list.show();
+    }
+
+    /// Tells terminal and pages how the saving of a run has ended: whether it is there, or why not.
+    fn finish(&self, name: &str, out: &Path, outcome: &Result<bool, String>) {
+        let folder = display_path(out);
+        let (share, ends) = {
+            let mut list = self.list();
+            (list.find(name).map_or(0.0, |one| one.share), list.ends)
+        };
+        let sentence = match outcome {
+            Ok(true) => format!("the run is saved in {folder}"),
+            Ok(false) => format!(
+                "{folder} was not saved: {} after {:.0} % of the run, whose unfinished folder is removed",
+                if ends {
+                    "the laboratory ended"
+                } else {
+                    "it was stopped"
+                },
+                100.0 * share
+            ),
+            Err(error) => format!("{folder} was not saved: {error}"),
+        };
+        // Not while the list is locked, since a terminal may hold up what is printed.
+        (self.tell)(&sentence);
+        let reply = match outcome {
+            Ok(true) => Some(Reply::Saved {
+                name,
+                folder,
+                folders: out.parent().map(replay::folders).unwrap_or_default(),
+            }),
+            Ok(false) => None,
+            Err(_) => Some(Reply::Refused { of: "save", sentence }),
+        };
+        let mut list = self.list();
+        list.under_way.retain(|one| one.name != name);
+        for page in list.pages() {
+            reply.iter().for_each(|reply| page.reply(reply));
+        }
+        list.show();
+    }
+
+    /// Stops saving a run, if it is under way.
+    pub(crate) fn stop(&self, name: &str) {
+        if let Some(one) = self.list().find(name) {
+            one.stop.store(true, Ordering::Relaxed);
+        }
+    }
+
+    /// Stops them all, since the server ends.
+    pub(crate) fn end(&self) {
+        let mut list = self.list();
+        list.ends = true;
+        for one in &list.under_way {
+            one.stop.store(true, Ordering::Relaxed);
+        }
+    }
+
+    /// Tells in the terminal which have not ended although they were stopped.
+    pub(crate) fn tell_left(&self, results: &Path) {
+        for one in &self.list().under_way {
+            let folder = display_path(&results.join(&one.name));
+            (self.tell)(&format!(
+                "{folder} is not whole: its run could not be ended in time; remove the folder"
+            ));
+        }
+    }
+}
