@@ -61,7 +61,7 @@ async function once() {
 /** Connects, and again after every loss, after longer and longer waits, until the server says that it ends. */
 export async function connect() {
   window.addEventListener('hashchange', () => hasToken() && location.reload());
-  if (hasToken()) await takeToken();
+  if (hasToken() && !(await takeToken())) put('problem', { key: 'broken_token' });
   for (let waitMs = SHORTEST_WAIT_MS; ; waitMs = Math.min(2 * waitMs, LONGEST_WAIT_MS)) {
     const { proved, ended, reason } = await once();
     put('connected', { yes: false, ended, reason });

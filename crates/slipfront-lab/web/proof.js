@@ -21,15 +21,16 @@ async function code(key, text) {
 /** Whether the address holds a token. */
 export const hasToken = () => new URLSearchParams(location.hash.slice(1)).has('token');
 
-/** Takes the token out of the address and out of what the browser remembers, and keeps the key of this tab. */
+/** Takes the token out of the address and out of what the browser remembers, and keeps the key of this tab; whether it was one. */
 export async function takeToken() {
   const parts = new URLSearchParams(location.hash.slice(1));
-  const [token, link] = [parts.get('token'), parts.get('case')];
+  const [token, link] = [parts.get('token') ?? '', parts.get('case')];
   history.replaceState(null, '', link ? `#case=${link}` : location.pathname);
-  if (!token) return;
+  if (!/^[0-9a-f]{32}$/.test(token)) return false;
   const tab = draw();
   sessionStorage.setItem('key', await code(token, tab));
   sessionStorage.setItem('tab', tab);
+  return true;
 }
 
 /** Forgets the key of a server that has ended. */
