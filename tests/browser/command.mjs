@@ -20,7 +20,7 @@ export async function slipfront(...options) {
   return (await promisify(execFile)(COMMAND, options, { cwd: WORK })).stdout;
 }
 
-/** Starts a laboratory; returns the address that it prints, and what stops it. */
+/** Starts a laboratory; returns the address that it prints, what stops it, and what kills it. */
 export async function startLaboratory(...options) {
   const child = spawn(COMMAND, ['lab', '--no-open', '--results', RESULTS, ...options], { cwd: WORK, stdio: ['ignore', 'pipe', 'inherit'] });
   const ended = new Promise((resolve) => child.once('exit', resolve));
@@ -33,11 +33,11 @@ export async function startLaboratory(...options) {
     });
     ended.then(() => reject(new Error(`slipfront lab ended before it printed an address: ${printed}`)));
   });
-  const stop = () => {
-    child.kill();
+  const end = (signal) => {
+    child.kill(signal);
     return ended;
   };
-  return { address, stop };
+  return { address, stop: () => end('SIGTERM'), kill: () => end('SIGKILL') };
 }
 
 /** A case as part of an address, as the page makes it. */

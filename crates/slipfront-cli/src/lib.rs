@@ -7,6 +7,7 @@
 // The macros of these lints panic where they cannot print.
 #![deny(clippy::print_stderr, clippy::print_stdout)]
 
+mod browser;
 mod case_args;
 mod checkpoint_timer;
 mod commands;

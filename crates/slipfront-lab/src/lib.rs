@@ -11,6 +11,7 @@
 mod assets;
 mod background;
 mod base64;
+mod connections;
 mod controls;
 mod document;
 mod files;
@@ -30,6 +31,8 @@ mod server;
 mod session;
 mod shapes;
 mod socket;
+mod start_page;
+mod token;
 mod view;
 mod zip;
 

@@ -1,7 +1,7 @@
 //! What a session has for its page: replies in their order, and of pictures the newest alone.
 
 use std::collections::VecDeque;
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 
 use axum::body::Bytes;
 use tokio::sync::Notify;
@@ -11,16 +11,23 @@ use crate::protocol::Reply;
 /// Replies that may wait before the run does.
 const MANY: usize = 64;
 
+/// Bytes of replies that may wait before the next request does: those to a page that does not read them do not fill the memory.
+const MANY_BYTES: usize = 4 << 20;
+
 /// Filled by the session and the work it has begun, emptied by the connection.
 #[derive(Default)]
 pub(crate) struct Outbox {
     waiting: Mutex<Waiting>,
     filled: Notify,
+    /// Tells that there is room again.
+    taken: Condvar,
 }
 
 #[derive(Default)]
 struct Waiting {
     replies: VecDeque<String>,
+    /// Whether the page is gone.
+    closed: bool,
     picture: Option<Bytes>,
     kymograph: Option<Bytes>,
 }
@@ -42,6 +49,21 @@ impl Outbox {
         let text = serde_json::to_string(reply).expect("replies are JSON");
         self.waiting().replies.push_back(text);
         self.filled.notify_one();
+    }
+
+    /// Waits until there is room for the answer to another request, or the page is gone.
+    pub(crate) fn wait_for_room(&self) {
+        let is_full = |waiting: &mut Waiting| {
+            let bytes: usize = waiting.replies.iter().map(String::len).sum();
+            bytes >= MANY_BYTES && !waiting.closed
+        };
+        drop(self.taken.wait_while(self.waiting(), is_full));
+    }
+
+    /// Lets nobody wait for a page that is gone.
+    pub(crate) fn close(&self) {
+        self.waiting().closed = true;
+        self.taken.notify_all();
     }
 
     /// A picture in place of one that has not been sent yet.
@@ -78,9 +100,54 @@ impl Outbox {
 
     fn take(&self) -> Option<Outgoing> {
         let mut waiting = self.waiting();
-        let reply = waiting.replies.pop_front().map(Outgoing::Reply);
-        reply
-            .or_else(|| waiting.picture.take().map(Outgoing::Picture))
-            .or_else(|| waiting.kymograph.take().map(Outgoing::Picture))
+        if let Some(reply) = waiting.replies.pop_front() {
+            self.taken.notify_all();
+            return Some(Outgoing::Reply(reply));
+        }
+        let picture = waiting.picture.take().or_else(|| waiting.kymograph.take());
+        picture.map(Outgoing::Picture)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+    use std::sync::mpsc::channel;
+    use std::thread;
+    use std::time::Duration;
+
+    use super::*;
+
+    /// Far longer than a reply takes, so that it ends only a test that fails.
+    const TIMEOUT: Duration = Duration::from_secs(30);
+
+    #[test]
+    fn answers_to_a_page_that_does_not_read_wait_until_it_reads_or_is_gone() {
+        let outbox = Arc::new(Outbox::default());
+        let (done, told) = channel();
+        let filled = Arc::clone(&outbox);
+        let session = thread::spawn(move || {
+            // Two are more than may wait.
+            let sentence = "x".repeat(MANY_BYTES / 2);
+            for number in 0..6 {
+                filled.wait_for_room();
+                let sentence = sentence.clone();
+                filled.reply(&Reply::Refused {
+                    of: "export",
+                    sentence,
+                });
+                done.send(number).unwrap();
+            }
+        });
+        let next = || told.recv_timeout(TIMEOUT).unwrap();
+        assert_eq!([next(), next()], [0, 1]);
+        // Nothing tells that somebody waits: a session that does not would be done by now.
+        thread::sleep(Duration::from_millis(50));
+        assert!(told.try_recv().is_err());
+        assert!(outbox.take().is_some());
+        assert_eq!(next(), 2);
+        outbox.close();
+        assert_eq!([next(), next(), next()], [3, 4, 5]);
+        session.join().unwrap();
     }
 }

@@ -10,7 +10,7 @@ use crate::shapes::ShapeOutlines;
 use crate::view::ViewChange;
 
 /// The subprotocol of this version.
-pub(crate) const PROTOCOL: &str = "slipfront.lab.v1";
+pub(crate) const PROTOCOL: &str = "slipfront.lab.v2";
 
 /// Longest message of the page, in bytes: an image of the texture.
 pub(crate) const MAX_MESSAGE: usize = 8 << 20;

@@ -12,12 +12,18 @@ use axum::Router;
 use axum::middleware;
 use axum::routing::get;
 use tokio::sync::{Semaphore, watch};
+use tokio::time::timeout;
 
 use crate::opening::Start;
 use crate::saves::Saves;
 use crate::session::Setting;
 use crate::socket::{MAX_PAGES, Shared};
-use crate::{assets, guard, presets, socket};
+use crate::start_page::Entrance;
+use crate::token::Token;
+use crate::{assets, connections, guard, presets, socket};
+
+/// How long pages are waited for that are told that the server ends.
+const TIME_TO_PART: Duration = Duration::from_secs(5);
 
 /// How long runs that are being saved have to take their unfinished folders away when the server ends.
 const TIME_TO_END: Duration = Duration::from_secs(10);
@@ -42,7 +48,8 @@ pub struct Options {
 pub struct Laboratory {
     listener: TcpListener,
     port: u16,
-    token: String,
+    token: Token,
+    entrance: Entrance,
     setting: Arc<Setting>,
 }
 
@@ -54,12 +61,11 @@ impl Laboratory {
     pub fn bind(options: Options) -> io::Result<Self> {
         let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, options.port))?;
         listener.set_nonblocking(true)?;
-        let mut random = [0; 16];
-        getrandom::fill(&mut random).map_err(io::Error::other)?;
         Ok(Self {
             port: listener.local_addr()?.port(),
             listener,
-            token: random.iter().map(|byte| format!("{byte:02x}")).collect(),
+            token: Token::draw()?,
+            entrance: Entrance::default(),
             setting: Arc::new(Setting {
                 start: options.start,
                 results: options.results,
@@ -74,14 +80,28 @@ impl Laboratory {
     /// The address of the page, with the token that opens it; `link` is what follows `#case=` in the link of another page.
     pub fn address(&self, link: Option<&str>) -> String {
         let case = link.map_or(String::new(), |link| format!("&case={link}"));
-        format!("http://127.0.0.1:{}/#token={}{case}", self.port, self.token)
+        format!(
+            "http://127.0.0.1:{}/#token={}{case}",
+            self.port,
+            self.token.as_str()
+        )
     }
 
-    /// Answers until `stop` is done, and then until what is being saved has taken its unfinished folder away.
+    /// Writes a page that leads to the address, and which only this user can read; its path may be told to everybody. It is removed
+    /// once a page has connected, or when the server ends.
+    ///
+    /// # Errors
+    /// When the system refuses to write.
+    pub fn start_page(&self, link: Option<&str>) -> io::Result<PathBuf> {
+        self.entrance.open(&self.address(link))
+    }
+
+    /// Answers until `stop` is done. Then pages are told, whatever is open is closed, and what is being saved takes its unfinished
+    /// folder away; neither takes longer than it is given.
     ///
     /// # Errors
     /// When the system refuses what a server needs.
-    pub fn serve(self, stop: impl Future<Output = ()> + Send + 'static) -> io::Result<()> {
+    pub fn serve(self, stop: impl Future<Output = ()>) -> io::Result<()> {
         let (working, all_work) = channel();
         let setting = Arc::clone(&self.setting);
         let saves = Arc::clone(&setting.saves);
@@ -95,17 +115,21 @@ impl Laboratory {
         served
     }
 
-    fn answer(self, stop: impl Future<Output = ()> + Send + 'static, working: Sender<()>) -> io::Result<()> {
+    fn answer(self, stop: impl Future<Output = ()>, working: Sender<()>) -> io::Result<()> {
         let (end, ends) = watch::channel(false);
+        let pages = Arc::new(Semaphore::new(MAX_PAGES));
+        let entrance = self.entrance.clone();
         let shared = Shared {
             setting: self.setting,
-            token: self.token.into(),
-            pages: Arc::new(Semaphore::new(MAX_PAGES)),
+            token: Arc::new(self.token),
+            entrance: self.entrance,
+            pages: Arc::clone(&pages),
             ends,
             working,
         };
         let router = Router::new()
             .route("/ws", get(socket::connect))
+            .route("/proof/{tab}/{nonce}", get(socket::prove))
             .fallback(get(assets::serve))
             .layer(middleware::from_fn_with_state(self.port, guard::guard))
             .with_state(shared);
@@ -114,13 +138,15 @@ impl Laboratory {
             .build()?;
         runtime.block_on(async move {
             let listener = tokio::net::TcpListener::from_std(self.listener)?;
-            let stopped = async move {
-                stop.await;
-                let _ = end.send(true);
-            };
-            axum::serve(listener, router)
-                .with_graceful_shutdown(stopped)
-                .await
+            tokio::select! {
+                () = stop => {}
+                never = connections::serve(listener, router) => match never {},
+            }
+            entrance.close();
+            let _ = end.send(true);
+            // When all places are free, all pages are gone.
+            let _ = timeout(TIME_TO_PART, pages.acquire_many(MAX_PAGES as u32)).await;
+            Ok(())
         })
     }
 }

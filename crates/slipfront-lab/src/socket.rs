@@ -5,16 +5,19 @@ use std::sync::mpsc::{Sender, SyncSender, TrySendError, sync_channel};
 use std::thread;
 use std::time::Duration;
 
-use axum::extract::State;
 use axum::extract::ws::{CloseFrame, Message, Utf8Bytes, WebSocket, WebSocketUpgrade, close_code};
+use axum::extract::{Path, State};
 use axum::http::{HeaderMap, StatusCode, header};
 use axum::response::{IntoResponse, Response};
+use serde_json::json;
 use tokio::sync::{Semaphore, watch};
 use tokio::time::{sleep, timeout};
 
 use crate::outbox::{Outbox, Outgoing};
 use crate::protocol::{MAX_MESSAGE, PROTOCOL, Request};
 use crate::session::{self, Setting};
+use crate::start_page::Entrance;
+use crate::token::{Caller, Token};
 
 /// Most pages at once.
 pub(crate) const MAX_PAGES: usize = 4;
@@ -32,7 +35,8 @@ const RETRY: Duration = Duration::from_millis(5);
 #[derive(Clone)]
 pub(crate) struct Shared {
     pub(crate) setting: Arc<Setting>,
-    pub(crate) token: Arc<str>,
+    pub(crate) token: Arc<Token>,
+    pub(crate) entrance: Entrance,
     pub(crate) pages: Arc<Semaphore>,
     /// Turns true when the server ends.
     pub(crate) ends: watch::Receiver<bool>,
@@ -40,21 +44,26 @@ pub(crate) struct Shared {
     pub(crate) working: Sender<()>,
 }
 
-/// Begins a session with a page that has the token. Browsers send it as a subprotocol, so that it stands in no address.
+/// Proves to a page that this is the server whose token it knows, before the page proves anything.
+pub(crate) async fn prove(
+    State(shared): State<Shared>,
+    Path((tab, nonce)): Path<(String, String)>,
+) -> Result<String, StatusCode> {
+    let caller = Caller::new(&tab, &nonce).ok_or(StatusCode::NOT_FOUND)?;
+    Ok(shared.token.proof_of_server(caller))
+}
+
+/// Begins a session with a page that knows the token. What it says of itself, browsers send as subprotocols.
 pub(crate) async fn connect(
     State(shared): State<Shared>,
     headers: HeaderMap,
     upgrade: WebSocketUpgrade,
 ) -> Response {
-    let offered = headers.get(header::SEC_WEBSOCKET_PROTOCOL);
-    let offered = offered.and_then(|value| value.to_str().ok()).unwrap_or_default();
-    let mut tokens = offered
-        .split(',')
-        .filter_map(|one| one.trim().strip_prefix("token."));
-    if !tokens.any(|token| is_equal(token, &shared.token)) {
+    let Some(proof) = proof_for(&headers, &shared.token) else {
         let sentence = "the token is missing or wrong: open the address that the terminal shows\n";
         return (StatusCode::UNAUTHORIZED, sentence).into_response();
-    }
+    };
+    shared.entrance.close();
     let Ok(page) = Arc::clone(&shared.pages).try_acquire_owned() else {
         let sentence = format!("{MAX_PAGES} pages are open already: close one of them\n");
         return (StatusCode::SERVICE_UNAVAILABLE, sentence).into_response();
@@ -63,19 +72,27 @@ pub(crate) async fn connect(
         .protocols([PROTOCOL])
         .max_message_size(MAX_MESSAGE)
         .max_frame_size(MAX_MESSAGE)
-        .on_upgrade(async move |socket| {
-            serve(socket, &shared).await;
+        .on_upgrade(async move |mut socket| {
+            // On this connection too, since another server may have taken the port meanwhile.
+            let proof = json!({ "is": "proof", "proof": proof });
+            if send(&mut socket, Message::Text(proof.to_string().into()))
+                .await
+                .is_some()
+            {
+                serve(socket, &shared).await;
+            }
             drop(page);
         })
 }
 
-/// In a time that does not depend on where they differ.
-fn is_equal(one: &str, other: &str) -> bool {
-    let differences = one
-        .bytes()
-        .zip(other.bytes())
-        .fold(0, |all, (a, b)| all | (a ^ b));
-    one.len() == other.len() && differences == 0
+/// The server's proof for a page that has proved that it knows the token.
+fn proof_for(headers: &HeaderMap, token: &Token) -> Option<String> {
+    let offered = headers.get(header::SEC_WEBSOCKET_PROTOCOL)?.to_str().ok()?;
+    let said = |what| offered.split(',').find_map(|one| one.trim().strip_prefix(what));
+    let caller = Caller::new(said("tab.")?, said("nonce.")?)?;
+    token
+        .is_proof_of_page(caller, said("proof.")?)
+        .then(|| token.proof_of_server(caller))
 }
 
 async fn serve(mut socket: WebSocket, shared: &Shared) {
@@ -90,57 +107,63 @@ async fn serve(mut socket: WebSocket, shared: &Shared) {
         session::serve(&setting, &filled, &waiting, &working);
     });
     if begun.is_err() {
-        return close(
-            &mut socket,
-            close_code::ERROR,
-            "the system refuses a thread for the simulation",
-        )
-        .await;
+        let sentence = "the system refuses a thread for the simulation";
+        return close(&mut socket, close_code::ERROR, sentence).await;
     }
-    let mut ends = shared.ends.clone();
+    pass_on(&mut socket, &outbox, &requests, shared.ends.clone()).await;
+    outbox.close();
+}
+
+/// Passes on what page and session have for each other, until one of them is gone or the server ends.
+async fn pass_on(
+    socket: &mut WebSocket,
+    outbox: &Outbox,
+    requests: &SyncSender<Request>,
+    mut ends: watch::Receiver<bool>,
+) {
+    // For a session that is busy.
+    let mut kept = None;
     loop {
+        kept = match kept.map(|request| requests.try_send(request)) {
+            None | Some(Ok(())) => None,
+            Some(Err(TrySendError::Full(request))) => Some(request),
+            Some(Err(TrySendError::Disconnected(_))) => return,
+        };
         tokio::select! {
             outgoing = outbox.next() => {
                 let message = match outgoing {
                     Outgoing::Reply(text) => Message::Text(text.into()),
                     Outgoing::Picture(bytes) => Message::Binary(bytes),
                 };
-                if !matches!(timeout(PATIENCE, socket.send(message)).await, Ok(Ok(()))) {
+                if send(socket, message).await.is_none() {
                     return;
                 }
             }
-            message = socket.recv() => match message {
+            message = socket.recv(), if kept.is_none() => match message {
                 Some(Ok(Message::Text(text))) => match serde_json::from_str(&text) {
-                    Ok(request) => if hand_over(&requests, request).await.is_none() { return },
+                    Ok(request) => kept = Some(request),
                     Err(error) => {
                         let sentence = format!("not a request: {error}");
-                        return close(&mut socket, close_code::POLICY, &sentence).await;
+                        return close(socket, close_code::POLICY, &sentence).await;
                     }
                 },
                 Some(Ok(Message::Binary(_))) => {
-                    return close(&mut socket, close_code::POLICY, "requests are texts").await;
+                    return close(socket, close_code::POLICY, "requests are texts").await;
                 }
                 Some(Ok(Message::Ping(_) | Message::Pong(_))) => {}
                 Some(Ok(Message::Close(_)) | Err(_)) | None => return,
             },
+            () = sleep(RETRY), if kept.is_some() => {}
             _ = ends.changed() => {
-                return close(&mut socket, close_code::AWAY, "the laboratory was stopped in its terminal").await;
+                return close(socket, close_code::AWAY, "the laboratory was stopped in its terminal").await;
             }
         }
     }
 }
 
-/// Gives a request to the session, which may be behind; none if it is gone.
-async fn hand_over(requests: &SyncSender<Request>, request: Request) -> Option<()> {
-    let mut request = request;
-    loop {
-        request = match requests.try_send(request) {
-            Ok(()) => return Some(()),
-            Err(TrySendError::Full(request)) => request,
-            Err(TrySendError::Disconnected(_)) => return None,
-        };
-        sleep(RETRY).await;
-    }
+/// Sends a message; none to a page that is gone, or does not read.
+async fn send(socket: &mut WebSocket, message: Message) -> Option<()> {
+    timeout(PATIENCE, socket.send(message)).await.ok()?.ok()
 }
 
 /// Ends the connection with a reason, of which there is room for 123 bytes.
@@ -150,5 +173,5 @@ async fn close(socket: &mut WebSocket, code: u16, sentence: &str) {
         code,
         reason: Utf8Bytes::from(reason),
     };
-    let _ = timeout(PATIENCE, socket.send(Message::Close(Some(frame)))).await;
+    send(socket, Message::Close(Some(frame))).await;
 }

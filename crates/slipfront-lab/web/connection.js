@@ -1,29 +1,18 @@
 // @ts-check
 // The WebSocket to the server. It connects again by itself; what was shown is opened again by session.js.
 import { parse } from './frames.js';
+import { forget, hasToken, proofs, takeToken } from './proof.js';
 import { put } from './store.js';
 
+const SHORTEST_WAIT_MS = 500;
 const LONGEST_WAIT_MS = 5000;
+/** How long whoever answers may take to prove that it is the server. */
+const PATIENCE_MS = 10_000;
+/** The code with which a server closes the connection that ends. */
+const ENDED = 1001;
 
-/** @type {WebSocket|null} */
+/** The connection with a server that has proved that it is the one. @type {WebSocket|null} */
 let socket = null;
-let waitMs = 500;
-
-/** What a token is made of: with anything else there is no WebSocket, only an error. */
-const TOKEN = /^\w+$/;
-
-/** The token of the address, which is then kept for this tab and taken out of what the browser remembers. */
-function token() {
-  const parts = new URLSearchParams(location.hash.slice(1));
-  const given = parts.get('token');
-  if (given) {
-    if (TOKEN.test(given)) sessionStorage.setItem('token', given);
-    else put('problem', { key: 'broken_token' });
-    const link = parts.get('case');
-    history.replaceState(null, '', link ? `#case=${link}` : location.pathname);
-  }
-  return sessionStorage.getItem('token') ?? '';
-}
 
 /** @param {MessageEvent} event */
 function receive({ data }) {
@@ -35,20 +24,51 @@ function receive({ data }) {
   }
 }
 
-/** Connects, and again after every loss, after longer and longer waits. */
-export function connect() {
-  socket = new WebSocket(`ws://${location.host}/ws`, ['slipfront.lab.v1', `token.${token()}`]);
-  socket.binaryType = 'arraybuffer';
-  socket.onopen = () => {
-    waitMs = 500;
-    put('connected', { yes: true, reason: '' });
+/** Whether the server that gave this tab its token answers. @param {{tab: string, nonce: string, server: string}} said */
+async function isServer({ tab, nonce, server }) {
+  try {
+    const answer = await fetch(`/proof/${tab}/${nonce}`, { signal: AbortSignal.timeout(PATIENCE_MS) });
+    return (await answer.text()) === server;
+  } catch {
+    return false;
+  }
+}
+
+/** A connection from its begin to its end. @returns {Promise<{proved: boolean, ended: boolean, reason: string}>} */
+async function once() {
+  const said = await proofs();
+  if (!said || !(await isServer(said))) return { proved: false, ended: false, reason: '' };
+  const { tab, nonce, page, server } = said;
+  const opened = new WebSocket(`ws://${location.host}/ws`, ['slipfront.lab.v2', `tab.${tab}`, `nonce.${nonce}`, `proof.${page}`]);
+  opened.binaryType = 'arraybuffer';
+  let proved = false;
+  opened.onmessage = (event) => {
+    if (proved) return receive(event);
+    // Somebody else may have taken the port since it was asked.
+    proved = event.data === JSON.stringify({ is: 'proof', proof: server });
+    if (!proved) return opened.close();
+    socket = opened;
+    put('connected', { yes: true });
   };
-  socket.onmessage = receive;
-  socket.onclose = ({ reason }) => {
-    put('connected', { yes: false, reason });
-    setTimeout(connect, waitMs);
-    waitMs = Math.min(2 * waitMs, LONGEST_WAIT_MS);
-  };
+  return new Promise((resolve) => {
+    opened.onclose = ({ code, reason }) => {
+      socket = null;
+      resolve({ proved, ended: proved && code === ENDED, reason: proved ? reason : '' });
+    };
+  });
+}
+
+/** Connects, and again after every loss, after longer and longer waits, until the server says that it ends. */
+export async function connect() {
+  window.addEventListener('hashchange', () => hasToken() && location.reload());
+  if (hasToken() && !(await takeToken())) put('problem', { key: 'broken_token' });
+  for (let waitMs = SHORTEST_WAIT_MS; ; waitMs = Math.min(2 * waitMs, LONGEST_WAIT_MS)) {
+    const { proved, ended, reason } = await once();
+    put('connected', { yes: false, ended, reason });
+    if (ended) return forget();
+    if (proved) waitMs = SHORTEST_WAIT_MS;
+    await new Promise((resolve) => setTimeout(resolve, waitMs));
+  }
 }
 
 /** Sends an order, if there is a connection. @param {Record<string, any>} order */

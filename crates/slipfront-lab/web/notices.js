@@ -30,11 +30,11 @@ export function withdraw(topic) {
 
 let lost = '';
 
-/** @param {{yes: boolean, reason: string}} connection */
-function showConnection({ yes, reason }) {
+/** @param {{yes: boolean, ended?: boolean, reason?: string}} connection */
+function showConnection({ yes, ended, reason }) {
   document.body.classList.toggle('alone', !yes);
   const before = lost;
-  lost = yes ? '' : reason ? say('lost_because', { reason }) : say('lost');
+  lost = yes ? '' : ended ? say('ended') : reason ? say('lost_because', { reason }) : say('lost');
   if (yes) withdraw('connection');
   // It is tried again and again, but the same is told once.
   else if (lost !== before) notice(lost, { topic: 'connection', serious: true });

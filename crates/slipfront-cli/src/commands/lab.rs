@@ -1,14 +1,18 @@
 //! `slipfront lab`: the laboratory in the browser.
 
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 use clap::Args;
 use slipfront_lab::{Laboratory, Options, Start};
 
+use crate::browser;
 use crate::failure::Failure;
 use crate::print::print_message;
 use crate::print_stderr::print_stderr;
+use crate::signals::Signals;
 use crate::threads::{count_from_one, set_worker_threads};
+use crate::wrap::for_stderr;
 
 /// Open a page in the browser on which a surface slides while you look at it, paint on it and change it
 #[derive(Args)]
@@ -62,6 +66,8 @@ impl Lab {
             }
             _ => Start::default(),
         };
+        refuse_readable_output()?;
+        let signals = Signals::catch().map_err(Failure::running)?;
         let laboratory = Laboratory::bind(Options {
             start,
             results: self.results,
@@ -78,25 +84,57 @@ impl Lab {
         })?;
         let address = laboratory.address(link);
         print_message(&format!("The laboratory is open until Ctrl-C: {address}\n"));
-        if !self.no_open && open::that_detached(&address).is_err() {
-            print_stderr("note: no browser could be started: open this address in one");
+        if !self.no_open
+            && let Err(reason) = start_browser(&laboratory, link)
+        {
+            let note = format!("note: no browser was started, since {reason}: open this address in one");
+            print_stderr(&for_stderr(&note));
         }
-        laboratory.serve(stopped()).map_err(Failure::running)
+        laboratory.serve(stopped(&signals)).map_err(Failure::running)
     }
 }
 
-/// Waits for the signal that ends the command.
-async fn stopped() {
+/// Starts the browser on a page that leads to the address, which it is not told itself: every user of the machine can read with what
+/// a program was started.
+fn start_browser(laboratory: &Laboratory, link: Option<&str>) -> Result<(), String> {
+    if let Some(reason) = browser::hindrance() {
+        return Err(reason);
+    }
+    let page = laboratory.start_page(link);
+    let page = page.map_err(|error| format!("a page for it cannot be written ({error})"))?;
+    open::that_detached(page).map_err(|_| "none could be found".to_owned())
+}
+
+/// Refuses to print the address into a file that other users can read: whoever has it can use the laboratory.
+fn refuse_readable_output() -> Result<(), Failure> {
     #[cfg(unix)]
     {
-        use tokio::signal::unix::{SignalKind, signal};
-        if let Ok(mut terminate) = signal(SignalKind::terminate()) {
-            tokio::select! {
-                _ = terminate.recv() => {}
-                _ = tokio::signal::ctrl_c() => {}
-            }
-            return;
+        use std::os::fd::AsFd;
+        use std::os::unix::fs::MetadataExt;
+        let output = std::io::stdout()
+            .as_fd()
+            .try_clone_to_owned()
+            .map(std::fs::File::from);
+        let output = output.and_then(|file| file.metadata());
+        if let Ok(output) = output
+            && output.is_file()
+            && output.mode() & 0o044 != 0
+        {
+            return Err(Failure::input(anyhow::anyhow!(
+                "other users can read the file that standard output is (mode {:o}), and who has the address that is printed there can \
+                 use the laboratory: keep it to yourself, by `umask 077` before the file is made or by `chmod 600`",
+                output.mode() & 0o777
+            )));
         }
     }
-    let _ = tokio::signal::ctrl_c().await;
+    Ok(())
+}
+
+/// Waits for the signal that ends the command.
+async fn stopped(signals: &Signals) {
+    /// Between two looks; short enough for whoever waits.
+    const LOOK: Duration = Duration::from_millis(50);
+    while signals.stopped().is_none() {
+        tokio::time::sleep(LOOK).await;
+    }
 }

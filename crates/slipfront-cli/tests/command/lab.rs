@@ -1,15 +1,22 @@
 //! The laboratory is opened and ended.
 
+use std::fs::{self, File};
 use std::io::{BufRead, BufReader, Read, Write};
 use std::net::{TcpListener, TcpStream};
-use std::process::{Child, Stdio};
+use std::os::unix::fs::PermissionsExt;
+use std::os::unix::process::CommandExt;
+use std::process::{Child, Command, Output, Stdio};
 
-use crate::support::process::{send, stderr};
+use crate::support::process::{send, stderr, stdout, wait_for};
 use crate::support::workspace::Workspace;
 
 /// Starts the command; gives the address that it prints.
 fn open(workspace: &Workspace, line: &str) -> (Child, String) {
-    let mut process = workspace.process(line);
+    start(&mut workspace.process(line))
+}
+
+/// Starts a command; gives the address that it prints.
+fn start(process: &mut Command) -> (Child, String) {
     let mut child = process
         .stdout(Stdio::piped())
         .stderr(Stdio::piped())
@@ -28,15 +35,26 @@ fn open(workspace: &Workspace, line: &str) -> (Child, String) {
     (child, address)
 }
 
+/// Waits for the end of a process, which a signal has asked for.
+fn ended(mut child: Child) -> Output {
+    wait_for("end of the laboratory", || child.try_wait().unwrap().is_some());
+    child.wait_with_output().unwrap()
+}
+
+/// The host and the token of an address.
+fn parts(address: &str) -> (&str, &str) {
+    let (host, rest) = address.strip_prefix("http://").unwrap().split_once('/').unwrap();
+    (host, rest.split_once("#token=").unwrap().1)
+}
+
 #[test]
 fn it_serves_its_page_until_a_signal() {
     let workspace = Workspace::small();
     workspace.write("large.toml", "slider.blocks = [300, 300]\n");
     let link = "http://127.0.0.1:1234/#case=q1Yqyc_NUbJSSinKLEvVK4svLkksUrBVMNAzjMlT0lFKy8xJLVayqq6tBQA";
-    for (case, signal) in [("", "-INT"), ("large.toml", "-TERM"), (link, "-INT")] {
+    for (case, signal) in [("", "-INT"), ("large.toml", "-TERM"), (link, "-HUP")] {
         let (child, address) = open(&workspace, &format!("lab --no-open {case}"));
-        let (host, rest) = address.strip_prefix("http://").unwrap().split_once('/').unwrap();
-        let (_, token) = rest.split_once("#token=").unwrap();
+        let (host, token) = parts(&address);
         let passed_on = token.split_once("&case=").map(|(_, link)| link);
         assert_eq!(passed_on, case.split_once("#case=").map(|(_, link)| link));
         let mut stream = TcpStream::connect(host).unwrap();
@@ -51,9 +69,193 @@ fn it_serves_its_page_until_a_signal() {
             page.starts_with("HTTP/1.1 200 OK") && page.contains("<title"),
             "{page}"
         );
+        // Somebody who begins a request and never ends it.
+        let mut idle = TcpStream::connect(host).unwrap();
+        idle.write_all(b"G").unwrap();
         send(&child, signal);
-        let output = child.wait_with_output().unwrap();
+        let output = ended(child);
         assert_eq!((output.status.code(), stderr(&output).as_str()), (Some(0), ""));
+    }
+}
+
+/// Both signals come while the command stands still, so that it sees the second before it has ended by the first.
+#[test]
+fn a_second_signal_ends_it_at_once() {
+    let workspace = Workspace::small();
+    let (child, _) = open(&workspace, "lab --no-open");
+    for signal in ["-STOP", "-INT", "-TERM", "-CONT"] {
+        send(&child, signal);
+    }
+    let status = ended(child).status.code();
+    // Whichever of them it is given last.
+    assert!(matches!(status, Some(130 | 143)), "{status:?}");
+}
+
+/// A desktop of a test's own: programs by their names, before those of the system.
+struct Desktop(Workspace);
+
+impl Desktop {
+    /// `xdg-open` notes what it is asked to open, and stays as long as that note, as a browser does that shows a page.
+    fn new() -> Self {
+        let desktop = Self(Workspace::small());
+        let note = desktop.0.path("opened");
+        let note = note.display();
+        desktop.program(
+            "bin/xdg-open",
+            &format!(
+                "echo \"$1\" > {note}.new; mv {note}.new {note}; while [ -e {note} ]; do sleep 0.1; done"
+            ),
+        );
+        desktop.default_program("firefox.desktop", "firefox.desktop");
+        desktop.entry("Exec=firefox %u");
+        desktop.program("bin/firefox", "");
+        fs::create_dir(desktop.0.path("tmp")).unwrap();
+        desktop
+    }
+
+    fn program(&self, name: &str, script: &str) {
+        self.0.write(name, format!("#!/bin/sh\n{script}\n"));
+        fs::set_permissions(self.0.path(name), PermissionsExt::from_mode(0o755)).unwrap();
+    }
+
+    /// What opens HTML files, and what addresses.
+    fn default_program(&self, pages: &str, addresses: &str) {
+        let script = format!("case $3 in text/html) echo {pages} ;; *) echo {addresses} ;; esac");
+        self.program("bin/xdg-mime", &script);
+    }
+
+    fn entry(&self, text: &str) {
+        self.0.write(
+            "share/applications/firefox.desktop",
+            format!("[Desktop Entry]\n{text}\n"),
+        );
+    }
+
+    fn process(&self, line: &str) -> Command {
+        let mut process = self.0.process(line);
+        let path = format!(
+            "{}:{}",
+            self.0.path("bin").display(),
+            std::env::var("PATH").unwrap()
+        );
+        process
+            .env("PATH", path)
+            .env("TMPDIR", self.0.path("tmp"))
+            .env("XDG_DATA_HOME", self.0.path("share"))
+            .env_remove("BROWSER");
+        process
+    }
+}
+
+/// What a program prints as the user `nobody`; none if this user may not become another one.
+fn as_nobody(script: &str) -> Option<String> {
+    let mut shell = Command::new("sh");
+    let output = shell.args(["-c", script]).uid(65534).gid(65534).output().ok()?;
+    Some(stdout(&output) + &stderr(&output))
+}
+
+#[test]
+fn no_other_user_can_read_the_token() {
+    let desktop = Desktop::new();
+    let (child, address) = start(&mut desktop.process("lab"));
+    let (_, token) = parts(&address);
+    desktop.0.wait_for("opened");
+    let page = desktop.0.read_text("opened").trim().to_owned();
+    assert!(fs::read_to_string(&page).unwrap().contains(token));
+    let temporary = desktop.0.path("tmp").display().to_string();
+    assert!(page.starts_with(&temporary), "{page}");
+    let script = format!(
+        "cat /proc/[0-9]*/cmdline /proc/[0-9]*/environ | tr '\\0' '\\n'; cat {page}; ls -R {temporary}; \
+         find {temporary} -type f -exec cat {{}} +"
+    );
+    match as_nobody(&script) {
+        Some(seen) => {
+            assert!(
+                seen.contains(&page),
+                "the arguments of the browser were not seen: {seen}"
+            );
+            assert!(!seen.contains(token), "another user has read the token");
+        }
+        None => eprintln!("skipped: only root can look as another user does"),
+    }
+    send(&child, "-TERM");
+    let output = ended(child);
+    assert_eq!((output.status.code(), stderr(&output).as_str()), (Some(0), ""));
+    assert_eq!(fs::read_dir(&temporary).unwrap().count(), 0);
+}
+
+/// A snap or a Flatpak sees temporary files of its own alone.
+#[test]
+fn a_browser_that_cannot_read_the_page_is_not_started() {
+    let desktop = Desktop::new();
+    let said = |change: &dyn Fn(&mut Command)| {
+        let mut process = desktop.process("lab");
+        change(&mut process);
+        let (child, _) = start(&mut process);
+        send(&child, "-TERM");
+        let output = ended(child);
+        assert_eq!(output.status.code(), Some(0));
+        stderr(&output)
+    };
+    let refused = |change: &dyn Fn(&mut Command), words: &str| {
+        let said = said(change);
+        assert!(
+            said.starts_with("note: no browser was started, since ") && said.contains(words),
+            "{words}: {said}"
+        );
+        assert!(!desktop.0.exists("opened"), "{words}");
+        assert_eq!(fs::read_dir(desktop.0.path("tmp")).unwrap().count(), 0, "{words}");
+    };
+    desktop.entry("Name=Firefox\nExec=env A=B /snap/bin/firefox %u");
+    refused(&|_| {}, "/snap/bin/firefox %u` is a snap or a Flatpak");
+    desktop.entry("Exec=/usr/bin/flatpak run --file-forwarding org.mozilla.firefox @@u %u @@");
+    refused(&|_| {}, "org.mozilla.firefox");
+    // Programs that are scripts, or links.
+    desktop.entry("Exec=firefox %u");
+    desktop.program("bin/firefox", "exec /snap/bin/firefox \"$@\"");
+    refused(&|_| {}, "`firefox %u`");
+    desktop.program("bin/firefox", "");
+    desktop.program("elsewhere/bin/snap", "");
+    std::os::unix::fs::symlink(desktop.0.path("elsewhere/bin/snap"), desktop.0.path("bin/web")).unwrap();
+    let web = |process: &mut Command| {
+        process.env("BROWSER", "firefox:web --new-window %s");
+    };
+    refused(&web, "`web --new-window %s`");
+    // An editor of HTML files shows them as they are.
+    desktop.default_program("editor.desktop", "firefox.desktop");
+    refused(&|_| {}, "editor.desktop opens HTML files on this system");
+    // Nothing is known against the others.
+    desktop.default_program("firefox.desktop", "firefox.desktop");
+    assert_eq!(said(&|_| {}), "");
+    desktop.0.wait_for("opened");
+    desktop.0.remove("opened");
+    desktop.program("bin/xdg-mime", "exit 4");
+    assert_eq!(said(&|_| {}), "");
+    desktop.0.wait_for("opened");
+}
+
+#[test]
+fn the_address_is_not_printed_into_a_file_that_others_can_read() {
+    let workspace = Workspace::small();
+    let path = workspace.path("log");
+    for (mode, is_refused) in [(0o644, true), (0o640, true), (0o604, true), (0o600, false)] {
+        let log = File::create(&path).unwrap();
+        fs::set_permissions(&path, PermissionsExt::from_mode(mode)).unwrap();
+        let mut process = workspace.process("lab --no-open");
+        let child = process.stdout(log).stderr(Stdio::piped()).spawn().unwrap();
+        if !is_refused {
+            wait_for("address", || workspace.read_text("log").contains("#token="));
+            send(&child, "-TERM");
+        }
+        let output = ended(child);
+        let said = stderr(&output);
+        assert_eq!(
+            output.status.code(),
+            Some(if is_refused { 2 } else { 0 }),
+            "{said}"
+        );
+        assert_eq!(said.contains("other users can read"), is_refused, "{said}");
+        assert_eq!(workspace.read_text("log").contains("#token="), !is_refused);
     }
 }
 

@@ -57,16 +57,22 @@ impl Session {
                 requests.recv_timeout(self.time_to_wait())
             };
             match first {
-                Ok(request) => self.answer(request),
+                Ok(request) => self.answer_to_reader(request),
                 Err(RecvTimeoutError::Timeout) => {}
                 Err(RecvTimeoutError::Disconnected) => return,
             }
             while let Ok(request) = requests.try_recv() {
-                self.answer(request);
+                self.answer_to_reader(request);
             }
             self.run_edited();
             self.work();
         }
+    }
+
+    /// Answers once the page has read most of what it was answered before.
+    fn answer_to_reader(&mut self, request: Request) {
+        self.outbox.wait_for_room();
+        self.answer(request);
     }
 
     /// Whether there is nothing to do before the page asks for something.

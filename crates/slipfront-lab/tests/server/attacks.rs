@@ -7,7 +7,7 @@ use serde_json::json;
 use tungstenite::Message;
 
 use crate::laboratory::Served;
-use crate::page::{Page, try_connect};
+use crate::page::{NONCE, Page, TAB, proof, protocols, try_connect};
 
 const SMALL: &str = "slider.blocks = [8, 8]\n";
 
@@ -73,8 +73,25 @@ fn without_the_token_there_is_no_session() {
         }
         assert_eq!(try_connect(&lab, token, &[]).err(), Some(401), "{token:?}");
     }
-    let protocol = [("sec-websocket-protocol", "slipfront.lab.v1")];
-    assert_eq!(try_connect(&lab, "", &protocol).err(), Some(401));
+    // A proof is of one tab and one nonce, and that of the server is none of a page.
+    let right = protocols(&proof(&lab.token, "page"));
+    assert!(try_connect(&lab, "", &[("sec-websocket-protocol", &right)]).is_ok());
+    let other = "f".repeat(32);
+    for wrong in [
+        "slipfront.lab.v2".to_owned(),
+        format!("slipfront.lab.v2, token.{}", lab.token),
+        protocols(&lab.token),
+        protocols(&proof(&lab.token, "server")),
+        protocols(&"x".repeat(64)),
+        protocols(""),
+        right.replace(TAB, &other),
+        right.replace(NONCE, &other),
+        right.replace(NONCE, ""),
+        right[..right.len() - 1].to_owned(),
+    ] {
+        let refused = try_connect(&lab, "", &[("sec-websocket-protocol", &wrong)]).err();
+        assert_eq!(refused, Some(401), "{wrong}");
+    }
     // It is not in what anybody can fetch.
     let page = lab.answer(&format!(
         "GET / HTTP/1.1\r\nHost: {}\r\nConnection: close\r\n\r\n",

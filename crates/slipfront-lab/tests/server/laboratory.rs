@@ -21,6 +21,8 @@ static TOLD: Mutex<Vec<String>> = Mutex::new(Vec::new());
 pub(crate) struct Served {
     pub(crate) port: u16,
     pub(crate) token: String,
+    /// The page that leads a browser here.
+    pub(crate) start_page: PathBuf,
     folder: TempDir,
     stop: Option<oneshot::Sender<()>>,
     thread: Option<JoinHandle<()>>,
@@ -45,6 +47,7 @@ impl Served {
         let address = laboratory.address(None);
         let (_, rest) = address.split_once("127.0.0.1:").unwrap();
         let (port, token) = rest.split_once("/#token=").unwrap();
+        let start_page = laboratory.start_page(None).unwrap();
         let (stop, stopped) = oneshot::channel();
         let thread = std::thread::spawn(move || {
             let stopped = async {
@@ -55,6 +58,7 @@ impl Served {
         Self {
             port: port.parse().unwrap(),
             token: token.to_owned(),
+            start_page,
             folder,
             stop: Some(stop),
             thread: Some(thread),

@@ -3,7 +3,9 @@
 use std::net::TcpStream;
 use std::time::Instant;
 
+use hmac::{Hmac, Mac};
 use serde_json::{Value, json};
+use sha2::Sha256;
 use tungstenite::client::IntoClientRequest;
 use tungstenite::protocol::CloseFrame;
 use tungstenite::{Error, Message, WebSocket};
@@ -18,10 +20,31 @@ pub(crate) struct Page {
     pub(crate) picture: Vec<u8>,
 }
 
+/// A name of a tab and a nonce, as good as any.
+pub(crate) const TAB: &str = "00112233445566778899aabbccddeeff";
+pub(crate) const NONCE: &str = "0123456789abcdef0123456789abcdef";
+
+/// HMAC-SHA256 in hexadecimal digits.
+fn code(key: &str, text: &str) -> String {
+    let code = Hmac::<Sha256>::new_from_slice(key.as_bytes()).unwrap();
+    let bytes = Mac::chain_update(code, text).finalize().into_bytes();
+    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+/// How `who`, page or server, proves that it knows the token.
+pub(crate) fn proof(token: &str, who: &str) -> String {
+    code(&code(token, TAB), &format!("{who} {NONCE}"))
+}
+
+/// The subprotocols of a page with this proof.
+pub(crate) fn protocols(proof: &str) -> String {
+    format!("slipfront.lab.v2, tab.{TAB}, nonce.{NONCE}, proof.{proof}")
+}
+
 /// Why a connection was refused, or that it was not.
 pub(crate) fn try_connect(of: &Served, token: &str, headers: &[(&'static str, &str)]) -> Result<Page, u16> {
     let mut request = format!("ws://{}/ws", of.host()).into_client_request().unwrap();
-    let protocols = format!("slipfront.lab.v1, token.{token}");
+    let protocols = protocols(&proof(token, "page"));
     let all = [("sec-websocket-protocol", protocols.as_str())];
     for (name, value) in all.iter().chain(headers) {
         request.headers_mut().insert(*name, value.parse().unwrap());

@@ -1,0 +1,57 @@
+//! Connections over HTTP, which everybody on this machine may open: few at once, with small headers that come soon.
+//!
+//! A page that has proved that it knows the token goes on over a WebSocket, and no longer counts here.
+
+use std::collections::VecDeque;
+use std::convert::Infallible;
+use std::time::Duration;
+
+use axum::Router;
+use hyper::server::conn::http1;
+use hyper_util::rt::{TokioIo, TokioTimer};
+use hyper_util::service::TowerToHyperService;
+use tokio::net::TcpListener;
+use tokio::task::AbortHandle;
+use tokio::time::sleep;
+
+/// Most connections at once; a browser opens six for a page.
+const MAX_CONNECTIONS: usize = 64;
+
+/// How long a connection may take to send the next header.
+const HEADER_TIME: Duration = Duration::from_secs(5);
+
+/// Most bytes of a header; those of browsers have one or two thousand.
+const MAX_HEADER: usize = 16 << 10;
+
+/// Time to the next attempt when the system refuses a connection, for lack of files or memory.
+const RETRY: Duration = Duration::from_millis(100);
+
+/// Serves whoever connects, for ever. When there are too many, the oldest goes: whoever holds connections open without a use keeps no
+/// page out, which needs its own for some milliseconds.
+pub(crate) async fn serve(listener: TcpListener, router: Router) -> Infallible {
+    let mut http = http1::Builder::new();
+    http.timer(TokioTimer::new())
+        .header_read_timeout(HEADER_TIME)
+        .max_buf_size(MAX_HEADER);
+    let service = TowerToHyperService::new(router);
+    let mut open = VecDeque::new();
+    loop {
+        let Ok((stream, _)) = listener.accept().await else {
+            sleep(RETRY).await;
+            continue;
+        };
+        make_room(&mut open);
+        let connection = http.serve_connection(TokioIo::new(stream), service.clone());
+        open.push_back(tokio::spawn(connection.with_upgrades()).abort_handle());
+    }
+}
+
+/// Leaves room for one more.
+fn make_room(open: &mut VecDeque<AbortHandle>) {
+    open.retain(|connection| !connection.is_finished());
+    if open.len() >= MAX_CONNECTIONS
+        && let Some(oldest) = open.pop_front()
+    {
+        oldest.abort();
+    }
+}

@@ -1,0 +1,77 @@
+//! The token of the address, and how a page and the server prove to each other that they know it without telling it.
+//!
+//! Whoever listens on the port once the server has ended may be another user, to whom a page that tries to connect must give nothing.
+//! So a tab draws a name, keeps the key that the token gives for this name, and forgets the token. For every connection it draws a
+//! number, the nonce; the server proves with it that it knows the key, and then the page does.
+
+use std::io;
+
+use hmac::{Hmac, Mac};
+use sha2::Sha256;
+
+/// A random number of the system as 32 hexadecimal digits.
+pub(crate) struct Token(String);
+
+/// What a page says of itself: the name of its tab and a nonce, each of 32 hexadecimal digits.
+#[derive(Clone, Copy)]
+pub(crate) struct Caller<'a> {
+    tab: &'a str,
+    nonce: &'a str,
+}
+
+impl<'a> Caller<'a> {
+    /// None if these are not such as a page draws.
+    pub(crate) fn new(tab: &'a str, nonce: &'a str) -> Option<Self> {
+        let is_drawn = |text: &str| text.len() == 32 && text.bytes().all(|byte| byte.is_ascii_hexdigit());
+        (is_drawn(tab) && is_drawn(nonce)).then_some(Self { tab, nonce })
+    }
+}
+
+impl Token {
+    /// Draws another one.
+    ///
+    /// # Errors
+    /// When the system gives no random numbers.
+    pub(crate) fn draw() -> io::Result<Self> {
+        let mut random = [0; 16];
+        getrandom::fill(&mut random).map_err(io::Error::other)?;
+        Ok(Self(hexadecimal(&random)))
+    }
+
+    pub(crate) fn as_str(&self) -> &str {
+        &self.0
+    }
+
+    /// What the server tells a page, which can be known only with the token.
+    pub(crate) fn proof_of_server(&self, caller: Caller) -> String {
+        hexadecimal(&self.code("server", caller).finalize().into_bytes())
+    }
+
+    /// Whether this is what only a page that knows the token can tell.
+    pub(crate) fn is_proof_of_page(&self, caller: Caller, proof: &str) -> bool {
+        let bytes: Option<Vec<u8>> = (proof.len() == 64 && proof.is_ascii())
+            .then(|| {
+                (0..64)
+                    .step_by(2)
+                    .map(|i| u8::from_str_radix(&proof[i..i + 2], 16).ok())
+                    .collect()
+            })
+            .flatten();
+        bytes.is_some_and(|bytes| self.code("page", caller).verify_slice(&bytes).is_ok())
+    }
+
+    /// The code of "page NONCE" or "server NONCE" under the key of the tab.
+    fn code(&self, who: &str, caller: Caller) -> Hmac<Sha256> {
+        let key = hexadecimal(&hmac(&self.0, caller.tab).finalize().into_bytes());
+        hmac(&key, &format!("{who} {}", caller.nonce))
+    }
+}
+
+fn hmac(key: &str, text: &str) -> Hmac<Sha256> {
+    let code = Hmac::new_from_slice(key.as_bytes()).expect("keys of any length are taken");
+    Mac::chain_update(code, text)
+}
+
+fn hexadecimal(bytes: &[u8]) -> String {
+    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
+}

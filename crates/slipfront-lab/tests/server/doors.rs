@@ -1,0 +1,199 @@
+//! Who connects and says nothing, too much or without reading; who takes the port; and the end of the server.
+
+use std::io::{ErrorKind, Read, Write};
+use std::net::TcpStream;
+use std::sync::mpsc::channel;
+use std::thread;
+use std::time::{Duration, Instant};
+
+use base64::Engine as _;
+use base64::prelude::BASE64_STANDARD;
+use serde_json::json;
+
+use crate::laboratory::{Served, TIMEOUT};
+use crate::page::{NONCE, Page, TAB, proof, try_connect};
+
+/// Connections of somebody who means harm.
+const MANY: usize = 300;
+
+/// Whether the other side has closed it, or answered.
+fn is_over(stream: &mut TcpStream) -> bool {
+    stream.set_nonblocking(true).unwrap();
+    let read = stream.read(&mut [0; 64]);
+    !matches!(read, Err(error) if error.kind() == ErrorKind::WouldBlock)
+}
+
+/// Ends the server, and fails if that takes too long.
+fn end(mut lab: Served) -> Duration {
+    let (done, told) = channel();
+    let began = Instant::now();
+    thread::spawn(move || {
+        lab.stop();
+        done.send(began.elapsed()).unwrap();
+        drop(lab);
+    });
+    // The server gives pages 5 s and unfinished work 10 s.
+    told.recv_timeout(2 * TIMEOUT).expect("the server has not ended")
+}
+
+/// Asks for answers of 60 times a megabyte, of which the system keeps a few for whoever reads them later.
+fn ask_for_much(page: &mut Page) {
+    let number = format!("0.5{}", "0".repeat(253));
+    let row = vec![number; 64].join(",") + "\n";
+    let files = json!({ "mu.csv": BASE64_STANDARD.encode(row.repeat(64)) });
+    let toml = "slider.blocks = [64, 64]\nfriction.mu_static_field = 'mu.csv'\n";
+    page.send(&json!({ "do": "open", "source": { "toml": toml, "files": files } }));
+    page.reply("case");
+    for _ in 0..60 {
+        page.send(&json!({ "do": "export" }));
+    }
+}
+
+#[test]
+fn connections_that_say_nothing_keep_no_page_out() {
+    let lab = Served::new();
+    let mut idle: Vec<TcpStream> = (0..MANY).map(|_| lab.connect()).collect();
+    for stream in &mut idle {
+        // Some are closed already, for those that came after them.
+        let _ = stream.write_all(b"G");
+    }
+    assert_eq!(lab.status("/", &lab.host(), ""), 200);
+    Page::open(&lab).reply("hello");
+    // Few are held open, and none for long.
+    let began = Instant::now();
+    while !idle.iter_mut().all(is_over) {
+        assert!(
+            began.elapsed() < TIMEOUT,
+            "connections without a request are kept"
+        );
+        thread::sleep(Duration::from_millis(50));
+    }
+}
+
+#[test]
+fn connections_before_a_header_is_there_are_few() {
+    let lab = Served::new();
+    let mut idle: Vec<TcpStream> = (0..MANY).map(|_| lab.connect()).collect();
+    // The server takes connections in their order.
+    lab.status("/", &lab.host(), "");
+    let open = idle
+        .iter_mut()
+        .filter_map(|stream| (!is_over(stream)).then_some(()))
+        .count();
+    assert!(open <= 64, "{open} connections are held open");
+}
+
+#[test]
+fn large_headers_are_refused() {
+    let lab = Served::new();
+    let line = |bytes| format!("X: {}\r\n", "a".repeat(bytes));
+    assert_eq!(lab.status("/", &lab.host(), &line(8 << 10)), 200);
+    assert_eq!(lab.status("/", &lab.host(), &line(17 << 10)), 431);
+    // One that never ends is not read to its end.
+    let mut stream = lab.connect();
+    stream.set_write_timeout(Some(TIMEOUT)).unwrap();
+    let begun = format!("GET / HTTP/1.1\r\nHost: {}\r\nX: ", lab.host());
+    stream.write_all(begun.as_bytes()).unwrap();
+    let piece = [b'a'; 1 << 16];
+    let sent = (0..1000).take_while(|_| stream.write_all(&piece).is_ok()).count();
+    assert!(sent < 1000, "{sent} pieces of a header were taken");
+}
+
+#[test]
+fn the_server_ends_whatever_is_open() {
+    let lab = Served::new();
+    let idle: Vec<TcpStream> = (0..10).map(|_| lab.connect()).collect();
+    for mut stream in &idle {
+        stream.write_all(b"G").unwrap();
+    }
+    let page = Page::open(&lab);
+    end(lab);
+    drop((idle, page));
+}
+
+/// A page that does not read what it is sent is not waited for, and what it was to read is not kept.
+#[test]
+fn a_page_that_does_not_read_is_dropped() {
+    let lab = Served::new();
+    let mut pages: Vec<Page> = (0..4).map(|_| Page::open(&lab)).collect();
+    ask_for_much(&mut pages[0]);
+    // Its place becomes free, for which no other page has to go.
+    let began = Instant::now();
+    while try_connect(&lab, &lab.token, &[]).is_err() {
+        assert!(
+            began.elapsed() < TIMEOUT,
+            "a page that does not read keeps its place"
+        );
+        thread::sleep(Duration::from_millis(50));
+    }
+    pages[3].reply("hello");
+}
+
+#[test]
+fn the_end_does_not_wait_for_a_page_that_does_not_read() {
+    let lab = Served::new();
+    let mut page = Page::open(&lab);
+    ask_for_much(&mut page);
+    end(lab);
+}
+
+/// Before a page proves anything, the server has proved that it knows the token.
+#[test]
+fn the_server_proves_that_it_is_the_one() {
+    let lab = Served::new();
+    let prove = |tab: &str, nonce: &str| {
+        lab.answer(&format!(
+            "GET /proof/{tab}/{nonce} HTTP/1.1\r\nHost: {}\r\nConnection: close\r\n\r\n",
+            lab.host()
+        ))
+    };
+    let expected = proof(&lab.token, "server");
+    let answer = prove(TAB, NONCE);
+    assert!(answer.ends_with(&expected), "{answer}");
+    assert_ne!(expected, proof(&lab.token, "page"));
+    let other = "f".repeat(32);
+    for (tab, nonce) in [(TAB, &*other), (&*other, NONCE)] {
+        let answer = prove(tab, nonce);
+        assert!(
+            answer.starts_with("HTTP/1.1 200") && !answer.contains(&expected),
+            "{answer}"
+        );
+    }
+    for (tab, nonce) in [
+        ("0", NONCE),
+        (TAB, "0"),
+        (&TAB[1..], NONCE),
+        (TAB, "page%20345678901234567890123456789"),
+    ] {
+        assert!(prove(tab, nonce).starts_with("HTTP/1.1 404"), "{tab} {nonce}");
+    }
+    // Another server of the same port cannot.
+    let stranger = Served::new();
+    assert_ne!(proof(&stranger.token, "server"), expected);
+    // On the connection itself, as the first message.
+    let mut page = Page::open(&lab);
+    let first = page.read().unwrap().unwrap();
+    assert_eq!(first, json!({ "is": "proof", "proof": expected }));
+}
+
+#[test]
+fn the_start_page_is_there_until_a_page_has_connected_or_the_server_ends() {
+    let lab = Served::new();
+    let page = std::fs::read_to_string(&lab.start_page).unwrap();
+    assert!(
+        page.contains(&format!("url=http://{}/#token={}\"", lab.host(), lab.token)),
+        "{page}"
+    );
+    // Whoever does not know the token does not take it away.
+    assert_eq!(lab.status("/", &lab.host(), ""), 200);
+    assert_eq!(try_connect(&lab, "wrong", &[]).err(), Some(401));
+    assert!(lab.start_page.exists());
+    Page::open(&lab).reply("hello");
+    assert!(!lab.start_page.exists() && !lab.start_page.parent().unwrap().exists());
+
+    let unseen = Served::new();
+    let path = unseen.start_page.clone();
+    assert!(path.exists());
+    end(unseen);
+    assert!(!path.exists());
+}
