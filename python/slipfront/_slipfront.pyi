@@ -11,16 +11,20 @@ __all__ = [
     "Case",
     "CaseError",
     "FolderError",
+    "ForkError",
     "Record",
     "RunError",
     "Simulation",
     "Study",
     "__version__",
+    "check_process",
     "command",
     "interrupted",
     "kind_of",
     "read_run",
+    "verified",
     "verify",
+    "with_checksum",
 ]
 
 __version__: str
@@ -30,6 +34,7 @@ class CaseError(ValueError):
     column: int | None
 
 class RunError(RuntimeError): ...
+class ForkError(RuntimeError): ...
 class FolderError(RuntimeError): ...
 
 @final
@@ -116,4 +121,7 @@ def kind_of(folder: Path) -> str | None: ...
 def read_run(folder: Path) -> tuple[Case, dict[str, Any]]: ...
 def interrupted(folder: Path, threads: int) -> tuple[Case, Simulation]: ...
 def verify(folder: Path) -> None: ...
+def with_checksum(contents: bytes) -> bytes: ...
+def verified(sealed: bytes) -> bytes | None: ...
+def check_process() -> None: ...
 def command(arguments: list[str]) -> int: ...

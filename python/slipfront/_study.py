@@ -12,6 +12,7 @@ import numpy as np
 
 from . import _slipfront, _toml
 from ._case import Case
+from ._pickle import sealed
 from ._progress import Bar
 from ._run import Run
 from ._simulation import _threads, run
@@ -153,10 +154,11 @@ class Study:
 
             path = Path(temporary) / self.name if folder is None else Path(folder)
             values, failures = self._native.execute(path, _threads(threads), look if own else None, show)
-            results = StudyResults.read(path)
+            results = StudyResults.read(path, failures)
+            if folder is None:
+                results.folder = None
         if own:
             self._add(results, own, values)
-        results.failures = failures
         return results
 
     def _add(self, results: StudyResults, own: dict[str, Callable[[Run], float]], values: dict[Any, list[float]]) -> None:
@@ -214,26 +216,35 @@ class StudyResults:
     ----------
     folder
         Where they stand; None of a study in memory.
-    failures
-        The places and reasons of the runs that failed.
     """
 
-    def __init__(self, folder: Path | None, tables: dict[str, dict[str, list[Any]]]) -> None:
+    def __init__(
+        self,
+        folder: Path | None,
+        tables: dict[str, dict[str, list[Any]]],
+        failures: Sequence[tuple[str, str]] = (),
+    ) -> None:
         self.folder = folder
-        self.failures: list[tuple[str, str]] = []
+        self._failures = failures
         self._runs = tables["runs"]
         self._tables = tables
 
     @classmethod
-    def read(cls, folder: Path) -> StudyResults:
+    def read(cls, folder: Path, failures: Sequence[tuple[str, str]] = ()) -> StudyResults:
         """The tables in a folder."""
         names = ("runs", "points", "anisotropy")
-        return cls(folder, {name: read_table(folder / f"{name}.csv") for name in names if (folder / f"{name}.csv").exists()})
+        tables = {name: read_table(folder / f"{name}.csv") for name in names if (folder / f"{name}.csv").exists()}
+        return cls(folder, tables, failures)
 
     @property
     def runs(self) -> pd.DataFrame:
         """A row for each run: its place, seed, status and every number of its summary."""
         return frame(self._runs)
+
+    @property
+    def failures(self) -> list[tuple[str, str]]:
+        """The places and reasons of the runs that failed."""
+        return list(self._failures)
 
     @property
     def points(self) -> pd.DataFrame:
@@ -245,6 +256,9 @@ class StudyResults:
         """How friction depends on the direction of the drive, of a study over directions."""
         table = self._tables.get("anisotropy")
         return None if table is None else frame(table)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return sealed(type(self), self.folder, self._tables, self._failures)
 
     def __repr__(self) -> str:
         return f"StudyResults({len(self._runs['point'])} runs, {len(self.failures)} failed)"

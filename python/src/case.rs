@@ -12,6 +12,7 @@ use slipfront_case::case_file::{CaseError, CaseFile};
 
 use crate::arrays::borrowed;
 use crate::errors::case_error;
+use crate::process::detached;
 
 /// How long the engine works between two looks at signals.
 pub(crate) const LOOK_EVERY: Duration = Duration::from_millis(50);
@@ -27,7 +28,7 @@ pub(crate) fn make(
 ) -> PyResult<Case> {
     let mut signal = None;
     let mut looked = Instant::now();
-    let made = py.detach(|| {
+    let made = detached(py, || {
         make(&mut |_| {
             if looked.elapsed() >= LOOK_EVERY {
                 looked = Instant::now();
@@ -35,7 +36,7 @@ pub(crate) fn make(
             }
             signal.is_none()
         })
-    });
+    })?;
     match (made, signal) {
         (_, Some(signal)) => Err(signal),
         (Ok(case), None) => Ok(Case(Arc::new(case))),

@@ -16,6 +16,7 @@ use slipfront_run::{fields, precursors, series, summary, verify as verification}
 
 use crate::case::{Case, make};
 use crate::errors::{FolderError, folder_error};
+use crate::process::detached;
 use crate::record;
 use crate::simulation::Simulation;
 
@@ -39,9 +40,7 @@ pub(crate) fn kind_of(folder: PathBuf) -> PyResult<Option<&'static str>> {
 /// Holds a folder against its manifest, or against its records.
 #[pyfunction]
 pub(crate) fn verify(py: Python<'_>, folder: PathBuf) -> PyResult<()> {
-    let verdict = py
-        .detach(|| verification::verify(&folder))
-        .map_err(folder_error)?;
+    let verdict = detached(py, || verification::verify(&folder))?.map_err(folder_error)?;
     match verdict.differences.as_slice() {
         [] => Ok(()),
         differences => Err(FolderError::new_err(differences.join("\n"))),
@@ -91,7 +90,7 @@ pub(crate) fn interrupted(py: Python<'_>, folder: PathBuf, threads: usize) -> Py
     let run = verification::inspect(&folder).map_err(folder_error)?;
     let file = run.case_to_resume().map_err(folder_error)?.clone();
     let case = case_of(py, &folder, file)?;
-    let running = py.detach(|| {
+    let running = detached(py, || {
         let loaded = Checkpoints::load(&folder, &case.0, false, &Alone).map_err(folder_error)?;
         let Some(loaded) = loaded else {
             return Ok(Running::start(&case.0, threads));
@@ -101,6 +100,6 @@ pub(crate) fn interrupted(py: Python<'_>, folder: PathBuf, threads: usize) -> Py
             .map_err(folder_error)?;
         let foreign = || folder_error("its checkpoint is not one of a run of its case");
         resumed.ok_or_else(foreign)
-    })?;
-    Ok((case, Simulation::of(running)))
+    })??;
+    Ok((case, Simulation::of(running)?))
 }

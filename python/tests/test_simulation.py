@@ -53,6 +53,19 @@ def test_copies_go_on_with_the_same_bits(path: str) -> None:
         assert found.series.identical(expected.series)
 
 
+@pytest.mark.parametrize("stop", ["end", "after_onset"])
+def test_a_simulation_is_copied_at_any_step_from_the_first_to_the_end(small: sf.Case, stop: str) -> None:
+    # The last step is not one at which the curve has a row anyway.
+    case = small.replace({"output.series": 1.1, "time.stop": stop})
+    expected = sf.run(case, progress=False)
+    assert expected.steps % 11 != 0
+    for steps in (0, 1, 11, expected.steps - 1, expected.steps, expected.steps + 1):
+        simulation = sf.Simulation(case)
+        simulation.step(steps)
+        found = pickle.loads(pickle.dumps(simulation)).run(progress=False)
+        assert found.summary == expected.summary and found.series.identical(expected.series), steps
+
+
 def test_a_checkpoint_of_another_case_is_refused(small: sf.Case) -> None:
     checkpoint = sf.Simulation(small).checkpoint()
     other = sf.Case.load("cases/circle.toml")

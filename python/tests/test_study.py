@@ -20,7 +20,7 @@ def study(small: sf.Case) -> sf.Study:
 
 def test_points_are_those_of_the_runs(study: sf.Study) -> None:
     results = study.run(progress=False)
-    assert len(results.runs) == 6 and results.failures == []
+    assert len(results.runs) == 6 and results.failures == [] and results.folder is None
     assert results.anisotropy is None
     runs = results.runs
     for point, replicate, found in zip(runs["point"], runs["replicate"], runs["static_friction_star"], strict=True):
