@@ -18,7 +18,7 @@ from ._pickle import sealed
 from ._temporary import TemporaryFolder
 
 Overrides: TypeAlias = Mapping[str, Any]
-"""Keys with dots, such as ``drive.v_star`` or ``texture.0.coverage``, and their values."""
+"""Keys with dots, such as ``drive.v_star`` or ``texture.0.coverage``, and their values; or names of tables with the keys to set there."""
 
 
 class Case:
@@ -197,7 +197,9 @@ class Case:
     def _text(self) -> str:
         """The resolved case, which names files where they stand, and not the copies beside its results."""
         text = self.to_toml()
-        for copy, original in self._native.inputs:
+        # A file that has changed would make another case than this one in what is not replaced.
+        self._native.read_inputs()
+        for copy, original, _ in self._native.inputs:
             text = text.replace(_toml.word(copy), _toml.word(str(original.absolute())))
         return text
 
@@ -213,17 +215,17 @@ class Case:
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Case):
             return NotImplemented
-        return self.to_toml() == other.to_toml() and self._files() == other._files()
+        return self.to_toml() == other.to_toml() and self._hashes() == other._hashes()
 
     def __hash__(self) -> int:
         return hash(self.to_toml())
 
-    def _files(self) -> dict[str, bytes]:
-        """The contents of the files that it reads, by their names in the resolved case."""
-        return {name: Path(path).read_bytes() for name, path in self._native.inputs}
+    def _hashes(self) -> dict[str, str]:
+        """The hashes of the files that it read, by their names in the resolved case."""
+        return {name: hash_ for name, _, hash_ in self._native.inputs}
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return sealed(_unpickled, self.to_toml(), self.name, self._files())
+        return sealed(_unpickled, self.to_toml(), self.name, self._native.read_inputs())
 
 
 def _unpickled(text: str, name: str, files: dict[str, bytes]) -> Case:
@@ -244,7 +246,7 @@ def _unpickled(text: str, name: str, files: dict[str, bytes]) -> Case:
 
 
 def _overrides(given: Overrides | None, arrays: _toml.ArrayFiles) -> list[str]:
-    return [f"{key}={_toml.value(value, arrays)}" for key, value in (given or {}).items()]
+    return [f"{key}={_toml.value(value, arrays)}" for key, value in _toml.by_key(given or {}).items()]
 
 
 CaseError = _slipfront.CaseError

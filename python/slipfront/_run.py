@@ -54,11 +54,18 @@ class FolderSource:
         return self._read.get("precursors")
 
     def save(self, folder: Path, force: bool) -> None:
-        if folder.exists() and (not force or not (folder / "manifest.json").is_file()):
-            raise FolderError(f"{folder} exists: name another folder, or replace a run there with force=True")
-        if folder.exists():
-            shutil.rmtree(folder)
-        shutil.copytree(self._folder, folder)
+        if folder.resolve() == self._folder.resolve():
+            raise FolderError(f"{folder} is the folder that the run was read from: it stands there already")
+        manifest = json.loads((self._folder / "manifest.json").read_bytes())
+        _slipfront.make_ready(folder, force)
+        # The manifest is the last: without it a folder is not taken for one of a complete run.
+        for name in [*(file["name"] for file in manifest["files"]), "manifest.json"]:
+            copied = folder / name
+            copied.parent.mkdir(parents=True, exist_ok=True)
+            if copied.exists():
+                raise FolderError(f"{copied} is not of the run that stood there: move it away, or name another folder")
+            shutil.copyfile(self._folder / name, copied)
+        _slipfront.verify(folder)
 
 
 class Run:

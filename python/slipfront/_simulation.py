@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import copy
 import math
+import operator
 import os
 import threading
 from collections.abc import Callable, Iterator, Mapping
@@ -169,19 +170,17 @@ class Simulation:
 
     @property
     def displacement(self) -> npt.NDArray[np.float64]:
-        """Displacements of the blocks from rest along x and y, m, (2, N_y, N_x)."""
+        """Displacements of the blocks from rest along x and y, m, (2, N_y, N_x). They cannot be written to."""
         with self._alone() as native:
             moved, _ = native.motion()
-        array: npt.NDArray[np.float64] = moved * self._case.numbers["displacement_unit_m"] + self._origin
-        return array
+        return _dataset.read_only(moved * self._case.numbers["displacement_unit_m"] + self._origin)
 
     @property
     def velocity(self) -> npt.NDArray[np.float64]:
-        """Velocities of the blocks half a step later, m/s, (2, N_y, N_x)."""
+        """Velocities of the blocks half a step later, m/s, (2, N_y, N_x). They cannot be written to."""
         with self._alone() as native:
             _, velocity = native.motion()
-        array: npt.NDArray[np.float64] = velocity * self._case.numbers["speed_unit_m_s"]
-        return array
+        return _dataset.read_only(velocity * self._case.numbers["speed_unit_m_s"])
 
     def field(self, name: str) -> npt.NDArray[np.float32]:
         """A field at this instant, (N_y, N_x), in the unit of `fields.nc`.
@@ -218,6 +217,7 @@ class Simulation:
         int
             Steps taken.
         """
+        n = operator.index(n)
         if n < 0:
             raise ValueError(f"steps are counted from 0, not {n}")
         with self._alone() as native:
@@ -260,6 +260,8 @@ class Simulation:
         """
         if every < 1:
             raise ValueError(f"every is a number of steps from 1 on, not {every}")
+        if math.isnan(time_star):
+            raise ValueError("t* is a number, not NaN")
         last = math.ceil(time_star / self._case.numbers["dt_star"] - 1e-9) if time_star < math.inf else _ALL
         if time_star < (now := self.time_star):
             raise ValueError(f"t* = {time_star:g} is over: it is {now:g} since the start or the last change")

@@ -104,6 +104,10 @@ class Study:
         reference
             The reference that the reduction of the point is measured against.
         """
+        if not 0 <= point < self.n_points:
+            raise IndexError(f"the study has {self.n_points} points, counted from 0, and none of number {point}")
+        if replicate < 0:
+            raise IndexError(f"replicates are counted from 0, not {replicate}")
         return Case(self._native.case(point, replicate, reference))
 
     def run(
@@ -138,6 +142,9 @@ class Study:
         True
         """
         own = dict(quantities or {})
+        for quantity in own:
+            if self._native.has_column(quantity):
+                raise ValueError(f"the tables have a column `{quantity}` already: give the quantity another name")
         watch = progress if callable(progress) else None
         shown = progress if progress is None or isinstance(progress, bool) else False
 
@@ -266,8 +273,11 @@ class StudyResults:
 
 def _axis(name: str, levels: Sequence[Any] | Mapping[str, Mapping[str, Any]], files: _toml.ArrayFiles) -> str:
     if isinstance(levels, Mapping):
-        variants = "".join(f"{_toml.key(level)} = {_toml.value(keys, files)}\n" for level, keys in levels.items())
+        of_level = ((level, _toml.by_key(keys)) for level, keys in levels.items())
+        variants = "".join(f"{_toml.key(level)} = {_toml.value(keys, files)}\n" for level, keys in of_level)
         return f"[[axes]]\nname = {_toml.word(name)}\n[axes.variants]\n{variants}"
+    if isinstance(levels, str) or not hasattr(levels, "__iter__"):
+        raise TypeError(f"the levels of `{name}` are a list, such as [{levels!r}], not {levels!r}")
     return f"[[axes]]\nkey = {_toml.word(name)}\nlist = {_toml.value(list(levels), files)}\n"
 
 

@@ -10,6 +10,7 @@ use slipfront_case::case::Case as SlipfrontCase;
 use slipfront_case::case_file::CaseFile;
 use slipfront_run::checkpoint::Checkpoints;
 use slipfront_run::names::{FIELDS, FIGURE_CACHE, KYMOGRAPH, PRECURSORS, SERIES};
+use slipfront_run::run_folder::RunFolder;
 use slipfront_run::run_folder::inspection::Contents;
 use slipfront_run::running::Running;
 use slipfront_run::{fields, precursors, series, summary, verify as verification};
@@ -45,6 +46,15 @@ pub(crate) fn verify(py: Python<'_>, folder: PathBuf) -> PyResult<()> {
         [] => Ok(()),
         differences => Err(FolderError::new_err(differences.join("\n"))),
     }
+}
+
+/// Makes a folder ready for the files of a run: a new or empty one, or with `force` one from which the files of an earlier run are
+/// removed, and nothing else.
+#[pyfunction]
+pub(crate) fn make_ready(folder: PathBuf, force: bool) -> PyResult<()> {
+    let run = RunFolder::prepare(&folder, force, &[]).map_err(folder_error)?;
+    run.discard();
+    Ok(())
 }
 
 /// The case of a run folder, as the run began from it, under the name of the folder.

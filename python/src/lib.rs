@@ -33,7 +33,11 @@ fn command(py: Python<'_>, arguments: Vec<OsString>) -> PyResult<u8> {
 fn _slipfront(module: &Bound<'_, PyModule>) -> PyResult<()> {
     let py = module.py();
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
-    module.add("CaseError", py.get_type::<errors::CaseError>())?;
+    let case_error = py.get_type::<errors::CaseError>();
+    // Of an error that is not one of a place in a file.
+    case_error.setattr("line", py.None())?;
+    case_error.setattr("column", py.None())?;
+    module.add("CaseError", case_error)?;
     module.add("RunError", py.get_type::<errors::RunError>())?;
     module.add("ForkError", py.get_type::<errors::ForkError>())?;
     module.add("FolderError", py.get_type::<errors::FolderError>())?;
@@ -45,6 +49,7 @@ fn _slipfront(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(folder::read_run, module)?)?;
     module.add_function(wrap_pyfunction!(folder::interrupted, module)?)?;
     module.add_function(wrap_pyfunction!(folder::verify, module)?)?;
+    module.add_function(wrap_pyfunction!(folder::make_ready, module)?)?;
     module.add_function(wrap_pyfunction!(pickle::with_checksum, module)?)?;
     module.add_function(wrap_pyfunction!(pickle::verified, module)?)?;
     module.add_function(wrap_pyfunction!(process::check_process, module)?)?;

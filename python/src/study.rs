@@ -88,6 +88,12 @@ impl Study {
             .collect()
     }
 
+    /// Whether its tables have a column of this name.
+    fn has_column(&self, name: &str) -> bool {
+        let mut axes = self.plan.axes.iter().flat_map(|axis| &axis.columns);
+        study::is_column(name) || axes.any(|column| column == name)
+    }
+
     /// The case of a run.
     fn case(&self, py: Python<'_>, point: usize, replicate: usize, reference: bool) -> PyResult<Case> {
         let role = match reference {

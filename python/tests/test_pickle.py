@@ -22,7 +22,7 @@ def state(made):
 
 def held_by(made):
     if isinstance(made, sf.Case):
-        return made.name, made.to_toml(), made._files()
+        return made.name, made.to_toml(), made._hashes()
     if isinstance(made, sf.Run):
         return state(made.case), made.summary, [made.series.to_dict(), made.fields.to_dict(), made.kymograph.to_dict()]
     if isinstance(made, sf.Simulation):

@@ -60,6 +60,18 @@ def test_own_quantities_are_columns_and_found_again(study: sf.Study, tmp_path: P
     assert (fresh["steps_twice"] == 2 * fresh["steps"]).all() and fresh["last"].notna().all()
 
 
+def test_points_levels_and_names_that_are_none_are_told(study: sf.Study, small: sf.Case) -> None:
+    for point, replicate in ((2, 0), (-1, 0), (0, -1)):
+        with pytest.raises(IndexError, match="counted from 0"):
+            study.case(point, replicate)
+    for name in ("steps", "point", "status", "mean", "drive.v_star"):
+        with pytest.raises(ValueError, match=f"column `{name}` already: give the quantity another name"):
+            study.run(progress=False, quantities={name: lambda run: 1.0})
+    for levels in (0.1, "1 mm/s"):
+        with pytest.raises(TypeError, match="are a list, such as"):
+            sf.Study(small, {"drive.speed": levels})  # type: ignore[dict-item]
+
+
 def test_an_axis_may_have_named_variants(small: sf.Case) -> None:
     mask = np.zeros(small.shape, dtype=bool)
     mask[3:6, 3:6] = True
