@@ -373,7 +373,7 @@ class Simulation:
         Raises
         ------
         ValueError
-            When it is not a checkpoint of this case.
+            When it is not a checkpoint of this case by this build of slipfront, or is damaged.
         """
         native = _slipfront.Simulation.resume(case._native, checkpoint, _threads(threads))
         return cls._of(case, native, threads)

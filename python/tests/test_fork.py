@@ -206,5 +206,23 @@ thread.join()
     assert told == ["{'ForkError'} True"]
 
 
+def test_a_child_that_ends_leaves_the_files_of_the_case(tmp_path: Path) -> None:
+    told = script(
+        tmp_path,
+        """
+import numpy as np
+mask = np.eye(10, 12, dtype=bool)
+case = sf.Case.from_dict({"slider": {"blocks": [12, 10]}, "texture": [{"shape": "mask", "file": mask}]})
+child = os.fork()
+if child == 0:
+    del case
+    sys.exit()
+os.waitpid(child, 0)
+print(case.replace({"drive.v_star": 0.1}).textured.sum())
+""",
+    )
+    assert told == ["10"]
+
+
 def test_the_error_is_a_runtime_error() -> None:
     assert issubclass(sf.ForkError, RuntimeError) and not issubclass(sf.RunError, sf.ForkError)
