@@ -11,13 +11,14 @@ from ._cite import cite
 from ._open import InterruptedRun, PaperResults, open
 from ._run import FolderError, Run
 from ._simulation import Simulation, run
-from ._slipfront import RunError, __version__
+from ._slipfront import ForkError, RunError, __version__
 from ._study import Study, StudyResults, study
 
 __all__ = [
     "Case",
     "CaseError",
     "FolderError",
+    "ForkError",
     "InterruptedRun",
     "PaperResults",
     "Run",

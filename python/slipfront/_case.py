@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import contextlib
+import functools
 import html
 import os
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any, TypeAlias
 
@@ -12,10 +14,11 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _slipfront, _toml
+from ._pickle import sealed
 from ._temporary import TemporaryFolder
 
 Overrides: TypeAlias = Mapping[str, Any]
-"""Keys with dots, such as ``drive.v_star`` or ``texture.0.coverage``, and their values."""
+"""Keys with dots, such as ``drive.v_star`` or ``texture.0.coverage``, and their values; or names of tables with the keys to set there."""
 
 
 class Case:
@@ -39,13 +42,18 @@ class Case:
     0.05
     """
 
-    _native: _slipfront.Case
+    _make: Callable[[], _slipfront.Case]
     _folder: TemporaryFolder | None
 
     def __init__(self, native: _slipfront.Case, folder: TemporaryFolder | None = None) -> None:
         object.__setattr__(self, "_native", native)
         # Holds the files of arrays as long as the case may read them.
         object.__setattr__(self, "_folder", folder)
+
+    @functools.cached_property
+    def _native(self) -> _slipfront.Case:
+        """The case of a pickle that was loaded where none can be made."""
+        return self._make()
 
     def __setattr__(self, name: str, value: object) -> None:
         raise AttributeError(f"a case never changes: make another one with `case.replace({{...}})` to set {name!r}")
@@ -189,7 +197,9 @@ class Case:
     def _text(self) -> str:
         """The resolved case, which names files where they stand, and not the copies beside its results."""
         text = self.to_toml()
-        for copy, original in self._native.inputs:
+        # A file that has changed would make another case than this one in what is not replaced.
+        self._native.read_inputs()
+        for copy, original, _ in self._native.inputs:
             text = text.replace(_toml.word(copy), _toml.word(str(original.absolute())))
         return text
 
@@ -205,17 +215,17 @@ class Case:
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Case):
             return NotImplemented
-        return self.to_toml() == other.to_toml() and self._files() == other._files()
+        return self.to_toml() == other.to_toml() and self._hashes() == other._hashes()
 
     def __hash__(self) -> int:
         return hash(self.to_toml())
 
-    def _files(self) -> dict[str, bytes]:
-        """The contents of the files that it reads, by their names in the resolved case."""
-        return {name: Path(path).read_bytes() for name, path in self._native.inputs}
+    def _hashes(self) -> dict[str, str]:
+        """The hashes of the files that it read, by their names in the resolved case."""
+        return {name: hash_ for name, _, hash_ in self._native.inputs}
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return (_unpickled, (self.to_toml(), self.name, self._files()))
+        return sealed(_unpickled, self.to_toml(), self.name, self._native.read_inputs())
 
 
 def _unpickled(text: str, name: str, files: dict[str, bytes]) -> Case:
@@ -225,11 +235,18 @@ def _unpickled(text: str, name: str, files: dict[str, bytes]) -> Case:
         path = folder.path / copy
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_bytes(contents)
-    return Case(_slipfront.Case.parse(text, name, folder.path if folder else Path(), []), folder)
+    case = Case.__new__(Case)
+    make = functools.partial(_slipfront.Case.parse, text, name, folder.path if folder else Path(), [])
+    vars(case).update(_make=make, _folder=folder)
+    # A process that was forked too late is told when it uses the case: it would die of an exception here, in the midst of reading
+    # the tasks of multiprocessing.Pool, which would wait for it for ever.
+    with contextlib.suppress(_slipfront.ForkError):
+        _ = case._native
+    return case
 
 
 def _overrides(given: Overrides | None, arrays: _toml.ArrayFiles) -> list[str]:
-    return [f"{key}={_toml.value(value, arrays)}" for key, value in (given or {}).items()]
+    return [f"{key}={_toml.value(value, arrays)}" for key, value in _toml.by_key(given or {}).items()]
 
 
 CaseError = _slipfront.CaseError

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, cast
 
+import numpy as np
+import numpy.typing as npt
+
 if TYPE_CHECKING:
     import xarray as xr
 
@@ -37,7 +40,17 @@ def _attributes(name: str) -> dict[str, str]:
     return {"units": unit, "long_name": _LONG_NAMES.get(name, name.replace("_", " "))}
 
 
+def read_only(array: npt.ArrayLike) -> npt.NDArray[Any]:
+    """An array that cannot be written to, since all who ask for it get the same one."""
+    shared = np.asarray(array)
+    shared.flags.writeable = False
+    return shared
+
+
 def _dataset(variables: dict[str, Any], coordinates: dict[str, Any]) -> xr.Dataset:
+    for named in (variables, coordinates):
+        for name, (dimensions, array, attributes) in named.items():
+            named[name] = dimensions, read_only(array), attributes
     try:
         import xarray
     except ImportError:

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from . import _slipfront
 from ._case import Case
+from ._pickle import sealed
 from ._run import FolderSource, Run
 from ._simulation import Simulation, _threads
 from ._study import StudyResults
@@ -30,6 +31,9 @@ class InterruptedRun:
 
     def __init__(self, folder: Path, case: Case, simulation: Simulation) -> None:
         self.folder, self.case, self.simulation = folder, case, simulation
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return sealed(type(self), self.folder, self.case, self.simulation)
 
     def __repr__(self) -> str:
         return f"InterruptedRun({self.folder}: step {self.simulation.steps} of {self.case.last_step})"
@@ -57,6 +61,9 @@ class PaperResults:
         """The data of every panel, under the name of its picture."""
         panels = sorted(self.folder.glob("*.png"))
         return {panel.stem: frame(read_table(panel.with_suffix(".csv"))) for panel in panels if panel.with_suffix(".csv").exists()}
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return sealed(type(self), self.folder)
 
     def __repr__(self) -> str:
         return f"PaperResults({self.folder})"

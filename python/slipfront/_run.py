@@ -14,6 +14,7 @@ import numpy.typing as npt
 
 from . import _dataset, _slipfront
 from ._case import Case
+from ._pickle import sealed
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -53,11 +54,18 @@ class FolderSource:
         return self._read.get("precursors")
 
     def save(self, folder: Path, force: bool) -> None:
-        if folder.exists() and (not force or not (folder / "manifest.json").is_file()):
-            raise FolderError(f"{folder} exists: name another folder, or replace a run there with force=True")
-        if folder.exists():
-            shutil.rmtree(folder)
-        shutil.copytree(self._folder, folder)
+        if folder.resolve() == self._folder.resolve():
+            raise FolderError(f"{folder} is the folder that the run was read from: it stands there already")
+        manifest = json.loads((self._folder / "manifest.json").read_bytes())
+        _slipfront.make_ready(folder, force)
+        # The manifest is the last: without it a folder is not taken for one of a complete run.
+        for name in [*(file["name"] for file in manifest["files"]), "manifest.json"]:
+            copied = folder / name
+            copied.parent.mkdir(parents=True, exist_ok=True)
+            if copied.exists():
+                raise FolderError(f"{copied} is not of the run that stood there: move it away, or name another folder")
+            shutil.copyfile(self._folder / name, copied)
+        _slipfront.verify(folder)
 
 
 class Run:
@@ -85,10 +93,10 @@ class Run:
         """The folder that it was read from or saved to."""
         return self._folder
 
-    @functools.cached_property
+    @property
     def summary(self) -> dict[str, Any]:
         """The numbers, under the keys of `summary.json`."""
-        return dict(json.loads(self._source.summary()))
+        return dict(json.loads(self._summary))
 
     @property
     def static_friction_star(self) -> float:
@@ -191,27 +199,25 @@ class Run:
         """What a reader should know before trusting the numbers."""
         return [str(warning) for warning in self.summary["warnings"]]
 
-    @functools.cached_property
+    @property
     def series(self) -> xr.Dataset:
         """The recorded curve over t*: the columns of `series.csv` with units; a dictionary of arrays without xarray."""
-        return _dataset.table(self._source.series())
+        return self._series.copy()
 
-    @functools.cached_property
+    @property
     def fields(self) -> xr.Dataset:
         """Fields at the snapshots, (time, y, x) in SI units, and what never changes, (y, x): what `fields.nc` holds."""
-        return _dataset.fields(self._arrays)
+        return self._fields.copy()
 
-    @functools.cached_property
+    @property
     def kymograph(self) -> xr.Dataset | None:
         """The share of the blocks that slide against time and place along the drive; None in folders of old versions."""
-        arrays = self._source.kymograph()
-        return None if arrays is None else _dataset.kymograph(arrays, self._arrays["time_unit_s"])
+        return None if self._kymograph is None else self._kymograph.copy()
 
-    @functools.cached_property
+    @property
     def precursors(self) -> xr.Dataset | None:
         """The events of slip of a slider driven at an edge; None of others."""
-        columns = self._source.precursors()
-        return None if columns is None else _dataset.table(columns)
+        return None if self._precursors is None else self._precursors.copy()
 
     @property
     def texture(self) -> npt.NDArray[np.bool_]:
@@ -220,9 +226,8 @@ class Run:
 
     @property
     def front(self) -> npt.NDArray[np.float64]:
-        """t* of the first slip of every block that the fields keep, (y, x); NaN where a block never slid."""
-        front: npt.NDArray[np.float64] = self._arrays["first_slip_time_star"]
-        return front
+        """t* of the first slip of every block that the fields keep, (y, x); NaN where a block never slid. It cannot be written to."""
+        return _dataset.read_only(self._arrays["first_slip_time_star"])
 
     def save(self, folder: str | os.PathLike[str], *, force: bool = False) -> Path:
         """Write the folder of the run, with the bytes of every file that `slipfront run` writes.
@@ -281,9 +286,33 @@ class Run:
             told.append(("mu_k*", f"{kinetic:.4g}" + (f" \u00b1 {error:.1g}" if error is not None else "")))
         return [*told, ("t_s*", f"{self.onset_time_star:.4g}"), ("A*", f"{self.texture_percent:.4g} %")]
 
+    # What was asked for once is kept. It is handed out in new datasets, whose arrays are shared and cannot be written to.
+
+    @functools.cached_property
+    def _summary(self) -> str:
+        return self._source.summary()
+
     @functools.cached_property
     def _arrays(self) -> dict[str, Any]:
         return self._source.fields()
+
+    @functools.cached_property
+    def _series(self) -> xr.Dataset:
+        return _dataset.table(self._source.series())
+
+    @functools.cached_property
+    def _fields(self) -> xr.Dataset:
+        return _dataset.fields(self._arrays)
+
+    @functools.cached_property
+    def _kymograph(self) -> xr.Dataset | None:
+        arrays = self._source.kymograph()
+        return None if arrays is None else _dataset.kymograph(arrays, self._arrays["time_unit_s"])
+
+    @functools.cached_property
+    def _precursors(self) -> xr.Dataset | None:
+        columns = self._source.precursors()
+        return None if columns is None else _dataset.table(columns)
 
     def _optional(self, key: str) -> float | None:
         found = self.summary[key]
@@ -297,7 +326,7 @@ class Run:
             "kymograph": self._source.kymograph(),
             "precursors": self._source.precursors(),
         }
-        return (_unpickled, (self._case, read))
+        return sealed(_unpickled, self._case, read)
 
 
 class _Unsaved(FolderSource):

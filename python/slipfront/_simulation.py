@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import contextlib
 import copy
 import math
+import operator
 import os
 import threading
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
@@ -15,6 +16,7 @@ import numpy.typing as npt
 
 from . import _dataset, _slipfront
 from ._case import Case
+from ._pickle import sealed
 from ._progress import Bar
 from ._run import Run
 
@@ -93,24 +95,29 @@ class Simulation:
         self._threads = _threads(threads)
         self._begin(case, _slipfront.Simulation(case._native, self._threads))
         self._legs: list[tuple[Case, int]] = []
-        self._curves: list[xr.Dataset] = []
+        # The columns of the series of the legs before this one.
+        self._curves: list[dict[str, Any]] = []
         # Where the drive stood when this leg began, block by block, and the time and steps before it.
         self._origin: npt.NDArray[np.float64] | float = 0.0
         self._before = (0, 0.0)
 
-    def _begin(self, case: Case, native: _slipfront.Simulation) -> None:
+    def _begin(self, case: Case, native: _slipfront.Simulation | None) -> None:
         self._case = case
+        # None of one that was unpickled in a process that cannot use it.
         self._native = native
         self._ended: str | None = None
         self._lock = threading.Lock()
 
-    @contextmanager
+    @contextlib.contextmanager
     def _alone(self) -> Iterator[_slipfront.Simulation]:
+        # The lock of a process that was forked may be one that nobody there holds.
+        _slipfront.check_process()
         if not self._lock.acquire(blocking=False):
             raise RuntimeError(
                 "another thread is using this simulation: wait for it, or give each thread a simulation of its own (copy.copy)"
             )
         try:
+            assert self._native is not None
             yield self._native
         finally:
             self._lock.release()
@@ -163,19 +170,17 @@ class Simulation:
 
     @property
     def displacement(self) -> npt.NDArray[np.float64]:
-        """Displacements of the blocks from rest along x and y, m, (2, N_y, N_x)."""
+        """Displacements of the blocks from rest along x and y, m, (2, N_y, N_x). They cannot be written to."""
         with self._alone() as native:
             moved, _ = native.motion()
-        array: npt.NDArray[np.float64] = moved * self._case.numbers["displacement_unit_m"] + self._origin
-        return array
+        return _dataset.read_only(moved * self._case.numbers["displacement_unit_m"] + self._origin)
 
     @property
     def velocity(self) -> npt.NDArray[np.float64]:
-        """Velocities of the blocks half a step later, m/s, (2, N_y, N_x)."""
+        """Velocities of the blocks half a step later, m/s, (2, N_y, N_x). They cannot be written to."""
         with self._alone() as native:
             _, velocity = native.motion()
-        array: npt.NDArray[np.float64] = velocity * self._case.numbers["speed_unit_m_s"]
-        return array
+        return _dataset.read_only(velocity * self._case.numbers["speed_unit_m_s"])
 
     def field(self, name: str) -> npt.NDArray[np.float32]:
         """A field at this instant, (N_y, N_x), in the unit of `fields.nc`.
@@ -192,15 +197,17 @@ class Simulation:
     @property
     def series(self) -> xr.Dataset:
         """The curve since the start or the last change, as `Run.series`; ``time_s`` counts from the start."""
+        return _dataset.table(self._columns())
+
+    def _columns(self) -> dict[str, Any]:
         with self._alone() as native:
             columns = native.series()
-        columns["time_s"] = columns["time_s"] + self._before[1]
-        return _dataset.table(columns)
+        return {**columns, "time_s": columns["time_s"] + self._before[1]}
 
     @property
     def curves(self) -> list[xr.Dataset]:
         """The `series` of every leg, the present one last."""
-        return [*self._curves, self.series]
+        return [_dataset.table(columns) for columns in [*self._curves, self._columns()]]
 
     def step(self, n: int = 1) -> int:
         """Take n steps, or fewer if the run ends before.
@@ -210,6 +217,7 @@ class Simulation:
         int
             Steps taken.
         """
+        n = operator.index(n)
         if n < 0:
             raise ValueError(f"steps are counted from 0, not {n}")
         with self._alone() as native:
@@ -252,6 +260,8 @@ class Simulation:
         """
         if every < 1:
             raise ValueError(f"every is a number of steps from 1 on, not {every}")
+        if math.isnan(time_star):
+            raise ValueError("t* is a number, not NaN")
         last = math.ceil(time_star / self._case.numbers["dt_star"] - 1e-9) if time_star < math.inf else _ALL
         if time_star < (now := self.time_star):
             raise ValueError(f"t* = {time_star:g} is over: it is {now:g} since the start or the last change")
@@ -324,7 +334,7 @@ class Simulation:
         case = self._case.replace(overrides)
         with self._alone() as native:
             begun, steps, time_s, drive = native.change(case._native, self._threads)
-        self._curves.append(self.series)
+        self._curves.append(self._columns())
         self._legs.append((self._case, steps))
         self._origin = self._origin + drive
         self._before = (self._before[0] + steps, self._before[1] + time_s)
@@ -363,13 +373,13 @@ class Simulation:
         Raises
         ------
         ValueError
-            When it is not a checkpoint of this case.
+            When it is not a checkpoint of this case by this build of slipfront, or is damaged.
         """
         native = _slipfront.Simulation.resume(case._native, checkpoint, _threads(threads))
         return cls._of(case, native, threads)
 
     @classmethod
-    def _of(cls, case: Case, native: _slipfront.Simulation, threads: int | None) -> Simulation:
+    def _of(cls, case: Case, native: _slipfront.Simulation | None, threads: int | None) -> Simulation:
         simulation = cls.__new__(cls)
         simulation._threads = _threads(threads)
         simulation._begin(case, native)
@@ -388,7 +398,7 @@ class Simulation:
 
     def __reduce__(self) -> tuple[Any, ...]:
         kept = (self._threads, self._ended, self._legs, self._curves, self._origin, self._before)
-        return (_unpickled, (self._case, self.checkpoint(), *kept))
+        return sealed(_unpickled, self._case, self.checkpoint(), *kept)
 
     def __repr__(self) -> str:
         return f"Simulation({self._case.name}: step {self.steps}, t* = {self.time_star:.4g}, mu* = {self.mu_star:.4g})"
@@ -400,11 +410,15 @@ def _unpickled(
     threads: int,
     ended: str | None,
     legs: list[tuple[Case, int]],
-    curves: list[xr.Dataset],
+    curves: list[dict[str, Any]],
     origin: npt.NDArray[np.float64] | float,
     before: tuple[int, float],
 ) -> Simulation:
-    simulation = Simulation.resume(case, checkpoint, threads=threads)
+    native = None
+    # A process that was forked too late is told when it uses the simulation, as with a case.
+    with contextlib.suppress(_slipfront.ForkError):
+        native = _slipfront.Simulation.resume(case._native, checkpoint, _threads(threads))
+    simulation = Simulation._of(case, native, threads)
     simulation._ended, simulation._legs, simulation._curves = ended, legs, curves
     simulation._origin, simulation._before = origin, before
     return simulation

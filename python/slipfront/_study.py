@@ -12,6 +12,7 @@ import numpy as np
 
 from . import _slipfront, _toml
 from ._case import Case
+from ._pickle import sealed
 from ._progress import Bar
 from ._run import Run
 from ._simulation import _threads, run
@@ -111,6 +112,10 @@ class Study:
         reference
             The reference that the reduction of the point is measured against.
         """
+        if not 0 <= point < self.n_points:
+            raise IndexError(f"the study has {self.n_points} points, counted from 0, and none of number {point}")
+        if replicate < 0:
+            raise IndexError(f"replicates are counted from 0, not {replicate}")
         return Case(self._native.case(point, replicate, reference))
 
     def run(
@@ -145,6 +150,9 @@ class Study:
         True
         """
         own = dict(quantities or {})
+        for quantity in own:
+            if self._native.has_column(quantity):
+                raise ValueError(f"the tables have a column `{quantity}` already: give the quantity another name")
         watch = progress if callable(progress) else None
         shown = progress if progress is None or isinstance(progress, bool) else False
 
@@ -161,10 +169,11 @@ class Study:
 
             path = Path(temporary) / self.name if folder is None else Path(folder)
             values, failures = self._native.execute(path, _threads(threads), look if own else None, show)
-            results = StudyResults.read(path)
+            results = StudyResults.read(path, failures)
+            if folder is None:
+                results.folder = None
         if own:
             self._add(results, own, values)
-        results.failures = failures
         return results
 
     def _add(self, results: StudyResults, own: dict[str, Callable[[Run], float]], values: dict[Any, list[float]]) -> None:
@@ -224,26 +233,35 @@ class StudyResults:
     ----------
     folder
         Where they stand; None of a study in memory.
-    failures
-        The places and reasons of the runs that failed.
     """
 
-    def __init__(self, folder: Path | None, tables: dict[str, dict[str, list[Any]]]) -> None:
+    def __init__(
+        self,
+        folder: Path | None,
+        tables: dict[str, dict[str, list[Any]]],
+        failures: Sequence[tuple[str, str]] = (),
+    ) -> None:
         self.folder = folder
-        self.failures: list[tuple[str, str]] = []
+        self._failures = failures
         self._runs = tables["runs"]
         self._tables = tables
 
     @classmethod
-    def read(cls, folder: Path) -> StudyResults:
+    def read(cls, folder: Path, failures: Sequence[tuple[str, str]] = ()) -> StudyResults:
         """The tables in a folder."""
         names = ("runs", "points", "anisotropy")
-        return cls(folder, {name: read_table(folder / f"{name}.csv") for name in names if (folder / f"{name}.csv").exists()})
+        tables = {name: read_table(folder / f"{name}.csv") for name in names if (folder / f"{name}.csv").exists()}
+        return cls(folder, tables, failures)
 
     @property
     def runs(self) -> pd.DataFrame:
         """A row for each run: its place, seed, status and every number of its summary."""
         return frame(self._runs)
+
+    @property
+    def failures(self) -> list[tuple[str, str]]:
+        """The places and reasons of the runs that failed."""
+        return list(self._failures)
 
     @property
     def points(self) -> pd.DataFrame:
@@ -259,14 +277,20 @@ class StudyResults:
         table = self._tables.get("anisotropy")
         return None if table is None else frame(table)
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        return sealed(type(self), self.folder, self._tables, self._failures)
+
     def __repr__(self) -> str:
         return f"StudyResults({len(self._runs['point'])} runs, {len(self.failures)} failed)"
 
 
 def _axis(name: str, levels: Sequence[Any] | Mapping[str, Mapping[str, Any]], files: _toml.ArrayFiles) -> str:
     if isinstance(levels, Mapping):
-        variants = "".join(f"{_toml.key(level)} = {_toml.value(keys, files)}\n" for level, keys in levels.items())
+        of_level = ((level, _toml.by_key(keys)) for level, keys in levels.items())
+        variants = "".join(f"{_toml.key(level)} = {_toml.value(keys, files)}\n" for level, keys in of_level)
         return f"[[axes]]\nname = {_toml.word(name)}\n[axes.variants]\n{variants}"
+    if isinstance(levels, str) or not hasattr(levels, "__iter__"):
+        raise TypeError(f"the levels of `{name}` are a list, such as [{levels!r}], not {levels!r}")
     return f"[[axes]]\nkey = {_toml.word(name)}\nlist = {_toml.value(list(levels), files)}\n"
 
 

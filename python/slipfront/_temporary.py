@@ -1,5 +1,6 @@
 """Folders of files that stand as long as something may read them."""
 
+import os
 import shutil
 import tempfile
 import weakref
@@ -18,4 +19,10 @@ class TemporaryFolder:
     def __init__(self, *others: "TemporaryFolder | None") -> None:
         self.path = Path(tempfile.mkdtemp(prefix="slipfront-"))
         self._others = others
-        self.remove = weakref.finalize(self, shutil.rmtree, self.path, ignore_errors=True)
+        self.remove = weakref.finalize(self, _remove, self.path, os.getpid())
+
+
+def _remove(path: Path, maker: int) -> None:
+    # A process that was forked has a copy of this object, whose end is not that of the folder.
+    if os.getpid() == maker:
+        shutil.rmtree(path, ignore_errors=True)

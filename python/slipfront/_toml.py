@@ -81,6 +81,21 @@ def value(given: Any, arrays: ArrayFiles) -> str:
     )
 
 
+def by_key(overrides: Mapping[str, Any]) -> dict[str, Any]:
+    """Overrides key by key: those of a table that is given by its name are the keys that it has, and leave its others as they are.
+
+    >>> by_key({"drive": {"v_star": 0.1}, "friction.seed": 2, "output": {"snapshots": {"every": 1.0}}})
+    {'drive.v_star': 0.1, 'friction.seed': 2, 'output.snapshots': {'every': 1.0}}
+    """
+    found: dict[str, Any] = {}
+    for name, given in overrides.items():
+        if isinstance(given, Mapping) and "." not in name:
+            found |= {f"{name}.{inner}": value for inner, value in given.items()}
+        else:
+            found[name] = given
+    return found
+
+
 def word(text: str) -> str:
     """A text as TOML writes it."""
     return json.dumps(text, ensure_ascii=False)

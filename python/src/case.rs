@@ -6,12 +6,14 @@ use std::time::{Duration, Instant};
 
 use numpy::{Element, PyArray2};
 use pyo3::prelude::*;
+use pyo3::types::{PyBytes, PyDict};
 use slipfront::Surface;
 use slipfront_case::case::Case as SlipfrontCase;
-use slipfront_case::case_file::{CaseError, CaseFile};
+use slipfront_case::case_file::{CaseError as Error, CaseFile};
 
 use crate::arrays::borrowed;
-use crate::errors::case_error;
+use crate::errors::{CaseError, case_error};
+use crate::process::detached;
 
 /// How long the engine works between two looks at signals.
 pub(crate) const LOOK_EVERY: Duration = Duration::from_millis(50);
@@ -23,11 +25,11 @@ pub(crate) struct Case(pub(crate) Arc<SlipfrontCase>);
 /// Makes a case while other threads of Python go on; `make` is given what watches its texture. A signal ends it.
 pub(crate) fn make(
     py: Python<'_>,
-    make: impl FnOnce(&mut dyn FnMut(f64) -> bool) -> Result<SlipfrontCase, CaseError> + Send,
+    make: impl FnOnce(&mut dyn FnMut(f64) -> bool) -> Result<SlipfrontCase, Error> + Send,
 ) -> PyResult<Case> {
     let mut signal = None;
     let mut looked = Instant::now();
-    let made = py.detach(|| {
+    let made = detached(py, || {
         make(&mut |_| {
             if looked.elapsed() >= LOOK_EVERY {
                 looked = Instant::now();
@@ -35,7 +37,7 @@ pub(crate) fn make(
             }
             signal.is_none()
         })
-    });
+    })?;
     match (made, signal) {
         (_, Some(signal)) => Err(signal),
         (Ok(case), None) => Ok(Case(Arc::new(case))),
@@ -86,13 +88,40 @@ impl Case {
         self.0.file.to_toml().map_err(|error| case_error(py, &error))
     }
 
-    /// The files that it reads: the name of each in the resolved case, and where it stands.
+    /// The files that it reads: the name of each in the resolved case, where it stands, and the hash of its contents.
     #[getter]
-    fn inputs(&self) -> Vec<(String, PathBuf)> {
+    fn inputs(&self) -> Vec<(String, PathBuf, String)> {
         let inputs = self.0.inputs.iter();
         inputs
-            .map(|input| (input.name.clone(), input.original.clone()))
+            .map(|input| {
+                (
+                    input.name.clone(),
+                    input.original.clone(),
+                    input.hash.to_hex().to_string(),
+                )
+            })
             .collect()
+    }
+
+    /// The contents of the files that it reads, by their names in the resolved case; an error if one is no longer what the case was
+    /// made of.
+    fn read_inputs<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let files = PyDict::new(py);
+        for input in &self.0.inputs {
+            let path = input.original.display();
+            let contents = std::fs::read(&input.original).map_err(|error| {
+                CaseError::new_err(format!(
+                    "{path}, which the case reads, cannot be read again: {error}"
+                ))
+            })?;
+            if blake3::hash(&contents) != input.hash {
+                return Err(CaseError::new_err(format!(
+                    "{path} has changed since the case was made of it: load the case anew"
+                )));
+            }
+            files.set_item(&input.name, PyBytes::new(py, &contents))?;
+        }
+        Ok(files)
     }
 
     /// The resolved physics, as `slipfront check` prints it.

@@ -15,6 +15,12 @@ create_exception!(
 create_exception!(slipfront, RunError, PyRuntimeError, "A run that diverged.");
 create_exception!(
     slipfront,
+    ForkError,
+    PyRuntimeError,
+    "The use of slipfront in a process that was forked from one in which it had been used. The message names the remedy."
+);
+create_exception!(
+    slipfront,
     FolderError,
     PyRuntimeError,
     "A folder of results that cannot be read or written, or is not as it was written."

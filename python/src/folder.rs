@@ -10,12 +10,14 @@ use slipfront_case::case::Case as SlipfrontCase;
 use slipfront_case::case_file::CaseFile;
 use slipfront_run::checkpoint::Checkpoints;
 use slipfront_run::names::{FIELDS, FIGURE_CACHE, KYMOGRAPH, PRECURSORS, SERIES};
+use slipfront_run::run_folder::RunFolder;
 use slipfront_run::run_folder::inspection::Contents;
 use slipfront_run::running::Running;
 use slipfront_run::{fields, precursors, series, summary, verify as verification};
 
 use crate::case::{Case, make};
 use crate::errors::{FolderError, folder_error};
+use crate::process::detached;
 use crate::record;
 use crate::simulation::Simulation;
 
@@ -39,13 +41,20 @@ pub(crate) fn kind_of(folder: PathBuf) -> PyResult<Option<&'static str>> {
 /// Holds a folder against its manifest, or against its records.
 #[pyfunction]
 pub(crate) fn verify(py: Python<'_>, folder: PathBuf) -> PyResult<()> {
-    let verdict = py
-        .detach(|| verification::verify(&folder))
-        .map_err(folder_error)?;
+    let verdict = detached(py, || verification::verify(&folder))?.map_err(folder_error)?;
     match verdict.differences.as_slice() {
         [] => Ok(()),
         differences => Err(FolderError::new_err(differences.join("\n"))),
     }
+}
+
+/// Makes a folder ready for the files of a run: a new or empty one, or with `force` one from which the files of an earlier run are
+/// removed, and nothing else.
+#[pyfunction]
+pub(crate) fn make_ready(folder: PathBuf, force: bool) -> PyResult<()> {
+    let run = RunFolder::prepare(&folder, force, &[]).map_err(folder_error)?;
+    run.discard();
+    Ok(())
 }
 
 /// The case of a run folder, as the run began from it, under the name of the folder.
@@ -91,7 +100,7 @@ pub(crate) fn interrupted(py: Python<'_>, folder: PathBuf, threads: usize) -> Py
     let run = verification::inspect(&folder).map_err(folder_error)?;
     let file = run.case_to_resume().map_err(folder_error)?.clone();
     let case = case_of(py, &folder, file)?;
-    let running = py.detach(|| {
+    let running = detached(py, || {
         let loaded = Checkpoints::load(&folder, &case.0, false, &Alone).map_err(folder_error)?;
         let Some(loaded) = loaded else {
             return Ok(Running::start(&case.0, threads));
@@ -101,6 +110,6 @@ pub(crate) fn interrupted(py: Python<'_>, folder: PathBuf, threads: usize) -> Py
             .map_err(folder_error)?;
         let foreign = || folder_error("its checkpoint is not one of a run of its case");
         resumed.ok_or_else(foreign)
-    })?;
-    Ok((case, Simulation::of(running)))
+    })??;
+    Ok((case, Simulation::of(running)?))
 }

@@ -12,6 +12,8 @@ mod arrays;
 mod case;
 mod errors;
 mod folder;
+mod pickle;
+mod process;
 mod record;
 mod simulation;
 mod study;
@@ -23,16 +25,21 @@ use pyo3::prelude::*;
 /// Runs the command with these arguments, the first of which is the name of the program, and gives its exit status. It belongs to a
 /// process of its own.
 #[pyfunction]
-fn command(py: Python<'_>, arguments: Vec<OsString>) -> u8 {
-    py.detach(|| slipfront_cli::main(arguments))
+fn command(py: Python<'_>, arguments: Vec<OsString>) -> PyResult<u8> {
+    process::detached(py, || slipfront_cli::main(arguments))
 }
 
 #[pymodule]
 fn _slipfront(module: &Bound<'_, PyModule>) -> PyResult<()> {
     let py = module.py();
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
-    module.add("CaseError", py.get_type::<errors::CaseError>())?;
+    let case_error = py.get_type::<errors::CaseError>();
+    // Of an error that is not one of a place in a file.
+    case_error.setattr("line", py.None())?;
+    case_error.setattr("column", py.None())?;
+    module.add("CaseError", case_error)?;
     module.add("RunError", py.get_type::<errors::RunError>())?;
+    module.add("ForkError", py.get_type::<errors::ForkError>())?;
     module.add("FolderError", py.get_type::<errors::FolderError>())?;
     module.add_class::<case::Case>()?;
     module.add_class::<simulation::Simulation>()?;
@@ -42,5 +49,9 @@ fn _slipfront(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(folder::read_run, module)?)?;
     module.add_function(wrap_pyfunction!(folder::interrupted, module)?)?;
     module.add_function(wrap_pyfunction!(folder::verify, module)?)?;
+    module.add_function(wrap_pyfunction!(folder::make_ready, module)?)?;
+    module.add_function(wrap_pyfunction!(pickle::with_checksum, module)?)?;
+    module.add_function(wrap_pyfunction!(pickle::verified, module)?)?;
+    module.add_function(wrap_pyfunction!(process::check_process, module)?)?;
     module.add_function(wrap_pyfunction!(command, module)?)
 }

@@ -18,6 +18,7 @@ use slipfront_run::summary::summary_json;
 
 use crate::arrays::{rows, stacked};
 use crate::errors::folder_error;
+use crate::process::detached;
 
 /// What a run of this process leaves.
 #[pyclass(frozen, module = "slipfront._slipfront")]
@@ -64,14 +65,14 @@ impl Record {
     /// Writes the folder of the run, with the bytes that the command writes.
     fn save(&self, py: Python<'_>, folder: PathBuf, force: bool) -> PyResult<()> {
         let (case, started, threads) = (&*self.case, self.started, self.threads);
-        py.detach(|| {
+        detached(py, || {
             let mut run = RunFolder::prepare(&folder, force, &case.inputs).map_err(folder_error)?;
             results::write_case(case, &mut run).map_err(folder_error)?;
             // Writing takes the fields out of what it is given.
             let mut record = self.record.clone();
             results::write(case, &mut record, run, started, threads).map_err(folder_error)?;
             Ok(())
-        })
+        })?
     }
 }
 

@@ -10,16 +10,20 @@ use pyo3::types::{PyBytes, PyDict};
 use slipfront::communicator::Alone;
 use slipfront::observe::frames::Selection;
 use slipfront::{State, StopReason, VectorField};
+use slipfront_case::case::Case as SlipfrontCase;
 use slipfront_case::field_info::field_named;
-use slipfront_run::clock;
+use slipfront_run::checkpoint::hash_of;
+use slipfront_run::checksum::{verified, with_checksum};
 use slipfront_run::columns::Columns;
 use slipfront_run::fields::FieldFrame;
 use slipfront_run::running::{RunState, Running};
 use slipfront_run::series::SeriesRow;
+use slipfront_run::{clock, program};
 
 use crate::arrays::{rows, stacked};
 use crate::case::{Case, LOOK_EVERY};
 use crate::errors::{CaseError, RunError};
+use crate::process::{check_process, detached};
 use crate::record::{Record, series};
 
 /// A run in progress. Two threads cannot use one at once.
@@ -34,15 +38,17 @@ pub(crate) struct Simulation {
 const LENGTH_BYTES: usize = 8;
 
 impl Simulation {
-    /// A run that is given.
-    pub(crate) fn of(running: Running) -> Self {
-        Self {
+    /// A run that is given, and has recorded the instant at which it stands: a checkpoint is made of an instant that was recorded.
+    pub(crate) fn of(mut running: Running) -> PyResult<Self> {
+        running.advance(0).map_err(run_error)?;
+        Ok(Self {
             running: Some(running),
             started: clock::now(),
-        }
+        })
     }
 
     fn running(&self) -> PyResult<&Running> {
+        check_process()?;
         self.running.as_ref().ok_or_else(ended)
     }
 }
@@ -57,6 +63,15 @@ fn vectors<'py>(
     stacked(py, &[&x, &y], [lattice.ny, lattice.nx])
 }
 
+/// What a checkpoint is valid for: the build of the program, whose numbers it goes on with, and the case.
+fn context(case: &SlipfrontCase) -> Vec<u8> {
+    [program::this_build(), &hash_of(case)].concat().into_bytes()
+}
+
+fn run_error(error: slipfront::RunError) -> PyErr {
+    RunError::new_err(error.to_string())
+}
+
 fn ended() -> PyErr {
     PyRuntimeError::new_err("this simulation has given its results away: begin another one")
 }
@@ -65,8 +80,8 @@ fn ended() -> PyErr {
 impl Simulation {
     /// Begins a run of a case at rest.
     #[new]
-    fn new(py: Python<'_>, case: &Case, threads: usize) -> Self {
-        Self::of(py.detach(|| Running::start(&case.0, threads)))
+    fn new(py: Python<'_>, case: &Case, threads: usize) -> PyResult<Self> {
+        Self::of(detached(py, || Running::start(&case.0, threads))?)
     }
 
     /// The run that goes on under another case, the steps of this one and how long they have taken in s, and where the drive stands
@@ -79,10 +94,10 @@ impl Simulation {
         threads: usize,
     ) -> PyResult<(Self, u64, f64, Bound<'py, PyArray3<f64>>)> {
         let running = self.running()?;
-        let leg = py.detach(|| running.change(&case.0, threads));
+        let leg = detached(py, || running.change(&case.0, threads))?;
         let leg = leg.map_err(|error| CaseError::new_err(error.to_string()))?;
         let drive = vectors(py, leg.drive_m, running)?;
-        Ok((Self::of(leg.running), leg.steps, leg.time_s, drive))
+        Ok((Self::of(leg.running)?, leg.steps, leg.time_s, drive))
     }
 
     /// At most `steps` steps, for 50 ms or a little longer; whether the run has ended: `end`, `onset` or none.
@@ -102,12 +117,11 @@ impl Simulation {
             }
         };
         // Of several threads the present one is to be one: so it need not wake the others at every step.
-        let reason = py.detach(|| match threads {
+        let reason = detached(py, || match threads {
             1 => advance(),
             _ => rayon::scope(|_| advance()),
-        });
-        let reason = reason.map_err(|error: slipfront::RunError| RunError::new_err(error.to_string()))?;
-        Ok(reason.map(|reason| match reason {
+        })?;
+        Ok(reason.map_err(run_error)?.map(|reason| match reason {
             StopReason::End => "end",
             StopReason::Onset => "onset",
         }))
@@ -186,14 +200,21 @@ impl Simulation {
             bytes[from..from + part.len()].copy_from_slice(part);
             Ok::<(), PyErr>(())
         });
-        written.map(|()| PyBytes::new(py, &bytes))
+        written.map(|()| PyBytes::new(py, &with_checksum(&context(running.case()), &bytes)))
     }
 
     /// The run of this case that goes on from a checkpoint.
     #[staticmethod]
     fn resume(py: Python<'_>, case: &Case, checkpoint: &[u8], threads: usize) -> PyResult<Self> {
-        let refused = || PyValueError::new_err("these bytes are no checkpoint of a run of this case");
-        let (length, rest) = checkpoint.split_at_checked(LENGTH_BYTES).ok_or_else(refused)?;
+        let refused = || {
+            PyValueError::new_err(format!(
+                "these bytes are no checkpoint of a run of this case by {}, or they are damaged: begin the run anew, or go on with \
+                 the case and the program that it was made with",
+                program::this_build()
+            ))
+        };
+        let contents = verified(&context(&case.0), checkpoint).ok_or_else(refused)?;
+        let (length, rest) = contents.split_at_checked(LENGTH_BYTES).ok_or_else(refused)?;
         let length = u64::from_le_bytes(length.try_into()?) as usize;
         let (state, columns) = rest.split_at_checked(length).ok_or_else(refused)?;
         let state: RunState = postcard::from_bytes(state).map_err(|_| refused())?;
@@ -211,9 +232,11 @@ impl Simulation {
             part.copy_from_slice(found);
             Ok::<(), ()>(())
         };
-        let running = py.detach(|| Running::resume(&case.0, threads, state, Arc::new(Alone), read));
+        let running = detached(py, || {
+            Running::resume(&case.0, threads, state, Arc::new(Alone), read)
+        })?;
         let running = running.ok().flatten().ok_or_else(refused)?;
-        Ok(Self::of(running))
+        Self::of(running)
     }
 
     /// What the run leaves, once it has ended; the simulation is then used up.
@@ -224,7 +247,7 @@ impl Simulation {
             _ => StopReason::End,
         };
         let (case, threads) = (Arc::clone(running.case()), running.threads());
-        let record = py.detach(|| running.record(reason));
+        let record = detached(py, || running.record(reason))?;
         Ok(Record {
             case,
             record,

@@ -13,6 +13,7 @@ use slipfront_run::{clock, running};
 
 use crate::case::{Case, LOOK_EVERY, make};
 use crate::errors::{folder_error, study_error};
+use crate::process::detached;
 use crate::record::Record;
 
 /// A study whose every point is a valid case.
@@ -28,11 +29,11 @@ type OwnValues = BTreeMap<(usize, usize, bool), Vec<f64>>;
 
 impl Study {
     fn of(py: Python<'_>, read: impl FnOnce() -> Result<StudyFile, StudyError> + Send) -> PyResult<Self> {
-        let planned = py.detach(|| {
+        let planned = detached(py, || {
             let file = read()?;
             let plan = Plan::new(&file, None)?;
             Ok(Self { file, plan })
-        });
+        })?;
         planned.map_err(|error| study_error(py, &error))
     }
 
@@ -98,6 +99,12 @@ impl Study {
         told.collect()
     }
 
+    /// Whether its tables have a column of this name.
+    fn has_column(&self, name: &str) -> bool {
+        let mut axes = self.plan.axes.iter().flat_map(|axis| &axis.columns);
+        study::is_column(name) || axes.any(|column| column == name)
+    }
+
     /// The case of a run.
     fn case(&self, py: Python<'_>, point: usize, replicate: usize, reference: bool) -> PyResult<Case> {
         let role = match reference {
@@ -141,12 +148,12 @@ impl Study {
         watch: Option<Py<PyAny>>,
     ) -> PyResult<(OwnValues, Vec<(String, String)>)> {
         let failed = |error: StudyError| Python::attach(|py| study_error(py, &error));
-        let opened = py.detach(|| {
+        let opened = detached(py, || {
             self.plan.check_memory(threads)?;
             let opened = StudyFolder::open(&folder, &self.file)?;
             opened.check_disk(&self.plan)?;
             Ok(opened)
-        });
+        })?;
         let opened = opened.map_err(failed)?;
         let plan = self.plan.clone().reading_copies(&opened.study);
         let shared = Shared::default();
@@ -163,7 +170,7 @@ impl Study {
                 pool.install(|| study::execute_and_look(&plan, records, folder, stop, &look_at_run, watch))
             })
         };
-        let results = py.detach(|| {
+        let results = detached(py, || {
             std::thread::scope(|scope| {
                 let worker = scope.spawn(execute);
                 // Signals come to the thread that called, and what is shown is shown by it.
@@ -175,7 +182,7 @@ impl Study {
                 shared.show(watch.as_ref());
                 results
             })
-        });
+        })?;
         if let Some(error) = locked(&shared.raised).take() {
             return Err(error);
         }
@@ -184,8 +191,7 @@ impl Study {
             Ok(Err(error)) => return Err(folder_error(error)),
             Err(_) => return Err(PyRuntimeError::new_err("a fault of the program ended the study")),
         };
-        py.detach(|| study::write(&plan, &results, &opened))
-            .map_err(failed)?;
+        detached(py, || study::write(&plan, &results, &opened))?.map_err(failed)?;
         let describe = |(run, reason): (RunKey, &str)| {
             let place = plan.describe(&plan.points[run.point]);
             (format!("{place}, replicate {}", run.replicate), reason.to_owned())

@@ -1,6 +1,7 @@
 """Cases from everywhere, and what is wrong with them."""
 
 import pickle
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -29,6 +30,14 @@ def test_overrides_replace_keys_that_exclude_them() -> None:
     assert case.numbers["v_star"] != 0.01
     assert round(case.numbers["texture_percent"]) == 5
     assert case.replace({"texture": []}).numbers["texture_percent"] == 0
+
+
+def test_a_table_that_is_replaced_keeps_the_keys_that_are_not_given() -> None:
+    case = sf.Case.from_dict({"slider": {"blocks": [4, 4]}, "drive": {"v_star": 0.05, "direction": 45}})
+    changed = case.replace({"drive": {"v_star": 0.1}})
+    assert changed == case.replace({"drive.v_star": 0.1}) and "direction = 45" in changed.to_toml()
+    study = sf.Study(case, {"speed": {"slow": {}, "fast": {"drive": {"v_star": 0.1}}}})
+    assert study.case(1).numbers == changed.numbers and "direction = 45" in study.case(1).to_toml()
 
 
 def test_values_may_be_those_of_numpy_and_of_pint() -> None:
@@ -100,6 +109,36 @@ def test_arrays_stand_in_for_files_and_are_pickled() -> None:
     del case
     assert (changed.textured == mask).all() and (changed.replace({}).textured == mask).all()
     assert (twin.mu_static == changed.mu_static).all()
+
+
+def test_a_file_that_changes_does_not_change_the_case_in_silence(tmp_path: Path) -> None:
+    def written(blocks: int) -> None:
+        mask = np.zeros((10, 12), dtype=bool)
+        mask[0, :blocks] = True
+        np.save(tmp_path / "mask.npy", mask)
+
+    written(3)
+    (tmp_path / "mine.toml").write_text('slider.blocks = [12, 10]\n[[texture]]\nshape = "mask"\nfile = "mask.npy"\n')
+    case = sf.Case.load(tmp_path / "mine.toml")
+    same, simulation = case.replace({}), sf.Simulation(case)
+    written(5)
+    assert case == same and case.textured.sum() == 3
+    uses: dict[str, Callable[[], object]] = {
+        "pickle": lambda: pickle.dumps(case),
+        "replace": lambda: case.replace({"drive.v_star": 0.1}),
+        "change": lambda: simulation.change({"drive.v_star": 0.1}),
+        "study": lambda: sf.Study(case, {"drive.v_star": [0.1]}),
+    }
+    for use in uses.values():
+        with pytest.raises(sf.CaseError, match="mask.npy has changed since the case was made of it: load the case anew") as raised:
+            use()
+        assert raised.value.line is None and raised.value.column is None
+    assert sf.Case.load(tmp_path / "mine.toml") != case
+    written(3)
+    assert pickle.loads(pickle.dumps(case)) == case
+    (tmp_path / "mask.npy").unlink()
+    with pytest.raises(sf.CaseError, match="mask.npy, which the case reads, cannot be read again"):
+        case.replace({})
 
 
 def test_masked_heights_are_not_taken_for_measured_ones() -> None:

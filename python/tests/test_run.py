@@ -5,6 +5,7 @@ import pickle
 import signal
 import threading
 import time
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -54,6 +55,31 @@ def test_a_folder_gives_what_the_run_gave(small: sf.Case, tmp_path: "os.PathLike
     assert isinstance(sf.open(folder, verify=False), sf.Run)
     with pytest.raises(sf.FolderError, match="is not the folder of a run"):
         sf.open(tmp_path)
+
+
+def test_a_run_that_was_opened_replaces_the_files_of_a_run_and_nothing_else(small: sf.Case, tmp_path: Path) -> None:
+    sf.run(small, progress=False).save(tmp_path / "one")
+    sf.run(small.replace({"drive.v_star": 0.05}), progress=False).save(tmp_path / "other")
+    for name in ("one", "other"):
+        (tmp_path / name / "notes.txt").write_text(name)
+    one = sf.open(tmp_path / "one")
+    assert isinstance(one, sf.Run)
+    with pytest.raises(sf.FolderError, match="stands there already"):
+        one.save(tmp_path / "one", force=True)
+    with pytest.raises(sf.FolderError):
+        one.save(tmp_path / "other")
+    one.save(tmp_path / "other", force=True)
+    assert (tmp_path / "other" / "notes.txt").read_text() == "other"
+    assert (tmp_path / "other" / "manifest.json").read_bytes() == (tmp_path / "one" / "manifest.json").read_bytes()
+    # Files that changed since it was read are not handed on as if they had not.
+    (tmp_path / "one" / "series.csv").write_text("step\n")
+    with pytest.raises(sf.FolderError, match="series.csv differs"):
+        one.save(tmp_path / "third")
+    (tmp_path / "foreign").mkdir()
+    (tmp_path / "foreign" / "summary.json").write_text("mine")
+    with pytest.raises(sf.FolderError):
+        one.save(tmp_path / "foreign", force=True)
+    assert (tmp_path / "foreign" / "summary.json").read_text() == "mine"
 
 
 def test_edge_driven_runs_have_precursors() -> None:

@@ -1,6 +1,7 @@
 """Runs taken step by step."""
 
 import copy
+import math
 import pickle
 import threading
 
@@ -51,6 +52,33 @@ def test_copies_go_on_with_the_same_bits(path: str) -> None:
         found = twin.run(progress=False)
         assert found.summary == expected.summary and found.fields.identical(expected.fields)
         assert found.series.identical(expected.series)
+
+
+@pytest.mark.parametrize("stop", ["end", "after_onset"])
+def test_a_simulation_is_copied_at_any_step_from_the_first_to_the_end(small: sf.Case, stop: str) -> None:
+    # The last step is not one at which the curve has a row anyway.
+    case = small.replace({"output.series": 1.1, "time.stop": stop})
+    expected = sf.run(case, progress=False)
+    assert expected.steps % 11 != 0
+    for steps in (0, 1, 11, expected.steps - 1, expected.steps, expected.steps + 1):
+        simulation = sf.Simulation(case)
+        simulation.step(steps)
+        found = pickle.loads(pickle.dumps(simulation)).run(progress=False)
+        assert found.summary == expected.summary and found.series.identical(expected.series), steps
+
+
+def test_what_is_no_number_of_steps_or_time_is_refused(small: sf.Case) -> None:
+    simulation = sf.Simulation(small)
+    for steps in (2.5, math.nan, "3"):
+        with pytest.raises(TypeError):
+            simulation.step(steps)  # type: ignore[arg-type]
+    with pytest.raises(ValueError, match="not NaN"):
+        simulation.run_until(time_star=math.nan)
+    assert simulation.step(np.int64(3)) == simulation.steps == 3  # type: ignore[arg-type]
+    # Written to, they would stay what they are in the run.
+    for array in (simulation.displacement, simulation.velocity):
+        with pytest.raises(ValueError, match="read-only"):
+            array += 1
 
 
 def test_a_checkpoint_of_another_case_is_refused(small: sf.Case) -> None:

@@ -20,7 +20,7 @@ def study(small: sf.Case) -> sf.Study:
 
 def test_points_are_those_of_the_runs(study: sf.Study) -> None:
     results = study.run(progress=False)
-    assert len(results.runs) == 6 and results.failures == []
+    assert len(results.runs) == 6 and results.failures == [] and results.folder is None
     assert results.anisotropy is None
     runs = results.runs
     for point, replicate, found in zip(runs["point"], runs["replicate"], runs["static_friction_star"], strict=True):
@@ -58,6 +58,18 @@ def test_own_quantities_are_columns_and_found_again(study: sf.Study, tmp_path: P
         assert (twice[column].to_numpy() == 2 * once[column].to_numpy()).all(), column
     assert (twice["n"] == 3).all() and twice["drive.v_star"].tolist() == [0.02, 0.05]
     assert (fresh["steps_twice"] == 2 * fresh["steps"]).all() and fresh["last"].notna().all()
+
+
+def test_points_levels_and_names_that_are_none_are_told(study: sf.Study, small: sf.Case) -> None:
+    for point, replicate in ((2, 0), (-1, 0), (0, -1)):
+        with pytest.raises(IndexError, match="counted from 0"):
+            study.case(point, replicate)
+    for name in ("steps", "point", "status", "mean", "drive.v_star"):
+        with pytest.raises(ValueError, match=f"column `{name}` already: give the quantity another name"):
+            study.run(progress=False, quantities={name: lambda run: 1.0})
+    for levels in (0.1, "1 mm/s"):
+        with pytest.raises(TypeError, match="are a list, such as"):
+            sf.Study(small, {"drive.speed": levels})  # type: ignore[dict-item]
 
 
 def test_an_axis_may_have_named_variants(small: sf.Case) -> None:

@@ -169,7 +169,7 @@ impl Checkpoints {
 }
 
 /// Hash of a case and of the files that it reads, by which equal cases are told.
-fn hash_of(case: &Case) -> String {
+pub fn hash_of(case: &Case) -> String {
     let mut hasher = blake3::Hasher::new();
     // A case that was loaded can be written.
     hasher.update(case.file.to_toml().unwrap_or_default().as_bytes());

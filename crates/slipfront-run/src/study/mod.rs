@@ -54,4 +54,4 @@ pub use shard::Shard;
 pub use statistics::Sample;
 pub use study_file::{Base, RetainRuns, Settings, StoppingRule, StudyFile};
 pub use study_results::{PointResult, Progress, StudyResults};
-pub use summary_values::{Quantity, REDUCTION, SummaryValues, known as quantities};
+pub use summary_values::{Quantity, REDUCTION, SummaryValues, is_column, known as quantities};

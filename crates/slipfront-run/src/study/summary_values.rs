@@ -97,7 +97,7 @@ pub(super) const STATISTICS: [&str; 10] = [
 ];
 
 /// Whether the tables have a column of this name beside those of the axes: an axis cannot have it.
-pub(super) fn is_column(name: &str) -> bool {
+pub fn is_column(name: &str) -> bool {
     let fixed = [&BEFORE_AXES[..], &AFTER_AXES, &STATISTICS].concat();
     fixed.contains(&name) || known().iter().any(|known| known == name)
 }

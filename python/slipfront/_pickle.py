@@ -1,0 +1,26 @@
+"""Pickles under a checksum: damaged ones are refused.
+
+A checksum finds damage, not malice: loading a pickle can run any program that stands in it, so those of strangers must never be loaded.
+"""
+
+from __future__ import annotations
+
+import pickle
+from collections.abc import Callable
+from typing import Any
+
+from . import _slipfront
+
+
+def sealed(make: Callable[..., object], *state: Any) -> tuple[Callable[[bytes], object], tuple[bytes]]:
+    """What `__reduce__` gives of an object that `make` makes of its state: one function, and all else in bytes with their checksum."""
+    contents = pickle.dumps((make, state), pickle.HIGHEST_PROTOCOL)
+    return _unsealed, (_slipfront.with_checksum(contents),)
+
+
+def _unsealed(sealed: bytes) -> object:
+    contents = _slipfront.verified(sealed)
+    if contents is None:
+        raise pickle.UnpicklingError("this pickle of slipfront is damaged, its checksum does not fit: make it anew")
+    make, state = pickle.loads(contents)
+    return make(*state)

@@ -1,0 +1,37 @@
+//! The process whose threads the engine uses.
+//!
+//! Its pool of threads does not come along when a process forks, and locks that other threads hold stay locked: a child that used them
+//! would wait for ever. So whatever may use them goes through here, and is refused in such a child.
+
+use std::sync::atomic::{AtomicU32, Ordering};
+
+use pyo3::prelude::*;
+
+use crate::errors::ForkError;
+
+/// The process that was the first to use the engine, which the children that it forks afterwards inherit; 0 before.
+static FIRST: AtomicU32 = AtomicU32::new(0);
+
+/// Refuses to go on in a process that was forked from one in which the engine had been used.
+#[pyfunction]
+pub(crate) fn check_process() -> PyResult<()> {
+    let here = std::process::id();
+    match FIRST.compare_exchange(0, here, Ordering::Relaxed, Ordering::Relaxed) {
+        Err(first) if first != here => Err(ForkError::new_err(format!(
+            "process {here} was forked from one, {first}, in which slipfront had made a case or a run: the threads of the engine did not \
+             come along, and a run here would wait for them for ever. Start processes by \"spawn\", as in \
+             `multiprocessing.get_context(\"spawn\").Pool()`, or use slipfront for the first time after the fork"
+        ))),
+        _ => Ok(()),
+    }
+}
+
+/// Does the work of the engine while other threads of Python go on.
+#[allow(
+    clippy::disallowed_methods,
+    reason = "this is the place that the others go through"
+)]
+pub(crate) fn detached<T: Send>(py: Python<'_>, work: impl FnOnce() -> T + Send) -> PyResult<T> {
+    check_process()?;
+    Ok(py.detach(work))
+}
