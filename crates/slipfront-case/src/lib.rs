@@ -15,6 +15,7 @@ pub mod machine;
 pub mod number_format;
 pub mod quantity;
 pub mod text;
+pub mod unfinished;
 
 /// BLAKE3 hash of the sources of this crate.
 pub const SOURCE_HASH: &str = env!("SLIPFRONT_SOURCE_HASH");
