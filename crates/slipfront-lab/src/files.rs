@@ -2,7 +2,9 @@
 
 use std::collections::BTreeMap;
 use std::path::Path;
+use std::sync::Arc;
 
+use slipfront_case::unfinished::TemporaryFolder;
 use tempfile::TempDir;
 
 /// Files with plain names. Their folder goes with them.
@@ -10,16 +12,22 @@ use tempfile::TempDir;
 pub(crate) struct Files {
     contents: BTreeMap<String, Vec<u8>>,
     folder: TempDir,
+    _parent: Arc<TemporaryFolder>,
 }
 
 impl Files {
     /// Writes them to a new folder.
     pub(crate) fn new(contents: BTreeMap<String, Vec<u8>>) -> std::io::Result<Self> {
-        let folder = tempfile::tempdir()?;
+        let parent = TemporaryFolder::shared()?;
+        let folder = tempfile::tempdir_in(parent.path())?;
         for (name, bytes) in &contents {
             std::fs::write(folder.path().join(name), bytes)?;
         }
-        Ok(Self { contents, folder })
+        Ok(Self {
+            contents,
+            folder,
+            _parent: parent,
+        })
     }
 
     pub(crate) fn contents(&self) -> &BTreeMap<String, Vec<u8>> {

@@ -10,7 +10,9 @@ use crate::support::workspace::Workspace;
 /// Starts the command; gives the address that it prints.
 fn open(workspace: &Workspace, line: &str) -> (Child, String) {
     let mut process = workspace.process(line);
+    std::fs::create_dir_all(workspace.path("temporary")).unwrap();
     let mut child = process
+        .env("TMPDIR", workspace.path("temporary"))
         .stdout(Stdio::piped())
         .stderr(Stdio::piped())
         .spawn()
@@ -54,6 +56,20 @@ fn it_serves_its_page_until_a_signal() {
         send(&child, signal);
         let output = child.wait_with_output().unwrap();
         assert_eq!((output.status.code(), stderr(&output).as_str()), (Some(0), ""));
+    }
+}
+
+/// Its folder for temporary files goes with it, or with the next one.
+#[test]
+fn what_a_killed_one_left_is_removed_by_the_next() {
+    let workspace = Workspace::masked();
+    let in_temporary = || std::fs::read_dir(workspace.path("temporary")).unwrap().count();
+    for (signal, left) in [("-KILL", 1), ("-KILL", 1), ("-TERM", 0)] {
+        let (mut child, _) = open(&workspace, "lab --no-open masked.toml");
+        assert_eq!(in_temporary(), 1);
+        send(&child, signal);
+        child.wait().unwrap();
+        assert_eq!(in_temporary(), left, "{signal}");
     }
 }
 
