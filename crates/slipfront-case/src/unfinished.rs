@@ -5,7 +5,7 @@
 //! whose lock is free: their process has ended. Random letters keep two living processes, and other users, out of each other's
 //! way. Where a file system has no locks nothing is removed.
 
-use std::fs::{File, Metadata, TryLockError};
+use std::fs::{DirEntry, File, Metadata, TryLockError};
 use std::io::{Error, Result};
 use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError, Weak};
@@ -44,15 +44,14 @@ pub fn is_unfinished(name: &str) -> bool {
 pub(crate) fn file_for(path: &Path) -> Result<NamedTempFile> {
     let folder = folder_of(path);
     let beginning = beginning_for(path.file_name().unwrap_or_default().as_encoded_bytes());
+    clear(folder, &beginning, is_file);
     let make = || builder(&beginning, 0o666).tempfile_in(folder);
-    let file = until_locked(make, |file| hold(Some(file.as_file()), file.path()))?;
-    clear(folder, &beginning, Metadata::is_file);
-    Ok(file)
+    until_locked(make, |file| hold(Some(file.as_file()), file.path()))
 }
 
 /// Removes the files that killed processes have left in a folder, whatever they were to become.
 pub fn clear_unfinished(folder: &Path) {
-    clear(folder, BEGINNING, Metadata::is_file);
+    clear(folder, BEGINNING, is_file);
 }
 
 /// A folder in that for temporary files (`TMPDIR`), for this user alone. It is removed with all that it holds when it is dropped.
@@ -101,8 +100,10 @@ impl TemporaryFolder {
         };
         let made = until_locked(make, |made| hold(made.lock.as_ref(), made.path()))?;
         if let Ok(own) = made.path().symlink_metadata() {
-            clear(&parent, &beginning, |found| {
-                found.is_dir() && owner(found) == owner(&own)
+            // Where locks fail, its own one is none that was left.
+            clear(&parent, &beginning, |entry| {
+                let is_alike = |found: Metadata| found.is_dir() && owner(&found) == owner(&own);
+                Some(&*entry.file_name()) != made.path().file_name() && entry.metadata().is_ok_and(is_alike)
             });
         }
         Ok(made)
@@ -169,15 +170,19 @@ fn hold(made: Option<&File>, path: &Path) -> bool {
 
 /// Removes what killed processes have left in a folder under hidden names that begin so, of the kind that is meant. Errors are
 /// ignored: it does no harm.
-fn clear(folder: &Path, beginning: &str, is_meant: impl Fn(&Metadata) -> bool) {
+fn clear(folder: &Path, beginning: &str, is_meant: impl Fn(&DirEntry) -> bool) {
     for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
         let name = entry.file_name();
         let is_named = |name: &str| name.starts_with(beginning) && is_unfinished(name);
-        // What a link leads to is not looked at.
-        if name.to_str().is_some_and(is_named) && entry.metadata().is_ok_and(|found| is_meant(&found)) {
+        if name.to_str().is_some_and(is_named) && is_meant(&entry) {
             let _ = remove_unless_locked(&entry.path());
         }
     }
+}
+
+/// Whether this is a file, and no link to one.
+fn is_file(entry: &DirEntry) -> bool {
+    entry.metadata().is_ok_and(|found| found.is_file())
 }
 
 /// Removes a file, or a folder with all that it holds, unless a living process holds its lock.
@@ -196,7 +201,8 @@ fn remove_unless_locked(path: &Path) -> Result<()> {
     }
 }
 
-#[cfg(all(test, unix))]
+#[cfg(test)]
+#[cfg(unix)]
 mod tests {
     use std::os::unix::fs::{PermissionsExt, chown, symlink};
     use std::path::PathBuf;

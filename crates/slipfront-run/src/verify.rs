@@ -125,9 +125,15 @@ pub fn verify_run(run: &Inspection) -> Result<Verdict, VerifyError> {
 
 /// Inspects the folder of a run, which must be a folder that can be listed.
 pub fn inspect(folder: &Path) -> Result<Inspection, VerifyError> {
-    if !folder.is_dir() {
-        let path = folder.to_owned();
-        return Err(VerifyError::NotAFolder { path });
+    match std::fs::metadata(folder) {
+        Ok(found) if found.is_dir() => {}
+        Err(error) if error.kind() != ErrorKind::NotFound => {
+            return Err(FolderError::read(folder)(error).into());
+        }
+        _ => {
+            let path = folder.to_owned();
+            return Err(VerifyError::NotAFolder { path });
+        }
     }
     Ok(Inspection::of(folder).map_err(FolderError::read(folder))?)
 }

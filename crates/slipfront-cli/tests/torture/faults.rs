@@ -221,7 +221,8 @@ fn torture(job: &Job, short: usize) {
                 "harmless"
             }
             Some(ended) => {
-                expect_sentence(&ended.stderr, fault, call)?;
+                // What `verify` finds is what it was asked for.
+                expect_sentence(&format!("{}{}", ended.stdout, ended.stderr), fault, call)?;
                 "refused"
             }
         };
