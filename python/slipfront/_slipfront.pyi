@@ -16,6 +16,7 @@ __all__ = [
     "RunError",
     "Simulation",
     "Study",
+    "TemporaryParent",
     "__version__",
     "check_process",
     "command",
@@ -121,6 +122,12 @@ class Study:
         look: Callable[[Case, Record, tuple[int, int, bool]], list[float]] | None,
         watch: Callable[[int, int, int], object] | None,
     ) -> tuple[dict[tuple[int, int, bool], list[float]], list[tuple[str, str]]]: ...
+
+@final
+class TemporaryParent:
+    def __new__(cls) -> TemporaryParent: ...
+    @property
+    def path(self) -> Path: ...
 
 def kind_of(folder: Path) -> str | None: ...
 def read_run(folder: Path) -> tuple[Case, dict[str, Any]]: ...

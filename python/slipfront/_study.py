@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import tempfile
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
@@ -17,6 +16,7 @@ from ._progress import Bar
 from ._run import Run
 from ._simulation import _threads, run
 from ._tables import frame, read_table
+from ._temporary import TemporaryFolder
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -160,14 +160,15 @@ class Study:
             result = Run(Case(native), record)
             return [float(quantity(result)) for quantity in own.values()]
 
-        with tempfile.TemporaryDirectory(prefix="slipfront-") as temporary, Bar(shown, None, "run", self.name) as bar:
+        temporary = TemporaryFolder() if folder is None else None
+        with Bar(shown, None, "run", self.name) as bar:
 
             def show(done: int, total: int, failed: int) -> None:
                 if watch is not None:
                     watch(done, total, failed)
                 bar.show(done, total, f"{failed} failed" if failed else "")
 
-            path = Path(temporary) / self.name if folder is None else Path(folder)
+            path = Path(folder) if temporary is None else temporary.path / self.name
             values, failures = self._native.execute(path, _threads(threads), look if own else None, show)
             results = StudyResults.read(path, failures)
             if folder is None:

@@ -6,9 +6,19 @@ import tempfile
 import weakref
 from pathlib import Path
 
+from . import _slipfront
+
+
+def _remove(path: Path, parent: _slipfront.TemporaryParent, process: int) -> None:
+    """Remove a folder, unless this is a fork of the process that made it; the parent stands until then."""
+    if os.getpid() == process:
+        shutil.rmtree(path, ignore_errors=True)
+
 
 class TemporaryFolder:
     """A new folder that is removed when nothing refers to this object any more.
+
+    If the process is killed before, the next one that makes such a folder removes it.
 
     Parameters
     ----------
@@ -17,12 +27,7 @@ class TemporaryFolder:
     """
 
     def __init__(self, *others: "TemporaryFolder | None") -> None:
-        self.path = Path(tempfile.mkdtemp(prefix="slipfront-"))
+        parent = _slipfront.TemporaryParent()
+        self.path = Path(tempfile.mkdtemp(dir=parent.path))
         self._others = others
-        self.remove = weakref.finalize(self, _remove, self.path, os.getpid())
-
-
-def _remove(path: Path, maker: int) -> None:
-    # A process that was forked has a copy of this object, whose end is not that of the folder.
-    if os.getpid() == maker:
-        shutil.rmtree(path, ignore_errors=True)
+        self.remove = weakref.finalize(self, _remove, self.path, parent, os.getpid())

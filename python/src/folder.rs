@@ -8,6 +8,7 @@ use pyo3::types::PyDict;
 use slipfront::communicator::Alone;
 use slipfront_case::case::Case as SlipfrontCase;
 use slipfront_case::case_file::CaseFile;
+use slipfront_case::unfinished::TemporaryFolder;
 use slipfront_run::checkpoint::Checkpoints;
 use slipfront_run::names::{FIELDS, FIGURE_CACHE, KYMOGRAPH, PRECURSORS, SERIES};
 use slipfront_run::run_folder::RunFolder;
@@ -20,6 +21,23 @@ use crate::errors::{FolderError, folder_error};
 use crate::process::detached;
 use crate::record;
 use crate::simulation::Simulation;
+
+/// The folder in which the temporary folders of this process stand; it goes with the last that refers to it.
+#[pyclass(frozen, module = "slipfront._slipfront")]
+pub(crate) struct TemporaryParent(Arc<TemporaryFolder>);
+
+#[pymethods]
+impl TemporaryParent {
+    #[new]
+    fn new() -> PyResult<Self> {
+        Ok(Self(TemporaryFolder::shared()?))
+    }
+
+    #[getter]
+    fn path(&self) -> PathBuf {
+        self.0.path().to_owned()
+    }
+}
 
 /// What a folder is: `run`, `interrupted`, `study`, `paper`, or none of these.
 #[pyfunction]

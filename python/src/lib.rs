@@ -45,6 +45,7 @@ fn _slipfront(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<simulation::Simulation>()?;
     module.add_class::<record::Record>()?;
     module.add_class::<study::Study>()?;
+    module.add_class::<folder::TemporaryParent>()?;
     module.add_function(wrap_pyfunction!(folder::kind_of, module)?)?;
     module.add_function(wrap_pyfunction!(folder::read_run, module)?)?;
     module.add_function(wrap_pyfunction!(folder::interrupted, module)?)?;

@@ -1,6 +1,10 @@
 """Cases from everywhere, and what is wrong with them."""
 
+import os
 import pickle
+import signal
+import subprocess
+import sys
 from collections.abc import Callable
 from pathlib import Path
 
@@ -156,3 +160,30 @@ def test_a_case_shows_its_physics() -> None:
     assert "50 x 50 blocks" in repr(case)
     shown = case._repr_html_()
     assert "data:image/png" in shown and "50 x 50 blocks" in shown
+
+
+def test_what_a_killed_process_has_left_goes_with_the_next(tmp_path: Path) -> None:
+    program = """
+import os, signal
+import numpy as np
+import slipfront as sf
+
+case = sf.Case.from_dict({"slider": {"blocks": [4, 3]}, "texture": [{"shape": "mask", "file": np.eye(3, 4, dtype=bool)}]})
+if os.fork() == 0:
+    # It has the files in common with the process that made them.
+    del case
+    raise SystemExit
+os.wait()
+assert case.replace({"drive.v_star": 0.2}).textured.sum() == 3
+print(len(os.listdir(os.environ["TMPDIR"])), flush=True)
+if KILLED:
+    os.kill(os.getpid(), signal.SIGKILL)
+"""
+
+    def left(*, killed: bool) -> tuple[str, int]:
+        line = [sys.executable, "-c", f"KILLED = {killed}\n{program}"]
+        done = subprocess.run(line, env=os.environ | {"TMPDIR": str(tmp_path)}, stdout=subprocess.PIPE, text=True, check=False)
+        assert done.returncode == (-signal.SIGKILL if killed else 0)
+        return done.stdout.strip(), len(list(tmp_path.iterdir()))
+
+    assert [left(killed=True), left(killed=True), left(killed=False)] == [("1", 1), ("1", 1), ("1", 0)]

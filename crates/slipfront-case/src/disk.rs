@@ -5,12 +5,11 @@ use std::io::{ErrorKind, Read, Take, Write};
 use std::path::Path;
 
 use serde::Serialize;
-use tempfile::TempPath;
+use tempfile::{NamedTempFile, TempPath};
 
-/// The beginning of the names of files that are being written.
-pub const UNFINISHED: &str = ".slipfront";
+use crate::unfinished;
 
-/// Writes a file atomically: as a temporary file in its folder, which is then renamed, or removed after an error.
+/// Writes a file atomically: as a [hidden file](unfinished) in its folder, which is then renamed, or removed after an error.
 pub fn write_atomic(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
     write_atomic_with(path, |file| file.write_all(bytes))
 }
@@ -20,8 +19,17 @@ pub fn write_atomic_with(
     path: &Path,
     fill: impl FnOnce(&mut File) -> std::io::Result<()>,
 ) -> std::io::Result<()> {
-    write_temp(folder_of(path), fill)?.persist(path)?;
+    write_beside(path, fill)?.persist(path)?;
     Ok(())
+}
+
+/// Writes a [hidden file](unfinished) in the folder of the file that it is to become, and syncs it. It is removed when dropped,
+/// unless it is renamed (`persist`).
+pub fn write_beside(
+    path: &Path,
+    fill: impl FnOnce(&mut File) -> std::io::Result<()>,
+) -> std::io::Result<NamedTempFile> {
+    fill_and_sync(unfinished::file_for(path)?, fill)
 }
 
 /// The folder in which a file is, or is to be.
@@ -30,20 +38,23 @@ pub fn folder_of(path: &Path) -> &Path {
     parent.unwrap_or(Path::new("."))
 }
 
-/// Writes a temporary file in a folder and syncs it. It is removed when dropped, unless it is renamed (`persist`).
+/// Writes a temporary file in a folder that no other process writes to, and syncs it. It is removed when dropped, unless it is
+/// renamed (`persist`).
 pub fn write_temp(
     folder: &Path,
     fill: impl FnOnce(&mut File) -> std::io::Result<()>,
 ) -> std::io::Result<TempPath> {
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(UNFINISHED);
-    // Temporary files are private by default; results are not.
-    #[cfg(unix)]
-    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    let mut file = builder.tempfile_in(folder)?;
+    let file = unfinished::builder("", 0o666).tempfile_in(folder)?;
+    Ok(fill_and_sync(file, fill)?.into_temp_path())
+}
+
+fn fill_and_sync(
+    mut file: NamedTempFile,
+    fill: impl FnOnce(&mut File) -> std::io::Result<()>,
+) -> std::io::Result<NamedTempFile> {
     fill(file.as_file_mut())?;
     file.as_file().sync_all()?;
-    Ok(file.into_temp_path())
+    Ok(file)
 }
 
 /// Syncs a folder, so that files renamed in it keep their names after a power failure.
@@ -53,23 +64,6 @@ pub fn sync_folder(folder: &Path) -> std::io::Result<()> {
         File::open(folder)?.sync_all()?;
     }
     Ok(())
-}
-
-/// Whether a file is named like a temporary file: [`UNFINISHED`] and six letters or digits.
-pub fn is_unfinished(name: &str) -> bool {
-    let random = name.strip_prefix(UNFINISHED).unwrap_or_default();
-    random.len() == 6 && random.bytes().all(|byte| byte.is_ascii_alphanumeric())
-}
-
-/// Removes the temporary files that a killed program left, in a folder that no other process writes to. Errors are
-/// ignored: such a file does no harm.
-pub fn remove_unfinished(folder: &Path) {
-    for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
-        let is_file = entry.file_type().is_ok_and(|kind| kind.is_file());
-        if is_file && entry.file_name().to_str().is_some_and(is_unfinished) {
-            let _ = std::fs::remove_file(entry.path());
-        }
-    }
 }
 
 /// Removes a file if it exists.

@@ -16,6 +16,7 @@ pub mod number_format;
 pub mod quantity;
 pub mod same;
 pub mod text;
+pub mod unfinished;
 
 /// BLAKE3 hash of the sources of this crate.
 pub const SOURCE_HASH: &str = env!("SLIPFRONT_SOURCE_HASH");

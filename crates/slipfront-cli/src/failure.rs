@@ -30,6 +30,14 @@ impl Failure {
         Self::Stopped(signals.stopped().unwrap_or_default(), error.into())
     }
 
+    /// Fails if one of `signals` came that stops the program.
+    pub(crate) fn if_stopped(signals: &Signals) -> Result<(), Self> {
+        match signals.stopped() {
+            Some(_) => Err(Self::stopped(signals, anyhow::anyhow!("stopped by a signal"))),
+            None => Ok(()),
+        }
+    }
+
     /// Prints the error to stderr, and gives the exit status.
     pub(crate) fn report(self) -> u8 {
         report(&RankFailure::from(self))

@@ -2,9 +2,11 @@
 
 use std::io::Read;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use slipfront_case::disk::{open_limited, read_limited};
 use slipfront_case::text::{display_path, shell_quoted};
+use slipfront_case::unfinished::TemporaryFolder;
 use tempfile::TempDir;
 
 /// Most bytes of all files of a case.
@@ -14,6 +16,8 @@ pub(crate) const MAX_FILES: u64 = 64 << 20;
 #[derive(Debug)]
 pub(crate) struct KeptFile {
     folder: TempDir,
+    /// The folder of temporary files of this process, which must outlive the one in it.
+    _parent: Arc<TemporaryFolder>,
     name: String,
     /// Its length.
     pub(crate) bytes: usize,
@@ -22,10 +26,12 @@ pub(crate) struct KeptFile {
 impl KeptFile {
     /// Writes a file under a plain name.
     pub(crate) fn new(name: &str, contents: &[u8]) -> std::io::Result<Self> {
-        let folder = tempfile::tempdir()?;
+        let parent = TemporaryFolder::shared()?;
+        let folder = tempfile::tempdir_in(parent.path())?;
         std::fs::write(folder.path().join(name), contents)?;
         Ok(Self {
             folder,
+            _parent: parent,
             name: name.to_owned(),
             bytes: contents.len(),
         })
@@ -38,8 +44,9 @@ impl KeptFile {
 
     /// Its path from the folder of temporary files.
     pub(crate) fn path(&self) -> String {
-        let folder = self.folder.path().file_name().unwrap_or_default();
-        format!("{}/{}", folder.to_string_lossy(), self.name)
+        let folder = self.folder.path();
+        let folder = folder.strip_prefix(temporary()).unwrap_or(folder);
+        format!("{}/{}", folder.display(), self.name)
     }
 }
 

@@ -9,7 +9,8 @@ use crate::embedded_cases::FILES;
 use crate::error::PaperError;
 use crate::figure_data::FigureData;
 use crate::step_rule::StepRule;
-use slipfront_case::disk::{read_limited, remove_unfinished, write_atomic};
+use slipfront_case::disk::{read_limited, write_atomic};
+use slipfront_case::unfinished::clear_unfinished;
 use slipfront_run::checksum;
 use slipfront_run::names::FIGURE_CACHE;
 use slipfront_run::program;
@@ -37,8 +38,8 @@ impl FigureCache {
             path: folder.clone(),
             source,
         })?;
-        // The lock on the records of the results folder is held: unfinished files are of a process that has ended.
-        remove_unfinished(&folder);
+        // The figures of this call may be others than those of one that was killed.
+        clear_unfinished(&folder);
         let mut hasher = blake3::Hasher::new();
         hasher.update(program::this_build().as_bytes());
         hasher.update(env!("SLIPFRONT_SOURCE_HASH").as_bytes());
@@ -117,10 +118,6 @@ mod tests {
         }
         std::fs::File::create(&path).unwrap().set_len(1 << 40).unwrap();
         assert!(cache.load("fig99", StepRule::Auto).is_none());
-        // Unfinished files of a killed process are removed.
-        std::fs::write(folder.path().join("found/.slipfront123456"), "half of").unwrap();
-        FigureCache::open(folder.path(), true).unwrap();
-        assert_eq!(std::fs::read_dir(folder.path().join("found")).unwrap().count(), 1);
         let mut flipped = whole;
         flipped[40] ^= 1;
         std::fs::write(&path, flipped).unwrap();

@@ -16,9 +16,9 @@ use crate::run_folder::inspection::{CaseDefect, Inspection};
 use crate::run_folder::unfinished::Unfinished;
 use crate::study;
 use crate::study::{Plan, Records, RetainRuns, StudyError, StudyFolder, StudyResults};
-use slipfront_case::disk::is_unfinished;
 use slipfront_case::number_format::{are, count};
 use slipfront_case::text::{single_line, truncated};
+use slipfront_case::unfinished::{TemporaryFolder, is_unfinished};
 
 /// What was found in a folder.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -114,7 +114,7 @@ pub fn verify_run(run: &Inspection) -> Result<Verdict, VerifyError> {
     verdict.differences = differences(&manifest.files, &run.path, "were written");
     verdict.differences.extend(unresolved(run));
     let listed = manifest.files.iter().map(|file| file.name.as_str());
-    // A picture that `slipfront plot` was writing has a temporary file beside it.
+    // A picture that `slipfront plot` was writing has a hidden file beside it.
     let is_left = |name: &str| match name {
         UNFINISHED => Unfinished::of(&run.path).is_managed(),
         name => is_unfinished(name),
@@ -125,9 +125,15 @@ pub fn verify_run(run: &Inspection) -> Result<Verdict, VerifyError> {
 
 /// Inspects the folder of a run, which must be a folder that can be listed.
 pub fn inspect(folder: &Path) -> Result<Inspection, VerifyError> {
-    if !folder.is_dir() {
-        let path = folder.to_owned();
-        return Err(VerifyError::NotAFolder { path });
+    match std::fs::metadata(folder) {
+        Ok(found) if found.is_dir() => {}
+        Err(error) if error.kind() != ErrorKind::NotFound => {
+            return Err(FolderError::read(folder)(error).into());
+        }
+        _ => {
+            let path = folder.to_owned();
+            return Err(VerifyError::NotAFolder { path });
+        }
     }
     Ok(Inspection::of(folder).map_err(FolderError::read(folder))?)
 }
@@ -220,7 +226,7 @@ fn verify_study(folder: &Path) -> Result<Verdict, VerifyError> {
         }
     };
     plan.check_memory(0)?;
-    let temporary = tempfile::tempdir().map_err(VerifyError::Temporary)?;
+    let temporary = TemporaryFolder::new(folder).map_err(VerifyError::Temporary)?;
     let mut again = StudyFolder::open(temporary.path(), &file)?;
     again.records.merge(folder)?;
     let records = folder.join(Records::FILE);

@@ -8,6 +8,7 @@ use slipfront_paper::family;
 
 use crate::failure::Failure;
 use crate::print::print_message;
+use crate::signals::Signals;
 use crate::threads::{count_from_one, set_worker_threads};
 
 /// Hold every option of the engine against its exact answers
@@ -39,6 +40,8 @@ impl Family {
         let chapters = family::chapters().map_err(Failure::running)?;
         print_message(&family::summary(&chapters));
         if let Some(docs) = &self.docs {
+            // A signal leaves neither half a page nor a hidden file.
+            Signals::catch().map_err(Failure::running)?;
             family::write_docs(&chapters, docs).map_err(Failure::running)?;
         }
         let answers = chapters.iter().flat_map(|chapter| &chapter.answers);

@@ -1,7 +1,7 @@
 //! `slipfront movie`: the snapshots of a run beside its friction curve, as a movie.
 
 use std::io::{ErrorKind, Write};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 
 use clap::Args;
@@ -11,6 +11,7 @@ use slipfront_case::case::mapped_field;
 use slipfront_case::case_file::CaseFile;
 use slipfront_case::disk::{folder_of, is_same, write_atomic};
 use slipfront_case::field_info::{FIELDS, field_info, field_named};
+use slipfront_case::unfinished::TemporaryFolder;
 use slipfront_plot::{MOVIE_PIXELS, MoviePictures};
 use slipfront_run::movie;
 use slipfront_run::names::MOVIE;
@@ -20,6 +21,7 @@ use slipfront_run::verify::{expect_as_written, inspect};
 use super::plot::{expect_memory, expect_results, in_the_way, refuse_other_run};
 use crate::failure::Failure;
 use crate::print::print_message;
+use crate::signals::Signals;
 use crate::threads::set_threads;
 
 /// Show the snapshots of a run one after the other, beside its friction curve with a mark at the instant, as an animated GIF of 800 x
@@ -85,8 +87,13 @@ impl Movie {
         let movie = movie::of_run(folder, self.field).map_err(Failure::input)?;
         let movie = movie.ok_or_else(|| refused(self.no_snapshots(run.case.as_ref().ok())))?;
         let bytes = match is_mp4 {
-            true => mp4(&movie)?,
-            false => movie::gif(&movie).map_err(Failure::input)?,
+            true => mp4(folder, &movie)?,
+            false => {
+                let bytes = movie::gif(&movie).map_err(Failure::input)?;
+                // Not before: until here a signal ends the process, and nothing is left behind.
+                Signals::catch().map_err(Failure::running)?;
+                bytes
+            }
         };
         write_atomic(&out, &bytes)
             .map_err(|error| Failure::running(anyhow::anyhow!("cannot write {}: {error}", out.display())))?;
@@ -118,11 +125,12 @@ fn refused(sentence: String) -> Failure {
     Failure::input(anyhow::anyhow!(sentence))
 }
 
-/// The movie as an MP4 file, made by ffmpeg.
-fn mp4(movie: &slipfront_plot::Movie) -> Result<Vec<u8>, Failure> {
+/// The movie of a run folder as an MP4 file, made by ffmpeg.
+fn mp4(run: &Path, movie: &slipfront_plot::Movie) -> Result<Vec<u8>, Failure> {
     let failed = |error: std::io::Error| Failure::running(anyhow::anyhow!("cannot make the movie: {error}"));
     // An MP4 file that begins with its index, which players want, cannot be written through a pipe.
-    let folder = tempfile::tempdir().map_err(failed)?;
+    let signals = Signals::catch().map_err(failed)?;
+    let folder = TemporaryFolder::new(run).map_err(failed)?;
     let path = folder.path().join("movie.mp4");
     let [width, height] = MOVIE_PIXELS;
     let pictures = movie::pictures(movie).map_err(Failure::input)?;
@@ -148,16 +156,24 @@ fn mp4(movie: &slipfront_plot::Movie) -> Result<Vec<u8>, Failure> {
         ),
         _ => failed(error),
     })?;
-    feed(child, movie, &pictures)?;
+    feed(child, movie, &pictures, &signals)?;
     std::fs::read(&path).map_err(failed)
 }
 
 /// Hands all pictures to ffmpeg, each as often as it is long, and waits for its end.
-fn feed(mut child: Child, movie: &slipfront_plot::Movie, pictures: &MoviePictures) -> Result<(), Failure> {
+fn feed(
+    mut child: Child,
+    movie: &slipfront_plot::Movie,
+    pictures: &MoviePictures,
+    signals: &Signals,
+) -> Result<(), Failure> {
     let palette = pictures.palette();
     let mut pipe = child.stdin.take();
     let mut delays = movie::delays(movie).into_iter();
     let fed: Result<(), ()> = movie::draw(movie, pictures, |pixels| {
+        if signals.stopped().is_some() {
+            return Err(());
+        }
         let bytes: Vec<u8> = pixels
             .iter()
             .flat_map(|&pixel| palette[usize::from(pixel)])
@@ -173,6 +189,7 @@ fn feed(mut child: Child, movie: &slipfront_plot::Movie, pictures: &MoviePicture
     drop(pipe);
     let ended = child.wait_with_output();
     let ended = ended.map_err(|error| Failure::running(anyhow::anyhow!("cannot run ffmpeg: {error}")))?;
+    Failure::if_stopped(signals)?;
     if ended.status.success() && fed.is_ok() {
         return Ok(());
     }

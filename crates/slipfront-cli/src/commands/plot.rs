@@ -20,6 +20,7 @@ use slipfront_run::verify::{expect_as_written, inspect, is_study};
 
 use crate::failure::Failure;
 use crate::print::print_message;
+use crate::signals::Signals;
 use crate::threads::set_threads;
 
 /// Draw the pictures of a run again, or the friction curves of one or several runs over each other, on axes of your choice
@@ -170,9 +171,12 @@ impl Plot {
         if !self.force {
             refuse_to_replace(&out, &files, own)?;
         }
+        // Not before: until here a signal ends the process, and nothing is left behind.
+        let signals = Signals::catch().map_err(Failure::running)?;
         std::fs::create_dir_all(&out).map_err(failed)?;
         let mut written = String::new();
         for (name, bytes) in files {
+            Failure::if_stopped(&signals)?;
             let path = out.join(name);
             write_atomic(&path, bytes).map_err(failed)?;
             written += &format!("{}\n", path.display());

@@ -7,6 +7,7 @@ use clap::Args;
 use slipfront_case::case::Case;
 use slipfront_case::number_format::count;
 use slipfront_case::text::truncated;
+use slipfront_case::unfinished::TemporaryFolder;
 use slipfront_run::clock;
 use slipfront_run::manifest::Manifest;
 use slipfront_run::program;
@@ -123,7 +124,8 @@ impl Verify {
             Err(CaseDefect::Unreadable(_) | CaseDefect::Invalid(_)) => Case::load(&case, &[], watch),
         });
         let case = Arc::new(case?);
-        let again = tempfile::tempdir().map_err(|error| Failure::running(VerifyError::Temporary(error)))?;
+        let again =
+            TemporaryFolder::new(folder).map_err(|error| Failure::running(VerifyError::Temporary(error)))?;
         case.budget
             .check_disk(&case.file, again.path(), 0, false)
             .map_err(Failure::input)?;
@@ -134,13 +136,12 @@ impl Verify {
                 break reason;
             }
             progress.show(&running.snapshot());
-            if signals.stopped().is_some() {
-                return Err(Failure::stopped(signals, anyhow::anyhow!("stopped by a signal")));
-            }
+            Failure::if_stopped(signals)?;
         };
         progress.finish();
         let mut record = running.record(reason);
-        let mut made = RunFolder::prepare(again.path(), false, &case.inputs).map_err(Failure::running)?;
+        let made = again.path().join("run");
+        let mut made = RunFolder::prepare(&made, false, &case.inputs).map_err(Failure::running)?;
         results::write_case(&case, &mut made).map_err(Failure::running)?;
         let now = results::write(&case, &mut record, made, started, 1).map_err(Failure::running)?;
         verdict

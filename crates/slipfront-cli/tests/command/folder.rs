@@ -319,12 +319,13 @@ fn what_only_looks_like_ours_stays() {
         ".slipfront/checkpoint-previous.bin",
         ".slipfrontrc",
         ".slipfront-notes",
+        ".slipfront-0123456789abcdef-notes",
     ];
     for name in names {
         workspace.write(&format!("a/{name}"), "mine");
     }
     workspace.fail("run small.toml --quiet -o a", 2);
-    std::fs::create_dir(workspace.path("a/.slipfront123abc")).unwrap();
+    std::fs::create_dir(workspace.path("a/.slipfront-0123456789abcdef-123abc")).unwrap();
     let said = workspace.fail("run small.toml --quiet -o a --force", 2);
     assert!(
         said.contains("checkpoint.bin is not a file of an earlier run"),

@@ -12,7 +12,9 @@ use crate::support::workspace::Workspace;
 
 /// Starts the command; gives the address that it prints.
 fn open(workspace: &Workspace, line: &str) -> (Child, String) {
-    start(&mut workspace.process(line))
+    let mut process = workspace.process(line);
+    fs::create_dir_all(workspace.path("temporary")).unwrap();
+    start(process.env("TMPDIR", workspace.path("temporary")))
 }
 
 /// Starts a command; gives the address that it prints.
@@ -256,6 +258,20 @@ fn the_address_is_not_printed_into_a_file_that_others_can_read() {
         );
         assert_eq!(said.contains("other users can read"), is_refused, "{said}");
         assert_eq!(workspace.read_text("log").contains("#token="), !is_refused);
+    }
+}
+
+/// Its folder for temporary files goes with it, or with the next one.
+#[test]
+fn what_a_killed_one_left_is_removed_by_the_next() {
+    let workspace = Workspace::masked();
+    let in_temporary = || std::fs::read_dir(workspace.path("temporary")).unwrap().count();
+    for (signal, left) in [("-KILL", 1), ("-KILL", 1), ("-TERM", 0)] {
+        let (mut child, _) = open(&workspace, "lab --no-open masked.toml");
+        assert_eq!(in_temporary(), 1);
+        send(&child, signal);
+        child.wait().unwrap();
+        assert_eq!(in_temporary(), left, "{signal}");
     }
 }
 

@@ -1,8 +1,10 @@
 //! `slipfront verify`: whatever changes in a run folder is seen, and a repeated run gives the same.
 
 use std::collections::BTreeMap;
+use std::process::Stdio;
 
 use crate::fixtures::{RUN_FILES, unwrapped};
+use crate::support::process::{send, wait_for};
 use crate::support::workspace::Workspace;
 
 /// Verifies; gives the status and what was said on stdout and on stderr.
@@ -172,7 +174,7 @@ fn files_of_others_are_named() {
     for name in [
         "notes.txt",
         "inputs/other.png",
-        ".slipfrontAbC123",
+        ".slipfront-0123456789abcdef-AbC123",
         "more/notes.txt",
     ] {
         workspace.write(&format!("a/{name}"), "mine");
@@ -185,7 +187,7 @@ fn files_of_others_are_named() {
         notes,
         [
             "note: a/.slipfront was left by a run that was interrupted",
-            "note: a/.slipfrontAbC123 was left by a run that was interrupted",
+            "note: a/.slipfront-0123456789abcdef-AbC123 was left by a run that was interrupted",
             "note: a/inputs/other.png is not slipfront's",
             "note: a/more is not slipfront's",
             "note: a/notes.txt is not slipfront's",
@@ -406,4 +408,29 @@ fn an_interrupted_repetition_leaves_nothing_behind() {
     send(&child, "-INT");
     assert_eq!(child.wait().unwrap().code(), Some(130));
     assert_eq!(std::fs::read_dir(&temporary).unwrap().count(), 0);
+}
+
+/// The second of them neither waits for the first nor takes its folder away.
+#[cfg(unix)]
+#[test]
+fn a_run_is_repeated_twice_at_once() {
+    let workspace = Workspace::masked();
+    // Long enough to be stopped on the way on a busy machine.
+    workspace.succeed("run masked.toml -o a --set time.duration_star=20000 --set output.series=1000");
+    std::fs::create_dir(workspace.path("temporary")).unwrap();
+    let in_temporary = || std::fs::read_dir(workspace.path("temporary")).unwrap().count();
+    let repetition = || {
+        let mut process = workspace.process("verify --rerun --quiet a");
+        process.env("TMPDIR", workspace.path("temporary"));
+        process.stdout(Stdio::null());
+        process
+    };
+    let mut first = repetition().spawn().unwrap();
+    wait_for("folder to work in", || in_temporary() == 1);
+    send(&first, "-STOP");
+    assert!(repetition().status().unwrap().success());
+    assert_eq!(in_temporary(), 1);
+    send(&first, "-CONT");
+    assert!(first.wait().unwrap().success());
+    assert_eq!(in_temporary(), 0);
 }

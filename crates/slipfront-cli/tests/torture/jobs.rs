@@ -11,6 +11,8 @@ use crate::support::workspace::{Files, Workspace};
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Job {
     pub(crate) name: &'static str,
+    /// Whether it is given the folder `done` of a finished run, and `out`, which is empty.
+    pub(crate) is_given_a_run: bool,
     /// The first time.
     pub(crate) line: &'static str,
     /// After it was stopped in any way.
@@ -24,9 +26,10 @@ pub(crate) struct Job {
 }
 
 /// Every one that there is.
-pub(crate) const JOBS: [Job; 4] = [
+pub(crate) const JOBS: [Job; 8] = [
     Job {
         name: "run",
+        is_given_a_run: false,
         line: "run case.toml --quiet --threads 1 -o out",
         again: "run case.toml --quiet --threads 1 -o out --force",
         anew: "run case.toml --quiet --threads 1 -o out --force",
@@ -35,6 +38,7 @@ pub(crate) const JOBS: [Job; 4] = [
     },
     Job {
         name: "study",
+        is_given_a_run: false,
         line: "study study.toml --quiet --threads 1 -o out",
         again: "study study.toml --quiet --threads 1 -o out",
         anew: "study study.toml --quiet --threads 1 -o out",
@@ -43,6 +47,7 @@ pub(crate) const JOBS: [Job; 4] = [
     },
     Job {
         name: "paper",
+        is_given_a_run: false,
         line: "paper fig02 fig13 --reduced --quiet --threads 1 -o out",
         again: "paper fig02 fig13 --reduced --quiet --threads 1 -o out",
         anew: "paper fig02 fig13 --reduced --quiet --threads 1 -o out",
@@ -51,13 +56,32 @@ pub(crate) const JOBS: [Job; 4] = [
     },
     Job {
         name: "resumed run",
+        is_given_a_run: false,
         line: "run slow.toml --quiet --threads 1 --checkpoint 0s -o out",
         again: "run --resume out --quiet --threads 1 --checkpoint 0s",
         anew: "run slow.toml --quiet --threads 1 --checkpoint 0s -o out --force",
         saves: true,
         verified: true,
     },
+    on_a_run("plot", "plot done --force -o out"),
+    on_a_run("movie", "movie done --force -o out/movie.gif"),
+    on_a_run("texture", "texture case.toml --force -o out/texture.png"),
+    // It works in the folder for temporary files.
+    on_a_run("repeated run", "verify --rerun --quiet --threads 1 done"),
 ];
+
+/// A job that is the same however often it is repeated.
+const fn on_a_run(name: &'static str, line: &'static str) -> Job {
+    Job {
+        name,
+        is_given_a_run: true,
+        line,
+        again: line,
+        anew: line,
+        saves: false,
+        verified: false,
+    }
+}
 
 /// A case that reads every kind of file that there is.
 const CASE: &str = r#"# A small and quick one.
@@ -179,20 +203,29 @@ pub(crate) fn workspace() -> Workspace {
 }
 
 impl Job {
+    /// Makes everything as it is before the job.
+    pub(crate) fn prepare(&self, workspace: &Workspace) {
+        workspace.remove("out");
+        workspace.remove("temporary");
+        std::fs::create_dir(workspace.path("temporary")).unwrap();
+        if self.is_given_a_run {
+            workspace.fill("done", &JOBS[0].undisturbed());
+            std::fs::create_dir(workspace.path("out")).unwrap();
+        }
+    }
+
     /// The folder `out` when nothing disturbs the job.
     pub(crate) fn undisturbed(&self) -> Files {
         static WHOLE: Mutex<BTreeMap<&str, Files>> = Mutex::new(BTreeMap::new());
-        let make = || {
+        let known = WHOLE.lock().unwrap().get(self.name).cloned();
+        known.unwrap_or_else(|| {
             let workspace = workspace();
+            self.prepare(&workspace);
             workspace.succeed_bounded(self.line).unwrap();
-            workspace.files_if_any("out")
-        };
-        WHOLE
-            .lock()
-            .unwrap()
-            .entry(self.name)
-            .or_insert_with(make)
-            .clone()
+            let whole = workspace.files_if_any("out");
+            WHOLE.lock().unwrap().insert(self.name, whole.clone());
+            whole
+        })
     }
 }
 
@@ -252,13 +285,28 @@ pub(crate) fn expect_sound(now: &Files, whole: &Files) -> Result<(), String> {
 
 /// Demands that a folder holds exactly what it should.
 pub(crate) fn expect_complete(now: &Files, whole: &Files) -> Result<(), String> {
-    if let Some(left) = now.keys().find(|name| unfinished(name)) {
-        return Err(format!("{left} is left behind"));
-    }
+    expect_nothing_unfinished(now)?;
     expect_all(now, whole)
 }
 
-/// The same, beside which something half written may be left.
+/// Demands that a folder holds nothing that is being written.
+pub(crate) fn expect_nothing_unfinished(now: &Files) -> Result<(), String> {
+    match now.keys().find(|name| unfinished(name)) {
+        Some(left) => Err(format!("{left} is left behind")),
+        None => Ok(()),
+    }
+}
+
+/// Demands that the folder for temporary files is empty.
+pub(crate) fn expect_nothing_temporary(workspace: &Workspace) -> Result<(), String> {
+    let mut left = std::fs::read_dir(workspace.path("temporary")).unwrap();
+    match left.next() {
+        Some(left) => Err(format!("{:?} is left behind", left.unwrap().path())),
+        None => Ok(()),
+    }
+}
+
+/// Demands that a folder holds all that it should, beside which something half written may be left.
 pub(crate) fn expect_all(now: &Files, whole: &Files) -> Result<(), String> {
     if let Some(missing) = whole.keys().find(|name| !now.contains_key(*name)) {
         return Err(format!("{missing} is missing"));
@@ -299,6 +347,7 @@ impl Job {
     pub(crate) fn finish(&self, workspace: &Workspace, whole: &Files) -> Result<(), String> {
         workspace.succeed_bounded(self.next(workspace, whole))?;
         expect_complete(&workspace.files_if_any("out"), whole)?;
+        expect_nothing_temporary(workspace)?;
         if self.verified {
             let ended = workspace.succeed_bounded("verify out")?;
             if ended.stdout.contains("note: ") {

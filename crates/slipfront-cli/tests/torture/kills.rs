@@ -2,7 +2,9 @@
 
 use std::time::{Duration, Instant};
 
-use crate::jobs::{JOBS, Job, expect_all, workspace};
+use crate::jobs::{
+    JOBS, Job, expect_all, expect_nothing_temporary, expect_nothing_unfinished, expect_sound, workspace,
+};
 use crate::support::process::try_send;
 use crate::support::workspace::{Files, Workspace};
 use crate::tally::{Chance, Tally, cases};
@@ -32,18 +34,24 @@ fn kill_and_look(
     }
 }
 
+/// How long a job takes when nothing disturbs it.
+fn time_of(workspace: &Workspace, job: &Job) -> Duration {
+    job.prepare(workspace);
+    let began = Instant::now();
+    workspace.succeed_bounded(job.line).unwrap();
+    began.elapsed()
+}
+
 fn torture(job: &Job, kills: usize) {
     let workspace = workspace();
     let mut tally = Tally::new("kills at random moments");
     let mut chance = Chance::new();
     let whole = job.undisturbed();
-    let began = Instant::now();
-    workspace.succeed_bounded(job.line).unwrap();
-    let takes = began.elapsed();
+    let takes = time_of(&workspace, job);
     for round in 0..kills.div_ceil(IN_A_ROW) {
         // Every second time a finished folder is worked on again.
         if round % 2 == 1 {
-            workspace.remove("out");
+            job.prepare(&workspace);
         }
         for _ in 0..IN_A_ROW {
             let after = takes.mul_f64(chance.below(1000) as f64 / 1000.0);
@@ -76,4 +84,59 @@ fn a_killed_paper_goes_on() {
 #[test]
 fn a_killed_run_is_resumed() {
     torture(&JOBS[3], cases(4, 200));
+}
+
+#[test]
+fn a_killed_plot_is_repeated() {
+    torture(&JOBS[4], cases(8, 200));
+}
+
+#[test]
+fn a_killed_movie_is_repeated() {
+    torture(&JOBS[5], cases(8, 200));
+}
+
+#[test]
+fn a_killed_texture_is_repeated() {
+    torture(&JOBS[6], cases(8, 200));
+}
+
+#[test]
+fn a_killed_repetition_of_a_run_is_repeated() {
+    torture(&JOBS[7], cases(8, 200));
+}
+
+/// A signal to which a command can answer leaves nothing that the next command would have to remove.
+#[test]
+fn what_a_signal_stops_leaves_nothing_behind() {
+    let workspace = workspace();
+    let mut tally = Tally::new("signals at random moments");
+    let mut chance = Chance::new();
+    for job in &JOBS[4..] {
+        let whole = job.undisturbed();
+        let takes = time_of(&workspace, job);
+        for signal in ["-INT", "-TERM"] {
+            for _ in 0..cases(5, 100) {
+                job.prepare(&workspace);
+                let mut child = workspace.start_silent(job.line);
+                let after = takes.mul_f64(chance.below(1000) as f64 / 1000.0);
+                std::thread::sleep(after);
+                try_send(&child, signal);
+                let ended = match child.wait().unwrap().code() {
+                    None | Some(130 | 143) => Ok("stopped"),
+                    Some(0) => Ok("had ended"),
+                    Some(status) => Err(format!("`{}` ends with status {status}", job.line)),
+                };
+                let ended = ended.and_then(|ended| {
+                    let now = workspace.files("out");
+                    expect_sound(&now, &whole)?;
+                    expect_nothing_unfinished(&now)?;
+                    expect_nothing_temporary(&workspace)?;
+                    Ok(ended)
+                });
+                tally.note(job.name, &format!("{signal} after {after:?}"), ended);
+            }
+        }
+    }
+    tally.close();
 }

@@ -19,6 +19,7 @@ use slipfront::communicator::text_of;
 use slipfront_case::case::{Case, Input};
 use slipfront_case::disk::{open_regular, sync_folder, write_temp};
 use slipfront_case::text::display_path;
+use slipfront_case::unfinished::clear_unfinished;
 use tempfile::TempPath;
 
 use self::contents::{managed_files, refuse_unmanaged, remove_files, result_files};
@@ -225,6 +226,8 @@ impl RunFolder {
     /// Makes the hidden subfolder, with which a run begins or is resumed.
     fn begin(path: PathBuf, lock: Option<File>) -> Result<Self, FolderError> {
         let unfinished = Unfinished::of(&path);
+        // A `slipfront plot` that was killed may have left half a picture.
+        clear_unfinished(&path);
         Ok(Self {
             journal: unfinished.create()?,
             path,

@@ -20,8 +20,8 @@ use crate::names::{CASE, FIGURE_CACHE, RECORDS, RUNS, TABLES};
 use crate::run_folder::copy::copy_run;
 use crate::run_folder::error::FolderError;
 use slipfront_case::disk::{
-    TEXT_MAX_BYTES, is_empty, is_folder, open_limited, read_limited, remove_if_there, write_atomic_with,
-    write_temp,
+    TEXT_MAX_BYTES, folder_of, is_empty, is_folder, open_limited, read_limited, remove_if_there,
+    write_atomic_with, write_beside,
 };
 use slipfront_case::machine::free_disk;
 use slipfront_case::number_format::byte_size;
@@ -103,7 +103,7 @@ impl StudyFolder {
         written.map_err(|source| StudyError::Write { path, source })
     }
 
-    /// Copies files, all of them to temporary files first: the name of a copy may be that of another original.
+    /// Copies files, all of them under hidden names first: the name of a copy may be that of another original.
     fn copy(&self, copies: &[Copy]) -> Result<(), StudyError> {
         let failed = |path: &Path| {
             let path = path.to_owned();
@@ -118,13 +118,15 @@ impl StudyFolder {
                 let path = link.to_owned();
                 return Err(FolderError::Foreign { path }.into());
             }
-            let copied = write_temp(&self.path, |to| {
-                std::io::copy(&mut File::open(original)?, to).map(|_| ())
+            let copied = std::fs::create_dir_all(folder_of(&path)).and_then(|()| {
+                write_beside(&path, |to| {
+                    std::io::copy(&mut File::open(original)?, to).map(|_| ())
+                })
             });
-            staged.push((copied.map_err(failed(&path))?, path));
+            // There may be more of them than can be open; the lock on the records keeps other processes away.
+            staged.push((copied.map_err(failed(&path))?.into_temp_path(), path));
         }
         for (file, path) in staged {
-            std::fs::create_dir_all(path.parent().unwrap_or(&self.path)).map_err(failed(&path))?;
             let persisted = file.persist(&path).map_err(|error| error.error);
             persisted.map_err(failed(&path))?;
         }

@@ -12,7 +12,8 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use super::error::StudyError;
 use super::record::{Record, RunResult, looks_like_ours, may_begin_ours, parse_line, to_line};
 use crate::names::RECORDS;
-use slipfront_case::disk::{open_limited, remove_unfinished, sync_folder};
+use slipfront_case::disk::{open_limited, sync_folder};
+use slipfront_case::unfinished::clear_unfinished;
 
 /// The record file of a study folder, open for one process alone, whose threads may share it.
 #[derive(Debug)]
@@ -38,8 +39,8 @@ impl Records {
     pub fn open(folder: &Path) -> Result<Self, StudyError> {
         let path = folder.join(RECORDS);
         let mut file = open_locked(&path, folder)?;
-        // The lock is held from here on: unfinished files are of a process that has ended.
-        remove_unfinished(folder);
+        // A study that has changed since it was killed may not write the same files again.
+        clear_unfinished(folder);
         let lines = Lines::read(&mut file).map_err(failed("open", &path))?;
         if lines.are_foreign() {
             return Err(StudyError::NotRecords { path });
