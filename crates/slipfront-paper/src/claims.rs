@@ -12,7 +12,8 @@ use crate::number::Number;
 pub(super) const NUMBERING: &str = "A claim keeps its number: 2 and 62 are not used, since the paper does not say what they said, and \
                                     those from 82 on were found later and stand where the text makes them.";
 /// What [`Claim::revised`] tells.
-pub(super) const REVISED: &str = "\u{201c}Revised\u{201d} tells what of a claim's wording or criterion was settled only after a measurement.";
+pub(super) const REVISED: &str = "\u{201c}Revised\u{201d} tells what of a claim's wording or criterion was settled only after a measurement: such a claim is \
+                                  not reproduced as stated, and what is measured now is what does hold of it.";
 
 /// A claim of the paper and how it is judged.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
@@ -48,7 +49,8 @@ pub struct Claim {
     /// A remark for the reader; may be empty.
     #[serde(default)]
     pub remark: String,
-    /// What of its wording or criterion was settled only after which measurement; empty if nothing was.
+    /// What of its wording or criterion was settled only after which measurement; empty if nothing was. A claim of which something
+    /// was counts as [`Verdict::NotAsStated`], not as one that holds.
     #[serde(default)]
     pub revised: String,
     /// Whether two surfaces and one time step are enough to judge it.
@@ -84,6 +86,8 @@ pub enum Verdict {
     Holds,
     /// It holds under a condition that the paper does not state.
     HoldsWithCondition,
+    /// It was not reproduced by the criterion that was fixed before measuring; by one that was settled afterwards something of it holds.
+    NotAsStated,
     /// As printed it does not hold; with a slip of print or algebra put right it does.
     Misprint,
     /// It does not hold.
@@ -92,9 +96,10 @@ pub enum Verdict {
 
 impl Verdict {
     /// All verdicts, in the order in which they are counted.
-    pub const ALL: [Self; 4] = [
+    pub const ALL: [Self; 5] = [
         Self::Holds,
         Self::HoldsWithCondition,
+        Self::NotAsStated,
         Self::Misprint,
         Self::DoesNotHold,
     ];
@@ -104,6 +109,7 @@ impl Verdict {
         match self {
             Self::Holds => "holds",
             Self::HoldsWithCondition => "holds with a condition",
+            Self::NotAsStated => "not reproduced as stated",
             Self::Misprint => "misprint or slip of algebra",
             Self::DoesNotHold => "does not hold",
         }
@@ -114,6 +120,7 @@ impl Verdict {
         let (one, several) = match self {
             Self::Holds => ("holds", "hold"),
             Self::HoldsWithCondition => ("holds with a condition", "hold with a condition"),
+            Self::NotAsStated => ("is not reproduced as stated", "are not reproduced as stated"),
             Self::Misprint => (
                 "is a misprint or slip of algebra",
                 "are misprints or slips of algebra",
@@ -200,6 +207,7 @@ impl Claim {
         let number = measured(&self.quantity)?;
         let (general, corrected) = (holds_by(&self.condition)?, holds_by(&self.correction)?);
         let verdict = match (inside(&number, self.within), general, corrected) {
+            (true, ..) if !self.revised.is_empty() => Verdict::NotAsStated,
             (true, Some(false), _) => Verdict::HoldsWithCondition,
             (true, ..) => Verdict::Holds,
             (false, _, Some(true)) => Verdict::Misprint,
@@ -223,15 +231,19 @@ impl ClaimResult {
     pub(super) fn verdict_in_full(&self) -> String {
         let words = self.verdict.words();
         let deviation = self.claim.deviation_in_brackets();
-        let reading = match self.verdict {
-            Verdict::HoldsWithCondition => &self.claim.condition,
-            Verdict::Misprint => &self.claim.correction,
-            Verdict::Holds | Verdict::DoesNotHold => &None,
+        let claim = &self.claim;
+        let words_of = |reading: &Option<Reading>| reading.as_ref().map(|reading| reading.words.clone());
+        let why = match self.verdict {
+            Verdict::HoldsWithCondition => words_of(&claim.condition),
+            Verdict::NotAsStated => {
+                let told = words_of(&claim.condition).unwrap_or_else(|| "by what is measured now".to_owned());
+                Some(format!("it holds {told}"))
+            }
+            Verdict::Misprint => words_of(&claim.correction),
+            Verdict::Holds | Verdict::DoesNotHold => None,
         };
-        match reading {
-            Some(reading) => format!("{words}: {}{deviation}", reading.words),
-            None => format!("{words}{deviation}"),
-        }
+        let why = why.map_or(String::new(), |why| format!(": {why}"));
+        format!("{words}{why}{deviation}")
     }
 
     /// The measured number with its interval and unit.
@@ -327,11 +339,37 @@ mod tests {
     }
 
     #[test]
+    fn a_claim_whose_criterion_was_settled_after_measuring_is_not_reproduced_as_stated() {
+        let revised = |condition| Claim {
+            revised: "First at least 2.".to_owned(),
+            ..claim([0.0, 1.0], condition)
+        };
+        for (condition, other) in [(None, 0.5), (Some([0.0, 1.0]), 0.5), (Some([0.0, 1.0]), 2.0)] {
+            assert_eq!(verdict(revised(condition), 0.5, other), Verdict::NotAsStated);
+            assert_eq!(verdict(revised(condition), 2.0, other), Verdict::DoesNotHold);
+        }
+        let told = |condition| {
+            let numbers = [("fig99.main", 0.5), ("fig99.other", 2.0)];
+            let numbers = numbers.map(|(name, value)| (name.to_owned(), Number::exact(value)));
+            let result = revised(condition).judge(&BTreeMap::from(numbers)).unwrap();
+            result.verdict_in_full()
+        };
+        assert_eq!(
+            told(Some([0.0, 1.0])),
+            "not reproduced as stated: it holds on Sundays"
+        );
+        assert_eq!(
+            told(None),
+            "not reproduced as stated: it holds by what is measured now"
+        );
+    }
+
+    #[test]
     fn verdicts_are_counted_by_class() {
         let verdicts = [Verdict::DoesNotHold, Verdict::Misprint, Verdict::Misprint];
         assert_eq!(
             tally(&verdicts),
-            "3 claims: 0 hold, 0 hold with a condition, 2 are misprints or slips of algebra, 1 does not hold"
+            "3 claims: 0 hold, 0 hold with a condition, 0 are not reproduced as stated, 2 are misprints or slips of algebra, 1 does not hold"
         );
     }
 
@@ -365,10 +403,8 @@ mod tests {
         assert_eq!(unused, [2, 62]);
         assert!(numbers.windows(2).all(|pair| pair[0] < pair[1]), "{numbers:?}");
         // Worded or changed after measuring, as the history of the list tells: the ledger says so.
-        for claim in claims
-            .iter()
-            .filter(|claim| [16, 40, 51, 56, 58].contains(&claim.number))
-        {
+        let reworded = [16, 38, 40, 46, 51, 56, 58, 80, 81];
+        for claim in claims.iter().filter(|claim| reworded.contains(&claim.number)) {
             assert!(!claim.revised.is_empty(), "claim {}", claim.number);
         }
         for claim in &claims {
@@ -381,7 +417,11 @@ mod tests {
             );
             assert!(claim.within[0] <= claim.within[1], "claim {}", claim.number);
             // A claim that fails, or holds with a condition only, needs a reason.
-            let reasoned = claim.deviation.is_some() || claim.condition.is_some() || !claim.remark.is_empty();
+            let is_revised = !claim.revised.is_empty();
+            let reasoned = claim.deviation.is_some()
+                || claim.condition.is_some()
+                || is_revised
+                || !claim.remark.is_empty();
             assert!(
                 claim.expected == Verdict::Holds || reasoned,
                 "claim {}",
@@ -389,10 +429,13 @@ mod tests {
             );
             assert_eq!(
                 claim.expected == Verdict::HoldsWithCondition,
-                claim.condition.is_some(),
+                claim.condition.is_some() && !is_revised,
                 "claim {}",
                 claim.number
             );
+            // No criterion is worded anew after its measurement and counts as holding.
+            let holds = [Verdict::Holds, Verdict::HoldsWithCondition].contains(&claim.expected);
+            assert!(!(is_revised && holds), "claim {}", claim.number);
             assert_eq!(
                 claim.expected == Verdict::Misprint,
                 claim.correction.is_some(),

@@ -135,6 +135,7 @@ fn class(verdict: Verdict) -> &'static str {
     match verdict {
         Verdict::Holds => "verdict holds",
         Verdict::HoldsWithCondition => "verdict conditioned",
+        Verdict::NotAsStated => "verdict restated",
         Verdict::Misprint => "verdict misprint",
         Verdict::DoesNotHold => "verdict fails",
     }
