@@ -170,7 +170,7 @@ pub fn main_on_ranks(args: impl IntoIterator<Item = OsString>, communicator: Arc
 /// What the arguments of a rank ask for.
 enum Parsed {
     Run(Box<Run>),
-    Licences(Licences),
+    Licences(commands::licences::Licences),
     /// Help or version, which clap gives as an error.
     Shown(clap::Error),
 }

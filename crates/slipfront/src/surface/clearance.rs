@@ -108,6 +108,9 @@ fn runs(tile: &Tile) -> [Option<f64>; 2] {
     found
 }
 
+/// The widths of a shape inside and outside, and the shape.
+type Measured = ([Option<f64>; 2], Drawn);
+
 /// A shape of a texture, and the places at which it stands on the slider.
 struct Drawn {
     form: Form,
@@ -122,7 +125,7 @@ impl Drawn {
         texture: &Texture,
         all: bool,
         effort: &mut Effort,
-    ) -> Result<Option<([Option<f64>; 2], Self)>, TooMuch> {
+    ) -> Result<Option<Measured>, TooMuch> {
         if let Shape::Cavity(Cavity { s: 2.., .. }) = texture.shape {
             // What its corners take, of time and of memory.
             effort.take(16 * CORNERS)?;
