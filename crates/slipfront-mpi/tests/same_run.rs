@@ -119,8 +119,8 @@ fn assert_refused(folder: &Path, ranks: [(&str, &str); 2], wanted: &[&str]) {
 )]
 #[case::time_step("time.step=0.01", "`time.step` is 0.01 on rank 1")]
 #[case::law(
-    "friction.law='rate_and_state'",
-    "`friction.law` is \"rate_and_state\" on rank 1"
+    "friction.law='reversal'",
+    "`friction.law` is \"reversal\" on rank 1"
 )]
 #[case::wrong_value("drive.v_star=-1", "rank 1: --set drive.v_star=-1")]
 #[case::unknown_key("drive.v=1", "rank 1: --set drive.v=1")]
@@ -164,7 +164,7 @@ fn another_file_is_refused(#[case] name: &str, #[case] contents: Option<String>,
 #[case::other_command("check m.toml", "rank 1: unrecognized subcommand 'check'")]
 #[case::help("run --help", "what is asked for is help on rank 1 and a run on rank 0")]
 #[case::version("--version", "what is asked for is the version on rank 1")]
-#[case::embedded_case("run -q -o ../k", "is 0.03 on rank 1 and 0.1 on rank 0")]
+#[case::embedded_case("run -q -o ../k", "`slider.blocks` is [25, 25] on rank 1 and [12, 10]")]
 #[case::embedded_case_wrong("run -q -o ../k --set foo=1", "rank 1: --set foo=1")]
 #[case::resume("run --resume ../k", "--resume is given on rank 1 and not given on rank 0")]
 #[case::json("run m.toml --json -o ../k", "--json is given on rank 1")]

@@ -151,7 +151,7 @@ impl NamedFiles {
     fn given(&self, digests: &[Digest]) -> Given {
         let named = self.0.iter().zip(digests).map(|(found, (length, hash))| {
             let name = format!("{} (`{}`)", single_line(&found.plain_name()), found.key);
-            let contents = format!("a file of {length} bytes with the hash {}", &hash.to_hex()[..16]);
+            let contents = format!("a file of {length} bytes with the hash {hash}");
             (name, contents)
         });
         named.collect()

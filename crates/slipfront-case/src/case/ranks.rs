@@ -88,6 +88,10 @@ mod tests {
         assert_eq!(agreed(&[], None), (0..5).map(Ok).collect::<Vec<_>>());
         for (failing, first) in [(&[0][..], 0), (&[4], 4), (&[3, 2], 2), (&[0, 1, 2, 3, 4], 0)] {
             let said = outcome(first, &[first], None).unwrap_err().to_string();
+            let said = match first {
+                0 => said,
+                _ => format!("rank {first}: {said}"),
+            };
             assert_eq!(agreed(failing, None), vec![Err(said); 5]);
         }
         assert_eq!(

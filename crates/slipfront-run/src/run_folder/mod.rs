@@ -11,7 +11,7 @@ mod journal;
 pub mod unfinished;
 
 use std::fs::{File, TryLockError};
-use std::io::Write;
+use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
 use slipfront::Communicator;
@@ -193,14 +193,17 @@ pub fn expect_shared(path: &Path, communicator: &dyn Communicator) -> Result<(),
     let name = name.unwrap_or_default().to_string_lossy();
     let name = text_of(communicator, 0, &name);
     let of_first = text_of(communicator, 0, &display_path(path));
-    let is_seen = temporary.join(name).symlink_metadata().is_ok();
-    let seen = is_seen.then_some(()).ok_or_else(|| {
-        failure(format!(
-            "the folder {} is not the folder {of_first} of rank 0: all ranks write to one, on a disk that their machines share",
-            display_path(path)
-        ))
-    });
-    agree(communicator, seen)
+    let seen = match temporary.join(name).symlink_metadata() {
+        Ok(_) => Ok(()),
+        Err(error) if [ErrorKind::NotFound, ErrorKind::NotADirectory].contains(&error.kind()) => {
+            Err(format!(
+                "the folder {} is not the folder {of_first} of rank 0: all ranks write to one, on a disk that their machines share",
+                display_path(path)
+            ))
+        }
+        Err(error) => Err(FolderError::read(path)(error).to_string()),
+    };
+    agree(communicator, seen.map_err(failure))
 }
 
 /// A folder that a run is being written to.
