@@ -293,7 +293,7 @@ mod tests {
             bars(&chart(&[("", &[bar])]))
                 .unwrap()
                 .svg
-                .matches("<line")
+                .matches("fill=\"none\"")
                 .count()
         };
         for mean in [2.0, f64::NAN] {

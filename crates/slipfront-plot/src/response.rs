@@ -323,7 +323,7 @@ mod tests {
             crossed: vec![true, true, false],
             ..plain.clone()
         };
-        let lines = |curve: &Response| svg(std::slice::from_ref(curve)).matches("<line").count();
+        let lines = |curve: &Response| svg(std::slice::from_ref(curve)).matches("fill=\"none\"").count();
         assert_eq!(lines(&crossed), lines(&plain) + 4);
     }
 

@@ -28,6 +28,8 @@ const LARGE_V_STAR: f64 = 0.2;
 /// Drag of the damping over kinetic friction above which there is a warning: without drag, mu_k* of a run is above the kinetic coefficient
 /// of the blocks by up to a twentieth, since some of them stick now and then, and twice that is no longer taken for it.
 const LARGE_DRAG: f64 = 0.1;
+/// Drag over what the blocks hold at rest that is never warned of, however little kinetic friction there is.
+const SMALL_DRAG: f64 = 0.01;
 /// Fewest blocks for which the paper calls edge effects small.
 const FEW_BLOCKS: usize = 625;
 
@@ -74,20 +76,21 @@ impl Case {
     fn level_warnings(&self) -> Vec<String> {
         let (level, drag) = (self.expected.steady_level, self.expected.steady_drag);
         let (kinetic, v_star) = (level - drag, self.groups.v_star);
+        let held = self.model.surface.mean_static_force();
         let mut warnings = Vec::new();
-        if drag > LARGE_DRAG * kinetic {
+        let limit = (LARGE_DRAG * kinetic).max(SMALL_DRAG * held);
+        if drag > limit {
             // The drag is in proportion to the speed.
             warnings.push(format!(
-                "the drag of the damping at V* = {} adds {} to the kinetic friction of {}, and mu_k* contains it: it is a tenth of that or \
-                 less up to V* = {}",
+                "the drag of the damping at V* = {} adds {} to the kinetic friction of {}, and mu_k* contains it: it does not \
+                 matter up to V* = {}",
                 four_digits(v_star),
                 four_digits(drag),
                 four_digits(kinetic),
-                four_digits(LARGE_DRAG * kinetic / drag * v_star)
+                four_digits(limit / drag * v_star)
             ));
         }
         // Under rate and state nothing holds like a threshold.
-        let held = self.model.surface.mean_static_force();
         let has_thresholds = !matches!(self.model.friction, Friction::RateAndState(_));
         if has_thresholds && kinetic < held && level >= held {
             warnings.push(format!(

@@ -24,6 +24,7 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
         };
         let place = textured.iter().position(|name| *name == variant);
         let reduction = place.map(|place| texture.number(&[place], REDUCTION));
+        let reduction = reduction.filter(|reduction| !reduction.value.is_nan());
         rows.push([
             variant.clone(),
             cell(of_baseline("static_friction_star"), 3),
@@ -34,7 +35,8 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
     data.table(
         "sensitivity",
         "Static and kinetic friction of the baseline (25 x 25 blocks, sigma_s* = 0.05), and the reduction by a circular \
-         cavity (50 x 50 blocks, sigma_s* = 0, A* = 10 %), when one thing is changed.",
+         cavity (50 x 50 blocks, sigma_s* = 0, A* = 10 %), when one thing is changed. Runs without a transition have no static friction and no \
+         reduction.",
         ["what is changed", "mu_s*", "mu_k*", "reduction (%)"],
         rows,
     );

@@ -195,6 +195,7 @@ mod tests {
         let mixed = (run.replicate as u64 * 7919 + run.point as u64 * 104_729) % 1000;
         Outcome::Done(Box::new(Summary {
             static_friction_star: 0.8 + 1e-4 * mixed as f64,
+            transition: true,
             ..Summary::default()
         }))
     }
