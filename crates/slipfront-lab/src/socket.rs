@@ -124,11 +124,13 @@ async fn pass_on(
     // For a session that is busy.
     let mut kept = None;
     loop {
-        kept = match kept.map(|request| requests.try_send(request)) {
-            None | Some(Ok(())) => None,
-            Some(Err(TrySendError::Full(request))) => Some(request),
-            Some(Err(TrySendError::Disconnected(_))) => return,
-        };
+        if let Some(request) = kept.take() {
+            kept = match requests.try_send(request) {
+                Ok(()) => None,
+                Err(TrySendError::Full(request)) => Some(request),
+                Err(TrySendError::Disconnected(_)) => return,
+            };
+        }
         tokio::select! {
             outgoing = outbox.next() => {
                 let message = match outgoing {
