@@ -1,6 +1,6 @@
 // The command `slipfront`, and the laboratories that it starts.
 import { execFile, spawn } from 'node:child_process';
-import { mkdirSync, mkdtempSync, rmSync } from 'node:fs';
+import { mkdirSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import path from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { promisify } from 'node:util';
@@ -21,8 +21,22 @@ export async function slipfront(...options) {
 }
 
 /** Starts a laboratory; returns the address that it prints, what stops it, and what kills it. */
-export async function startLaboratory(...options) {
-  const child = spawn(COMMAND, ['lab', '--no-open', '--results', RESULTS, ...options], { cwd: WORK, stdio: ['ignore', 'pipe', 'inherit'] });
+export const startLaboratory = (...options) => start(['--no-open', ...options], process.env);
+
+/** Starts a laboratory with a desktop whose programs write into a file what they shall open; returns that too. */
+export async function startOnDesktop() {
+  const folder = mkdtempSync(path.join(WORK, 'desktop.'));
+  const opened = path.join(folder, 'opened');
+  // No program is known for any kind of file.
+  for (const [name, script] of [['xdg-mime', 'exit 4'], ['xdg-open', `printf %s "$1" > ${opened}.new; mv ${opened}.new ${opened}`]]) {
+    writeFileSync(path.join(folder, name), `#!/bin/sh\n${script}\n`, { mode: 0o755 });
+  }
+  const laboratory = await start([], { ...process.env, PATH: `${folder}:${process.env.PATH}`, BROWSER: '' });
+  return { opened, ...laboratory };
+}
+
+async function start(options, env) {
+  const child = spawn(COMMAND, ['lab', '--results', RESULTS, ...options], { cwd: WORK, stdio: ['ignore', 'pipe', 'inherit'], env });
   const ended = new Promise((resolve) => child.once('exit', resolve));
   const address = await new Promise((resolve, reject) => {
     let printed = '';

@@ -1,9 +1,12 @@
 // A page that is not seen, and one without a server.
 import assert from 'node:assert/strict';
 import { createHash, createHmac } from 'node:crypto';
+import { existsSync, readFileSync, statSync } from 'node:fs';
 import { createServer } from 'node:http';
+import path from 'node:path';
 import test from 'node:test';
-import { startLaboratory } from './command.mjs';
+import { pathToFileURL } from 'node:url';
+import { startLaboratory, startOnDesktop } from './command.mjs';
 import { open, say, sleep, SMALL, until, untilSame } from './page.mjs';
 
 /** Another user's program on the port of a laboratory that has ended: it notes what it is asked, and shows a page of its own. `prove`
@@ -54,6 +57,21 @@ test('a page that is not seen gets nothing', async (t) => {
   await setHidden(lab, false);
   // It has not stood still because it had ended.
   await until(() => lab.last.numbers.step > step, 'a run that goes on again');
+});
+
+test('the browser is led to the page by a file, which is gone then', async (t) => {
+  const one = await startOnDesktop();
+  t.after(one.stop);
+  await until(() => existsSync(one.opened), 'a browser that is started');
+  const file = readFileSync(one.opened, 'utf8');
+  assert.equal(statSync(file).mode & 0o777, 0o600);
+  const lab = await open(t, { address: pathToFileURL(file).href });
+  assert.equal(lab.page.url(), new URL('/', one.address).href);
+  assert.equal(existsSync(path.dirname(file)), false);
+  // It left nothing in the history to go back to, which would show the token.
+  assert.equal(await lab.page.evaluate(() => document.referrer), '');
+  await lab.page.goBack();
+  assert.equal(lab.page.url(), 'about:blank');
 });
 
 test('a page whose server was stopped says so, and asks nobody on its port any more', async (t) => {
@@ -123,7 +141,7 @@ test('the address that a new server prints opens the page again in the same tab'
   // Only what follows # differs: the browser loads nothing anew by itself.
   await lab.page.evaluate((address) => { location.href = address; }, other.address);
   await until(() => lab.last.hello, 'a connection');
-  await until(async () => (await lab.text('notices')) === '', 'no notice of a lost connection');
+  await until(async () => !(await lab.text('notices')).includes(say('ended')), 'no notice of a lost connection');
   assert.doesNotMatch(lab.page.url(), /token/);
 });
 

@@ -132,7 +132,7 @@ export class Lab {
     });
     page.on('request', (request) => {
       const { hostname, protocol } = new URL(request.url());
-      if (hostname !== '127.0.0.1' && !['blob:', 'data:'].includes(protocol)) this.faults.push(`request: ${request.url()}`);
+      if (hostname !== '127.0.0.1' && !['blob:', 'data:', 'file:'].includes(protocol)) this.faults.push(`request: ${request.url()}`);
     });
     page.on('websocket', (socket) => {
       this.sockets += 1;

@@ -11,7 +11,7 @@ use hyper::server::conn::http1;
 use hyper_util::rt::{TokioIo, TokioTimer};
 use hyper_util::service::TowerToHyperService;
 use tokio::net::TcpListener;
-use tokio::task::AbortHandle;
+use tokio::task::{AbortHandle, yield_now};
 use tokio::time::sleep;
 
 /// Most connections at once; a browser opens six for a page.
@@ -43,6 +43,8 @@ pub(crate) async fn serve(listener: TcpListener, router: Router) -> Infallible {
         make_room(&mut open);
         let connection = http.serve_connection(TokioIo::new(stream), service.clone());
         open.push_back(tokio::spawn(connection.with_upgrades()).abort_handle());
+        // It may have its answer before others come that take its place.
+        yield_now().await;
     }
 }
 

@@ -125,11 +125,11 @@ async fn pass_on(
     let mut kept = None;
     loop {
         if let Some(request) = kept.take() {
-            match requests.try_send(request) {
-                Ok(()) => {}
-                Err(TrySendError::Full(request)) => kept = Some(request),
+            kept = match requests.try_send(request) {
+                Ok(()) => None,
+                Err(TrySendError::Full(request)) => Some(request),
                 Err(TrySendError::Disconnected(_)) => return,
-            }
+            };
         }
         tokio::select! {
             outgoing = outbox.next() => {

@@ -34,26 +34,38 @@ async function isServer({ tab, nonce, server }) {
   }
 }
 
+/** What became of a connection that was none. */
+const NONE = { proved: false, ended: false, reason: '' };
+
 /** A connection from its begin to its end. @returns {Promise<{proved: boolean, ended: boolean, reason: string}>} */
 async function once() {
   const said = await proofs();
-  if (!said || !(await isServer(said))) return { proved: false, ended: false, reason: '' };
+  if (!said || !(await isServer(said))) return NONE;
   const { tab, nonce, page, server } = said;
   const opened = new WebSocket(`ws://${location.host}/ws`, ['slipfront.lab.v2', `tab.${tab}`, `nonce.${nonce}`, `proof.${page}`]);
   opened.binaryType = 'arraybuffer';
   let proved = false;
-  opened.onmessage = (event) => {
-    if (proved) return receive(event);
-    // Somebody else may have taken the port since it was asked.
-    proved = event.data === JSON.stringify({ is: 'proof', proof: server });
-    if (!proved) return opened.close();
-    socket = opened;
-    put('connected', { yes: true });
-  };
   return new Promise((resolve) => {
+    // Whoever is not the server may leave a connection as it is for ever.
+    const giveUp = () => {
+      if (proved) return;
+      opened.close();
+      resolve(NONE);
+    };
+    setTimeout(giveUp, PATIENCE_MS);
+    opened.onmessage = (event) => {
+      if (proved) return receive(event);
+      if (opened.readyState !== WebSocket.OPEN) return;
+      // Somebody else may have taken the port since it was asked.
+      proved = event.data === JSON.stringify({ is: 'proof', proof: server });
+      if (!proved) return giveUp();
+      socket = opened;
+      put('connected', { yes: true });
+    };
     opened.onclose = ({ code, reason }) => {
+      if (!proved) return resolve(NONE);
       socket = null;
-      resolve({ proved, ended: proved && code === ENDED, reason: proved ? reason : '' });
+      resolve({ proved, ended: code === ENDED, reason });
     };
   });
 }
