@@ -44,10 +44,12 @@ impl Curve {
 
     /// Whether this can be the recording that began as `new` and was called at every step up to `step`.
     pub fn is_consistent_with(&self, new: &Self, step: u64) -> bool {
-        let of_stride = || (0..=step).step_by(new.stride.max(1) as usize);
-        let rows = || self.rows.iter().map(|row| row.step);
+        let stride = new.stride.max(1);
+        let of_stride = || (0..=step).step_by(stride as usize);
         // A run that has ended has a row of its last step, whatever the stride.
-        self.stride == new.stride && (rows().eq(of_stride()) || rows().eq(of_stride().chain([step])))
+        let with_last = of_stride().chain((!step.is_multiple_of(stride)).then_some(step));
+        let rows = || self.rows.iter().map(|row| row.step);
+        self.stride == new.stride && (rows().eq(of_stride()) || rows().eq(with_last))
     }
 }
 
