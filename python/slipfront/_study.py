@@ -160,7 +160,7 @@ class Study:
             result = Run(Case(native), record)
             return [float(quantity(result)) for quantity in own.values()]
 
-        temporary = TemporaryFolder() if folder is None else None
+        temporary = TemporaryFolder()
         with Bar(shown, None, "run", self.name) as bar:
 
             def show(done: int, total: int, failed: int) -> None:
@@ -168,7 +168,7 @@ class Study:
                     watch(done, total, failed)
                 bar.show(done, total, f"{failed} failed" if failed else "")
 
-            path = Path(folder) if temporary is None else temporary.path / self.name
+            path = temporary.path / self.name if folder is None else Path(folder)
             values, failures = self._native.execute(path, _threads(threads), look if own else None, show)
             results = StudyResults.read(path, failures)
             if folder is None:
