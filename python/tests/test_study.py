@@ -72,6 +72,23 @@ def test_points_levels_and_names_that_are_none_are_told(study: sf.Study, small: 
             sf.Study(small, {"drive.speed": levels})  # type: ignore[dict-item]
 
 
+def test_coverages_stand_as_they_are_meshed(small: sf.Case) -> None:
+    """Of 25 columns, 5 % are one and 15 % are three."""
+    case = small.replace({"slider.blocks": [25, 4], "texture": [{"shape": "groove", "coverage": 5}]})
+    study = sf.Study(case, {"texture.0.coverage": [5, 15]}, replicates=2)
+    points = study.run(progress=False, quantities={"twice": lambda run: 2 * run.steps}).points
+    assert {(row["texture.0.coverage"], row["texture_percent"]) for _, row in points.iterrows()} == {(5, 4), (15, 12)}
+
+
+def test_blocks_that_are_too_coarse_are_told_once(small: sf.Case) -> None:
+    case = small.replace({"slider.blocks": [25, 25], "texture": [{"shape": "groove", "coverage": 5}]})
+    (coarse,) = [sentence for sentence in case.warnings if "the outline needs" in sentence]
+    assert "the smallest groove is 1.25 blocks across; the outline needs 5, at least 100 x 100 blocks" in coarse
+    told = sf.Study(case, {"texture.0.coverage": [5, 6]}).warnings
+    (sentence,) = [sentence for sentence in told if "the outline needs" in sentence]
+    assert sentence == f"{coarse} (at 2 points, the first texture.0.coverage = 5)"
+
+
 def test_an_axis_may_have_named_variants(small: sf.Case) -> None:
     mask = np.zeros(small.shape, dtype=bool)
     mask[3:6, 3:6] = True

@@ -98,6 +98,21 @@ for (const [tool, keys] of Object.entries(TOOLS)) {
   });
 }
 
+test('blocks that are too coarse for a shape are told beside the shapes, as long as they are', async (t) => {
+  const lab = await open(t, { toml: SMALL });
+  await lab.reads('too-coarse', '');
+  await lab.find('#shapes button').click();
+  const set = async (coverage) => {
+    await lab.find('#shape-coverage').fill(coverage);
+    await lab.after(() => lab.find('#shape-coverage').press('Enter'), 'case', ({ texture }) => texture[0].coverage === Number(coverage));
+  };
+  await set('1');
+  await lab.reads('too-coarse', /^the smallest dimple is 2\.257 blocks across; the outline needs 5, at least 45 x 45 blocks /);
+  await lab.reads('notices', '');
+  await set('10');
+  await lab.reads('too-coarse', '');
+});
+
 test('a number that is typed after Tab takes the place of the one there, also when the answer came between', async (t) => {
   const lab = await open(t, { toml: SMALL });
   await lab.find('#shapes button').click();

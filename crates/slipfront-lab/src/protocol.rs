@@ -187,6 +187,8 @@ pub(crate) struct CaseReply<'a> {
     pub(crate) twin: bool,
     pub(crate) has_memory: bool,
     pub(crate) warnings: Vec<String>,
+    /// The one of the warnings that blocks are too coarse for the outlines of the texture.
+    pub(crate) too_coarse: Option<String>,
 }
 
 /// Units of the dimensionless quantities.

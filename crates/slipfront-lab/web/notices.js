@@ -47,19 +47,16 @@ export function startNotices() {
   on('refused', ({ sentence }) => notice(sentence.split('\n')[0], { topic: 'refused' }));
   on('failed', ({ sentence }) => notice(say('failed', { sentence }), { topic: 'failed', serious: true }));
   on('problem', ({ key, values }) => notice(say(key, values)));
-  let kinds = '';
-  on('case', ({ warnings, why }) => {
+  on('case', ({ warnings, too_coarse: tooCoarse, why }) => {
     // After a refusal the case comes again as it stands.
     if (why === 'refused') return;
     withdraw('failed');
     withdraw('refused');
-    const before = kinds;
-    // Sentences of one kind differ in their figures, which follow a slider that is dragged.
-    kinds = warnings.join(' ').replace(/[\d.]+/g, '');
-    if (kinds === before && why !== 'open') return;
     withdraw('warnings');
+    // What stands beside the shapes lies on nothing.
+    const told = warnings.filter((/** @type {string} */ warning) => warning !== tooCoarse);
     // A lesson says itself what its case is for.
-    if (warnings.length > 0 && !state.lesson) notice(warnings.join(' '), { topic: 'warnings' });
+    if (told.length > 0 && why === 'open' && !state.lesson) notice(told.join(' '), { topic: 'warnings' });
   });
 }
 

@@ -93,6 +93,7 @@ function show() {
   const [id, place] = [focused?.id, [...list.querySelectorAll('button')].indexOf(/** @type {any} */ (focused))];
   list.replaceChildren(...texture.map(item));
   find('no-shapes').hidden = texture.length > 0;
+  find('too-coarse').textContent = state.case?.too_coarse ?? '';
   // The list is made anew, but the reader stays where he was, and what he types replaces the number as after Tab.
   if (id) {
     find(id)?.focus();

@@ -59,6 +59,7 @@ impl Session {
             twin: self.twin.is_some(),
             has_memory: live.has_memory(),
             warnings: case.warnings(),
+            too_coarse: case.too_coarse(),
         };
         self.outbox.reply(&Reply::Case(Box::new(reply)));
     }

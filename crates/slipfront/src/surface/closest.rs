@@ -285,29 +285,75 @@ fn between_polygons(
     }))
 }
 
+/// The corners of a polygon at which it turns.
+fn without_straight(corners: &[[f64; 2]]) -> Vec<[f64; 2]> {
+    let mut corners = corners.to_vec();
+    corners.dedup();
+    if corners.len() > 1 && corners.first() == corners.last() {
+        corners.pop();
+    }
+    let count = corners.len();
+    let turns = |at: &usize| {
+        let [before, after] = [(at + count - 1) % count, (at + 1) % count].map(|other| corners[other]);
+        let (along, on) = (less(corners[*at], before), less(after, corners[*at]));
+        cross(along, on).abs() > 1e-9 * dot(along, on).abs() || dot(along, on) < 0.0
+    };
+    (0..count).filter(turns).map(|at| corners[at]).collect()
+}
+
 /// The smallest distance of a corner of a polygon from an edge that it faces: across the inside, and across the outside.
+///
+/// A corner faces an edge if its distance from the line of the edge is the smallest or the largest beside it. Along a side that runs to a
+/// vertex the distance from the other side falls to nothing, and is no width.
 pub(super) fn widths(corners: &[[f64; 2]], effort: &mut Effort) -> Result<[Option<f64>; 2], TooMuch> {
-    effort.take(corners.len() * corners.len())?;
+    let corners = without_straight(corners);
+    let count = corners.len();
+    effort.take(count * count)?;
     // Whether the inside is to the left of an edge.
     let is_left = |edge: [[f64; 2]; 2]| {
         let [x, y] = less(edge[1], edge[0]);
         let beside = plus(at_share(edge, 0.5), [-1e-6 * y, 1e-6 * x]);
-        is_inside(beside, corners, effort)
+        is_inside(beside, &corners, effort)
     };
-    let left: Vec<bool> = edges(corners).map(is_left).collect::<Result<_, _>>()?;
+    let left: Vec<bool> = edges(&corners).map(is_left).collect::<Result<_, _>>()?;
+    let beside = |at: usize| [(at + count - 1) % count, (at + 1) % count];
+    let turns_left = |at: usize| {
+        let [before, after] = beside(at).map(|other| corners[other]);
+        cross(less(corners[at], before), less(after, corners[at])) > 0.0
+    };
     let mut least = [f64::INFINITY; 2];
     for (at, &corner) in corners.iter().enumerate() {
-        for (start, edge) in edges(corners).enumerate() {
-            if start == at || (start + 1) % corners.len() == at {
-                continue;
-            }
+        for (start, edge) in edges(&corners).enumerate() {
+            let end = (start + 1) % count;
             let share = share_of(corner, edge);
-            if !(0.0..=1.0).contains(&share) {
+            if start == at || end == at || !(0.0..=1.0).contains(&share) {
                 continue;
             }
+            let foot = at_share(edge, share);
+            let square = square_between(corner, foot);
             let is_to_the_left = cross(less(edge[1], edge[0]), less(corner, edge[0])) > 0.0;
             let least = &mut least[usize::from(is_to_the_left != left[start])];
-            *least = least.min(square_between(corner, at_share(edge, share)));
+            if square >= *least || square <= TOUCHING * TOUCHING {
+                continue;
+            }
+            // How much nearer to the edge, and so negative, the corners beside are.
+            let across = less(corner, foot);
+            let farther = beside(at).map(|other| dot(less(corners[other], corner), across) / square);
+            let is_flat = farther.iter().any(|farther| farther.abs() < TOUCHING);
+            if !is_flat && (farther[0] > 0.0) != (farther[1] > 0.0) {
+                continue;
+            }
+            // A side of the polygon itself is a width between two corners that turn alike, and a step between others.
+            let foot_at = match share {
+                _ if share < TOUCHING => Some(start),
+                _ if share > 1.0 - TOUCHING => Some(end),
+                _ => None,
+            };
+            let is_step = |other| beside(at).contains(&other) && turns_left(other) != turns_left(at);
+            if foot_at.is_some_and(is_step) {
+                continue;
+            }
+            *least = square;
         }
     }
     Ok(least.map(|square| square.is_finite().then(|| square.sqrt())))
@@ -388,6 +434,82 @@ mod tests {
         );
         // Tiles that share an edge.
         assert_eq!(distance(&across, &across, [2.0, 0.0]), None);
+    }
+
+    /// However finely an outline is drawn, its corners and tips are no narrow features.
+    #[test]
+    fn polygons_are_as_wide_as_what_faces_each_other() {
+        let widths = |corners: &[[f64; 2]]| {
+            let found = widths(corners, &mut Effort(usize::MAX)).unwrap();
+            found.map(|width| width.unwrap_or(f64::NAN))
+        };
+        let closed = |corners: &[[f64; 2]]| [corners, &corners[..1]].concat();
+        let drawn_finely = |corners: &[[f64; 2]]| -> Vec<[f64; 2]> {
+            let pieces = |edge| (0..20).map(move |k| at_share(edge, f64::from(k) / 20.0));
+            edges(corners).flat_map(pieces).collect()
+        };
+        let rectangle = [[10.0, 10.0], [30.0, 10.0], [30.0, 16.0], [10.0, 16.0]];
+        let triangle = [[0.0, 0.0], [12.0, 0.0], [0.0, 9.0]];
+        let stairs = [
+            [0.0, 0.0],
+            [20.0, 0.0],
+            [20.0, 3.0],
+            [19.0, 3.0],
+            [19.0, 4.0],
+            [18.0, 4.0],
+            [18.0, 5.0],
+            [0.0, 5.0],
+        ];
+        let notched = [
+            [0.0, 0.0],
+            [20.0, 0.0],
+            [20.0, 9.0],
+            [12.0, 9.0],
+            [12.0, 5.0],
+            [9.0, 5.0],
+            [9.0, 9.0],
+            [0.0, 9.0],
+        ];
+        for (corners, width, gap) in [
+            (&rectangle[..], 6.0, None),
+            // From the right angle to the longest side, 12 times 9 over 15.
+            (&triangle, 7.2, None),
+            (&stairs, 3.0, None),
+            (&notched, 5.0, Some(3.0)),
+        ] {
+            for corners in [corners.to_vec(), closed(corners), drawn_finely(corners)] {
+                let [found, outside] = widths(&corners);
+                // Corners between the ends of an edge are rounded.
+                assert!((found - width).abs() < 1e-9, "{corners:?}: {found}");
+                let gap = gap.unwrap_or(f64::NAN);
+                assert!(
+                    (outside - gap).abs() < 1e-9 || outside.is_nan() && gap.is_nan(),
+                    "{corners:?}: {outside}"
+                );
+            }
+        }
+        // A lens between two arcs of radius 25 that meet in tips, 8 across where it is thickest and so as far as to 1 in 500; and
+        // an ellipse, whose ends are much narrower than its middle.
+        let arc = |k: u32, side: f64| {
+            let half = (21.0_f64 / 25.0).acos();
+            let angle = half * (f64::from(k) / 50.0 - 1.0);
+            [25.0 * angle.sin() * side, (25.0 * angle.cos() - 21.0) * side]
+        };
+        let lens: Vec<[f64; 2]> = (0..100)
+            .map(|k| arc(k, 1.0))
+            .chain((0..100).map(|k| arc(k, -1.0)))
+            .collect();
+        let [found, outside] = widths(&lens);
+        assert!(
+            (found - 8.0).abs() < 0.016 && outside.is_nan(),
+            "{found} {outside}"
+        );
+        let long = ellipse([0.0; 2], [30.0, 2.0], 20.0).corners();
+        let [found, outside] = widths(&long);
+        assert!(
+            (found - 4.0).abs() < 0.008 && outside.is_nan(),
+            "{found} {outside}"
+        );
     }
 
     #[test]
