@@ -113,7 +113,7 @@ fn the_blocks_that_are_named_are_the_fewest() {
         ),
         on(
             square,
-            "shape = 'polygon'\npoints = [['20 um', '20 um'], ['60 um', '20 um'], ['60 um', '60 um'], ['40 um', '25 um']]\narray = [2, 2]",
+            "shape = 'polygon'\npoints = [['20 um', '20 um'], ['60 um', '20 um'], ['60 um', '60 um'], ['40 um', '60 um'], ['40 um', '25 um'], ['20 um', '25 um']]\narray = [2, 2]",
         ),
         on(
             periodic,

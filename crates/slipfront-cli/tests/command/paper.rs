@@ -19,7 +19,7 @@ fn figures_are_made_judged_and_reported() {
         let text = stdout(&output);
         assert!(output.status.success(), "{text}");
         assert!(
-            text.contains("3 claims: 1 holds, 0 hold with a condition, 2 are misprints or slips of algebra, 0 do not hold"),
+            text.contains("3 claims: 1 holds, 0 hold with a condition, 0 are not reproduced as stated, 2 are misprints or slips of algebra, 0 do not hold"),
             "{text}"
         );
         assert!(text.contains("report.html"));

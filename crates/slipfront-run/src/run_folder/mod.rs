@@ -183,6 +183,9 @@ impl ClaimedFolder {
 /// # Errors
 /// When one of them does not; the sentence names the rank.
 pub fn expect_shared(path: &Path, communicator: &dyn Communicator) -> Result<(), RankFailure> {
+    if communicator.size() == 1 {
+        return Ok(());
+    }
     let is_first = communicator.rank() == 0;
     let failure = |sentence| RankFailure { status: 2, sentence };
     let temporary = Unfinished::of(path).temporary();
