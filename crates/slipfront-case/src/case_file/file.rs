@@ -143,12 +143,12 @@ impl CaseFile {
         Ok(toml::to_string(self)?)
     }
 
-    /// Every key with its value, defaults filled in: `texture.0.coverage` and `25.0`.
+    /// Every key, in backticks, with its value, defaults filled in.
     ///
     /// ```
     /// use slipfront_case::case_file::CaseFile;
     /// let values = CaseFile::default().values();
-    /// assert!(values.contains(&("`slider.blocks`".to_owned(), "[100, 100]".to_owned())));
+    /// assert!(values.contains(&("`slider.blocks`".to_owned(), "[25, 25]".to_owned())));
     /// ```
     pub fn values(&self) -> Vec<(String, String)> {
         let mut values = Vec::new();

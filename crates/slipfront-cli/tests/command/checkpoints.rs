@@ -25,7 +25,7 @@ const SPRINGS: &str = "[slider]\nblocks = [60, 50]\n[drive]\nv_star = 0.01\n[fri
                        contact_stiffness_star = 0.3\nredraw = true\n";
 
 /// Enough blocks for two threads, until the onset.
-const WIDE: &str = "[slider]\nblocks = [400, 350]\n[drive]\nv_star = 0.1\n[time]\nstop = 'after_onset'\n";
+const WIDE: &str = "[slider]\nblocks = [400, 350]\n[drive]\nv_star = 0.05\n[time]\nstop = 'after_onset'\n";
 
 fn slow_workspace() -> Workspace {
     let workspace = Workspace::small();
