@@ -118,10 +118,7 @@ fn assert_refused(folder: &Path, ranks: [(&str, &str); 2], wanted: &[&str]) {
     "`texture.0.shape` is \"cavity\" on rank 1 and not given on rank 0"
 )]
 #[case::time_step("time.step=0.01", "`time.step` is 0.01 on rank 1")]
-#[case::law(
-    "friction.law='reversal'",
-    "`friction.law` is \"reversal\" on rank 1"
-)]
+#[case::law("friction.law='reversal'", "`friction.law` is \"reversal\" on rank 1")]
 #[case::wrong_value("drive.v_star=-1", "rank 1: --set drive.v_star=-1")]
 #[case::unknown_key("drive.v=1", "rank 1: --set drive.v=1")]
 fn another_case_is_refused(#[case] change: &str, #[case] sentence: &str) {
