@@ -29,7 +29,7 @@ pub fn write_beside(
     path: &Path,
     fill: impl FnOnce(&mut File) -> std::io::Result<()>,
 ) -> std::io::Result<NamedTempFile> {
-    fill_and_sync(unfinished::file_for(path)?, fill)
+    fill_and_sync(unfinished::file_for(folder_of(path), path)?, fill)
 }
 
 /// The folder in which a file is, or is to be.

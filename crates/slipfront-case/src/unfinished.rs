@@ -13,8 +13,6 @@ use std::sync::{Arc, Mutex, PoisonError, Weak};
 use gethostname::gethostname;
 use tempfile::{Builder, NamedTempFile, TempDir};
 
-use crate::disk::folder_of;
-
 /// The beginning of every hidden name.
 const BEGINNING: &str = ".slipfront-";
 /// Digits of the hash.
@@ -41,8 +39,7 @@ pub fn is_unfinished(name: &str) -> bool {
 
 /// Makes an empty file, locked, in the folder of the file that it will be renamed to, and removes what killed processes have
 /// left of such files.
-pub(crate) fn file_for(path: &Path) -> Result<NamedTempFile> {
-    let folder = folder_of(path);
+pub(crate) fn file_for(folder: &Path, path: &Path) -> Result<NamedTempFile> {
     let beginning = beginning_for(path.file_name().unwrap_or_default().as_encoded_bytes());
     clear(folder, &beginning, is_file);
     let make = || builder(&beginning, 0o666).tempfile_in(folder);
@@ -229,7 +226,7 @@ mod tests {
     fn what_a_killed_process_left_is_removed_by_the_next_for_its_target() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.png");
-        let (_, left) = file_for(&path).unwrap().keep().unwrap();
+        let (_, left) = file_for(folder.path(), &path).unwrap().keep().unwrap();
         std::fs::write(&left, "half of").unwrap();
         assert_eq!(names(folder.path()).len(), 1);
         write_atomic(&folder.path().join("b.png"), b"b").unwrap();
@@ -247,7 +244,7 @@ mod tests {
     fn what_a_living_process_writes_stays() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.png");
-        let first = file_for(&path).unwrap();
+        let first = file_for(folder.path(), &path).unwrap();
         std::fs::write(first.path(), "first").unwrap();
         write_atomic(&path, b"second").unwrap();
         clear_unfinished(folder.path());

@@ -251,12 +251,30 @@ fn open(path: &Path) -> std::io::Result<Opened> {
 /// The state that takes all bytes from `begin` to `end`; an error of [`ErrorKind::InvalidData`] if there is none.
 fn read_state(mut file: &File, begin: u64, end: u64) -> std::io::Result<RunState> {
     file.seek(SeekFrom::Start(begin))?;
+    let file = Told { file, error: None };
     let mut body = BufReader::with_capacity(1 << 16, file).take(end - begin);
     // Room for one number at a time.
     let mut number = [0; 16];
     let state = postcard::from_io((&mut body, &mut number)).map(|(state, _)| state);
     let state = state.ok().filter(|_| body.limit() == 0);
-    state.ok_or_else(|| ErrorKind::InvalidData.into())
+    let error = body.into_inner().into_inner().error;
+    state.ok_or_else(|| error.unwrap_or_else(|| ErrorKind::InvalidData.into()))
+}
+
+/// A file that is read, and the error that it gave: postcard tells none.
+struct Told<'a> {
+    file: &'a File,
+    error: Option<std::io::Error>,
+}
+
+impl Read for Told<'_> {
+    fn read(&mut self, bytes: &mut [u8]) -> std::io::Result<usize> {
+        self.file.read(bytes).map_err(|error| {
+            let told = error.kind().into();
+            self.error = Some(error);
+            told
+        })
+    }
 }
 
 impl VerifiedFile {
