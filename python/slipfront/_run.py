@@ -150,7 +150,7 @@ class Run:
 
     @property
     def transition(self) -> bool:
-        """Whether mu* fell at least half-way to the steady level after its first peak."""
+        """Whether mu* fell at least half-way to the steady level after its first peak and stays below it."""
         return bool(self.summary["transition"])
 
     @property

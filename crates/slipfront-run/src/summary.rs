@@ -56,7 +56,8 @@ pub struct Summary {
     pub sliding_percent_max: f64,
     /// Largest mu* of the whole run; above mu_s* where a later peak is higher than the first.
     pub mu_star_max: f64,
-    /// Whether mu* fell at least half-way to the steady level after its first peak, and within the time of a transition.
+    /// Whether mu* fell at least half-way to the steady level L and by (1 - L)/20 after its first peak, within the time of a transition,
+    /// and mu_k* is as much below the peak.
     pub transition: bool,
     /// The instants A-F that were found.
     pub instants: Vec<InstantSummary>,
@@ -390,14 +391,19 @@ impl SummaryObservers {
             })
             .collect();
         let kinetic_star = kinetic.map(|kinetic| kinetic.mu_star);
-        let si = si(case, peak.mu_star, kinetic_star, simulation.contact_stress_max());
+        let transition = peak.ended && !is_kept_up(&peak, kinetic);
+        let [static_star, lateral_star, onset_star] = match transition {
+            true => [peak.mu_star, peak.mu_lateral_star, peak.time_star],
+            false => [peak.mu_star_max, peak.max_lateral_star, peak.max_time_star],
+        };
+        let si = si(case, static_star, kinetic_star, simulation.contact_stress_max());
         let after_run = after_run(reason, &peak, first_slip, kinetic, &energies);
         Summary {
-            static_friction_star: peak.mu_star,
-            static_friction: peak.mu_star * mean,
-            static_lateral_friction_star: peak.mu_lateral_star,
-            onset_time_star: peak.time_star,
-            onset_time_s: peak.time_star * time,
+            static_friction_star: static_star,
+            static_friction: static_star * mean,
+            static_lateral_friction_star: lateral_star,
+            onset_time_star: onset_star,
+            onset_time_s: onset_star * time,
             first_slip_time_star: first_slip,
             first_slip_time_s: first_slip.map(|star| star * time),
             kinetic_friction_star: kinetic.map(|k| k.mu_star),
@@ -408,7 +414,7 @@ impl SummaryObservers {
             sliding_percent_kinetic: kinetic.map(|k| k.sliding_percent),
             sliding_percent_max: self.history.sliding_percent_max(),
             mu_star_max: peak.mu_star_max,
-            transition: peak.ended,
+            transition,
             instants,
             si: Some(si),
             v_star: case.groups.v_star,
@@ -534,6 +540,15 @@ pub fn summary_json(summary: &Summary) -> String {
 /// Share of the energy that may be unaccounted for; a step of 0.1 stays a factor of ten below.
 const LARGE_ENERGY_ERROR: f64 = 0.01;
 
+/// Whether sliding goes on as high as a peak that a fall has ended: mu_s* is then one of many peaks of a slider that creeps.
+fn is_kept_up(peak: &Peak, kinetic: Option<Kinetic>) -> bool {
+    peak.ended && kinetic.is_some_and(|kinetic| !peak.is_above(kinetic.mu_star))
+}
+
+/// By how much a later mu* exceeds the first peak where a reader should know it, relative to that peak. Equal peaks of stick-slip
+/// differ by less, since steps do not meet their tops.
+const HIGHER_LATER: f64 = 0.01;
+
 /// What the run itself gives reason to warn of.
 fn after_run(
     reason: StopReason,
@@ -559,6 +574,21 @@ fn after_run(
             } else {
                 ""
             }
+        ));
+    }
+    if let Some(kinetic) = kinetic.filter(|_| is_kept_up(peak, kinetic)) {
+        warnings.push(format!(
+            "mu* slides on at {:.4} after a first peak of {:.4}, with less between them than a twentieth of what friction can lose: there was no \
+             transition, and static_friction_star is the largest mu* of the run",
+            kinetic.mu_star, peak.mu_star
+        ));
+    }
+    if peak.ended && !is_kept_up(peak, kinetic) && peak.mu_star_max > (1.0 + HIGHER_LATER) * peak.mu_star {
+        warnings.push(format!(
+            "mu* is larger later than at its first peak: {:.4} at t* = {:.1}, {:.0} % above static_friction_star",
+            peak.mu_star_max,
+            peak.max_time_star,
+            100.0 * (peak.mu_star_max / peak.mu_star - 1.0)
         ));
     }
     if first_slip.is_none() {

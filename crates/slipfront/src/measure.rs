@@ -53,9 +53,13 @@ impl CurvePoint {
     }
 }
 
-/// The first peak of mu* that is followed by a fall of at least half-way to the steady level L, within the longest time that a
-/// transition takes. It is found while the run goes on: until such a fall is seen it is the largest mu* so far, and it stays that if
-/// the first fall comes too late, of a slider that creeps.
+/// What friction loses in a transition at least, of the largest loss 1 - L. Ripples of sliding just above L are smaller; a texture that
+/// lowers mu_s* nearly to L leaves more.
+const LEAST_FALL: f64 = 0.05;
+
+/// The first peak of mu* that is followed by a fall of at least half-way to the steady level L and of at least (1 - L)/20, within the
+/// longest time that a transition takes. It is found while the run goes on: until such a fall is seen it is the largest mu* so far,
+/// and it stays that if the first fall comes too late, of a slider that creeps.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Peak {
     /// mu* at the peak: mu_s* once `ended`.
@@ -70,9 +74,13 @@ pub struct Peak {
     pub ended: bool,
     /// Largest mu* of the whole run so far.
     pub mu_star_max: f64,
+    /// What is across the drive at the largest mu*.
+    pub max_lateral_star: f64,
+    /// Time of the largest mu*.
+    pub max_time_star: f64,
     steady_level: f64,
     longest_fall: f64,
-    /// Whether mu* fell half-way too late to be a transition.
+    /// Whether mu* fell that far too late to be a transition.
     crept: bool,
 }
 
@@ -87,6 +95,8 @@ impl Peak {
             time_star: 0.0,
             ended: false,
             mu_star_max: lowest,
+            max_lateral_star: 0.0,
+            max_time_star: 0.0,
             steady_level,
             longest_fall,
             crept: false,
@@ -95,17 +105,26 @@ impl Peak {
 
     /// Whether a fall to `mu_star` at this time would end the peak.
     pub(crate) fn ends_at(&self, time_star: f64, mu_star: f64) -> bool {
-        !self.crept && self.is_half_way_down(mu_star) && time_star - self.time_star <= self.longest_fall
+        !self.crept && self.is_fall_to(mu_star) && time_star - self.time_star <= self.longest_fall
     }
 
-    fn is_half_way_down(&self, mu_star: f64) -> bool {
-        self.mu_star > self.steady_level && mu_star <= 0.5 * (self.mu_star + self.steady_level)
+    fn is_fall_to(&self, mu_star: f64) -> bool {
+        let half_way = 0.5 * (self.mu_star + self.steady_level);
+        self.mu_star > self.steady_level && mu_star <= half_way && self.is_above(mu_star)
+    }
+
+    /// Whether the peak is above this mean of mu* in sliding by the least that friction loses in a transition, (1 - L)/20.
+    pub fn is_above(&self, sliding: f64) -> bool {
+        self.mu_star - sliding >= LEAST_FALL * (1.0 - self.steady_level).max(0.0)
     }
 
     /// Takes the next step into account.
     pub(crate) fn update(&mut self, step: u64, time_star: f64, point: &CurvePoint) {
         let mu_star = point.mu_star;
-        self.mu_star_max = self.mu_star_max.max(mu_star);
+        if mu_star > self.mu_star_max {
+            (self.mu_star_max, self.max_time_star) = (mu_star, time_star);
+            self.max_lateral_star = point.mu_lateral_star;
+        }
         if self.ended {
             return;
         }
@@ -114,7 +133,7 @@ impl Peak {
             self.mu_lateral_star = point.mu_lateral_star;
         } else {
             self.ended = self.ends_at(time_star, mu_star);
-            self.crept |= !self.ended && self.is_half_way_down(mu_star);
+            self.crept |= !self.ended && self.is_fall_to(mu_star);
         }
     }
 }
@@ -148,7 +167,26 @@ mod tests {
             (peak.mu_star, peak.step, peak.ended, peak.mu_star_max),
             (1.0, 3, true, 1.1)
         );
-        assert_eq!(peak.mu_lateral_star, -1.0);
+        assert_eq!(
+            (peak.mu_lateral_star, peak.max_lateral_star, peak.max_time_star),
+            (-1.0, -1.1, 8.0)
+        );
+    }
+
+    /// At L = 0.5 a ripple of less than 0.025 is none, though it falls half-way to L; and where L is above 1 half-way is enough.
+    #[test]
+    fn a_ripple_just_above_the_level_of_sliding_is_no_peak() {
+        let curve = [0.0, 0.51, 0.5, 0.52, 0.497, 0.68, 0.55];
+        assert_eq!((peak_of(0.5, &curve).step, peak_of(0.5, &curve).ended), (5, true));
+        assert_eq!(peak_of(0.5, &[0.0, 0.53, 0.504]).step, 1);
+        assert!(peak_of(0.5, &[0.0, 0.53, 0.504]).ended);
+        assert!(peak_of(1.2, &[0.0, 1.21, 1.204]).ended);
+    }
+
+    #[test]
+    fn a_transition_lowers_the_friction_by_a_twentieth_of_what_it_can_lose() {
+        let peak = peak_of(0.5, &[0.0, 0.57, 0.53]);
+        assert!(peak.ended && peak.is_above(0.544) && !peak.is_above(0.546));
     }
 
     #[test]

@@ -212,8 +212,8 @@ fn notes(plan: &Plan, results: &StudyResults) -> String {
         .collect();
     if !without.is_empty() {
         text += &note(&format!(
-            "{} no transition: mu* rose and did not fall half-way to its steady level in the time of a transition. There is no static friction \
-             of such a run and no reduction, and no mean has them; `mu_star_max` is its largest mu*. Lengthen `time.duration_star` of the base \
+            "{} no transition: mu* rose and did not fall half-way to its steady level in the time of a transition, or slides on as high. There is no \
+             static friction of such a run and no reduction, and no mean has them; `mu_star_max` is its largest mu*. Lengthen `time.duration_star` of the base \
              if runs end before the fall; those that creep have none",
             match without.len() {
                 1 => "1 run has".to_owned(),

@@ -184,6 +184,48 @@ fn stop_after_onset_ends_the_run_there() {
     );
 }
 
+/// Static friction below kinetic friction is none: the stiff edge of this slider slips first, mu* stops a little at 0.518, and goes on
+/// rising to 0.548 in sliding.
+#[test]
+fn a_peak_below_the_sliding_that_follows_is_no_transition() {
+    let workspace = Workspace::small();
+    workspace.write(
+        "graded.toml",
+        "slider.blocks = [50, 50]\nslider.stiffness_grade = { along = 'x', from = 1, to = 0.1 }\n",
+    );
+    let said = workspace.succeed("run graded.toml -o graded");
+    let summary = workspace.summary("graded");
+    let number = |key: &str| summary[key].as_f64().unwrap();
+    assert_eq!(summary["transition"], false);
+    assert_eq!(number("static_friction_star"), number("mu_star_max"));
+    assert!(number("onset_time_star") > 400.0 && number("kinetic_friction_star") > 0.52);
+    assert!(
+        said.contains("at least mu_s* = 0.5485") && said.contains("after a first peak of 0.5180"),
+        "{said}"
+    );
+}
+
+/// A chain pulled at its end goes on in stick-slip, of which a later peak is the highest.
+#[test]
+fn a_later_mu_star_above_the_first_peak_is_told() {
+    let workspace = Workspace::small();
+    workspace.write(
+        "chain.toml",
+        "slider = { blocks = [60, 1], viscosity_time_star = 0.3, omega_star = 0 }\nfriction.r_star = 0.1\n\
+         drive = { attach = 'left', v_star = 1, total_stiffness_star = 0.004 }\n\
+         time = { step = 0.6, duration_star = 20000 }\noutput.series = 100\n",
+    );
+    let said = workspace.succeed("run chain.toml -o chain");
+    let summary = workspace.summary("chain");
+    assert_eq!(summary["transition"], true);
+    let [first, largest] = ["static_friction_star", "mu_star_max"].map(|key| summary[key].as_f64().unwrap());
+    assert!(largest > 1.01 * first);
+    assert!(
+        said.contains("mu* is larger later than at its first peak: 0.1470"),
+        "{said}"
+    );
+}
+
 /// The numbers of the front, and its picture, belong to a transition; sliding is recorded in every run.
 #[test]
 fn a_run_without_a_transition_has_no_front() {

@@ -152,7 +152,7 @@ fn what_is_said_is_what_is_taken() {
         "slider.blocks=[500,500];slider.stiffness_grade={along='x',from=1,to=2};slider.density_grade={along='y',from=1,to=2};\
          time.duration_star=1;output.snapshots=[]",
         // Events of slip.
-        "slider.blocks=[60,1];slider.viscosity_time_star=0.3;slider.omega_star=0;drive.attach='left';drive.v_star=1;\
+        "slider.blocks=[60,1];slider.viscosity_time_star=0.3;slider.omega_star=0;friction.r_star=0.1;drive.attach='left';drive.v_star=1;\
          drive.total_stiffness_star=0.004;time.step=0.6;time.duration_star=20000;output.snapshots=[];output.series=100",
         // Snapshots.
         "slider.blocks=[400,400];time.duration_star=2;output.snapshots={every=0.1}",

@@ -410,8 +410,12 @@ proptest! {
         let largest_to = |n: usize| {
             (0..=n).fold(0, |best, k| if curve[k] > curve[best] { k } else { best })
         };
-        let half_way = |n: usize| 0.5 * (curve[largest_to(n)] + level);
-        let fall = (0..curve.len()).find(|&n| curve[largest_to(n)] > level && curve[n] <= half_way(n));
+        let is_fall = |n: usize| {
+            let largest = curve[largest_to(n)];
+            let half_way = 0.5 * (largest + level);
+            largest > level && curve[n] <= half_way && largest - curve[n] >= 0.05 * (1.0 - level).max(0.0)
+        };
+        let fall = (0..curve.len()).find(|&n| is_fall(n));
         let peak = outcome.peak;
         prop_assert_eq!(peak.ended, fall.is_some());
         prop_assert_eq!(peak.step as usize, largest_to(fall.unwrap_or(curve.len() - 1)));
