@@ -1,6 +1,7 @@
 //! What the tables and pictures say, and on what they do not depend.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
 
 use super::results::{SMALL, SMALL_RUNS, deviation, mean};
 use crate::fixtures::unwrapped;
@@ -676,4 +677,42 @@ fn runs_without_the_number_that_decides_do_not_count_for_it() {
         .find(|row| row["quantity"] == "kinetic_friction_star")
         .unwrap();
     assert_eq!((row["n"].as_str(), row["narrow_enough"].as_str()), ("0", "false"));
+}
+
+/// The tables of the guides on slow loading, soft springs and smaller blocks hold what their studies give.
+#[test]
+fn the_guides_have_the_reductions_of_their_studies() {
+    let repository = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let guide = |name: &str| std::fs::read_to_string(repository.join("docs/guide").join(name)).unwrap();
+    let workspace = Workspace::small();
+    let reductions = |study: &str, axes: &[&str]| {
+        let file = repository.join("cases/studies").join(format!("{study}.toml"));
+        workspace.succeed(&format!("study {} -q -o {study}", file.display()));
+        let points = workspace.results(study).table("points.csv");
+        let rows = points
+            .iter()
+            .filter(|row| row["quantity"] == "static_reduction_percent");
+        rows.map(|row| {
+            assert_eq!(row["runs_without_transition"], "0");
+            let levels = axes.iter().map(|axis| row[*axis].clone()).collect::<Vec<_>>();
+            (levels, format!("{:.1}", row["mean"].parse::<f64>().unwrap()))
+        })
+        .collect::<Vec<_>>()
+    };
+    let slow = reductions("slow_loading", &["drive.v_star", "slider.omega_star"]);
+    let text = guide("studies.md");
+    for damped in slow.chunks(3) {
+        let cells: Vec<&str> = damped.iter().map(|(_, cell)| cell.as_str()).collect();
+        let row = format!("| {} | {} |", damped[0].0[0], cells.join(" | "));
+        assert!(text.contains(&row), "{row}");
+    }
+    let text = guide("experiment.md");
+    for (study, axis) in [("soft_springs", "softer"), ("halved_blocks", "blocks")] {
+        let cells: Vec<String> = reductions(study, &[axis])
+            .into_iter()
+            .map(|(_, cell)| cell)
+            .collect();
+        let row = format!("| reduction in % | {} |", cells.join(" | "));
+        assert!(text.contains(&row), "{row}");
+    }
 }
