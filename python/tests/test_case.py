@@ -155,6 +155,29 @@ def test_masked_heights_are_not_taken_for_measured_ones() -> None:
     assert sf.Case.from_dict(tables).numbers["texture_percent"] == 50
 
 
+def test_a_surface_has_the_same_contact_from_every_file_of_surface_topography(tmp_path: Path) -> None:
+    library = pytest.importorskip("SurfaceTopography")
+    # Without symmetry: a mirrored or turned surface touches elsewhere.
+    heights = np.random.default_rng(1).normal(size=(20, 12))
+    surface = library.Topography(heights * 1e-6, (20e-6, 12e-6), unit="m")
+    rows = surface.heights().T[::-1]
+    np.save(tmp_path / "array.npy", rows)
+    np.savetxt(tmp_path / "array.csv", rows)
+    for number in "DFLI":
+        surface.to_x3p(str(tmp_path / f"{number}.x3p"), dtype=number)
+
+    def contact(file: object, **units: str) -> np.ndarray:
+        texture = {"shape": "height_map", "file": file, "bearing_percent": 50, **units}
+        return ~sf.Case.from_dict({"slider": {"blocks": [20, 12]}, "texture": [texture]}).textured
+
+    # The library shows heights()[:, 0] on top, where y is largest; half of an even number of blocks touch.
+    wanted = (heights > np.median(heights)).T[::-1]
+    for file in (str(tmp_path / "array.npy"), str(tmp_path / "array.csv"), rows):
+        assert (contact(file, height_unit="1 m", pixel_size="1 um") == wanted).all(), file
+    for number in "DFLI":
+        assert (contact(str(tmp_path / f"{number}.x3p")) == wanted).all(), number
+
+
 def test_a_case_shows_its_physics() -> None:
     case = sf.Case.load("cases/circle.toml")
     assert "50 x 50 blocks" in repr(case)

@@ -40,7 +40,9 @@ const OWN: Units = Units {
     pixel: None,
 };
 
-/// Heights stored as 32-bit numbers are good to 2^-24 of 6 um, of 64 bits, as grey levels and in decimals to rounding.
+/// The map has no symmetry, and lies on the blocks as SurfaceTopography and Gwyddion show it, from whichever file. Heights stored as
+/// 32-bit numbers are good to 2^-24 of 6 um, of 64 bits, as grey levels and in decimals to rounding, as integers to half a step: their
+/// range, less than 6 um, over 2^32 or 2^16.
 #[rstest]
 #[case("map.npy", Units { height: Some(1.0), pixel: SIZE }, 1e-15)]
 #[case("map_f4_fortran.npy", Units { height: Some(1e-6), pixel: SIZE }, 4e-13)]
@@ -52,6 +54,8 @@ const OWN: Units = Units {
 #[case("map.gsf", OWN, 4e-13)]
 #[case("map.x3p", OWN, 1e-15)]
 #[case("map_f4.x3p", OWN, 4e-13)]
+#[case("map_i4.x3p", OWN, 1e-15)]
+#[case("map_i2.x3p", OWN, 5e-11)]
 fn every_format_gives_what_numpy_computes(#[case] name: &str, #[case] units: Units, #[case] error: f64) {
     let reference = reference();
     for (grid, means) in reference["blocks"].as_object().unwrap() {
@@ -252,7 +256,7 @@ fn read_bytes(name: &str, bytes: &[u8]) -> Result<HeightMap, ArrayError> {
     read(&path, units, [2, 2])
 }
 
-/// Integers have a step and an offset.
+/// Integers have a step and an offset. The first row is the upper one.
 #[test]
 fn x3p_files_have_heights_of_four_types() {
     let read = |z: &str, heights: &[u8]| {
@@ -262,14 +266,14 @@ fn x3p_files_have_heights_of_four_types() {
     };
     let z = "<DataType>I</DataType><Increment>1e-9</Increment><Offset>1e-6</Offset>";
     let map = read(z, [-1000i16, 0, 1, 2000].map(i16::to_le_bytes).as_flattened());
-    for (found, wanted) in map.blocks.iter().zip([0.0, 1e-6, 1.001e-6, 3e-6]) {
+    for (found, wanted) in map.blocks.iter().zip([1.001e-6, 3e-6, 0.0, 1e-6]) {
         // The rounding of numbers of 1e-6.
         assert!((found - wanted).abs() < 1e-21, "{found} {wanted}");
     }
     let z = "<DataType>L</DataType><Increment>1e-9</Increment>";
     let map = read(z, [-1i32, 0, 70_000, 2].map(i32::to_le_bytes).as_flattened());
     // That of a number of 1e-4.
-    assert!((map.blocks[2] - 70e-6).abs() < 1e-19);
+    assert!((map.blocks[0] - 70e-6).abs() < 1e-19);
 }
 
 #[test]

@@ -12,7 +12,7 @@ import os
 import numpy as np
 import tifffile
 from PIL import Image
-from SurfaceTopography import Topography
+from SurfaceTopography import Topography, read_topography
 
 NX, NY = 30, 20
 PIXEL = 0.5e-6
@@ -26,9 +26,14 @@ z -= 1.5e-6 * np.exp(-((x - 7) ** 2 + (y - 14) ** 2) / 9)
 grey = np.round(z / COUNT).astype(np.uint16)
 z = grey * COUNT  # The same heights in every format.
 
-np.save("map.npy", z)
-np.save("map_f4_fortran.npy", np.asfortranarray((z * 1e6).astype("<f4")))
-np.savetxt("map.csv", z * 1e6, fmt="%.4f", delimiter=";", header="heights in um")
+# SurfaceTopography counts along x, then along y from the top row, as it and Gwyddion show a surface; arrays of a case begin with the bottom row.
+size = (NX * PIXEL, NY * PIXEL)
+surface = Topography(z[::-1].T, size, unit="m")
+rows = surface.heights().T[::-1]
+assert np.array_equal(rows, z)
+np.save("map.npy", rows)
+np.save("map_f4_fortran.npy", np.asfortranarray((rows * 1e6).astype("<f4")))
+np.savetxt("map.csv", rows * 1e6, fmt="%.4f", delimiter=";", header="heights in um")
 # Pictures have the largest y at the top.
 top = np.ascontiguousarray(grey[::-1])
 Image.fromarray(top).save("map.png")
@@ -41,9 +46,8 @@ Image.fromarray(level).save("grey8.png")
 Image.fromarray(np.dstack([level, 255 - level, level // 2])).save("colours.png")
 tifffile.imwrite("colours.tif", np.dstack([top, top, top]))
 
-size = (NX * PIXEL, NY * PIXEL)
-Topography(z.T, size, unit="m").to_x3p("map.x3p")
-Topography(z.T, size, unit="m").to_x3p("map_f4.x3p", dtype="F")
+for name, number in {"map": "D", "map_f4": "F", "map_i4": "L", "map_i2": "I"}.items():
+    surface.to_x3p(f"{name}.x3p", dtype=number)
 
 
 def gwyddion(source, target):
@@ -62,9 +66,15 @@ def gwyddion(source, target):
     modules.gwy_file_save(data, target.encode(), interactive, None)
 
 
-Topography(z[::-1].T, size, unit="m").to_gwy("map.gwy")
+surface.to_gwy("map.gwy")
 gwyddion("map.gwy", "map.gsf")
 os.remove("map.gwy")
+# Both programs have the first row of an .x3p file on top.
+gwyddion("map.x3p", "again.gsf")
+heights_of = lambda name: np.fromfile(name, "<f4", offset=os.path.getsize(name) - 4 * NX * NY)
+assert np.array_equal(heights_of("again.gsf"), heights_of("map.gsf"))
+assert np.array_equal(read_topography("map.x3p").heights(), surface.heights())
+os.remove("again.gsf")
 
 
 def averages(nx, ny):

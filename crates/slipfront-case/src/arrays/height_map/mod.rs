@@ -57,8 +57,8 @@ pub struct HeightMap {
 
 /// Reads the height map called `path`, and averages it over the blocks of a room.
 ///
-/// A `.npy` or `.csv` file has the rows of the smallest y first, as a `.x3p` file; a `.gsf` file and pictures have them last. `watch`
-/// is told the share that is done, and its error ends the work.
+/// An array, `.npy` or `.csv`, begins with the row of the smallest y, every other file with the top row, which is that of the largest y.
+/// `watch` is told the share that is done, and its error ends the work.
 ///
 /// # Errors
 /// [`ArrayError`] if the file is of another format or has more than 2^28 points or 2^20 along a side, a height is missing, a unit

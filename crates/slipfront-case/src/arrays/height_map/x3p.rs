@@ -1,5 +1,8 @@
 //! X3P files (ISO 25178-72): a zip archive of `main.xml`, which describes the points, and of a file with their heights in metres,
-//! row by row from the smallest y.
+//! row by row.
+//!
+//! ISO 25178-72 counts y along with the rows and says nothing of how a surface is shown. Programs show the first row on top, and so do
+//! the files that they make of it; the first row is that of the largest y here, so that none of them is the mirror image of another.
 
 use std::io::{BufRead, Read, Seek};
 use std::path::Path;
@@ -88,7 +91,7 @@ pub(super) fn read(
     })?;
     Ok(Grid {
         points: description.points,
-        top_first: false,
+        top_first: true,
         pixel: Some(description.pixel),
         height_unit: Some(1.0),
     })
