@@ -160,8 +160,13 @@ class Run:
         return None if found is None else int(found)
 
     @property
+    def front_share(self) -> float | None:
+        """Share of the windows of 7 x 7 blocks through which a slip front passes."""
+        return self._optional("front_share")
+
+    @property
     def front_speed_c_s(self) -> float | None:
-        """Median speed of the slip front over the speed of long shear waves."""
+        """Median speed of the slip front over the speed of long shear waves; None where it passes less than half of the windows."""
         return self._optional("front_speed_c_s")
 
     @property

@@ -1,5 +1,7 @@
 //! The slip front of a run, whose first slips several ranks may hold.
 
+use std::ops::RangeInclusive;
+
 use slipfront::communicator::Communicator;
 use slipfront::observe::frames::kept;
 use slipfront::observe::{Distribution, Front};
@@ -19,8 +21,10 @@ const NO_CONTACT: f64 = f64::INFINITY;
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct LatticeFront {
     pub(crate) nucleations: Vec<Nucleation>,
+    /// Of a slider driven at an edge, in the event that crosses it, as all that follows.
     pub(crate) speed: Option<Distribution>,
-    pub(crate) duration_star: f64,
+    pub(crate) share: Option<f64>,
+    pub(crate) duration_star: Option<f64>,
 }
 
 /// Where and when slip has nucleated.
@@ -32,18 +36,21 @@ pub(crate) struct Nucleation {
 }
 
 /// The front of a run with these first slips of the blocks that this rank holds, on the first rank; none on the others, and none
-/// if nothing has slipped. All ranks must call this together.
+/// if nothing has slipped. It passes `during` these t*: of a slider driven at an edge one event alone, since between two of them slip
+/// spreads as fast as the drive loads it. All ranks must call this together.
 pub(crate) fn of_ranks(
     case: &Case,
     first_slips: &[f64],
+    during: RangeInclusive<f64>,
     communicator: &dyn Communicator,
 ) -> Option<LatticeFront> {
-    of_thinned(case, first_slips, communicator, MAX_BLOCKS)
+    of_thinned(case, first_slips, during, communicator, MAX_BLOCKS)
 }
 
 fn of_thinned(
     case: &Case,
     first_slips: &[f64],
+    during: RangeInclusive<f64>,
     communicator: &dyn Communicator,
     most: usize,
 ) -> Option<LatticeFront> {
@@ -68,23 +75,36 @@ fn of_thinned(
         false => lattice.edges[axis],
     };
     let looked_at = Lattice::with_edges(nx, ny, [edges(0), edges(1)]);
-    let front = Front::of(&looked_at, &times, n_contact)?;
-    let wider = |speed: f64| speed * stride as f64;
-    let nucleation = |block: usize| {
+    let whole = Front::of(&looked_at, &times, n_contact)?;
+    let nucleation = |&block: &usize| {
         let (i, j) = looked_at.column_row(block);
         Nucleation {
             place: [i, j].map(|index| (index * stride) as f64 + 0.5),
             time_star: times[block],
         }
     };
+    let nucleations = whole.nucleations.iter().map(nucleation).collect();
+    let is_other = |time: &f64| !time.is_nan() && !during.contains(time);
+    let front = match times.iter().any(is_other) {
+        false => Some(whole),
+        true => {
+            for time in times.iter_mut().filter(|time| is_other(time)) {
+                *time = f64::NAN;
+            }
+            Front::of(&looked_at, &times, n_contact)
+        }
+    };
+    let speed = front.as_ref().and_then(|front| front.speed);
+    let wider = |speed: f64| speed * stride as f64;
     Some(LatticeFront {
-        nucleations: front.nucleations.into_iter().map(nucleation).collect(),
-        speed: front.speed.map(|speed| Distribution {
+        nucleations,
+        speed: speed.map(|speed| Distribution {
             low: wider(speed.low),
             median: wider(speed.median),
             high: wider(speed.high),
         }),
-        duration_star: front.duration,
+        share: front.as_ref().and_then(|front| front.share),
+        duration_star: front.map(|front| front.duration),
     })
 }
 
@@ -166,14 +186,34 @@ mod tests {
         assert_eq!(summaries[0].front_duration_s, alone.front_duration_s);
     }
 
+    /// Between the events of a slider driven at an edge slip spreads as fast as the drive loads it. The front of the event that crosses it runs at a speed of waves, whatever drives it.
+    #[test]
+    fn of_a_slider_driven_at_an_edge_the_speed_is_that_of_the_event_that_crosses_it() {
+        for v_star in [2.0, 1.0] {
+            let text = format!(
+                "slider.blocks = [80, 10]\nslider.omega_star = 0.001\nslider.viscosity_time_star = 0.3\n\
+                 drive.attach = 'left'\ndrive.total_stiffness_star = 0.08\ndrive.v_star = {v_star}\n\
+                 friction.r_star = 0.2\nfriction.sigma_static_star = 0\nfriction.sigma_kinetic_star = 0\n\
+                 time.step = 0.2\ntime.duration_star = {}",
+                6000.0 / v_star
+            );
+            let case = Arc::new(Case::parse(&text, "case", &[]).unwrap());
+            let summary = running::run(&case, 1).unwrap().summary;
+            let precursors = summary.precursors.unwrap();
+            assert!(precursors.precursor_count > 3 && precursors.crossing_mu_star.is_some());
+            let speed = summary.front_speed_c_s.unwrap();
+            assert!((0.5..2.0).contains(&speed), "{speed} c_S at V* = {v_star}");
+        }
+    }
+
     /// A straight front over more blocks than are looked at.
     #[test]
     fn a_large_lattice_is_thinned() {
         let case = Case::parse("slider.blocks = [61, 40]", "case", &[]).unwrap();
         let times: Vec<f64> = (0..61 * 40).map(|b| f64::from(b % 61) / 0.7).collect();
-        let whole = of_ranks(&case, &times, &Alone).unwrap();
+        let whole = of_ranks(&case, &times, 0.0..=f64::INFINITY, &Alone).unwrap();
         for most in [61 * 40, 61 * 40 - 1, 300] {
-            let front = of_thinned(&case, &times, &Alone, most).unwrap();
+            let front = of_thinned(&case, &times, 0.0..=f64::INFINITY, &Alone, most).unwrap();
             let (one, other) = (whole.speed.unwrap(), front.speed.unwrap());
             assert!((one.median - 0.7).abs() < 1e-12 && (other.median - 0.7).abs() < 1e-12);
             assert_eq!(front.nucleations, whole.nucleations);

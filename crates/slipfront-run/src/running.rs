@@ -1,6 +1,7 @@
 //! [`Case`] -> [`Record`]: one run with all observers that its files need.
 
 use std::ops::Range;
+use std::ops::RangeInclusive;
 use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
@@ -461,7 +462,14 @@ impl Running {
             .summary
             .end(&self.case, &self.simulation, reason, &instants);
         let first_slips = self.snapshot().first_slip_time_star();
-        add_front(&mut numbers, &self.case, &first_slips, &*self.communicator);
+        let during = self.observers.summary.times_of_front(numbers.transition);
+        add_front(
+            &mut numbers,
+            &self.case,
+            &first_slips,
+            during,
+            &*self.communicator,
+        );
         numbers
     }
 
@@ -478,7 +486,14 @@ impl Running {
         let mut numbers = summary.end(&case, &simulation, reason, &instants);
         let contact_stress_max = simulation.contact_stress_max();
         let first_slip_time_star = simulation.into_first_slip_time_star();
-        add_front(&mut numbers, &case, &first_slip_time_star, &*self.communicator);
+        let during = summary.times_of_front(numbers.transition);
+        add_front(
+            &mut numbers,
+            &case,
+            &first_slip_time_star,
+            during,
+            &*self.communicator,
+        );
         Record {
             summary: numbers,
             rows: summary.curve.rows,
@@ -491,10 +506,16 @@ impl Running {
     }
 }
 
-/// Adds what the first slips of all blocks tell of the front, if there was one.
-fn add_front(numbers: &mut Summary, case: &Case, first_slips: &[f64], communicator: &dyn Communicator) {
-    if numbers.transition
-        && let Some(front) = front::of_ranks(case, first_slips, communicator)
+/// Adds what the first slips of all blocks tell of the front, if one passed during these t*.
+fn add_front(
+    numbers: &mut Summary,
+    case: &Case,
+    first_slips: &[f64],
+    during: Option<RangeInclusive<f64>>,
+    communicator: &dyn Communicator,
+) {
+    if let Some(during) = during
+        && let Some(front) = front::of_ranks(case, first_slips, during, communicator)
     {
         numbers.add_front(&front, &case.scales);
     }

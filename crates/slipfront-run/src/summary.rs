@@ -1,5 +1,6 @@
 //! The numbers of a run: what `summary.json` holds.
 
+use std::ops::RangeInclusive;
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
@@ -64,7 +65,8 @@ pub struct Summary {
     /// Units of the starred quantities and what is measured in a laboratory; none in summaries of older versions.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub si: Option<SiSummary>,
-    /// Sites at which slip has nucleated, of a run with a transition, as all that follows about the front.
+    /// Sites at which slip has nucleated, of a run with a transition or an event that crosses a slider driven at an edge, as all that
+    /// follows about the front.
     pub nucleation_sites: Option<usize>,
     /// Where it has first, x in m.
     pub nucleation_x_m: Option<f64>,
@@ -73,7 +75,11 @@ pub struct Summary {
     /// All sites.
     #[serde(default)]
     pub nucleations: Vec<NucleationSummary>,
-    /// Median speed of the slip front over the speed of long shear waves.
+    /// Share of the windows of 7 x 7 blocks through which a front passes; of a slider driven at an edge, in the event that crosses it, as
+    /// all that follows.
+    #[serde(default)]
+    pub front_share: Option<f64>,
+    /// Median speed of the slip front over the speed of long shear waves; none where it passes through less than half of the windows.
     pub front_speed_c_s: Option<f64>,
     /// 5 % of the front is slower.
     pub front_speed_low_c_s: Option<f64>,
@@ -342,6 +348,17 @@ impl SummaryObservers {
         })
     }
 
+    /// The t* in which a front passes: all of a run with a transition, and of a slider driven at an edge the event that crosses it; none
+    /// if there is none.
+    pub(crate) fn times_of_front(&self, transition: bool) -> Option<RangeInclusive<f64>> {
+        let Some(precursors) = &self.precursors else {
+            return transition.then_some(0.0..=f64::INFINITY);
+        };
+        let crossing = precursors.crossing()?;
+        let until = crossing.after.map_or(f64::INFINITY, |(time_star, _)| time_star);
+        Some(crossing.from_star..=until)
+    }
+
     /// The peaks under a program of speeds.
     fn cycles(&self) -> Option<Vec<CycleSummary>> {
         let cycles = self.cycles.as_ref()?.cycles().iter();
@@ -520,8 +537,9 @@ impl Summary {
             self.front_speed_low_m_s,
             self.front_speed_high_m_s,
         ] = speeds(scales.block_size / scales.time());
-        self.front_duration_star = Some(front.duration_star);
-        self.front_duration_s = Some(front.duration_star * scales.time());
+        self.front_share = front.share;
+        self.front_duration_star = front.duration_star;
+        self.front_duration_s = front.duration_star.map(|star| star * scales.time());
     }
 }
 

@@ -239,7 +239,7 @@ fn a_run_without_a_transition_has_no_front() {
         .keys()
         .filter(|key| key.starts_with("front_") || key.starts_with("nucleation"))
         .collect();
-    assert_eq!(keys.len(), 12);
+    assert_eq!(keys.len(), 13);
     for key in keys {
         let nothing = short[key].is_null() || short[key] == serde_json::json!([]);
         assert!(!whole[key].is_null() && nothing, "{key}");

@@ -5,7 +5,7 @@ mod nucleation;
 mod speed;
 
 use self::nucleation::nucleations;
-use self::speed::speeds;
+use self::speed::passages;
 use crate::lattice::Lattice;
 
 /// Fewest blocks of a cluster that counts as a nucleation site.
@@ -13,13 +13,20 @@ const SITE_MIN_BLOCKS: usize = 9;
 /// The same as a share of all blocks in contact: one in so many.
 const SITE_MIN_SHARE: usize = 100;
 
+/// Least share of the windows through which a front passes, for it to have a speed. Of times that are random, but alike over as many
+/// blocks as a window has, it passes through less than a fifth.
+const LEAST_SHARE: f64 = 0.5;
+
 /// How slip has spread over a slider.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Front {
     /// The blocks at which slip has nucleated, the earliest first; of several at once the one with the lowest index.
     pub nucleations: Vec<usize>,
-    /// Speed of the front, in blocks per unit of time; none where no front passes, as if all blocks slip at once.
+    /// Speed of the front, in blocks per unit of time; none where a front passes through less than half of the windows, as if all
+    /// blocks slip at once or each by itself.
     pub speed: Option<Distribution>,
+    /// Share of the windows through which a front passes; none if there is no window.
+    pub share: Option<f64>,
     /// Time from the first 5 % of the first slips to 95 % of them.
     pub duration: f64,
 }
@@ -47,13 +54,14 @@ impl Front {
     /// max(9, n_contact/100) blocks
     /// ```
     ///
-    /// or all of them before an older one takes it in is a nucleation site; its place is its first block. One that has not
-    /// is taken in by a site whatever its age: a block that slips alone and early nucleates nothing.
+    /// or all of them before an older one takes it in is a nucleation site, unless its blocks have slipped at once; its place is its
+    /// first block. One that has not is taken in by a site whatever its age: a block that slips alone and early nucleates nothing.
     ///
     /// The front runs at `1/|g|`, with the slope g of the plane that fits best (in the sense of least squares) to the times of 7 x 7
-    /// blocks around one that has slipped; in a chain of 7. There are windows around all blocks but those in which slip nucleates, that
-    /// have a level plane, or where too few have slipped: fewer than 25, or 5 times the number of rows (or columns) of a lattice that has
-    /// fewer than five.
+    /// blocks around one that has slipped; in a chain of 7. There are windows around all blocks but those in which slip nucleates, and
+    /// those where too few have slipped: fewer than 25, or 5 times the number of rows (or columns) of a lattice that has fewer than five.
+    /// A front passes through a window where the plane explains half of the variance of the times, and g turns by no more than 60
+    /// degrees to the windows 3 blocks away along either axis: where two fronts meet, it does.
     ///
     /// ```
     /// use slipfront::{Lattice, observe::Front};
@@ -77,8 +85,13 @@ impl Front {
             .max(SITE_MIN_BLOCKS)
             .min(n_contact);
         let nucleations = nucleations(lattice, times, least);
+        let passages = passages(lattice, times, &nucleations);
+        let share =
+            (passages.n_windows > 0).then(|| passages.speeds.len() as f64 / passages.n_windows as f64);
+        let is_front = share.is_some_and(|share| share >= LEAST_SHARE);
         Some(Self {
-            speed: Distribution::of(speeds(lattice, times, &nucleations)),
+            speed: Distribution::of(passages.speeds).filter(|_| is_front),
+            share,
             nucleations,
             duration: first_slips.high - first_slips.low,
         })

@@ -18,7 +18,8 @@ const NEIGHBOURS: [[isize; 2]; 8] = [
     [1, 1],
 ];
 
-/// The first block of every cluster that has reached `least` blocks before an older one took it in, in the order of time.
+/// The first block of every cluster that has reached `least` blocks, not all at once, before an older one took it in, in the order of
+/// time.
 pub(super) fn nucleations(lattice: &Lattice, times: &[f64], least: usize) -> Vec<usize> {
     assert!(times.len() < NOT_YET as usize, "blocks are numbered with 32 bits");
     let slipped = times.iter().zip(0..).filter(|(time, _)| !time.is_nan());
@@ -28,6 +29,7 @@ pub(super) fn nucleations(lattice: &Lattice, times: &[f64], least: usize) -> Vec
     let mut clusters = Clusters {
         parent: vec![NOT_YET; times.len()],
         size: vec![0; times.len()],
+        has_grown: vec![false; times.len()],
         least,
     };
     let mut sites: Vec<(f64, u32)> = Vec::new();
@@ -58,9 +60,9 @@ pub(super) fn nucleations(lattice: &Lattice, times: &[f64], least: usize) -> Vec
             }
         }
         for &(_, younger) in met.iter().filter(|(_, root)| *root != oldest_root) {
-            clusters.take_in(oldest_root, younger);
+            clusters.take_in(oldest_root, younger, times);
         }
-        clusters.add(block, oldest_root);
+        clusters.add(block, oldest_root, times);
     }
     let is_left = |block: u32| clusters.parent[block as usize] == block && clusters.is_site(block);
     sites.extend(order.iter().filter(|(_, block)| is_left(*block)));
@@ -79,13 +81,15 @@ struct Clusters {
     parent: Vec<u32>,
     /// Blocks of the cluster of a root.
     size: Vec<u32>,
+    /// Whether a block of the cluster of a root has slipped later than the root.
+    has_grown: Vec<bool>,
     /// Blocks that make a cluster a site.
     least: usize,
 }
 
 impl Clusters {
     fn is_site(&self, root: u32) -> bool {
-        self.size[root as usize] as usize >= self.least
+        self.size[root as usize] as usize >= self.least && self.has_grown[root as usize]
     }
 
     /// The root of the cluster of a block, if this has slipped.
@@ -104,14 +108,18 @@ impl Clusters {
         Some(block)
     }
 
-    fn take_in(&mut self, older: u32, younger: u32) {
-        self.parent[younger as usize] = older;
-        self.size[older as usize] += self.size[younger as usize];
+    fn take_in(&mut self, older: u32, younger: u32, times: &[f64]) {
+        let [to, from] = [older, younger].map(|root| root as usize);
+        self.parent[from] = older;
+        self.size[to] += self.size[from];
+        self.has_grown[to] |= self.has_grown[from] || times[from] != times[to];
     }
 
     /// Adds a block to the cluster of a root, or begins one if it is its own.
-    fn add(&mut self, block: u32, root: u32) {
-        self.parent[block as usize] = root;
-        self.size[root as usize] += 1;
+    fn add(&mut self, block: u32, root: u32, times: &[f64]) {
+        let [to, added] = [root, block].map(|block| block as usize);
+        self.parent[added] = root;
+        self.size[to] += 1;
+        self.has_grown[to] |= times[added] != times[to];
     }
 }
