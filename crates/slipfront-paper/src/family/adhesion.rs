@@ -1,6 +1,7 @@
 //! Adhesion, which needs no load.
 
 use slipfront::exact_solutions::{Facing, groove_edge_factor};
+use slipfront::scales;
 
 use super::answer::{Answer, Chapter};
 use super::runs::Run;
@@ -45,7 +46,10 @@ pub(super) fn chapter() -> Result<Chapter, PaperError> {
         answers.push(Answer::new(
             format!("pull k_s V t* at the first slip beside a groove, τ_a/(P μ̄_s) = {adhesion}"),
             [exact, 0.375 * 1e-3 * run.first_slip()],
-            (3e-3 * exact, "the drive of V* = 0.001 is not infinitely slow"),
+            (
+                0.375 * 1e-3 * 0.5 + 2.5 * scales::damping(0.3) * 1e-3 / groove_edge_factor(Facing::Across, 5),
+                "the pull of one step, and the drag of the free rows, Ω V* each, half of which each edge bears",
+            ),
         ));
     }
     Ok(Chapter {

@@ -43,7 +43,11 @@ pub(super) fn chapter() -> Result<Chapter, PaperError> {
         answers.push(Answer::new(
             format!("decay rate of two blocks that swing against each other, τ_v = {viscosity_time}, in steps of {dt}"),
             [lagged_decay_rate(against.omega_squared, viscosity_time, dt), rate],
-            (1e-9, "rounding of amplitudes"),
+            // Four amplitudes, of which each step rounds the last digit one way or the other.
+            (
+                4.0 * (2.8_f64 / dt).sqrt() * f64::EPSILON,
+                "rounding of four amplitudes, a random walk of 280 steps of ε",
+            ),
         ));
         let exact = viscous_decay_rate(against.omega_squared, 0.0, viscosity_time);
         answers.push(Answer::new(
@@ -51,7 +55,7 @@ pub(super) fn chapter() -> Result<Chapter, PaperError> {
             [exact, rate],
             (
                 0.6 * exact * viscosity_time * 1.5 * dt,
-                "of first order: half of τ_v (ω² - k_s) Δt, relative",
+                "of first order: half of τ_v (ω² - k_s) Δt, relative, and a fifth of that for higher orders",
             ),
         ));
     }

@@ -66,8 +66,8 @@ pub(super) fn chapter() -> Result<Chapter, PaperError> {
                     format!("v/c at a prestress of {prestress}"),
                     [exact, found.value],
                     (
-                        0.6 * DT_STAR * exact * exact,
-                        "a front takes a whole number of steps from block to block",
+                        0.5 * K_STRAIGHT.sqrt() * DT_STAR * exact * exact,
+                        "a block starts at a whole step, up to half a step from its time l/v after the one before",
                     ),
                 ));
             }

@@ -1,7 +1,9 @@
 //! Pressure that is not the same everywhere.
 
+use slipfront::scales;
+
 use super::answer::{Answer, Chapter};
-use super::runs::Run;
+use super::runs::{ROUNDING, Run, rounding};
 use crate::error::PaperError;
 
 const V_STAR: f64 = 0.03;
@@ -22,13 +24,18 @@ pub(super) fn chapter() -> Result<Chapter, PaperError> {
             [least / (0.375 * V_STAR), run.first_slip()],
             (0.01 * (1.0 + 1e-9), "it is seen at the next step"),
         ));
-        let load: f64 = (0..run.model.surface.n_blocks())
-            .map(|b| run.model.surface.normal_force(b))
-            .sum();
+        let text = format!(
+            "friction.sigma_static_star = 0\nfriction.sigma_kinetic_star = 0\nslider.omega_star = 1\n[load]\n\
+             profile = {{ along = \"{along}\", relative_slope = {slope} }}\n[drive]\nv_star = 0.2\n\
+             [time]\nduration_star = 200\nstep = 0.1"
+        );
         answers.push(Answer::new(
-            format!("whole load over P L_x L_y, slope {slope} along {along}"),
-            [1.0, load / 625.0],
-            (1e-14, "rounding of a sum"),
+            format!("level of steady sliding at V* = 0.2, slope {slope} along {along}"),
+            [
+                0.5 + scales::damping(1.0) * 0.2,
+                Run::of_case("whole load", &text)?.mu_star_at(200.0),
+            ],
+            (rounding(200.0 * 0.2), ROUNDING),
         ));
     }
     Ok(Chapter {

@@ -24,8 +24,11 @@ pub fn docs_page(chapters: &[Chapter]) -> String {
         "{TITLE}\n\
          The options of the engine beyond the paper's model, each with what is known exactly about it and what the engine computes:\n\n\
          ```console\n$ slipfront family --docs docs/validation\n```\n\n\
-         {answers} answers in units of P μ̄_s l² (forces), P μ̄_s l/E (displacements) and l √(ρ/E) (times). What is derived here is derived\n\
-         in the text. Works are named for what they studied; none of their figures is repeated here.\n"
+         {answers} answers, each measured in a run, in units of P μ̄_s l² (forces), P μ̄_s l/E (displacements) and l √(ρ/E) (times). What is\n\
+         derived here is derived in the text. Works are named for what they studied; none of their figures is repeated here.\n\n\
+         \"At most\" is an estimate of the error of the run, from what \"because\" names, not from what was found. Some of it is certain, and found\n\
+         nearly as large: an error of first order in the step, a drag. Some is a bound below which chance decides: at which part of a step a\n\
+         block slips, which way digits are rounded.\n"
     );
     for chapter in chapters {
         let _ = write!(text, "\n## {}\n\n{}\n", chapter.title, chapter.text);

@@ -1,11 +1,13 @@
 //! Friction of rate and state.
 
+use std::sync::Arc;
+
 use slipfront::exact_solutions::{friction_after_speed_step, rate_and_state_growth};
-use slipfront::{Drive, Friction, Lattice, Model, RateAndState, Surface, scales};
+use slipfront::{Drive, Friction, Lattice, Model, RateAndState, State, Surface, VectorField, scales};
 use slipfront_plot::Responses;
 
 use super::answer::{Answer, Chapter};
-use super::runs::growth_of_disturbance;
+use super::runs::{Experiment, growth_of_disturbance};
 use crate::drawing::{Drawing, formula, measured};
 use crate::error::PaperError;
 use crate::number::Number;
@@ -36,39 +38,104 @@ fn computed(k_drive: f64, damping: f64) -> f64 {
     growth_of_disturbance(model, DT_STAR, 60.0, 36.0)
 }
 
+/// Mass of a block in steps of [`DT_STAR`]: friction is that of the speed half a step later, `mu(v + dt v'/2)`, as if the mass were larger
+/// by `sigma a dt/(2 V)`.
+const MASS: f64 = 1.0 + LAW.a * DT_STAR / (2.0 * V_STAR);
+
+/// The law over that mass.
+const HEAVIER: RateAndState = RateAndState {
+    a: LAW.a / MASS,
+    b: LAW.b / MASS,
+    ..LAW
+};
+
+/// Speeds of the step and the time from there to the end.
+const V_1: f64 = 0.01;
+const AFTER: f64 = 10.0;
+/// Stiffness and damping of the drive that holds the blocks at their speed.
+const STIFF: f64 = 2500.0;
+const STIFF_DAMPING: f64 = 10.0;
+
+/// `mu - mu_ss` of blocks that slid steadily at [`V_1`] until a drive took them to `v_2`, a time [`AFTER`] later. Springs are so stiff that
+/// they follow it.
+fn after_step(v_2: f64) -> f64 {
+    let law = RateAndState {
+        theta_0: LAW.d_c / V_1,
+        ..LAW
+    };
+    let lattice = Lattice::free(2, 2);
+    let drive = Drive {
+        k_drive: STIFF,
+        ..Drive::along_x(v_2)
+    };
+    let surface = Surface::uniform(&lattice, 1.0, 0.5);
+    let drag = STIFF_DAMPING * v_2;
+    let extension = (law.coefficient(v_2, law.theta_0) + drag) / STIFF;
+    let along_x = |x: f64| VectorField {
+        x: vec![x; 4],
+        y: vec![0.0; 4],
+    };
+    let model = Model::new(
+        lattice,
+        surface,
+        drive,
+        STIFF_DAMPING,
+        0.0,
+        Friction::RateAndState(law),
+    );
+    let experiment = Experiment {
+        model: Arc::new(model),
+        dt_star: 0.01,
+        state: Some(State {
+            displacement: along_x(-extension),
+            velocity: along_x(v_2),
+        }),
+    };
+    let pulls = experiment.values(&[AFTER], |now| now.point.mu_star);
+    pulls[0] - drag - law.steady_coefficient(v_2)
+}
+
 pub(super) fn chapter() -> Result<Chapter, PaperError> {
     let mut answers = Vec::new();
     for ratio in [0.1, 10.0] {
-        let (v_1, v_2) = (0.01, 0.01 * ratio);
-        let mut theta = LAW.d_c / v_1;
-        let (dt, steps) = (0.5, 20);
-        for _ in 0..steps {
-            theta = LAW.evolve(theta, v_2, dt);
-        }
-        let slip = v_2 * dt * f64::from(steps);
+        let v_2 = V_1 * ratio;
+        let slip = v_2 * AFTER;
+        let left = (ratio - 1.0) * libm::exp(-slip / LAW.d_c);
+        // Size of d mu/dx at this slip.
+        let slope = LAW.b * left.abs() / (LAW.d_c * (1.0 + left));
         answers.push(Answer::new(
             format!("μ - μ_ss after a step of speed by {ratio} and a slip of {slip}"),
-            [
-                friction_after_speed_step(&LAW, v_1, v_2, slip),
-                LAW.coefficient(v_2, theta) - LAW.steady_coefficient(v_2),
-            ],
-            (2e-15, "rounding: the state is exact at constant speed"),
+            [friction_after_speed_step(&LAW, V_1, v_2, slip), after_step(v_2)],
+            (
+                slope / STIFF * (LAW.b * libm::log(ratio).abs() + LAW.a + STIFF_DAMPING * v_2),
+                "the spring yields by Δμ/k, at a speed of V/k dμ/dx, which a and Ω feel",
+            ),
         ));
     }
     let damping = scales::damping(0.1);
     let critical = LAW.critical_stiffness(1.0, damping, V_STAR);
-    answers.push(Answer::new(
-        "critical stiffness k_c at V* = 0.03: where the growth rate of the cubic is 0",
-        [0.0, rate_and_state_growth(&LAW, 1.0, V_STAR, critical, damping)],
-        (1e-9, "rounding of the roots of the cubic"),
-    ));
     let exact = |ratio: f64| rate_and_state_growth(&LAW, 1.0, V_STAR, ratio * critical, damping);
+    let in_steps =
+        |ratio: f64| rate_and_state_growth(&HEAVIER, 1.0, V_STAR, ratio * critical / MASS, damping / MASS);
     let found = RATIOS.map(|ratio| computed(ratio * critical, damping));
+    let zero = |[below, above]: [f64; 2]| 0.95 + 0.1 * below / (below - above);
+    let shift = MASS * HEAVIER.critical_stiffness(1.0, damping / MASS, V_STAR) / critical - 1.0;
+    answers.push(Answer::new(
+        "stiffness over k_c at which nothing grows, on the line through the rates at 0.95 and 1.05",
+        [1.0, zero([found[2], found[3]])],
+        (
+            1.2 * shift.abs() + (zero([exact(0.95), exact(1.05)]) - 1.0).abs(),
+            "of first order, and a fifth of that for higher orders: the mass m + σaΔt/2V in k_c; and the line is a chord",
+        ),
+    ));
     for (ratio, found) in RATIOS.into_iter().zip(found) {
         answers.push(Answer::new(
             format!("growth rate on a drive of {ratio} k_c"),
             [exact(ratio), found],
-            (2.5e-4 * DT_STAR / 0.05, "of first order in the step"),
+            (
+                1.2 * (in_steps(ratio) - exact(ratio)).abs(),
+                "of first order, and a fifth of that for higher orders: the mass m + σaΔt/2V in the cubic",
+            ),
         ));
     }
     let fine: Vec<f64> = (0..=50).map(|k| 0.6 + 0.02 * f64::from(k)).collect();

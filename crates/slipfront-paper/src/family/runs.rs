@@ -3,8 +3,9 @@
 use std::sync::Arc;
 
 use slipfront::communicator::Alone;
+use slipfront::lattice::K_DRIVE;
 use slipfront::observe::{Curve, CurveRow, Observer, Scheduled};
-use slipfront::{Execution, Model, Simulation, Snapshot, State, Stop, VectorField};
+use slipfront::{Execution, Model, Simulation, Snapshot, State, Stop, VectorField, scales};
 use slipfront_case::case::Case;
 
 use crate::error::PaperError;
@@ -38,13 +39,8 @@ impl Run {
         text: &str,
         others: &mut [&mut dyn Observer],
     ) -> Result<Self, PaperError> {
-        let case = Case::parse(text, name, &[])?;
-        let experiment = Experiment {
-            model: Arc::clone(&case.model),
-            dt_star: case.time_plan.dt_star,
-            state: None,
-        };
-        experiment.run(name, case.time_plan.last_step, others)
+        let (experiment, last_step) = Experiment::of_case(name, text)?;
+        experiment.run(name, last_step, others)
     }
 
     /// When the first block slipped; NaN if none has.
@@ -78,6 +74,17 @@ impl Run {
 }
 
 impl Experiment {
+    /// That of a case, and its last step.
+    pub(super) fn of_case(name: &str, text: &str) -> Result<(Self, u64), PaperError> {
+        let case = Case::parse(text, name, &[])?;
+        let experiment = Self {
+            model: Arc::clone(&case.model),
+            dt_star: case.time_plan.dt_star,
+            state: None,
+        };
+        Ok((experiment, case.time_plan.last_step))
+    }
+
     /// Runs it to this step.
     pub(super) fn run(
         self,
@@ -124,6 +131,15 @@ impl Experiment {
         };
         times.iter().map(at).collect()
     }
+}
+
+/// Why the level of steady sliding of Omega* = 1, in steps of 0.1, is as near to the exact one as [`rounding`] says.
+pub(super) const ROUNDING: &str = "rounding of displacements, ε X/2 a step, which swings forget in 2/Ω; of these exp(-Ω t/2) is left, nothing";
+
+/// Rounding of mu* in steady sliding with Omega* = 1, in steps of 0.1, when the far ends have gone this far: `k_s (eps X/2)` of each of
+/// the last `2/(Omega dt)` steps.
+pub(super) fn rounding(path: f64) -> f64 {
+    K_DRIVE * f64::EPSILON * path / (scales::damping(1.0) * 0.1)
 }
 
 /// Rate at which an oscillation `x = A exp(s t) cos(w t + p)` grows, from four of its values a time `apart`: `x_2 = p x_1 - q x_0` with

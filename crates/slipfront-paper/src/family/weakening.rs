@@ -39,9 +39,10 @@ pub(super) fn chapter() -> Result<Chapter, PaperError> {
         Answer::new(
             format!("growth rate of a disturbance of steady sliding at V* = 0.2, Ω = {damping}"),
             [exact(damping), found],
+            // Without damping the rate is -(dF/dv)/2.
             (
-                0.02 * (0.01 + exact(damping).abs()),
-                "of first order: friction is that of the speed half a step before",
+                0.6 * 2.0 * exact(0.0) * DT_STAR * exact(damping).abs(),
+                "of first order: half of -dF/dv Δt, relative, and a fifth of that for higher orders",
             ),
         )
     });

@@ -18,7 +18,7 @@ pub use rate_and_state::{friction_after_speed_step, rate_and_state_growth};
 pub use sliders::{
     PairMode, composite_peak, graded_first_slip_time_star, lagged_decay_rate, pair_modes, viscous_decay_rate,
 };
-pub use torsion::{torsion_first_slip, torsion_of_decoupled_disc};
+pub use torsion::{torsion_first_slip, torsion_of_decoupled_blocks, torsion_of_decoupled_disc};
 pub use weakening::weakening_growth;
 
 use crate::lattice::{K_DIAGONAL, K_DRIVE, K_STRAIGHT};

@@ -19,6 +19,27 @@ pub fn torsion_first_slip(radii: &[f64]) -> f64 {
     radii.iter().map(|r| r * r).sum::<f64>() / (largest * radii.iter().sum::<f64>())
 }
 
+/// Torque, over the torque that all blocks could bear, of a uniform slider in torsion whose blocks are driven each on its own, while those
+/// within `stuck`, a share of the largest radius, still stick and all beyond slide against kinetic friction:
+///
+/// ```text
+/// T/T_full = [sum_stuck r_i^2/(rho r_max) + R* sum_sliding r_i]/sum_i r_i
+/// ```
+///
+/// The springs pull with forces that grow with the radius and are at the threshold at `rho r_max`. For a continuous disc it is
+/// [`torsion_of_decoupled_disc`]. `radii`: of all blocks, in any unit.
+///
+/// ```
+/// use slipfront::exact_solutions::torsion_of_decoupled_blocks;
+/// // Two blocks at radius 1 bear 1/1.5 of their thresholds; one at radius 2 slides.
+/// assert_eq!(torsion_of_decoupled_blocks(&[1.0, 1.0, 2.0], 0.75, 0.5), (2.0 / 1.5 + 1.0) / 4.0);
+/// ```
+pub fn torsion_of_decoupled_blocks(radii: &[f64], stuck: f64, r_star: f64) -> f64 {
+    let edge = stuck * radii.iter().copied().fold(0.0, f64::max);
+    let torque = |r: &f64| if *r <= edge { r * r / edge } else { r_star * r };
+    radii.iter().map(torque).sum::<f64>() / radii.iter().sum::<f64>()
+}
+
 /// mu* of a uniform disc whose blocks are driven each on its own while those within `stuck`, a share of its radius, still stick, and all
 /// beyond slide against kinetic friction:
 ///

@@ -198,49 +198,48 @@ fn precursors(n: usize, edge: Edge, slope: f64, v_star: f64, dt_star: f64) -> (V
     (longer, 0.7 * simulation.peak().mu_star_max)
 }
 
-/// After each event that is longer than all before, the part that has slipped bears kinetic friction: the residual forces of the
-/// block at its tip, one of N, and the growth of the load while the event lasts are what is left. The largest load tends to kinetic, not
-/// static friction of the whole chain (0.45, not 0.7).
+/// After each event that is longer than all before, the part that has slipped bears kinetic friction. The block ahead of its tip bears up
+/// to its threshold besides, and the driven block may have gained what it needs before it slips again, in F_T/F_N
+///
+/// ```text
+/// [mu_s p(lambda) + (mu_s - mu_k) p(0)]/N,   and for a single event what the drive adds during it,   mu_s kappa V T/N^2
+/// ```
+///
+/// The largest load tends to kinetic, not static friction of the whole chain (0.45, not 0.7), off by the first of these at the far end and
+/// what the drive adds while sound goes there and back. `slipfront family` holds 400 blocks and finer steps to the same.
 #[rstest]
-#[case(100, Edge::Left, 0.0, 1.0, 0.1, 0.03, 0.08)]
-#[case(100, Edge::Left, 0.833, 1.0, 0.1, 0.03, 0.08)]
-#[case(100, Edge::Left, -0.833, 1.0, 0.1, 0.03, 0.08)]
-#[case(100, Edge::Right, 0.833, 1.0, 0.1, 0.03, 0.08)]
-#[case(400, Edge::Left, 0.0, 2.0, 0.6, 0.015, 0.05)]
-#[case(400, Edge::Left, 0.833, 2.0, 0.6, 0.015, 0.05)]
-#[case(400, Edge::Left, -0.833, 2.0, 0.6, 0.015, 0.05)]
-fn precursors_leave_kinetic_friction_behind(
-    #[case] n: usize,
-    #[case] edge: Edge,
-    #[case] slope: f64,
-    #[case] v_star: f64,
-    #[case] dt_star: f64,
-    #[case] rms_bound: f64,
-    #[case] largest_bound: f64,
-) {
-    let (events, peak) = precursors(n, edge, slope, v_star, dt_star);
-    let from_edge = if edge == Edge::Left { slope } else { -slope };
-    let error = |event: &SlipEvent| {
-        let exact = precursor_load(event.length, 0.45, from_edge);
-        event.after.map(|(_, mu_star)| 0.7 * mu_star / exact - 1.0)
-    };
+#[case(Edge::Left, 0.0)]
+#[case(Edge::Left, 0.833)]
+#[case(Edge::Left, -0.833)]
+#[case(Edge::Right, 0.833)]
+fn precursors_leave_kinetic_friction_behind(#[case] edge: Edge, #[case] slope: f64) {
+    let (n, v_star) = (100.0, 1.0);
+    let (events, peak) = precursors(100, edge, slope, v_star, 0.1);
+    let slope = if edge == Edge::Left { slope } else { -slope };
+    let gained = (0.7 - 0.45) * (1.0 - slope);
+    let bound = |length: f64| (0.7 * (1.0 - slope + 2.0 * slope * length) + gained) / n;
+    let adds = |duration: f64| 0.7 * 0.242 * v_star * duration / (n * n);
     let compared = events
         .iter()
         .filter(|event| event.length > 0.2 && event.length < 1.0);
-    let errors: Vec<f64> = compared.filter_map(error).collect();
-    let rms = (errors.iter().map(|error| error * error).sum::<f64>() / errors.len() as f64).sqrt();
-    let largest = errors
-        .iter()
-        .fold(0.0_f64, |largest, error| largest.max(error.abs()));
-    println!(
-        "{n} {edge:?} {slope}: {} events, rms {rms:.4}, largest {largest:.4}, peak {peak:.4}",
-        errors.len()
-    );
-    assert!(errors.len() > 20, "{} events", errors.len());
-    assert!(
-        rms < rms_bound && largest < largest_bound,
-        "rms {rms}, largest {largest}"
-    );
-    assert!((0.43..0.48).contains(&peak), "{peak}");
+    let (mut squares, mut bound_squares, mut count) = (0.0, 0.0, 0);
+    for event in compared {
+        let (until, mu_star) = event.after.unwrap();
+        let exact = precursor_load(event.length, 0.45, slope);
+        let (error, bound) = (0.7 * mu_star - exact, bound(event.length));
+        let added = adds(until - event.from_star);
+        assert!(
+            error.abs() < bound + added,
+            "{}: {error}, at most {bound} and {added}",
+            event.length
+        );
+        squares += (error / exact).powi(2);
+        bound_squares += (bound / exact).powi(2);
+        count += 1;
+    }
+    assert!(count > 20, "{count} events");
+    assert!(squares < bound_squares, "{squares} {bound_squares}");
+    let above = bound(1.0) + adds(2.0 * n / 0.75_f64.sqrt());
+    assert!((peak - 0.45).abs() < above, "{peak}, at most {above} from 0.45");
     assert!(events.last().unwrap().length == 1.0, "no event crosses the chain");
 }
