@@ -32,17 +32,18 @@ fn spread(w: f64, law: ContactSprings, damping: f64, v_star: f64) -> Model {
     )
 }
 
-/// With springs a thousand times softer than those of the drive the slider is rigid. The mean goes over 40 lengths of slip: each spring
-/// is cut off somewhere in its last cycle, which changes its mean by up to 1/80, and 400 of them at random by 1e-3. The peak lies one
-/// step of the thresholds (2 w/400) above that of the weakest spring at most, and what the slider lags behind the drive and swings
-/// is of the order of k_t/k_s, 1e-3.
+/// With springs a thousand times softer than those of the drive the slider is rigid. The peak is off by the rise of friction, k_t V, in
+/// the Omega/k_s by which the pull lags and in the step in which it is read, and by w/400, where the weakest of 400 springs lies. The mean
+/// goes over 40 cycles, after ten that spread the phases of springs that keep their thresholds over 20 w cycles: the mean of 40 sawteeth,
+/// 1/(4 40) off if all were cut at once, is off by an eighth of that over 20 w. The mean of 16000 thresholds that are drawn anew scatters
+/// by w/sqrt(3 16000), and is given three times that.
 #[rstest]
 fn static_over_kinetic_friction_of_a_rigid_slider(
     #[values(0.05, 0.1, 0.2)] w: f64,
     #[values(None, Some(5))] redraw: Option<u64>,
 ) {
     let stiffness = 1e-3 * K_DRIVE;
-    let (v_star, dt, damping) = (10.0, 0.2, scales::damping(0.5));
+    let (v_star, dt, damping) = (2.5, 0.8, scales::damping(0.5));
     let model = spread(w, ContactSprings { stiffness, redraw }, damping, v_star);
     let viscous = damping * v_star;
     assert!((model.steady_level(&Alone) - (0.5 + viscous)).abs() < 1e-12);
@@ -63,7 +64,13 @@ fn static_over_kinetic_friction_of_a_rigid_slider(
     }
     let found = peak / (sum / f64::from(count));
     let exact = static_over_kinetic_of_springs(w, redraw.is_some());
-    assert!((found / exact - 1.0).abs() < 4e-3, "{found}, exactly {exact}");
+    let peak = 1e-3 * v_star * (damping + K_DRIVE * dt) + w / 400.0;
+    let scatter = redraw.map_or(0.0, |_| 3.0 * w / (3.0_f64 * 16000.0).sqrt());
+    let tolerance = peak / (1.0 - w) + 1.0 / (160.0 * 8.0 * 20.0 * w) + scatter;
+    assert!(
+        (found / exact - 1.0).abs() < tolerance,
+        "{found}, exactly {exact}, to {tolerance}"
+    );
 }
 
 /// Until the first spring breaks the slider moves as one against all of them: k_t u = k_t k_s V t/(k_t + k_s) in equilibrium, about which it
@@ -92,8 +99,8 @@ fn the_weakest_spring_breaks_first() {
 }
 
 /// A chain that is pulled at its first block alone is in equilibrium until the spring there breaks: displacements decay along the chain.
-/// The drive is slow and damping critical for the chain as a whole. Its viscous force, Omega V of the blocks that move, and the
-/// growth of the pull in a step are below 1e-3.
+/// The drive is slow and damping critical for the chain as a whole. Its viscous force is Omega V times the displacements of all
+/// blocks over that of the first, which is the exact force, and the pull grows by k_s V dt in a step.
 #[rstest]
 fn the_first_block_of_a_chain_that_is_pulled_there_breaks(#[values(1, 2, 5, 20)] n: usize) {
     let (stiffness, v_star, dt) = (0.1, 2e-4, 0.2);
@@ -114,7 +121,8 @@ fn the_first_block_of_a_chain_that_is_pulled_there_breaks(#[values(1, 2, 5, 20)]
     let now = simulation.snapshot();
     let found = now.block(0).force_drive[0];
     let exact = chain_slip_force(n, K_STRAIGHT, stiffness);
-    assert!((found / exact - 1.0).abs() < 1e-3, "{found}, exactly {exact}");
+    let tolerance = v_star * (0.5 * exact + K_DRIVE * dt);
+    assert!((found - exact).abs() < tolerance, "{found}, exactly {exact}");
     let slipped = now.first_slip_time_star();
     assert!(!slipped[0].is_nan() && slipped[1..].iter().all(|time| time.is_nan()));
 }

@@ -69,8 +69,8 @@ fn adhesion_adds_to_static_friction_without_texture(#[values(0.0, 0.1, 1.5)] adh
 }
 
 /// Only the adhesive part feels how much of the surface a groove leaves: the load is redistributed, the area is not. The first
-/// slip comes at `k_s V t f = N/N_c + tau_a/(P mu_s)`, f the factor of the edge; the lag and the oscillation of the groove that
-/// the quasi-static factor leaves out are of the order of V*.
+/// slip comes at `k_s V t f = N/N_c + tau_a/(P mu_s)`, f the factor of the edge; later by a step at most, and by the drag of
+/// the five free rows, Omega V* each at most, half of which each edge bears.
 #[rstest]
 fn adhesion_is_not_redistributed(
     #[values((Facing::Across, Orientation::Across), (Facing::Along, Orientation::Along))]
@@ -90,7 +90,12 @@ fn adhesion_is_not_redistributed(
     let model = slider.model();
     let mut simulation = at_rest(&model, slider.dt_star);
     simulation.run(Stop::at_step(slider.steps(5.0)), &mut []).unwrap();
-    let exact = (20.0 / 15.0 + adhesion) / (0.375 * slider.v_star * groove_edge_factor(facing, 5));
+    let factor = groove_edge_factor(facing, 5);
+    let exact = (20.0 / 15.0 + adhesion) / (0.375 * slider.v_star * factor);
     let found = simulation.snapshot().earliest_first_slip().unwrap();
-    assert!((found / exact - 1.0).abs() < 3e-3, "{found}, exactly {exact}");
+    let late = slider.dt_star + 2.5 * model.damping / (0.375 * factor);
+    assert!(
+        (found - exact).abs() < late,
+        "{found}, exactly {exact}, to {late}"
+    );
 }
