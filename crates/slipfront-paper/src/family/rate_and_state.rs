@@ -49,11 +49,13 @@ const HEAVIER: RateAndState = RateAndState {
     ..LAW
 };
 
-/// Speeds of the step and the time from there to the end.
+/// V* before the step of speed.
 const V_1: f64 = 0.01;
+/// t* from there to where friction is read.
 const AFTER: f64 = 10.0;
-/// Stiffness and damping of the drive that holds the blocks at their speed.
+/// Stiffness of the drive springs that hold blocks at the speed of the drive.
 const STIFF: f64 = 2500.0;
+/// Omega, with which what is left of the swing about it is exp(-Omega t/2) = exp(-50).
 const STIFF_DAMPING: f64 = 10.0;
 
 /// `mu - mu_ss` of blocks that slid steadily at [`V_1`] until a drive took them to `v_2`, a time [`AFTER`] later. Springs are so stiff that

@@ -74,7 +74,7 @@ impl Run {
 }
 
 impl Experiment {
-    /// That of a case, and its last step.
+    /// What a case describes, and its last step.
     pub(super) fn of_case(name: &str, text: &str) -> Result<(Self, u64), PaperError> {
         let case = Case::parse(text, name, &[])?;
         let experiment = Self {
