@@ -375,7 +375,8 @@ impl SummaryObservers {
     pub(crate) fn kinetic(&self, case: &Case, peak: &Peak) -> Option<Kinetic> {
         let plan = &case.time_plan;
         let from = plan.kinetic.time_star(peak, case.model.loading_speed());
-        self.history.kinetic(from, plan.dt_star)
+        self.history
+            .kinetic(from, plan.dt_star, case.model.loading_speed())
     }
 
     /// The numbers of a run that has ended, with the instants A-F that it had.
@@ -624,7 +625,7 @@ fn after_run(
              time.duration_star or set time.kinetic_from_star"
                 .to_owned(),
         ),
-        Some(Err(NoUncertainty::TooFewBlocks { needed_time_star, .. })) => warnings.push(format!(
+        Some(Err(NoUncertainty::TooShort { needed_time_star })) => warnings.push(format!(
             "mu_k* has no uncertainty: it takes a time.duration_star of {needed_time_star:.0} or more"
         )),
         Some(Err(NoUncertainty::Drift { needed_time_star, .. })) => warnings.push(format!(

@@ -36,7 +36,7 @@ pub struct Kinetic {
     pub window_star: [f64; 2],
     /// mu_k*, the mean of mu*.
     pub mu_star: f64,
-    /// Standard error of mu_k* by the blocking method, or why it cannot be estimated.
+    /// Standard error of mu_k* as an estimate of the mean over an infinite run, or why it cannot be estimated.
     pub uncertainty: Result<f64, NoUncertainty>,
     /// Mean of mu_lateral_star.
     pub mu_lateral_star: f64,
@@ -47,10 +47,8 @@ pub struct Kinetic {
 /// Why the uncertainty of a mean cannot be estimated from the scatter inside its window.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum NoUncertainty {
-    /// One half of the window holds fewer than ten independent blocks.
-    TooFewBlocks {
-        /// How many it holds.
-        found: usize,
+    /// The window is shorter than 5/V*, or holds fewer than 40 steps.
+    TooShort {
         /// t* to which the run should go.
         needed_time_star: f64,
     },
@@ -149,8 +147,8 @@ impl KineticHistory {
         self.sliding_percent_max
     }
 
-    /// Means over the window from `from_star` to the end; none if it is empty.
-    pub fn kinetic(&self, from_star: f64, dt_star: f64) -> Option<Kinetic> {
+    /// Means over the window from `from_star` to the end, at a [loading speed](crate::Model::loading_speed) of `v_star`; none if it is empty.
+    pub fn kinetic(&self, from_star: f64, dt_star: f64, v_star: f64) -> Option<Kinetic> {
         let bin_time = self.steps_per_bin as f64 * dt_star;
         // The last bin does not count until all of its steps are done.
         let complete = self.bins.len() - usize::from(self.in_bin > 0);
@@ -167,7 +165,7 @@ impl KineticHistory {
         Some(Kinetic {
             window_star,
             mu_star: mean(&mu_star),
-            uncertainty: uncertainty(&mu_star, window_star),
+            uncertainty: uncertainty(&mu_star, window_star, v_star),
             mu_lateral_star: window.iter().map(|bin| bin.mu_lateral_star).sum::<f64>() / window.len() as f64,
             sliding_percent: window.iter().map(|bin| bin.sliding_percent).sum::<f64>() / window.len() as f64,
         })
@@ -188,75 +186,119 @@ fn mean(x: &[f64]) -> f64 {
 /// A difference between the halves below this is no drift: it is less than the error of any time step.
 const NEGLIGIBLE_DRIFT: f64 = 1e-6;
 
-/// Fewest independent blocks in each half of a window.
-const MIN_BLOCKS: usize = 10;
+/// V* times the shortest window that gives a standard error: twice the path over which friction falls from its peak to sliding.
+const LEAST_PATH: f64 = 2.0 * ONSET_PATH;
 
-/// Standard error of the mean of a correlated series, if its two halves support one.
-fn uncertainty(x: &[f64], window_star: [f64; 2]) -> Result<f64, NoUncertainty> {
-    let halves = x.split_at(x.len() / 2);
-    let (one, other) = (blocking(halves.0), blocking(halves.1));
-    let found = one.blocks.min(other.blocks);
-    let length = window_star[1] - window_star[0];
-    let longer = |factor: f64| window_star[0] + factor * length;
-    if found < MIN_BLOCKS {
-        let factor = (MIN_BLOCKS as f64 / found.max(1) as f64).max(2.0);
-        return Err(NoUncertainty::TooFewBlocks {
-            found,
-            needed_time_star: longer(factor),
+/// Fewest values of a window that gives a standard error.
+const MIN_VALUES: usize = 40;
+
+/// Standard error of the mean of a correlated series, if its window supports one.
+fn uncertainty(x: &[f64], window_star: [f64; 2], v_star: f64) -> Result<f64, NoUncertainty> {
+    let [from, until] = window_star;
+    let bin_time = (until - from) / (x.len() as f64 - 1.0).max(1.0);
+    let least = (LEAST_PATH / v_star).max(MIN_VALUES as f64 * bin_time);
+    if x.len() < MIN_VALUES || until - from < least {
+        return Err(NoUncertainty::TooShort {
+            needed_time_star: from + least,
         });
     }
-    let means = [mean(halves.0), mean(halves.1)];
+    let middle = x.len() / 2;
+    // The scatter of the halves is that about the line of the whole: what drifts would itself pass for scatter.
+    let level = without_line(x);
+    let [one, other] = [&level[..middle], &level[middle..]].map(standard_error);
+    let means = [mean(&x[..middle]), mean(&x[middle..])];
     let difference = (means[0] - means[1]).abs();
-    if difference > NEGLIGIBLE_DRIFT && difference > 3.0 * one.standard_error.hypot(other.standard_error) {
+    if difference > NEGLIGIBLE_DRIFT && difference > 3.0 * one.hypot(other) {
         return Err(NoUncertainty::Drift {
             halves: means,
-            needed_time_star: longer(2.0),
+            needed_time_star: until + (until - from),
         });
     }
-    Ok(blocking(x).standard_error)
+    Ok(standard_error(x))
 }
 
-struct Blocking {
-    standard_error: f64,
-    /// Number of independent blocks; 0 if the series is too short to tell.
-    blocks: usize,
+/// Most values of which an autoregressive model is made: longer series are averaged over neighbours first.
+const MAX_VALUES: usize = 512;
+
+/// A series minus its line of least squares.
+fn without_line(x: &[f64]) -> Vec<f64> {
+    let (center, middle) = (mean(x), 0.5 * (x.len() as f64 - 1.0));
+    let places = || (0..x.len()).map(|k| k as f64 - middle);
+    let slope = places().zip(x).map(|(place, value)| place * value).sum::<f64>()
+        / places().map(|place| place * place).sum::<f64>();
+    let residual = |(place, value): (f64, &f64)| value - center - slope * place;
+    places().zip(x).map(residual).collect()
 }
 
-/// Standard error of the mean by blocking (Flyvbjerg and Petersen 1989): neighbours are averaged in pairs until
-/// the blocks are independent. The block length B is the first for which, with n values,
+/// Terms of the autoregressive model over the root of the number of values.
+const TERMS: f64 = 1.5;
+
+/// Standard error of the mean of a correlated series of n values, from an autoregressive model of it,
 ///
 /// ```text
-/// B^3 > 2 n (se_B/se_1)^4
+/// x_t = sum_i a_i x_t-i + noise,    i = 1 .. (3/2) sqrt(n)
 /// ```
 ///
-/// (Wolff 2004; Lee et al. 2011), which balances the bias of short blocks against the noise of few.
-fn blocking(x: &[f64]) -> Blocking {
-    let n = x.len() as f64;
-    let mut blocks = x.to_vec();
-    let mut length = 1.0_f64;
-    let mut first = None;
-    while blocks.len() >= 2 {
-        let count = blocks.len() as f64;
-        let center = mean(&blocks);
-        let square = blocks.iter().map(|b| (b - center).powi(2)).sum::<f64>() / (count * (count - 1.0));
-        let first = *first.get_or_insert(square);
-        let inflation = if first > 0.0 { square / first } else { 1.0 };
-        if length.powi(3) > 2.0 * n * inflation * inflation || first == 0.0 {
-            return Blocking {
-                standard_error: square.sqrt(),
-                blocks: blocks.len(),
-            };
+/// whose terms are found by Burg's recursion (Burg 1975), and whose autocovariances gamma(k) give the variance of the mean over just
+/// this window:
+///
+/// ```text
+/// se^2 = (1/n^2) sum_{|k| < n} (n - |k|) gamma(k)
+/// ```
+///
+/// A slider that sticks and slips is anticorrelated: what rises in one cycle falls in the next, and the error falls as 1/n and not as
+/// 1/sqrt(n). Estimates from independent blocks do not see that, and criteria that spare terms of the model (of Akaike, of Schwarz) see
+/// less of it.
+fn standard_error(x: &[f64]) -> f64 {
+    let values: Vec<f64> = x.chunks_exact(x.len().div_ceil(MAX_VALUES)).map(mean).collect();
+    let n = values.len() as f64;
+    let covariances = autocovariances(&values);
+    let weighted = covariances
+        .iter()
+        .zip(0..)
+        .map(|(gamma, k)| (n - f64::from(k)) * gamma);
+    // Every k but 0 stands for two. Rounding can leave a little less than nothing of a series that repeats.
+    let sum = 2.0 * weighted.sum::<f64>() - n * covariances[0];
+    sum.max(0.0).sqrt() / n
+}
+
+/// gamma(0) to gamma(n - 1) of the autoregressive model of a series of n values.
+fn autocovariances(x: &[f64]) -> Vec<f64> {
+    let (n, center) = (x.len() as f64, mean(x));
+    // Errors of predicting each value from those before it, and of the one before these from them.
+    let mut forward: Vec<f64> = x.iter().map(|value| value - center).collect();
+    let mut backward = forward.clone();
+    let mut error = forward.iter().map(|value| value * value).sum::<f64>() / n;
+    let (mut terms, mut covariances) = (Vec::new(), vec![error]);
+    for order in 1..=(TERMS * n.sqrt()) as usize {
+        let pairs = || forward[order..].iter().zip(&backward[order - 1..x.len() - 1]);
+        let squares: f64 = pairs().map(|(f, b)| f * f + b * b).sum();
+        if squares <= 0.0 {
+            break;
         }
-        blocks = blocks
-            .chunks_exact(2)
-            .map(|pair| 0.5 * (pair[0] + pair[1]))
-            .collect();
-        length *= 2.0;
+        let reflection = 2.0 * pairs().map(|(f, b)| f * b).sum::<f64>() / squares;
+        covariances.push(reflection * error + predicted(&terms, &covariances));
+        let reversed: Vec<f64> = terms.iter().rev().copied().collect();
+        for (term, mirrored) in terms.iter_mut().zip(reversed) {
+            *term -= reflection * mirrored;
+        }
+        terms.push(reflection);
+        for t in (order..x.len()).rev() {
+            let (f, b) = (forward[t], backward[t - 1]);
+            (forward[t], backward[t]) = (f - reflection * b, b - reflection * f);
+        }
+        error *= 1.0 - reflection * reflection;
     }
-    Blocking {
-        standard_error: f64::NAN,
-        blocks: 0,
+    while covariances.len() < x.len() {
+        covariances.push(predicted(&terms, &covariances));
     }
+    covariances
+}
+
+/// The next of some autocovariances, `sum_i a_i gamma(k - i)`.
+fn predicted(terms: &[f64], covariances: &[f64]) -> f64 {
+    let latest = covariances.iter().rev();
+    terms.iter().zip(latest).map(|(term, gamma)| term * gamma).sum()
 }
 
 #[cfg(test)]
@@ -279,9 +321,9 @@ mod tests {
     fn white_noise_has_the_plain_standard_error() {
         let x = noise(4096);
         let expected = (1.0 / 12.0 / 4096.0_f64).sqrt();
-        let found = uncertainty(&x, [0.0, 1.0]).unwrap();
-        // With blocks of 2 n^(1/3) = 32 values, 128 of them give the error within 2/sqrt(2 128) = 25 %.
-        assert!((found / expected - 1.0).abs() < 0.25, "{found} {expected}");
+        let found = uncertainty(&x, [0.0, 1.0], 5.0).unwrap();
+        // The spectrum at frequency 0 of 48 terms over n/8 = 512 values has a relative error of sqrt(4 48/512), the root half of it.
+        assert!((found / expected - 1.0).abs() < 2.0 * 0.31, "{found} {expected}");
     }
 
     #[test]
@@ -293,7 +335,7 @@ mod tests {
             x[k] += a * x[k - 1];
         }
         let expected = (1.0 / 12.0 / 40_000.0_f64).sqrt() / (1.0 - a);
-        let found = uncertainty(&x[1000..], [0.0, 1.0]).unwrap();
+        let found = uncertainty(&x[1000..], [0.0, 1.0], 5.0).unwrap();
         assert!((found / expected - 1.0).abs() < 0.3, "{found} {expected}");
     }
 
@@ -316,7 +358,10 @@ mod tests {
         let without_end = history_of(KineticHistory::new(u64::MAX), &short);
         let with_end = history_of(KineticHistory::new(KineticHistory::BINS - 1), &short);
         assert_eq!(without_end, with_end);
-        assert_eq!(without_end.kinetic(100.0, 0.1), with_end.kinetic(100.0, 0.1));
+        assert_eq!(
+            without_end.kinetic(100.0, 0.1, 1.0),
+            with_end.kinetic(100.0, 0.1, 1.0)
+        );
     }
 
     #[test]
@@ -332,7 +377,8 @@ mod tests {
         );
         assert!(without_end.is_consistent_with(&new, long.len() as u64 - 1));
         assert!(!without_end.is_consistent_with(&new, long.len() as u64));
-        let [one, other] = [&without_end, &with_end].map(|history| history.kinetic(1000.0, 0.1).unwrap());
+        let [one, other] =
+            [&without_end, &with_end].map(|history| history.kinetic(1000.0, 0.1, 1.0).unwrap());
         assert_eq!(one.window_star, other.window_star);
         // Means of four are added in another order.
         assert!((one.mu_star - other.mu_star).abs() < 1e-15);
@@ -345,6 +391,21 @@ mod tests {
         assert_eq!(KineticHistory::new(u64::MAX - 1).steps_per_bin, 1 << 50);
     }
 
+    /// x_k = noise_k - noise_k-1: the sum is the difference of two numbers, whose variance is 1/6, however long the series.
+    #[test]
+    fn what_rises_and_falls_back_has_an_error_that_falls_with_the_length() {
+        let noise = noise(513);
+        let x: Vec<f64> = noise.windows(2).map(|pair| pair[1] - pair[0]).collect();
+        let expected = (1.0_f64 / 6.0).sqrt() / 512.0;
+        let found = uncertainty(&x, [0.0, 1.0], 5.0).unwrap();
+        let plain = (1.0_f64 / 6.0 / 512.0).sqrt();
+        println!("{found} {expected} {plain}");
+        assert!(
+            found < 3.0 * expected && found > 0.5 * expected,
+            "{found} {expected} {plain}"
+        );
+    }
+
     #[test]
     fn drift_and_short_windows_have_none() {
         let drifting: Vec<f64> = noise(4096)
@@ -352,13 +413,15 @@ mod tests {
             .enumerate()
             .map(|(k, x)| x + k as f64 * 1e-3)
             .collect();
-        assert!(matches!(
-            uncertainty(&drifting, [0.0, 1.0]),
-            Err(NoUncertainty::Drift { .. } | NoUncertainty::TooFewBlocks { .. })
-        ));
+        let drift = uncertainty(&drifting, [0.0, 1.0], 5.0);
         assert!(
-            matches!(uncertainty(&noise(30), [10.0, 20.0]), Err(NoUncertainty::TooFewBlocks { needed_time_star, .. }) if needed_time_star >= 30.0)
+            matches!(drift, Err(NoUncertainty::Drift { needed_time_star, .. }) if needed_time_star == 2.0),
+            "{drift:?}"
         );
-        assert_eq!(uncertainty(&[0.5; 1000], [0.0, 1.0]), Ok(0.0));
+        // Ten units of time at V* = 0.1, where 50 are needed; and 30 steps of one unit each.
+        let short = |needed_time_star| Err(NoUncertainty::TooShort { needed_time_star });
+        assert_eq!(uncertainty(&noise(101), [10.0, 20.0], 0.1), short(60.0));
+        assert_eq!(uncertainty(&noise(31), [10.0, 40.0], 1.0), short(50.0));
+        assert_eq!(uncertainty(&[0.5; 1000], [0.0, 1.0], 5.0), Ok(0.0));
     }
 }

@@ -229,7 +229,7 @@ impl Slider {
         observers.extend(others.iter_mut().map(|o| Scheduled::always(*o)));
         simulation.run(Stop::at_step(steps), &mut observers).unwrap();
         let from = KineticStart::Auto.time_star(&simulation.peak(), self.v_star);
-        history.kinetic(from, self.dt_star)
+        history.kinetic(from, self.dt_star, self.v_star)
     }
 }
 

@@ -443,7 +443,7 @@ proptest! {
         }
         let dt = 0.1;
         let end = last_step as f64 * dt;
-        let found = history.kinetic(from * end, dt);
+        let found = history.kinetic(from * end, dt, 1.0);
         let bin = (last_step + 1).div_ceil(KineticHistory::BINS);
         let Some(found) = found else {
             // Nothing but a window shorter than two bins can be empty.
