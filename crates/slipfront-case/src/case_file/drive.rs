@@ -168,6 +168,13 @@ fn check_program(segments: &[SpeedSegment], check: &Check) -> Result<(), CaseErr
     if segments.iter().all(|segment| segment.v_star == 0.0) {
         return refuse("never moves: give it a speed other than 0".to_owned());
     }
+    if segments.iter().all(|segment| segment.v_star <= 0.0) {
+        return refuse(
+            "never moves forwards, so that the slider has no static friction along the drive: give it a speed above 0; \
+             `direction` turns the drive round"
+                .to_owned(),
+        );
+    }
     Ok(())
 }
 

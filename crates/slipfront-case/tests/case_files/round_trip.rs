@@ -127,7 +127,7 @@ fn load() -> impl Strategy<Value = Load> {
 }
 
 fn drive() -> impl Strategy<Value = Drive> {
-    // Times are sums, so that they rise.
+    // Times are sums, so that they rise, and the first speed is forwards.
     let program =
         prop::collection::vec((-10.0..10.0, 0.01..100.0), 1..6).prop_map(|parts: Vec<(f64, f64)>| {
             let mut until = 0.0;
@@ -135,6 +135,7 @@ fn drive() -> impl Strategy<Value = Drive> {
             let segments = parts.into_iter().enumerate().map(|(number, (v_star, lasts))| {
                 until += lasts;
                 let until_star = (number + 1 < count).then_some(until);
+                let v_star: f64 = if number == 0 { v_star.abs().max(1e-6) } else { v_star };
                 SpeedSegment { v_star, until_star }
             });
             DriveSpeed::Program(segments.collect())
