@@ -51,7 +51,7 @@ pub(super) fn attach(
     Ok(())
 }
 
-/// The drive of a slider. Springs that are not all alike have what they have together in proportion to their relative stiffness.
+/// The drive of a slider. A total stiffness is shared by the driven blocks in proportion to their moduli.
 pub(super) fn drive(
     file: &CaseFile,
     scales: &Scales,

@@ -245,7 +245,7 @@ const DRIVE: &[Key] = &[
         .or("stiffness_star").or("total_stiffness").or("total_stiffness_star"),
     key("stiffness_star", "", DRIVE_STIFFNESS, "the same over E l").or("stiffness").or("total_stiffness").or("total_stiffness_star")
         .title("drive stiffness", "k\u{209b}*", ""),
-    key("total_stiffness", "", STIFFNESS, "stiffness of all drive springs together, which they share equally")
+    key("total_stiffness", "", STIFFNESS, "stiffness of all drive springs together, shared in proportion to the modulus of each block")
         .or("stiffness").or("stiffness_star").or("total_stiffness_star").title("total drive stiffness", "K\u{209b}", "N/m"),
     key("total_stiffness_star", "", DRIVE_STIFFNESS, "the same over E l")
         .or("stiffness").or("stiffness_star").or("total_stiffness").title("total drive stiffness", "K\u{209b}*", ""),

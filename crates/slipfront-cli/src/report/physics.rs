@@ -106,12 +106,14 @@ fn drive(case: &Case) -> String {
         Attached::At(edge) => format!(", attached at the {} edge", format!("{edge:?}").to_lowercase()),
         Attached::File(file) => format!(", attached as {file} says"),
     };
-    let stiffness = match keys.stiffness {
-        DriveStiffness::Auto => String::new(),
-        _ => format!(
-            ", {} springs of k_s* = {}",
-            four_digits(case.model.slider().sum_of_drive_springs(&case.model.lattice)),
-            four_digits(drive.k_drive)
+    let (slider, k_drive) = (case.model.slider(), four_digits(drive.k_drive));
+    let springs = slider.sum_of_drive_springs(&case.model.lattice);
+    let stiffness = match (&keys.stiffness, &slider.stiffness) {
+        (DriveStiffness::Auto, _) => String::new(),
+        (_, None) => format!(", {} springs of k_s* = {k_drive}", four_digits(springs)),
+        (_, Some(_)) => format!(
+            ", springs of k_s* = {k_drive} times the modulus of their blocks, {} together",
+            four_digits(springs * drive.k_drive)
         ),
     };
     format!("{speed} {motion}{at}{stiffness}")
