@@ -137,6 +137,13 @@ impl Model {
         self.drive.v_star * (self.drive.k_drive * self.driven_share() / K_DRIVE)
     }
 
+    /// Speed at which the paper's drive loads equal blocks as fast as this one loads these, in the time in which a slip front passes a
+    /// block: the [loading speed](Self::loading_speed) times [`Slider::mean_slowness`]. Equal blocks of any modulus and density have
+    /// their own V*.
+    pub fn speed_against_front(&self) -> f64 {
+        self.loading_speed() * self.slider.mean_slowness
+    }
+
     /// Between which t* the onset is expected. The later of the two is Eq. 12 for blocks that bear their load alone, which is larger by the
     /// [load factor](Surface::load_factor) f where only some touch; the earlier one is Eq. 12 for blocks that all touch or, if that
     /// is later, for blocks that stand alone and are pushed by their free neighbours too:

@@ -15,6 +15,8 @@ pub struct Slider {
     pub density: Option<Vec<f64>>,
     /// Mean of the masses of all blocks of the whole lattice that exist, in units of `rho l^3`.
     pub mean_mass: f64,
+    /// Mean over the same blocks of the time in which a wave passes one, `sqrt(rho_i E/(rho E_i))`, over that of a block of `E` and `rho`.
+    pub mean_slowness: f64,
     /// Drive springs that are not all alike.
     pub drive_springs: Option<DriveSprings>,
     /// The blocks that exist, if some do not.
@@ -47,6 +49,7 @@ impl Default for Slider {
             stiffness: None,
             density: None,
             mean_mass: 1.0,
+            mean_slowness: 1.0,
             drive_springs: None,
             outline: None,
             viscosity_time: 0.0,
@@ -119,13 +122,16 @@ impl Slider {
             outline,
             ..Self::default()
         };
-        if let Some(density) = &slider.density {
-            let mass = |b: usize| if slider.exists(b) { density[b] } else { 0.0 };
-            let masses = sum_over(ranks, density.len(), mass);
-            let blocks = sum_over(ranks, density.len(), |b| f64::from(u8::from(slider.exists(b))));
-            slider.mean_mass = masses / blocks;
-        }
         let stiffness = slider.stiffness.as_ref().map(Vec::len);
+        if let Some(n) = stiffness.or(slider.density.as_ref().map(Vec::len)) {
+            let sum = |of: &dyn Fn(usize) -> f64| {
+                sum_over(ranks, n, |b| if slider.exists(b) { of(b) } else { 0.0 })
+            };
+            let blocks = sum(&|_| 1.0);
+            let mean_mass = sum(&|b| slider.mass(b)) / blocks;
+            let mean_slowness = sum(&|b| (slider.mass(b) / slider.modulus(b)).sqrt()) / blocks;
+            (slider.mean_mass, slider.mean_slowness) = (mean_mass, mean_slowness);
+        }
         if let Some(n) = stiffness.or(slider.outline.as_ref().map(|outline| outline.exists.len())) {
             let relative = (0..n).map(|b| slider.modulus(b)).collect();
             slider.drive_springs = Some(DriveSprings::new(relative, ranks));
@@ -187,6 +193,7 @@ impl Slider {
             stiffness: self.stiffness.as_ref().map(some),
             density: self.density.as_ref().map(some),
             mean_mass: self.mean_mass,
+            mean_slowness: self.mean_slowness,
             drive_springs: self.drive_springs.as_ref().map(|springs| DriveSprings {
                 relative: some(&springs.relative),
                 sum: springs.sum,

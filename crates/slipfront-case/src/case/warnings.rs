@@ -51,9 +51,17 @@ impl Case {
                 "the load strains the slider by {epsilon:.3}, more than {LARGE_EPSILON}: results depend on it"
             )
         });
-        warn(self.model.loading_speed() > LARGE_V_STAR, &|| {
+        let against_front = self.model.speed_against_front();
+        warn(against_front > LARGE_V_STAR, &|| {
+            let speed = match v_star > LARGE_V_STAR {
+                true => format!("V* = {v_star} is"),
+                false => format!(
+                    "V* = {v_star} loads this slider as fast as {} loads equal blocks on the paper's springs, which is",
+                    four_digits(against_front)
+                ),
+            };
             format!(
-                "V* = {v_star} is above {LARGE_V_STAR}: the slider slips as a whole before any front can cross it"
+                "{speed} above {LARGE_V_STAR}: the slider slips as a whole before any front can cross it"
             )
         });
         warn(self.file.friction.law == Law::Literal, &|| {

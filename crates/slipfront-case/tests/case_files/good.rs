@@ -171,6 +171,53 @@ fn steps_and_durations_follow_the_blocks() {
     }
 }
 
+/// The springs of the blocks that are driven are as stiff together as the case says, whatever they are of each.
+#[test]
+fn a_total_stiffness_is_the_sum_of_all_drive_springs() {
+    for attach in ["all", "left"] {
+        for [from, to] in [[1.0, 1.0], [1.0, 0.1], [1000.0, 0.001]] {
+            let text = format!(
+                "slider.blocks = [10, 7]\nslider.stiffness_grade = {{ along = 'x', from = {from:?}, to = {to:?} }}\n\
+                 drive.attach = '{attach}'\ndrive.total_stiffness_star = 0.5"
+            );
+            let case = Case::parse(&text, "case", &[]).unwrap();
+            let (slider, k_drive) = (case.model.slider(), case.model.drive.k_drive);
+            let sum: f64 = (0..70).map(|b| k_drive * slider.drive_spring(b)).sum();
+            // 70 terms are rounded.
+            assert!((sum / 0.5 - 1.0).abs() < 1e-13, "{attach}, {from} to {to}: {sum}");
+            let sum = k_drive * slider.sum_of_drive_springs(&case.model.lattice);
+            assert!((sum / 0.5 - 1.0).abs() < 1e-13, "{attach}, {from} to {to}: {sum}");
+        }
+    }
+}
+
+/// Equal blocks of any modulus and density have the V* of a case that says so in its material; a grade is told as what it is worth.
+#[test]
+fn fast_loading_is_told_in_the_speed_that_equal_blocks_would_have() {
+    let fast = |keys: &str| {
+        let text = format!("slider.blocks = [50, 50]\n{keys}");
+        let warnings = Case::parse(&text, "case", &[]).unwrap().warnings();
+        let fast = warnings.into_iter().find(|warning| warning.contains("above 0.2"));
+        fast.map(|warning| warning.split(" above 0.2").next().unwrap().to_owned())
+    };
+    let grade = |key: &str, from: f64, to: f64| {
+        format!("slider.{key}_grade = {{ along = 'x', from = {from:?}, to = {to:?} }}\n")
+    };
+    assert_eq!(fast(""), None);
+    assert_eq!(fast("drive.v_star = 0.3"), Some("V* = 0.3 is".to_owned()));
+    // sqrt(10) 0.03 = 0.095, and sqrt(1000) 0.03 = 0.9487.
+    assert_eq!(fast(&grade("stiffness", 10.0, 10.0)), None);
+    let of_equal =
+        |speed: &str| format!("V* = 0.03 loads this slider as fast as {speed} loads equal blocks on the paper's springs, which is");
+    assert_eq!(fast(&grade("stiffness", 1000.0, 1000.0)), Some(of_equal("0.9487")));
+    assert_eq!(fast(&grade("density", 1000.0, 1000.0)), Some(of_equal("0.9487")));
+    // mean(e) = 500 and mean(1/sqrt(e)) over 50 blocks with e from 10 to 990.
+    let slowness = (0..50).map(|i| 1.0 / (10.0 + 20.0 * f64::from(i)).sqrt()).sum::<f64>() / 50.0;
+    let expected = format!("{:.4}", 0.03 * 500.0 * slowness);
+    let graded = fast(&grade("stiffness", 1000.0, 1e-6));
+    assert_eq!(graded, Some(of_equal(&expected)));
+}
+
 /// Where fewer than half of the blocks touch, the run lasts until their own drive springs have borne their load, and 2.5/V* more. The
 /// blocks of an edge drive bear theirs by the springs of others.
 #[test]

@@ -25,7 +25,7 @@ fn loading(case: &Case) -> (String, Option<String>) {
         [0.0, _] => ("N_y", ny),
         [along_x, along_y] => ("N", nx * along_x.abs() + ny * along_y.abs()),
     };
-    let ratio = case.model.loading_speed() * blocks;
+    let ratio = case.model.speed_against_front() * blocks;
     let line = format!(
         "loading           V* {name} = {}: the time in which a front crosses the {} blocks over that of loading\n",
         four_digits(ratio),

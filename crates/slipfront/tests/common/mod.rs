@@ -240,6 +240,7 @@ fn part(body: &slipfront::Slider, blocks: Range<usize>) -> slipfront::Slider {
         stiffness: of(&body.stiffness),
         density: of(&body.density),
         mean_mass: body.mean_mass,
+        mean_slowness: body.mean_slowness,
         drive_springs: body.drive_springs.as_ref().map(|springs| DriveSprings {
             relative: springs.relative[blocks.clone()].to_vec(),
             sum: springs.sum,
