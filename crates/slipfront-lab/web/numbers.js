@@ -10,7 +10,7 @@ import { say } from './text.js';
 /** @param {number|null|undefined} percent */
 const signed = (percent, digits = 1) => (percent === null || percent === undefined ? '\u2013' : `${percent > 0 ? '+' : ''}${fixed(percent, digits)} %`);
 
-/** Rows of a table of names and values. @param {string} id @param {Array<[string, string]>} rows */
+/** Rows of a table of names and values, some with a hint. @param {string} id @param {Array<[string, string, string?]>} rows */
 function fill(id, rows) {
   const list = find(id);
   if (list.children.length === 2 * rows.length) {
@@ -20,7 +20,7 @@ function fill(id, rows) {
       if (list.children[2 * k + 1].textContent !== value) list.children[2 * k + 1].textContent = value;
     });
   } else {
-    list.replaceChildren(...rows.flatMap(([name, value]) => [make('dt', { textContent: name }), make('dd', { textContent: value })]));
+    list.replaceChildren(...rows.flatMap(([name, value, title = '']) => [make('dt', { textContent: name, title }), make('dd', { textContent: value, title })]));
   }
 }
 
@@ -47,7 +47,7 @@ function showRows(numbers) {
     [say('number_onset'), peakValue(peak, 't_star', 1)],
     [say('number_kinetic'), fixed(numbers.kinetic)],
     [say('number_mu'), fixed(numbers.mu_star)],
-    [say('number_sliding'), `${fixed(numbers.sliding_percent, 1)} %`],
+    [say('number_sliding'), `${fixed(numbers.sliding_percent, 1)} %`, say('sliding_hint')],
     [say('number_time'), `${fixed(numbers.t_star, 1)} = ${quantity(numbers.time_s, 's')}`],
     [say('number_texture'), `${fixed(state.case?.texture_percent, 1)} %`],
     [say('number_pace'), number(numbers.steps_per_second)],

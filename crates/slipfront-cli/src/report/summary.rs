@@ -1,5 +1,6 @@
 //! The summary of a run, to be read at a glance.
 
+use slipfront::Friction;
 use slipfront_case::case::Case;
 use slipfront_case::case_file::Motion;
 use slipfront_case::number_format::{four_digits, with_si_prefix, with_uncertainty};
@@ -15,7 +16,7 @@ pub(crate) fn summary(case: &Case, summary: &Summary) -> String {
         lines.push(("first slip", format!("at {}", instant(first, &case.scales))));
     }
     lines.push(("kinetic friction", kinetic_friction(case, summary)));
-    lines.push(("sliding blocks", sliding_blocks(summary)));
+    lines.push(("sliding blocks", sliding_blocks(case, summary)));
     if let Some(precursors) = &summary.precursors {
         lines.push(("events of slip", events(case, precursors)));
     }
@@ -63,12 +64,20 @@ fn kinetic_friction(case: &Case, summary: &Summary) -> String {
     )
 }
 
-fn sliding_blocks(summary: &Summary) -> String {
+fn sliding_blocks(case: &Case, summary: &Summary) -> String {
     let most = format!("N* = {:.1} % at most", summary.sliding_percent_max);
-    match summary.sliding_percent_kinetic {
-        Some(kinetic) => format!("{most}, {kinetic:.1} % in that window"),
-        None => most,
-    }
+    let kinetic = summary.sliding_percent_kinetic;
+    let kinetic = kinetic.map_or(String::new(), |kinetic| format!(", {kinetic:.1} % in that window"));
+    // Where springs in contact are what slides, a block without one does not count.
+    let has_springs = matches!(case.model.friction, Friction::ContactSprings(_));
+    let textured = match summary.texture_percent > 0.0 && !has_springs {
+        true => format!(
+            "; {:.1} % are textured, held by nothing, and slide from the start",
+            summary.texture_percent
+        ),
+        false => String::new(),
+    };
+    most + &kinetic + &textured
 }
 
 fn events(case: &Case, precursors: &PrecursorSummary) -> String {

@@ -89,7 +89,7 @@ fn check_prints_groups_onset_and_cost_and_runs_nothing() {
     assert_eq!(workspace.files(".").len(), 1, "check has written something");
 }
 
-/// The blocks are those along the drive, and an edge drive loads as slowly as its springs are few.
+/// The blocks are those along the drive, an edge drive loads as slowly as its springs are few, and stiff blocks are passed faster.
 #[test]
 fn check_compares_crossing_and_loading() {
     let workspace = Workspace::small();
@@ -109,6 +109,12 @@ fn check_compares_crossing_and_loading() {
         ("drive.direction=45", "V* N = 0.7778: ", None),
         ("drive.motion=rotation", "V* N = ", None),
         ("drive.attach=left", "V* N_x = 0.1: ", None),
+        // Four times the modulus is twice the V* of its own material.
+        (
+            "slider.stiffness_grade={along=\"x\",from=4,to=4}",
+            "V* N_x = 1.2: ",
+            Some("it is 1 at V* = 0.08333, and loading is slow well below that"),
+        ),
         (
             "slider.blocks=[20,20]",
             "V* N_x = 2: ",
@@ -209,6 +215,44 @@ fn run_prints_physics_summary_and_where_everything_is() {
     ] {
         assert!(said.contains(words), "{words:?} is missing:\n{said}");
     }
+}
+
+/// Textured blocks are held by nothing; of springs in contact, whose breaking counts, they have none.
+#[test]
+fn a_run_says_that_textured_blocks_slide_from_the_start() {
+    let workspace = Workspace::small();
+    let sentence = "% are textured, held by nothing, and slide from the start";
+    let groove = "texture.0={shape=\"groove\",width=\"2um\"}";
+    let n_star = |name: &str| {
+        let series = workspace.read_text(&format!("{name}/series.csv"));
+        let column = series.lines().next().unwrap().split(',').position(|name| name == "sliding_percent");
+        let second = series.lines().nth(2).unwrap().split(',').nth(column.unwrap()).unwrap();
+        second.parse::<f64>().unwrap()
+    };
+    let said = workspace.succeed(&format!("run small.toml -o textured --set {groove}"));
+    assert!(said.contains(&format!("; 33.3 {sentence}")), "{said}");
+    assert_eq!(n_star("textured"), 100.0 / 3.0);
+    let springs = "--set friction.contact=springs --set friction.contact_stiffness_star=1 --set time.duration_star=10";
+    let said = workspace.succeed(&format!("run small.toml -o springs --set {groove} {springs}"));
+    assert!(!said.contains(sentence), "{said}");
+    assert_eq!(n_star("springs"), 0.0);
+    let said = workspace.succeed("run small.toml -o plain");
+    assert!(!said.contains(sentence), "{said}");
+}
+
+/// Springs that are not alike are not counted by what they are worth.
+#[test]
+fn a_total_stiffness_is_told_as_it_is_shared() {
+    let workspace = Workspace::small();
+    let total = "check small.toml --set drive.total_stiffness_star=3";
+    let said = workspace.succeed(total);
+    assert!(said.contains(", 30 springs of k_s* = 0.1\n"), "{said}");
+    let said = workspace.succeed(&format!(
+        "{total} --set slider.stiffness_grade={{along=\"x\",from=1,to=0.1}}"
+    ));
+    // The mean modulus is 0.55.
+    let shared = ", springs of k_s* = 0.1818 times the modulus of their blocks, 3 together\n";
+    assert!(said.contains(shared), "{said}");
 }
 
 #[test]
