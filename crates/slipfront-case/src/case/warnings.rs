@@ -53,15 +53,16 @@ impl Case {
         });
         let against_front = self.model.speed_against_front();
         warn(against_front > LARGE_V_STAR, &|| {
-            let speed = match v_star > LARGE_V_STAR {
-                true => format!("V* = {v_star} is"),
-                false => format!(
-                    "V* = {v_star} loads this slider as fast as {} loads equal blocks on the paper's springs, which is",
-                    four_digits(against_front)
-                ),
-            };
+            // But for rounding.
+            if (against_front / v_star - 1.0).abs() < 1e-9 {
+                return format!(
+                    "V* = {v_star} is above {LARGE_V_STAR}: the slider slips as a whole before any front can cross it"
+                );
+            }
             format!(
-                "{speed} above {LARGE_V_STAR}: the slider slips as a whole before any front can cross it"
+                "V* = {v_star} loads this slider as fast as {} loads equal blocks on the paper's springs, which is above \
+                 {LARGE_V_STAR}: loading is faster than a slip front",
+                four_digits(against_front)
             )
         });
         warn(self.file.friction.law == Law::Literal, &|| {
