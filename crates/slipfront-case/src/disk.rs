@@ -1,6 +1,6 @@
 //! Files that are written atomically and read up to a limit, and folders.
 
-use std::fs::File;
+use std::fs::{File, Metadata};
 use std::io::{ErrorKind, Read, Take, Write};
 use std::path::Path;
 
@@ -79,6 +79,15 @@ pub fn is_empty(folder: &Path) -> std::io::Result<bool> {
     Ok(std::fs::read_dir(folder)?.next().transpose()?.is_none())
 }
 
+/// Makes a folder, and those above it, where they are missing.
+pub fn make_folders(path: &Path) -> std::io::Result<()> {
+    // Of a folder that is there, but cannot be looked at, the standard library says that it exists.
+    match found_behind(path)? {
+        Some(found) if found.is_dir() => Ok(()),
+        _ => std::fs::create_dir_all(path),
+    }
+}
+
 /// Opens a regular file, and nothing else: a pipe may block, and a device such as `/dev/zero` has no end.
 pub fn open_regular(path: &Path) -> std::io::Result<File> {
     if !std::fs::metadata(path)?.is_file() {
@@ -124,9 +133,36 @@ pub fn json(value: &impl Serialize) -> Vec<u8> {
     bytes
 }
 
+/// What stands under a path, of a symbolic link the link itself; none if nothing does.
+///
+/// # Errors
+/// When the system does not say, which must not be taken for nothing.
+pub fn found_at(path: &Path) -> std::io::Result<Option<Metadata>> {
+    found(path.symlink_metadata())
+}
+
+/// What a path leads to, through symbolic links; none if nothing is there.
+///
+/// # Errors
+/// As of [`found_at`].
+pub fn found_behind(path: &Path) -> std::io::Result<Option<Metadata>> {
+    found(path.metadata())
+}
+
+fn found(looked: std::io::Result<Metadata>) -> std::io::Result<Option<Metadata>> {
+    match looked {
+        Ok(found) => Ok(Some(found)),
+        Err(error) if [ErrorKind::NotFound, ErrorKind::NotADirectory].contains(&error.kind()) => Ok(None),
+        Err(error) => Err(error),
+    }
+}
+
 /// Whether the path is a folder itself, and not a symbolic link to one.
-pub fn is_folder(path: &Path) -> bool {
-    path.symlink_metadata().is_ok_and(|found| found.is_dir())
+///
+/// # Errors
+/// As of [`found_at`].
+pub fn is_folder(path: &Path) -> std::io::Result<bool> {
+    Ok(found_at(path)?.is_some_and(|found| found.is_dir()))
 }
 
 /// Whether two paths lead to the same file or folder, which exists.

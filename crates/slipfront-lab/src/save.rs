@@ -6,6 +6,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
+use slipfront_case::disk::make_folders;
 use slipfront_case::text::{display_path, truncated};
 use slipfront_run::clock;
 use slipfront_run::results;
@@ -42,7 +43,7 @@ fn is_taken(folder: &Path) -> String {
 
 /// Makes a new folder. What stands there already is not taken for one, not even a link to an empty folder.
 fn make_folder(path: &Path) -> Result<(), String> {
-    let above = path.parent().map_or(Ok(()), std::fs::create_dir_all);
+    let above = path.parent().map_or(Ok(()), make_folders);
     above
         .and_then(|()| std::fs::create_dir(path))
         .map_err(|error| match error.kind() {

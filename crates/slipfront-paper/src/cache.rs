@@ -9,7 +9,7 @@ use crate::embedded_cases::FILES;
 use crate::error::PaperError;
 use crate::figure_data::FigureData;
 use crate::step_rule::StepRule;
-use slipfront_case::disk::{read_limited, write_atomic};
+use slipfront_case::disk::{make_folders, read_limited, write_atomic};
 use slipfront_case::unfinished::clear_unfinished;
 use slipfront_run::checksum;
 use slipfront_run::names::FIGURE_CACHE;
@@ -34,7 +34,7 @@ impl FigureCache {
     /// When the folder cannot be made.
     pub fn open(folder: &Path, reduced: bool) -> Result<Self, PaperError> {
         let folder = folder.join(FIGURE_CACHE);
-        std::fs::create_dir_all(&folder).map_err(|source| FolderError::Unwritable {
+        make_folders(&folder).map_err(|source| FolderError::Unwritable {
             path: folder.clone(),
             source,
         })?;

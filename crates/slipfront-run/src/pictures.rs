@@ -6,6 +6,7 @@ use {
     crate::fields::{self, FieldFrame, Reduction},
     crate::friction_picture::{self, in_print},
     crate::precursors::{self, PrecursorRow},
+    crate::run_folder::error::FolderError,
     crate::series::{self, SeriesRow},
     crate::summary::{InstantSummary, Summary, read_summary},
     rayon::prelude::*,
@@ -14,6 +15,7 @@ use {
     slipfront::{Edge, Edges},
     slipfront_case::case::{MAX_MAPS, mapped_field, memory_to_draw},
     slipfront_case::case_file::{CaseFile, KineticFriction, Motion},
+    slipfront_case::disk::found_behind,
     slipfront_case::field_info::field_info,
     slipfront_case::number_format::si_prefix,
     slipfront_plot::{
@@ -21,6 +23,7 @@ use {
     },
     std::{
         collections::HashMap,
+        fs::Metadata,
         ops::Range,
         path::{Path, PathBuf},
     },
@@ -83,7 +86,7 @@ pub fn memory(folders: &[PathBuf]) -> Result<f64, ResultsError> {
     let (mut rows, mut kymograph) = (0.0, 0);
     for folder in folders {
         rows += series::estimate_rows(&folder.join(SERIES))?;
-        kymograph = std::fs::metadata(folder.join(KYMOGRAPH))
+        kymograph = found(&folder.join(KYMOGRAPH))?
             .map_or(0, |file| file.len())
             .max(kymograph);
     }
@@ -102,6 +105,12 @@ pub fn draw(folder: &Path) -> Result<Vec<(&'static str, Picture)>, ResultsError>
         }
     }
     Ok(pictures)
+}
+
+/// A file that a run may not have written.
+#[cfg(feature = "plot")]
+fn found(path: &Path) -> Result<Option<Metadata>, ResultsError> {
+    Ok(found_behind(path).map_err(FolderError::read(path))?)
 }
 
 /// Maps are read as the means that are drawn, so that they take no more memory for a larger lattice.
@@ -177,8 +186,8 @@ pub(crate) fn field_of_maps(case: Option<&CaseFile>) -> Field {
 #[cfg(feature = "plot")]
 pub(crate) fn case_of(folder: &Path) -> Result<Option<CaseFile>, ResultsError> {
     let path = folder.join(CASE);
-    let case = path.exists().then(|| CaseFile::load(&path, &[])).transpose();
-    Ok(case?)
+    let case = found(&path)?.map(|_| CaseFile::load(&path, &[]));
+    Ok(case.transpose()?)
 }
 
 /// The scale of the maps of a field.
@@ -312,7 +321,7 @@ const MIN_INSTANTS: usize = 32;
 #[cfg(feature = "plot")]
 fn draw_front(folder: &Path) -> Result<Option<Picture>, ResultsError> {
     let (summary, path) = (read_summary(folder)?, folder.join(KYMOGRAPH));
-    if !summary.transition || !path.exists() {
+    if !summary.transition || found(&path)?.is_none() {
         return Ok(None);
     }
     let kymograph = fields::read_kymograph(&path)?;
@@ -370,7 +379,7 @@ fn rows_of_the_front(times: &[f64], summary: &Summary) -> Range<usize> {
 #[cfg(feature = "plot")]
 fn draw_precursors(folder: &Path) -> Result<Option<Picture>, ResultsError> {
     let path = folder.join(PRECURSORS);
-    if !path.exists() {
+    if found(&path)?.is_none() {
         return Ok(None);
     }
     let mut longest = 0.0;

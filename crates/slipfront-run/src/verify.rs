@@ -114,9 +114,10 @@ pub fn verify_run(run: &Inspection) -> Result<Verdict, VerifyError> {
     verdict.differences = differences(&manifest.files, &run.path, "were written");
     verdict.differences.extend(unresolved(run));
     let listed = manifest.files.iter().map(|file| file.name.as_str());
+    let has_unfinished = Unfinished::of(&run.path).is_managed()?;
     // A picture that `slipfront plot` was writing has a hidden file beside it.
     let is_left = |name: &str| match name {
-        UNFINISHED => Unfinished::of(&run.path).is_managed(),
+        UNFINISHED => has_unfinished,
         name => is_unfinished(name),
     };
     verdict.notes = unlisted_files(&run.path, &listed.chain([MANIFEST]).collect(), is_left);
@@ -135,7 +136,7 @@ pub fn inspect(folder: &Path) -> Result<Inspection, VerifyError> {
             return Err(VerifyError::NotAFolder { path });
         }
     }
-    Ok(Inspection::of(folder).map_err(FolderError::read(folder))?)
+    Ok(Inspection::of(folder)?)
 }
 
 /// Where the files of a folder differ from those listed, which for example `were written`: a sentence for each.

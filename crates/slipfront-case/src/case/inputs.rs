@@ -178,16 +178,17 @@ impl NamedFiles {
 
     /// Fails if a file has changed since it was found: what was read of it afterwards need not be what was hashed.
     pub(super) fn expect_unchanged(&self, file: &CaseFile) -> Result<(), CaseError> {
-        let changed = self.0.iter().find(|found| {
-            let now = stamp(&found.original);
-            !now.is_ok_and(|now| now == found.stamp)
-        });
-        let Some(found) = changed else { return Ok(()) };
-        let sentence = format!(
-            "{} was changed while the case was made of it: begin again, and leave this file as it is meanwhile",
-            display_path(&found.original)
-        );
-        Err(file.source.error(&found.key, sentence))
+        for found in &self.0 {
+            let now = stamp(&found.original).map_err(|error| placed(file, &found.key, error))?;
+            if now != found.stamp {
+                let sentence = format!(
+                    "{} was changed while the case was made of it: begin again, and leave this file as it is meanwhile",
+                    display_path(&found.original)
+                );
+                return Err(file.source.error(&found.key, sentence));
+            }
+        }
+        Ok(())
     }
 }
 

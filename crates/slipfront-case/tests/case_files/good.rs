@@ -207,12 +207,21 @@ fn fast_loading_is_told_in_the_speed_that_equal_blocks_would_have() {
     assert_eq!(fast("drive.v_star = 0.3"), Some("V* = 0.3 is".to_owned()));
     // sqrt(10) 0.03 = 0.095, and sqrt(1000) 0.03 = 0.9487.
     assert_eq!(fast(&grade("stiffness", 10.0, 10.0)), None);
-    let of_equal =
-        |speed: &str| format!("V* = 0.03 loads this slider as fast as {speed} loads equal blocks on the paper's springs, which is");
-    assert_eq!(fast(&grade("stiffness", 1000.0, 1000.0)), Some(of_equal("0.9487")));
+    let of_equal = |speed: &str| {
+        format!(
+            "V* = 0.03 loads this slider as fast as {speed} loads equal blocks on the paper's springs, which is"
+        )
+    };
+    assert_eq!(
+        fast(&grade("stiffness", 1000.0, 1000.0)),
+        Some(of_equal("0.9487"))
+    );
     assert_eq!(fast(&grade("density", 1000.0, 1000.0)), Some(of_equal("0.9487")));
     // mean(e) = 500 and mean(1/sqrt(e)) over 50 blocks with e from 10 to 990.
-    let slowness = (0..50).map(|i| 1.0 / (10.0 + 20.0 * f64::from(i)).sqrt()).sum::<f64>() / 50.0;
+    let slowness = (0..50)
+        .map(|i| 1.0 / (10.0 + 20.0 * f64::from(i)).sqrt())
+        .sum::<f64>()
+        / 50.0;
     let expected = format!("{:.4}", 0.03 * 500.0 * slowness);
     let graded = fast(&grade("stiffness", 1000.0, 1e-6));
     assert_eq!(graded, Some(of_equal(&expected)));

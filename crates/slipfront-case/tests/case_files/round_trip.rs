@@ -135,7 +135,11 @@ fn drive() -> impl Strategy<Value = Drive> {
             let segments = parts.into_iter().enumerate().map(|(number, (v_star, lasts))| {
                 until += lasts;
                 let until_star = (number + 1 < count).then_some(until);
-                let v_star: f64 = if number == 0 { v_star.abs().max(1e-6) } else { v_star };
+                let v_star: f64 = if number == 0 {
+                    v_star.abs().max(1e-6)
+                } else {
+                    v_star
+                };
                 SpeedSegment { v_star, until_star }
             });
             DriveSpeed::Program(segments.collect())

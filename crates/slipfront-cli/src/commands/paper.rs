@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use slipfront_case::disk::is_empty;
+use slipfront_case::disk::{is_empty, make_folders};
 use slipfront_case::number_format::are;
 use slipfront_paper::Options;
 use slipfront_run::study::{Records, is_study};
@@ -109,7 +109,7 @@ fn open(folder: &Path) -> Result<Records, Failure> {
             folder.display()
         ))
     };
-    std::fs::create_dir_all(folder).map_err(unusable)?;
+    make_folders(folder).map_err(unusable)?;
     let used = folder.join(Records::FILE).exists() && !is_study(folder);
     if !used && !is_empty(folder).map_err(unusable)? {
         let sentence = "holds other things than figures of the paper: choose another with --out";

@@ -6,7 +6,7 @@ use clap::builder::PossibleValuesParser;
 use clap::{Args, ValueEnum};
 use slipfront_case::arrays::extension;
 use slipfront_case::case::PROGRAM;
-use slipfront_case::disk::{is_same, read_limited, write_atomic};
+use slipfront_case::disk::{is_same, make_folders, read_limited, write_atomic};
 use slipfront_case::field_info::{FIELDS, field_info, field_named};
 use slipfront_case::machine::available_of;
 use slipfront_case::number_format::{byte_size, four_digits, with_si_prefix};
@@ -173,7 +173,7 @@ impl Plot {
         }
         // Not before: until here a signal ends the process, and nothing is left behind.
         let signals = Signals::catch().map_err(Failure::running)?;
-        std::fs::create_dir_all(&out).map_err(failed)?;
+        make_folders(&out).map_err(failed)?;
         let mut written = String::new();
         for (name, bytes) in files {
             Failure::if_stopped(&signals)?;

@@ -67,7 +67,9 @@ fn kinetic_friction(case: &Case, summary: &Summary) -> String {
 fn sliding_blocks(case: &Case, summary: &Summary) -> String {
     let most = format!("N* = {:.1} % at most", summary.sliding_percent_max);
     let kinetic = summary.sliding_percent_kinetic;
-    let kinetic = kinetic.map_or(String::new(), |kinetic| format!(", {kinetic:.1} % in that window"));
+    let kinetic = kinetic.map_or(String::new(), |kinetic| {
+        format!(", {kinetic:.1} % in that window")
+    });
     // Where springs in contact are what slides, a block without one does not count.
     let has_springs = matches!(case.model.friction, Friction::ContactSprings(_));
     let textured = match summary.texture_percent > 0.0 && !has_springs {

@@ -225,14 +225,26 @@ fn a_run_says_that_textured_blocks_slide_from_the_start() {
     let groove = "texture.0={shape=\"groove\",width=\"2um\"}";
     let n_star = |name: &str| {
         let series = workspace.read_text(&format!("{name}/series.csv"));
-        let column = series.lines().next().unwrap().split(',').position(|name| name == "sliding_percent");
-        let second = series.lines().nth(2).unwrap().split(',').nth(column.unwrap()).unwrap();
+        let column = series
+            .lines()
+            .next()
+            .unwrap()
+            .split(',')
+            .position(|name| name == "sliding_percent");
+        let second = series
+            .lines()
+            .nth(2)
+            .unwrap()
+            .split(',')
+            .nth(column.unwrap())
+            .unwrap();
         second.parse::<f64>().unwrap()
     };
     let said = workspace.succeed(&format!("run small.toml -o textured --set {groove}"));
     assert!(said.contains(&format!("; 33.3 {sentence}")), "{said}");
     assert_eq!(n_star("textured"), 100.0 / 3.0);
-    let springs = "--set friction.contact=springs --set friction.contact_stiffness_star=1 --set time.duration_star=10";
+    let springs =
+        "--set friction.contact=springs --set friction.contact_stiffness_star=1 --set time.duration_star=10";
     let said = workspace.succeed(&format!("run small.toml -o springs --set {groove} {springs}"));
     assert!(!said.contains(sentence), "{said}");
     assert_eq!(n_star("springs"), 0.0);

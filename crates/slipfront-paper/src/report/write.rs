@@ -10,7 +10,7 @@ use super::{html, markdown};
 use crate::error::PaperError;
 use crate::figure_data::{FigureData, Panel};
 use crate::paper::Paper;
-use slipfront_case::disk::{begins_with, write_atomic};
+use slipfront_case::disk::{begins_with, make_folders, write_atomic};
 use slipfront_plot::Picture;
 use slipfront_run::run_folder::error::FolderError;
 
@@ -98,6 +98,6 @@ pub fn write_docs(paper: &Paper, folder: &Path) -> Result<(), PaperError> {
 pub(crate) fn write_file(folder: &Path, name: &str, bytes: &[u8]) -> Result<(), PaperError> {
     let path = folder.join(name);
     let parent = path.parent().unwrap_or(folder).to_owned();
-    let written = std::fs::create_dir_all(parent).and_then(|()| write_atomic(&path, bytes));
+    let written = make_folders(&parent).and_then(|()| write_atomic(&path, bytes));
     written.map_err(|source| FolderError::Write { path, source }.into())
 }

@@ -13,7 +13,7 @@ use std::sync::Arc;
 use jiff::Timestamp;
 use slipfront::Communicator;
 use slipfront_case::case::Case;
-use slipfront_case::disk::{remove_if_there, sync_folder};
+use slipfront_case::disk::{found_at, remove_if_there, sync_folder};
 use slipfront_case::same::expect_same;
 
 pub use self::error::CheckpointError;
@@ -155,10 +155,10 @@ impl Checkpoints {
         for name in [CHECKPOINT, PREVIOUS].into_iter().skip(usize::from(previous)) {
             let path = Unfinished::of(folder).path().join(name);
             // A link with nothing at its end must be refused, and not taken for no checkpoint.
-            // What the disk does not say is told by the attempt to read it.
-            let is_there = match path.symlink_metadata() {
-                Ok(_) => true,
-                Err(error) => ![ErrorKind::NotFound, ErrorKind::NotADirectory].contains(&error.kind()),
+            let found = agree_on_io(communicator, found_at(&path));
+            let is_there = match found {
+                Ok(found) => found.is_some(),
+                Err(source) => return Err(CheckpointError::Unreadable { path, source }),
             };
             let seen = if is_there { "there" } else { "missing" };
             expect_same(communicator, || vec![(name.to_owned(), seen.to_owned())])?;

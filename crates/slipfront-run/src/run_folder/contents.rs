@@ -1,8 +1,8 @@
 //! Which files of a run folder are slipfront's own: those that are listed with the hash that they have.
 
-use std::path::{Component, Path};
+use std::path::{Component, Path, PathBuf};
 
-use slipfront_case::disk::{is_folder, remove_if_there};
+use slipfront_case::disk::{found_at, is_folder, remove_if_there};
 
 use super::error::FolderError;
 use super::unfinished::Unfinished;
@@ -21,37 +21,47 @@ pub(super) fn result_files() -> impl Iterator<Item = String> {
 /// The files of an earlier run in a folder, in the order in which they may be removed: the manifest first, so that the
 /// folder does not look complete, and of the others the case last, by which it is known as that of a run. They are those that
 /// are `listed` and still as they are listed, whatever has become of the others, and what stands in the hidden subfolder.
-pub(super) fn managed_files(folder: &Path, listed: &[ManifestFile]) -> Vec<String> {
-    let mut names = listed_names(folder, listed);
-    names.retain(|name| is_as_listed(folder, name, listed).unwrap_or(false));
+pub(super) fn managed_files(folder: &Path, listed: &[ManifestFile]) -> Result<Vec<String>, FolderError> {
+    let mut names = Vec::new();
+    for name in listed_names(folder, listed)? {
+        if is_as_listed(folder, &name, listed).map_err(FolderError::read(&folder.join(&name)))? {
+            names.push(name);
+        }
+    }
     names.sort_by_key(|name| (name == CASE, name != MANIFEST));
-    names.extend(Unfinished::of(folder).managed_files());
-    names
+    names.extend(Unfinished::of(folder).managed_files()?);
+    Ok(names)
 }
 
 /// Bytes of the files of an earlier run in a folder, by their lengths alone.
-pub(super) fn managed_bytes(folder: &Path, listed: &[ManifestFile]) -> u64 {
-    let names = listed_names(folder, listed).into_iter();
-    let names = names.chain(Unfinished::of(folder).managed_files());
-    let length = |name| std::fs::symlink_metadata(folder.join(name)).map_or(0, |file| file.len());
-    names.map(length).sum()
+pub(super) fn managed_bytes(folder: &Path, listed: &[ManifestFile]) -> Result<u64, FolderError> {
+    let names = listed_names(folder, listed)?.into_iter();
+    let names = names.chain(Unfinished::of(folder).managed_files()?);
+    let length = |path: PathBuf| {
+        let found = found_at(&path).map_err(FolderError::read(&path))?;
+        Ok(found.map_or(0, |file| file.len()))
+    };
+    names.map(|name| length(folder.join(name))).sum()
 }
 
 /// Names that a run may write, each once: whatever a manifest or a journal lists, no file elsewhere is touched.
-fn listed_names(folder: &Path, listed: &[ManifestFile]) -> Vec<String> {
-    let has_copies = is_folder(&folder.join("inputs"));
+fn listed_names(folder: &Path, listed: &[ManifestFile]) -> Result<Vec<String>, FolderError> {
+    let copies = folder.join("inputs");
+    let has_copies = is_folder(&copies).map_err(FolderError::read(&copies))?;
     let is_copy = |name: &str| has_copies && name.strip_prefix("inputs/").is_some_and(is_plain);
     let is_own = |name: &String| *name == CASE || is_copy(name) || result_files().any(|own| own == *name);
     let names = listed.iter().map(|file| file.name.clone());
     let mut names: Vec<String> = names.filter(is_own).collect();
     names.sort();
     names.dedup();
-    names
+    Ok(names)
 }
 
-/// Whether a file is as it was listed. One of another length is not read: it may be huge.
+/// Whether a file is there as it was listed. One of another length is not read: it may be huge.
 pub(super) fn is_as_listed(folder: &Path, name: &str, listed: &[ManifestFile]) -> std::io::Result<bool> {
-    let found = std::fs::symlink_metadata(folder.join(name))?;
+    let Some(found) = found_at(&folder.join(name))? else {
+        return Ok(false);
+    };
     let mut alike = listed
         .iter()
         .filter(|file| file.name == name && file.bytes == found.len());
@@ -80,24 +90,25 @@ pub(super) fn refuse_unmanaged(
     listed: &[ManifestFile],
 ) -> Result<(), FolderError> {
     // A link counts even if nothing is at its end.
-    let exists = |path: &Path| path.symlink_metadata().is_ok();
+    let found = |path: &Path| found_at(path).map_err(FolderError::read(path));
     for name in names.filter(|name| !managed.contains(name)) {
         let path = folder.join(&name);
-        let above = path.parent().filter(|parent| *parent != folder && exists(parent));
-        if let Some(path) = above.filter(|parent| !is_folder(parent)).map(Path::to_owned) {
+        if let Some(above) = path.parent().filter(|parent| *parent != folder)
+            && found(above)?.is_some_and(|above| !above.is_dir())
+        {
+            let path = above.to_owned();
             return Err(FolderError::Foreign { path });
         }
-        if !exists(&path) {
+        if found(&path)?.is_none() {
             continue;
         }
-        if listed.iter().all(|file| file.name != name) {
-            return Err(FolderError::Foreign { path });
-        }
-        is_as_listed(folder, &name, listed).map_err(FolderError::read(&path))?;
-        return Err(FolderError::Edited { path });
+        return Err(match listed.iter().any(|file| file.name == name) {
+            true => FolderError::Edited { path },
+            false => FolderError::Foreign { path },
+        });
     }
     let unfinished = Unfinished::of(folder);
-    if exists(unfinished.path()) && !unfinished.is_managed() {
+    if found(unfinished.path())?.is_some() && !unfinished.is_managed()? {
         let path = unfinished.path().to_owned();
         return Err(FolderError::Foreign { path });
     }

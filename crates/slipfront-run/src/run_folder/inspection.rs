@@ -48,8 +48,11 @@ pub enum CaseDefect {
 }
 
 impl Inspection {
-    /// Reads the case and the manifest of a folder that can be listed.
-    pub fn of(folder: &Path) -> std::io::Result<Self> {
+    /// Reads the case and the manifest of a folder.
+    ///
+    /// # Errors
+    /// When it cannot be listed, or the system does not say what it holds.
+    pub fn of(folder: &Path) -> Result<Self, FolderError> {
         let is_unused = is_unused(folder)?;
         let case = read_case(folder);
         let manifest = Manifest::read(folder);
@@ -123,7 +126,7 @@ impl Inspection {
 
     /// Bytes that are free when the files of the run in the folder are removed.
     pub fn managed_bytes(&self) -> Result<u64, FolderError> {
-        Ok(managed_bytes(&self.path, &self.listed()?))
+        managed_bytes(&self.path, &self.listed()?)
     }
 }
 
@@ -143,17 +146,19 @@ fn read_case(folder: &Path) -> Result<CaseFile, CaseDefect> {
 }
 
 /// Whether there is no folder, or it holds nothing but a hidden subfolder of slipfront without a checkpoint.
-fn is_unused(folder: &Path) -> std::io::Result<bool> {
+fn is_unused(folder: &Path) -> Result<bool, FolderError> {
+    let read = FolderError::read(folder);
     let entries = match std::fs::read_dir(folder) {
         Ok(entries) => entries,
         Err(error) if [ErrorKind::NotFound, ErrorKind::NotADirectory].contains(&error.kind()) => {
             return Ok(true);
         }
-        Err(error) => return Err(error),
+        Err(error) => return Err(read(error)),
     };
     let unfinished = Unfinished::of(folder);
     for entry in entries {
-        if entry?.file_name() != UNFINISHED || !unfinished.is_managed() || unfinished.has_checkpoint() {
+        let is_hidden = entry.map_err(&read)?.file_name() == UNFINISHED;
+        if !is_hidden || !unfinished.is_managed()? || unfinished.has_checkpoint()? {
             return Ok(false);
         }
     }

@@ -11,13 +11,13 @@ mod journal;
 pub mod unfinished;
 
 use std::fs::{File, TryLockError};
-use std::io::{ErrorKind, Write};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use slipfront::Communicator;
 use slipfront::communicator::text_of;
 use slipfront_case::case::{Case, Input};
-use slipfront_case::disk::{open_regular, sync_folder, write_temp};
+use slipfront_case::disk::{found_at, found_behind, make_folders, open_regular, sync_folder, write_temp};
 use slipfront_case::text::display_path;
 use slipfront_case::unfinished::clear_unfinished;
 use tempfile::TempPath;
@@ -46,10 +46,12 @@ impl OpenedFolder {
     /// # Errors
     /// When another process runs there, or the folder cannot be listed.
     pub fn open(path: &Path) -> Result<Self, FolderError> {
-        let existed = path.is_dir();
-        let lock = if existed { lock(path)? } else { None };
+        let lock = if is_folder_behind(path)? {
+            lock(path)?
+        } else {
+            None
+        };
         Ok(Self {
-            existed,
             lock,
             ..Self::open_unlocked(path)?
         })
@@ -61,8 +63,8 @@ impl OpenedFolder {
     /// When the folder cannot be listed.
     pub fn open_unlocked(path: &Path) -> Result<Self, FolderError> {
         Ok(Self {
-            inspection: Inspection::of(path).map_err(FolderError::unwritable(path))?,
-            existed: path.is_dir(),
+            inspection: Inspection::of(path)?,
+            existed: is_folder_behind(path)?,
             lock: None,
         })
     }
@@ -85,11 +87,11 @@ impl OpenedFolder {
         let missing = path.ancestors().take_while(|folder| !folder.exists());
         let mut made: Vec<PathBuf> = missing.map(Path::to_owned).collect();
         let hidden = path.join(UNFINISHED);
-        if !hidden.exists() {
+        if found_at(&hidden).map_err(FolderError::read(&hidden))?.is_none() {
             made.insert(0, hidden);
         }
         if !self.existed {
-            std::fs::create_dir_all(&path).map_err(FolderError::unwritable(&path))?;
+            make_folders(&path).map_err(FolderError::unwritable(&path))?;
             // Another process may have made it since.
             self = Self::open(&path)?;
         }
@@ -101,7 +103,7 @@ impl OpenedFolder {
             Contents::Interrupted => return Err(FolderError::Interrupted { path }),
             Contents::Foreign | Contents::Complete(_) => return Err(FolderError::NotEmpty { path }),
         };
-        let managed = managed_files(&path, &listed);
+        let managed = managed_files(&path, &listed)?;
         let checkpoints = [CHECKPOINT, PREVIOUS].map(|name| format!("{UNFINISHED}/{name}"));
         let inputs = inputs.iter().map(|input| input.name.clone());
         let names = result_files().chain([CASE.to_owned()]).chain(checkpoints);
@@ -127,11 +129,12 @@ impl OpenedFolder {
     pub fn resume(self, case: &Case) -> Result<RunFolder, FolderError> {
         let listed = self.inspection.listed()?;
         let path = self.inspection.path;
-        refuse_unmanaged(&path, result_files(), &managed_files(&path, &listed), &listed)?;
+        let managed = managed_files(&path, &listed)?;
+        refuse_unmanaged(&path, result_files(), &managed, &listed)?;
         let mut folder = RunFolder::begin(path, self.lock)?;
         remove_files(&folder.path, result_files())?;
-        let unwritable = FolderError::unwritable(&folder.path);
-        folder.unfinished.clear_temporary().map_err(unwritable)?;
+        let cleared = folder.unfinished.clear_temporary();
+        cleared.map_err(FolderError::unwritable(&folder.temporary()))?;
         // A case that was loaded can be written.
         let text = case.file.to_toml().unwrap_or_default();
         let mut hasher = blake3::Hasher::new();
@@ -196,14 +199,12 @@ pub fn expect_shared(path: &Path, communicator: &dyn Communicator) -> Result<(),
     let name = name.unwrap_or_default().to_string_lossy();
     let name = text_of(communicator, 0, &name);
     let of_first = text_of(communicator, 0, &display_path(path));
-    let seen = match temporary.join(name).symlink_metadata() {
-        Ok(_) => Ok(()),
-        Err(error) if [ErrorKind::NotFound, ErrorKind::NotADirectory].contains(&error.kind()) => {
-            Err(format!(
-                "the folder {} is not the folder {of_first} of rank 0: all ranks write to one, on a disk that their machines share",
-                display_path(path)
-            ))
-        }
+    let seen = match found_at(&temporary.join(name)) {
+        Ok(Some(_)) => Ok(()),
+        Ok(None) => Err(format!(
+            "the folder {} is not the folder {of_first} of rank 0: all ranks write to one, on a disk that their machines share",
+            display_path(path)
+        )),
         Err(error) => Err(FolderError::read(path)(error).to_string()),
     };
     agree(communicator, seen.map_err(failure))
@@ -257,8 +258,9 @@ impl RunFolder {
     /// Syncs the folders of the case and of the files that it reads, so that these survive a power failure.
     pub(crate) fn sync(&self) -> Result<(), FolderError> {
         for folder in [self.path.clone(), self.path.join("inputs")] {
-            if folder.is_dir() {
-                sync_folder(&folder).map_err(FolderError::write(&folder))?;
+            let failed = FolderError::write(&folder);
+            if found_at(&folder).map_err(&failed)?.is_some() {
+                sync_folder(&folder).map_err(failed)?;
             }
         }
         Ok(())
@@ -312,11 +314,11 @@ impl RunFolder {
 
     fn place_listed(&mut self, listed: ManifestFile, file: TempPath) -> Result<(), FolderError> {
         let path = self.path.join(&listed.name);
-        if path.symlink_metadata().is_ok() {
+        if found_at(&path).map_err(FolderError::write(&path))?.is_some() {
             return Err(FolderError::Foreign { path });
         }
         if let Some(parent) = path.parent() {
-            std::fs::create_dir_all(parent).map_err(FolderError::write(parent))?;
+            make_folders(parent).map_err(FolderError::write(parent))?;
         }
         self.list(std::slice::from_ref(&listed))?;
         self.written.push(listed);
@@ -371,6 +373,12 @@ fn hash_temp(file: &Path, name: &str) -> std::io::Result<ManifestFile> {
         name,
         hasher.update_reader(File::open(file)?)?,
     ))
+}
+
+/// Whether a path leads to a folder.
+fn is_folder_behind(path: &Path) -> Result<bool, FolderError> {
+    let found = found_behind(path).map_err(FolderError::read(path))?;
+    Ok(found.is_some_and(|found| found.is_dir()))
 }
 
 /// Locks a folder for one process. Some file systems of clusters have no locks, and some systems none of folders: the run

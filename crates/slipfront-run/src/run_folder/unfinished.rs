@@ -4,7 +4,7 @@
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
-use slipfront_case::disk::{is_empty, is_folder, remove_if_there, sync_folder};
+use slipfront_case::disk::{found_at, is_empty, is_folder, remove_if_there, sync_folder};
 
 use super::error::FolderError;
 use super::journal::{self, Journal};
@@ -35,16 +35,34 @@ impl Unfinished {
     }
 
     /// Whether slipfront made the subfolder: it holds a journal, or nothing yet. A link is never slipfront's.
-    pub fn is_managed(&self) -> bool {
-        let journal = self.journal().symlink_metadata();
-        let has_journal = journal.is_ok_and(|journal| journal.is_file());
-        is_folder(&self.path) && (has_journal || is_empty(&self.path).unwrap_or(false))
+    ///
+    /// # Errors
+    /// When the system does not say.
+    pub fn is_managed(&self) -> Result<bool, FolderError> {
+        let read = FolderError::read(&self.path);
+        if !is_folder(&self.path).map_err(&read)? {
+            return Ok(false);
+        }
+        Ok(self.has_journal()? || is_empty(&self.path).map_err(&read)?)
+    }
+
+    fn has_journal(&self) -> Result<bool, FolderError> {
+        let path = self.journal();
+        let journal = found_at(&path).map_err(FolderError::read(&path))?;
+        Ok(journal.is_some_and(|journal| journal.is_file()))
     }
 
     /// Whether a checkpoint was saved.
-    pub fn has_checkpoint(&self) -> bool {
-        let mut names = [CHECKPOINT, PREVIOUS].into_iter();
-        names.any(|name| self.path.join(name).symlink_metadata().is_ok())
+    ///
+    /// # Errors
+    /// When the system does not say.
+    pub fn has_checkpoint(&self) -> Result<bool, FolderError> {
+        for path in [CHECKPOINT, PREVIOUS].map(|name| self.path.join(name)) {
+            if found_at(&path).map_err(FolderError::read(&path))?.is_some() {
+                return Ok(true);
+            }
+        }
+        Ok(false)
     }
 
     /// Makes the subfolder, where it is not there yet; an error if a link or a file stands in its place.
@@ -72,27 +90,28 @@ impl Unfinished {
     /// The files that the run has finished; none where the subfolder is not slipfront's.
     pub(super) fn listed(&self) -> Result<Vec<ManifestFile>, FolderError> {
         let path = self.journal();
-        if !self.is_managed() || !path.exists() {
+        if !self.is_managed()? || !self.has_journal()? {
             return Ok(Vec::new());
         }
         journal::read(&path).map_err(FolderError::read(&path))
     }
 
     /// What may be in it beside the journal, as paths in the run folder; nothing where it is not slipfront's.
-    pub(super) fn managed_files(&self) -> Vec<String> {
-        if !self.is_managed() {
-            return Vec::new();
+    pub(super) fn managed_files(&self) -> Result<Vec<String>, FolderError> {
+        if !self.is_managed()? {
+            return Ok(Vec::new());
         }
-        let temporary = names_in(&self.temporary()).into_iter();
-        let temporary = temporary.map(|name| format!("{TEMPORARY}/{name}"));
+        let temporary = self.temporary();
+        let temporary = names_in(&temporary).map_err(FolderError::read(&temporary))?;
+        let temporary = temporary.into_iter().map(|name| format!("{TEMPORARY}/{name}"));
         let names = temporary.chain([CHECKPOINT, PREVIOUS].map(str::to_owned));
-        names.map(|name| format!("{UNFINISHED}/{name}")).collect()
+        Ok(names.map(|name| format!("{UNFINISHED}/{name}")).collect())
     }
 
     /// Removes the temporary files that a killed program left.
     pub(super) fn clear_temporary(&self) -> std::io::Result<()> {
         let folder = self.temporary();
-        let mut names = names_in(&folder).into_iter();
+        let mut names = names_in(&folder)?.into_iter();
         names.try_for_each(|name| remove_if_there(&folder.join(name)))
     }
 
@@ -117,7 +136,7 @@ impl Unfinished {
 fn make_folder(path: &Path, told: &Path) -> Result<(), FolderError> {
     match std::fs::create_dir(path) {
         Err(error) if error.kind() != ErrorKind::AlreadyExists => Err(FolderError::unwritable(told)(error)),
-        Err(_) if !is_folder(path) => {
+        Err(_) if !is_folder(path).map_err(FolderError::read(path))? => {
             let path = path.to_owned();
             Err(FolderError::Foreign { path })
         }
@@ -126,13 +145,15 @@ fn make_folder(path: &Path, told: &Path) -> Result<(), FolderError> {
 }
 
 /// Names of the entries of a folder but its subfolders; none behind a link.
-fn names_in(folder: &Path) -> Vec<String> {
-    if !is_folder(folder) {
-        return Vec::new();
+fn names_in(folder: &Path) -> std::io::Result<Vec<String>> {
+    let mut names = Vec::new();
+    if is_folder(folder)? {
+        for entry in std::fs::read_dir(folder)? {
+            let entry = entry?;
+            if !entry.file_type()?.is_dir() {
+                names.push(entry.file_name().to_string_lossy().into_owned());
+            }
+        }
     }
-    let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
-    let files = entries.filter(|entry| entry.file_type().is_ok_and(|kind| !kind.is_dir()));
-    files
-        .map(|entry| entry.file_name().to_string_lossy().into_owned())
-        .collect()
+    Ok(names)
 }

@@ -20,7 +20,7 @@ use crate::names::{CASE, FIGURE_CACHE, RECORDS, RUNS, TABLES};
 use crate::run_folder::copy::copy_run;
 use crate::run_folder::error::FolderError;
 use slipfront_case::disk::{
-    TEXT_MAX_BYTES, folder_of, is_empty, is_folder, open_limited, read_limited, remove_if_there,
+    TEXT_MAX_BYTES, folder_of, found_at, is_empty, make_folders, open_limited, read_limited, remove_if_there,
     write_atomic_with, write_beside,
 };
 use slipfront_case::machine::free_disk;
@@ -44,7 +44,7 @@ pub struct StudyFolder {
 impl StudyFolder {
     /// Opens a results folder: a new one, an empty one, or one of an earlier call that no other process works in.
     pub fn open(path: &Path, study: &StudyFile) -> Result<Self, StudyError> {
-        std::fs::create_dir_all(path).map_err(FolderError::unwritable(path))?;
+        make_folders(path).map_err(FolderError::unwritable(path))?;
         let used = path.join(RECORDS).exists();
         let empty = is_empty(path).map_err(FolderError::unwritable(path))?;
         // A folder of `slipfront paper` has records and no study file.
@@ -99,7 +99,7 @@ impl StudyFolder {
     ) -> Result<(), StudyError> {
         let path = self.path.join(name);
         let folder = path.parent().unwrap_or(&self.path);
-        let written = std::fs::create_dir_all(folder).and_then(|()| write_atomic_with(&path, fill));
+        let written = make_folders(folder).and_then(|()| write_atomic_with(&path, fill));
         written.map_err(|source| StudyError::Write { path, source })
     }
 
@@ -113,12 +113,14 @@ impl StudyFolder {
         for Copy { name, original, .. } in copies {
             let path = self.path.join(name);
             // A link may lead to a folder that is not of this study.
-            let mut above = path.ancestors().skip(1).take_while(|above| *above != self.path);
-            if let Some(link) = above.find(|above| above.symlink_metadata().is_ok() && !is_folder(above)) {
-                let path = link.to_owned();
-                return Err(FolderError::Foreign { path }.into());
+            for above in path.ancestors().skip(1).take_while(|above| *above != self.path) {
+                let found = found_at(above).map_err(FolderError::read(above))?;
+                if found.is_some_and(|found| !found.is_dir()) {
+                    let path = above.to_owned();
+                    return Err(FolderError::Foreign { path }.into());
+                }
             }
-            let copied = std::fs::create_dir_all(folder_of(&path)).and_then(|()| {
+            let copied = make_folders(folder_of(&path)).and_then(|()| {
                 write_beside(&path, |to| {
                     std::io::copy(&mut File::open(original)?, to).map(|_| ())
                 })

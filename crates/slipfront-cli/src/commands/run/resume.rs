@@ -128,7 +128,7 @@ fn report_complete(run: &Inspection, options: &RunOptions) -> Result<(), Failure
     let path = &run.path;
     // A kill may have come before it was removed. On a disk that cannot be written it does no harm.
     let unfinished = Unfinished::of(path);
-    if unfinished.is_managed() {
+    if unfinished.is_managed().map_err(Failure::input)? {
         let _ = unfinished.remove();
     }
     let unchanged = |which: &dyn Fn(&str) -> bool, remedy: &str| {
