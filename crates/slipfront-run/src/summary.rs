@@ -626,7 +626,8 @@ fn after_run(
                 .to_owned(),
         ),
         Some(Err(NoUncertainty::TooShort { needed_time_star })) => warnings.push(format!(
-            "mu_k* has no uncertainty: it takes a time.duration_star of {needed_time_star:.0} or more"
+            "mu_k* has no uncertainty: it takes a time.duration_star of {:.0} or more",
+            needed_time_star.ceil()
         )),
         Some(Err(NoUncertainty::Drift { needed_time_star, .. })) => warnings.push(format!(
             "mu_k* has no uncertainty, since mu* still drifts: run to time.duration_star = {needed_time_star:.0}, or begin \
