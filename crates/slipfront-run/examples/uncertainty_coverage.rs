@@ -4,7 +4,7 @@
 //! $ cargo run --release -p slipfront-run --example uncertainty_coverage -- 1001 2000
 //! ```
 //!
-//! 25 x 25 blocks in three regimes, a run for each seed: the speed of the paper's runs, a third of it, and ten times the damping. The mean
+//! 25 x 25 blocks in three regimes, a run for each seed: the speed of the paper's runs, ten times its damping, and a third of its speed. The mean
 //! of a run five times as long as its longest window, whose error is as much smaller, stands for that of an infinite one. Prints of
 //! windows of these lengths how many give a standard error, the root mean square of z, which is the deviation over that error, and how many
 //! intervals of +-1.96 errors hold the mean.
@@ -17,7 +17,7 @@ use slipfront::{Simulation, Stop};
 use slipfront_case::case::Case;
 
 /// V* and Omega*.
-const REGIMES: [[f64; 2]; 3] = [[0.03, 0.1], [0.01, 0.1], [0.03, 1.0]];
+const REGIMES: [[f64; 2]; 3] = [[0.03, 0.1], [0.03, 1.0], [0.01, 0.1]];
 
 /// V* times the lengths of windows.
 const WINDOWS: [f64; 6] = [5.0, 10.0, 20.0, 40.0, 80.0, 400.0];

@@ -375,8 +375,12 @@ impl SummaryObservers {
     pub(crate) fn kinetic(&self, case: &Case, peak: &Peak) -> Option<Kinetic> {
         let plan = &case.time_plan;
         let from = plan.kinetic.time_star(peak, case.model.loading_speed());
-        self.history
-            .kinetic(from, plan.dt_star, case.model.loading_speed())
+        let speed = case.model.loading_speed();
+        let mut kinetic = self.history.kinetic(from, plan.dt_star, speed)?;
+        if self.cycles.is_some() {
+            kinetic.uncertainty = Err(NoUncertainty::SpeedChanges);
+        }
+        Some(kinetic)
     }
 
     /// The numbers of a run that has ended, with the instants A-F that it had.
@@ -629,6 +633,9 @@ fn after_run(
             "mu_k* has no uncertainty: it takes a time.duration_star of {:.0} or more",
             needed_time_star.ceil()
         )),
+        Some(Err(NoUncertainty::SpeedChanges)) => {
+            warnings.push("mu_k* has no uncertainty, since the drive changes its speed".to_owned());
+        }
         Some(Err(NoUncertainty::Drift { needed_time_star, .. })) => warnings.push(format!(
             "mu_k* has no uncertainty, since mu* still drifts: run to time.duration_star = {needed_time_star:.0}, or begin \
              later by time.kinetic_from_star"

@@ -52,6 +52,8 @@ pub enum NoUncertainty {
         /// t* to which the run should go.
         needed_time_star: f64,
     },
+    /// A program changes the speed of the drive: the run is part of no infinite one.
+    SpeedChanges,
     /// The means of the two halves differ by more than three standard errors: mu* still drifts.
     Drift {
         /// Means of the two halves.
