@@ -413,7 +413,7 @@ impl SummaryObservers {
             })
             .collect();
         let kinetic_star = kinetic.map(|kinetic| kinetic.mu_star);
-        let transition = peak.ended && !is_kept_up(&peak, kinetic);
+        let transition = case.can_have_transition() && peak.ended && !is_kept_up(&peak, kinetic);
         let [static_star, lateral_star, onset_star] = match transition {
             true => [peak.mu_star, peak.mu_lateral_star, peak.time_star],
             false => [peak.mu_star_max, peak.max_lateral_star, peak.max_time_star],
@@ -636,7 +636,7 @@ fn after_run(
         Some(Err(NoUncertainty::SpeedChanges)) => {
             warnings.push("mu_k* has no uncertainty, since the drive changes its speed".to_owned());
         }
-        Some(Err(NoUncertainty::Drift { needed_time_star, .. })) => warnings.push(format!(
+        Some(Err(NoUncertainty::Drift { needed_time_star })) => warnings.push(format!(
             "mu_k* has no uncertainty, since mu* still drifts: run to time.duration_star = {needed_time_star:.0}, or begin \
              later by time.kinetic_from_star"
         )),

@@ -81,6 +81,13 @@ impl Case {
         warnings
     }
 
+    /// Whether steady sliding takes less force than the blocks hold at rest. If not, friction loses nothing when they slip, and no fall of
+    /// mu* is a transition. Under rate and state nothing holds like a threshold.
+    pub fn can_have_transition(&self) -> bool {
+        let has_thresholds = !matches!(self.model.friction, Friction::RateAndState(_));
+        !has_thresholds || self.expected.steady_level < self.model.surface.mean_static_force()
+    }
+
     /// Where sliding takes as much force as the start of it, and where damping has a part in what is measured as kinetic friction.
     fn level_warnings(&self) -> Vec<String> {
         let (level, drag) = (self.expected.steady_level, self.expected.steady_drag);
@@ -99,9 +106,7 @@ impl Case {
                 four_digits(limit / drag * v_star)
             ));
         }
-        // Under rate and state nothing holds like a threshold.
-        let has_thresholds = !matches!(self.model.friction, Friction::RateAndState(_));
-        if has_thresholds && kinetic < held && level >= held {
+        if kinetic < held && !self.can_have_transition() {
             warnings.push(format!(
                 "no transition is possible: steady sliding at V* = {} takes mu* = {}, of which {} is drag of the damping, and the blocks \
                  hold {} at rest; what the run has as a first peak is no static friction: drive more slowly or damp less",

@@ -5,7 +5,8 @@ use std::path::Path;
 
 use slipfront_case::number_format::{are, byte_size, count, four_digits, with_half_width};
 use slipfront_run::study::{
-    MeshedCoverage, Plan, RunKey, StudyResults, idle_axes, quantities_without_pictures, why_no_pictures,
+    MeshedCoverage, Plan, REDUCTION, RunKey, StudyResults, idle_axes, quantities_without_pictures,
+    why_no_pictures,
 };
 
 use super::anisotropy::anisotropy;
@@ -184,7 +185,7 @@ fn meshed(plan: &Plan, shown: usize) -> Option<Vec<String>> {
 fn point_value(plan: &Plan, results: &StudyResults, point: usize) -> Vec<String> {
     let is_here = |run: &RunKey| run.point == point;
     let has_failed = || results.failures().any(|(run, _)| is_here(&run));
-    let without = results.without_transition().filter(is_here).count();
+    let without = results.runs_without_transition(point, plan.main_quantity());
     let sample = results.sample(plan, point, plan.main_quantity());
     let value = match sample {
         Some(sample) => with_half_width(sample.mean, sample.half_width),
@@ -196,8 +197,17 @@ fn point_value(plan: &Plan, results: &StudyResults, point: usize) -> Vec<String>
         cells.push("(interval still too wide)".to_owned());
     }
     if without > 0 {
-        let runs = results.runs.keys().filter(|run| is_here(run)).count();
-        cells.push(format!("(no transition in {without} of {})", count(runs, "run")));
+        let replicates = results.points[point].replicates;
+        // A reduction is lost with the run of the point or with its reference.
+        let of = if plan.main_quantity() == REDUCTION {
+            "pair"
+        } else {
+            "run"
+        };
+        cells.push(format!(
+            "(no transition in {without} of {})",
+            count(replicates, of)
+        ));
     }
     cells
 }

@@ -226,6 +226,24 @@ fn a_later_mu_star_above_the_first_peak_is_told() {
     );
 }
 
+/// Drag of the damping, or a kinetic coefficient above the static one, makes steady sliding take more than the blocks hold at rest: what mu*
+/// falls by is no loss of friction.
+#[test]
+fn where_friction_loses_nothing_there_is_no_transition() {
+    let workspace = Workspace::small();
+    for (k, keys) in ["friction.r_star=0.9 --set drive.v_star=1.2", "friction.r_star=1"]
+        .iter()
+        .enumerate()
+    {
+        workspace.succeed(&format!(
+            "run small.toml -o run{k} --set {keys} --set time.duration_star=auto"
+        ));
+        let summary = workspace.summary(&format!("run{k}"));
+        assert_eq!(summary["transition"], false, "{keys}");
+        assert_eq!(summary["static_friction_star"], summary["mu_star_max"], "{keys}");
+    }
+}
+
 /// The numbers of the front, and its picture, belong to a transition; sliding is recorded in every run.
 #[test]
 fn a_run_without_a_transition_has_no_front() {

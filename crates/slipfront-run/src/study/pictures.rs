@@ -385,8 +385,7 @@ fn note_on_intervals(confidence: f64, counts: &[usize], without_transition: usiz
     let intervals = intervals(confidence, counts);
     match without_transition {
         0 => intervals,
-        1 => format!("{intervals}; \u{d7}: without 1 run that had no transition"),
-        runs => format!("{intervals}; \u{d7}: without {runs} runs that had no transition"),
+        runs => format!("{intervals}; \u{d7}: {runs} without transition"),
     }
 }
 
@@ -445,7 +444,7 @@ mod tests {
         );
         assert_eq!(
             note_on_intervals(0.95, &[4, 5], 6),
-            "95 % interval of the mean, n = 4 to 5; \u{d7}: without 6 runs that had no transition"
+            "95 % interval of the mean, n = 4 to 5; \u{d7}: 6 without transition"
         );
     }
 }

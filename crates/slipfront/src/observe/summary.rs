@@ -47,17 +47,15 @@ pub struct Kinetic {
 /// Why the uncertainty of a mean cannot be estimated from the scatter inside its window.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum NoUncertainty {
-    /// The window is shorter than 5/V*, or holds fewer than 40 steps.
+    /// The window is shorter than 40/V*, or holds fewer than 40 steps.
     TooShort {
         /// t* to which the run should go.
         needed_time_star: f64,
     },
     /// A program changes the speed of the drive: the run is part of no infinite one.
     SpeedChanges,
-    /// The means of the two halves differ by more than three standard errors: mu* still drifts.
+    /// The mean of the first half or of the first quarter differs by more than two standard errors from that of the rest: mu* still drifts.
     Drift {
-        /// Means of the two halves.
-        halves: [f64; 2],
         /// t* to which the run should go.
         needed_time_star: f64,
     },
@@ -188,8 +186,12 @@ fn mean(x: &[f64]) -> f64 {
 /// A difference between the halves below this is no drift: it is less than the error of any time step.
 const NEGLIGIBLE_DRIFT: f64 = 1e-6;
 
-/// V* times the shortest window that gives a standard error: twice the path over which friction falls from its peak to sliding.
-const LEAST_PATH: f64 = 2.0 * ONSET_PATH;
+/// V* times the shortest window that gives a standard error. Shorter ones hide what changes slowly: across a groove friction still rises by
+/// 0.3 % after the transition, of which nothing is seen over 20/V*.
+const LEAST_PATH: f64 = 40.0;
+
+/// Largest difference between parts of a window that is no drift, in standard errors.
+const MOST_DRIFT: f64 = 2.0;
 
 /// Fewest values of a window that gives a standard error.
 const MIN_VALUES: usize = 40;
@@ -201,20 +203,21 @@ fn uncertainty(x: &[f64], window_star: [f64; 2], v_star: f64) -> Result<f64, NoU
     let least = (LEAST_PATH / v_star).max(MIN_VALUES as f64 * bin_time);
     if x.len() < MIN_VALUES || until - from < least {
         return Err(NoUncertainty::TooShort {
-            needed_time_star: from + least,
+            // Bins that the ends of the window cut through do not count.
+            needed_time_star: from + 1.01 * least,
         });
     }
-    let middle = x.len() / 2;
-    // The scatter of the halves is that about the line of the whole: what drifts would itself pass for scatter.
+    // The scatter of the parts is that about the line of the whole: what drifts would itself pass for scatter.
     let level = without_line(x);
-    let [one, other] = [&level[..middle], &level[middle..]].map(standard_error);
-    let means = [mean(&x[..middle]), mean(&x[middle..])];
-    let difference = (means[0] - means[1]).abs();
-    if difference > NEGLIGIBLE_DRIFT && difference > 3.0 * one.hypot(other) {
-        return Err(NoUncertainty::Drift {
-            halves: means,
-            needed_time_star: until + (until - from),
-        });
+    // What settles slowly shows itself in the first half, what has not settled when the window begins in the first quarter.
+    for first in [x.len() / 2, x.len() / 4] {
+        let difference = (mean(&x[..first]) - mean(&x[first..])).abs();
+        let [one, other] = [&level[..first], &level[first..]].map(standard_error);
+        if difference > NEGLIGIBLE_DRIFT && difference > MOST_DRIFT * one.hypot(other) {
+            return Err(NoUncertainty::Drift {
+                needed_time_star: until + (until - from),
+            });
+        }
     }
     Ok(standard_error(x))
 }
@@ -323,7 +326,7 @@ mod tests {
     fn white_noise_has_the_plain_standard_error() {
         let x = noise(4096);
         let expected = (1.0 / 12.0 / 4096.0_f64).sqrt();
-        let found = uncertainty(&x, [0.0, 1.0], 5.0).unwrap();
+        let found = uncertainty(&x, [0.0, 1.0], 40.0).unwrap();
         // The spectrum at frequency 0 of 48 terms over n/8 = 512 values has a relative error of sqrt(4 48/512), the root half of it.
         assert!((found / expected - 1.0).abs() < 2.0 * 0.31, "{found} {expected}");
     }
@@ -337,7 +340,7 @@ mod tests {
             x[k] += a * x[k - 1];
         }
         let expected = (1.0 / 12.0 / 40_000.0_f64).sqrt() / (1.0 - a);
-        let found = uncertainty(&x[1000..], [0.0, 1.0], 5.0).unwrap();
+        let found = uncertainty(&x[1000..], [0.0, 1.0], 40.0).unwrap();
         assert!((found / expected - 1.0).abs() < 0.3, "{found} {expected}");
     }
 
@@ -399,7 +402,7 @@ mod tests {
         let noise = noise(513);
         let x: Vec<f64> = noise.windows(2).map(|pair| pair[1] - pair[0]).collect();
         let expected = (1.0_f64 / 6.0).sqrt() / 512.0;
-        let found = uncertainty(&x, [0.0, 1.0], 5.0).unwrap();
+        let found = uncertainty(&x, [0.0, 1.0], 40.0).unwrap();
         let plain = (1.0_f64 / 6.0 / 512.0).sqrt();
         println!("{found} {expected} {plain}");
         assert!(
@@ -415,15 +418,21 @@ mod tests {
             .enumerate()
             .map(|(k, x)| x + k as f64 * 1e-3)
             .collect();
-        let drift = uncertainty(&drifting, [0.0, 1.0], 5.0);
+        let drift = uncertainty(&drifting, [0.0, 1.0], 40.0);
         assert!(
             matches!(drift, Err(NoUncertainty::Drift { needed_time_star, .. }) if needed_time_star == 2.0),
             "{drift:?}"
         );
-        // Ten units of time at V* = 0.1, where 50 are needed; and 30 steps of one unit each.
+        // Ten units of time at V* = 0.1, where 400 are needed; and 30 steps of one unit each at V* = 10.
         let short = |needed_time_star| Err(NoUncertainty::TooShort { needed_time_star });
-        assert_eq!(uncertainty(&noise(101), [10.0, 20.0], 0.1), short(60.0));
-        assert_eq!(uncertainty(&noise(31), [10.0, 40.0], 1.0), short(50.0));
-        assert_eq!(uncertainty(&[0.5; 1000], [0.0, 1.0], 5.0), Ok(0.0));
+        assert_eq!(
+            uncertainty(&noise(101), [10.0, 20.0], 0.1),
+            short(10.0 + 1.01 * 400.0)
+        );
+        assert_eq!(
+            uncertainty(&noise(31), [10.0, 40.0], 10.0),
+            short(10.0 + 1.01 * 40.0)
+        );
+        assert_eq!(uncertainty(&[0.5; 1000], [0.0, 1.0], 40.0), Ok(0.0));
     }
 }
