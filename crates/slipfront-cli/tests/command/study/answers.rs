@@ -396,7 +396,7 @@ fn runs_without_a_transition_are_pointed_out() {
             .filter(|line| line.trim_start().starts_with(&format!("{speed} ")));
         rows.next().unwrap_or_else(|| panic!("{said}")).to_owned()
     };
-    assert!(row("0.08").contains("(no transition in 6 of 6 runs)"), "{said}");
+    assert!(row("0.08").contains("(no transition in 3 of 3 pairs)"), "{said}");
     assert!(!row("0.18").contains("no transition"), "{said}");
     // References are shared by points.
     let without: BTreeSet<String> = workspace
