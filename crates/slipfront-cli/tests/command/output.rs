@@ -231,7 +231,7 @@ fn a_later_mu_star_above_the_first_peak_is_told() {
 #[test]
 fn where_friction_loses_nothing_there_is_no_transition() {
     let workspace = Workspace::small();
-    for (k, keys) in ["friction.r_star=0.9 --set drive.v_star=3", "friction.r_star=1"]
+    for (k, keys) in ["friction.r_star=0.9 --set drive.v_star=3", "friction.r_star=1.1"]
         .iter()
         .enumerate()
     {

@@ -443,7 +443,7 @@ fn runs_without_a_transition_are_pointed_out() {
         "{counted:?}"
     );
     let picture = workspace.read_text("out/static_friction_star.svg");
-    assert!(picture.contains("\u{d7}: without "), "{picture}");
+    assert!(picture.contains(" without transition"), "{picture}");
     assert!(row("0.08").contains("none"), "{said}");
 }
 
