@@ -144,7 +144,7 @@ pub fn found_at(path: &Path) -> std::io::Result<Option<Metadata>> {
 /// What a path leads to, through symbolic links; none if nothing is there.
 ///
 /// # Errors
-/// As of [`found_at`].
+/// When the system does not say, which must not be taken for nothing.
 pub fn found_behind(path: &Path) -> std::io::Result<Option<Metadata>> {
     found(path.metadata())
 }
@@ -160,7 +160,7 @@ fn found(looked: std::io::Result<Metadata>) -> std::io::Result<Option<Metadata>>
 /// Whether the path is a folder itself, and not a symbolic link to one.
 ///
 /// # Errors
-/// As of [`found_at`].
+/// When the system does not say, which must not be taken for nothing.
 pub fn is_folder(path: &Path) -> std::io::Result<bool> {
     Ok(found_at(path)?.is_some_and(|found| found.is_dir()))
 }

@@ -17,11 +17,11 @@ const PART: usize = 1 << 17;
 /// In place of the time of a block without contact.
 const NO_CONTACT: f64 = f64::INFINITY;
 
-/// The front in units of this model: lengths in blocks, times t*.
+/// The front in units of this model: lengths in blocks, times t*. Of a slider driven at an edge, all but the sites are those of the event
+/// that crosses it.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct LatticeFront {
     pub(crate) nucleations: Vec<Nucleation>,
-    /// Of a slider driven at an edge, in the event that crosses it, as all that follows.
     pub(crate) speed: Option<Distribution>,
     pub(crate) share: Option<f64>,
     pub(crate) duration_star: Option<f64>,
@@ -186,7 +186,8 @@ mod tests {
         assert_eq!(summaries[0].front_duration_s, alone.front_duration_s);
     }
 
-    /// Between the events of a slider driven at an edge slip spreads as fast as the drive loads it. The front of the event that crosses it runs at a speed of waves, whatever drives it.
+    /// Between the events of a slider driven at an edge slip spreads as fast as the drive loads it. The front of the event that crosses it
+    /// runs at a speed of waves, whatever drives it.
     #[test]
     fn of_a_slider_driven_at_an_edge_the_speed_is_that_of_the_event_that_crosses_it() {
         for v_star in [2.0, 1.0] {

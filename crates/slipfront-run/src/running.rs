@@ -1,7 +1,6 @@
 //! [`Case`] -> [`Record`]: one run with all observers that its files need.
 
 use std::ops::Range;
-use std::ops::RangeInclusive;
 use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
@@ -462,12 +461,12 @@ impl Running {
             .summary
             .end(&self.case, &self.simulation, reason, &instants);
         let first_slips = self.snapshot().first_slip_time_star();
-        let during = self.observers.summary.times_of_front(numbers.transition);
+        let observers = &self.observers.summary;
         add_front(
             &mut numbers,
+            observers,
             &self.case,
             &first_slips,
-            during,
             &*self.communicator,
         );
         numbers
@@ -486,12 +485,11 @@ impl Running {
         let mut numbers = summary.end(&case, &simulation, reason, &instants);
         let contact_stress_max = simulation.contact_stress_max();
         let first_slip_time_star = simulation.into_first_slip_time_star();
-        let during = summary.times_of_front(numbers.transition);
         add_front(
             &mut numbers,
+            &summary,
             &case,
             &first_slip_time_star,
-            during,
             &*self.communicator,
         );
         Record {
@@ -506,15 +504,15 @@ impl Running {
     }
 }
 
-/// Adds what the first slips of all blocks tell of the front, if one passed during these t*.
+/// Adds what the first slips of all blocks tell of the front, if one has passed.
 fn add_front(
     numbers: &mut Summary,
+    observers: &SummaryObservers,
     case: &Case,
     first_slips: &[f64],
-    during: Option<RangeInclusive<f64>>,
     communicator: &dyn Communicator,
 ) {
-    if let Some(during) = during
+    if let Some(during) = observers.times_of_front(numbers.transition)
         && let Some(front) = front::of_ranks(case, first_slips, during, communicator)
     {
         numbers.add_front(&front, &case.scales);

@@ -58,7 +58,7 @@ pub struct Summary {
     /// Largest mu* of the whole run; above mu_s* where a later peak is higher than the first.
     pub mu_star_max: f64,
     /// Whether mu* fell at least half-way to the steady level L and by (1 - L)/20 after its first peak, within the time of a transition,
-    /// and mu_k* is as much below the peak.
+    /// and mu_k* is as much below the peak, where steady sliding takes less force than the blocks hold at rest.
     pub transition: bool,
     /// The instants A-F that were found.
     pub instants: Vec<InstantSummary>,
@@ -373,9 +373,8 @@ impl SummaryObservers {
 
     /// Friction in the kinetic window as it follows from a peak, up to now.
     pub(crate) fn kinetic(&self, case: &Case, peak: &Peak) -> Option<Kinetic> {
-        let plan = &case.time_plan;
-        let from = plan.kinetic.time_star(peak, case.model.loading_speed());
-        let speed = case.model.loading_speed();
+        let (plan, speed) = (&case.time_plan, case.model.loading_speed());
+        let from = plan.kinetic.time_star(peak, speed);
         let mut kinetic = self.history.kinetic(from, plan.dt_star, speed)?;
         if self.cycles.is_some() {
             kinetic.uncertainty = Err(NoUncertainty::SpeedChanges);
@@ -419,7 +418,7 @@ impl SummaryObservers {
             false => [peak.mu_star_max, peak.max_lateral_star, peak.max_time_star],
         };
         let si = si(case, static_star, kinetic_star, simulation.contact_stress_max());
-        let after_run = after_run(reason, &peak, first_slip, kinetic, &energies);
+        let after_run = after_run(reason, &peak, transition, first_slip, kinetic, &energies);
         Summary {
             static_friction_star: static_star,
             static_friction: static_star * mean,
@@ -576,6 +575,7 @@ const HIGHER_LATER: f64 = 0.01;
 fn after_run(
     reason: StopReason,
     peak: &Peak,
+    transition: bool,
     first_slip: Option<f64>,
     kinetic: Option<Kinetic>,
     energies: &Energies,
@@ -606,7 +606,7 @@ fn after_run(
             kinetic.mu_star, peak.mu_star
         ));
     }
-    if peak.ended && !is_kept_up(peak, kinetic) && peak.mu_star_max > (1.0 + HIGHER_LATER) * peak.mu_star {
+    if transition && peak.mu_star_max > (1.0 + HIGHER_LATER) * peak.mu_star {
         warnings.push(format!(
             "mu* is larger later than at its first peak: {:.4} at t* = {:.1}, {:.0} % above static_friction_star",
             peak.mu_star_max,

@@ -5,8 +5,7 @@ use std::path::Path;
 
 use slipfront_case::number_format::{are, byte_size, count, four_digits, with_half_width};
 use slipfront_run::study::{
-    MeshedCoverage, Plan, REDUCTION, RunKey, StudyResults, idle_axes, quantities_without_pictures,
-    why_no_pictures,
+    MeshedCoverage, Plan, REDUCTION, StudyResults, idle_axes, quantities_without_pictures, why_no_pictures,
 };
 
 use super::anisotropy::anisotropy;
@@ -183,8 +182,7 @@ fn meshed(plan: &Plan, shown: usize) -> Option<Vec<String>> {
 
 /// The main quantity at a point with its interval, of how many values it is, and what a reader must know of it.
 fn point_value(plan: &Plan, results: &StudyResults, point: usize) -> Vec<String> {
-    let is_here = |run: &RunKey| run.point == point;
-    let has_failed = || results.failures().any(|(run, _)| is_here(&run));
+    let has_failed = || results.failures().any(|(run, _)| run.point == point);
     let without = results.runs_without_transition(point, plan.main_quantity());
     let sample = results.sample(plan, point, plan.main_quantity());
     let value = match sample {

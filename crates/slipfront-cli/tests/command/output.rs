@@ -241,6 +241,11 @@ fn where_friction_loses_nothing_there_is_no_transition() {
         let summary = workspace.summary(&format!("run{k}"));
         assert_eq!(summary["transition"], false, "{keys}");
         assert_eq!(summary["static_friction_star"], summary["mu_star_max"], "{keys}");
+        let warnings = summary["warnings"].to_string();
+        assert!(
+            !warnings.contains("above static_friction_star"),
+            "{keys}: {warnings}"
+        );
     }
 }
 

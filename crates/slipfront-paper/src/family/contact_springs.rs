@@ -14,15 +14,17 @@ use crate::error::PaperError;
 
 /// Stiffness of the springs in contact over that of the drive.
 const SOFTNESS: f64 = 1e-3;
-/// Of the rigid slider, as are damping and step.
+/// V* of the rigid slider.
 const V_STAR: f64 = 2.5;
+/// Omega* of the rigid slider.
 const OMEGA_STAR: f64 = 0.5;
+/// Time step of the rigid slider, t*.
 const DT_STAR: f64 = 0.8;
 /// V* of the drive that pulls a chain.
 const CHAIN_V_STAR: f64 = 2e-4;
-/// Omega of its blocks.
+/// Omega of the blocks of the chain.
 const CHAIN_DAMPING: f64 = 0.5;
-/// Time step of its run.
+/// Time step of the chain, t*.
 const CHAIN_DT_STAR: f64 = 0.2;
 
 /// First peak over the mean of sliding of a rigid slider whose thresholds are spread over 1 - w to 1 + w.

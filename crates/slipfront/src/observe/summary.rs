@@ -183,7 +183,7 @@ fn mean(x: &[f64]) -> f64 {
     x.iter().sum::<f64>() / x.len() as f64
 }
 
-/// A difference between the halves below this is no drift: it is less than the error of any time step.
+/// A difference between parts of a window below this is no drift: it is less than the error of any time step.
 const NEGLIGIBLE_DRIFT: f64 = 1e-6;
 
 /// V* times the shortest window that gives a standard error. Shorter ones hide what changes slowly: across a groove friction still rises by
@@ -193,15 +193,15 @@ const LEAST_PATH: f64 = 40.0;
 /// Largest difference between parts of a window that is no drift, in standard errors.
 const MOST_DRIFT: f64 = 2.0;
 
-/// Fewest values of a window that gives a standard error.
-const MIN_VALUES: usize = 40;
+/// Fewest steps, or means over steps, from the first to the last of a window that gives a standard error.
+const MIN_STEPS: usize = 40;
 
 /// Standard error of the mean of a correlated series, if its window supports one.
 fn uncertainty(x: &[f64], window_star: [f64; 2], v_star: f64) -> Result<f64, NoUncertainty> {
     let [from, until] = window_star;
     let bin_time = (until - from) / (x.len() as f64 - 1.0).max(1.0);
-    let least = (LEAST_PATH / v_star).max(MIN_VALUES as f64 * bin_time);
-    if x.len() < MIN_VALUES || until - from < least {
+    let least = (LEAST_PATH / v_star).max(MIN_STEPS as f64 * bin_time);
+    if until - from < least {
         return Err(NoUncertainty::TooShort {
             // Bins that the ends of the window cut through do not count.
             needed_time_star: from + 1.01 * least,
@@ -222,9 +222,6 @@ fn uncertainty(x: &[f64], window_star: [f64; 2], v_star: f64) -> Result<f64, NoU
     Ok(standard_error(x))
 }
 
-/// Most values of which an autoregressive model is made: longer series are averaged over neighbours first.
-const MAX_VALUES: usize = 512;
-
 /// A series minus its line of least squares.
 fn without_line(x: &[f64]) -> Vec<f64> {
     let (center, middle) = (mean(x), 0.5 * (x.len() as f64 - 1.0));
@@ -234,6 +231,9 @@ fn without_line(x: &[f64]) -> Vec<f64> {
     let residual = |(place, value): (f64, &f64)| value - center - slope * place;
     places().zip(x).map(residual).collect()
 }
+
+/// Most values of which an autoregressive model is made: longer series are averaged over neighbours first.
+const MAX_VALUES: usize = 512;
 
 /// Terms of the autoregressive model over the root of the number of values.
 const TERMS: f64 = 1.5;
