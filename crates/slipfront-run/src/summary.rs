@@ -415,7 +415,11 @@ impl SummaryObservers {
         let transition = case.can_have_transition() && peak.ended && !is_kept_up(&peak, kinetic);
         let [static_star, lateral_star, onset_star] = match transition {
             true => [peak.mu_star, peak.mu_lateral_star, peak.time_star],
-            false => [peak.mu_star_max, peak.max_lateral_star, peak.max_time_star],
+            false => [
+                peak.largest.mu_star,
+                peak.largest.mu_lateral_star,
+                peak.largest.time_star,
+            ],
         };
         let si = si(case, static_star, kinetic_star, simulation.contact_stress_max());
         let after_run = after_run(reason, &peak, transition, first_slip, kinetic, &energies);
@@ -434,7 +438,7 @@ impl SummaryObservers {
             kinetic_window_star: kinetic.map(|k| k.window_star),
             sliding_percent_kinetic: kinetic.map(|k| k.sliding_percent),
             sliding_percent_max: self.history.sliding_percent_max(),
-            mu_star_max: peak.mu_star_max,
+            mu_star_max: peak.largest.mu_star,
             transition,
             instants,
             si: Some(si),
@@ -606,12 +610,12 @@ fn after_run(
             kinetic.mu_star, peak.mu_star
         ));
     }
-    if transition && peak.mu_star_max > (1.0 + HIGHER_LATER) * peak.mu_star {
+    if transition && peak.largest.mu_star > (1.0 + HIGHER_LATER) * peak.mu_star {
         warnings.push(format!(
             "mu* is larger later than at its first peak: {:.4} at t* = {:.1}, {:.0} % above static_friction_star",
-            peak.mu_star_max,
-            peak.max_time_star,
-            100.0 * (peak.mu_star_max / peak.mu_star - 1.0)
+            peak.largest.mu_star,
+            peak.largest.time_star,
+            100.0 * (peak.largest.mu_star / peak.mu_star - 1.0)
         ));
     }
     if first_slip.is_none() {

@@ -1,5 +1,5 @@
-//! What one instant of a run measures: the friction coefficient mu* (Eq. 9), the percentage of sliding blocks N*, and the
-//! first peak of mu*.
+//! What one instant of a run measures: the friction coefficient mu* (Eq. 9), the percentage of sliding blocks N*, the largest mu*
+//! and the first peak of mu*.
 
 use serde::{Deserialize, Serialize};
 
@@ -53,6 +53,57 @@ impl CurvePoint {
     }
 }
 
+/// The largest mu* until the drive has gone a stated path.
+///
+/// A ripple cannot be mistaken for it as it can for a first peak: a later, higher mu* counts until the end of the path.
+///
+/// ```
+/// use slipfront::observe::Largest;
+/// let mut largest = Largest::until(5.0);
+/// for (path, mu_star) in [(1.0, 0.50), (2.0, 0.49), (4.0, 0.68), (6.0, 0.70)] {
+///     largest.update(path, path / 0.03, mu_star, 0.0);
+/// }
+/// assert_eq!((largest.mu_star, largest.time_star), (0.68, 4.0 / 0.03));
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Largest {
+    /// Largest mu*; minus infinity before the first step.
+    pub mu_star: f64,
+    /// Friction across the drive at the time of the largest mu*.
+    pub mu_lateral_star: f64,
+    /// Time of the largest mu*, the first of equal ones.
+    pub time_star: f64,
+    until_path: f64,
+    is_complete: bool,
+}
+
+impl Largest {
+    /// Before the first step. What comes after the drive has first gone further than `until_path`, in units of displacement, does
+    /// not count; [`f64::INFINITY`] takes the whole run.
+    pub fn until(until_path: f64) -> Self {
+        Self {
+            mu_star: f64::NEG_INFINITY,
+            mu_lateral_star: 0.0,
+            time_star: 0.0,
+            until_path,
+            is_complete: false,
+        }
+    }
+
+    /// Takes the next step into account, at which the drive has gone `path`.
+    pub fn update(&mut self, path: f64, time_star: f64, mu_star: f64, mu_lateral_star: f64) {
+        self.is_complete |= path > self.until_path;
+        if !self.is_complete && mu_star > self.mu_star {
+            (self.mu_star, self.mu_lateral_star, self.time_star) = (mu_star, mu_lateral_star, time_star);
+        }
+    }
+
+    /// Whether the drive has gone further than the stated path: the largest mu* is final.
+    pub fn is_complete(&self) -> bool {
+        self.is_complete
+    }
+}
+
 /// What friction loses in a transition at least, of the largest loss 1 - L. Ripples of sliding just above L are smaller; a texture that
 /// lowers mu_s* nearly to L leaves more.
 const LEAST_FALL: f64 = 0.05;
@@ -73,11 +124,7 @@ pub struct Peak {
     /// Whether the fall has been seen.
     pub ended: bool,
     /// Largest mu* of the whole run so far.
-    pub mu_star_max: f64,
-    /// What is across the drive at the largest mu*.
-    pub max_lateral_star: f64,
-    /// Time of the largest mu*.
-    pub max_time_star: f64,
+    pub largest: Largest,
     steady_level: f64,
     longest_fall: f64,
     /// Whether mu* fell that far too late to be a transition.
@@ -87,16 +134,13 @@ pub struct Peak {
 impl Peak {
     /// Before the first step; `steady_level` is L, see [`Model::steady_level`], and `longest_fall` that of [`Model::longest_fall`].
     pub(crate) fn new(steady_level: f64, longest_fall: f64) -> Self {
-        let lowest = f64::NEG_INFINITY;
         Self {
-            mu_star: lowest,
+            mu_star: f64::NEG_INFINITY,
             mu_lateral_star: 0.0,
             step: 0,
             time_star: 0.0,
             ended: false,
-            mu_star_max: lowest,
-            max_lateral_star: 0.0,
-            max_time_star: 0.0,
+            largest: Largest::until(f64::INFINITY),
             steady_level,
             longest_fall,
             crept: false,
@@ -121,10 +165,9 @@ impl Peak {
     /// Takes the next step into account.
     pub(crate) fn update(&mut self, step: u64, time_star: f64, point: &CurvePoint) {
         let mu_star = point.mu_star;
-        if mu_star > self.mu_star_max {
-            (self.mu_star_max, self.max_time_star) = (mu_star, time_star);
-            self.max_lateral_star = point.mu_lateral_star;
-        }
+        // The whole run counts, whatever the path: 0 is below infinity.
+        self.largest
+            .update(0.0, time_star, mu_star, point.mu_lateral_star);
         if self.ended {
             return;
         }
@@ -164,11 +207,15 @@ mod tests {
     fn the_first_peak_counts_even_if_a_later_one_is_higher() {
         let peak = peak_of(0.5, &[0.0, 0.4, 0.8, 1.0, 0.9, 0.75, 0.2, 0.9, 1.1, 0.1]);
         assert_eq!(
-            (peak.mu_star, peak.step, peak.ended, peak.mu_star_max),
+            (peak.mu_star, peak.step, peak.ended, peak.largest.mu_star),
             (1.0, 3, true, 1.1)
         );
         assert_eq!(
-            (peak.mu_lateral_star, peak.max_lateral_star, peak.max_time_star),
+            (
+                peak.mu_lateral_star,
+                peak.largest.mu_lateral_star,
+                peak.largest.time_star
+            ),
             (-1.0, -1.1, 8.0)
         );
     }
@@ -213,6 +260,22 @@ mod tests {
     fn what_has_crept_once_has_no_transition_any_more() {
         let peak = peak_within(2.5, 0.5, &[0.0, 1.0, 0.9, 0.8, 0.75, 1.1, 0.3]);
         assert_eq!((peak.mu_star, peak.step, peak.ended), (1.1, 5, false));
+    }
+
+    #[test]
+    fn what_comes_back_from_beyond_the_path_does_not_count() {
+        let mut largest = Largest::until(2.0);
+        for (n, (path, mu_star)) in [(1.0, 0.4), (2.0, 0.5), (2.5, 0.7), (1.5, 0.6)]
+            .iter()
+            .enumerate()
+        {
+            assert_eq!(largest.is_complete(), n == 3);
+            largest.update(*path, n as f64, *mu_star, -mu_star);
+        }
+        assert_eq!(
+            (largest.mu_star, largest.mu_lateral_star, largest.time_star),
+            (0.5, -0.5, 1.0)
+        );
     }
 
     #[test]

@@ -324,7 +324,7 @@ fn a_checkpoint_that_is_not_whole_or_not_its_own_is_refused() {
     );
     refused(
         &text("\"slipfront_checkpoint\":2", "\"slipfront_checkpoint\":1"),
-        "has layout 1, and this version reads layout 2",
+        "has layout 1, and this version reads layout 3",
     );
     for (from, to) in [
         ("\"rows\":50", "\"rows\":51"),

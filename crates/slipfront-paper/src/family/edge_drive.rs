@@ -105,7 +105,7 @@ impl Chain {
                 });
             }
         }
-        Ok((longer, STATIC * simulation.peak().mu_star_max))
+        Ok((longer, STATIC * simulation.peak().largest.mu_star))
     }
 
     /// What is known of its runs under one profile of pressure; and the events of the run of the finest step.

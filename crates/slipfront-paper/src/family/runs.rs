@@ -69,7 +69,7 @@ impl Run {
 
     /// The largest mu* of the run.
     pub(super) fn largest(&self) -> f64 {
-        self.simulation.peak().mu_star_max
+        self.simulation.peak().largest.mu_star
     }
 }
 

@@ -2,7 +2,7 @@
 //!
 //! [`curve`]: mu*, N* and energies against time; [`summary`]: the kinetic friction coefficient; [`frames`]: fields at
 //! chosen steps; [`instants`]: fields at the instants A-F; [`energy`]: the energy balance; [`precursors`]: events of slip of a
-//! slider driven at an edge; [`cycles`]: peaks under a program of speeds; [`kymograph`]: sliding against place and time. [`front`] looks at
+//! slider driven at an edge; [`Largest`]: the largest mu* until the drive has gone a stated path; [`cycles`]: peaks under a program of speeds; [`kymograph`]: sliding against place and time. [`front`] looks at
 //! what a run leaves behind: where slip has begun, and how fast it has spread.
 
 pub mod curve;
@@ -12,12 +12,13 @@ pub mod frames;
 pub mod front;
 pub mod instants;
 pub mod kymograph;
+mod largest;
 pub(crate) mod observer;
 pub mod precursors;
 pub mod summary;
 
 pub use crate::kernel::block::Field;
-pub use crate::measure::{CurvePoint, Peak};
+pub use crate::measure::{CurvePoint, Largest, Peak};
 pub use curve::{Curve, CurveRow};
 pub use cycles::{Cycle, Cycles};
 pub use energy::{Energies, Ledger};

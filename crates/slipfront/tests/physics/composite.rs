@@ -37,7 +37,7 @@ fn largest(model: &Model) -> f64 {
     let mut simulation = at_rest(model, DT_STAR);
     let steps = (6.0 / V_STAR / DT_STAR) as u64;
     simulation.run(Stop::at_step(steps), &mut []).unwrap();
-    simulation.peak().mu_star_max
+    simulation.peak().largest.mu_star
 }
 
 /// The drag of the zone that slides already adds at most f Omega V*, and a slip is seen at most the pull of one step late.

@@ -195,7 +195,7 @@ fn precursors(n: usize, edge: Edge, slope: f64, v_star: f64, dt_star: f64) -> (V
         longest = event.length.max(longest);
         is_longer
     });
-    (longer, 0.7 * simulation.peak().mu_star_max)
+    (longer, 0.7 * simulation.peak().largest.mu_star)
 }
 
 /// After each event that is longer than all before, the part that has slipped bears kinetic friction. The block ahead of its tip bears up

@@ -3,7 +3,9 @@
 use rstest::rstest;
 use slipfront::communicator::Alone;
 use slipfront::observe::frames::Selection;
-use slipfront::observe::{Curve, Field, Instants, KineticHistory, KineticStart, Observer, Scheduled};
+use slipfront::observe::{
+    Curve, Field, Instants, KineticHistory, KineticStart, Largest, Observer, Scheduled,
+};
 use slipfront::surface::{Coefficients, Load};
 use slipfront::{Drive, FrictionLaw, Lattice, Model, RunError, State, Stop, StopReason, Surface};
 
@@ -110,7 +112,7 @@ fn without_a_fall_there_is_no_transition() {
         .run(Stop::at_step(steps), &mut [Scheduled::always(&mut instants)])
         .unwrap();
     let peak = simulation.peak();
-    assert!(!peak.ended && peak.mu_star == peak.mu_star_max);
+    assert!(!peak.ended && peak.mu_star == peak.largest.mu_star);
     let letters: String = instants.found().iter().map(|(letter, _)| *letter).collect();
     assert_eq!(letters, "ABCF");
 }
@@ -378,18 +380,33 @@ fn a_search_that_cheats_the_first_peak_is_not_rewarded() {
         .run(Stop::at_step(6000), &mut [Scheduled::always(&mut curve)])
         .unwrap();
     let mut largest = 0.0;
-    let by_half_way_alone = curve
-        .rows
-        .iter()
-        .map(|row| row.point.mu_star)
-        .find_map(|mu_star| {
-            largest = mu_star.max(largest);
-            (largest > level && mu_star <= 0.5 * (largest + level)).then_some(largest)
-        });
-    assert!(by_half_way_alone.unwrap() < 0.51, "{by_half_way_alone:?}");
+    let by_half_way_alone = curve.rows.iter().find_map(|row| {
+        let mu_star = row.point.mu_star;
+        largest = mu_star.max(largest);
+        (largest > level && mu_star <= 0.5 * (largest + level)).then_some((largest, row.time_star))
+    });
+    let (ripple, fall) = by_half_way_alone.unwrap();
+    assert!(ripple < 0.51, "{ripple}");
     let peak = simulation.peak();
     assert!(
-        peak.ended && peak.mu_star > 0.59 && peak.mu_star == peak.mu_star_max,
+        peak.ended && peak.mu_star > 0.59 && peak.mu_star == peak.largest.mu_star,
         "{peak:?}"
     );
+    // Whoever takes the largest mu* until a path finds the ripple if the path ends there, and the peak if it goes as far as the run.
+    let (mut until_the_fall, mut until_the_end) = (Largest::until(0.005 * fall), Largest::until(3.0));
+    at_rest(&model, 0.1)
+        .run(
+            Stop::at_step(6000),
+            &mut [
+                Scheduled::always(&mut until_the_fall),
+                Scheduled::always(&mut until_the_end),
+            ],
+        )
+        .unwrap();
+    assert!(until_the_fall.is_complete());
+    assert_eq!(
+        [until_the_fall.mu_star, until_the_end.mu_star],
+        [ripple, peak.mu_star]
+    );
+    assert_eq!(until_the_end.time_star, peak.time_star);
 }

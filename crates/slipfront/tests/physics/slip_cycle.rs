@@ -197,7 +197,7 @@ fn the_first_peak_of_a_uniform_lattice_is_that_of_its_first_cycle() {
     assert!(peak.ended);
     assert!((peak.time_star - exact.onset_time_star() - exact.peak_delay()).abs() < 2.0 * slider.dt_star);
     assert!((peak.mu_star - exact.peak()).abs() < per_step);
-    let later = peak.mu_star_max - peak.mu_star;
+    let later = peak.largest.mu_star - peak.mu_star;
     assert!(
         (1e-5..per_step).contains(&later),
         "a later cycle exceeds the first by {later}"

@@ -160,7 +160,7 @@ fn a_disc_of_blocks_on_their_own_slips_from_the_rim(#[values(0.3, 0.9)] r_star: 
         );
     }
     let at_the_end = torsion_of_decoupled_blocks(&radii, 0.35, r_star);
-    let above = simulation.peak().mu_star_max - at_the_end.max(torsion_first_slip(&radii));
+    let above = simulation.peak().largest.mu_star - at_the_end.max(torsion_first_slip(&radii));
     assert!(-rise < above && above < excess(1.0) + rise, "{above}");
 }
 

@@ -421,7 +421,7 @@ proptest! {
         prop_assert_eq!(peak.step as usize, largest_to(fall.unwrap_or(curve.len() - 1)));
         prop_assert_eq!(peak.mu_star, curve[peak.step as usize]);
         prop_assert_eq!(peak.time_star, outcome.rows[peak.step as usize].time_star);
-        prop_assert_eq!(peak.mu_star_max, curve.iter().copied().fold(f64::NEG_INFINITY, f64::max));
+        prop_assert_eq!(peak.largest.mu_star, curve.iter().copied().fold(f64::NEG_INFINITY, f64::max));
     }
 
     /// The means kept in bins against a direct mean over the steps of the window.

@@ -1,0 +1,15 @@
+//! The largest mu* until the drive has gone a stated path, measured while a run goes on.
+
+use super::observer::Observer;
+use crate::error::RunError;
+use crate::measure::Largest;
+use crate::snapshot::Snapshot;
+
+/// It must be called at every step.
+impl Observer for Largest {
+    fn observe(&mut self, now: &Snapshot) -> Result<(), RunError> {
+        let path = now.model.drive.path(now.time_star);
+        self.update(path, now.time_star, now.point.mu_star, now.point.mu_lateral_star);
+        Ok(())
+    }
+}
