@@ -4,7 +4,7 @@ use pyo3::create_exception;
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use slipfront_case::case_file::{CaseError as Error, Place};
-use slipfront_run::study::StudyError;
+use slipfront_study::StudyError;
 
 create_exception!(
     slipfront,

@@ -14,7 +14,9 @@ use slipfront_run::names::{FIELDS, FIGURE_CACHE, KYMOGRAPH, PRECURSORS, SERIES};
 use slipfront_run::run_folder::RunFolder;
 use slipfront_run::run_folder::inspection::Contents;
 use slipfront_run::running::Running;
-use slipfront_run::{fields, precursors, series, summary, verify as verification};
+use slipfront_run::verify::inspect;
+use slipfront_run::{fields, precursors, series, summary};
+use slipfront_study::verify::{has_records, verify as verify_folder};
 
 use crate::case::{Case, make};
 use crate::errors::{FolderError, folder_error};
@@ -42,13 +44,13 @@ impl TemporaryParent {
 /// What a folder is: `run`, `interrupted`, `study`, `paper`, or none of these.
 #[pyfunction]
 pub(crate) fn kind_of(folder: PathBuf) -> PyResult<Option<&'static str>> {
-    if verification::is_study(&folder) {
+    if has_records(&folder) {
         return Ok(Some("study"));
     }
     if folder.join(FIGURE_CACHE).is_dir() {
         return Ok(Some("paper"));
     }
-    let run = verification::inspect(&folder).map_err(folder_error)?;
+    let run = inspect(&folder).map_err(folder_error)?;
     Ok(match run.contents {
         Contents::Complete(_) => Some("run"),
         Contents::Interrupted => Some("interrupted"),
@@ -59,7 +61,7 @@ pub(crate) fn kind_of(folder: PathBuf) -> PyResult<Option<&'static str>> {
 /// Holds a folder against its manifest, or against its records.
 #[pyfunction]
 pub(crate) fn verify(py: Python<'_>, folder: PathBuf) -> PyResult<()> {
-    let verdict = detached(py, || verification::verify(&folder))?.map_err(folder_error)?;
+    let verdict = detached(py, || verify_folder(&folder))?.map_err(folder_error)?;
     match verdict.differences.as_slice() {
         [] => Ok(()),
         differences => Err(FolderError::new_err(differences.join("\n"))),
@@ -89,7 +91,7 @@ fn case_of(py: Python<'_>, folder: &Path, file: CaseFile) -> PyResult<Case> {
 /// A complete run as it stands in its folder: its case, and what `Record` gives of a run of this process.
 #[pyfunction]
 pub(crate) fn read_run<'py>(py: Python<'py>, folder: PathBuf) -> PyResult<(Case, Bound<'py, PyDict>)> {
-    let run = verification::inspect(&folder).map_err(folder_error)?;
+    let run = inspect(&folder).map_err(folder_error)?;
     let file = run.case_to_resume().map_err(folder_error)?.clone();
     let case = case_of(py, &folder, file)?;
     let read = PyDict::new(py);
@@ -115,7 +117,7 @@ pub(crate) fn read_run<'py>(py: Python<'py>, folder: PathBuf) -> PyResult<(Case,
 /// The case of an interrupted run, and the run as it goes on from its latest checkpoint, or from its start if it has none.
 #[pyfunction]
 pub(crate) fn interrupted(py: Python<'_>, folder: PathBuf, threads: usize) -> PyResult<(Case, Simulation)> {
-    let run = verification::inspect(&folder).map_err(folder_error)?;
+    let run = inspect(&folder).map_err(folder_error)?;
     let file = run.case_to_resume().map_err(folder_error)?.clone();
     let case = case_of(py, &folder, file)?;
     let running = detached(py, || {

@@ -8,8 +8,10 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use slipfront_case::case::Case as SlipfrontCase;
-use slipfront_run::study::{self, Plan, Progress, Role, RunKey, Sample, StudyError, StudyFile, StudyFolder};
 use slipfront_run::{clock, running};
+use slipfront_study::{
+    self as study, Plan, Progress, Role, RunKey, Sample, StudyError, StudyFile, StudyFolder,
+};
 
 use crate::case::{Case, LOOK_EVERY, make};
 use crate::errors::{folder_error, study_error};

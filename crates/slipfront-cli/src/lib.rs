@@ -33,7 +33,7 @@ use slipfront::Communicator;
 use slipfront_case::text::shell_quoted;
 use slipfront_run::agree::RankFailure;
 use slipfront_run::program::this_build;
-use slipfront_run::study::StudyFile;
+use slipfront_study::StudyFile;
 
 use crate::commands::run::{CHECKPOINTS_HELP, Run};
 use crate::failure::{Failure, report};

@@ -5,8 +5,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use slipfront_case::case::Case;
 use slipfront_run::running::run_unless;
-use slipfront_run::study::Sample;
 use slipfront_run::summary::Summary;
+use slipfront_study::Sample;
 use toml::Value;
 
 use crate::document::Document;

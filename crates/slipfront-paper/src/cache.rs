@@ -42,6 +42,7 @@ impl FigureCache {
         clear_unfinished(&folder);
         let mut hasher = blake3::Hasher::new();
         hasher.update(program::this_build().as_bytes());
+        hasher.update(slipfront_study::SOURCE_HASH.as_bytes());
         hasher.update(env!("SLIPFRONT_SOURCE_HASH").as_bytes());
         for (name, text) in FILES {
             hasher.update(name.as_bytes()).update(text.as_bytes());

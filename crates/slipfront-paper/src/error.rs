@@ -6,7 +6,7 @@ use thiserror::Error;
 use slipfront_case::case_file::CaseError;
 use slipfront_plot::PictureError;
 use slipfront_run::run_folder::error::FolderError;
-use slipfront_run::study::StudyError;
+use slipfront_study::StudyError;
 
 /// Why the figures could not be run or the report not be written.
 #[derive(Debug, Error)]

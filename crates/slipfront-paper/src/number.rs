@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 use slipfront_case::number_format::with_interval;
-use slipfront_run::study::Sample;
+use slipfront_study::Sample;
 
 /// Confidence of all intervals.
 const CONFIDENCE: f64 = 0.95;

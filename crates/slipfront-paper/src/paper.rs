@@ -6,7 +6,7 @@ use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::thread::Builder;
 
-use slipfront_run::study::{self, Records};
+use slipfront_study::{self as study, Records};
 
 use crate::cache::FigureCache;
 use crate::claims::{Claim, ClaimResult, claims, tally};

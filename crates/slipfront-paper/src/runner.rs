@@ -15,9 +15,10 @@ use crate::step_rule::StepRule;
 use crate::sweep::Sweep;
 use slipfront_case::case::Case;
 use slipfront_case::case_file::CaseError;
-use slipfront_run::study::{Outcome, Plan, Record, Records, StudyError, StudyFile, StudyResults};
+use slipfront_run::running;
 use slipfront_run::summary::Summary;
-use slipfront_run::{running, study};
+use slipfront_study as study;
+use slipfront_study::{Outcome, Plan, Record, Records, StudyError, StudyFile, StudyResults};
 
 /// Runs the cases and studies of a figure.
 pub(super) struct FigureRunner<'a> {

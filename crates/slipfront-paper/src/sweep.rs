@@ -5,7 +5,7 @@ use slipfront::Stop;
 use crate::error::PaperError;
 use crate::number::{Number, values};
 use slipfront_case::case::Case;
-use slipfront_run::study::{Plan, Quantity, RetainRuns, Role, RunKey, StudyResults};
+use slipfront_study::{Plan, Quantity, RetainRuns, Role, RunKey, StudyResults};
 
 pub(super) struct Sweep {
     pub(super) plan: Plan,

@@ -1,4 +1,4 @@
-//! A case is run, and its results are written, read, verified and multiplied into studies.
+//! A case is run, and its results are written, read and verified.
 //!
 //! ```text
 //! Case -> Record -> files -> pictures
@@ -32,7 +32,6 @@ pub mod resume_command;
 pub mod run_folder;
 pub mod running;
 pub mod series;
-pub mod study;
 pub mod summary;
 #[cfg(feature = "plot")]
 pub mod texture_file;

@@ -185,7 +185,7 @@ fn checksum_of(manifest: &[u8]) -> Option<String> {
 
 impl ManifestFile {
     /// A regular file of a folder as it is now.
-    pub(crate) fn of(folder: &Path, name: &str) -> std::io::Result<Self> {
+    pub fn of(folder: &Path, name: &str) -> std::io::Result<Self> {
         let mut hasher = blake3::Hasher::new();
         hasher.update_reader(open_regular(&folder.join(name))?)?;
         Ok(Self::hashed(name, &hasher))

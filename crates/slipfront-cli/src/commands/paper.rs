@@ -6,7 +6,7 @@ use clap::Args;
 use slipfront_case::disk::{is_empty, make_folders};
 use slipfront_case::number_format::are;
 use slipfront_paper::Options;
-use slipfront_run::study::{Records, is_study};
+use slipfront_study::{Records, is_study};
 
 use crate::failure::Failure;
 use crate::print::print_message;

@@ -16,7 +16,8 @@ use slipfront_run::measured::{Column, Measure, MeasuredError, Record};
 use slipfront_run::names::MANIFEST;
 use slipfront_run::pictures;
 use slipfront_run::run_folder::inspection::Inspection;
-use slipfront_run::verify::{expect_as_written, inspect, is_study};
+use slipfront_run::verify::{expect_as_written, inspect};
+use slipfront_study::verify::has_records;
 
 use crate::failure::Failure;
 use crate::print::print_message;
@@ -298,7 +299,7 @@ pub(super) fn expect_results(folder: &Path) -> Result<(), Failure> {
     let path = folder.join("summary.json");
     let sentence = match path.try_exists() {
         Ok(true) => return Ok(()),
-        Ok(false) if is_study(folder) => format!(
+        Ok(false) if has_records(folder) => format!(
             "{} is the folder of a study, which holds its pictures: name folders of runs",
             folder.display()
         ),

@@ -15,7 +15,8 @@ use slipfront_run::results;
 use slipfront_run::run_folder::RunFolder;
 use slipfront_run::run_folder::inspection::{CaseDefect, Inspection};
 use slipfront_run::running::Running;
-use slipfront_run::verify::{Verdict, VerifyError, differences, inspect, is_study, verify, verify_run};
+use slipfront_run::verify::{Verdict, differences, inspect, verify_run};
+use slipfront_study::verify::{VerifyStudyError, has_records, verify};
 
 use crate::failure::Failure;
 use crate::make_case::make_case;
@@ -90,7 +91,7 @@ impl Verify {
     }
 
     fn look_at(&self, folder: &Path, rerun: Option<&Signals>, verdict: &mut Verdict) -> Result<(), Failure> {
-        if rerun.is_some() && is_study(folder) {
+        if rerun.is_some() && has_records(folder) {
             return Err(Failure::input(anyhow::anyhow!(
                 "{} is the folder of a study: --rerun repeats single runs, such as those in its folder runs/",
                 folder.display()
@@ -124,8 +125,8 @@ impl Verify {
             Err(CaseDefect::Unreadable(_) | CaseDefect::Invalid(_)) => Case::load(&case, &[], watch),
         });
         let case = Arc::new(case?);
-        let again =
-            TemporaryFolder::new(folder).map_err(|error| Failure::running(VerifyError::Temporary(error)))?;
+        let again = TemporaryFolder::new(folder)
+            .map_err(|error| Failure::running(VerifyStudyError::Temporary(error)))?;
         case.budget
             .check_disk(&case.file, again.path(), 0, false)
             .map_err(Failure::input)?;

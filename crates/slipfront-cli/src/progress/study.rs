@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use slipfront_case::number_format::count;
-use slipfront_run::study::Progress;
+use slipfront_study::Progress;
 
 use super::display::{ProgressDisplay, time_left};
 

@@ -1,7 +1,7 @@
 //! How friction depends on the direction of the drive, for a study that varies it.
 
 use slipfront_case::number_format::{four_digits, with_half_width};
-use slipfront_run::study::{Anisotropy, OverDirections, Plan, Sample, StudyResults, anisotropies};
+use slipfront_study::{Anisotropy, OverDirections, Plan, Sample, StudyResults, anisotropies};
 
 use super::table::table;
 use crate::wrap::note;

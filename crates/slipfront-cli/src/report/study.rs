@@ -4,7 +4,7 @@ use std::collections::HashSet;
 use std::path::Path;
 
 use slipfront_case::number_format::{are, byte_size, count, four_digits, with_half_width};
-use slipfront_run::study::{
+use slipfront_study::{
     MeshedCoverage, Plan, REDUCTION, StudyResults, idle_axes, quantities_without_pictures, why_no_pictures,
 };
 

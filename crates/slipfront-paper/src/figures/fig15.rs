@@ -8,7 +8,7 @@ use crate::number::{Number, values};
 use crate::runner::FigureRunner;
 use crate::statistics::{largest, mean, rises, smallest};
 use slipfront_plot::Responses;
-use slipfront_run::study::REDUCTION;
+use slipfront_study::REDUCTION;
 
 pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Result<(), PaperError> {
     let sweep = runner.study("fig15")?;

@@ -8,7 +8,7 @@ use crate::runner::FigureRunner;
 use crate::statistics::{farthest, largest, mean, rises, smallest};
 use crate::sweep::Sweep;
 use slipfront_plot::Responses;
-use slipfront_run::study::REDUCTION;
+use slipfront_study::REDUCTION;
 
 /// Levels of the second axis.
 const ACROSS: usize = 0;

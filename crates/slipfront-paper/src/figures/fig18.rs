@@ -8,7 +8,7 @@ use crate::run::peak_maps;
 use crate::runner::FigureRunner;
 use crate::statistics::{farthest, largest, range};
 use slipfront_plot::{Bar, BarChart, BarGroup, FieldMap};
-use slipfront_run::study::REDUCTION;
+use slipfront_study::REDUCTION;
 
 pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Result<(), PaperError> {
     let sweep = runner.study("fig18")?;

@@ -5,7 +5,7 @@ use crate::figure_data::FigureData;
 use crate::number::Number;
 use crate::runner::FigureRunner;
 use crate::statistics::{distances, largest};
-use slipfront_run::study::REDUCTION;
+use slipfront_study::REDUCTION;
 
 pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Result<(), PaperError> {
     let baseline = runner.study("sensitivity")?;

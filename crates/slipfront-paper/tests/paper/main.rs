@@ -5,7 +5,7 @@ use std::path::Path;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use slipfront_paper::{FIGURES, Options, Paper, Verdict};
-use slipfront_run::study::{Records, StudyError};
+use slipfront_study::{Records, StudyError};
 
 fn options<'a>(folder: &'a Path, stop: &'a AtomicBool) -> Options<'a> {
     Options {

@@ -9,7 +9,7 @@ use super::error::FolderError;
 use crate::names::{CASE, MANIFEST, UNFINISHED};
 
 /// Copies the files of a run folder. Its case and its manifest come last: without them, the copy is not taken for whole.
-pub(crate) fn copy_run(from: &Path, to: &Path) -> Result<(), FolderError> {
+pub fn copy_run(from: &Path, to: &Path) -> Result<(), FolderError> {
     let failed = |source| FolderError::Copy {
         from: from.to_owned(),
         to: to.to_owned(),

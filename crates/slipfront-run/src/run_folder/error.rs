@@ -72,7 +72,7 @@ pub enum FolderError {
 
 impl FolderError {
     /// What the system says of a folder that should be written to.
-    pub(crate) fn unwritable(path: &Path) -> impl Fn(std::io::Error) -> Self {
+    pub fn unwritable(path: &Path) -> impl Fn(std::io::Error) -> Self {
         move |source| Self::Unwritable {
             path: path.to_owned(),
             source,
@@ -80,7 +80,7 @@ impl FolderError {
     }
 
     /// What the system says of a file that should be written.
-    pub(crate) fn write(path: &Path) -> impl Fn(std::io::Error) -> Self {
+    pub fn write(path: &Path) -> impl Fn(std::io::Error) -> Self {
         move |source| Self::Write {
             path: path.to_owned(),
             source,
@@ -88,7 +88,7 @@ impl FolderError {
     }
 
     /// What the system says of a file or folder that should be read.
-    pub(crate) fn read(path: &Path) -> impl Fn(std::io::Error) -> Self {
+    pub fn read(path: &Path) -> impl Fn(std::io::Error) -> Self {
         move |source| Self::Read {
             path: path.to_owned(),
             source,

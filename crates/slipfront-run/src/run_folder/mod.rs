@@ -4,7 +4,7 @@
 //! files are those that the manifest lists, or the journal of a run that is not complete, with the hash that they have.
 
 mod contents;
-pub(crate) mod copy;
+pub mod copy;
 pub mod error;
 pub mod inspection;
 mod journal;

@@ -5,7 +5,7 @@ use slipfront_run::run_folder::RunFolder;
 use slipfront_run::run_folder::error::FolderError;
 use slipfront_run::run_folder::inspection::Inspection;
 use slipfront_run::summary::{InstantSummary, Summary, read_summary, summary_json};
-use slipfront_run::verify::verify;
+use slipfront_study::verify::verify;
 
 use crate::checks::readable;
 use crate::{Memory, Target, scratch};

@@ -2,7 +2,7 @@
 
 use slipfront_case::field_info::{field_info, field_named};
 use slipfront_case::quantity::{Density, Duration, Kind, Length, Pressure, Quantity, Rate, Speed};
-use slipfront_run::study::Shard;
+use slipfront_study::Shard;
 
 use crate::checks::readable;
 use crate::{Memory, Target};

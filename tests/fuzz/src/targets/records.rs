@@ -1,6 +1,6 @@
 //! Records of finished runs, one line each with a checksum.
 
-use slipfront_run::study::{Outcome, Record, Records};
+use slipfront_study::{Outcome, Record, Records};
 
 use super::json::summary;
 use crate::checks::readable;

@@ -1,7 +1,7 @@
 //! Study files; the cases that they name are those of the repository.
 
 use slipfront_case::case_file::ParsedCase;
-use slipfront_run::study::{StudyFile, StudyFolder};
+use slipfront_study::{StudyFile, StudyFolder};
 
 use crate::checks::readable;
 use crate::{Memory, Target, scratch};

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use slipfront_case::number_format::count;
-use slipfront_run::study::{Plan, StudyFolder, collect, is_study, refuse_foreign, study_of};
+use slipfront_study::{Plan, StudyFolder, collect, is_study, refuse_foreign, study_of};
 
 use super::run::finish;
 use crate::failure::Failure;

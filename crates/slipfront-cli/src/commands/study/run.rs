@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use slipfront_case::disk::is_same;
 use slipfront_case::number_format::count;
-use slipfront_run::study;
-use slipfront_run::study::{Plan, RunKey, Shard, StudyError, StudyFile, StudyFolder, StudyResults};
+use slipfront_study as study;
+use slipfront_study::{Plan, RunKey, Shard, StudyError, StudyFile, StudyFolder, StudyResults};
 
 use crate::estimate_cost::seconds_per_step;
 use crate::failure::Failure;

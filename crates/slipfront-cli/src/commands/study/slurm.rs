@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use slipfront_run::study::slurm::{Batch, script};
-use slipfront_run::study::{Plan, StudyFile};
+use slipfront_study::slurm::{Batch, script};
+use slipfront_study::{Plan, StudyFile};
 
 use super::run::refuse_large;
 use crate::failure::Failure;

@@ -1,0 +1,500 @@
+//! Friction against the direction of the drive: how much it differs, whether by more than chance, and friction across the drive.
+
+use std::collections::HashMap;
+
+use crate::friction_tensor::{MIN_REPLICATES, Principal, Tensor};
+use crate::levels::{Levels, combinations, direction_axis};
+use crate::plan::Plan;
+use crate::statistics::{Sample, mean};
+use crate::study_results::StudyResults;
+use crate::summary_values::Quantity;
+use slipfront_case::number_format::{are, count};
+
+/// Friction and what is across the drive with it.
+pub(crate) const FRICTION: [(&str, &str); 2] = [
+    (STATIC, "static_lateral_friction_star"),
+    ("kinetic_friction_star", "kinetic_lateral_friction_star"),
+];
+
+/// A run without a transition has none.
+const STATIC: &str = "static_friction_star";
+
+/// Two directions are one if they differ by less, degrees.
+const SAME: f64 = 1e-9;
+
+/// Friction of one quantity over the directions, at the same levels of all other axes.
+#[derive(Clone, Debug)]
+pub struct Anisotropy {
+    /// The name of the quantity.
+    pub quantity: &'static str,
+    /// Columns of the other axes, and their cells.
+    pub levels: Vec<(String, String)>,
+    /// How many directions count: those in which at least half of the runs have a value.
+    pub directions: usize,
+    /// How many replicates count: those that have a value in each of these directions.
+    pub replicates: usize,
+    /// What has been left out; a sentence.
+    pub left_out: Option<String>,
+    /// What these values tell, or a sentence why they are too few.
+    pub found: Result<OverDirections, String>,
+}
+
+/// Statistics of friction over the directions, over replicates.
+#[derive(Clone, Debug)]
+pub struct OverDirections {
+    /// The mean over the directions.
+    pub mean: Sample,
+    /// The direction in which the mean over replicates is largest, degrees from x towards y; the first if there are several.
+    pub largest_direction: f64,
+    /// The direction in which it is smallest.
+    pub smallest_direction: f64,
+    /// Friction in the one less that in the other, over the mean over the directions, of every replicate r after the first; for each, the
+    /// directions are those in which the mean of the replicates before it is largest and smallest:
+    ///
+    /// ```text
+    /// (mu_r(largest direction of 0 .. r - 1) - mu_r(smallest direction of 0 .. r - 1))/mean(mu_r)
+    /// ```
+    ///
+    /// Where friction does not depend on the direction its mean is zero; that between the largest and the smallest of the same values
+    /// would be above zero by chance alone.
+    pub anisotropy: Sample,
+    /// How probable axes that stand out as much or more are if friction has none; none of less than three directions in half a turn.
+    pub p_value: Option<f64>,
+    /// The axes of the friction tensor, if they are more than chance.
+    pub principal: Option<Principal>,
+    /// Friction across the drive, positive to its left, and the direction where its mean is largest in size. As of `anisotropy`, the
+    /// direction of every value is that of the replicates before it, and so is its sign.
+    pub lateral: Option<(f64, Sample)>,
+}
+
+/// The anisotropy of static and kinetic friction at all levels of the other axes; empty if no axis is one of directions. Levels at which
+/// no run has a value are left out.
+pub fn anisotropies(plan: &Plan, results: &StudyResults) -> Vec<Anisotropy> {
+    let Some(over) = direction_axis(&plan.axes) else {
+        return Vec::new();
+    };
+    let positions = plan.points.iter().enumerate();
+    let positions = positions.map(|(position, point)| (plan.levels(point), position));
+    let points = Points {
+        plan,
+        results,
+        over,
+        positions: positions.collect(),
+    };
+    let others: Vec<usize> = (0..plan.axes.len()).filter(|&axis| axis != over).collect();
+    let fixed = combinations(&plan.axes, &others);
+    let all = fixed
+        .iter()
+        .flat_map(|fixed| FRICTION.map(|names| points.anisotropy(fixed, names)));
+    all.flatten().collect()
+}
+
+/// The points of a study with directions.
+struct Points<'a> {
+    plan: &'a Plan,
+    results: &'a StudyResults,
+    /// The axis of the directions.
+    over: usize,
+    /// Positions by levels.
+    positions: HashMap<Vec<usize>, usize>,
+}
+
+impl Points<'_> {
+    fn anisotropy(&self, fixed: &Levels, (quantity, across): (&'static str, &str)) -> Option<Anisotropy> {
+        let all = self.directions(fixed);
+        let number = Quantity::named(quantity)?;
+        let has = |&(_, position): &(f64, usize)| {
+            let replicates = 0..self.results.points[position].replicates;
+            let values = replicates.filter_map(|replicate| self.results.value(position, replicate, number));
+            values.count()
+        };
+        all.iter().map(has).max().filter(|most| *most > 0)?;
+        let is_used = |at: &&(f64, usize)| has(at) > 0 && 2 * has(at) >= self.results.points[at.1].replicates;
+        let directions: Vec<(f64, usize)> = all.iter().filter(is_used).copied().collect();
+        let values = self.replicates(&directions, number);
+        let degrees: Vec<f64> = directions.iter().map(|(degrees, _)| *degrees).collect();
+        let confidence = self.plan.settings.confidence();
+        Some(Anisotropy {
+            quantity,
+            levels: self.levels(fixed),
+            directions: degrees.len(),
+            replicates: values.len(),
+            left_out: self.left_out(quantity, &all, degrees.len(), values.len()),
+            found: over_directions(&degrees, &values, confidence).map(|found| {
+                let lateral = Quantity::named(across).map(|across| self.replicates(&directions, across));
+                OverDirections {
+                    lateral: lateral.and_then(|values| largest_in_size(&degrees, &values, confidence)),
+                    ..found
+                }
+            }),
+        })
+    }
+
+    /// Columns of the other axes, and their cells.
+    fn levels(&self, fixed: &Levels) -> Vec<(String, String)> {
+        let axes = self.plan.axes.iter().enumerate();
+        let axes = axes.filter_map(|(axis, columns)| {
+            let &(_, level) = fixed.iter().find(|(other, _)| *other == axis)?;
+            let labels = columns.levels[level].labels.clone();
+            Some(columns.columns.iter().cloned().zip(labels))
+        });
+        axes.flatten().collect()
+    }
+
+    /// The directions that have a point at these levels of the other axes, each once, with the positions of the points.
+    fn directions(&self, fixed: &Levels) -> Vec<(f64, usize)> {
+        let mut levels = vec![0; self.plan.axes.len()];
+        for &(axis, level) in fixed {
+            levels[axis] = level;
+        }
+        let mut found: Vec<(f64, usize)> = Vec::new();
+        for (level, at) in self.plan.axes[self.over].levels.iter().enumerate() {
+            levels[self.over] = level;
+            let Some((degrees, &position)) = at.number.zip(self.positions.get(&levels)) else {
+                continue;
+            };
+            let is_same = |other: f64| {
+                let apart = (degrees - other).rem_euclid(360.0);
+                apart.min(360.0 - apart) < SAME
+            };
+            if !found.iter().any(|(other, _)| is_same(*other)) {
+                found.push((degrees, position));
+            }
+        }
+        found
+    }
+
+    /// The values of each replicate in all directions; of those that have them all.
+    fn replicates(&self, directions: &[(f64, usize)], quantity: Quantity) -> Vec<Vec<f64>> {
+        let counts = directions.iter();
+        let counts = counts.map(|(_, position)| self.results.points[*position].replicates);
+        let values = |replicate: usize| {
+            let value = |(_, position): &(f64, usize)| self.results.value(*position, replicate, quantity);
+            directions.iter().map(value).collect::<Option<Vec<f64>>>()
+        };
+        (0..counts.min().unwrap_or(0)).filter_map(values).collect()
+    }
+
+    /// What does not count of the directions, their replicates and runs.
+    fn left_out(
+        &self,
+        quantity: &str,
+        all: &[(f64, usize)],
+        directions: usize,
+        replicates: usize,
+    ) -> Option<String> {
+        let without = all
+            .iter()
+            .map(|&(_, position)| self.results.runs_without_transition(position, quantity));
+        let without = if quantity == STATIC { without.sum() } else { 0 };
+        let most = all
+            .iter()
+            .map(|(_, position)| self.results.points[*position].replicates)
+            .max();
+        let most = most.unwrap_or(0);
+        let parts = [
+            (without > 0).then(|| format!("{} left out that had no transition", are(without, "run"))),
+            (directions < all.len()).then(|| {
+                format!(
+                    "{directions} of {} count, those in which at least half of the runs have a value",
+                    count(all.len(), "direction")
+                )
+            }),
+            (replicates < most).then(|| {
+                format!(
+                    "{replicates} of {} count, those with a value in each of the directions",
+                    count(most, "replicate")
+                )
+            }),
+        ];
+        let parts: Vec<String> = parts.into_iter().flatten().collect();
+        (!parts.is_empty()).then(|| parts.join("; "))
+    }
+}
+
+/// What the values of replicates in these directions tell, but for friction across the drive.
+fn over_directions(degrees: &[f64], values: &[Vec<f64>], confidence: f64) -> Result<OverDirections, String> {
+    if degrees.len() < 2 {
+        return Err("anisotropy needs values in two directions or more".to_owned());
+    }
+    let too_few = || {
+        format!(
+            "anisotropy cannot be told from chance with {} that {} a value in every direction: it takes {MIN_REPLICATES} or more \
+             (`study.replicates`)",
+            count(values.len(), "replicate"),
+            if values.len() == 1 { "has" } else { "have" },
+        )
+    };
+    if values.len() < MIN_REPLICATES {
+        return Err(too_few());
+    }
+    let sample = |values: Vec<f64>| Sample::of(&values, confidence).ok_or_else(too_few);
+    let [largest, smallest] = extremes(&sums(values));
+    let tensor = Tensor::of(degrees, values, confidence);
+    Ok(OverDirections {
+        mean: sample(values.iter().map(|values| mean(values)).collect())?,
+        largest_direction: degrees[largest],
+        smallest_direction: degrees[smallest],
+        anisotropy: sample(by_those_before(values, |before, values| {
+            let [largest, smallest] = extremes(before);
+            (values[largest] - values[smallest]) / mean(values)
+        }))?,
+        p_value: tensor.map(|tensor| tensor.p_value),
+        principal: tensor.and_then(|tensor| tensor.principal),
+        lateral: None,
+    })
+}
+
+/// The value that is largest in size, and its direction; none of less than three replicates.
+fn largest_in_size(degrees: &[f64], values: &[Vec<f64>], confidence: f64) -> Option<(f64, Sample)> {
+    if values.len() < MIN_REPLICATES {
+        return None;
+    }
+    let largest = |sums: &[f64]| {
+        let sizes: Vec<f64> = sums.iter().map(|sum| sum.abs()).collect();
+        let [at, _] = extremes(&sizes);
+        (at, 1f64.copysign(sums[at]))
+    };
+    let (at, sign) = largest(&sums(values));
+    let sizes = by_those_before(values, |before, values| {
+        let (at, sign_before) = largest(before);
+        sign * sign_before * values[at]
+    });
+    Some((degrees[at], Sample::of(&sizes, confidence)?))
+}
+
+/// A number of every replicate after the first, from its values and the sums of those of the replicates before it. What is chosen from
+/// these owes nothing to the scatter of the replicate itself, as it would if it were chosen from all; nor has this then had a part in
+/// the choice for another, which leaves an interval of the numbers as wide as it claims to be.
+fn by_those_before(values: &[Vec<f64>], of: impl Fn(&[f64], &[f64]) -> f64) -> Vec<f64> {
+    let Some((first, later)) = values.split_first() else {
+        return Vec::new();
+    };
+    let mut sums = first.clone();
+    let number = |values: &Vec<f64>| {
+        let number = of(&sums, values);
+        add(&mut sums, values);
+        number
+    };
+    later.iter().map(number).collect()
+}
+
+/// The sum over replicates in each direction.
+fn sums(values: &[Vec<f64>]) -> Vec<f64> {
+    let mut sums = vec![0.0; values.first().map_or(0, Vec::len)];
+    for values in values {
+        add(&mut sums, values);
+    }
+    sums
+}
+
+fn add(sums: &mut [f64], values: &[f64]) {
+    for (sum, value) in sums.iter_mut().zip(values) {
+        *sum += value;
+    }
+}
+
+/// Where the largest and the smallest value are, the first of equal ones.
+fn extremes(values: &[f64]) -> [usize; 2] {
+    let (mut largest, mut smallest) = (0, 0);
+    for (at, value) in values.iter().enumerate() {
+        if *value > values[largest] {
+            largest = at;
+        }
+        if *value < values[smallest] {
+            smallest = at;
+        }
+    }
+    [largest, smallest]
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+    use std::sync::Arc;
+
+    use slipfront::surface::{Coefficients, Distribution};
+
+    use super::*;
+    use crate::plan::RunKey;
+    use crate::study_file::StudyFile;
+    use crate::study_results::PointResult;
+    use crate::summary_values::SummaryValues;
+    use slipfront_run::summary::Summary;
+
+    const TWELVE: [f64; 12] = [
+        0.0, 30.0, 60.0, 90.0, 120.0, 150.0, 180.0, 210.0, 240.0, 270.0, 300.0, 330.0,
+    ];
+
+    /// Replicates with normal scatter of 0.01 around this friction in each of the directions, and a scatter of 0.02 that a replicate has in
+    /// all of them, as that of its surface.
+    fn planted(friction: [f64; 12], replicates: usize, seed: u64) -> Vec<Vec<f64>> {
+        let normal = |deviation| Distribution { mean: 0.0, deviation };
+        let drawn = Coefficients::draw(12 * replicates, normal(0.01), normal(0.02), seed);
+        let (own, common) = (drawn.mu_static.chunks(12), drawn.mu_kinetic.chunks(12));
+        own.zip(common)
+            .map(|(own, common)| {
+                let values = friction.iter().zip(own);
+                values.map(|(friction, own)| friction + own + common[0]).collect()
+            })
+            .collect()
+    }
+
+    /// How many of the trials have an interval above zero, and one below.
+    fn outside(found: &[Sample]) -> [usize; 2] {
+        let ends: Vec<[f64; 2]> = found.iter().filter_map(Sample::interval).collect();
+        let count = |is: fn(&[f64; 2]) -> bool| ends.iter().filter(|&ends| is(ends)).count();
+        [count(|ends| ends[0] > 0.0), count(|ends| ends[1] < 0.0)]
+    }
+
+    /// The largest and the smallest of 12 means differ by chance; that difference must not pass for anisotropy more often than the
+    /// confidence says.
+    #[test]
+    fn isotropic_friction_is_called_anisotropic_no_more_often_than_it_may_be() {
+        for replicates in [3, 6, 12] {
+            let trials = 2000;
+            let trial = |seed| {
+                let values = planted([0.8; 12], replicates, seed);
+                over_directions(&TWELVE, &values, 0.95).unwrap()
+            };
+            let found: Vec<OverDirections> = (0..trials).map(trial).collect();
+            // 2.5 % of 2000 on either side are 50 +- 7: five standard errors. The differences of replicates are independent and normal but
+            // for the division by the mean, whose scatter of 2 % is far below that.
+            let differences: Vec<Sample> = found.iter().map(|found| found.anisotropy).collect();
+            let [above, below] = outside(&differences);
+            assert!(
+                above.abs_diff(50) < 35 && below.abs_diff(50) < 35,
+                "{replicates}: {above} {below}"
+            );
+            // 5 % are 100 +- 9.7, likewise.
+            let axes = found.iter().filter(|found| found.principal.is_some());
+            assert!(axes.count().abs_diff(100) < 49, "{replicates}");
+            // Across the drive, where there is nothing, the sign too is chosen; both sides together are 5 %.
+            let laterals = (0..trials).map(|seed| {
+                let values = planted([0.0; 12], replicates, seed);
+                largest_in_size(&TWELVE, &values, 0.95).unwrap().1
+            });
+            let [above, below] = outside(&laterals.collect::<Vec<_>>());
+            assert!(
+                (above + below).abs_diff(100) < 49,
+                "{replicates}: {above} {below}"
+            );
+        }
+    }
+
+    #[test]
+    fn planted_anisotropy_is_found_with_its_axis_and_size() {
+        let friction = TWELVE.map(|degrees| 0.8 + 0.04 * libm::cos(2.0 * (degrees - 60_f64).to_radians()));
+        let trials = 400;
+        let found: Vec<OverDirections> = (0..trials)
+            .map(|seed| over_directions(&TWELVE, &planted(friction, 8, seed), 0.95).unwrap())
+            .collect();
+        // An amplitude of 0.04 is 28 standard errors of 0.01 sqrt(2/12)/sqrt(8).
+        assert!(found.iter().all(|found| found.principal.is_some()));
+        // 95 % of 400 are 380 +- 4.4: five standard errors.
+        let share = |is: &dyn Fn(&OverDirections) -> bool| found.iter().filter(|found| is(found)).count();
+        let axis = share(&|found| {
+            let principal = found.principal.unwrap();
+            (principal.direction - 60.0).abs() < principal.half_width.unwrap()
+        });
+        let values = [(0, 0.84), (1, 0.76)].map(|(which, expected)| {
+            share(&|found| {
+                let [low, high] = found.principal.unwrap().values[which].interval().unwrap();
+                (low..=high).contains(&expected)
+            })
+        });
+        for covered in [axis, values[0], values[1]] {
+            assert!(covered.abs_diff(380) < 23, "{axis} {values:?}");
+        }
+        // The largest is at 60 or 240, the smallest a quarter turn from there. 30 degrees away friction is 0.02 less, four standard errors
+        // of a difference of two means of eight (3e-5), and there are eight such pairs: one of 400 trials in ten times.
+        let at = share(&|found| {
+            found.largest_direction % 180.0 == 60.0 && found.smallest_direction % 180.0 == 150.0
+        });
+        assert!(at >= 398, "{at}");
+        // A direction that one or two replicates choose wrongly makes a difference smaller, by a twentieth on average at most.
+        let sizes: Vec<f64> = found.iter().map(|found| found.anisotropy.mean).collect();
+        let size = mean(&sizes);
+        assert!((0.095..=0.1002).contains(&size), "{size}");
+    }
+
+    #[test]
+    fn too_few_directions_or_replicates_give_a_sentence() {
+        let one = over_directions(&[0.0], &vec![vec![0.8]; 6], 0.95).unwrap_err();
+        assert!(one.contains("two directions or more"), "{one}");
+        let values = planted([0.8; 12], 2, 1);
+        let two = over_directions(&TWELVE, &values, 0.95).unwrap_err();
+        assert!(two.contains("with 2 replicates that have a value"), "{two}");
+        assert!(largest_in_size(&TWELVE, &values, 0.95).is_none());
+        // Two directions have a difference, and no axes.
+        let values: Vec<Vec<f64>> = planted([0.8; 12], 3, 1)
+            .into_iter()
+            .map(|values| values[..2].to_vec())
+            .collect();
+        let found = over_directions(&TWELVE[..2], &values, 0.95).unwrap();
+        assert!(found.p_value.is_none() && found.principal.is_none());
+    }
+
+    /// A direction that fails, or runs that never slide, take nothing from the others.
+    #[test]
+    fn what_has_no_value_is_left_out_and_said() {
+        let text = "base.slider.blocks = [4, 4]\nstudy.replicates = 4\n[[axes]]\nkey = 'drive.direction'\nlist = [0, 60, 120, 90, 360]";
+        let file = StudyFile::parse(text, "study.toml", "study", Path::new("")).unwrap();
+        let plan = Plan::new(&file, None).unwrap();
+        let result = |run: RunKey| match (run.point, run.replicate) {
+            (2, _) => Err("it failed".to_owned()),
+            (point, replicate) => Ok(Arc::new(SummaryValues::of(&Summary {
+                static_friction_star: 0.5 + 0.1 * point as f64 + 0.01 * replicate as f64,
+                // 60 degrees never slides in replicate 1, 90 degrees only in replicate 3.
+                transition: (point, replicate) != (1, 1) && (point != 3 || replicate == 3),
+                ..Summary::default()
+            }))),
+        };
+        let results = StudyResults {
+            runs: plan.runs(4).map(|run| (run, result(run))).collect(),
+            points: vec![
+                PointResult {
+                    replicates: 4,
+                    narrow: None
+                };
+                5
+            ],
+            orphaned_runs: 0,
+        };
+        let found = &anisotropies(&plan, &results)[0];
+        assert_eq!((found.directions, found.replicates), (2, 3), "{found:?}");
+        let expected = "4 runs are left out that had no transition; 2 of 4 directions count, those in which at least half of the runs have \
+                        a value; 3 of 4 replicates count, those with a value in each of the directions";
+        assert_eq!(found.left_out.as_deref(), Some(expected));
+        let numbers = found.found.as_ref().unwrap();
+        assert_eq!(
+            [numbers.largest_direction, numbers.smallest_direction],
+            [60.0, 0.0]
+        );
+        // Replicates 0, 2 and 3 around 0.55.
+        assert!(
+            (numbers.mean.mean - (0.55 + 0.05 / 3.0)).abs() < 1e-15,
+            "{numbers:?}"
+        );
+        assert_eq!(numbers.anisotropy.n, 2);
+    }
+
+    /// The directions of each difference are those of the replicates before it.
+    #[test]
+    fn a_difference_is_between_directions_that_others_chose() {
+        let values = [vec![0.9, 0.8, 0.7], vec![0.6, 0.8, 1.0], vec![0.7, 1.0, 0.7]];
+        let numbers = by_those_before(&values, |before, values| {
+            let [largest, smallest] = extremes(before);
+            values[largest] - values[smallest]
+        });
+        // 0 less 2 after the first; after two of them 2 leads with 1.7, 0 is last with 1.5.
+        let expected = [0.6 - 1.0, 0.7 - 0.7];
+        assert_eq!(numbers, expected);
+    }
+
+    #[test]
+    fn the_largest_and_smallest_are_the_first_of_equal_ones() {
+        assert_eq!(extremes(&[0.5, 0.9, 0.1, 0.9, 0.1]), [1, 2]);
+        assert_eq!(extremes(&[0.5, 0.5]), [0, 0]);
+    }
+}

@@ -1,0 +1,114 @@
+//! Errors of studies.
+
+use std::path::PathBuf;
+
+use thiserror::Error;
+
+use slipfront_case::case_file::CaseError;
+use slipfront_case::number_format::{are, count};
+use slipfront_case::text::display_path;
+use slipfront_plot::PictureError;
+use slipfront_run::error::ResultsError;
+use slipfront_run::program;
+use slipfront_run::run_folder::error::FolderError;
+
+/// A study that cannot be used, or had to stop.
+#[derive(Debug, Error)]
+#[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
+pub enum StudyError {
+    #[error(transparent)]
+    File(#[from] CaseError),
+    #[error("the point {point} is not a valid case: {source}")]
+    Point { point: String, source: CaseError },
+    #[error("the study has {runs} runs, more than {limit}: give --yes if that is meant")]
+    Large { runs: u64, limit: u64 },
+    #[error("the axes of the study multiply to more than {limit} points: take fewer levels")]
+    TooLarge { limit: usize },
+    #[error(
+        "{} at once take about {needed} of memory where {available} are available to this process: give \
+        --threads {fit}",
+        count(*threads, "run")
+    )]
+    Memory {
+        threads: usize,
+        needed: String,
+        available: String,
+        fit: usize,
+    },
+    #[error(
+        "a run of the point {point} takes about {needed} of memory where {available} are available to this process: \
+        lower `slider.blocks`, or keep no run folders (`study.keep`)"
+    )]
+    PointMemory {
+        point: String,
+        needed: String,
+        available: String,
+    },
+    #[error(
+        "the tables and pictures of the study take about {needed} of memory where {available} are available to this \
+        process: give it more, in a queue for example with `--mem`"
+    )]
+    ResultsMemory { needed: String, available: String },
+    #[error(
+        "the runs still to be done take about {needed} where {free} are free in {path}: keep fewer run folders \
+        (`study.keep`), or choose another folder with --out"
+    )]
+    Disk {
+        needed: String,
+        free: String,
+        path: PathBuf,
+    },
+    #[error(transparent)]
+    Folder(#[from] FolderError),
+    #[error("the folder {path} holds other things than a study: choose another with --out")]
+    NotAStudy { path: PathBuf },
+    #[error("another study is running in {path}: wait for it, or choose another folder with --out")]
+    Busy { path: PathBuf },
+    #[error(
+        "cannot {action} {path}: {source}; finished runs are safe, and the study goes on from there when started again"
+    )]
+    Records {
+        action: &'static str,
+        path: PathBuf,
+        source: std::io::Error,
+    },
+    #[error(
+        "cannot write {}: {source}; finished runs are safe, and the study goes on from there when started again",
+        display_path(path)
+    )]
+    Write { path: PathBuf, source: std::io::Error },
+    #[error("{path} is not the record file of a study")]
+    NotRecords { path: PathBuf },
+    #[error(
+        "cannot keep the folder of a run: {0}; finished runs are safe, and the study goes on from there when \
+        started again"
+    )]
+    Keep(#[from] ResultsError),
+    #[error(
+        "{} in none of the shards{}: finish them, or run the rest with `slipfront study` on the study.toml of the united \
+        folder, with --out the folder itself",
+        are(*runs, "run"),
+        of_others(*others)
+    )]
+    Missing { runs: usize, others: usize },
+    #[error("{other} belongs to another study than {first}: merge shards of one study only")]
+    Foreign { first: PathBuf, other: PathBuf },
+    #[error("the shard `{given}` cannot be: {why}; write i/n with i from 1 to n, such as 2/8, or `slurm`")]
+    Shard { given: String, why: String },
+    #[error("cannot draw {name}: {source}")]
+    Picture { name: String, source: PictureError },
+    #[error("stopped by a signal: finished runs are safe, and the same command goes on from there")]
+    Interrupted,
+}
+
+/// The explanation of recorded runs that do not belong to a study, to be inserted into a sentence.
+pub(crate) fn of_others(runs: usize) -> String {
+    match runs {
+        0 => String::new(),
+        _ => format!(
+            ", and {} of another program than {}, or of a study that was changed since",
+            are(runs, "recorded run"),
+            program::this_program()
+        ),
+    }
+}

@@ -1,0 +1,336 @@
+//! Runs what a study lacks: the scheduler on this thread, and one run at a time on each thread of the pool.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{self, Sender};
+use std::time::Instant;
+
+use crate::error::StudyError;
+use crate::journal::Records;
+use crate::plan::{Plan, RunKey};
+use crate::record::{Outcome, Record};
+use crate::scheduler::{Ended, Scheduler, Task};
+use crate::study_file::RetainRuns;
+use crate::study_results::{Progress, StudyResults};
+use slipfront_case::case::Case;
+use slipfront_case::case_file::CaseError;
+use slipfront_run::error::ResultsError;
+use slipfront_run::names::RUNS;
+use slipfront_run::run_folder::RunFolder;
+use slipfront_run::{clock, results, running};
+
+/// Whether runs should be given up: after a signal, and when the study cannot go on.
+type IsStopped<'a> = dyn Fn() -> bool + Sync + 'a;
+
+/// Runs a case; without an outcome if the run was given up.
+type RunCase<'a> = dyn Fn(RunKey, &IsStopped) -> Result<Option<Outcome>, StudyError> + Sync + 'a;
+
+/// Looks at a run that has ended, before what it leaves is written; whether it counts as done. One that does not is no failure: it is
+/// as if it had been stopped.
+pub type LookAtRun<'a> = dyn Fn(RunKey, &Arc<Case>, &running::Record) -> bool + Sync + 'a;
+
+/// Runs everything that the plan needs and the records lack.
+///
+/// The threads of rayon's pool do one run each at a time, of this study and of others that are executed meanwhile; this thread
+/// waits for them, and must not be the only one of the pool. `stop` ends all runs; finished ones stay recorded. Run folders that
+/// the study keeps are written to `folder`. `watch` is called after every run. A run that fails is no error.
+pub fn execute(
+    plan: &Plan,
+    records: &Records,
+    folder: &Path,
+    stop: &AtomicBool,
+    watch: &mut dyn FnMut(&Progress),
+) -> Result<StudyResults, StudyError> {
+    execute_and_look(plan, records, folder, stop, &|_, _, _| true, watch)
+}
+
+/// The same, where `look` looks at every run that ends, on the thread of the run.
+pub fn execute_and_look(
+    plan: &Plan,
+    records: &Records,
+    folder: &Path,
+    stop: &AtomicBool,
+    look: &LookAtRun,
+    watch: &mut dyn FnMut(&Progress),
+) -> Result<StudyResults, StudyError> {
+    let runs = folder.join(RUNS);
+    let run_case = |run: RunKey, is_stopped: &IsStopped| run_one(plan, &runs, run, look, is_stopped);
+    execute_with(plan, records, &run_case, stop, watch)
+}
+
+/// The results of a plan from the records alone, if all its runs are recorded.
+pub fn collect(plan: &Plan, records: &Records) -> Result<StudyResults, StudyError> {
+    Scheduler::new(plan, records, &|_| {}, 1).collect()
+}
+
+fn execute_with(
+    plan: &Plan,
+    records: &Records,
+    run_case: &RunCase,
+    stop: &AtomicBool,
+    watch: &mut dyn FnMut(&Progress),
+) -> Result<StudyResults, StudyError> {
+    let (to_scheduler, finished) = mpsc::channel::<Ended>();
+    let abandon = AtomicBool::new(false);
+    let is_stopped = || stop.load(Ordering::Relaxed) || abandon.load(Ordering::Relaxed);
+    rayon::in_place_scope(|scope| {
+        let _abandon = SetOnDrop(&abandon);
+        let start = |task| {
+            let (is_stopped, to_scheduler) = (&is_stopped, to_scheduler.clone());
+            scope.spawn(move |_| work(run_case, task, &to_scheduler, is_stopped));
+        };
+        let threads = rayon::current_num_threads();
+        Scheduler::new(plan, records, &start, threads).run(&finished, stop, watch)
+    })
+}
+
+/// Does a run.
+fn work(run_case: &RunCase, Task { run, id }: Task, finished: &Sender<Ended>, is_stopped: &IsStopped) {
+    let began = Instant::now();
+    let outcome = if is_stopped() {
+        Ok(None)
+    } else {
+        // A panic is recorded as a failed run, so that the scheduler does not wait for it without end.
+        catch_unwind(AssertUnwindSafe(|| run_case(run, is_stopped)))
+            .unwrap_or_else(|panic| Ok(Some(Outcome::Failed(panicked(panic.as_ref())))))
+    };
+    let record = |outcome| Record {
+        id,
+        wall_time_s: began.elapsed().as_secs_f64(),
+        outcome,
+    };
+    // A scheduler that has ended wants no more of them.
+    let _ = finished.send(outcome.map(|outcome| outcome.map(record)));
+}
+
+/// The reason of a run that failed by a panic.
+fn panicked(panic: &(dyn std::any::Any + Send)) -> String {
+    let message = panic.downcast_ref::<String>().map(String::as_str);
+    let message = message.or_else(|| panic.downcast_ref::<&str>().copied());
+    format!("a fault of the program: {}", message.unwrap_or("unknown"))
+}
+
+/// Runs the case of a run, and writes its folder to `runs` if the study keeps it.
+fn run_one(
+    plan: &Plan,
+    runs: &Path,
+    run: RunKey,
+    look: &LookAtRun,
+    is_stopped: &IsStopped,
+) -> Result<Option<Outcome>, StudyError> {
+    let started = clock::now();
+    // The point was valid when the study began. If it is not now, a file that it reads has changed: that ends the study and is
+    // not recorded as a failure of the run.
+    let case = match plan.case(run, &mut |_| !is_stopped()) {
+        Ok(case) => Arc::new(case),
+        Err(CaseError::Stopped) => return Ok(None),
+        Err(error) => return Err(error.into()),
+    };
+    let Some(mut record) = running::run_unless(&case, is_stopped) else {
+        return Ok(None);
+    };
+    if let Ok(record) = &record
+        && !look(run, &case, record)
+    {
+        return Ok(None);
+    }
+    let is_kept = match plan.settings.keep {
+        RetainRuns::All => true,
+        RetainRuns::None => false,
+        RetainRuns::Failed => record.is_err(),
+    };
+    if is_kept {
+        let path = runs.join(plan.folder_name(run));
+        write_folder(&case, record.as_mut().ok(), &path, started)?;
+    }
+    Ok(Some(match record {
+        Ok(record) => Outcome::of(record.summary),
+        Err(error) => Outcome::Failed(error.to_string()),
+    }))
+}
+
+/// Writes a run folder. Of a failed run it is that of an interrupted one and holds the case alone, by which it can be repeated.
+fn write_folder(
+    case: &Case,
+    record: Option<&mut running::Record>,
+    path: &Path,
+    started: jiff::Timestamp,
+) -> Result<(), ResultsError> {
+    let mut folder = RunFolder::prepare(path, true, &case.inputs)?;
+    results::write_case(case, &mut folder)?;
+    if let Some(record) = record {
+        results::write(case, record, folder, started, 1)?;
+    }
+    Ok(())
+}
+
+/// Sets a flag when it is dropped, on an error and a panic as well: without a scheduler the pool would run cases that nobody
+/// records.
+struct SetOnDrop<'a>(&'a AtomicBool);
+
+impl Drop for SetOnDrop<'_> {
+    fn drop(&mut self) {
+        self.0.store(true, Ordering::Relaxed);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::time::Duration;
+
+    use super::*;
+    use crate::study_file::StudyFile;
+    use crate::study_results::PointResult;
+    use slipfront_run::summary::Summary;
+
+    fn plan(text: &str) -> Plan {
+        let file = StudyFile::parse(text, "study.toml", "study", Path::new("")).unwrap();
+        Plan::new(&file, None).unwrap()
+    }
+
+    /// A run whose number depends on its seed and point, and whose duration on neither.
+    fn pretend(run: RunKey) -> Outcome {
+        let mixed = (run.replicate as u64 * 7919 + run.point as u64 * 104_729) % 1000;
+        Outcome::Done(Box::new(Summary {
+            static_friction_star: 0.8 + 1e-4 * mixed as f64,
+            transition: true,
+            ..Summary::default()
+        }))
+    }
+
+    /// Executes a plan with so many runs at once: the thread that waits for them is one more of the pool.
+    fn execute_on(
+        threads: usize,
+        plan: &Plan,
+        records: &Records,
+        run_case: &RunCase,
+        watch: &mut (dyn FnMut(&Progress) + Send),
+    ) -> Result<StudyResults, StudyError> {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads + 1).build();
+        let never = AtomicBool::new(false);
+        pool.unwrap()
+            .install(|| execute_with(plan, records, run_case, &never, watch))
+    }
+
+    fn run(plan: &Plan, run_case: &RunCase, threads: usize) -> (Result<StudyResults, StudyError>, usize) {
+        let folder = tempfile::tempdir().unwrap();
+        let records = Records::open(folder.path()).unwrap();
+        let found = execute_on(threads, plan, &records, run_case, &mut |_| {});
+        (found, records.len())
+    }
+
+    const ADAPTIVE: &str = "base.slider.blocks = [2, 2]\n[study]\nuntil = { key = 'static_friction_star', \
+                            half_width = 0.02, min = 3, max = 20 }\n[[axes]]\nkey = 'drive.v_star'\n\
+                            list = [0.01, 0.02, 0.03, 0.04]";
+
+    #[test]
+    fn replicates_are_decided_in_their_order_whatever_finishes_first() {
+        let plan = plan(ADAPTIVE);
+        let (expected, _) = run(&plan, &|run, _| Ok(Some(pretend(run))), 1);
+        let expected = expected.unwrap();
+        let counts: Vec<usize> = expected.points.iter().map(|point| point.replicates).collect();
+        // The case must be one in which something is decided.
+        assert!(counts.iter().any(|&count| count > 3 && count < 20), "{counts:?}");
+        for threads in [2, 5, 16] {
+            let late_first = |run: RunKey, _: &IsStopped| {
+                std::thread::sleep(Duration::from_millis(3 * (2 - run.replicate as u64 % 3)));
+                Ok(Some(pretend(run)))
+            };
+            let (found, recorded) = run(&plan, &late_first, threads);
+            let found = found.unwrap();
+            assert_eq!(found.points, expected.points, "{threads} threads");
+            assert_eq!(found.runs, expected.runs, "{threads} threads");
+            // No more than what idle threads could run ahead.
+            assert!(recorded < found.runs.len() + 4 * threads, "{recorded}");
+        }
+    }
+
+    #[test]
+    fn where_the_interval_stays_wide_it_is_said() {
+        let wide = ADAPTIVE.replace("0.02, min", "1e-9, min");
+        let (found, recorded) = run(&plan(&wide), &|run, _| Ok(Some(pretend(run))), 2);
+        let narrow = PointResult {
+            replicates: 20,
+            narrow: Some(false),
+        };
+        assert_eq!(found.unwrap().points, [narrow; 4]);
+        assert_eq!(recorded, 80);
+    }
+
+    #[test]
+    fn runs_ahead_of_need_are_not_orphaned() {
+        let plan = plan(ADAPTIVE);
+        let folder = tempfile::tempdir().unwrap();
+        let records = Records::open(folder.path()).unwrap();
+        for threads in [16, 1] {
+            let runner = |run, _: &IsStopped| Ok(Some(pretend(run)));
+            let found = execute_on(threads, &plan, &records, &runner, &mut |_| {}).unwrap();
+            assert_eq!(found.orphaned_runs, 0, "{threads} threads");
+        }
+        assert!(records.len() > 12);
+    }
+
+    #[test]
+    fn failures_and_faults_do_not_stop_the_rest() {
+        let plan = plan("base.slider.blocks = [2, 2]\nstudy.replicates = 6");
+        let runner = |run: RunKey, _: &IsStopped| match run.replicate {
+            1 => Ok(Some(Outcome::Failed("it diverged".to_owned()))),
+            3 => panic!("out of bounds"),
+            _ => Ok(Some(pretend(run))),
+        };
+        let (found, recorded) = run(&plan, &runner, 2);
+        let found = found.unwrap();
+        let failures: Vec<(usize, &str)> = found
+            .failures()
+            .map(|(run, reason)| (run.replicate, reason))
+            .collect();
+        assert_eq!(
+            failures,
+            [(1, "it diverged"), (3, "a fault of the program: out of bounds")]
+        );
+        assert_eq!((found.runs.len(), recorded), (6, 6));
+    }
+
+    /// Without a scheduler, further runs would not be recorded.
+    #[test]
+    fn a_fault_of_the_scheduler_ends_the_runs() {
+        let plan = plan("base.slider.blocks = [2, 2]\nstudy.replicates = 100");
+        let folder = tempfile::tempdir().unwrap();
+        let records = Records::open(folder.path()).unwrap();
+        let forever = AtomicBool::new(false);
+        let runner = |run: RunKey, is_stopped: &IsStopped| {
+            if run.replicate < 5 {
+                return Ok(Some(pretend(run)));
+            }
+            // Nothing else ends this one.
+            let began = Instant::now();
+            while !is_stopped() && began.elapsed() < Duration::from_secs(60) {
+                std::thread::sleep(Duration::from_millis(1));
+            }
+            forever.fetch_or(!is_stopped(), Ordering::Relaxed);
+            Ok(None)
+        };
+        let watch = &mut |now: &Progress| assert_eq!(now.here, 0, "a fault of the scheduler");
+        let ended = catch_unwind(AssertUnwindSafe(|| {
+            execute_on(2, &plan, &records, &runner, watch).map(|_| ())
+        }));
+        assert!(ended.is_err());
+        assert!(!forever.into_inner(), "a run was not told to end");
+    }
+
+    #[test]
+    fn a_study_that_cannot_go_on_keeps_what_is_finished() {
+        let plan = plan("base.slider.blocks = [2, 2]\nstudy.replicates = 50");
+        let runner = |run: RunKey, _: &IsStopped| match run.replicate {
+            10 => Err(StudyError::NotRecords {
+                path: "full disk".into(),
+            }),
+            _ => Ok(Some(pretend(run))),
+        };
+        let (found, recorded) = run(&plan, &runner, 1);
+        assert!(matches!(found, Err(StudyError::NotRecords { .. })));
+        assert!((10..50).contains(&recorded), "{recorded}");
+    }
+}

@@ -1,0 +1,95 @@
+//! What decides the numbers of a run, as a hash: runs of one identity are made once.
+
+use serde::Serialize;
+use slipfront_case::case::{Case, Input};
+use slipfront_case::case_file::{CaseError, CaseFile, NamedFile, ParsedCase, Source};
+
+use slipfront_run::program;
+
+use crate::SOURCE_HASH;
+
+/// A base of points, with what identifies the tables that they leave as they are.
+pub(crate) struct Prepared<'a> {
+    pub(crate) case: ParsedCase<'a>,
+    texts: Option<[Vec<u8>; 6]>,
+}
+
+impl<'a> Prepared<'a> {
+    pub(crate) fn new(case: ParsedCase<'a>) -> Result<Self, CaseError> {
+        let texts = case.plain().map(|plain| texts(plain, &[], None));
+        Ok(Self {
+            texts: texts.transpose()?,
+            case,
+        })
+    }
+
+    /// The case of the base, and what identifies its tables.
+    pub(crate) fn known(&self) -> Option<(&CaseFile, &[Vec<u8>; 6])> {
+        self.case.plain().zip(self.texts.as_ref())
+    }
+}
+
+/// Hash of all that decides the numbers of a run but its seed: the physics of the case, the contents of its files and the
+/// program; not the names of files, nor the output. Tables that are as in a `known` case are not written again.
+pub(crate) fn physics(
+    case: &Case,
+    known: Option<(&CaseFile, &[Vec<u8>; 6])>,
+) -> Result<blake3::Hash, CaseError> {
+    let mut hasher = blake3::Hasher::new();
+    hasher.update(program::this_build().as_bytes());
+    // This crate makes the recorded numbers of what a run leaves.
+    hasher.update(SOURCE_HASH.as_bytes());
+    // What identifies a file follows from its contents.
+    let known = known.filter(|_| case.inputs.is_empty());
+    for text in texts(&case.file, &case.inputs, known)? {
+        hasher.update(&text);
+    }
+    Ok(hasher.finalize())
+}
+
+/// The tables of a case that decide its numbers, with the contents of files in place of their names, and without the seed.
+fn texts(
+    file: &CaseFile,
+    inputs: &[Input],
+    known: Option<(&CaseFile, &[Vec<u8>; 6])>,
+) -> Result<[Vec<u8>; 6], CaseError> {
+    fn text<T: Serialize + PartialEq>(
+        table: &T,
+        known: Option<(&T, &Vec<u8>)>,
+    ) -> Result<Vec<u8>, CaseError> {
+        match known {
+            Some((same, text)) if same == table => Ok(text.clone()),
+            _ => serde_json::to_vec(table).map_err(|error| CaseError::invalid(None, error.to_string())),
+        }
+    }
+    let contents = |NamedFile { name, .. }: NamedFile| {
+        let input = inputs.iter().find(|input| input.name == *name);
+        let hash = input.map(|input| input.hash.to_hex());
+        let ending = name.rsplit('.').next().unwrap_or_default();
+        *name = format!("{}.{ending}", hash.unwrap_or_default());
+    };
+    // Without the text that the case was read from, which decides nothing.
+    let mut hashed = CaseFile {
+        slider: file.slider.clone(),
+        load: file.load.clone(),
+        drive: file.drive.clone(),
+        friction: file.friction.clone(),
+        texture: file.texture.clone(),
+        time: file.time.clone(),
+        output: file.output.clone(),
+        source: Source::default(),
+    };
+    hashed.friction.seed = 0;
+    hashed.files_mut().0.for_each(contents);
+    Ok([
+        text(
+            &hashed.slider,
+            known.map(|(file, texts)| (&file.slider, &texts[0])),
+        )?,
+        text(&hashed.load, None)?,
+        text(&hashed.drive, None)?,
+        text(&hashed.friction, None)?,
+        text(&hashed.texture, None)?,
+        text(&hashed.time, known.map(|(file, texts)| (&file.time, &texts[5])))?,
+    ])
+}

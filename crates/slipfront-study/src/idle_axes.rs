@@ -1,0 +1,223 @@
+//! Axes along which a study does not vary what is computed: the dimensionless model and its time plan are the same at every
+//! level. Pressure, stiffness and density alone do that, since they set units only, as long as the drive has a V*.
+
+use std::cell::LazyCell;
+
+use slipfront::observe::KineticStart;
+use slipfront_case::case::Case;
+
+use crate::axis::Axis;
+use crate::plan::Plan;
+
+/// Strain of the load below which results do not depend on it in the digits that are printed: it shows in the third one above
+/// ten times this.
+const NEGLIGIBLE_EPSILON: f64 = 1e-3;
+
+/// The keys that set the unit of speed (Eq. 11a): V* stays what it is when they vary.
+const UNITS_OF_SPEED: [&str; 4] = [
+    "load.pressure",
+    "slider.young_modulus",
+    "slider.density",
+    "friction.mu_static",
+];
+
+/// A sentence for each axis that changes nothing: the axis and the remedy.
+///
+/// An axis changes nothing if all its levels are one model, both at the first levels of the other axes and at the last ones. Where
+/// an axis changes something, its second level shows it.
+pub fn idle_axes(plan: &Plan) -> Vec<String> {
+    let first = vec![0; plan.axes.len()];
+    let last = plan.axes.iter().map(|axis| axis.levels.len() - 1).collect();
+    let corners = [first, last].map(|levels: Vec<usize>| {
+        let digest = LazyCell::new({
+            let levels = levels.clone();
+            move || digest_at(plan, &levels)
+        });
+        (levels, digest)
+    });
+    let is_idle = |axis: usize| {
+        let count = plan.axes[axis].levels.len();
+        let is_same_from = |(corner, digest): &(Vec<usize>, LazyCell<Option<blake3::Hash>, _>)| {
+            let others = (0..count).filter(|&level| level != corner[axis]);
+            let mut digests = others.map(|level| {
+                let mut levels = corner.clone();
+                levels[axis] = level;
+                digest_at(plan, &levels)
+            });
+            digest.is_some() && digests.all(|other| other == **digest)
+        };
+        count > 1 && corners.iter().all(is_same_from)
+    };
+    let idle = (0..plan.axes.len()).filter(|&axis| is_idle(axis));
+    idle.map(|axis| sentence(&plan.axes[axis])).collect()
+}
+
+/// Hash of what is computed at these levels; none where they are no valid case, which a part of a study need not notice of a point
+/// that it does not run.
+fn digest_at(plan: &Plan, levels: &[usize]) -> Option<blake3::Hash> {
+    plan.case_of(levels).ok().as_ref().map(digest)
+}
+
+/// Hash of all that the kernel and the observers use of a case. Numbers are rounded to 24 bits, since units that cancel leave
+/// the rounding of two operations at 53 bits.
+fn digest(case: &Case) -> blake3::Hash {
+    let (model, time) = (&case.model, &case.time_plan);
+    let mut hasher = blake3::Hasher::new();
+    let words = (model.lattice, model.friction, time.last_step, time.stop);
+    hasher.update(format!("{words:?}").as_bytes());
+    let mut number = |value: f64| {
+        hasher.update(&(value as f32).to_le_bytes());
+    };
+    number(if model.epsilon > NEGLIGIBLE_EPSILON {
+        model.epsilon
+    } else {
+        0.0
+    });
+    let drive = &model.drive;
+    let [along_x, along_y] = drive.direction;
+    for value in [
+        drive.v_star,
+        along_x,
+        along_y,
+        model.damping,
+        time.dt_star,
+        drive.k_drive,
+    ] {
+        number(value);
+    }
+    number(f64::from(u8::from(drive.rotation.is_some())));
+    for segment in drive.program.iter().flat_map(|program| program.segments()) {
+        number(segment.v_star);
+        number(segment.from_star);
+    }
+    if let KineticStart::At(from) = time.kinetic {
+        number(from);
+    }
+    let surface = &model.surface;
+    let slider = model.slider();
+    number(slider.viscosity_time);
+    for block in 0..surface.n_blocks() {
+        number(slider.mass(block));
+        number(slider.drive_spring(block));
+        number(slider.modulus(block));
+        number(surface.normal_force(block));
+        number(surface.static_limit(block));
+        number(surface.kinetic_force(block));
+    }
+    hasher.finalize()
+}
+
+fn sentence(axis: &Axis) -> String {
+    let keys = axis.keys();
+    let why = if keys.iter().any(|key| UNITS_OF_SPEED.contains(key)) {
+        "but the units of results as long as `drive.v_star` is held: set `drive.speed` in its place"
+    } else if keys.contains("slider.block_size") {
+        "but the units of results as long as no other length has one: vary `slider.blocks`"
+    } else if keys.contains("friction.seed") {
+        "as long as no coefficient is random: raise `friction.sigma_static_star`"
+    } else if keys.iter().any(|key| key.starts_with("texture")) {
+        "since all its levels cover the same blocks: take more of them by `slider.blocks`"
+    } else {
+        "with the other keys as they are: change those"
+    };
+    let columns = axis.columns.join("`, `");
+    format!("the axis of `{columns}` changes nothing {why}, or leave the axis out")
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::*;
+    use crate::StudyFile;
+
+    fn idle(text: &str) -> Vec<String> {
+        let text = format!("base.slider.blocks = [4, 4]\n{text}");
+        let file = StudyFile::parse(&text, "study.toml", "study", Path::new("")).unwrap();
+        idle_axes(&Plan::new(&file, None).unwrap())
+    }
+
+    fn axis(key: &str, list: &str) -> String {
+        format!("[[axes]]\nkey = '{key}'\nlist = {list}\n")
+    }
+
+    /// What is dimensionless alone counts, whatever the key is called.
+    #[test]
+    fn axes_of_units_are_named_with_their_remedy() {
+        let (pressure, speed) = (
+            axis("load.pressure", "['50 kPa', '100 kPa', '200 kPa']"),
+            axis("drive.v_star", "[0.02, 0.03, 0.05]"),
+        );
+        let said = idle(&format!("{pressure}{speed}"));
+        let expected = "the axis of `load.pressure` changes nothing but the units of results as long as `drive.v_star` is \
+                        held: set `drive.speed` in its place, or leave the axis out";
+        assert_eq!(said, [expected]);
+        // As the remedy says, and so do they change what is computed with sizes that have a unit.
+        assert!(idle(&format!("base.drive.speed = '0.1 mm/s'\n{pressure}")).is_empty());
+        for (key, list) in [
+            ("slider.young_modulus", "['50 GPa', '100 GPa']"),
+            ("slider.density", "['5 g/cm^3', '10 g/cm^3']"),
+            ("slider.block_size", "['1 um', '3 um']"),
+            // Divided by themselves, these leave other roundings.
+            ("friction.mu_static", "[0.3, 0.7, 1.0]"),
+        ] {
+            let said = idle(&axis(key, list));
+            assert!(said.len() == 1 && said[0].contains(key), "{key}: {said:?}");
+        }
+        let sized = "[[base.texture]]\nshape = 'cavity'\nlambda = '1 um'\n";
+        assert!(
+            idle(&format!(
+                "{sized}{}",
+                axis("slider.block_size", "['1 um', '3 um']")
+            ))
+            .is_empty()
+        );
+    }
+
+    #[test]
+    fn axes_that_change_what_is_computed_are_not_named() {
+        for (key, list) in [
+            ("friction.seed", "[1, 2]"),
+            ("friction.r_star", "[0.5, 0.6]"),
+            ("friction.sigma_kinetic_star", "[0, 0.05]"),
+            ("drive.direction", "[0, 10]"),
+            ("slider.omega_star", "[0.1, 0.2]"),
+            ("slider.edges", "['free', 'periodic']"),
+            ("slider.outline", "['rectangle', 'disc']"),
+            ("slider.viscosity_time_star", "[0, 0.1]"),
+            ("slider.density_grade.to", "[1, 0.5]"),
+            ("slider.stiffness_grade.to", "[1, 0.5]"),
+            ("time.duration_star", "[10, 20]"),
+            ("time.kinetic_from_star", "[200, 210]"),
+            ("time.stop", "['end', 'after_onset']"),
+            ("friction.law", "['projection', 'literal']"),
+            // Strains that show.
+            ("load.pressure", "['1 GPa', '2 GPa']"),
+        ] {
+            let grades = "{ along = 'x', from = 1, to = 1 }";
+            let base =
+                format!("base.slider.stiffness_grade = {grades}\nbase.slider.density_grade = {grades}\n");
+            assert!(idle(&format!("{base}{}", axis(key, list))).is_empty(), "{key}");
+        }
+        // Four blocks a side show no difference between these.
+        let sized = "[[base.texture]]\nshape = 'cavity'\n";
+        let said = idle(&format!("{sized}{}", axis("texture.0.coverage", "[12, 13]")));
+        assert!(said.len() == 1 && said[0].contains("the same blocks"), "{said:?}");
+        let smooth = "base.friction.sigma_static_star = 0\nbase.friction.sigma_kinetic_star = 0\n";
+        let said = idle(&format!("{smooth}{}", axis("friction.seed", "[1, 2]")));
+        assert!(
+            said.len() == 1 && said[0].contains("no coefficient is random"),
+            "{said:?}"
+        );
+    }
+
+    /// An axis that counts at the last levels of the others alone is none that changes nothing.
+    #[test]
+    fn an_axis_may_count_at_some_points_alone() {
+        let variants = "[[axes]]\nname = 'held'\n[axes.variants]\nv_star = { drive.v_star = 0.03 }\n\
+                        speed = { drive.speed = '0.1 mm/s' }\n";
+        let pressure = axis("load.pressure", "['50 kPa', '100 kPa']");
+        assert!(idle(&format!("{variants}{pressure}")).is_empty());
+        assert!(idle(&format!("{pressure}{variants}")).is_empty());
+    }
+}

@@ -1,0 +1,58 @@
+//! Studies: a case is varied along axes and repeated on several random surfaces; the results are tables and pictures with error
+//! bars.
+//!
+//! ```text
+//! text -> StudyFile -> Plan (every point a valid case) -> StudyResults -> tables -> pictures
+//! ```
+//!
+//! Every finished run is a line of the journal. A study that was stopped is continued from there.
+
+mod anisotropy;
+mod axis;
+mod error;
+mod execute;
+mod folder;
+mod friction_tensor;
+mod identity;
+mod idle_axes;
+mod input_copies;
+mod journal;
+mod labels;
+mod levels;
+mod meshed;
+mod picture_plan;
+mod pictures;
+mod plan;
+mod plan_warnings;
+mod record;
+mod scheduler;
+mod shard;
+pub mod slurm;
+mod statistics;
+mod study_file;
+mod study_results;
+mod summary_values;
+mod tables;
+pub mod verify;
+
+pub use anisotropy::{Anisotropy, OverDirections, anisotropies};
+pub use axis::{Axis, Level, Spacing};
+pub use error::StudyError;
+pub use execute::{LookAtRun, collect, execute, execute_and_look};
+pub use folder::{StudyFolder, is_study, refuse_foreign, study_of, write};
+pub use friction_tensor::Principal;
+pub use idle_axes::idle_axes;
+pub use journal::Records;
+pub use meshed::MeshedCoverage;
+pub use picture_plan::{quantities_without_pictures, why_no_pictures};
+pub use plan::{Plan, Point, Role, RunKey};
+pub use plan_warnings::Warning;
+pub use record::{Outcome, Record, RunResult};
+pub use shard::Shard;
+pub use statistics::Sample;
+pub use study_file::{Base, RetainRuns, Settings, StoppingRule, StudyFile};
+pub use study_results::{PointResult, Progress, StudyResults};
+pub use summary_values::{Quantity, REDUCTION, SummaryValues, is_column, known as quantities};
+
+/// BLAKE3 hash of the sources of this crate: a part of the identity of the runs that it records.
+pub const SOURCE_HASH: &str = env!("SLIPFRONT_SOURCE_HASH");

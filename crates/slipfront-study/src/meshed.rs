@@ -1,0 +1,69 @@
+//! What the levels of a coverage are meshed to, which blocks meet nearly: pictures show that in the place of what is asked.
+
+use std::collections::HashMap;
+
+use slipfront_case::number_format::count;
+
+use crate::axis::Spacing;
+use crate::plan::Plan;
+
+/// What is meshed at every point of a study with an axis of numbers over the coverage of its only texture. Of several textures it is not
+/// known what each of them covers.
+pub struct MeshedCoverage {
+    /// Position of the axis.
+    pub axis: usize,
+    /// Percent that the shapes of the texture cover, by the levels of a point.
+    percent: HashMap<Vec<usize>, f64>,
+}
+
+impl MeshedCoverage {
+    /// What is meshed at the points of a study; none if it has no such axis.
+    pub fn of(plan: &Plan) -> Option<Self> {
+        let is_coverage = |key: &str| {
+            let texture = key.strip_prefix("texture.");
+            let index = texture.and_then(|rest| rest.strip_suffix(".coverage"));
+            index.is_some_and(|index| index.parse::<usize>().is_ok())
+        };
+        let mut axes = plan.axes.iter();
+        let axis = axes.position(|axis| axis.spacing != Spacing::Named && is_coverage(axis.title()))?;
+        let points = plan.points.iter().enumerate();
+        let percent =
+            points.map(|(position, point)| Some((plan.levels(point), plan.meshed_coverage(position)?)));
+        Some(Self {
+            axis,
+            percent: percent.collect::<Option<_>>()?,
+        })
+    }
+
+    /// Percent that the shapes of the texture cover at the point with these levels; none if it belongs to another part of the study.
+    pub fn at(&self, levels: &[usize]) -> Option<f64> {
+        self.percent.get(levels).copied()
+    }
+
+    /// A sentence if levels are meshed to one coverage: pictures show them at one place.
+    pub fn merged(&self, plan: &Plan) -> Option<String> {
+        let axis = &plan.axes[self.axis];
+        let mut first: HashMap<(Vec<usize>, u64), usize> = HashMap::new();
+        let mut merged = Vec::new();
+        for point in &plan.points {
+            let mut others = plan.levels(point);
+            let Some(percent) = self.at(&others) else { continue };
+            let level = others.remove(self.axis);
+            let earlier = *first.entry((others, percent.to_bits())).or_insert(level);
+            if earlier != level {
+                merged.push([earlier, level]);
+            }
+        }
+        merged.sort_unstable();
+        merged.dedup();
+        let [one, other] = merged.first()?.map(|level| axis.levels[level].labels.join(" "));
+        let more = match merged.len() {
+            1 => String::new(),
+            all => format!(", as are {}", count(all - 1, "more pair")),
+        };
+        Some(format!(
+            "`{}` = {one} and {other} are meshed to one coverage{more}: take more blocks to tell them apart",
+            axis.title()
+        ))
+    }
+}

@@ -1,0 +1,450 @@
+//! Draws the pictures of a study.
+
+use std::collections::{HashMap, HashSet};
+
+use rayon::prelude::*;
+
+use crate::anisotropy::FRICTION;
+use crate::axis::{Axis, Spacing};
+use crate::error::StudyError;
+use crate::labels::{axis_symbol, axis_title, level_with_symbol, quantity_symbol, title};
+use crate::levels::{Levels, combinations};
+use crate::meshed::MeshedCoverage;
+use crate::picture_plan::{POLAR, PictureKind, PlannedPicture, measured_quantities, planned, polar};
+use crate::plan::{PICTURES_AT_ONCE, Plan};
+use crate::statistics::mean;
+use crate::study_results::StudyResults;
+use crate::summary_values::needs_transition;
+use slipfront_case::number_format::four_digits;
+use slipfront_plot::{
+    Bar, BarChart, BarGroup, HeatAxis, HeatMap, Picture, PictureError, Polar, Response, Responses,
+};
+
+/// What a legend of several axes has no room for.
+const AS_MESHED: &str = "A* as meshed";
+
+/// Draws the pictures of a study and hands each on with the name of its files. No more are in memory at once than there is
+/// room for in the budget.
+pub(crate) fn draw(
+    plan: &Plan,
+    results: &StudyResults,
+    mut hand_on: impl FnMut(String, Picture) -> Result<(), StudyError>,
+) -> Result<(), StudyError> {
+    if let Some(Ok((over, combinations))) = polar(&plan.axes) {
+        let drawn = friction_polar(plan, results, over, &combinations);
+        if let Some(picture) = drawn.transpose() {
+            let name = POLAR.to_owned();
+            hand_on(
+                POLAR.to_owned(),
+                picture.map_err(|source| StudyError::Picture { name, source })?,
+            )?;
+        }
+    }
+    for quantity in measured_quantities(plan, results) {
+        let measured = Measured::of(plan, results, quantity);
+        for some in planned(&plan.axes, quantity).chunks(PICTURES_AT_ONCE) {
+            let drawn: Vec<_> = some
+                .par_iter()
+                .map(|picture| measured.draw(&picture.kind))
+                .collect();
+            for (PlannedPicture { name, .. }, drawn) in some.iter().zip(drawn) {
+                let name = name.clone();
+                match drawn {
+                    Ok(picture) => hand_on(name, picture)?,
+                    Err(source) => return Err(StudyError::Picture { name, source }),
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
+/// A quantity at every point of a study.
+struct Measured<'a> {
+    axes: &'a [Axis],
+    quantity: &'static str,
+    /// Mean and the ends of its interval, by the levels of a point; NaN where there is none.
+    values: HashMap<Vec<usize>, [f64; 3]>,
+    /// What the intervals are.
+    note: String,
+    /// How many values there are at each point that has one.
+    counts: Vec<usize>,
+    /// The levels of points of which runs are left out that had no transition: a cross marks them.
+    crossed: HashSet<Vec<usize>>,
+    /// How many such runs there are.
+    without_transition: usize,
+    /// What the coverages of an axis are meshed to: they are drawn there.
+    meshed: Option<MeshedCoverage>,
+}
+
+impl<'a> Measured<'a> {
+    fn of(plan: &'a Plan, results: &StudyResults, quantity: &'static str) -> Self {
+        let samples: Vec<_> = (0..plan.points.len())
+            .map(|position| results.sample(plan, position, quantity))
+            .collect();
+        let value = |position: usize| {
+            let sample = samples[position];
+            let interval = sample.and_then(|sample| sample.interval());
+            let [low, high] = interval.unwrap_or([f64::NAN; 2]);
+            [sample.map_or(f64::NAN, |sample| sample.mean), low, high]
+        };
+        let points = plan.points.iter().enumerate();
+        let values = points.map(|(position, point)| (plan.levels(point), value(position)));
+        let counts: Vec<usize> = samples.iter().flatten().map(|sample| sample.n).collect();
+        let without = |position: usize| match needs_transition(quantity) {
+            true => results.runs_without_transition(position, quantity),
+            false => 0,
+        };
+        let points = plan.points.iter().enumerate();
+        let crossed = points.filter(|&(position, _)| without(position) > 0);
+        let without_transition = (0..plan.points.len()).map(without).sum();
+        Self {
+            axes: &plan.axes,
+            quantity,
+            values: values.collect(),
+            note: note_on_intervals(plan.settings.confidence(), &counts, without_transition),
+            counts,
+            crossed: crossed.map(|(_, point)| plan.levels(point)).collect(),
+            without_transition,
+            meshed: MeshedCoverage::of(plan),
+        }
+    }
+
+    fn draw(&self, kind: &PictureKind) -> Result<Picture, PictureError> {
+        match kind {
+            PictureKind::Bars => self.bars(),
+            PictureKind::Curves { x, fixed, varied } => self.curves(*x, fixed, varied),
+            PictureKind::Map { x, y } => self.map(*x, *y),
+        }
+    }
+
+    /// The values at the point with these levels; NaN if the point is part of another shard.
+    fn at(&self, levels: &[usize]) -> [f64; 3] {
+        self.values.get(levels).copied().unwrap_or([f64::NAN; 3])
+    }
+
+    /// What is meshed, where this axis is the one of coverages.
+    fn meshed(&self, axis: usize) -> Option<&MeshedCoverage> {
+        self.meshed.as_ref().filter(|meshed| meshed.axis == axis)
+    }
+
+    /// A title of an axis, which says so if it is one of coverages as they are meshed.
+    fn titled(&self, axis: usize, title: String) -> String {
+        match self.meshed(axis) {
+            Some(_) => format!("meshed {title}"),
+            None => title,
+        }
+    }
+
+    fn axis_title(&self, axis: usize) -> String {
+        self.titled(axis, axis_title(&self.axes[axis]))
+    }
+
+    fn axis_symbol(&self, axis: usize) -> String {
+        self.titled(axis, axis_symbol(&self.axes[axis]))
+    }
+
+    /// The name of a level in legends and notes, at these levels of other axes.
+    fn shown(&self, axis: usize, level: usize, held: &[(usize, usize)]) -> String {
+        let asked = self.axes[axis].levels[level].shown();
+        let Some(meshed) = self.meshed(axis) else {
+            return asked;
+        };
+        let is_held = |axis: usize| held.iter().any(|(other, _)| *other == axis);
+        let free: Vec<usize> = (0..self.axes.len())
+            .filter(|&other| other != axis && !is_held(other))
+            .collect();
+        let free = combinations(self.axes, &free);
+        let shown_at = |level: usize| {
+            let coverages = free.iter().filter_map(|free| {
+                let mut levels = vec![0; self.axes.len()];
+                for &(other, level) in held.iter().chain(free).chain(&[(axis, level)]) {
+                    levels[other] = level;
+                }
+                meshed.at(&levels)
+            });
+            range(&coverages.collect::<Vec<_>>())
+        };
+        let shown = shown_at(level);
+        let mut others = (0..self.axes[axis].levels.len()).filter(|&other| other != level);
+        match others.any(|other| shown_at(other) == shown) {
+            // What is meshed does not tell it from another one.
+            true => format!("{shown} ({asked} asked)"),
+            false => shown,
+        }
+    }
+
+    /// A level beside those of other axes, of which these are held.
+    fn level_with_symbol(&self, axis: usize, level: usize, held: &[(usize, usize)]) -> String {
+        level_with_symbol(&self.axes[axis], self.shown(axis, level, held))
+    }
+
+    fn curves(&self, x: usize, fixed: &[(usize, usize)], varied: &[usize]) -> Result<Picture, PictureError> {
+        let curves = combinations(self.axes, varied).into_iter();
+        let curves: Vec<Response> = curves.map(|varied| self.curve(x, fixed, &varied)).collect();
+        // What covers no block has no place on a logarithmic scale.
+        let has_place = curves.iter().flat_map(|curve| &curve.x).all(|&x| x > 0.0);
+        slipfront_plot::response(&Responses {
+            x_title: self.axis_title(x),
+            log_x: self.axes[x].spacing == Spacing::Logarithmic && has_place,
+            log_y: false,
+            y_title: title(self.quantity),
+            legend_title: match varied {
+                [axis] => self.axis_symbol(*axis),
+                _ => String::new(),
+            },
+            note: self.note_at(fixed, varied),
+            curves,
+        })
+    }
+
+    /// What the intervals are, after the levels that all curves of a picture have in common.
+    fn note_at(&self, fixed: &[(usize, usize)], varied: &[usize]) -> String {
+        let levels = fixed
+            .iter()
+            .map(|&(axis, level)| self.level_with_symbol(axis, level, fixed));
+        // The title of a legend or of an axis says it otherwise.
+        let several = varied.iter().filter(|_| varied.len() > 1);
+        let mut beside_others = fixed.iter().map(|(axis, _)| axis).chain(several);
+        let is_meshed = beside_others.any(|&axis| self.meshed(axis).is_some());
+        let meshed = is_meshed.then(|| AS_MESHED.to_owned());
+        let parts: Vec<String> = levels.chain(meshed).chain([self.note.clone()]).collect();
+        parts.join("; ")
+    }
+
+    /// A curve over axis `x` at these levels of the others; those of the `varied` axes name it, a single one of which is told by the title
+    /// of the legend.
+    fn curve(&self, x: usize, fixed: &[(usize, usize)], varied: &[(usize, usize)]) -> Response {
+        let held = [fixed, varied].concat();
+        let label = varied.iter().map(|&(axis, level)| match varied.len() {
+            1 => self.shown(axis, level, &held),
+            _ => self.level_with_symbol(axis, level, &held),
+        });
+        let mut response = Response {
+            label: label.collect::<Vec<_>>().join(", "),
+            ..Response::default()
+        };
+        let mut levels = vec![0; self.axes.len()];
+        for &(axis, level) in fixed.iter().chain(varied) {
+            levels[axis] = level;
+        }
+        for (number, level) in by_number(&self.axes[x]) {
+            levels[x] = level;
+            let [mean, low, high] = self.at(&levels);
+            let meshed = self.meshed(x).and_then(|meshed| meshed.at(&levels));
+            response.x.push(meshed.unwrap_or(number));
+            response.mean.push(mean);
+            response.low.push(low);
+            response.high.push(high);
+            response.crossed.push(self.crossed.contains(&levels));
+        }
+        response
+    }
+
+    fn map(&self, x: usize, y: usize) -> Result<Picture, PictureError> {
+        let (columns, rows) = (by_number(&self.axes[x]), by_number(&self.axes[y]));
+        let (mut means, mut half_widths, mut crossed) = (Vec::new(), Vec::new(), Vec::new());
+        // A map is drawn for two axes alone.
+        let mut levels = [0; 2];
+        for &(_, row) in &rows {
+            for &(_, column) in &columns {
+                (levels[x], levels[y]) = (column, row);
+                let [mean, low, high] = self.at(&levels);
+                means.push(mean);
+                half_widths.push(0.5 * (high - low));
+                crossed.push(self.crossed.contains(&levels[..]));
+            }
+        }
+        let numbers = |asked: &[(f64, usize)]| asked.iter().map(|(number, _)| *number).collect();
+        let heat_axis = |axis: usize, asked: &[(f64, usize)]| {
+            let log = self.axes[axis].spacing == Spacing::Logarithmic;
+            let title = axis_title(&self.axes[axis]);
+            let (title, values) = match (self.meshed(axis), self.meshed_lines(axis, asked, log)) {
+                (_, Some(meshed)) => (self.axis_title(axis), meshed),
+                (Some(_), None) => (format!("asked {title}"), numbers(asked)),
+                (None, None) => (title, numbers(asked)),
+            };
+            HeatAxis { title, values, log }
+        };
+        slipfront_plot::heat_map(&HeatMap {
+            x: heat_axis(x, &columns),
+            y: heat_axis(y, &rows),
+            value_title: title(self.quantity),
+            values: means,
+            half_widths,
+            crossed,
+            note: self.note.clone(),
+        })
+    }
+
+    /// The means of what the lines of a map over two axes are meshed to; none if this is no axis of coverages, or if lines would not be
+    /// where they are asked in order.
+    fn meshed_lines(&self, axis: usize, asked: &[(f64, usize)], log: bool) -> Option<Vec<f64>> {
+        let meshed = self.meshed(axis)?;
+        let across = 0..self.axes[1 - axis].levels.len();
+        let line = |&(_, level): &(f64, usize)| {
+            let at = |other: usize| {
+                let mut levels = [other; 2];
+                levels[axis] = level;
+                meshed.at(&levels)
+            };
+            let found: Vec<f64> = across.clone().filter_map(at).collect();
+            (!found.is_empty()).then(|| mean(&found))
+        };
+        let lines: Vec<f64> = asked.iter().map(line).collect::<Option<_>>()?;
+        let is_rising = lines.windows(2).all(|pair| pair[0] < pair[1]);
+        (is_rising && (!log || lines[0] > 0.0)).then_some(lines)
+    }
+
+    /// Bars for the names of one axis, or in groups for two.
+    fn bars(&self) -> Result<Picture, PictureError> {
+        let bar = |axis: usize, levels: &[usize]| {
+            let [mean, low, high] = self.at(levels);
+            Bar {
+                label: self.axes[axis].levels[levels[axis]].shown(),
+                mean,
+                low,
+                high,
+                crossed: self.crossed.contains(levels),
+            }
+        };
+        let levels = |axis: usize| 0..self.axes[axis].levels.len();
+        let groups = if self.axes.len() == 1 {
+            let bars = levels(0).map(|level| bar(0, &[level])).collect();
+            let label = String::new();
+            vec![BarGroup { label, bars }]
+        } else {
+            let group = |one: usize| BarGroup {
+                label: self.axes[0].levels[one].shown(),
+                bars: levels(1).map(|other| bar(1, &[one, other])).collect(),
+            };
+            levels(0).map(group).collect()
+        };
+        let legend = self.axes.get(1).map(axis_symbol);
+        slipfront_plot::bars(&BarChart {
+            y_title: title(self.quantity),
+            x_title: axis_title(&self.axes[0]),
+            legend_title: legend.unwrap_or_default(),
+            note: self.note.clone(),
+            groups,
+        })
+    }
+}
+
+/// Static and kinetic friction around the directions of the drive, a curve for each combination of levels of the other axes; none if no
+/// run has either.
+fn friction_polar(
+    plan: &Plan,
+    results: &StudyResults,
+    over: usize,
+    combinations: &[Levels],
+) -> Result<Option<Picture>, PictureError> {
+    let measured = measured_quantities(plan, results);
+    let measured: Vec<Measured> = FRICTION
+        .iter()
+        .filter(|(quantity, _)| measured.contains(quantity))
+        .map(|(quantity, _)| Measured::of(plan, results, quantity))
+        .collect();
+    if measured.is_empty() {
+        return Ok(None);
+    }
+    let counts: Vec<usize> = measured
+        .iter()
+        .flat_map(|measured| &measured.counts)
+        .copied()
+        .collect();
+    let without_transition = measured.iter().map(|measured| measured.without_transition).sum();
+    let curves = combinations.iter().flat_map(|varied| {
+        let curve = |measured: &Measured| {
+            let mut response = measured.curve(over, &[], varied);
+            let parts = [response.label.as_str(), quantity_symbol(measured.quantity)];
+            let parts = parts.into_iter().filter(|part| !part.is_empty());
+            response.label = parts.collect::<Vec<_>>().join(", ");
+            response
+        };
+        measured.iter().map(curve).collect::<Vec<_>>()
+    });
+    let note = note_on_intervals(plan.settings.confidence(), &counts, without_transition);
+    let picture = slipfront_plot::polar(&Polar {
+        value_title: "friction \u{3bc}*".to_owned(),
+        legend_title: match plan.axes.iter().enumerate().find(|(axis, _)| *axis != over) {
+            Some((other, _)) if plan.axes.len() == 2 => measured[0].axis_symbol(other),
+            _ => String::new(),
+        },
+        note: match measured[0].meshed.is_some() && plan.axes.len() > 2 {
+            true => format!("{AS_MESHED}; {note}"),
+            false => note,
+        },
+        curves: curves.collect(),
+    });
+    picture.map(Some)
+}
+
+/// What the intervals around means of so many values are, and how many runs are left out of them.
+fn note_on_intervals(confidence: f64, counts: &[usize], without_transition: usize) -> String {
+    let intervals = intervals(confidence, counts);
+    match without_transition {
+        0 => intervals,
+        runs => format!("{intervals}; \u{d7}: {runs} without transition"),
+    }
+}
+
+fn intervals(confidence: f64, counts: &[usize]) -> String {
+    let [least, most] = [counts.iter().min(), counts.iter().max()].map(|count| count.copied().unwrap_or(0));
+    if most < 2 {
+        return "no intervals: one run at each point".to_owned();
+    }
+    let count = match least == most {
+        true => most.to_string(),
+        false => format!("{least} to {most}"),
+    };
+    format!(
+        "{} % interval of the mean, n = {count}",
+        four_digits(100.0 * confidence)
+    )
+}
+
+/// Coverages that a level is meshed to, from the smallest to the largest.
+fn range(coverages: &[f64]) -> String {
+    let ends = [f64::min, f64::max].map(|of| coverages.iter().copied().reduce(of));
+    let [least, most] = ends.map(|end| four_digits(end.unwrap_or(f64::NAN)));
+    match least == most {
+        true => least,
+        false => format!("{least} to {most}"),
+    }
+}
+
+/// Numbers of an axis in rising order, each with its level.
+fn by_number(axis: &Axis) -> Vec<(f64, usize)> {
+    let levels = axis.levels.iter().enumerate();
+    let mut numbers: Vec<(f64, usize)> = levels
+        .filter_map(|(level, at)| Some((at.number?, level)))
+        .collect();
+    numbers.sort_by(|a, b| a.0.total_cmp(&b.0));
+    numbers
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pictures_say_what_their_intervals_are() {
+        assert_eq!(
+            note_on_intervals(0.95, &[5, 5], 0),
+            "95 % interval of the mean, n = 5"
+        );
+        assert_eq!(
+            note_on_intervals(0.999, &[8, 3], 0),
+            "99.9 % interval of the mean, n = 3 to 8"
+        );
+        assert_eq!(
+            note_on_intervals(0.95, &[1, 1], 0),
+            "no intervals: one run at each point"
+        );
+        assert_eq!(
+            note_on_intervals(0.95, &[4, 5], 6),
+            "95 % interval of the mean, n = 4 to 5; \u{d7}: 6 without transition"
+        );
+    }
+}

@@ -1,0 +1,612 @@
+//! The plan of a study: its points, and what each run of a point is.
+
+use std::ops::Range;
+
+use rayon::prelude::*;
+
+use crate::axis::{self, Axis};
+use crate::error::StudyError;
+use crate::identity::{Prepared, physics};
+use crate::plan_warnings::{Warning, Warnings, note_on_replicates};
+use crate::shard::Shard;
+use crate::study_file::{Base, RetainRuns, Settings, StudyFile};
+use crate::summary_values::REDUCTION;
+use slipfront_case::case::{Case, PICTURE, PROGRAM, Ranks, Watch};
+use slipfront_case::case_file::{AutoOr, CaseError, CaseFile, Override, ParsedCase, Snapshots};
+use slipfront_case::machine::available_of;
+use slipfront_case::number_format::byte_size;
+use slipfront_case::text::display_path;
+
+/// Every run that a study may need.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    /// Name of the study.
+    pub name: String,
+    /// Repetition, reference and what is kept.
+    pub settings: Settings,
+    /// The axes of the study.
+    pub axes: Vec<Axis>,
+    /// Every combination of levels, the last axis fastest.
+    pub points: Vec<Point>,
+    /// What is known of the runs of the points, one for each role.
+    specs: Vec<RunSpec>,
+    warnings: Vec<Warning>,
+    base: Base,
+    reference: Option<Vec<Override>>,
+}
+
+/// A combination of levels. There may be a million of them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Point {
+    /// Place in the whole study, from 0: the same in every shard.
+    pub index: usize,
+}
+
+/// What is known of the runs of a point before any is made.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct RunSpec {
+    /// Seed of replicate 0.
+    seed: u64,
+    /// Hash of all that decides the numbers of a run, but for the seed.
+    physics: blake3::Hash,
+    /// Steps times blocks of a run, at most.
+    block_steps: f64,
+    n_blocks: usize,
+    /// Memory of a run beside others, in bytes.
+    memory: f64,
+    /// Memory of its case alone, in bytes.
+    memory_of_case: f64,
+    /// Room for its files, in bytes.
+    disk: f64,
+    /// A* as meshed, %.
+    texture_percent: f64,
+    /// What the shapes of its only texture cover as meshed, %; none of several.
+    meshed_coverage: Option<f64>,
+}
+
+/// Cases of more blocks are made one at a time while planning: one for each thread might not fit into memory.
+const LARGE: u64 = 250_000;
+
+/// What is known of a run, and the warnings about it.
+type Spec = Result<(RunSpec, Vec<String>), CaseError>;
+
+/// Points whose cases are made before what is known of them is taken down.
+const POINTS_AT_ONCE: usize = 4096;
+
+/// Points in a row whose cases are made from one base.
+const POINTS_OF_A_BASE: usize = 64;
+
+/// A line of the records and a row of the tables.
+const RECORD_BYTES: f64 = 4096.0;
+
+/// What a run leaves in memory: its identity and its numbers, in the records, in the results and for the pictures.
+const RESULT_BYTES: f64 = 2048.0;
+
+/// Pictures of the study that are drawn at once.
+pub(crate) const PICTURES_AT_ONCE: usize = 2;
+
+/// The purpose of a run of a point.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Role {
+    /// The point itself.
+    Point,
+    /// The reference that its reduction is measured against.
+    Reference,
+}
+
+/// One run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct RunKey {
+    /// Position of the point in the plan.
+    pub point: usize,
+    /// Replicate, from 0.
+    pub replicate: usize,
+    /// Its purpose.
+    pub role: Role,
+}
+
+impl Plan {
+    /// Makes the points of all combinations of levels and the case of each; the first invalid one is named.
+    pub fn new(file: &StudyFile, shard: Option<Shard>) -> Result<Self, StudyError> {
+        let points = (0..file.count_points()?)
+            .filter(|&index| shard.is_none_or(|shard| shard.holds(index)))
+            .map(|index| Point { index })
+            .collect();
+        let mut plan = Self {
+            name: file.name.clone(),
+            settings: file.settings.clone(),
+            axes: file.axes.clone(),
+            points,
+            specs: Vec::new(),
+            warnings: Vec::new(),
+            base: file.base.clone(),
+            reference: file.settings.reference.as_ref().map(axis::overrides),
+        };
+        plan.make_specs()?;
+        Ok(plan)
+    }
+
+    /// Makes the cases of all points, and takes down what is known of their runs.
+    fn make_specs(&mut self) -> Result<(), StudyError> {
+        let invalid = |point: Option<&Point>, source| {
+            let point = point.map_or_else(String::new, |point| self.describe(point));
+            StudyError::Point { point, source }
+        };
+        let base = self.base.parse();
+        let base = base.map_err(|error| invalid(self.points.first(), error))?;
+        let (slow, length) = self.slow_axes();
+        let roles = self.roles().count();
+        let mut specs = Vec::with_capacity(self.points.len() * roles);
+        let mut warnings = Warnings::default();
+        for (chunk, points) in self.points.chunks(POINTS_AT_ONCE).enumerate() {
+            let rows = points.chunk_by(|a, b| a.index / length == b.index / length);
+            let rows: Vec<&[Point]> = rows.flat_map(|row| row.chunks(POINTS_OF_A_BASE)).collect();
+            let made: Vec<Option<_>> = rows
+                .par_iter()
+                .map(|row| self.specs_of_row(&base, row, slow, LARGE))
+                .collect();
+            let made = made.into_iter().zip(rows).flat_map(|(made, row)| {
+                let alone = || self.specs_of_row(&base, row, slow, u64::MAX);
+                made.or_else(alone).unwrap_or_default()
+            });
+            // In order, so that the first invalid point is named.
+            for (run, made) in made.enumerate() {
+                let position = chunk * POINTS_AT_ONCE + run / roles;
+                let (spec, sentences) = made.map_err(|error| invalid(Some(&self.points[position]), error))?;
+                warnings.add(position, sentences);
+                specs.push(spec);
+            }
+        }
+        self.specs = specs;
+        self.warnings = warnings.found;
+        Ok(())
+    }
+
+    /// How many of the first axes keep their levels over so many points in a row, of which a base can be made.
+    fn slow_axes(&self) -> (usize, usize) {
+        let (mut slow, mut length) = (self.axes.len(), 1);
+        while slow > 0 && length < POINTS_OF_A_BASE {
+            slow -= 1;
+            length *= self.axes[slow].levels.len();
+        }
+        (slow, length)
+    }
+
+    /// What is known of the runs of points with the same levels of the first `slow` axes, and the warnings about them; none if a case has
+    /// more blocks than `most`.
+    fn specs_of_row(&self, base: &ParsedCase, row: &[Point], slow: usize, most: u64) -> Option<Vec<Spec>> {
+        let bases = self.roles().map(|role| {
+            let overrides = self.overrides(&row[0], role, 0..slow);
+            Ok((role, Prepared::new(base.prepared(&overrides)?)?))
+        });
+        let bases = match bases.collect::<Result<Vec<_>, CaseError>>() {
+            Ok(bases) => bases,
+            // It is that of the first of them.
+            Err(error) => return Some(vec![Err(error)]),
+        };
+        let specs = |point| {
+            bases
+                .iter()
+                .map(move |(role, base)| self.spec(base, point, *role, slow, most).transpose())
+        };
+        row.iter().flat_map(specs).collect()
+    }
+
+    /// The roles of the runs of a point: the point itself, and its reference if the study has one.
+    pub fn roles(&self) -> impl Iterator<Item = Role> + use<> {
+        let reference = self.reference.as_ref().map(|_| Role::Reference);
+        [Role::Point].into_iter().chain(reference)
+    }
+
+    /// Whether reductions are measured.
+    pub fn has_reference(&self) -> bool {
+        self.reference.is_some()
+    }
+
+    /// The main quantity: the one that decides on replicates, else the reduction if there is a reference, else mu_s*.
+    pub fn main_quantity(&self) -> &str {
+        match &self.settings.until {
+            Some(until) => &until.key,
+            None if self.has_reference() => REDUCTION,
+            None => "static_friction_star",
+        }
+    }
+
+    /// The overrides of a point's levels of these axes, and of the reference after those of the last one.
+    fn overrides(&self, point: &Point, role: Role, axes: Range<usize>) -> Vec<&Override> {
+        let levels = self.levels(point);
+        let overrides = axes
+            .clone()
+            .flat_map(|axis| &self.axes[axis].levels[levels[axis]].overrides);
+        let mut overrides: Vec<&Override> = overrides.collect();
+        if let (Some(reference), Role::Reference) = (&self.reference, role) {
+            let replaces = |other: &Override, set: &Override| axis::replaces_key(other.key(), set.key());
+            overrides.retain(|set| !reference.iter().any(|other| replaces(other, set)));
+            if axes.end == self.axes.len() {
+                overrides.extend(reference);
+            }
+        }
+        overrides
+    }
+
+    /// The case file of replicate 0: the base with the overrides of the point's levels, and of the reference.
+    fn case_file(&self, base: &ParsedCase, point: &Point, role: Role) -> Result<CaseFile, CaseError> {
+        base.with(&self.overrides(point, role, 0..self.axes.len()))
+    }
+
+    /// The case of a combination of levels, for a look at what it computes.
+    pub(crate) fn case_of(&self, levels: &[usize]) -> Result<Case, CaseError> {
+        let axes = self.axes.iter().zip(levels);
+        let point = Point {
+            index: axes.fold(0, |index, (axis, level)| index * axis.levels.len() + level),
+        };
+        let file = self.case_file(&self.base.parse()?, &point, Role::Point)?;
+        self.trimmed(file, "point", &mut |_| true)
+    }
+
+    /// Makes the case of a point; gives what is known of its runs, and the warnings about it. None if it has more blocks than `most`.
+    fn spec(
+        &self,
+        base: &Prepared,
+        point: &Point,
+        role: Role,
+        slow: usize,
+        most: u64,
+    ) -> Result<Option<(RunSpec, Vec<String>)>, CaseError> {
+        let overrides = self.overrides(point, role, slow..self.axes.len());
+        let file = base.case.with(&overrides)?;
+        self.check_seeds(&file)?;
+        if file.slider.blocks.into_iter().map(u64::from).product::<u64>() > most {
+            return Ok(None);
+        }
+        let case = self.trimmed(file, "point", &mut |_| true)?;
+        let writes = self.settings.keep == RetainRuns::All;
+        let spec = RunSpec {
+            seed: case.file.friction.seed,
+            physics: physics(&case, base.known())?,
+            block_steps: case.block_steps(),
+            n_blocks: case.model.lattice.n_blocks(),
+            memory: case.budget.memory_beside_others(writes),
+            memory_of_case: case.budget.memory_of_case(),
+            disk: if writes { case.budget.disk() } else { 0.0 },
+            texture_percent: case.texture.meshed_percent,
+            meshed_coverage: meshed_coverage(&case),
+        };
+        let mut warnings = case.warnings();
+        if role == Role::Point && self.settings.max_replicates() > 1 {
+            warnings.extend(note_on_replicates(&case).map(str::to_owned));
+        }
+        Ok(Some((spec, warnings)))
+    }
+
+    /// Refuses a seed from which the replicates would count beyond the largest one.
+    fn check_seeds(&self, file: &CaseFile) -> Result<(), CaseError> {
+        const MAX_SEED: u64 = i64::MAX.unsigned_abs();
+        let (seed, replicates) = (file.friction.seed, self.settings.max_replicates());
+        if seed + (replicates - 1) as u64 <= MAX_SEED {
+            return Ok(());
+        }
+        let sentence = format!(
+            "`friction.seed` = {seed} is too large for {replicates} replicates, which take the seeds from there on: the last must be \
+             at most {MAX_SEED}"
+        );
+        Err(file.source.error("friction.seed", sentence))
+    }
+
+    /// Warnings about the cases of the study, the first of each kind.
+    pub fn warnings(&self) -> &[Warning] {
+        &self.warnings
+    }
+
+    /// The case of a run, ready to run, unless a file that it reads has changed since the plan was made.
+    /// `watch` is shown how its texture is laid over the blocks.
+    pub fn case(&self, run: RunKey, watch: &mut Watch) -> Result<Case, CaseError> {
+        let mut file = self.case_file(&self.base.parse()?, &self.points[run.point], run.role)?;
+        file.friction.seed = self.seed(run);
+        let case = self.trimmed(file, &self.folder_name(run), watch)?;
+        // Only files can have become others.
+        if !case.inputs.is_empty() && physics(&case, None)? != self.spec_of(run).physics {
+            let originals = case.inputs.iter().map(|input| display_path(&input.original));
+            let names: Vec<String> = originals.collect();
+            let sentence = format!(
+                "a file that a run reads is no longer what it was when the study began: run the study again, and leave {} as it \
+                 is meanwhile",
+                names.join(", ")
+            );
+            return Err(case.file.source.error("", sentence));
+        }
+        Ok(case)
+    }
+
+    /// This plan for the study in a results folder, which reads copies of its files there: later changes of the original files
+    /// have no effect on its runs.
+    #[must_use]
+    pub fn reading_copies(self, study: &StudyFile) -> Self {
+        Self {
+            axes: study.axes.clone(),
+            base: study.base.clone(),
+            reference: study.settings.reference.as_ref().map(axis::overrides),
+            ..self
+        }
+    }
+
+    /// A case that records no more than the study keeps.
+    fn trimmed(&self, mut file: CaseFile, name: &str, watch: &mut Watch) -> Result<Case, CaseError> {
+        let keeps_all = self.settings.keep == RetainRuns::All;
+        if !keeps_all {
+            // Fields and curves are not kept, and the numbers do not depend on them.
+            file.output.snapshots = Snapshots::At(Vec::new());
+            file.output.series = AutoOr::Auto;
+        }
+        let mut case = Case::new(file, name, &self.base.folder, watch, Ranks::ALONE)?;
+        if !keeps_all {
+            case.output.series_stride = case.time_plan.last_step;
+        }
+        Ok(case)
+    }
+
+    fn spec_of(&self, run: RunKey) -> &RunSpec {
+        &self.specs[run.point * self.roles().count() + usize::from(run.role == Role::Reference)]
+    }
+
+    /// Seed of a run. Replicates differ by their seed alone, so that replicate r has one surface at all points.
+    pub fn seed(&self, run: RunKey) -> u64 {
+        self.spec_of(run).seed + run.replicate as u64
+    }
+
+    /// Identifies a run by its physics and seed. Points share runs of one identity, such as their reference.
+    pub fn identity(&self, run: RunKey) -> String {
+        let mut hasher = blake3::Hasher::new();
+        hasher.update(self.spec_of(run).physics.as_bytes());
+        hasher.update(&self.seed(run).to_le_bytes());
+        hasher.finalize().to_hex()[..32].to_owned()
+    }
+
+    /// Name of the folder of a run, where it is kept: the beginning of its identity, so that it stays true when the
+    /// study grows.
+    pub fn folder_name(&self, run: RunKey) -> String {
+        self.identity(run)[..12].to_owned()
+    }
+
+    /// Most steps times blocks of a run, and its blocks: the measure of its cost.
+    pub fn cost(&self, run: RunKey) -> (f64, usize) {
+        let spec = self.spec_of(run);
+        (spec.block_steps, spec.n_blocks)
+    }
+
+    /// Memory of `threads` runs at once, if they are the largest, or of the pictures of the study if these take more, beside
+    /// the results of all runs, in bytes.
+    pub fn memory(&self, threads: usize) -> f64 {
+        let runs = self.runs(self.settings.max_replicates()).take(threads).count();
+        let largest = self.largest_run().map_or(0.0, |(_, bytes)| bytes);
+        let pictures = PICTURES_AT_ONCE as f64 * PICTURE;
+        PROGRAM + self.planning() + self.results() + pictures.max(runs as f64 * largest)
+    }
+
+    /// Memory of the results of all runs, with the fewest replicates, in bytes.
+    fn results(&self) -> f64 {
+        let runs = self.points.len() * self.settings.min_replicates() * self.roles().count();
+        runs as f64 * RESULT_BYTES
+    }
+
+    /// Memory in which cases were tried, and which the allocator keeps for others of their size, in bytes.
+    fn planning(&self) -> f64 {
+        let made = self.specs.iter().map(|spec| spec.memory_of_case);
+        made.fold(0.0, f64::max)
+    }
+
+    /// The run that takes the most memory, and how much, in bytes.
+    fn largest_run(&self) -> Option<(RunKey, f64)> {
+        self.runs(1)
+            .map(|run| (run, self.spec_of(run).memory))
+            .max_by(|a, b| a.1.total_cmp(&b.1))
+    }
+
+    /// Refuses as many runs at once as there is no memory for, and says how many there is memory for; with no runs, what
+    /// tables and pictures take is held against the memory alone.
+    pub fn check_memory(&self, threads: usize) -> Result<(), StudyError> {
+        self.compare_memory(threads, available_of(self.memory(threads)))
+    }
+
+    fn compare_memory(&self, threads: usize, available: f64) -> Result<(), StudyError> {
+        let Some((run, largest)) = self.largest_run() else {
+            return Ok(());
+        };
+        let needed = self.memory(threads);
+        if needed <= available {
+            return Ok(());
+        }
+        let beside = PROGRAM + self.planning() + self.results();
+        let fit = ((available - beside) / largest).max(0.0) as usize;
+        let results = self.memory(0);
+        let too_large = results > available;
+        let available = byte_size(available);
+        Err(match fit {
+            _ if too_large => StudyError::ResultsMemory {
+                needed: byte_size(results),
+                available,
+            },
+            0 => StudyError::PointMemory {
+                point: self.describe(&self.points[run.point]),
+                needed: byte_size(largest),
+                available,
+            },
+            _ => StudyError::Memory {
+                threads,
+                needed: byte_size(needed),
+                available,
+                fit,
+            },
+        })
+    }
+
+    /// Room that these runs will take on the disk, in bytes.
+    pub fn disk(&self, runs: impl Iterator<Item = RunKey>) -> f64 {
+        runs.map(|run| RECORD_BYTES + self.spec_of(run).disk).sum()
+    }
+
+    /// A* as meshed at the point at `position`, %.
+    pub fn texture_percent(&self, position: usize) -> f64 {
+        self.spec_of(first_run(position)).texture_percent
+    }
+
+    /// What the shapes of the only texture cover as meshed at the point at `position`, %; none where there are several textures.
+    pub(crate) fn meshed_coverage(&self, position: usize) -> Option<f64> {
+        self.spec_of(first_run(position)).meshed_coverage
+    }
+
+    /// Level of each axis at a point.
+    pub fn levels(&self, point: &Point) -> Vec<usize> {
+        let mut index = point.index;
+        let mut levels = vec![0; self.axes.len()];
+        for (level, axis) in levels.iter_mut().zip(&self.axes).rev() {
+            *level = index % axis.levels.len();
+            index /= axis.levels.len();
+        }
+        levels
+    }
+
+    /// The levels of a point, as a reader would name it.
+    pub fn describe(&self, point: &Point) -> String {
+        let columns = self.columns(point).into_iter();
+        let levels: Vec<String> = columns.map(|(name, value)| format!("{name} = {value}")).collect();
+        match levels.is_empty() {
+            true => "of the base case".to_owned(),
+            false => levels.join(", "),
+        }
+    }
+
+    /// Columns of the axes, and their cells at a point.
+    pub fn columns(&self, point: &Point) -> Vec<(&str, &str)> {
+        let levels = self.axes.iter().zip(self.levels(point));
+        let columns = levels.flat_map(|(axis, level)| axis.columns.iter().zip(&axis.levels[level].labels));
+        let columns = columns.map(|(name, value)| (name.as_str(), value.as_str()));
+        columns.collect()
+    }
+
+    /// Every run of `replicates` replicates; references that points share are counted for each.
+    pub fn runs(&self, replicates: usize) -> impl Iterator<Item = RunKey> {
+        (0..self.points.len()).flat_map(move |point| self.runs_of(point, 0..replicates))
+    }
+
+    /// The runs of some replicates of a point.
+    pub(crate) fn runs_of(&self, point: usize, replicates: Range<usize>) -> impl Iterator<Item = RunKey> {
+        replicates.flat_map(move |replicate| {
+            self.roles().map(move |role| RunKey {
+                point,
+                replicate,
+                role,
+            })
+        })
+    }
+}
+
+/// The first run of the point at this position.
+fn first_run(point: usize) -> RunKey {
+    RunKey {
+        point,
+        replicate: 0,
+        role: Role::Point,
+    }
+}
+
+fn meshed_coverage(case: &Case) -> Option<f64> {
+    let [texture] = case.file.texture.as_slice() else {
+        return None;
+    };
+    let textured = case.texture.meshed_percent;
+    Some(match texture.pattern.invert {
+        true => 100.0 - textured,
+        false => textured,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::*;
+
+    /// An interval of replicates that differ in little looks better than it is.
+    #[test]
+    fn what_differs_between_replicates_is_said() {
+        let notes = |keys: &str| -> Vec<String> {
+            let text =
+                format!("base.slider.blocks = [25, 25]\nbase.friction = {{ {keys} }}\nstudy.replicates = 2");
+            let file = StudyFile::parse(&text, "study.toml", "study", Path::new("")).unwrap();
+            let plan = Plan::new(&file, None).unwrap();
+            let sentences = plan.warnings().iter().map(|warning| &warning.sentence);
+            sentences.cloned().collect()
+        };
+        assert!(notes("").is_empty());
+        assert!(notes("sigma_kinetic_star = 0").is_empty());
+        assert!(notes("sigma_static_star = 0")[0].contains("kinetic coefficients alone"));
+        assert!(notes("sigma_static_star = 0, r_star = 0")[0].contains("the same run"));
+        assert!(notes("sigma_static_star = 0, sigma_kinetic_star = 0")[0].contains("the same run"));
+    }
+
+    /// The threads share the blocks of a large case, too: none of them may wait for another to be done with one. What is known of the runs
+    /// and which invalid point is named does not depend on their number.
+    #[test]
+    fn large_cases_are_planned_on_any_number_of_threads() {
+        // Some large cases, unevenly spread over 16 rows, so that threads run out of rows of their own at different times.
+        let blocks = (0..16 * POINTS_OF_A_BASE).map(|point| match (point * 7919 / 13) % 97 {
+            7 => format!("[600, {}]", 2000 + point),
+            _ => format!("[{}, 2]", 2 + point),
+        });
+        let blocks = blocks.collect::<Vec<_>>().join(", ");
+        let plan = |threads, sigma: f64| {
+            let text = format!(
+                "[[axes]]\nkey = 'slider.blocks'\nlist = [{blocks}]\n\
+                 [[axes]]\nkey = 'friction.sigma_static_star'\nlist = [{sigma}]"
+            );
+            let file = StudyFile::parse(&text, "study.toml", "study", Path::new("")).unwrap();
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+            pool.unwrap().install(|| Plan::new(&file, None))
+        };
+        let one = plan(1, 0.05).unwrap();
+        let six = plan(6, 0.05).unwrap();
+        assert!(one.specs == six.specs && one.specs.len() == 16 * POINTS_OF_A_BASE);
+        let large = one.specs.iter().filter(|spec| spec.n_blocks as u64 > LARGE);
+        assert!(large.count() > 5);
+        let invalid = |threads| plan(threads, -1.0).unwrap_err().to_string();
+        assert_eq!(invalid(1), invalid(6));
+    }
+
+    /// Runs at once count with the largest of them, and not with more than there are.
+    #[test]
+    fn threads_are_held_against_the_memory() {
+        let text = "[study]\nreplicates = 2\n[[axes]]\nkey = 'slider.blocks'\nlist = [[4, 4], [800, 800]]";
+        let file = StudyFile::parse(text, "study.toml", "study", Path::new("")).unwrap();
+        let plan = Plan::new(&file, None).unwrap();
+        let one = plan.memory(2) - plan.memory(1);
+        assert_eq!(plan.memory(3), plan.memory(1) + 2.0 * one);
+        assert_eq!(plan.memory(64), plan.memory(4));
+        let available = plan.memory(2) + 0.5 * one;
+        assert!(plan.compare_memory(2, available).is_ok());
+        assert!(matches!(
+            plan.compare_memory(3, available),
+            Err(StudyError::Memory {
+                threads: 3,
+                fit: 2,
+                ..
+            })
+        ));
+        let said = plan
+            .compare_memory(2, plan.memory(1) - 0.5 * one)
+            .unwrap_err()
+            .to_string();
+        assert!(
+            said.contains("slider.blocks = [800, 800]") && said.contains("lower `slider.blocks`"),
+            "{said}"
+        );
+        // Every run that is kept holds the five fields of six instants until they are written.
+        let kept = text.replace("replicates = 2", "replicates = 2\nkeep = 'all'");
+        let kept = StudyFile::parse(&kept, "study.toml", "study", Path::new("")).unwrap();
+        let kept = Plan::new(&kept, None).unwrap();
+        let fields = 6.0 * 5.0 * 800.0 * 800.0 * size_of::<f32>() as f64;
+        assert!(kept.memory(1) > plan.memory(1) + fields);
+        let disk = |plan: &Plan| plan.disk(plan.runs(2));
+        assert!(disk(&kept) > 100.0 * disk(&plan));
+    }
+}

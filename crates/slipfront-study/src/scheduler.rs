@@ -1,0 +1,272 @@
+//! Decides which runs a study needs, and records each as soon as it is finished.
+//!
+//! The results do not depend on the order in which runs finish: the number of replicates of a point is decided by its first
+//! replicates in their order, however many more have been run.
+
+use std::collections::{HashMap, HashSet};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::Receiver;
+use std::time::Duration;
+
+use crate::error::StudyError;
+use crate::journal::Records;
+use crate::plan::{Plan, RunKey};
+use crate::record::{Record, RunResult};
+use crate::statistics::Sample;
+use crate::study_results::{PointResult, Progress, StudyResults};
+use crate::summary_values::Quantity;
+
+/// A run to be done.
+pub(crate) struct Task {
+    pub(crate) run: RunKey,
+    /// [`Plan::identity`] of the run.
+    pub(crate) id: String,
+}
+
+/// The record of a run that has ended; none if it was given up.
+pub(crate) type Ended = Result<Option<Record>, StudyError>;
+
+/// Starts runs and decides on the number of replicates.
+pub(crate) struct Scheduler<'a> {
+    plan: &'a Plan,
+    records: &'a Records,
+    start: &'a dyn Fn(Task),
+    /// Runs at once.
+    threads: usize,
+    /// The runs known so far; the points follow at the end.
+    results: StudyResults,
+    /// Requested runs that are not finished, by identity. Points may share a run.
+    waiting: HashMap<String, Vec<RunKey>>,
+    /// Identities of the recorded runs that belong to the study.
+    belonging: HashSet<String>,
+    points: Vec<PointState>,
+    /// The quantity that decides on replication.
+    decisive: Option<Quantity>,
+    progress: Progress,
+}
+
+/// Replication of a point while the study runs.
+#[derive(Clone, Default)]
+struct PointState {
+    /// Replicates requested so far.
+    requested: usize,
+    /// Runs of these replicates that are not finished.
+    missing: usize,
+    /// Number of first replicates that the stopping rule has been evaluated with.
+    evaluated: usize,
+    /// Half width of the interval of these replicates.
+    half_width: Option<f64>,
+    /// Set once the number of replicates is decided.
+    result: Option<PointResult>,
+}
+
+impl<'a> Scheduler<'a> {
+    /// `start` lets a run be done by another thread.
+    pub(crate) fn new(plan: &'a Plan, records: &'a Records, start: &'a dyn Fn(Task), threads: usize) -> Self {
+        let until = plan.settings.until.as_ref();
+        Self {
+            plan,
+            records,
+            start,
+            threads,
+            results: StudyResults::default(),
+            waiting: HashMap::new(),
+            belonging: HashSet::new(),
+            points: vec![PointState::default(); plan.points.len()],
+            decisive: until.and_then(|until| Quantity::named(&until.key)),
+            progress: Progress::default(),
+        }
+    }
+
+    /// The results of the records alone, if no run is missing.
+    pub(crate) fn collect(mut self) -> Result<StudyResults, StudyError> {
+        self.begin();
+        match self.waiting.len() {
+            0 => Ok(self.results()),
+            runs => Err(StudyError::Missing {
+                runs,
+                others: self.orphaned_runs(),
+            }),
+        }
+    }
+
+    /// Records finished runs and requests more, until no run is missing.
+    pub(crate) fn run(
+        mut self,
+        finished: &Receiver<Ended>,
+        stop: &AtomicBool,
+        watch: &mut dyn FnMut(&Progress),
+    ) -> Result<StudyResults, StudyError> {
+        self.begin();
+        self.report(watch);
+        while !self.waiting.is_empty() {
+            let stopped = stop.load(Ordering::Relaxed);
+            let first = finished.recv_timeout(Duration::from_millis(100)).ok();
+            // All that has finished meanwhile is written at once, since every write waits for the disk.
+            self.record(first.into_iter().chain(finished.try_iter()))?;
+            if stopped {
+                return Err(StudyError::Interrupted);
+            }
+            self.report(watch);
+        }
+        Ok(self.results())
+    }
+
+    /// Requests the fewest replicates of every point, and more where all of these are recorded already.
+    fn begin(&mut self) {
+        for point in 0..self.points.len() {
+            self.request(point, self.plan.settings.min_replicates());
+            self.decide(point);
+        }
+    }
+
+    /// Writes finished runs to the journal, then ingests them.
+    fn record(&mut self, finished: impl Iterator<Item = Ended>) -> Result<(), StudyError> {
+        let (mut records, mut failure) = (Vec::new(), None);
+        for ended in finished {
+            match ended {
+                Ok(record) => records.extend(record),
+                Err(error) => failure = Some(error),
+            }
+        }
+        self.records.append(&records)?;
+        self.progress.here += records.len();
+        for record in records {
+            self.ingest(record.id);
+        }
+        failure.map_or(Ok(()), Err)
+    }
+
+    /// Requests the replicates of a point up to the number `requested`: recorded runs are taken as they are, the others are
+    /// started.
+    fn request(&mut self, point: usize, requested: usize) {
+        let plan = self.plan;
+        for run in plan.runs_of(point, self.points[point].requested..requested) {
+            let id = plan.identity(run);
+            let Some(result) = self.records.get(&id) else {
+                self.send(run, id);
+                continue;
+            };
+            if !self.belonging.contains(&id) {
+                self.progress.total += 1;
+                self.count(id, &result);
+            }
+            self.results.runs.insert(run, result);
+        }
+        self.points[point].requested = requested;
+    }
+
+    fn send(&mut self, run: RunKey, id: String) {
+        self.points[run.point].missing += 1;
+        let waiting = self.waiting.entry(id.clone()).or_default();
+        waiting.push(run);
+        if waiting.len() == 1 {
+            self.progress.total += 1;
+            (self.start)(Task { run, id });
+        }
+    }
+
+    fn count(&mut self, id: String, result: &RunResult) {
+        self.progress.done += 1;
+        self.progress.failed += usize::from(result.is_err());
+        self.belonging.insert(id);
+    }
+
+    /// Adds the result of a recorded run to every point that waits for it.
+    fn ingest(&mut self, id: String) {
+        let Some(result) = self.records.get(&id) else {
+            return;
+        };
+        let runs = self.waiting.remove(&id).unwrap_or_default();
+        self.count(id, &result);
+        for run in &runs {
+            self.results.runs.insert(*run, result.clone());
+            self.points[run.point].missing -= 1;
+        }
+        for run in runs {
+            self.decide(run.point);
+        }
+    }
+
+    /// Decides on the number of replicates of a point once all that were requested are finished, and requests more where they
+    /// are not enough.
+    fn decide(&mut self, point: usize) {
+        while self.points[point].missing == 0 && self.points[point].result.is_none() {
+            self.points[point].result = self.evaluate_stopping(point);
+            if self.points[point].result.is_none() {
+                // More than one at a time only for threads that would have nothing to do.
+                let idle = self.threads.saturating_sub(self.waiting.len());
+                let more = self.points[point].requested + idle.max(1);
+                let more = more.min(self.plan.settings.max_replicates());
+                self.request(point, more);
+            }
+        }
+    }
+
+    /// Evaluates the stopping rule with the first replicates of a point, one more at a time: the smallest number that fulfils
+    /// it is the number of replicates.
+    fn evaluate_stopping(&mut self, point: usize) -> Option<PointResult> {
+        let settings = &self.plan.settings;
+        let state = &mut self.points[point];
+        let decided = |replicates, narrow| Some(PointResult { replicates, narrow });
+        let (Some(until), Some(decisive)) = (&settings.until, self.decisive) else {
+            return decided(state.requested, None);
+        };
+        let values: Vec<Option<f64>> = (0..state.requested)
+            .map(|replicate| self.results.value(point, replicate, decisive))
+            .collect();
+        for replicates in settings.min_replicates().max(state.evaluated + 1)..=state.requested {
+            let values: Vec<f64> = values[..replicates].iter().filter_map(|value| *value).collect();
+            state.half_width = Sample::of(&values, until.confidence).and_then(|sample| sample.half_width);
+            state.evaluated = replicates;
+            // Some runs may lack the quantity, and the interval of very few values can be narrow by chance.
+            let enough = values.len() >= settings.min_replicates();
+            if enough && state.half_width.is_some_and(|half| half <= until.half_width) {
+                return decided(replicates, Some(true));
+            }
+            if values.is_empty() {
+                return decided(replicates, Some(false));
+            }
+        }
+        match state.requested < settings.max_replicates() {
+            true => None,
+            false => decided(state.requested, Some(false)),
+        }
+    }
+
+    /// Calls `watch` with the progress of the study.
+    fn report(&mut self, watch: &mut dyn FnMut(&Progress)) {
+        let widths = self.points.iter().filter_map(|point| point.half_width);
+        self.progress.worst = widths.reduce(f64::max);
+        watch(&self.progress);
+    }
+
+    /// The results of the study. Replicates that were run and turned out not to be needed stay in the records alone.
+    fn results(self) -> StudyResults {
+        let orphaned_runs = self.orphaned_runs();
+        let points: Vec<PointResult> = self.points.into_iter().filter_map(|point| point.result).collect();
+        let mut runs = self.results.runs;
+        let replicates = |point: usize| points.get(point).map_or(0, |point| point.replicates);
+        runs.retain(|run, _| run.replicate < replicates(run.point));
+        StudyResults {
+            runs,
+            points,
+            orphaned_runs,
+        }
+    }
+
+    /// Number of recorded runs that no point could request, even with the most replicates.
+    fn orphaned_runs(&self) -> usize {
+        if self.records.len() == self.belonging.len() {
+            return 0;
+        }
+        let mut belonging = self.belonging.clone();
+        for run in self.plan.runs(self.plan.settings.max_replicates()) {
+            let id = self.plan.identity(run);
+            if self.records.get(&id).is_some() {
+                belonging.insert(id);
+            }
+        }
+        self.records.len() - belonging.len()
+    }
+}

@@ -1,0 +1,397 @@
+//! The study file: a base case, the axes that vary it, and the number of replicates.
+
+use std::collections::{BTreeSet, HashSet};
+use std::path::{Path, PathBuf};
+
+use serde::Deserialize;
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+use crate::axis::{self, Axis, AxisKeys};
+use crate::error::StudyError;
+use crate::input_copies::{self, Copy};
+use crate::summary_values::{REDUCTION, is_column, known};
+use slipfront_case::case_file::{
+    CASE_TABLES, CaseError, ParsedCase, STUDY_TABLES, Source, Tables, header_below, limit_nesting, names_of,
+    read_text, syntax_error, unknown_case_table, unknown_key,
+};
+
+/// A study file.
+#[derive(Clone, Debug)]
+pub struct StudyFile {
+    /// Name of the study and of its results.
+    pub name: String,
+    /// The case that the axes vary.
+    pub base: Base,
+    /// `[study]`.
+    pub settings: Settings,
+    /// `[[axes]]`, in the order of the file.
+    pub axes: Vec<Axis>,
+    /// The file as a table, for the copy in the results folder.
+    pub(crate) table: toml::Table,
+}
+
+/// The case that a study varies.
+#[derive(Clone, Debug)]
+pub struct Base {
+    /// Text of the case file.
+    pub text: String,
+    /// Its name in messages.
+    pub name: String,
+    /// The folder that the files it names are relative to.
+    pub folder: PathBuf,
+}
+
+impl Base {
+    /// The case file, parsed.
+    pub(crate) fn parse(&self) -> Result<ParsedCase<'_>, CaseError> {
+        ParsedCase::parse(&self.text, &self.name)
+    }
+}
+
+/// `[study]`: repetition, reference and what is kept.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Settings {
+    /// Runs per point; replicate r uses the seed of the case + r.
+    pub replicates: u32,
+    /// Keys of the case that reductions are measured against, at the same seed (Eq. 16).
+    pub reference: Option<toml::Table>,
+    /// Which run folders are kept.
+    pub keep: RetainRuns,
+    /// Adaptive replication, in place of `replicates`.
+    pub until: Option<StoppingRule>,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            replicates: 1,
+            reference: None,
+            keep: RetainRuns::None,
+            until: None,
+        }
+    }
+}
+
+/// Which run folders are kept beside the tables.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum RetainRuns {
+    /// Of every run, with fields and pictures.
+    All,
+    /// Of none.
+    None,
+    /// Of a run that failed, its case file.
+    Failed,
+}
+
+/// Replication until a confidence interval is narrow enough.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct StoppingRule {
+    /// Quantity of the summary, or `static_reduction_percent`.
+    pub key: String,
+    /// Half width that the interval must not exceed.
+    pub half_width: f64,
+    /// Its confidence.
+    #[serde(default = "default_confidence")]
+    pub confidence: f64,
+    /// Fewest replicates.
+    #[serde(default = "default_min")]
+    pub min: u32,
+    /// Most replicates.
+    pub max: u32,
+}
+
+fn default_confidence() -> f64 {
+    CONFIDENCE
+}
+
+fn default_min() -> u32 {
+    3
+}
+
+/// Confidence of intervals where the study asks for no other.
+pub(crate) const CONFIDENCE: f64 = 0.95;
+
+/// Most points that are listed.
+const MAX_POINTS: usize = 1_000_000;
+
+/// Most replicates of a point.
+const MAX_REPLICATES: u32 = 100_000;
+
+impl Settings {
+    /// Confidence of all intervals.
+    pub fn confidence(&self) -> f64 {
+        self.until.as_ref().map_or(CONFIDENCE, |until| until.confidence)
+    }
+
+    /// Replicates that every point has at the least.
+    pub fn min_replicates(&self) -> usize {
+        self.until.as_ref().map_or(self.replicates, |until| until.min) as usize
+    }
+
+    /// Replicates that a point has at the most.
+    pub fn max_replicates(&self) -> usize {
+        self.until.as_ref().map_or(self.replicates, |until| until.max) as usize
+    }
+
+    fn check(&self, source: &Source) -> Result<(), CaseError> {
+        let refuse = |key: &str, sentence: String| Err(source.error(&format!("study.{key}"), sentence));
+        let replicates = self.replicates;
+        if !(1..=MAX_REPLICATES).contains(&replicates) {
+            let sentence = format!("`replicates` = {replicates} must lie between 1 and {MAX_REPLICATES}");
+            return refuse("replicates", sentence);
+        }
+        let mut reference = self.reference.iter().flat_map(axis::overrides);
+        if reference.any(|set| set.key() == "friction.seed") {
+            let sentence =
+                "a reduction is that against the same surface: leave `friction.seed` out of the reference";
+            return refuse("reference", sentence.to_owned());
+        }
+        let Some(until) = &self.until else {
+            return Ok(());
+        };
+        if source.has("study.replicates") {
+            let sentence = "`replicates` and `until` exclude each other: keep one";
+            return refuse("replicates", sentence.to_owned());
+        }
+        let StoppingRule {
+            key,
+            half_width,
+            confidence,
+            min,
+            max,
+        } = until;
+        if !(*half_width > 0.0 && half_width.is_finite()) {
+            let sentence = format!("`half_width` = {half_width} must be more than 0");
+            return refuse("until.half_width", sentence);
+        }
+        if !(*confidence > 0.0 && *confidence < 1.0) {
+            let sentence = format!("`confidence` = {confidence} must lie between 0 and 1, such as 0.95");
+            return refuse("until.confidence", sentence);
+        }
+        if !(2..=*max).contains(min) || *max > MAX_REPLICATES {
+            let sentence = format!(
+                "`min` = {min} and `max` = {max} must rise from 2 to at most {MAX_REPLICATES}: one run has no interval"
+            );
+            return refuse("until.min", sentence);
+        }
+        if key == REDUCTION && self.reference.is_none() {
+            let sentence = format!("`{key}` needs a `reference` to be reduced from");
+            return refuse("until.key", sentence);
+        }
+        if !known().contains(key) {
+            let sentence = format!(
+                "`{key}` is no number of a summary: take one such as static_friction_star, kinetic_friction_star or {REDUCTION}"
+            );
+            return refuse("until.key", sentence);
+        }
+        Ok(())
+    }
+}
+
+impl StudyFile {
+    /// The study with its base case inside and its files beside it, for the results folder.
+    pub(crate) fn portable(&self) -> Result<(String, Vec<Copy>), StudyError> {
+        let source = Source::new(&self.base.name, &self.base.text);
+        let base: Result<toml::Table, _> = limit_nesting(&source, 0, &self.base.text)?.parse();
+        let base = base.map_err(|error| syntax_error(&source, 0, &error))?;
+        let mut table = toml::Table::from_iter([("base".to_owned(), base.into())]);
+        table.extend(self.table.clone().into_iter().filter(|(key, _)| key != "base"));
+        let copies = input_copies::copy(&mut table, &self.base.folder)?;
+        Ok((portable_text(table)?, copies))
+    }
+
+    /// Whether it has anything of a study: an empty file is one, too, and varies nothing.
+    pub fn is_study(&self) -> bool {
+        !self.table.is_empty()
+    }
+
+    /// Whether its base is a file of its own, and not a table in it.
+    pub fn has_base_file(&self) -> bool {
+        self.table.get("base").is_some_and(toml::Value::is_str)
+    }
+
+    /// Points of the whole study, if they are not too many.
+    pub fn count_points(&self) -> Result<usize, StudyError> {
+        count_points(&self.axes)
+    }
+
+    /// Runs of the whole study at the most; references that points share are counted for each.
+    pub fn count_runs(&self) -> Result<u64, StudyError> {
+        let roles = 1 + u64::from(self.settings.reference.is_some());
+        Ok(self.count_points()? as u64 * self.settings.max_replicates() as u64 * roles)
+    }
+
+    /// Loads a study file; a base case that it names stands relative to it.
+    pub fn load(path: &Path) -> Result<Self, StudyError> {
+        let text = read_text(path)?;
+        let stem = path.file_stem();
+        let name = stem.map_or_else(|| "study".into(), |stem| stem.to_string_lossy());
+        let folder = path.parent().unwrap_or(Path::new(""));
+        Self::parse(&text, &path.display().to_string(), &name, folder)
+    }
+
+    /// Reads a study file called `file` in messages; a base case that it names stands relative to `folder`.
+    pub fn parse(text: &str, file: &str, name: &str, folder: &Path) -> Result<Self, StudyError> {
+        let mut source = Source::new(file, text);
+        let root = DeTable::parse(limit_nesting(&source, 0, text)?);
+        let root = root
+            .map_err(|error| syntax_error(&source, 0, &error))?
+            .into_inner();
+        source.note_places(&root);
+        let mut tables = Tables {
+            root,
+            source: &source,
+        };
+        let base = read_base(&mut tables, file, folder)?;
+        let settings: Settings = tables.read("study")?;
+        settings.check(&source)?;
+        let axes = read_axes(&mut tables)?;
+        refuse_rest(&tables)?;
+        refuse_conflicts(&axes, &source)?;
+        // The text has been read as TOML once, so that it is a table.
+        let table = text.parse().map_err(|error| syntax_error(&source, 0, &error))?;
+        Ok(Self {
+            name: name.to_owned(),
+            base,
+            settings,
+            axes,
+            table,
+        })
+    }
+}
+
+/// Refuses the first table or key of the file that a study has no use for.
+fn refuse_rest(tables: &Tables) -> Result<(), CaseError> {
+    let Some(key) = tables.root.keys().min_by_key(|key| key.span().start) else {
+        return Ok(());
+    };
+    let name = key.get_ref().as_ref();
+    let sentence = if names_of::<Settings>().contains(&name) {
+        format!("`{name}` stands outside its table: it belongs in [study]")
+    } else if CASE_TABLES.contains(&name) {
+        let [key, below] = ["", "base."].map(|above| header_below(above, name));
+        format!(
+            "{key} belongs in a case file, which `slipfront run` runs: in a study file, write {below}, or name the case \
+             file with `base`"
+        )
+    } else {
+        unknown_key(name, "a study file", &STUDY_TABLES)
+    };
+    Err(tables.source.error_at(key.span(), sentence))
+}
+
+/// The text of a study. What stands in an axis or under `[study]` keeps its order, which is that of columns and points: a
+/// table in full would have its lists of tables behind all else.
+fn portable_text(mut study: toml::Table) -> Result<String, CaseError> {
+    let mut text = String::new();
+    if let Some(base) = study.remove("base") {
+        text += &toml::to_string(&toml::Table::from_iter([("base".to_owned(), base)]))?;
+    }
+    for (name, value) in study {
+        let (header, tables) = match value {
+            toml::Value::Array(tables) => (format!("[[{name}]]"), tables),
+            table => (format!("[{name}]"), vec![table]),
+        };
+        for table in tables {
+            text += &format!("\n{header}\n");
+            for (key, value) in table.as_table().into_iter().flatten() {
+                text += &format!("{key} = {value}\n");
+            }
+        }
+    }
+    Ok(text)
+}
+
+fn read_base(tables: &mut Tables, file: &str, folder: &Path) -> Result<Base, StudyError> {
+    let folder = folder.to_owned();
+    let Some(value) = tables.root.remove("base") else {
+        // Without a base the baseline is varied.
+        let (text, name) = (String::new(), format!("{file} [base]"));
+        return Ok(Base { text, name, folder });
+    };
+    let span = value.span();
+    match value.into_inner() {
+        DeValue::String(path) => {
+            let path = folder.join(path.as_ref());
+            let text = read_text(&path).map_err(|error| tables.source.error_at(span, error.to_string()))?;
+            let folder = path.parent().unwrap_or(Path::new("")).to_owned();
+            let name = path.display().to_string();
+            Ok(Base { text, name, folder })
+        }
+        table @ DeValue::Table(_) => {
+            let table: toml::Table = tables.read_table(Spanned::new(span, table), "[base]")?;
+            let text = toml::to_string(&table).map_err(CaseError::from)?;
+            let name = format!("[base] of {file}");
+            Ok(Base { text, name, folder })
+        }
+        _ => {
+            let sentence = "`base` must be the path of a case file, or a table [base] that holds its keys";
+            Err(tables.source.error_at(span, sentence))?
+        }
+    }
+}
+
+fn read_axes(tables: &mut Tables) -> Result<Vec<Axis>, StudyError> {
+    let Some(value) = tables.root.remove("axes") else {
+        return Ok(Vec::new());
+    };
+    let span = value.span();
+    let DeValue::Array(values) = value.into_inner() else {
+        let sentence = "`axes` must be a list of tables: write [[axes]] above the keys of each";
+        return Err(tables.source.error_at(span, sentence))?;
+    };
+    let mut axes: Vec<Axis> = Vec::new();
+    for value in values {
+        let span = value.span();
+        let keys: AxisKeys = tables.read_table(value, "[[axes]]")?;
+        let axis = Axis::new(keys).map_err(|sentence| tables.source.error_at(span, sentence))?;
+        axes.push(axis);
+        // A line of the file makes up to 100 000 levels: too many are noticed before more are made.
+        count_points(&axes)?;
+    }
+    Ok(axes)
+}
+
+/// The product of the axes.
+fn count_points(axes: &[Axis]) -> Result<usize, StudyError> {
+    let mut counts = axes.iter().map(|axis| axis.levels.len());
+    let product = counts.try_fold(1usize, usize::checked_mul);
+    let product = product.filter(|&count| count <= MAX_POINTS);
+    product.ok_or(StudyError::TooLarge { limit: MAX_POINTS })
+}
+
+/// Refuses axes that overwrite each other, and columns that another column of the tables has the name of.
+fn refuse_conflicts(axes: &[Axis], source: &Source) -> Result<(), CaseError> {
+    let (mut columns, mut keys) = (HashSet::new(), BTreeSet::new());
+    for (k, axis) in axes.iter().enumerate() {
+        let refuse = |sentence: String| Err(source.error(&format!("axes.{k}"), sentence));
+        let has_table = |key: &&str| key.contains('.') || CASE_TABLES.contains(key);
+        if let Some(key) = axis.keys().into_iter().find(|key| !has_table(key)) {
+            return refuse(unknown_case_table(key));
+        }
+        for column in &axis.columns {
+            if is_column(column) {
+                return refuse(format!(
+                    "the tables have a column `{column}` already: give the axis another name"
+                ));
+            }
+            if !columns.insert(column) {
+                return refuse(format!("`{column}` stands on two axes: keep one of them"));
+            }
+        }
+        for key in axis.keys() {
+            if let Some(earlier) = axis::replaced_key(key, &keys) {
+                return refuse(format!(
+                    "this axis sets `{key}`, which leaves nothing of `{earlier}` of an axis before it: put it before \
+                     that one, or keep one of them"
+                ));
+            }
+        }
+        keys.extend(axis.keys());
+    }
+    Ok(())
+}

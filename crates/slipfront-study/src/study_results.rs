@@ -1,0 +1,109 @@
+//! Results of a study: of every run, and of every point.
+
+use std::collections::BTreeMap;
+
+use crate::plan::{Plan, Role, RunKey};
+use crate::record::RunResult;
+use crate::statistics::Sample;
+use crate::summary_values::{Quantity, REDUCTION, reduction_percent};
+
+/// How many runs of a study are done.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Progress {
+    /// Runs done, those of earlier processes included.
+    pub done: usize,
+    /// Runs known to be needed. The number grows while intervals are too wide.
+    pub total: usize,
+    /// Runs that this process has done.
+    pub here: usize,
+    /// Failed runs.
+    pub failed: usize,
+    /// The largest half width of an interval so far, of the quantity that decides on replication.
+    pub worst: Option<f64>,
+}
+
+/// The results of a study.
+#[derive(Clone, Debug, Default)]
+pub struct StudyResults {
+    /// The result of every run that the tables hold.
+    pub runs: BTreeMap<RunKey, RunResult>,
+    /// The result of each point of the plan.
+    pub points: Vec<PointResult>,
+    /// Number of recorded runs that are not part of the study as it is now.
+    pub orphaned_runs: usize,
+}
+
+/// Replication of a point.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PointResult {
+    /// Number of replicates in the tables.
+    pub replicates: usize,
+    /// Whether the confidence interval is as narrow as the study asks; none if it does not ask.
+    pub narrow: Option<bool>,
+}
+
+impl StudyResults {
+    /// A quantity of a replicate of a point. A reduction is against the reference of the same seed.
+    pub fn value(&self, point: usize, replicate: usize, quantity: Quantity) -> Option<f64> {
+        let values = |role| {
+            let run = RunKey {
+                point,
+                replicate,
+                role,
+            };
+            self.runs.get(&run)?.as_ref().ok()
+        };
+        match quantity {
+            Quantity::Number(position) => values(Role::Point)?.get(position),
+            Quantity::Reduction => reduction_percent(values(Role::Point)?, values(Role::Reference)?),
+        }
+    }
+
+    /// Statistics of a quantity at the point at `position` of the plan; none if no run has a value.
+    pub fn sample(&self, plan: &Plan, position: usize, name: &str) -> Option<Sample> {
+        let quantity = Quantity::named(name)?;
+        let replicates = 0..self.points.get(position)?.replicates;
+        let values: Vec<f64> = replicates
+            .filter_map(|replicate| self.value(position, replicate, quantity))
+            .collect();
+        Sample::of(&values, plan.settings.confidence())
+    }
+
+    /// Runs without a transition, which have no static friction and no reduction.
+    pub fn without_transition(&self) -> impl Iterator<Item = RunKey> {
+        self.runs
+            .keys()
+            .copied()
+            .filter(|run| self.is_without_transition(*run))
+    }
+
+    /// How many replicates of the point at `position` of the plan a quantity lacks because a run that it is taken from has no transition: that of
+    /// the point or, for a reduction, its reference. Of quantities that do not need one too, it is the number of such runs of the point.
+    pub fn runs_without_transition(&self, position: usize, name: &str) -> usize {
+        let replicates = self.points.get(position).map_or(0, |point| point.replicates);
+        let roles = match name == REDUCTION {
+            true => &[Role::Point, Role::Reference][..],
+            false => &[Role::Point],
+        };
+        let is_without = |replicate: usize| {
+            let run = |role: &Role| RunKey {
+                point: position,
+                replicate,
+                role: *role,
+            };
+            roles.iter().any(|role| self.is_without_transition(run(role)))
+        };
+        (0..replicates).filter(|replicate| is_without(*replicate)).count()
+    }
+
+    fn is_without_transition(&self, run: RunKey) -> bool {
+        let result = self.runs.get(&run);
+        result.is_some_and(|result| result.as_ref().is_ok_and(|values| !values.transition))
+    }
+
+    /// Failed runs and the reasons.
+    pub fn failures(&self) -> impl Iterator<Item = (RunKey, &str)> {
+        let runs = self.runs.iter();
+        runs.filter_map(|(run, result)| Some((*run, result.as_ref().err()?.as_str())))
+    }
+}

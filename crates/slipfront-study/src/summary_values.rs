@@ -1,0 +1,262 @@
+//! The numbers of a summary by name, for tables and statistics, and the other columns of these.
+
+use std::collections::HashMap;
+use std::sync::LazyLock;
+
+use serde_json::Value;
+
+use slipfront_run::summary::{PrecursorSummary, Summary};
+
+/// Reduction of mu_s* against the reference of the same seed, % (Eq. 16).
+pub const REDUCTION: &str = "static_reduction_percent";
+
+/// Entries of a summary that are not numbers, and the seed, whose mean has no meaning.
+const NOT_QUANTITIES: [&str; 10] = [
+    "kinetic_window_star",
+    "instants",
+    "si",
+    "nucleations",
+    "motion",
+    "precursors",
+    "cycles",
+    "warnings",
+    "version",
+    "seed",
+];
+
+/// Numbers of a slider that is driven at an edge. Tables have them only if one of their runs has them.
+const OF_PRECURSORS: [(&str, NumberOf); 3] = [
+    ("precursor_count", |precursors| {
+        Some(precursors.precursor_count as f64)
+    }),
+    ("precursor_length_max", |precursors| {
+        precursors.precursor_length_max
+    }),
+    ("nucleation_load_ratio", |precursors| {
+        precursors.nucleation_load_ratio
+    }),
+];
+
+/// Numbers that the first peak of mu* defines. A run without a transition has none of them, whatever its summary says: its largest mu* is
+/// its `mu_star_max`.
+const OF_PEAK: [&str; 5] = [
+    "static_friction_star",
+    "static_friction",
+    "static_lateral_friction_star",
+    "onset_time_star",
+    "onset_time_s",
+];
+
+/// Numbers of the kinetic window. A run without a transition has them only if the window begins after its largest mu*: before that, mu* may
+/// still rise to the onset.
+const OF_KINETIC_WINDOW: [&str; 5] = [
+    "kinetic_friction_star",
+    "kinetic_friction_star_uncertainty",
+    "kinetic_friction",
+    "kinetic_lateral_friction_star",
+    "sliding_percent_kinetic",
+];
+
+/// Whether a quantity belongs to runs with a transition alone.
+pub(crate) fn needs_transition(name: &str) -> bool {
+    name == REDUCTION || OF_PEAK.contains(&name)
+}
+
+type NumberOf = fn(&PrecursorSummary) -> Option<f64>;
+
+/// Whether tables have the quantity of this name only if one of their runs has it.
+pub(crate) fn is_optional(name: &str) -> bool {
+    OF_PRECURSORS.iter().any(|(optional, _)| *optional == name)
+}
+
+/// Names of all numbers, in the order of the summary, then of its precursors; the reduction comes last.
+pub fn known() -> &'static [String] {
+    static KNOWN: LazyLock<Vec<String>> = LazyLock::new(|| {
+        let names = named(&Summary::default()).into_iter().map(|(name, _)| name);
+        names.chain([REDUCTION.to_owned()]).collect()
+    });
+    &KNOWN
+}
+
+/// Columns of `runs.csv` before those of the axes, and after them, before the quantities.
+pub(crate) const BEFORE_AXES: [&str; 3] = ["point", "replicate", "role"];
+pub(crate) const AFTER_AXES: [&str; 4] = ["seed", "run", "status", "reason"];
+
+/// Columns of `points.csv` after those of the axes.
+pub(crate) const STATISTICS: [&str; 10] = [
+    "quantity",
+    "n",
+    "mean",
+    "deviation",
+    "low",
+    "high",
+    "min",
+    "max",
+    "narrow_enough",
+    "runs_without_transition",
+];
+
+/// Whether the tables have a column of this name beside those of the axes: an axis cannot have it.
+pub fn is_column(name: &str) -> bool {
+    let fixed = [&BEFORE_AXES[..], &AFTER_AXES, &STATISTICS].concat();
+    fixed.contains(&name) || known().iter().any(|known| known == name)
+}
+
+/// A quantity of a run, or of a run and its reference.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Quantity {
+    /// Position in the summary.
+    Number(usize),
+    /// The reduction of static friction (Eq. 16).
+    Reduction,
+}
+
+impl Quantity {
+    /// The quantity of this name, if there is one.
+    pub fn named(name: &str) -> Option<Self> {
+        if name == REDUCTION {
+            return Some(Self::Reduction);
+        }
+        known().iter().position(|known| known == name).map(Self::Number)
+    }
+}
+
+/// The numbers of a summary in the order of [`known`]: the part of it that tables and statistics need. Numbers that only some
+/// summaries have are not among them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SummaryValues {
+    values: Box<[Option<f64>]>,
+    /// mu_s*; none without a transition.
+    static_friction_star: Option<f64>,
+    /// Whether the run had a transition from static to kinetic friction.
+    pub(crate) transition: bool,
+}
+
+impl SummaryValues {
+    pub(crate) fn of(summary: &Summary) -> Self {
+        let found: HashMap<_, _> = named(summary).into_iter().collect();
+        let slides = summary
+            .kinetic_window_star
+            .is_some_and(|[from, _]| from > summary.onset_time_star);
+        let counts = |name: &str| {
+            summary.transition || !(OF_PEAK.contains(&name) || (OF_KINETIC_WINDOW.contains(&name) && !slides))
+        };
+        let known = known().iter().map(String::as_str);
+        let values = known.map(|name| found.get(name).copied().flatten().filter(|_| counts(name)));
+        Self {
+            values: values.collect(),
+            static_friction_star: summary.transition.then_some(summary.static_friction_star),
+            transition: summary.transition,
+        }
+    }
+
+    /// Number at a position; none where the summary has none.
+    pub(crate) fn get(&self, position: usize) -> Option<f64> {
+        self.values.get(position).copied().flatten()
+    }
+}
+
+/// The numbers of a summary and their names; true and false are 1 and 0.
+fn named(summary: &Summary) -> Vec<(String, Option<f64>)> {
+    let Ok(Value::Object(fields)) = serde_json::to_value(summary) else {
+        return Vec::new();
+    };
+    let number = |value: Value| match value {
+        Value::Bool(yes) => Some(f64::from(u8::from(yes))),
+        value => value.as_f64(),
+    };
+    let fields = fields.into_iter();
+    let kept = fields.filter(|(name, _)| !NOT_QUANTITIES.contains(&name.as_str()));
+    let numbers = kept.map(|(name, value)| (name, number(value)));
+    let precursors = OF_PRECURSORS.map(|(name, number_of)| {
+        let precursors = summary.precursors.as_ref();
+        (name.to_owned(), precursors.and_then(number_of))
+    });
+    numbers.chain(precursors).collect()
+}
+
+/// Reduction of mu_s* in % (Eq. 16), both runs on the same random surface; none unless both have a transition:
+///
+/// ```text
+/// 100 (mu_s*(reference) - mu_s*)/mu_s*(reference)
+/// ```
+pub(crate) fn reduction_percent(point: &SummaryValues, reference: &SummaryValues) -> Option<f64> {
+    let (point, reference) = (point.static_friction_star?, reference.static_friction_star?);
+    Some(100.0 * (reference - point) / reference)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_number_that_few_summaries_have_shifts_no_other() {
+        let plain = Summary {
+            work_j: 2.0,
+            energy_error: 0.5,
+            steps: 7,
+            ..Summary::default()
+        };
+        let viscous = Summary {
+            viscous_loss_j: Some(3.0),
+            ..plain.clone()
+        };
+        assert_eq!(SummaryValues::of(&viscous), SummaryValues::of(&plain));
+        let Some(Quantity::Number(position)) = Quantity::named("steps") else {
+            panic!("a summary has a number of steps")
+        };
+        assert_eq!(SummaryValues::of(&viscous).get(position), Some(7.0));
+    }
+
+    /// Numbers that have a value in a run of this kind.
+    fn values_of(transition: bool, window_from: f64) -> SummaryValues {
+        SummaryValues::of(&Summary {
+            transition,
+            static_friction_star: 0.6,
+            static_friction: 0.3,
+            mu_star_max: 0.6,
+            onset_time_star: 120.0,
+            first_slip_time_star: Some(80.0),
+            kinetic_friction_star: Some(0.5),
+            kinetic_window_star: Some([window_from, 500.0]),
+            ..Summary::default()
+        })
+    }
+
+    fn number(values: &SummaryValues, name: &str) -> Option<f64> {
+        match Quantity::named(name) {
+            Some(Quantity::Number(position)) => values.get(position),
+            other => panic!("{name}: {other:?}"),
+        }
+    }
+
+    #[test]
+    fn what_the_peak_defines_is_empty_without_a_transition() {
+        let (with, without) = (values_of(true, 200.0), values_of(false, 200.0));
+        for name in OF_PEAK {
+            assert!(number(&with, name).is_some(), "{name}");
+            assert_eq!(number(&without, name), None, "{name}");
+        }
+        for name in [
+            "mu_star_max",
+            "first_slip_time_star",
+            "kinetic_friction_star",
+            "transition",
+        ] {
+            assert!(number(&without, name).is_some(), "{name}");
+        }
+        assert_eq!(reduction_percent(&with, &with), Some(0.0));
+        assert_eq!(reduction_percent(&with, &without), None);
+        assert_eq!(reduction_percent(&without, &with), None);
+    }
+
+    /// While mu* still rises to the onset, its mean is no kinetic friction.
+    #[test]
+    fn a_kinetic_window_before_the_largest_mu_star_is_none_without_a_transition() {
+        assert_eq!(number(&values_of(false, 100.0), "kinetic_friction_star"), None);
+        assert_eq!(
+            number(&values_of(true, 100.0), "kinetic_friction_star"),
+            Some(0.5)
+        );
+    }
+}

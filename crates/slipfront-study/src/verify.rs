@@ -1,0 +1,184 @@
+//! Holds the folder of a study against the tables and pictures that its records give, and the folders of the runs that it kept against
+//! their manifests.
+
+use std::collections::HashSet;
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
+
+use slipfront_case::number_format::{are, count};
+use slipfront_case::unfinished::{TemporaryFolder, is_unfinished};
+use slipfront_run::manifest::ManifestFile;
+use slipfront_run::names::RUNS;
+use slipfront_run::run_folder::error::FolderError;
+use slipfront_run::verify::{
+    Verdict, VerifyError, differences, first_line, inspect, unlisted_files, verify_run,
+};
+use thiserror::Error;
+
+use crate::error::{StudyError, of_others};
+use crate::execute::collect;
+use crate::folder::{StudyFolder, study_of, write};
+use crate::journal::Records;
+use crate::plan::Plan;
+use crate::study_file::RetainRuns;
+use crate::study_results::StudyResults;
+
+/// The folder of a study that cannot be verified.
+#[derive(Debug, Error)]
+#[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
+pub enum VerifyStudyError {
+    #[error(
+        "the study in {path} lacks {}{}: finish it, or merge it with its other shards, and verify it then",
+        count(*runs, "run"),
+        of_others(*others)
+    )]
+    Unfinished {
+        path: PathBuf,
+        runs: usize,
+        others: usize,
+    },
+    #[error(transparent)]
+    Study(#[from] StudyError),
+    #[error(transparent)]
+    Run(#[from] VerifyError),
+    #[error(transparent)]
+    Folder(#[from] FolderError),
+    #[error("cannot make a folder to compare with: {0}; name one that is writable in TMPDIR")]
+    Temporary(std::io::Error),
+}
+
+/// Whether a study has been run in the folder.
+pub fn has_records(folder: &Path) -> bool {
+    crate::folder::is_study(folder) && folder.join(Records::FILE).exists()
+}
+
+/// Verifies the folder of a run or of a study that was finished.
+pub fn verify(folder: &Path) -> Result<Verdict, VerifyStudyError> {
+    if has_records(folder) {
+        verify_study(folder)
+    } else {
+        Ok(verify_run(&inspect(folder)?)?)
+    }
+}
+
+/// Makes tables and pictures of a study again from its records, and holds the folder against them; then its run
+/// folders against their manifests.
+fn verify_study(folder: &Path) -> Result<Verdict, VerifyStudyError> {
+    let mut verdict = Verdict::default();
+    let made = study_of(folder).and_then(|file| Ok((Plan::new(&file, None)?, file)));
+    let (plan, file) = match made {
+        Ok(made) => made,
+        Err(error) => {
+            let (path, line) = (folder.join("study.toml"), first_line(&error));
+            let difference = format!("{} is no study for this version: {line}", path.display());
+            verdict.differences.push(difference);
+            return Ok(verdict);
+        }
+    };
+    plan.check_memory(0)?;
+    let temporary = TemporaryFolder::new(folder).map_err(VerifyStudyError::Temporary)?;
+    let mut again = StudyFolder::open(temporary.path(), &file)?;
+    again.records.merge(folder)?;
+    let records = folder.join(Records::FILE);
+    let (damaged, records) = (again.records.damaged, records.display());
+    let results = match collect(&plan, &again.records) {
+        Ok(results) => results,
+        Err(StudyError::Missing { runs, others }) if damaged == 0 => {
+            let path = folder.to_owned();
+            return Err(VerifyStudyError::Unfinished { path, runs, others });
+        }
+        // What its tables should be is lost with the damaged lines.
+        Err(StudyError::Missing { .. }) => {
+            let damage = format!("{records} differs: it has {}", count(damaged, "damaged line"));
+            verdict.differences.push(damage);
+            return Ok(verdict);
+        }
+        Err(error) => return Err(error.into()),
+    };
+    write(&plan, &results, &again)?;
+    let mut files = files_below(temporary.path(), "").map_err(VerifyStudyError::Temporary)?;
+    files.retain(|file| file.name != Records::FILE);
+    let differ = differences(&files, folder, "follow from the records");
+    verdict.differences.extend(differ);
+    let is_left = |name: &str| name.rsplit('/').next().is_some_and(is_unfinished);
+    let known = files.iter().map(|file| file.name.as_str());
+    let known = known.chain([Records::FILE, RUNS]).collect();
+    verdict.notes = unlisted_files(folder, &known, is_left);
+    if damaged > 0 {
+        let damage = format!(
+            "{records} has {}, whose runs are recorded once more or not needed",
+            count(damaged, "damaged line")
+        );
+        verdict.notes.push(damage);
+    }
+    let kept = verify_kept(folder, &plan, &results, &mut verdict)?;
+    verdict.what = format!(
+        "tables and pictures as its {} give them, {} as they were written",
+        count(again.records.len(), "recorded run"),
+        count(kept, "run folder")
+    );
+    Ok(verdict)
+}
+
+/// Verifies the run folders that a study has kept; gives their number.
+fn verify_kept(
+    folder: &Path,
+    plan: &Plan,
+    results: &StudyResults,
+    verdict: &mut Verdict,
+) -> Result<usize, VerifyStudyError> {
+    let runs = folder.join(RUNS);
+    let unreadable = FolderError::read(&runs);
+    let entries = match std::fs::read_dir(&runs) {
+        Ok(entries) => Some(entries),
+        Err(error) if error.kind() == ErrorKind::NotFound => None,
+        Err(error) => return Err(unreadable(error).into()),
+    };
+    // Of a run that failed the case alone is kept.
+    let done = results.runs.iter().filter(|(_, result)| result.is_ok());
+    let done: HashSet<String> = done.map(|(run, _)| plan.folder_name(*run)).collect();
+    let (mut kept, mut missing) = (0, done.clone());
+    for entry in entries.into_iter().flatten() {
+        let entry = entry.map_err(&unreadable)?;
+        let is_done = missing.remove(&*entry.file_name().to_string_lossy());
+        if !is_done && !entry.path().is_dir() {
+            continue;
+        }
+        match inspect(&entry.path()).and_then(|run| verify_run(&run)) {
+            Ok(of_run) => {
+                verdict.differences.extend(of_run.differences);
+                verdict.notes.extend(of_run.notes);
+                kept += 1;
+            }
+            Err(error) if is_done => verdict.differences.push(error.to_string()),
+            Err(_) => {}
+        }
+    }
+    // They may have been removed on purpose, or have run before the study was told to keep them.
+    if plan.settings.keep == RetainRuns::All && !missing.is_empty() {
+        verdict.notes.push(format!(
+            "{} of {} not in {}, where the study keeps all",
+            missing.len(),
+            are(done.len(), "run folder"),
+            runs.display()
+        ));
+    }
+    Ok(kept)
+}
+
+/// Every file below a folder, named by its path from there.
+fn files_below(folder: &Path, prefix: &str) -> std::io::Result<Vec<ManifestFile>> {
+    let mut files = Vec::new();
+    for entry in std::fs::read_dir(folder.join(prefix))? {
+        let entry = entry?;
+        let name = Path::new(prefix).join(entry.file_name());
+        let name = name.to_string_lossy().into_owned();
+        if entry.file_type()?.is_dir() {
+            files.extend(files_below(folder, &name)?);
+        } else {
+            files.push(ManifestFile::of(folder, &name)?);
+        }
+    }
+    files.sort_by(|a, b| a.name.cmp(&b.name));
+    Ok(files)
+}

@@ -1,0 +1,391 @@
+//! What a run takes is what was said before it began.
+
+#![allow(clippy::unwrap_used)] // A helper that cannot do its work fails its test.
+
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+
+use png::{BitDepth, ColorType, Encoder};
+use slipfront::communicator::{Alone, Threads};
+use slipfront_case::case::{Case, Ranks};
+use slipfront_case::case_file::CaseFile;
+use slipfront_run::checkpoint::Checkpoints;
+use slipfront_run::run_folder::RunFolder;
+use slipfront_run::run_folder::unfinished::Unfinished;
+use slipfront_run::running::Running;
+use slipfront_run::{pictures, results, running};
+use slipfront_study as study;
+use slipfront_study::{Plan, Records, StudyFile};
+
+/// The system's allocator, counting bytes of all threads.
+struct Counting;
+
+static LIVE: AtomicUsize = AtomicUsize::new(0);
+static PEAK: AtomicUsize = AtomicUsize::new(0);
+
+fn grow(bytes: usize) {
+    let live = LIVE.fetch_add(bytes, Ordering::Relaxed) + bytes;
+    PEAK.fetch_max(live, Ordering::Relaxed);
+}
+
+#[allow(unsafe_code)] // A global allocator cannot be written otherwise; all work is the system's.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        grow(layout.size());
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, block: *mut u8, layout: Layout) {
+        LIVE.fetch_sub(layout.size(), Ordering::Relaxed);
+        unsafe { System.dealloc(block, layout) }
+    }
+
+    unsafe fn alloc_zeroed(&self, layout: Layout) -> *mut u8 {
+        grow(layout.size());
+        unsafe { System.alloc_zeroed(layout) }
+    }
+
+    unsafe fn realloc(&self, block: *mut u8, layout: Layout, size: usize) -> *mut u8 {
+        LIVE.fetch_sub(layout.size(), Ordering::Relaxed);
+        grow(size);
+        unsafe { System.realloc(block, layout, size) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+/// Most bytes in use at once during some work.
+fn peak<T>(work: impl FnOnce() -> T) -> (f64, T) {
+    PEAK.store(LIVE.load(Ordering::Relaxed), Ordering::Relaxed);
+    let done = work();
+    (PEAK.load(Ordering::Relaxed) as f64, done)
+}
+
+/// The program itself, which no allocator sees.
+const PROGRAM: f64 = 8.0 * 1024.0 * 1024.0;
+
+/// Whether what is said is not so much more than is taken that a run is refused which there is room for.
+fn is_near(said: f64, taken: f64) -> bool {
+    said <= 1.5 * (taken + PROGRAM)
+}
+
+/// No less than is taken, and near it.
+fn assert_honest(what: &str, said: f64, taken: f64) {
+    let [shown_said, shown_taken] = [said, taken].map(|bytes| bytes / 1e6);
+    assert!(
+        said >= taken,
+        "{what}: {shown_said} MB said, {shown_taken} MB taken"
+    );
+    assert!(
+        is_near(said, taken),
+        "{what}: {shown_said} MB said, only {shown_taken} MB taken"
+    );
+}
+
+/// The same of work that draws two pictures at once, and gives what was said and taken. Whether the largest of two pictures meet is up
+/// to the system, as on a busy machine on which one waits for the other: they may, and the most of some tries tells.
+fn assert_honest_drawing(what: &str, mut work: impl FnMut() -> (f64, f64)) {
+    let (said, mut taken) = work();
+    for _ in 0..9 {
+        if !is_near(said, taken) {
+            taken = taken.max(work().1);
+        }
+    }
+    assert_honest(what, said, taken);
+}
+
+/// A `.npy` file of 400 x 400 values.
+fn npy(descr: &str, data: impl Iterator<Item = u8>) -> Vec<u8> {
+    let mut text = format!("{{'descr': '{descr}', 'fortran_order': False, 'shape': (400, 400), }}");
+    text += &" ".repeat(118 - 1 - text.len());
+    let mut bytes = b"\x93NUMPY\x01\x00\x76\x00".to_vec();
+    bytes.extend(text.bytes().chain(*b"\n").chain(data));
+    bytes
+}
+
+/// Files that are read: coefficients and a mask of 400 x 400 blocks, and a mask of 4000 x 4000 pixels, half of each.
+fn write_inputs(folder: &Path) {
+    let blocks = 400 * 400;
+    let mu = npy("<f8", (0..blocks).flat_map(|_| 0.9f64.to_le_bytes()));
+    std::fs::write(folder.join("mu.npy"), mu).unwrap();
+    let mask = npy("|u1", (0..blocks).map(|block| u8::from(2 * block < blocks)));
+    std::fs::write(folder.join("mask.npy"), mask).unwrap();
+    let file = std::fs::File::create(folder.join("mask.png")).unwrap();
+    let mut encoder = Encoder::new(file, 4000, 4000);
+    encoder.set_color(ColorType::Grayscale);
+    encoder.set_depth(BitDepth::One);
+    let mut writer = encoder.write_header().unwrap();
+    // The top row comes first, of the largest y: bright above, dark below, where the array is textured too.
+    let rows = [vec![255; 500 * 2000], vec![0; 500 * 2000]].concat();
+    writer.write_image_data(&rows).unwrap();
+    writer.finish().unwrap();
+}
+
+/// The allocator counts for the whole process: one test, one thing after the other.
+#[test]
+fn what_is_said_is_what_is_taken() {
+    let folder = tempfile::tempdir().unwrap();
+    write_inputs(folder.path());
+    for sets in [
+        // Pictures, and the rows of a long series.
+        "slider.blocks=[1,1]",
+        "slider.blocks=[25,25];output.snapshots=[]",
+        "slider.blocks=[3,3];output.series=0.1;time.duration_star=8000",
+        // The lattice.
+        "slider.blocks=[600,600];time.duration_star=1;output.snapshots=[]",
+        "slider.blocks=[256,256];drive.v_star=0.3",
+        // Tall and wide pictures of the front.
+        "slider.blocks=[60,180];drive.v_star=0.1;output.snapshots=[]",
+        "slider.blocks=[300,75];drive.v_star=0.1;output.snapshots=[]",
+        // Laws of friction that remember more.
+        "slider.blocks=[400,400];time.duration_star=1;output.snapshots=[];friction.contact='springs';\
+         friction.contact_stiffness_star=0.1",
+        "slider.blocks=[300,300];time.duration_star=1;output.snapshots=[];friction.law='rate_and_state';friction.a=0.01;\
+         friction.b=0.02;friction.d_c_star=0.5;friction.v_0_star=0.03",
+        "slider.blocks=[3,3];output.series=0.1;time.duration_star=8000;friction.contact='springs';friction.contact_stiffness_star=0.1",
+        "slider.blocks=[400,400];time.duration_star=1;output.snapshots=[];friction.ageing={law='logarithmic',beta=0.1,time_star=1};\
+         friction.velocity={law='weakening',v_c_star=0.1,ratio=0.5}",
+        // Blocks that differ, in another kernel.
+        "slider.blocks=[500,500];slider.outline='disc';slider.viscosity_time_star=0.1;time.duration_star=1;output.snapshots=[]",
+        "slider.blocks=[500,500];slider.stiffness_grade={along='x',from=1,to=2};slider.density_grade={along='y',from=1,to=2};\
+         time.duration_star=1;output.snapshots=[]",
+        // Events of slip.
+        "slider.blocks=[60,1];slider.viscosity_time_star=0.3;slider.omega_star=0;friction.r_star=0.1;drive.attach='left';drive.v_star=1;\
+         drive.total_stiffness_star=0.004;time.step=0.6;time.duration_star=20000;output.snapshots=[];output.series=100",
+        // Snapshots.
+        "slider.blocks=[400,400];time.duration_star=2;output.snapshots={every=0.1}",
+        "slider.blocks=[400,400];time.duration_star=2;output.snapshots={every=0.1};output.stride=3",
+        "slider.blocks=[2,2];time.duration_star=200;output.snapshots={every=0.1};output.fields=[]",
+        // What is read.
+        "slider.blocks=[400,400];time.duration_star=1;output.snapshots=[];friction.mu_static_field='mu.npy';\
+         friction.mu_kinetic_field='mu.npy';texture=[{shape='mask',file='mask.png'},{shape='mask',file='mask.npy'}]",
+        // A thousand outlines of 4096 vertices.
+        "slider.blocks=[64,64];time.duration_star=1;output.snapshots=[];texture=[{shape='cavity',s=3,w=0.2,coverage=20,array=[40,25]}]",
+    ] {
+        let overrides: Vec<String> = sets.split(';').map(str::to_owned).collect();
+        let out = folder.path().join("out");
+        let run = || {
+            let file = CaseFile::parse("", "case", &overrides).unwrap();
+            let case = Arc::new(Case::new(file, "case", folder.path(), &mut |_| true, Ranks::ALONE).unwrap());
+            let mut record = running::run(&case, 2).unwrap();
+            let mut out = RunFolder::prepare(&out, false, &case.inputs).unwrap();
+            results::write_case(&case, &mut out).unwrap();
+            results::write(&case, &mut record, out, jiff::Timestamp::now(), 1).unwrap();
+            (case.budget.memory(), case.budget.disk())
+        };
+        assert_honest_drawing(sets, || {
+            let (taken, (memory, disk)) = peak(run);
+            assert_room(sets, disk, &out);
+            std::fs::remove_dir_all(&out).unwrap();
+            (memory, taken)
+        });
+    }
+    bands(folder.path());
+    checkpoints(folder.path());
+    for base in [
+        "",
+        "base.slider = { outline = 'disc', viscosity_time_star = 0.1 }\n",
+    ] {
+        study(base, folder.path());
+    }
+    masks(folder.path());
+    ranks(folder.path());
+    pictures_of_a_large_lattice(folder.path());
+}
+
+/// Bands of the reference kernel, as many as there can be: each holds the rows beside its own once more.
+fn bands(folder: &Path) {
+    for sets in [
+        "slider.blocks=[496,496];slider.outline='disc'",
+        "slider.blocks=[496,496];slider.viscosity_time_star=0.1",
+        "slider.blocks=[496,496];slider.stiffness_grade={along='x',from=1,to=2};slider.viscosity_time_star=0.1",
+        "slider.blocks=[496,496];friction.contact='springs';friction.contact_stiffness_star=0.1",
+    ] {
+        let sets = format!("{sets};time.duration_star=0.5;output.snapshots=[]");
+        let overrides: Vec<String> = sets.split(';').map(str::to_owned).collect();
+        for threads in [1, 16] {
+            let before = LIVE.load(Ordering::Relaxed) as f64;
+            let (taken, said) = peak(|| {
+                let file = CaseFile::parse("", "case", &overrides).unwrap();
+                let case = Case::new(file, "case", folder, &mut |_| true, Ranks::ALONE).unwrap();
+                let case = Arc::new(case);
+                running::run(&case, threads).unwrap();
+                case.budget.memory()
+            });
+            assert_honest(&format!("{sets} on {threads} threads"), said, taken - before);
+        }
+    }
+}
+
+/// Ranks that make a case together take no more than a process that makes it alone, but for the buffers of those who read.
+fn ranks(folder: &Path) {
+    let text = "slider.blocks = [400, 400]\nfriction = { mu_static_field = 'mu.npy', mu_kinetic_field = 'mu.npy' }\n\
+                texture = [{ shape = 'mask', file = 'mask.png' }, { shape = 'mask', file = 'mask.npy' }]";
+    let make = |ranks: Ranks| {
+        let file = CaseFile::parse(text, "case", &[]).unwrap();
+        Case::new(file, "case", folder, &mut |_| true, ranks).unwrap()
+    };
+    let before = LIVE.load(Ordering::Relaxed) as f64;
+    let (alone, _) = peak(|| make(Ranks::ALONE));
+    let on_ranks = |size: usize| {
+        let (taken, _) = peak(|| {
+            Threads::run(size, |communicator| {
+                make(Ranks {
+                    communicator,
+                    on_node: size,
+                })
+            })
+        });
+        taken - before
+    };
+    let (alone, one, four) = (alone - before, on_ranks(1), on_ranks(4));
+    // The decoder of an image, the reader of a file and the texts of a case, which hardly grow with the lattice.
+    let buffers = 256.0 * 1024.0;
+    assert!(
+        four <= alone + 4.0 * buffers,
+        "{four} bytes of four ranks, {alone} of one process"
+    );
+    assert!(
+        (one - alone).abs() < buffers,
+        "{one} bytes of one rank, {alone} of one process"
+    );
+}
+
+/// A run that goes on from a checkpoint, and saves the next one, takes no more than one that begins.
+fn checkpoints(folder: &Path) {
+    for sets in [
+        "slider.blocks=[600,600];time.duration_star=1;output.snapshots=[]",
+        "slider.blocks=[400,400];time.duration_star=2;output.snapshots={every=0.1}",
+        "slider.blocks=[400,400];time.duration_star=1;output.snapshots=[];friction.contact='springs';\
+         friction.contact_stiffness_star=0.1",
+    ] {
+        let overrides: Vec<String> = sets.split(';').map(str::to_owned).collect();
+        // `Case::parse` would reserve the memory of a run, to see whether it is available.
+        let made = || {
+            let file = CaseFile::parse("", "case", &overrides).unwrap();
+            Arc::new(Case::new(file, "case", folder, &mut |_| true, Ranks::ALONE).unwrap())
+        };
+        let out = folder.join("saved");
+        std::fs::create_dir(&out).unwrap();
+        Unfinished::of(&out).create().unwrap();
+        let save = |case: &Case, running: &Running| {
+            let mut checkpoints = Checkpoints::new(&out, case, jiff::Timestamp::UNIX_EPOCH);
+            checkpoints.save(running, &Alone).unwrap();
+        };
+        let case = made();
+        let mut running = Running::start(&case, 1);
+        running.advance(case.time_plan.last_step - 1).unwrap();
+        save(&case, &running);
+        drop((case, running));
+        // The fonts of the pictures before, which a run has not yet when it goes on.
+        let before = LIVE.load(Ordering::Relaxed) as f64;
+        let (taken, said) = peak(|| {
+            let case = made();
+            let loaded = Checkpoints::load(&out, &case, false, &Alone).unwrap().unwrap();
+            let running = loaded.resume(&case, 1, Arc::new(Alone)).unwrap().unwrap();
+            save(&case, &running);
+            case.budget.memory()
+        });
+        let taken = taken - before;
+        assert_honest(&format!("to go on with {sets}"), said, taken);
+        let room = made().budget.disk_of_checkpoints() / 3.0;
+        assert_room(sets, room, &out);
+        std::fs::remove_dir_all(out).unwrap();
+    }
+}
+
+/// Maps are averaged while they are read: what that takes does not depend on the lattice.
+fn pictures_of_a_large_lattice(folder: &Path) {
+    let sets = [
+        "slider.blocks=[1500,1200]",
+        "output.fields=['contact_stress_star']",
+        "time.duration_star=1",
+        "output.snapshots=[0,0.2,0.4,0.6,0.8,1]",
+    ];
+    let file = CaseFile::parse("", "case", &sets.map(str::to_owned)).unwrap();
+    let case = Arc::new(Case::new(file, "case", folder, &mut |_| true, Ranks::ALONE).unwrap());
+    let mut record = running::run(&case, 1).unwrap();
+    let out = folder.join("out");
+    let prepared = RunFolder::prepare(&out, false, &case.inputs).unwrap();
+    results::write(&case, &mut record, prepared, jiff::Timestamp::now(), 1).unwrap();
+    drop((case, record));
+    assert_honest_drawing("pictures of a large lattice", || {
+        let before = LIVE.load(Ordering::Relaxed) as f64;
+        let (taken, drawn) = peak(|| pictures::draw(&out).unwrap());
+        assert_eq!(drawn.len(), 2);
+        (
+            pictures::memory(std::slice::from_ref(&out)).unwrap(),
+            taken - before,
+        )
+    });
+    std::fs::remove_dir_all(out).unwrap();
+}
+
+/// Textures of one image take the room of one mask of the lattice.
+fn masks(folder: &Path) {
+    let text = "[[texture]]\nshape = 'mask'\nfile = 'mask.png'\n".repeat(40);
+    let before = LIVE.load(Ordering::Relaxed) as f64;
+    let (taken, case) = peak(|| {
+        let file = CaseFile::parse(&text, "case", &[]).unwrap();
+        Case::new(file, "case", folder, &mut |_| true, Ranks::ALONE).unwrap()
+    });
+    // The centres of 13 of 25 rows of blocks lie in the dark half: the middle one on its first row of pixels.
+    assert_eq!((case.texture.meshed_percent, case.inputs.len()), (52.0, 1));
+    // A sixteenth of the pixels of the image, one byte each: the decoder, the file and its copy are in it.
+    let taken = taken - before;
+    assert!(taken < 1e6, "{taken} bytes for 625 blocks");
+}
+
+/// Bytes of all files below a folder.
+fn bytes_in(folder: &Path) -> f64 {
+    let entries = std::fs::read_dir(folder).unwrap().map(Result::unwrap);
+    let bytes = |entry: std::fs::DirEntry| match entry.metadata().unwrap() {
+        file if file.is_file() => file.len() as f64,
+        _ => bytes_in(&entry.path()),
+    };
+    entries.map(bytes).sum()
+}
+
+fn assert_room(what: &str, said: f64, out: &Path) {
+    let taken = bytes_in(out);
+    assert!(said >= taken, "{what}: {said} bytes said, {taken} taken");
+    // A number of a row has 18 characters at the mean and 24 at the most; pictures of few colours are small.
+    assert!(
+        said <= 1.5 * taken + 2e6,
+        "{what}: {said} bytes said, only {taken} taken"
+    );
+}
+
+/// Runs at once, of two sizes.
+fn study(base: &str, folder: &Path) {
+    let text = format!(
+        "{base}base.time.duration_star = 2\n[study]\nreplicates = 2\n[[axes]]\nkey = 'slider.blocks'\n\
+         list = [[10, 10], [500, 500]]"
+    );
+    let file = StudyFile::parse(&text, "study.toml", "study", folder).unwrap();
+    let plan = Plan::new(&file, None).unwrap();
+    let mut alone = 0.0;
+    for threads in [1, 2] {
+        let records = tempfile::tempdir().unwrap();
+        // The fonts of the pictures before, which a study has not yet when it runs.
+        let before = LIVE.load(Ordering::Relaxed) as f64;
+        let (taken, ()) = peak(|| {
+            let records = Records::open(records.path()).unwrap();
+            let never = AtomicBool::new(false);
+            // The thread that waits for the runs is one more.
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads + 1).build();
+            let execute = || study::execute(&plan, &records, folder, &never, &mut |_| {});
+            pool.unwrap().install(execute).unwrap();
+        });
+        let taken = taken - before;
+        if threads == 1 {
+            alone = taken;
+        }
+        // Whether the largest of two meet is up to the system: they may.
+        let most = taken.max(threads as f64 * alone);
+        assert_honest(&format!("{threads} runs at once"), plan.memory(threads), most);
+    }
+}
