@@ -40,7 +40,7 @@ pub struct Record {
 fn blocks_per_thread(kernel: Kernel) -> usize {
     match kernel {
         Kernel::Fused => 1 << 13,
-        Kernel::Reference => 1 << 10,
+        Kernel::General => 1 << 10,
     }
 }
 

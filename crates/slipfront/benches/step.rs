@@ -59,11 +59,7 @@ fn step(criterion: &mut Criterion, group: &str, kernel: Kernel) {
 
 fn read_field(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("read_field");
-    for (n, kernel) in [
-        (256, Kernel::Fused),
-        (512, Kernel::Fused),
-        (256, Kernel::Reference),
-    ] {
+    for (n, kernel) in [(256, Kernel::Fused), (512, Kernel::Fused), (256, Kernel::General)] {
         group.throughput(Throughput::Elements((n * n) as u64));
         let simulation = sliding(n, kernel);
         let mut values = vec![0.0; n * n];
@@ -88,13 +84,13 @@ fn read_field(criterion: &mut Criterion) {
     group.finish();
 }
 
-fn reference(criterion: &mut Criterion) {
-    step(criterion, "reference_step", Kernel::Reference);
+fn general(criterion: &mut Criterion) {
+    step(criterion, "general_step", Kernel::General);
 }
 
 fn fused(criterion: &mut Criterion) {
     step(criterion, "fused_step", Kernel::Fused);
 }
 
-criterion_group!(benches, reference, fused, read_field);
+criterion_group!(benches, general, fused, read_field);
 criterion_main!(benches);

@@ -7,7 +7,7 @@
 //! The first number is that of the threads, the others are sizes: square sliders with the coefficients of Fig. 3. They begin in steady
 //! sliding, and after a hundred steps some blocks stick and others slip. Every block is computed at every step. The options are measured
 //! by turns, and the best of each counts: nanoseconds per step and block of the lattice, and how many times as long it takes as the
-//! plain model on the fused kernel. What that kernel does not compute stands below the plain model on the reference kernel.
+//! plain model on the fused kernel. What that kernel does not compute stands below the plain model on the general kernel.
 
 use std::error::Error;
 use std::sync::Arc;
@@ -63,7 +63,7 @@ pub(crate) const MEASURED: [(&str, &[Choice]); 19] = [
     ("grading", &[Grading]),
     ("disc", &[Disc]),
     ("graded disc, weakening", &[Grading, Disc, Choice::Weakening]),
-    ("plain, reference kernel", &[]),
+    ("plain, general kernel", &[]),
     ("reversal", &[Choice::Reversal]),
     ("literal", &[Choice::Literal]),
     ("viscosity", &[Viscosity]),
@@ -209,10 +209,10 @@ fn print_costs(size: usize, threads: usize) -> Result<(), Box<dyn Error + Send +
     let mut simulations = Vec::new();
     for (name, choices) in MEASURED {
         let model = model(size, choices)?;
-        let is_plain_reference = name.ends_with("reference kernel");
+        let is_plain_general = name.ends_with("general kernel");
         let execution = Execution {
-            kernel: if is_plain_reference {
-                Kernel::Reference
+            kernel: if is_plain_general {
+                Kernel::General
             } else {
                 Kernel::Fused
             },

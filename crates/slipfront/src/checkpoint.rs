@@ -41,7 +41,7 @@ pub enum BlockColumn {
     DisplacementX,
     /// u_y at t_n.
     DisplacementY,
-    /// v_x half a step after t_n; half a step before it of the reference kernel, which evaluates t_n again.
+    /// v_x half a step after t_n; half a step before it of the general kernel, which evaluates t_n again.
     VelocityX,
     /// v_y at the same time.
     VelocityY,
@@ -205,7 +205,7 @@ mod tests {
         #[case] nx: usize,
         #[case] ny: usize,
         #[case] edges: Edges,
-        #[values((Kernel::Fused, 1, false), (Kernel::Fused, 3, false), (Kernel::Reference, 1, false), (Kernel::Reference, 1, true))]
+        #[values((Kernel::Fused, 1, false), (Kernel::Fused, 3, false), (Kernel::General, 1, false), (Kernel::General, 1, true))]
         by: (Kernel, usize, bool),
     ) {
         let (kernel, threads, has_springs) = by;
@@ -252,7 +252,7 @@ mod tests {
     #[test]
     fn an_error_of_the_reader_ends_it_at_once() {
         let model = model(Lattice::free(6, 5));
-        for kernel in [Kernel::Fused, Kernel::Reference] {
+        for kernel in [Kernel::Fused, Kernel::General] {
             let execution = Execution {
                 kernel,
                 ..Execution::default()

@@ -90,7 +90,7 @@ fn a_step_allocates_nothing() {
         FrictionLaw::Literal,
     ] {
         let model = model(law);
-        for kernel in [Kernel::Reference, Kernel::Fused] {
+        for kernel in [Kernel::General, Kernel::Fused] {
             let execution = Execution {
                 kernel,
                 ..Execution::default()

@@ -56,8 +56,8 @@ fn spring_numbers(file: &CaseFile) -> f64 {
     }
 }
 
-/// Bytes of the reference kernel per block, with springs that differ, with dampers, and with directions of a rotation.
-fn reference_bytes(file: &CaseFile) -> f64 {
+/// Bytes of the general kernel per block, with springs that differ, with dampers, and with directions of a rotation.
+fn general_bytes(file: &CaseFile) -> f64 {
     // Their sum, and that along each of the four bonds.
     let dampers = match file.slider.viscosity_time_star > 0.0 {
         true => 10.0 * NUMBER,
@@ -67,10 +67,10 @@ fn reference_bytes(file: &CaseFile) -> f64 {
         Motion::Translation => 0.0,
         Motion::Rotation => 2.0 * NUMBER,
     };
-    REFERENCE + spring_numbers(file) * NUMBER + dampers + directions
+    GENERAL + spring_numbers(file) * NUMBER + dampers + directions
 }
 
-/// Bytes of the reference kernel per block that bands of rows add, which several threads share out among them: each takes for itself what it
+/// Bytes of the general kernel per block that bands of rows add, which several threads share out among them: each takes for itself what it
 /// needs of the model, the motion from which the forces between blocks follow, and the rows beside its own.
 fn band_bytes(file: &CaseFile) -> f64 {
     let is_viscous = file.slider.viscosity_time_star > 0.0;
@@ -83,7 +83,7 @@ fn band_bytes(file: &CaseFile) -> f64 {
     surface_bytes(file) + NUMBER * (motion + repeated + SWEPT)
 }
 
-/// Rows that a band of the reference kernel holds beside its own, over its own, at the most: 2 over 8.
+/// Rows that a band of the general kernel holds beside its own, over its own, at the most: 2 over 8.
 const REPEATED_ROWS: f64 = 0.25;
 /// Four numbers of each block of a row, which a band of eight rows sweeps at once.
 const SWEPT: f64 = 0.5;
@@ -106,12 +106,12 @@ fn fused_bytes(file: &CaseFile) -> f64 {
 
 /// The fused kernel: two vectors, two thresholds, a step; masks, vectors of eight and tiles take 3.6 together.
 const FUSED: f64 = 6.5 * NUMBER + 3.6;
-/// The reference kernel: two vectors of state, eight of forces, two thresholds, a time.
-const REFERENCE: f64 = 23.0 * NUMBER + FLAG;
+/// The general kernel: two vectors of state, eight of forces, two thresholds, a time.
+const GENERAL: f64 = 23.0 * NUMBER + FLAG;
 /// A block in a checkpoint: two vectors, a time; what the law of friction remembers is added.
 const SAVED: f64 = 5.0 * NUMBER;
 
-/// Numbers of a block that a law of friction adds to the reference kernel, and those of them that a checkpoint keeps.
+/// Numbers of a block that a law of friction adds to the general kernel, and those of them that a checkpoint keeps.
 fn of_friction(friction: &Friction) -> [f64; 2] {
     let each = [
         // Kinetic friction at the present speed.
@@ -313,11 +313,11 @@ impl Budget {
             surface: surface_bytes(file),
             kernel: match kernel(file) {
                 Kernel::Fused => fused_bytes(file),
-                Kernel::Reference => reference_bytes(file) + kept_by_law * NUMBER,
+                Kernel::General => general_bytes(file) + kept_by_law * NUMBER,
             },
             bands: match kernel(file) {
                 Kernel::Fused => 0.0,
-                Kernel::Reference => band_bytes(file),
+                Kernel::General => band_bytes(file),
             },
             saved: SAVED + saved_by_law * NUMBER,
             frames: n_frames,

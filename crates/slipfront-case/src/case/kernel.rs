@@ -12,9 +12,5 @@ pub(super) fn kernel(file: &CaseFile) -> Kernel {
         && friction.ageing.is_none()
         && slider.viscosity_time_star == 0.0
         && file.drive.motion == Motion::Translation;
-    if is_swept {
-        Kernel::Fused
-    } else {
-        Kernel::Reference
-    }
+    if is_swept { Kernel::Fused } else { Kernel::General }
 }

@@ -54,7 +54,7 @@ fn keys_become_the_law_in_units_of_the_model() {
     assert_eq!(stateful.groups.sigma_static_star, 0.0);
 
     for other in [varying, springs, stateful] {
-        assert_eq!(Kernel::Fused.for_model(&other.model), Kernel::Reference);
+        assert_eq!(Kernel::Fused.for_model(&other.model), Kernel::General);
     }
 }
 

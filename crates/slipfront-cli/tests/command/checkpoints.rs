@@ -16,7 +16,7 @@ use crate::support::workspace::Workspace;
 const SLOW: &str = "[slider]\nblocks = [60, 50]\nedges = ['periodic', 'free']\n[drive]\nv_star = 0.01\n\
                     [[texture]]\nshape = 'mask'\nfile = 'spot.png'\n";
 
-/// The reference kernel, and snapshots by the step.
+/// The general kernel, and snapshots by the step.
 const REVERSAL: &str = "[slider]\nblocks = [60, 50]\n[drive]\nv_star = 0.004\n[friction]\nlaw = 'reversal'\n\
                        [output]\nsnapshots = { every = 75 }\n";
 

@@ -196,7 +196,7 @@ fn what_is_said_is_what_is_taken() {
     pictures_of_a_large_lattice(folder.path());
 }
 
-/// Bands of the reference kernel, as many as there can be: each holds the rows beside its own once more.
+/// Bands of the general kernel, as many as there can be: each holds the rows beside its own once more.
 fn bands(folder: &Path) {
     for sets in [
         "slider.blocks=[496,496];slider.outline='disc'",

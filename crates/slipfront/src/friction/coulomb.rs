@@ -1,7 +1,7 @@
 //! The friction law with memory (Eq. 4, D1, D2), damping included, in its three readings.
 //!
 //! From the velocity of a block, the forces on it and its thresholds at t_n, a law finds the velocity half a step later, the
-//! friction force and whether the block slides. The reference kernel calls it once per block and step.
+//! friction force and whether the block slides. The general kernel calls it once per block and step.
 
 use serde::{Deserialize, Serialize};
 

@@ -6,7 +6,7 @@ use fearless_simd::Level;
 
 use super::engine::Engine;
 use super::fused::Fused;
-use super::reference::Reference;
+use super::general::General;
 use crate::checkpoint::{BlockColumn, Checkpoint};
 use crate::communicator::Communicator;
 use crate::friction::{Coulomb, Friction, FrictionLaw};
@@ -17,8 +17,8 @@ use crate::state::State;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kernel {
     /// One pass per equation, to be read along with the paper, for every model.
-    Reference,
-    /// One sweep for all equations. The reference kernel computes what this does not: other laws than
+    General,
+    /// One sweep for all equations. The general kernel computes what this does not: other laws than
     /// [`FrictionLaw::Projection`], ageing, internal viscosity, and drives that rotate.
     Fused,
 }
@@ -30,7 +30,7 @@ pub struct Execution {
     /// What computes the steps.
     pub kernel: Kernel,
     /// Threads of the pool that share the blocks; useful from some ten thousand blocks of the fused kernel, some thousand of the
-    /// reference kernel. A thread that steps a simulation should be one of the pool (see `rayon::scope`): others wait at every step
+    /// general kernel. A thread that steps a simulation should be one of the pool (see `rayon::scope`): others wait at every step
     /// until they are woken.
     pub threads: usize,
     /// Whether blocks at rest are skipped until they can slip.
@@ -47,13 +47,13 @@ impl Kernel {
             Friction::RateAndState(_) | Friction::ContactSprings(_) => false,
         } && model.slider.viscosity_time == 0.0
             && model.drive.rotation.is_none();
-        if is_swept { self } else { Self::Reference }
+        if is_swept { self } else { Self::General }
     }
 
     /// Its name in a manifest.
     pub fn name(self) -> &'static str {
         match self {
-            Self::Reference => "reference",
+            Self::General => "general",
             Self::Fused => "fused",
         }
     }
@@ -74,7 +74,7 @@ impl Execution {
                 let kernel = Fused::new(model, dt_star, state.as_ref(), threads, skips, communicator);
                 Box::new(kernel)
             }
-            Kernel::Reference => Box::new(Reference::new(model, dt_star, state, self.threads, communicator)),
+            Kernel::General => Box::new(General::new(model, dt_star, state, self.threads, communicator)),
         }
     }
 
@@ -95,8 +95,8 @@ impl Execution {
                 let kernel = Fused::resume(model, dt_star, checkpoint, threads, skips, communicator, read)?;
                 Ok(Some(Box::new(kernel)))
             }
-            (Kernel::Reference, None) => {
-                let kernel = Reference::resume(model, dt_star, checkpoint, self.threads, communicator, read)?;
+            (Kernel::General, None) => {
+                let kernel = General::resume(model, dt_star, checkpoint, self.threads, communicator, read)?;
                 Ok(Some(Box::new(kernel)))
             }
             _ => Ok(None),

@@ -1,6 +1,6 @@
 //! What advances the state of all blocks by one step.
 //!
-//! `reference/` follows the paper, one pass over the blocks per equation; `fused/` computes the same in one fast sweep.
+//! `general/` computes every option, one pass over the blocks per equation; `fused/` computes the common ones in one fast sweep.
 //! The [`Simulation`](crate::Simulation) steps whichever of the two its [`Execution`] says, through the functions of `engine.rs`.
 
 mod bands;
@@ -8,7 +8,7 @@ pub(crate) mod block;
 pub(crate) mod engine;
 pub(crate) mod execution;
 mod fused;
-mod reference;
+mod general;
 pub(crate) mod totals;
 
 pub use block::Block;

@@ -1,4 +1,4 @@
-//! Orders of convergence, on the fused kernel. `convergence_on_reference` runs these tests on the reference
+//! Orders of convergence, on the fused kernel. `convergence_on_general` runs these tests on the general
 //! kernel.
 
 #![allow(clippy::unwrap_used)] // A helper that cannot do its work fails its test.

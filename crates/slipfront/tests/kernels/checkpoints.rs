@@ -1,4 +1,4 @@
-//! Checkpoints of the reference kernel, of observers, and of another lattice. Those of the fused kernel are tested in
+//! Checkpoints of the general kernel, of observers, and of another lattice. Those of the fused kernel are tested in
 //! `executions.rs`.
 
 use std::sync::Arc;
@@ -15,7 +15,7 @@ use slipfront::{
 };
 
 use crate::common::{Slider, cavity, varied};
-use crate::{FUSED, REFERENCE, bits, columns, resumed, stopped_and_resumed};
+use crate::{FUSED, GENERAL, bits, columns, resumed, stopped_and_resumed};
 
 fn slider(law: FrictionLaw) -> Slider {
     Slider {
@@ -51,7 +51,7 @@ fn everything(simulation: &Simulation) -> Vec<u64> {
 }
 
 #[rstest]
-fn the_reference_kernel_under_every_law(
+fn the_general_kernel_under_every_law(
     #[values(FrictionLaw::Projection, FrictionLaw::Reversal, FrictionLaw::Literal)] law: FrictionLaw,
     #[values(1, 7)] every: u64,
 ) {
@@ -77,11 +77,11 @@ fn sliders_of_unequal_blocks(#[values(1, 7)] every: u64, #[values(false, true)] 
 
 fn goes_on_from_checkpoints(slider: &Slider, every: u64) {
     let (model, dt_star) = (slider.model(), slider.dt_star);
-    let start = || Simulation::with_execution(model.clone(), dt_star, None, REFERENCE);
+    let start = || Simulation::with_execution(model.clone(), dt_star, None, GENERAL);
     let (mut plain, mut stopped) = (start(), start());
     for step in 0..slider.steps(4.0) {
         if step.is_multiple_of(every) {
-            stopped = stopped_and_resumed(&stopped, &model, dt_star, REFERENCE);
+            stopped = stopped_and_resumed(&stopped, &model, dt_star, GENERAL);
             assert_eq!(everything(&stopped), everything(&plain), "resumed at step {step}");
         }
         plain.step();
@@ -113,11 +113,11 @@ fn what_a_law_remembers(#[case] friction: Friction, #[values(1, 7)] every: u64) 
     let slider = slider(FrictionLaw::Projection);
     let (mut model, dt_star) = (slider.model(), slider.dt_star);
     model.friction = friction;
-    let start = || Simulation::with_execution(model.clone(), dt_star, None, REFERENCE);
+    let start = || Simulation::with_execution(model.clone(), dt_star, None, GENERAL);
     let (mut plain, mut stopped) = (start(), start());
     for step in 0..slider.steps(6.0) {
         if step.is_multiple_of(every) {
-            stopped = stopped_and_resumed(&stopped, &model, dt_star, REFERENCE);
+            stopped = stopped_and_resumed(&stopped, &model, dt_star, GENERAL);
             assert_eq!(everything(&stopped), everything(&plain), "resumed at step {step}");
             assert_eq!(stopped.checkpoint(), plain.checkpoint());
             let saved = |simulation: &Simulation| columns(simulation).concat();
@@ -140,7 +140,7 @@ fn what_a_law_remembers(#[case] friction: Friction, #[values(1, 7)] every: u64) 
 /// seen every instant exactly once.
 #[rstest]
 fn observers_see_every_instant_once(
-    #[values(REFERENCE, FUSED)] execution: Execution,
+    #[values(GENERAL, FUSED)] execution: Execution,
     #[values(1, 13, 250)] piece: u64,
     #[values(slipfront::Slider::default(), unequal(false))] body: slipfront::Slider,
 ) {
@@ -212,7 +212,7 @@ fn a_checkpoint_of_another_kernel_does_not_fit() {
     let (model, dt_star) = (slider.model(), slider.dt_star);
     let simulation = Simulation::with_execution(model.clone(), dt_star, None, FUSED);
     assert!(resumed(&simulation, &model, dt_star, FUSED).is_some());
-    assert!(resumed(&simulation, &model, dt_star, REFERENCE).is_none());
+    assert!(resumed(&simulation, &model, dt_star, GENERAL).is_none());
 }
 
 /// Drives at an edge, by a program and in rotation, and what is observed of them, go on as if they had not been stopped.
@@ -234,7 +234,7 @@ fn other_drives_and_their_observers(#[values(false, true)] turns: bool, #[values
         model.drive.rotation = Some(rotation);
     }
     let observers = || (Precursors::new(Edge::Left), Cycles::default(), Curve::every(7));
-    let start = || Simulation::with_execution(model.clone(), 0.1, None, REFERENCE);
+    let start = || Simulation::with_execution(model.clone(), 0.1, None, GENERAL);
     let (mut plain, mut whole) = (start(), observers());
     let stop = Stop::at_step(600);
     let (precursors, cycles, curve) = &mut whole;
@@ -255,7 +255,7 @@ fn other_drives_and_their_observers(#[values(false, true)] turns: bool, #[values
         if stopped.advance(stop, every, seen).unwrap().is_some() {
             break;
         }
-        stopped = stopped_and_resumed(&stopped, &model, 0.1, REFERENCE);
+        stopped = stopped_and_resumed(&stopped, &model, 0.1, GENERAL);
         parts = postcard::from_bytes(&postcard::to_stdvec(&parts).unwrap()).unwrap();
         let now = stopped.time_star();
         assert!(parts.0.is_consistent_with(&Precursors::new(Edge::Left), now));

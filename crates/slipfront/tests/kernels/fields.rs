@@ -7,7 +7,7 @@ use slipfront::surface::{Orientation, Texture};
 use slipfront::{Edges, Execution, FrictionLaw, Simulation, Stop};
 
 use crate::common::{Slider, cavity, groove, thrown};
-use crate::{FUSED, REFERENCE, has_room, stopped_and_resumed};
+use crate::{FUSED, GENERAL, has_room, stopped_and_resumed};
 
 fn bits(values: &[f32]) -> Vec<u32> {
     values.iter().map(|value| value.to_bits()).collect()
@@ -51,7 +51,7 @@ fn all_blocks_have_the_same_bits_as_single_ones(
     )]
     (epsilon, texture): (f64, Option<Texture>),
     #[values(
-        FUSED, Execution { threads: 3, ..FUSED }, Execution { skips: true, ..FUSED }, REFERENCE
+        FUSED, Execution { threads: 3, ..FUSED }, Execution { skips: true, ..FUSED }, GENERAL
     )]
     execution: Execution,
 ) {
@@ -82,7 +82,7 @@ fn all_blocks_have_the_same_bits_as_single_ones(
     }
 }
 
-/// Laws whose friction does not follow from the velocity: the reference kernel keeps it.
+/// Laws whose friction does not follow from the velocity: the general kernel keeps it.
 #[rstest]
 fn every_friction_law(#[values(FrictionLaw::Reversal, FrictionLaw::Literal)] law: FrictionLaw) {
     let slider = Slider {
@@ -90,7 +90,7 @@ fn every_friction_law(#[values(FrictionLaw::Reversal, FrictionLaw::Literal)] law
         v_star: 0.1,
         ..Slider::default()
     };
-    let mut simulation = Simulation::with_execution(slider.model(), 0.1, None, REFERENCE);
+    let mut simulation = Simulation::with_execution(slider.model(), 0.1, None, GENERAL);
     for _ in 0..slider.steps(4.0) {
         simulation.step();
     }

@@ -8,7 +8,7 @@ use slipfront::observe::{Field, Kymograph, Observer, Schedule, Scheduled};
 use slipfront::{Edges, Execution, PositionBins, RunError, Simulation, Snapshot, Stop};
 
 use crate::common::{Slider, cavity, varied};
-use crate::{FUSED, REFERENCE};
+use crate::{FUSED, GENERAL};
 
 /// The share of the blocks in contact that slide, read from the field.
 #[derive(Default)]
@@ -116,12 +116,12 @@ fn what_slides_is_counted(#[values(0, 1, 2, 3)] which: usize) {
         });
         assert!(ranks.iter().all(|rank| *rank == alone));
     }
-    // The trajectory of the reference is another to rounding, and its first slips are the same.
-    let mut reference = Kymograph::default();
-    let mut simulation = Simulation::with_execution(slider.model(), slider.dt_star, None, REFERENCE);
+    // The trajectory of the general is another to rounding, and its first slips are the same.
+    let mut general = Kymograph::default();
+    let mut simulation = Simulation::with_execution(slider.model(), slider.dt_star, None, GENERAL);
     let until_half = Stop::at_step(steps / 2);
-    simulation.run(until_half, &mut [reference.scheduled()]).unwrap();
-    let both = reference.rows().zip(alone.rows()).take(from_field.rows.len() / 2);
+    simulation.run(until_half, &mut [general.scheduled()]).unwrap();
+    let both = general.rows().zip(alone.rows()).take(from_field.rows.len() / 2);
     for ((step, shares), (_, expected)) in both {
         let bits = |shares: Vec<f32>| shares.into_iter().map(f32::to_bits).collect::<Vec<_>>();
         assert_eq!(bits(shares), bits(expected), "step {step}");

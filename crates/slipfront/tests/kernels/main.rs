@@ -1,4 +1,4 @@
-//! All kernels and ways to execute them compared: the fused kernel agrees with the reference to rounding, and has the same bits
+//! All kernels and ways to execute them compared: the fused kernel agrees with the general to rounding, and has the same bits
 //! on any number of threads, with and without skipping.
 
 #![allow(clippy::unwrap_used)] // A helper that cannot do its work fails its test.
@@ -20,8 +20,8 @@ const FUSED: Execution = Execution {
     skips: false,
 };
 
-const REFERENCE: Execution = Execution {
-    kernel: Kernel::Reference,
+const GENERAL: Execution = Execution {
+    kernel: Kernel::General,
     ..FUSED
 };
 
@@ -80,12 +80,12 @@ fn stopped_and_resumed(
     resumed(simulation, model, dt_star, execution).unwrap()
 }
 
-mod against_reference;
+mod against_general;
 mod checkpoints;
 mod executions;
 mod fields;
+mod general_divided;
 mod kymograph;
 mod ranks;
-mod reference_divided;
 mod sliders;
 mod variations;

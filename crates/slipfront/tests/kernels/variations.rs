@@ -1,5 +1,5 @@
 //! Sliders whose blocks differ, kinetic friction that weakens and drives by a program on the fused kernel: it agrees with the
-//! reference to rounding, and has the same bits however it is executed.
+//! general to rounding, and has the same bits however it is executed.
 
 use std::sync::Arc;
 
@@ -8,7 +8,7 @@ use slipfront::communicator::Alone;
 use slipfront::{DriveSprings, Edges, Outline, Program, Weakening};
 
 use crate::common::{Slider, cavity, varied};
-use crate::{against_reference, executions, ranks, sliders};
+use crate::{against_general, executions, ranks, sliders};
 
 /// What is not as in the paper.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -78,7 +78,7 @@ fn base(epsilon: f64, edges: Edges) -> Slider {
 use Variety::{EdgeDrive, Grading, Outline as Cut, Program as Changes, Weakening as Weakens};
 
 #[rstest]
-fn the_reference_agrees(
+fn the_general_kernel_agrees(
     #[values(
         &[EdgeDrive], &[Grading], &[Cut], &[Weakens], &[Changes], &[Grading, Cut], &[EdgeDrive, Cut, Weakens],
         &[Grading, Cut, Weakens, Changes]
@@ -88,7 +88,7 @@ fn the_reference_agrees(
     #[values(Edges::Free, Edges::Periodic)] edges: Edges,
 ) {
     let slider = with(base(epsilon, edges), options);
-    against_reference::assert_same(&slider.model(), slider.dt_star, None, slider.steps(5.0));
+    against_general::assert_same(&slider.model(), slider.dt_star, None, slider.steps(5.0));
 }
 
 #[rstest]

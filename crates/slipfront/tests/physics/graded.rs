@@ -28,7 +28,7 @@ fn fields_of_ones_change_no_bit(
         law,
         ..common::Slider::default()
     };
-    // The reference kernel computes both.
+    // The general kernel computes both.
     let ones = common::Slider {
         body: graded(&[1.0; 117], &[1.0; 117]),
         ..plain.clone()

@@ -1,5 +1,5 @@
-//! Exact answers: every law of the model that has a closed solution, on the fused kernel. `physics_on_reference` runs
-//! these tests on the reference kernel.
+//! Exact answers: every law of the model that has a closed solution, on the fused kernel. `physics_on_general` runs
+//! these tests on the general kernel.
 
 #![allow(clippy::unwrap_used)] // A helper that cannot do its work fails its test.
 

@@ -170,7 +170,7 @@ fn a_rigid_translation_feels_nothing() {
         let mut state = State::at_rest(96);
         state.velocity.x.fill(0.5);
         state.velocity.y.fill(-0.25);
-        // The reference kernel computes both.
+        // The general kernel computes both.
         let slider = Slider {
             density: Some(vec![1.0; 96]),
             ..damped(time)

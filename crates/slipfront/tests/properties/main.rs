@@ -314,7 +314,7 @@ proptest! {
         }
     }
 
-    /// The number of threads and skipping change no bit, and the reference kernel agrees to rounding, from rest and from a state
+    /// The number of threads and skipping change no bit, and the general kernel agrees to rounding, from rest and from a state
     /// in motion.
     #[test]
     fn kernels_and_executions_agree(
@@ -332,9 +332,9 @@ proptest! {
         };
         let mut plain = run(Kernel::Fused, 1, false);
         let mut other = run(Kernel::Fused, threads, skips);
-        let mut reference = run(Kernel::Reference, 1, false);
+        let mut general = run(Kernel::General, 1, false);
         for step in 1..=400 {
-            for simulation in [&mut plain, &mut other, &mut reference] {
+            for simulation in [&mut plain, &mut other, &mut general] {
                 simulation.step();
             }
             let (here, there) = (plain.snapshot(), other.snapshot());
@@ -344,7 +344,7 @@ proptest! {
             if step % 20 != 0 {
                 continue;
             }
-            let (here, there, exact) = (plain.state(), other.state(), reference.state());
+            let (here, there, exact) = (plain.state(), other.state(), general.state());
             prop_assert!(here == there, "step {}", step);
             let size = |v: &VectorField| v.x.iter().chain(&v.y).fold(1.0_f64, |most, x| x.abs().max(most));
             for (a, b) in [(&here.displacement, &exact.displacement), (&here.velocity, &exact.velocity)] {

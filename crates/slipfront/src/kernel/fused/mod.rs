@@ -1,4 +1,4 @@
-//! The fast kernel: the equations of [`reference`](super::reference) in one sweep over the blocks.
+//! The fast kernel: the equations of [`general`](super::general) in one sweep over the blocks.
 //!
 //! Blocks are stored row after row in one array ([`layout`]), divided into tiles of 256 elements. A sweep takes tile after tile
 //! through a step ([`band`]): displacements, springs, friction and all sums, eight blocks at a time ([`blocks`]), each spring

@@ -1,4 +1,4 @@
-//! The reference kernel: one pass over the blocks per equation, to be read along with the paper.
+//! The general kernel: it computes every option of the model, one pass over the blocks per equation.
 //!
 //! The passes go over one part of the blocks after the other, so that what one has found is in the cache for the next.
 //! A step moves the blocks (Eq. 8), finds the forces on them (Eqs. 2, 3) and lets friction and damping act (Eqs. 4-7).
@@ -47,7 +47,7 @@ const MIN_BAND_BLOCKS: usize = 1024;
 const MIN_BAND_ROWS: usize = 8;
 
 /// The blocks of this rank, and the way to step them.
-pub(crate) struct Reference {
+pub(crate) struct General {
     dt_star: f64,
     threads: usize,
     ranks: Arc<dyn Communicator>,
@@ -90,7 +90,7 @@ impl BandOfRank {
     }
 }
 
-impl Reference {
+impl General {
     /// Begins in a given state, or at rest; the blocks are divided among `threads`. All `ranks` of a lattice must call this together, and
     /// then the same functions.
     pub(crate) fn new(
@@ -280,7 +280,7 @@ impl Reference {
     }
 }
 
-impl Engine for Reference {
+impl Engine for General {
     fn step(&mut self, model: &Model, number: u64, energies: bool) -> Totals {
         let time_star = number as f64 * self.dt_star;
         let (threads, level) = (self.threads, Level::new());

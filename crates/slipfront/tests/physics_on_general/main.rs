@@ -1,4 +1,4 @@
-//! The exact answers of `physics`, on the reference kernel.
+//! The exact answers of `physics`, on the general kernel.
 
 #![allow(clippy::unwrap_used)] // A helper that cannot do its work fails its test.
 
@@ -8,7 +8,7 @@ mod common;
 use slipfront::Kernel;
 
 /// The kernel of the simulations of this binary.
-const KERNEL: Kernel = Kernel::Reference;
+const KERNEL: Kernel = Kernel::General;
 
 #[path = "../physics/composite.rs"]
 mod composite;

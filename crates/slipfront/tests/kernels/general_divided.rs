@@ -1,4 +1,4 @@
-//! What the reference kernel alone computes has the same bits on several ranks and threads as on one, and goes on from a checkpoint on
+//! What the general kernel alone computes has the same bits on several ranks and threads as on one, and goes on from a checkpoint on
 //! any other number of them.
 
 use rstest::rstest;

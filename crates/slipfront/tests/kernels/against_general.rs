@@ -1,4 +1,4 @@
-//! The fused kernel against the reference: the same to rounding.
+//! The fused kernel against the general: the same to rounding.
 
 use rstest::rstest;
 use slipfront::kernel::Totals;
@@ -7,7 +7,7 @@ use slipfront::{Drive, Edges, FrictionLaw, Lattice, Model, Simulation, State, Su
 
 use crate::common::{self, Slider, cavity, groove};
 use crate::fields::assert_fields_match_blocks;
-use crate::{FUSED, REFERENCE, bits, go, has_room};
+use crate::{FUSED, GENERAL, bits, go, has_room};
 
 /// Rounding errors differ by 1e-16 per spring and step, and a slip amplifies them somewhat: to about 1e-14 up to the end of the
 /// first peak, in displacements and velocities of the order of 1.
@@ -45,8 +45,8 @@ fn means(totals: &Totals, n_blocks: usize) -> Vec<f64> {
     sums.iter().map(|sum| sum / n_blocks as f64).collect()
 }
 
-fn assert_alike(fused: &Simulation, reference: &Simulation) {
-    let (one, other) = (fused.snapshot(), reference.snapshot());
+fn assert_alike(fused: &Simulation, general: &Simulation) {
+    let (one, other) = (fused.snapshot(), general.snapshot());
     let (here, there) = (one.totals, other.totals);
     let step = one.step;
     assert_eq!(
@@ -56,7 +56,7 @@ fn assert_alike(fused: &Simulation, reference: &Simulation) {
     );
     assert_eq!(here.stored_energy.is_some(), there.stored_energy.is_some());
     let n = one.model.lattice.n_blocks();
-    let speed = largest(&reference.state().velocity);
+    let speed = largest(&general.state().velocity);
     for (a, b) in means(&here, n).iter().zip(means(&there, n)) {
         // Energies of stretched springs may be more than 1.
         assert!(
@@ -65,12 +65,12 @@ fn assert_alike(fused: &Simulation, reference: &Simulation) {
         );
     }
     assert!((one.point.mu_star - other.point.mu_star).abs() < ROUNDING);
-    let stresses = [fused.contact_stress_max(), reference.contact_stress_max()];
+    let stresses = [fused.contact_stress_max(), general.contact_stress_max()];
     assert!(
         (stresses[0] - stresses[1]).abs() < ROUNDING,
         "step {step}: {stresses:?}"
     );
-    let (here, there) = (fused.state(), reference.state());
+    let (here, there) = (fused.state(), general.state());
     for (a, b) in [
         (&here.displacement, &there.displacement),
         (&here.velocity, &there.velocity),
@@ -84,25 +84,25 @@ fn assert_alike(fused: &Simulation, reference: &Simulation) {
 /// Both kernels through up to `steps` steps, or until the first peak has ended; energies are measured at some of the steps.
 pub(crate) fn assert_same(model: &Model, dt_star: f64, state: Option<&State>, steps: u64) {
     let run = |execution| Simulation::with_execution(model.clone(), dt_star, state.cloned(), execution);
-    let (mut fused, mut reference) = (run(FUSED), run(REFERENCE));
-    assert_alike(&fused, &reference);
+    let (mut fused, mut general) = (run(FUSED), run(GENERAL));
+    assert_alike(&fused, &general);
     for step in 1..=steps {
         let energies = step % 3 == 0;
         go(&mut fused, energies);
-        go(&mut reference, energies);
-        assert_alike(&fused, &reference);
-        if reference.peak().ended {
+        go(&mut general, energies);
+        assert_alike(&fused, &general);
+        if general.peak().ended {
             break;
         }
     }
-    let first = reference.snapshot().first_slip_time_star();
+    let first = general.snapshot().first_slip_time_star();
     assert!(first.iter().any(|t| !t.is_nan()), "nothing ever slips");
     assert_eq!(bits(&fused.snapshot().first_slip_time_star()), bits(&first));
     // The forces of the fused kernel are recomputed from its displacements and velocities.
-    let bound = ROUNDING * largest(&reference.state().displacement);
+    let bound = ROUNDING * largest(&general.state().displacement);
     assert_fields_match_blocks(&fused);
     for b in 0..model.lattice.n_blocks() {
-        let (here, there) = (fused.snapshot().block(b), reference.snapshot().block(b));
+        let (here, there) = (fused.snapshot().block(b), general.snapshot().block(b));
         let forces = [
             (here.force_drive, there.force_drive),
             (here.force_lattice, there.force_lattice),
@@ -116,7 +116,7 @@ pub(crate) fn assert_same(model: &Model, dt_star: f64, state: Option<&State>, st
         }
         assert_eq!(here.slides(), there.slides());
     }
-    for run in [fused, reference] {
+    for run in [fused, general] {
         assert_eq!(bits(&run.into_first_slip_time_star()), bits(&first));
     }
 }
@@ -246,16 +246,16 @@ fn whole_runs(
     };
     let model = slider.model();
     let run = |execution| Simulation::with_execution(model.clone(), slider.dt_star, None, execution);
-    let (mut fused, mut reference) = (run(FUSED), run(REFERENCE));
+    let (mut fused, mut general) = (run(FUSED), run(GENERAL));
     for step in 1..=slider.steps(16.0) {
         go(&mut fused, false);
-        go(&mut reference, false);
+        go(&mut general, false);
         if step % 100 == 0 {
-            assert_alike(&fused, &reference);
+            assert_alike(&fused, &general);
         }
-        let [here, there] = [&fused, &reference].map(|run| run.snapshot().point);
+        let [here, there] = [&fused, &general].map(|run| run.snapshot().point);
         assert_eq!(here.n_sliding, there.n_sliding, "step {step}");
         assert!((here.mu_star - there.mu_star).abs() < ROUNDING, "step {step}");
     }
-    assert!(reference.peak().ended);
+    assert!(general.peak().ended);
 }
