@@ -109,10 +109,7 @@ impl Study {
 
     /// The case of a run.
     fn case(&self, py: Python<'_>, point: usize, replicate: usize, reference: bool) -> PyResult<Case> {
-        let role = match reference {
-            true => Role::Reference,
-            false => Role::Point,
-        };
+        let role = if reference { Role::Reference } else { Role::Point };
         let run = RunKey {
             point,
             replicate,

@@ -44,9 +44,10 @@ fn start_pool(threads: Option<u16>, others: usize, joins: bool) -> Result<usize,
     let cores = available_parallelism().map_or(1, usize::from);
     let asked = threads.map_or(cores, usize::from);
     let wanted = threads_that_fit(asked.min(cores), others);
-    let mut why = match wanted < asked.min(cores) {
-        true => "the limit on addresses (`ulimit -v`) has no room for more".to_owned(),
-        false => "this machine offers no more".to_owned(),
+    let mut why = if wanted < asked.min(cores) {
+        "the limit on addresses (`ulimit -v`) has no room for more".to_owned()
+    } else {
+        "this machine offers no more".to_owned()
     };
     // They are started before the pool, which could not be made if one of its threads were refused.
     let (hand_over, works) = channel::<ThreadBuilder>();

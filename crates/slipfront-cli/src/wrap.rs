@@ -26,9 +26,12 @@ pub(crate) fn for_stderr(text: &str) -> String {
     let Some(columns) = stderr_columns() else {
         return text.to_owned();
     };
-    let lines = text.lines().map(|line| match line.starts_with(' ') {
-        true => line.to_owned(),
-        false => wrapped(line, columns),
+    let lines = text.lines().map(|line| {
+        if line.starts_with(' ') {
+            line.to_owned()
+        } else {
+            wrapped(line, columns)
+        }
     });
     lines.collect::<Vec<_>>().join("\n")
 }

@@ -91,9 +91,10 @@ pub fn run(
     options: &Options,
     watch: &(dyn Fn(&Stage) + Sync),
 ) -> Result<Paper, PaperError> {
-    let rules: &[StepRule] = match options.reduced {
-        true => &[StepRule::Auto],
-        false => &[StepRule::Auto, StepRule::Paper],
+    let rules: &[StepRule] = if options.reduced {
+        &[StepRule::Auto]
+    } else {
+        &[StepRule::Auto, StepRule::Paper]
     };
     let cache = FigureCache::open(options.folder, options.reduced)?;
     let figures = with_finished(figures, &cache, rules);

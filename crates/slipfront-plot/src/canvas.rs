@@ -149,9 +149,10 @@ impl Canvas {
             let letters = Primitive::Letters {
                 text: text.to_string(),
                 size: run.size,
-                at: match upwards {
-                    true => (x + run.drop, y - start),
-                    false => (x + start, y + run.drop),
+                at: if upwards {
+                    (x + run.drop, y - start)
+                } else {
+                    (x + start, y + run.drop)
                 },
                 upwards,
             };

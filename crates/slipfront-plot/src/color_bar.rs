@@ -35,18 +35,20 @@ impl ColourBar {
 
     /// The room that a name above the bar takes.
     pub(crate) fn upper_room(&self) -> f64 {
-        match self.is_named_above() {
-            true => ABOVE + f64::from(SIZE_LABEL),
-            false => 0.0,
+        if self.is_named_above() {
+            ABOVE + f64::from(SIZE_LABEL)
+        } else {
+            0.0
         }
     }
 
     /// How wide it is with its numbers and a name beside them.
     pub(crate) fn room(&self) -> f64 {
         let numbered = bar_room(self.range, self.height);
-        match self.is_named_above() || self.name.width() == 0.0 {
-            true => numbered,
-            false => numbered + GAP + self.name.height() + self.name.depth(),
+        if self.is_named_above() || self.name.width() == 0.0 {
+            numbered
+        } else {
+            numbered + GAP + self.name.height() + self.name.depth()
         }
     }
 

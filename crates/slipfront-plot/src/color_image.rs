@@ -23,9 +23,10 @@ const LEVEL_BLANK: u8 = 255;
 /// The level of a value in this range, or of the end that it lies beyond; NaN is blank.
 pub(crate) fn level(value: f64, [lo, hi]: [f64; 2]) -> u8 {
     let share = ((value - lo) / (hi - lo)) as f32;
-    match share.is_nan() {
-        true => LEVEL_BLANK,
-        false => (share.clamp(0.0, 1.0) * f32::from(LEVEL_BLANK - 1)).round() as u8,
+    if share.is_nan() {
+        LEVEL_BLANK
+    } else {
+        (share.clamp(0.0, 1.0) * f32::from(LEVEL_BLANK - 1)).round() as u8
     }
 }
 

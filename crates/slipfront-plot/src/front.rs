@@ -200,9 +200,10 @@ impl Layout {
             )
         } else {
             let ratio = ratio.clamp(MIN_RATIO, 1.0 / MIN_RATIO);
-            let height = match ratio > MAX_RATIO {
-                true => MAX_SIDE_LONG,
-                false => (MAX_SIDE * ratio.min(1.0)).round(),
+            let height = if ratio > MAX_RATIO {
+                MAX_SIDE_LONG
+            } else {
+                (MAX_SIDE * ratio.min(1.0)).round()
             };
             let first = Area::new(map_left, TOP, (height / ratio).round(), height);
             let first = panel(first, map_left, sides, map_bar(height));
@@ -277,9 +278,10 @@ fn levels([lo, hi]: [f64; 2], first_slips: &[f32], means: &[f32], side: usize) -
     let scatter = f64::sqrt(sum / count);
     // As many as there may be, where nothing scatters.
     let steps = ((hi - lo) / (SCATTERS_APART * scatter)).min(CONTOUR_STEPS as f64) as usize;
-    match steps >= 2 && side >= MIN_CELLS_OF_CONTOURS {
-        true => round_values(lo, hi, steps).1,
-        false => Vec::new(),
+    if steps >= 2 && side >= MIN_CELLS_OF_CONTOURS {
+        round_values(lo, hi, steps).1
+    } else {
+        Vec::new()
     }
 }
 

@@ -42,22 +42,20 @@ impl MovieGif {
     /// It has another number of pixels.
     pub fn add(&mut self, pixels: Vec<u8>, delay: u16) -> Result<(), PictureError> {
         let [width, height] = MOVIE_PIXELS;
-        let [left, top, right, bottom] = match self.before.len() == pixels.len() {
-            true => changed(&self.before, &pixels, width),
-            false => [0, 0, width, height],
+        let [left, top, right, bottom] = if self.before.len() == pixels.len() {
+            changed(&self.before, &pixels, width)
+        } else {
+            [0, 0, width, height]
         };
         let is_first = self.before.is_empty();
         let mut part = Vec::with_capacity((right - left) * (bottom - top));
         for row in top..bottom {
             let row = row * width + left..row * width + right;
-            match is_first {
-                true => part.extend_from_slice(&pixels[row]),
-                false => part.extend(self.before[row.clone()].iter().zip(&pixels[row]).map(
-                    |(before, now)| match before == now {
-                        true => self.transparent,
-                        false => *now,
-                    },
-                )),
+            if is_first {
+                part.extend_from_slice(&pixels[row]);
+            } else {
+                let pairs = self.before[row.clone()].iter().zip(&pixels[row]);
+                part.extend(pairs.map(|(before, now)| if before == now { self.transparent } else { *now }));
             }
         }
         let frame = Frame {
@@ -110,10 +108,7 @@ fn changed(before: &[u8], now: &[u8], width: usize) -> [usize; 4] {
             row + 1,
         ];
     }
-    match rectangle[2] > 0 {
-        true => rectangle,
-        false => [0, 0, 1, 1],
-    }
+    if rectangle[2] > 0 { rectangle } else { [0, 0, 1, 1] }
 }
 
 #[cfg(test)]

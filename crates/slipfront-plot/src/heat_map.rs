@@ -84,18 +84,20 @@ pub fn heat_map(map: &HeatMap) -> Result<Picture, PictureError> {
         Ok((0..values.len()).map(value).collect())
     };
     let values: Vec<f64> = in_order(&map.values)?;
-    let half_widths: Vec<f64> = match map.half_widths.is_empty() {
-        true => vec![f64::NAN; values.len()],
-        false => in_order(&map.half_widths)?,
+    let half_widths: Vec<f64> = if map.half_widths.is_empty() {
+        vec![f64::NAN; values.len()]
+    } else {
+        in_order(&map.half_widths)?
     };
-    let crossed: Vec<f64> = match map.crossed.is_empty() {
-        true => vec![0.0; values.len()],
-        false => in_order(
+    let crossed: Vec<f64> = if map.crossed.is_empty() {
+        vec![0.0; values.len()]
+    } else {
+        in_order(
             &map.crossed
                 .iter()
                 .map(|&is| f64::from(u8::from(is)))
                 .collect::<Vec<f64>>(),
-        )?,
+        )?
     };
     let half = median(&half_widths);
     let with_half = values.iter().flat_map(|value| [value - half, value + half]);
@@ -275,9 +277,12 @@ fn short(value: f64, digits: usize) -> Option<String> {
         return None;
     }
     let (mantissa, power) = rounded.split_once('e')?;
-    let trimmed = |text: &str| match text.contains('.') {
-        true => text.trim_end_matches('0').trim_end_matches('.').to_string(),
-        false => text.to_string(),
+    let trimmed = |text: &str| {
+        if text.contains('.') {
+            text.trim_end_matches('0').trim_end_matches('.').to_string()
+        } else {
+            text.to_string()
+        }
     };
     let exponent: i32 = power.parse().ok()?;
     if (-4..6).contains(&exponent) {

@@ -172,9 +172,10 @@ impl<'a> MoviePictures<'a> {
             "" => time,
             letters => format!("{letters}: {time}"),
         };
-        let friction = match frame.mu_star.is_finite() {
-            true => Text::plain(&format!("\u{3bc}* = {}", number(frame.mu_star, 3)), SIZE_TICK),
-            false => Text::default(),
+        let friction = if frame.mu_star.is_finite() {
+            Text::plain(&format!("\u{3bc}* = {}", number(frame.mu_star, 3)), SIZE_TICK)
+        } else {
+            Text::default()
         };
         let room = Area::new(MAP_LEFT, TOP, MAP_SIDE, MAP_SIDE);
         draw_titles(canvas, room, &Text::plain(&label, SIZE_LABEL), &friction);

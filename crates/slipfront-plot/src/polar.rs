@@ -249,9 +249,10 @@ impl Ring {
             let (degrees, mean) = (curve.x[point], curve.mean[point]);
             cross(
                 canvas,
-                match drawable(mean) && mean >= 0.0 {
-                    true => self.at(degrees, mean),
-                    false => self.around(degrees, RADIUS),
+                if drawable(mean) && mean >= 0.0 {
+                    self.at(degrees, mean)
+                } else {
+                    self.around(degrees, RADIUS)
                 },
             );
         }

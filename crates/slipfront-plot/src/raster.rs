@@ -112,9 +112,10 @@ fn letters(text: &str, size: f64, at: Point, upwards: bool) -> Option<Path> {
     let mut path = PathBuilder::new();
     let scale = size as f32;
     // Steps along the line and above it, y downwards.
-    let (along, above) = match upwards {
-        true => ([0.0, -1.0], [-1.0, 0.0]),
-        false => ([1.0, 0.0], [0.0, -1.0]),
+    let (along, above) = if upwards {
+        ([0.0, -1.0], [-1.0, 0.0])
+    } else {
+        ([1.0, 0.0], [0.0, -1.0])
     };
     let mut pen = 0.0;
     for character in text.chars() {

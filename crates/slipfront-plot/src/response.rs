@@ -195,9 +195,10 @@ fn draw_crosses(canvas: &mut Canvas, area: Area, x: &Axis, y: &Axis, curves: &[R
     const LIFT: f64 = 14.0;
     for curve in curves {
         for point in (0..curve.x.len()).filter(|&point| curve.is_crossed(point)) {
-            let height = match drawable(curve.mean[point]) {
-                true => y.clamped(curve.mean[point]),
-                false => area.bottom() - LIFT,
+            let height = if drawable(curve.mean[point]) {
+                y.clamped(curve.mean[point])
+            } else {
+                area.bottom() - LIFT
             };
             cross(canvas, (x.at(curve.x[point]), height));
         }

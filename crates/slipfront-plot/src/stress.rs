@@ -158,9 +158,10 @@ impl Layout {
         // As many in one row as in the others.
         let rows = maps.maps.len().div_ceil(most);
         let columns = maps.maps.len().div_ceil(rows);
-        let (thinnest, max_width) = match is_wide {
-            true => (MIN_RATIO_WIDE, f64::INFINITY),
-            false => (MIN_RATIO, MAX_WIDTH),
+        let (thinnest, max_width) = if is_wide {
+            (MIN_RATIO_WIDE, f64::INFINITY)
+        } else {
+            (MIN_RATIO, MAX_WIDTH)
         };
         let ratio = ratio.clamp(thinnest, 1.0 / MIN_RATIO);
 
@@ -238,9 +239,10 @@ fn titles(map: &StressMap, is_torque: bool, in_one: bool) -> [Text; 2] {
         label => format!("{label}: {time}"),
     };
     let what = if is_torque { "torque " } else { "" };
-    let friction = match map.mu_star.is_finite() {
-        true => format!("{what}\u{3bc}* = {}", number(map.mu_star, 3)),
-        false => String::new(),
+    let friction = if map.mu_star.is_finite() {
+        format!("{what}\u{3bc}* = {}", number(map.mu_star, 3))
+    } else {
+        String::new()
     };
     match in_one {
         true if friction.is_empty() => [Text::default(), Text::plain(&time, SIZE_TICK)],

@@ -74,9 +74,10 @@ fn tag(element: &Element) -> String {
             upwards,
         } => {
             let (x, y) = (length(at.0), length(at.1));
-            let turn = match upwards {
-                true => format!(" transform=\"rotate(-90 {x} {y})\""),
-                false => String::new(),
+            let turn = if *upwards {
+                format!(" transform=\"rotate(-90 {x} {y})\"")
+            } else {
+                String::new()
             };
             let text = escaped(text);
             format!("<text x=\"{x}\" y=\"{y}\" font-size=\"{size}\"{turn} {fill}>{text}</text>\n")

@@ -84,9 +84,10 @@ impl Text {
     /// A text no wider than `room`: as a label, else in the size of numbers, else cut.
     pub(crate) fn fitted(text: &str, room: f64) -> Self {
         let label = Self::plain(text, SIZE_LABEL);
-        match label.width() <= room {
-            true => label,
-            false => Self::shortened(text, SIZE_TICK, room),
+        if label.width() <= room {
+            label
+        } else {
+            Self::shortened(text, SIZE_TICK, room)
         }
     }
 

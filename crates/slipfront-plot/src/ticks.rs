@@ -73,9 +73,10 @@ impl Axis {
         let ticks = self.round_logarithms(digits, every);
         let plain = ticks.iter().all(|(_, power, _)| (-4..5).contains(power));
         let tick = |&(digit, power, at): &(f64, i32, f64)| {
-            let written = match plain {
-                true => number(digit * libm::exp10(f64::from(power)), (-power).max(0) as usize),
-                false => format!("{digit}e{power}").replace('-', MINUS),
+            let written = if plain {
+                number(digit * libm::exp10(f64::from(power)), (-power).max(0) as usize)
+            } else {
+                format!("{digit}e{power}").replace('-', MINUS)
             };
             (at, Text::number(&written, SIZE_TICK))
         };

@@ -64,15 +64,19 @@ fn of_thinned(
     }
     let mut n_contact = 0;
     for time in &mut times {
-        match *time == NO_CONTACT {
-            true => *time = f64::NAN,
-            false => n_contact += 1,
+        if *time == NO_CONTACT {
+            *time = f64::NAN;
+        } else {
+            n_contact += 1;
         }
     }
     // An axis of which too few blocks are left has no more than edges.
-    let edges = |axis: usize| match [nx, ny][axis] < Lattice::MIN_PERIODIC {
-        true => Edges::Free,
-        false => lattice.edges[axis],
+    let edges = |axis: usize| {
+        if [nx, ny][axis] < Lattice::MIN_PERIODIC {
+            Edges::Free
+        } else {
+            lattice.edges[axis]
+        }
     };
     let looked_at = Lattice::with_edges(nx, ny, [edges(0), edges(1)]);
     let whole = Front::of(&looked_at, &times, n_contact)?;
@@ -85,14 +89,13 @@ fn of_thinned(
     };
     let nucleations = whole.nucleations.iter().map(nucleation).collect();
     let is_other = |time: &f64| !time.is_nan() && !during.contains(time);
-    let front = match times.iter().any(is_other) {
-        false => Some(whole),
-        true => {
-            for time in times.iter_mut().filter(|time| is_other(time)) {
-                *time = f64::NAN;
-            }
-            Front::of(&looked_at, &times, n_contact)
+    let front = if times.iter().any(is_other) {
+        for time in times.iter_mut().filter(|time| is_other(time)) {
+            *time = f64::NAN;
         }
+        Front::of(&looked_at, &times, n_contact)
+    } else {
+        Some(whole)
     };
     let speed = front.as_ref().and_then(|front| front.speed);
     let wider = |speed: f64| speed * stride as f64;

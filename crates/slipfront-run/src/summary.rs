@@ -413,13 +413,14 @@ impl SummaryObservers {
             .collect();
         let kinetic_star = kinetic.map(|kinetic| kinetic.mu_star);
         let transition = case.can_have_transition() && peak.ended && !is_kept_up(&peak, kinetic);
-        let [static_star, lateral_star, onset_star] = match transition {
-            true => [peak.mu_star, peak.mu_lateral_star, peak.time_star],
-            false => [
+        let [static_star, lateral_star, onset_star] = if transition {
+            [peak.mu_star, peak.mu_lateral_star, peak.time_star]
+        } else {
+            [
                 peak.largest.mu_star,
                 peak.largest.mu_lateral_star,
                 peak.largest.time_star,
-            ],
+            ]
         };
         let si = si(case, static_star, kinetic_star, simulation.contact_stress_max());
         let after_run = after_run(reason, &peak, transition, first_slip, kinetic, &energies);

@@ -38,13 +38,14 @@ pub(crate) fn polar(axes: &[Axis]) -> Option<Result<(usize, Vec<Levels>), String
     let over = direction_axis(axes)?;
     let others = others_than(axes, over);
     let count: usize = others.iter().map(|&axis| axes[axis].levels.len()).product();
-    Some(match 2 * count <= MOST_CURVES {
-        true => Ok((over, combinations(axes, &others))),
-        false => Err(format!(
+    Some(if 2 * count <= MOST_CURVES {
+        Ok((over, combinations(axes, &others)))
+    } else {
+        Err(format!(
             "there is no polar picture: it would have {} curves, two for each combination of the levels of the other axes, and can have \
              {MOST_CURVES}; anisotropy.csv has what it would show",
             2 * count
-        )),
+        ))
     })
 }
 

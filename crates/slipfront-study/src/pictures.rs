@@ -91,9 +91,12 @@ impl<'a> Measured<'a> {
         let points = plan.points.iter().enumerate();
         let values = points.map(|(position, point)| (plan.levels(point), value(position)));
         let counts: Vec<usize> = samples.iter().flatten().map(|sample| sample.n).collect();
-        let without = |position: usize| match needs_transition(quantity) {
-            true => results.runs_without_transition(position, quantity),
-            false => 0,
+        let without = |position: usize| {
+            if needs_transition(quantity) {
+                results.runs_without_transition(position, quantity)
+            } else {
+                0
+            }
         };
         let points = plan.points.iter().enumerate();
         let crossed = points.filter(|&(position, _)| without(position) > 0);
@@ -371,9 +374,10 @@ fn friction_polar(
             Some((other, _)) if plan.axes.len() == 2 => measured[0].axis_symbol(other),
             _ => String::new(),
         },
-        note: match measured[0].meshed.is_some() && plan.axes.len() > 2 {
-            true => format!("{AS_MESHED}; {note}"),
-            false => note,
+        note: if measured[0].meshed.is_some() && plan.axes.len() > 2 {
+            format!("{AS_MESHED}; {note}")
+        } else {
+            note
         },
         curves: curves.collect(),
     });
@@ -394,9 +398,10 @@ fn intervals(confidence: f64, counts: &[usize]) -> String {
     if most < 2 {
         return "no intervals: one run at each point".to_owned();
     }
-    let count = match least == most {
-        true => most.to_string(),
-        false => format!("{least} to {most}"),
+    let count = if least == most {
+        most.to_string()
+    } else {
+        format!("{least} to {most}")
     };
     format!(
         "{} % interval of the mean, n = {count}",
@@ -408,9 +413,10 @@ fn intervals(confidence: f64, counts: &[usize]) -> String {
 fn range(coverages: &[f64]) -> String {
     let ends = [f64::min, f64::max].map(|of| coverages.iter().copied().reduce(of));
     let [least, most] = ends.map(|end| four_digits(end.unwrap_or(f64::NAN)));
-    match least == most {
-        true => least,
-        false => format!("{least} to {most}"),
+    if least == most {
+        least
+    } else {
+        format!("{least} to {most}")
     }
 }
 

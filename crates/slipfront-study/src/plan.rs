@@ -470,9 +470,10 @@ impl Plan {
     pub fn describe(&self, point: &Point) -> String {
         let columns = self.columns(point).into_iter();
         let levels: Vec<String> = columns.map(|(name, value)| format!("{name} = {value}")).collect();
-        match levels.is_empty() {
-            true => "of the base case".to_owned(),
-            false => levels.join(", "),
+        if levels.is_empty() {
+            "of the base case".to_owned()
+        } else {
+            levels.join(", ")
         }
     }
 
@@ -515,9 +516,10 @@ fn meshed_coverage(case: &Case) -> Option<f64> {
         return None;
     };
     let textured = case.texture.meshed_percent;
-    Some(match texture.pattern.invert {
-        true => 100.0 - textured,
-        false => textured,
+    Some(if texture.pattern.invert {
+        100.0 - textured
+    } else {
+        textured
     })
 }
 

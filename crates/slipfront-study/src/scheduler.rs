@@ -228,9 +228,10 @@ impl<'a> Scheduler<'a> {
                 return decided(replicates, Some(false));
             }
         }
-        match state.requested < settings.max_replicates() {
-            true => None,
-            false => decided(state.requested, Some(false)),
+        if state.requested < settings.max_replicates() {
+            None
+        } else {
+            decided(state.requested, Some(false))
         }
     }
 

@@ -36,9 +36,10 @@ impl Shard {
     }
 
     fn new(number: usize, count: usize, given: &str) -> Result<Self, StudyError> {
-        match (1..=count).contains(&number) {
-            true => Ok(Self { number, count }),
-            false => Err(refused(given, format!("there is no part {number} of {count}"))),
+        if (1..=count).contains(&number) {
+            Ok(Self { number, count })
+        } else {
+            Err(refused(given, format!("there is no part {number} of {count}")))
         }
     }
 }

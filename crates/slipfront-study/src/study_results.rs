@@ -81,9 +81,10 @@ impl StudyResults {
     /// the point or, for a reduction, its reference. Of quantities that do not need one too, it is the number of such runs of the point.
     pub fn runs_without_transition(&self, position: usize, name: &str) -> usize {
         let replicates = self.points.get(position).map_or(0, |point| point.replicates);
-        let roles = match name == REDUCTION {
-            true => &[Role::Point, Role::Reference][..],
-            false => &[Role::Point],
+        let roles = if name == REDUCTION {
+            &[Role::Point, Role::Reference][..]
+        } else {
+            &[Role::Point]
         };
         let is_without = |replicate: usize| {
             let run = |role: &Role| RunKey {

@@ -59,16 +59,20 @@ impl Texture {
             );
             return Err(Failure::input(anyhow::anyhow!(sentence)));
         }
-        let failed = |error: texture_file::TextureFileError| match error.is_input() {
-            true => Failure::input(error),
-            false => Failure::running(error),
+        let failed = |error: texture_file::TextureFileError| {
+            if error.is_input() {
+                Failure::input(error)
+            } else {
+                Failure::running(error)
+            }
         };
         let smallest = texture_file::smallest(&case).map_err(Failure::input)?;
         let scale = self.scale.map(usize::from);
         let said = texture_file::write(&case, &self.out, scale).map_err(failed)?;
-        let covered = match case.file.texture.is_empty() {
-            true => "the case has no texture: every block touches".to_owned(),
-            false => report::texture(&case),
+        let covered = if case.file.texture.is_empty() {
+            "the case has no texture: every block touches".to_owned()
+        } else {
+            report::texture(&case)
         };
         let covered = covered + &report::smallest(&case, smallest, &said);
         print_message(&format!("{covered}\n{}\n", self.out.display()));

@@ -58,9 +58,8 @@ fn onset(case: &Case) -> String {
         text += &format!("first slip        {}{}\n", at(first), late(first));
     }
     let [from, to] = expected.onset_star;
-    text += &match from < to {
-        false => format!("onset expected    about {} (Eq. 12){}\n", at(to), late(to)),
-        true => format!(
+    text += &if from < to {
+        format!(
             "onset expected    {} to {}: the {} % of the blocks that touch bear {} times the load; the earlier, the more scattered they \
              are{}\n",
             at(from),
@@ -68,7 +67,9 @@ fn onset(case: &Case) -> String {
             four_digits(100.0 - case.texture.meshed_percent),
             four_digits(case.model.surface.load_factor()),
             late(to)
-        ),
+        )
+    } else {
+        format!("onset expected    about {} (Eq. 12){}\n", at(to), late(to))
     };
     text + &whole_slider(case)
 }

@@ -66,9 +66,10 @@ fn local(field: &Option<String>, grade: &Option<Grade>) -> String {
 
 fn material(case: &Case) -> String {
     let slider = &case.file.slider;
-    let viscosity = match slider.viscosity_time_star > 0.0 {
-        true => format!(", tau_v* = {}", four_digits(slider.viscosity_time_star)),
-        false => String::new(),
+    let viscosity = if slider.viscosity_time_star > 0.0 {
+        format!(", tau_v* = {}", four_digits(slider.viscosity_time_star))
+    } else {
+        String::new()
     };
     format!(
         "E = {}{}, rho = {} kg/m^3{}, Omega* = {}{viscosity}",

@@ -72,12 +72,13 @@ fn sliding_blocks(case: &Case, summary: &Summary) -> String {
     });
     // Where springs in contact are what slides, a block without one does not count.
     let has_springs = matches!(case.model.friction, Friction::ContactSprings(_));
-    let textured = match summary.texture_percent > 0.0 && !has_springs {
-        true => format!(
+    let textured = if summary.texture_percent > 0.0 && !has_springs {
+        format!(
             "; {:.1} % are textured, held by nothing, and slide from the start",
             summary.texture_percent
-        ),
-        false => String::new(),
+        )
+    } else {
+        String::new()
     };
     most + &kinetic + &textured
 }

@@ -35,9 +35,12 @@ impl Column {
         let all = [name.to_owned()].into_iter().chain(aligned);
         let all: Vec<String> = all.collect();
         let width = all.iter().map(|cell| cell.chars().count()).max().unwrap_or(0);
-        let filled = |cell: &String| match is_right {
-            true => format!("{cell:>width$}"),
-            false => format!("{cell:<width$}"),
+        let filled = |cell: &String| {
+            if is_right {
+                format!("{cell:>width$}")
+            } else {
+                format!("{cell:<width$}")
+            }
         };
         Self {
             cells: all.iter().map(filled).collect(),

@@ -219,9 +219,10 @@ fn what_an_interrupted_run_has_not_written_stays() {
         workspace.interrupt("a");
         workspace.write(&format!("a/{name}"), "mine");
         let before = workspace.files("a");
-        let why = match listed {
-            true => "was changed after the run had written it: move it away",
-            false => "is not a file of an earlier run: move it away",
+        let why = if listed {
+            "was changed after the run had written it: move it away"
+        } else {
+            "is not a file of an earlier run: move it away"
         };
         for line in ["run --quiet --resume a", "run small.toml --quiet -o a --force"] {
             let said = workspace.fail(line, 2);

@@ -13,9 +13,12 @@ const CORRECTED: [u32; 3] = [3, 6, 7];
 const V_STAR: f64 = 0.03;
 
 fn files(corrected: bool) -> impl Iterator<Item = String> {
-    (1..=8).map(move |case| match corrected && CORRECTED.contains(&case) {
-        true => format!("table1/case{case}_corrected"),
-        false => format!("table1/case{case}"),
+    (1..=8).map(move |case| {
+        if corrected && CORRECTED.contains(&case) {
+            format!("table1/case{case}_corrected")
+        } else {
+            format!("table1/case{case}")
+        }
     })
 }
 

@@ -9,9 +9,10 @@ pub fn summary(paper: &Paper) -> String {
     for result in &paper.results {
         let ClaimResult { claim, verdict, .. } = result;
         let deviation = claim.deviation_in_brackets();
-        let note = match result.as_expected() {
-            true => "",
-            false => "  <- not as expected",
+        let note = if result.as_expected() {
+            ""
+        } else {
+            "  <- not as expected"
         };
         text += &format!(
             "{:>3}  {:<27}  {:<18}  {}{deviation}{note}\n",

@@ -175,9 +175,12 @@ pub(crate) fn stress_maps(
 ) -> StressMaps {
     let map = |(index, label): (usize, &&str)| {
         let level = [0.19, 0.82, 0.75, 0.5, 0.25, 0.5][index % 6];
-        let value = |i: usize, j: usize| match texture(i, j) {
-            true => 0.0,
-            false => (level + 0.1 * index as f64 * (scatter(i + nx * j) - 0.5)) as f32,
+        let value = |i: usize, j: usize| {
+            if texture(i, j) {
+                0.0
+            } else {
+                (level + 0.1 * index as f64 * (scatter(i + nx * j) - 0.5)) as f32
+            }
         };
         StressMap {
             label: (*label).to_owned(),

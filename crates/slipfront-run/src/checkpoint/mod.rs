@@ -117,9 +117,12 @@ impl Checkpoints {
         let temporary = format!("{}-{CHECKPOINT}", header.step);
         let temporary = self.folder.temporary().join(temporary);
         let written = file::write(&temporary, &header, running, communicator);
-        let placed = written.and_then(|()| match is_first {
-            true => self.put_in_place(&temporary),
-            false => Ok(()),
+        let placed = written.and_then(|()| {
+            if is_first {
+                self.put_in_place(&temporary)
+            } else {
+                Ok(())
+            }
         });
         if placed.is_err() && is_first {
             // The error that is told is the first one.
@@ -339,9 +342,10 @@ mod tests {
             std::fs::write(Unfinished::of(other.path()).path().join(CHECKPOINT), &seen).unwrap();
             for differing in 0..3 {
                 let refused = Threads::run(3, |communicator| {
-                    let folder = match communicator.rank() == differing {
-                        true => other.path(),
-                        false => folder.path(),
+                    let folder = if communicator.rank() == differing {
+                        other.path()
+                    } else {
+                        folder.path()
                     };
                     let loaded = Checkpoints::load(folder, &case, false, communicator);
                     loaded.map(drop).unwrap_err().to_string()

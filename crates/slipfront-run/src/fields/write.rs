@@ -48,9 +48,10 @@ pub fn write_fields(
         writer.create(&mut *output)?;
         writer.write_rows(output)
     };
-    let created = match is_first {
-        true => write_temp(temporary, fill).map(Some),
-        false => Ok(None),
+    let created = if is_first {
+        write_temp(temporary, fill).map(Some)
+    } else {
+        Ok(None)
     };
     let created = agree_on_io(communicator, created).map_err(failed)?;
     let name = created.as_ref().and_then(|path| path.file_name());
@@ -170,14 +171,17 @@ fn write_at<T: Number>(
 }
 
 fn check(path: &Path, file: &FieldsFile) -> Result<(), FieldsError> {
-    let expect = |what: &str, found: usize, wanted: usize| match found == wanted {
-        true => Ok(()),
-        false => Err(FieldsError::Shape {
-            path: path.to_owned(),
-            what: what.to_owned(),
-            found,
-            wanted,
-        }),
+    let expect = |what: &str, found: usize, wanted: usize| {
+        if found == wanted {
+            Ok(())
+        } else {
+            Err(FieldsError::Shape {
+                path: path.to_owned(),
+                what: what.to_owned(),
+                found,
+                wanted,
+            })
+        }
     };
     for (what, size) in [("x", file.nx), ("y", file.ny), ("`output.stride`", file.stride)] {
         // The header stores them with 32 bits.

@@ -102,9 +102,10 @@ pub(super) fn refuse_unmanaged(
         if found(&path)?.is_none() {
             continue;
         }
-        return Err(match listed.iter().any(|file| file.name == name) {
-            true => FolderError::Edited { path },
-            false => FolderError::Foreign { path },
+        return Err(if listed.iter().any(|file| file.name == name) {
+            FolderError::Edited { path }
+        } else {
+            FolderError::Foreign { path }
         });
     }
     let unfinished = Unfinished::of(folder);

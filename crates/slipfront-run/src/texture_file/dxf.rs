@@ -164,9 +164,10 @@ impl File {
         if a != b {
             self.entity("ELLIPSE", "AcDbEllipse", layer);
             // The first axis of a file is the longer one.
-            let (major, ratio, later) = match a > b {
-                true => ([a * c, a * s], b / a, 0.0),
-                false => ([-b * s, b * c], a / b, FRAC_PI_2),
+            let (major, ratio, later) = if a > b {
+                ([a * c, a * s], b / a, 0.0)
+            } else {
+                ([-b * s, b * c], a / b, FRAC_PI_2)
             };
             let [from, to] =
                 parameters.map_or([0.0, TAU], |ends| ends.map(|end| (end - later).rem_euclid(TAU)));

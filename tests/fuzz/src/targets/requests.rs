@@ -219,9 +219,10 @@ fn source(choices: &mut Choices) -> Value {
             let mut toml = String::from("slider.blocks = [12, 9]\n");
             for _ in 0..choices.below(6) {
                 let section = &SECTIONS[choices.below(SECTIONS.len())];
-                toml += &match section.is_shape {
-                    true => format!("[[texture]]\nshape = \"{}\"\n", section.name),
-                    false => format!("[{}]\n", section.name),
+                toml += &if section.is_shape {
+                    format!("[[texture]]\nshape = \"{}\"\n", section.name)
+                } else {
+                    format!("[{}]\n", section.name)
                 };
                 for _ in 0..choices.below(4) {
                     let (key, value) = (key(choices), value(choices, 0));
@@ -260,9 +261,10 @@ fn keys(choices: &mut Choices) -> Map<String, Value> {
 fn key(choices: &mut Choices) -> String {
     let section = &SECTIONS[choices.below(SECTIONS.len())];
     let key = section.keys[choices.below(section.keys.len())].name;
-    let table = match section.is_shape {
-        true => format!("texture.{}", choices.below(3)),
-        false => section.name.to_owned(),
+    let table = if section.is_shape {
+        format!("texture.{}", choices.below(3))
+    } else {
+        section.name.to_owned()
     };
     let whole = format!("{table}.{key}");
     match choices.below(12) {
@@ -354,9 +356,10 @@ fn nested(choices: &mut Choices) -> Value {
     let is_list = choices.below(2) == 0;
     let mut value = number(choices);
     for _ in 0..levels {
-        value = match is_list {
-            true => json!([value]),
-            false => json!({ "a": value }),
+        value = if is_list {
+            json!([value])
+        } else {
+            json!({ "a": value })
         };
     }
     value

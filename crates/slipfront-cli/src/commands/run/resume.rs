@@ -50,9 +50,10 @@ pub(super) fn resume(path: &Path, previous: bool, options: RunOptions) -> Result
 
 /// Locks and inspects the folder; the first rank locks it for all.
 fn open(path: &Path, locks: bool) -> Result<OpenedFolder, Failure> {
-    let opened = match locks {
-        true => OpenedFolder::open(path),
-        false => OpenedFolder::open_unlocked(path),
+    let opened = if locks {
+        OpenedFolder::open(path)
+    } else {
+        OpenedFolder::open_unlocked(path)
     };
     opened.map_err(Failure::input)
 }
@@ -176,9 +177,10 @@ fn load(
 
 /// A checkpoint that cannot be used, with the remedy. All ranks refuse it; the first one, which says so, looks for the remedy.
 fn refused(ranks: &Ranks, error: &CheckpointError, path: &Path, case: &Case, previous: bool) -> Failure {
-    let remedy = match ranks.is_first() {
-        true => remedy(error, path, case, previous),
-        false => String::new(),
+    let remedy = if ranks.is_first() {
+        remedy(error, path, case, previous)
+    } else {
+        String::new()
     };
     Failure::input(anyhow::anyhow!("{error}; {remedy}"))
 }

@@ -61,9 +61,10 @@ pub(super) fn refuse_large(file: &StudyFile, confirmed: bool) -> Result<(), Fail
 
 impl StudyRun {
     pub(crate) fn execute(self) -> Result<(), Failure> {
-        let threads = match self.dry_run {
-            true => set_threads(self.threads)?,
-            false => set_worker_threads(self.threads, 0)?,
+        let threads = if self.dry_run {
+            set_threads(self.threads)?
+        } else {
+            set_worker_threads(self.threads, 0)?
         };
         let Some(path) = self.study else {
             return Err(Failure::input(anyhow::anyhow!("name a study file")));
