@@ -57,14 +57,16 @@ run_slice() {
     TIMEFORMAT='%U %S'
     { time SLIPFRONT_FUZZ="$name" "$fuzz" "${options[@]}" "$out/corpus/$name" "$out/seeds/$name" > "$said" 2>&1; } \
         2> "$cpu_times/$name-time" || status=$?
-    cpu="$(awk '{ printf "%.0f", $1 + $2 }' "$cpu_times/$name-time")"
+    # Of a process that a signal has ended, the shell tells that first.
+    cpu="$(tail -n 1 "$cpu_times/$name-time" | awk '{ printf "%.0f", $1 + $2 }')"
     echo "$cpu" >> "$cpu_times/$name"
     local stat finding=
     stat() { sed -n "s/^stat::$1: *//p" "$said" | tail -n 1; }
     [ "$status" -eq 0 ] || finding="$(sed -n 's/.*Test unit written to //p' "$said" | tail -n 1)"
     # A stack that overflows ends the process before it can write anything: such a target keeps its input itself.
     local input
-    input="$(ls -t "$TMPDIR"/*/"$name-input" 2> /dev/null | head -n 1 || true)"
+    # Its folder has a hidden name.
+    input="$(find "$TMPDIR" -name "$name-input" -printf '%T@ %p\n' | sort -n | tail -n 1 | cut -d ' ' -f 2-)"
     if [ "$status" -ne 0 ] && [ -z "$finding" ] && [ -n "$input" ]; then
         finding="$out/artifacts/$name/abort-$(sha1sum "$input" | cut -d ' ' -f 1)"
         cp "$input" "$finding"
