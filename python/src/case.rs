@@ -10,6 +10,7 @@ use pyo3::types::{PyBytes, PyDict};
 use slipfront::Surface;
 use slipfront_case::case::Case as SlipfrontCase;
 use slipfront_case::case_file::{CaseError as Error, CaseFile};
+use slipfront_run::budget::RunBudget;
 
 use crate::arrays::borrowed;
 use crate::errors::{CaseError, case_error};
@@ -22,7 +23,8 @@ pub(crate) const LOOK_EVERY: Duration = Duration::from_millis(50);
 #[pyclass(frozen, module = "slipfront._slipfront")]
 pub(crate) struct Case(pub(crate) Arc<SlipfrontCase>);
 
-/// Makes a case while other threads of Python go on; `make` is given what watches its texture. A signal ends it.
+/// Makes a case while other threads of Python go on, refused if a run of it has no memory; `make` is given what watches its texture. A
+/// signal ends it.
 pub(crate) fn make(
     py: Python<'_>,
     make: impl FnOnce(&mut dyn FnMut(f64) -> bool) -> Result<SlipfrontCase, Error> + Send,
@@ -30,13 +32,15 @@ pub(crate) fn make(
     let mut signal = None;
     let mut looked = Instant::now();
     let made = detached(py, || {
-        make(&mut |_| {
+        let case = make(&mut |_| {
             if looked.elapsed() >= LOOK_EVERY {
                 looked = Instant::now();
                 signal = Python::attach(|py| py.check_signals().err());
             }
             signal.is_none()
-        })
+        })?;
+        RunBudget::of(&case).check_memory(&case.file)?;
+        Ok(case)
     })?;
     match (made, signal) {
         (_, Some(signal)) => Err(signal),

@@ -2,13 +2,14 @@
 
 use slipfront_case::case::{self, Case, Watch};
 use slipfront_case::case_file::CaseError;
+use slipfront_run::budget::RunBudget;
 
 use crate::failure::Failure;
 use crate::progress::mesh::MeshProgress;
 use crate::ranks::Ranks;
 use crate::signals::Signals;
 
-/// The case that `make` gives on all ranks; it is handed what watches its texture.
+/// The case that `make` gives on all ranks, refused if a run of it has no memory; it is handed what watches its texture.
 pub(crate) fn make_case(
     ranks: &Ranks,
     signals: &Signals,
@@ -25,7 +26,10 @@ pub(crate) fn make_case(
         progress.show(share);
         signals.stopped().is_none()
     };
-    let made = make(watch, of_case);
+    let made = make(watch, of_case).and_then(|case| {
+        of_case.agree(RunBudget::of(&case).check_memory(&case.file))?;
+        Ok(case)
+    });
     progress.finish();
     made.map_err(|error| match error {
         CaseError::Stopped => {

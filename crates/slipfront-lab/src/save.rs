@@ -8,6 +8,7 @@ use std::time::{Duration, Instant};
 
 use slipfront_case::disk::make_folders;
 use slipfront_case::text::{display_path, truncated};
+use slipfront_run::budget::RunBudget;
 use slipfront_run::clock;
 use slipfront_run::results;
 use slipfront_run::run_folder::RunFolder;
@@ -70,9 +71,9 @@ pub(crate) fn save(
     }
     let started = clock::now();
     let case = Arc::new(document.case().map_err(sentence)?);
-    case.budget
-        .check_disk(&case.file, out, 0, false)
-        .map_err(sentence)?;
+    let budget = RunBudget::of(&case);
+    budget.check_memory(&case.file).map_err(sentence)?;
+    budget.check_disk(&case.file, out, 0, false).map_err(sentence)?;
     make_folder(out)?;
     let prepared = RunFolder::prepare(out, false, &case.inputs);
     let mut folder = prepared.map_err(|error| {

@@ -22,6 +22,11 @@ pub struct CellMeans {
 }
 
 impl CellMeans {
+    /// Most cells.
+    pub const MAX_CELLS: usize = MAX_CELLS * MAX_CELLS;
+    /// Bytes per cell while values come in.
+    pub const BYTES_PER_CELL: usize = size_of::<f64>() + size_of::<u32>();
+
     /// Nothing yet of a lattice with this many blocks along x and along y.
     pub fn new(nx: usize, ny: usize) -> Self {
         let [columns, rows] = Self::cells(nx, ny);

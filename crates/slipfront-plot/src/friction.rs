@@ -22,6 +22,9 @@ const APART: f64 = 24.0;
 /// The kinetic window's shade.
 const SHADE: Rgb = [0x9a, 0xa5, 0xb1];
 
+/// Most bytes while [`friction`] draws the curve of one run: four of each of 0.9 million pixels, and primitives.
+pub const FRICTION_BYTES: usize = 6 << 20;
+
 /// Draws friction and, below it, N* against time or path, as wide as a journal's column (85 mm).
 ///
 /// One curve is drawn with all it knows: first slip, peak, kinetic window, lettered instants. What a line or a window is called stands

@@ -70,6 +70,20 @@ pub struct SpaceTime {
     pub shares: Vec<f32>,
 }
 
+/// Most bytes while [`front`] draws a lattice, in pixels and primitives: at most 1.8 million pixels with the panels beside each other,
+/// and 2.6 million with the map above.
+pub fn front_bytes(nx: usize, ny: usize) -> usize {
+    match is_above(ny as f64 / nx as f64) {
+        true => 12 << 20,
+        false => 8 << 20,
+    }
+}
+
+/// Whether the map of a slider stands above the other panel, given its height over its length.
+fn is_above(ratio: f64) -> bool {
+    ratio * MAX_RATIO < 1.0
+}
+
 /// Draws both, as wide as a journal's text (175 mm) or less: the map beside the other panel, or of a long slider above it. Nucleations
 /// are circled, the first filled; the texture is outlined.
 ///
@@ -185,7 +199,7 @@ impl Layout {
             ("y", units[1].0),
             (&space_time.place, place_unit),
         ];
-        let (map, space_time) = if ratio * MAX_RATIO < 1.0 {
+        let (map, space_time) = if is_above(ratio) {
             let left = map_left.max(left);
             let widest = map_bar(HEIGHT_BELOW).room().max(bar(HEIGHT_BELOW).room());
             let width = (TEXT_WIDTH - left - GAP - widest - MARGIN).round();

@@ -26,6 +26,11 @@ pub const MOVIE_PIXELS: [usize; 2] = [800, 400];
 /// A picture is drawn so many times as large.
 const DRAWN: usize = 2;
 const DRAWN_PIXELS: [usize; 2] = [DRAWN * MOVIE_PIXELS[0], DRAWN * MOVIE_PIXELS[1]];
+/// Bytes while a picture is drawn: four of each pixel that is drawn, and one of each that is kept.
+pub const MOVIE_PICTURE_BYTES: usize =
+    4 * DRAWN_PIXELS[0] * DRAWN_PIXELS[1] + MOVIE_PIXELS[0] * MOVIE_PIXELS[1];
+/// Bytes of a picture in its file (measured: 25 kB where all of a map changes).
+pub const MOVIE_FILE_BYTES: usize = 25_000;
 /// The largest map, as drawn.
 const MAP_SIDE: f64 = 600.0;
 /// Where the map begins.

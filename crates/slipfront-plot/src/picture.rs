@@ -9,6 +9,11 @@ pub struct Picture {
     pub png: Vec<u8>,
 }
 
+impl Picture {
+    /// Most bytes while a picture as wide as a column is drawn, pixels and primitives, whatever it shows.
+    pub const COLUMN_BYTES: usize = 7 << 20;
+}
+
 /// Why a picture could not be made.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[expect(missing_docs, reason = "the sentence of each variant tells what it is")]

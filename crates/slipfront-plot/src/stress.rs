@@ -62,6 +62,11 @@ pub struct StressMaps {
     pub is_torque: bool,
 }
 
+/// Most bytes while [`stress`] draws: four of each of at most 3.6 million pixels. They do not depend on the lattice.
+pub const STRESS_BYTES: usize = 14 << 20;
+/// Bytes of both files of maps for each cell of a map (measured: 5.4 where every cell has a colour of its own).
+pub const STRESS_FILE_BYTES: usize = 6;
+
 /// Draws the maps, three in a row, at most as wide as a journal's text (175 mm), all on one colour scale, the textured area
 /// outlined. Of a slider that is long along x there are two in a row, or one, and of one that is long along y all.
 ///

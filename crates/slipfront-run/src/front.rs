@@ -11,6 +11,13 @@ use slipfront_case::case::Case;
 /// Most blocks that are looked at: of a larger lattice every n-th of each axis. The first rank holds the times of them all.
 const MAX_BLOCKS: usize = 1 << 22;
 
+/// Bytes that the first of several ranks takes to find the front of a lattice of so many blocks.
+#[cfg(feature = "plot")]
+pub(crate) fn bytes_of_shared(n_blocks: f64) -> f64 {
+    let per_block = size_of::<f64>() + Front::BYTES_PER_BLOCK;
+    n_blocks.min(MAX_BLOCKS as f64) * per_block as f64
+}
+
 /// Numbers that ranks tell each other at once.
 const PART: usize = 1 << 17;
 

@@ -7,6 +7,8 @@
 //! Each arrow is one function: [`running::run`], [`results::write`], `pictures::draw` (with the feature `plot`).
 
 pub mod agree;
+#[cfg(feature = "plot")]
+pub mod budget;
 pub mod checkpoint;
 pub mod checksum;
 pub mod clock;

@@ -114,7 +114,7 @@ impl Manifest {
             version: program::VERSION.to_owned(),
             revision: program::REVISION.map(str::to_owned),
             build: program::this_build().to_owned(),
-            kernel: Kernel::Fused.for_model(&case.model).name().to_owned(),
+            kernel: Kernel::default().for_model(&case.model).name().to_owned(),
             simd_width: simd_width().to_owned(),
             threads,
             host: gethostname::gethostname().to_string_lossy().into_owned(),

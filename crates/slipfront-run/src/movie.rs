@@ -4,15 +4,19 @@ use std::path::Path;
 
 use rayon::prelude::*;
 use slipfront::observe::Field;
-use slipfront_case::case::{MAX_PICTURES, MOVIE_BATCH, memory_of_movie};
+use slipfront_case::case::{Budget, MAX_PICTURES};
 use slipfront_case::case_file::Motion;
-use slipfront_plot::{CellMeans, FrictionAxes, Movie, MovieFrame, MovieGif, MoviePictures, PictureError};
+use slipfront_plot::{
+    CellMeans, FrictionAxes, MOVIE_FILE_BYTES, MOVIE_PICTURE_BYTES, Movie, MovieFrame, MovieGif,
+    MoviePictures, PictureError,
+};
 
+use crate::budget::grown;
 use crate::error::ResultsError;
 use crate::fields;
 use crate::friction_picture::marked_curve;
 use crate::names::{FIELDS, SERIES};
-use crate::pictures::{MapScale, MuStar, case_of, field_of_maps, separated};
+use crate::pictures::{CELL_BYTES, MapScale, MuStar, ROW_BYTES, case_of, field_of_maps, separated};
 use crate::series::{self, SeriesRow};
 use crate::summary::read_summary;
 
@@ -23,11 +27,25 @@ const LONGEST: usize = 100;
 /// An instant A-F is shown so many times as long as other pictures.
 const INSTANT: usize = 5;
 
+/// Most pictures that are drawn at once.
+const BATCH: usize = 8;
+/// Bytes while so many are drawn.
+pub(crate) const BATCH_BYTES: f64 = (BATCH * MOVIE_PICTURE_BYTES) as f64;
+
+/// Bytes of a snapshot of so many cells while a movie is made: its values, and its picture in the file.
+pub(crate) fn snapshot_bytes(cells: f64) -> f64 {
+    cells * size_of::<f32>() as f64 + MOVIE_FILE_BYTES as f64
+}
+
 /// Memory in which the movie of a run folder is made, in bytes.
 pub fn memory(folder: &Path) -> Result<f64, ResultsError> {
     let snapshots = fields::count_snapshots(&folder.join(FIELDS))?;
     let rows = series::estimate_rows(&folder.join(SERIES))?;
-    Ok(memory_of_movie(snapshots.min(MAX_PICTURES) as f64, rows))
+    let snapshots = snapshots.min(MAX_PICTURES) as f64;
+    let cells = CellMeans::MAX_CELLS as f64;
+    Ok(Budget::resident(
+        cells * CELL_BYTES + grown(rows) * ROW_BYTES + snapshots * snapshot_bytes(cells) + BATCH_BYTES,
+    ))
 }
 
 /// The movie of a run folder, of this field or of that whose maps are drawn; none if the run has kept no snapshot of it.
@@ -111,8 +129,8 @@ pub fn draw<E>(
     pictures: &MoviePictures,
     mut take: impl FnMut(Vec<u8>) -> Result<(), E>,
 ) -> Result<(), E> {
-    for first in (0..movie.frames.len()).step_by(MOVIE_BATCH) {
-        let batch = first..(first + MOVIE_BATCH).min(movie.frames.len());
+    for first in (0..movie.frames.len()).step_by(BATCH) {
+        let batch = first..(first + BATCH).min(movie.frames.len());
         let drawn: Vec<_> = batch.into_par_iter().map(|index| pictures.draw(index)).collect();
         drawn.into_iter().try_for_each(&mut take)?;
     }

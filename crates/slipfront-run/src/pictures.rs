@@ -2,6 +2,7 @@
 
 #[cfg(feature = "plot")]
 use {
+    crate::budget::grown,
     crate::error::ResultsError,
     crate::fields::{self, FieldFrame, Reduction},
     crate::friction_picture::{self, in_print},
@@ -13,7 +14,7 @@ use {
     slipfront::exact_solutions::precursor_load,
     slipfront::observe::Field,
     slipfront::{Edge, Edges},
-    slipfront_case::case::{MAX_MAPS, mapped_field, memory_to_draw},
+    slipfront_case::case::{Budget, MAX_MAPS, mapped_field, scales},
     slipfront_case::case_file::{CaseFile, KineticFriction, Motion},
     slipfront_case::disk::found_behind,
     slipfront_case::field_info::field_info,
@@ -80,6 +81,26 @@ impl RunPicture {
     }
 }
 
+/// Bytes of the files of all pictures without those of maps, of the summary and of the manifest (measured: at most 0.7 MB).
+#[cfg(feature = "plot")]
+pub(crate) const FILE_BYTES: f64 = 2e6;
+
+/// Bytes of a row of the series while pictures are drawn from it: three numbers that are read of it, and the points of its curves.
+#[cfg(feature = "plot")]
+pub(crate) const ROW_BYTES: f64 = (3 + 2 + 3) as f64 * size_of::<f64>() as f64;
+
+/// Bytes of a cell of a lattice while maps of it are read: whether it is textured, and its mean.
+#[cfg(feature = "plot")]
+pub(crate) const CELL_BYTES: f64 = (size_of::<bool>() + CellMeans::BYTES_PER_CELL) as f64;
+
+/// Bytes of a cell of a map in the picture of the stress while it is drawn: its value, and what it takes of the files.
+#[cfg(feature = "plot")]
+pub(crate) const MAP_CELL_BYTES: f64 = (size_of::<f32>() + plot::STRESS_FILE_BYTES) as f64;
+
+/// Bytes while the pictures of the friction and of the stress are drawn at once.
+#[cfg(feature = "plot")]
+pub(crate) const WITH_MAPS_BYTES: f64 = (plot::FRICTION_BYTES + plot::STRESS_BYTES) as f64;
+
 /// Memory in which the friction curves of these run folders are drawn, or all pictures of a single one, in bytes.
 #[cfg(feature = "plot")]
 pub fn memory(folders: &[PathBuf]) -> Result<f64, ResultsError> {
@@ -90,14 +111,18 @@ pub fn memory(folders: &[PathBuf]) -> Result<f64, ResultsError> {
             .map_or(0, |file| file.len())
             .max(kymograph);
     }
-    Ok(memory_to_draw(rows, kymograph as f64))
+    let shares = kymograph as f64 / fields::SHARE_BYTES as f64;
+    let maps = CellMeans::MAX_CELLS as f64 * (CELL_BYTES + MAX_MAPS as f64 * MAP_CELL_BYTES);
+    Ok(Budget::resident(
+        maps + grown(rows) * ROW_BYTES + shares * fields::WORKING_SHARE_BYTES as f64 + WITH_MAPS_BYTES,
+    ))
 }
 
 /// Draws the pictures of a run folder from its files, which must be there and undamaged.
 #[cfg(feature = "plot")]
 pub fn draw(folder: &Path) -> Result<Vec<(&'static str, Picture)>, ResultsError> {
     let mut pictures = Vec::new();
-    // The budget of a case has room for two at once.
+    // The budget of a run has room for two at once.
     for two in RUN_PICTURES.chunks(2) {
         let drawn: Vec<_> = two.par_iter().map(|picture| (picture.draw)(folder)).collect();
         for (picture, drawn) in two.iter().zip(drawn) {
@@ -222,7 +247,7 @@ impl MapScale {
             (Field::ContactStress, _) => return Self::of_share(format!("contact stress {symbol}"), symbol),
             (Field::Sliding, _) => return Self::of_share("share that slides".to_owned(), symbol),
             (Field::Traction, Some(case)) => {
-                let unit = case.load.pressure.si() * case.friction.mu_static;
+                let unit = scales(case).stress();
                 (format!("traction {symbol}"), symbol.to_owned(), unit)
             }
             _ => {

@@ -11,7 +11,6 @@ use thiserror::Error;
 
 use crate::friction_unit::FrictionUnit;
 use crate::names::SERIES;
-use slipfront_case::case::COLUMN_TEXT;
 use slipfront_case::disk::open_limited;
 use slipfront_case::text;
 
@@ -141,6 +140,16 @@ pub fn columns(rows: &[SeriesRow]) -> Vec<(&'static str, Vec<f64>)> {
         .collect()
 }
 
+/// Most bytes of a column of a row as CSV: 24 characters, and what separates them from the next.
+pub const COLUMN_BYTES: usize = 25;
+
+/// Columns of the series of a run of this model.
+pub fn n_columns(scales: &Scales, model: &Model) -> usize {
+    let row = SeriesRow::new(&CurveRow::default(), scales, model);
+    // With the number of the step.
+    1 + columns(&[row]).len()
+}
+
 /// The rows as CSV. Numbers are the shortest that read back as the same bits.
 pub fn to_csv(rows: impl Iterator<Item = SeriesRow>) -> Result<Vec<u8>, csv::Error> {
     let mut rows = rows;
@@ -150,7 +159,7 @@ pub fn to_csv(rows: impl Iterator<Item = SeriesRow>) -> Result<Vec<u8>, csv::Err
     let header = text.split(|&byte| byte == b'\n').next().unwrap_or_default();
     let columns = 1 + header.iter().filter(|&&byte| byte == b',').count();
     // A text that grew by itself would take twice as much while it does.
-    text.reserve_exact(rows.size_hint().0 * columns * COLUMN_TEXT);
+    text.reserve_exact(rows.size_hint().0 * columns * COLUMN_BYTES);
     let mut writer = csv::WriterBuilder::new().has_headers(false).from_writer(text);
     rows.try_for_each(|row| writer.serialize(row))?;
     finish(writer)

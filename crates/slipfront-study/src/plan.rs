@@ -11,11 +11,13 @@ use crate::plan_warnings::{Warning, Warnings, note_on_replicates};
 use crate::shard::Shard;
 use crate::study_file::{Base, RetainRuns, Settings, StudyFile};
 use crate::summary_values::REDUCTION;
-use slipfront_case::case::{Case, PICTURE, PROGRAM, Ranks, Watch};
+use slipfront_case::case::{Case, PROGRAM, Ranks, Watch};
 use slipfront_case::case_file::{AutoOr, CaseError, CaseFile, Override, ParsedCase, Snapshots};
 use slipfront_case::machine::available_of;
 use slipfront_case::number_format::byte_size;
 use slipfront_case::text::display_path;
+use slipfront_plot::Picture;
+use slipfront_run::budget::RunBudget;
 
 /// Every run that a study may need.
 #[derive(Clone, Debug)]
@@ -261,14 +263,15 @@ impl Plan {
         }
         let case = self.trimmed(file, "point", &mut |_| true)?;
         let writes = self.settings.keep == RetainRuns::All;
+        let budget = RunBudget::of(&case);
         let spec = RunSpec {
             seed: case.file.friction.seed,
             physics: physics(&case, base.known())?,
             block_steps: case.block_steps(),
             n_blocks: case.model.lattice.n_blocks(),
-            memory: case.budget.memory_beside_others(writes),
-            memory_of_case: case.budget.memory_of_case(),
-            disk: if writes { case.budget.disk() } else { 0.0 },
+            memory: budget.memory_beside_others(writes),
+            memory_of_case: case.budget.making(),
+            disk: if writes { budget.disk() } else { 0.0 },
             texture_percent: case.texture.meshed_percent,
             meshed_coverage: meshed_coverage(&case),
         };
@@ -379,7 +382,7 @@ impl Plan {
     pub fn memory(&self, threads: usize) -> f64 {
         let runs = self.runs(self.settings.max_replicates()).take(threads).count();
         let largest = self.largest_run().map_or(0.0, |(_, bytes)| bytes);
-        let pictures = PICTURES_AT_ONCE as f64 * PICTURE;
+        let pictures = (PICTURES_AT_ONCE * Picture::COLUMN_BYTES) as f64;
         PROGRAM + self.planning() + self.results() + pictures.max(runs as f64 * largest)
     }
 

@@ -92,7 +92,7 @@ impl Output {
     }
 
     /// Most snapshots of a run of so many steps.
-    pub(super) fn max_snapshots(&self, last_step: u64) -> u64 {
+    pub fn max_snapshots(&self, last_step: u64) -> u64 {
         match &self.snapshots {
             Snapshots::Instants => INSTANTS,
             Snapshots::At(steps) => steps.len() as u64,

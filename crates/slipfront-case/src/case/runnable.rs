@@ -15,6 +15,7 @@ use super::friction::law;
 use super::groups::Groups;
 use super::inputs::Watch;
 use super::inputs::{Input, Inputs, NamedFiles};
+use super::options::options;
 use super::output::Output;
 use super::ranks::Ranks;
 use super::slider::GivenBlocks;
@@ -48,7 +49,7 @@ pub struct Case {
     pub time_plan: TimePlan,
     /// Which results are written.
     pub output: Output,
-    /// Memory and disk space that the run needs.
+    /// Memory that making and stepping it takes. What its results take is added in slipfront-run.
     pub budget: Budget,
 }
 
@@ -81,9 +82,8 @@ pub struct TextureReport {
 }
 
 impl Case {
-    /// Loads a case file and the files it names, which stand relative to it. A run that needs more
-    /// memory than there is gets refused before any array is allocated. `watch` is shown how its texture is laid over the
-    /// blocks.
+    /// Loads a case file and the files it names, which stand relative to it. A case whose model needs more memory to be stepped than
+    /// there is gets refused before any array is allocated. `watch` is shown how its texture is laid over the blocks.
     pub fn load(path: &Path, overrides: &[String], watch: &mut Watch) -> Result<Self, CaseError> {
         Self::load_on_ranks(path, overrides, watch, Ranks::ALONE)
     }
@@ -132,8 +132,8 @@ impl Case {
         Self::make(file, name, folder, true, watch, ranks)
     }
 
-    /// Makes a case of a case file on all `ranks` at once; the files it names stand relative to `folder`. The memory for a
-    /// run of it is not checked.
+    /// Makes a case of a case file on all `ranks` at once; the files it names stand relative to `folder`. The memory in
+    /// which its model is stepped is not checked.
     pub fn new(
         file: CaseFile,
         name: &str,
@@ -159,7 +159,13 @@ impl Case {
         // Nothing is allocated before all ranks have looked at the memory that they share.
         let planned = Derived::of(&file, &lattice, &rows, &ranks, to_run)
             .and_then(|derived| Ok((derived, NamedFiles::find(&mut file, folder)?)));
-        let (Derived { scales, groups, plan }, named) = ranks.agree(planned)?;
+        let (derived, named) = ranks.agree(planned)?;
+        let Derived {
+            scales,
+            groups,
+            mut budget,
+            plan,
+        } = derived;
         let inputs = Inputs {
             files: named.read(&mut file, &lattice, &ranks)?,
             slab: Slab {
@@ -215,10 +221,7 @@ impl Case {
         .with_slider(slider);
         let plan = ranks.agree(plan.of_model(&file, &model, &scales, &groups, &ranks))?;
         let Plan {
-            time_plan,
-            output,
-            mut budget,
-            ..
+            time_plan, output, ..
         } = plan;
         model.drive.program = program(&file, time_plan.dt_star)?;
         refuse_large_angles(&file, &model.drive, groups.epsilon, time_plan.end_star())?;
@@ -274,21 +277,30 @@ impl Case {
     }
 }
 
+/// Units of the dimensionless quantities of a case file.
+pub fn scales(file: &CaseFile) -> Scales {
+    Scales {
+        block_size: file.slider.block_size.si(),
+        young_modulus: file.slider.young_modulus.si(),
+        density: file.slider.density.si(),
+        pressure: file.load.pressure.si(),
+        mu_static_mean: file.friction.mu_static,
+    }
+}
+
 /// What follows from a case file without the files that it names.
 struct Derived {
     scales: Scales,
     groups: Groups,
+    budget: Budget,
     plan: Plan,
 }
 
-/// Steps, results, and the memory that they take.
+/// Steps and results.
 struct Plan {
     dynamics: Dynamics,
-    /// Whether there must be memory to run it.
-    to_run: bool,
     time_plan: TimePlan,
     output: Output,
-    budget: Budget,
 }
 
 impl Plan {
@@ -305,41 +317,17 @@ impl Plan {
         let plan = if dynamics == self.dynamics {
             self
         } else {
-            let time_plan = TimePlan::of(file, scales, groups, dynamics)?;
-            Self::checked(
-                file,
-                &model.lattice,
-                &model.rows,
-                ranks,
-                (dynamics, time_plan),
-                self.to_run,
-            )?
+            Self::new(file, dynamics, TimePlan::of(file, scales, groups, dynamics)?)?
         };
         plan.time_plan.check_end(file)?;
         Ok(plan)
     }
 
-    /// Refuses what there is no memory for.
-    fn checked(
-        file: &CaseFile,
-        lattice: &Lattice,
-        rows: &Range<usize>,
-        ranks: &Ranks,
-        (dynamics, time_plan): (Dynamics, TimePlan),
-        to_run: bool,
-    ) -> Result<Self, CaseError> {
-        let output = Output::of(file, &time_plan)?;
-        let budget = Budget::new(lattice, rows, ranks, file, &time_plan, &output);
-        if to_run {
-            budget.check_memory(file, false)?;
-        }
-        budget.check_making(file)?;
+    fn new(file: &CaseFile, dynamics: Dynamics, time_plan: TimePlan) -> Result<Self, CaseError> {
         Ok(Self {
             dynamics,
-            to_run,
+            output: Output::of(file, &time_plan)?,
             time_plan,
-            output,
-            budget,
         })
     }
 }
@@ -353,13 +341,7 @@ impl Derived {
         ranks: &Ranks,
         to_run: bool,
     ) -> Result<Self, CaseError> {
-        let scales = Scales {
-            block_size: file.slider.block_size.si(),
-            young_modulus: file.slider.young_modulus.si(),
-            density: file.slider.density.si(),
-            pressure: file.load.pressure.si(),
-            mu_static_mean: file.friction.mu_static,
-        };
+        let scales = scales(file);
         let groups = Groups::of(file, &scales)?;
         let n_ranks = ranks.communicator.size();
         if n_ranks > lattice.ny {
@@ -377,8 +359,18 @@ impl Derived {
         }
         let dynamics = Dynamics::of_file(file, &scales, &groups, lattice);
         let time_plan = TimePlan::of(file, &scales, &groups, dynamics)?;
-        let plan = Plan::checked(file, lattice, rows, ranks, (dynamics, time_plan), to_run)?;
-        Ok(Self { scales, groups, plan })
+        let plan = Plan::new(file, dynamics, time_plan)?;
+        let budget = Budget::new(lattice, rows, ranks, file, &options(file, &groups));
+        match to_run {
+            true => budget.check_running(file)?,
+            false => budget.check_making(file)?,
+        }
+        Ok(Self {
+            scales,
+            groups,
+            budget,
+            plan,
+        })
     }
 }
 

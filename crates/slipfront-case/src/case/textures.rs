@@ -9,10 +9,12 @@ use slipfront::{Lattice, Scales, surface};
 
 use super::inputs::{Inputs, Watch};
 use super::slider::outline;
-use super::topography::{Ground, Topography};
+use super::topography::{self, Ground, Topography};
 use crate::arrays::Slab;
 use crate::case_file;
-use crate::case_file::{Arrangement, CaseError, CaseFile, Count, MAX_COUNT, Mask, Pattern, Pitch, Shape};
+use crate::case_file::{
+    Arrangement, CaseError, CaseFile, Count, MAX_COUNT, Mask, Outline, Pattern, Pitch, Shape,
+};
 use crate::quantity::Length;
 
 /// The textures of a case in blocks.
@@ -212,9 +214,19 @@ fn cell(arrays: &[surface::Array], lattice: &Lattice) -> Result<[usize; 2], Stri
     Ok(size)
 }
 
+/// Bytes while textures are laid over the blocks of some rows: of these blocks for every mask, and of all `n_blocks` of the lattice for a
+/// height map.
+pub(super) fn bytes_to_lay(file: &CaseFile, n_own: usize, n_blocks: usize) -> usize {
+    let of_heights = match count_height_maps(file) {
+        0 => 0,
+        _ => topography::bytes_per_block(file.slider.outline != Outline::Rectangle),
+    };
+    n_own * count_masks(file) * size_of::<bool>() + n_blocks * of_heights
+}
+
 /// How many masks a case has in memory at once, with those of height maps, and of inverted textures while they are laid over the
 /// blocks.
-pub(super) fn count_masks(file: &CaseFile) -> usize {
+fn count_masks(file: &CaseFile) -> usize {
     let mut masks = Vec::new();
     for texture in &file.texture {
         if let Shape::Mask(mask) = &texture.shape {
@@ -231,7 +243,7 @@ pub(super) fn count_masks(file: &CaseFile) -> usize {
 }
 
 /// How many height maps a case has. Their heights are in memory one after the other.
-pub(super) fn count_height_maps(file: &CaseFile) -> usize {
+fn count_height_maps(file: &CaseFile) -> usize {
     let shapes = file.texture.iter().map(|texture| &texture.shape);
     shapes
         .filter(|shape| matches!(shape, Shape::HeightMap(_)))

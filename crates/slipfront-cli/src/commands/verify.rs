@@ -8,6 +8,7 @@ use slipfront_case::case::Case;
 use slipfront_case::number_format::count;
 use slipfront_case::text::truncated;
 use slipfront_case::unfinished::TemporaryFolder;
+use slipfront_run::budget::RunBudget;
 use slipfront_run::clock;
 use slipfront_run::manifest::Manifest;
 use slipfront_run::program;
@@ -127,7 +128,7 @@ impl Verify {
         let case = Arc::new(case?);
         let again = TemporaryFolder::new(folder)
             .map_err(|error| Failure::running(VerifyStudyError::Temporary(error)))?;
-        case.budget
+        RunBudget::of(&case)
             .check_disk(&case.file, again.path(), 0, false)
             .map_err(Failure::input)?;
         let mut running = Running::start(&case, rayon::current_num_threads());

@@ -3,6 +3,7 @@
 use slipfront_case::case::Case;
 use slipfront_case::machine::available_memory;
 use slipfront_case::number_format::{byte_size, four_digits, with_half_width, with_si_prefix};
+use slipfront_run::budget::RunBudget;
 
 use super::summary::notes;
 use super::times::{duration, instant};
@@ -107,7 +108,7 @@ fn scales(case: &Case) -> String {
 }
 
 fn resources(case: &Case, seconds: f64) -> String {
-    let budget = &case.budget;
+    let budget = RunBudget::of(case);
     let available = available_memory().map_or(String::new(), |there| {
         format!(" of {} available", byte_size(there))
     });

@@ -11,6 +11,7 @@ use png::{BitDepth, ColorType, Encoder};
 use slipfront::communicator::{Alone, Threads};
 use slipfront_case::case::{Case, Ranks};
 use slipfront_case::case_file::CaseFile;
+use slipfront_run::budget::RunBudget;
 use slipfront_run::checkpoint::Checkpoints;
 use slipfront_run::run_folder::RunFolder;
 use slipfront_run::run_folder::unfinished::Unfinished;
@@ -174,7 +175,8 @@ fn what_is_said_is_what_is_taken() {
             let mut out = RunFolder::prepare(&out, false, &case.inputs).unwrap();
             results::write_case(&case, &mut out).unwrap();
             results::write(&case, &mut record, out, jiff::Timestamp::now(), 1).unwrap();
-            (case.budget.memory(), case.budget.disk())
+            let budget = RunBudget::of(&case);
+            (budget.memory(), budget.disk())
         };
         assert_honest_drawing(sets, || {
             let (taken, (memory, disk)) = peak(run);
@@ -213,7 +215,7 @@ fn bands(folder: &Path) {
                 let case = Case::new(file, "case", folder, &mut |_| true, Ranks::ALONE).unwrap();
                 let case = Arc::new(case);
                 running::run(&case, threads).unwrap();
-                case.budget.memory()
+                RunBudget::of(&case).memory()
             });
             assert_honest(&format!("{sets} on {threads} threads"), said, taken - before);
         }
@@ -287,11 +289,11 @@ fn checkpoints(folder: &Path) {
             let loaded = Checkpoints::load(&out, &case, false, &Alone).unwrap().unwrap();
             let running = loaded.resume(&case, 1, Arc::new(Alone)).unwrap().unwrap();
             save(&case, &running);
-            case.budget.memory()
+            RunBudget::of(&case).memory()
         });
         let taken = taken - before;
         assert_honest(&format!("to go on with {sets}"), said, taken);
-        let room = made().budget.disk_of_checkpoints() / 3.0;
+        let room = RunBudget::of(&made()).disk_of_checkpoints() / 3.0;
         assert_room(sets, room, &out);
         std::fs::remove_dir_all(out).unwrap();
     }

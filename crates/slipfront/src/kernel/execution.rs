@@ -5,21 +5,23 @@ use std::sync::Arc;
 use fearless_simd::Level;
 
 use super::engine::Engine;
-use super::fused::Fused;
-use super::general::General;
+use super::fused::{self, Fused};
+use super::general::{self, General};
 use crate::checkpoint::{BlockColumn, Checkpoint};
 use crate::communicator::Communicator;
 use crate::friction::{Coulomb, Friction, FrictionLaw};
 use crate::model::Model;
+use crate::options::ModelOptions;
 use crate::state::State;
 
 /// Which kernel computes the steps.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Kernel {
     /// One pass per equation, to be read along with the paper, for every model.
     General,
     /// One sweep for all equations. The general kernel computes what this does not: other laws than
     /// [`FrictionLaw::Projection`], ageing, internal viscosity, and drives that rotate.
+    #[default]
     Fused,
 }
 
@@ -40,14 +42,41 @@ pub struct Execution {
 impl Kernel {
     /// The kernel that computes a model when this one is asked for.
     pub fn for_model(self, model: &Model) -> Self {
-        let is_swept = match model.friction {
+        let has_dampers = model.slider.is_viscous();
+        self.for_law(&model.friction, has_dampers, model.drive.rotation.is_some())
+    }
+
+    /// The kernel that computes models with these options when this one is asked for.
+    pub fn for_options(self, options: &ModelOptions) -> Self {
+        self.for_law(&options.friction, options.slider.has_dampers, options.rotates)
+    }
+
+    /// The kernel that computes a law of friction, with or without dampers and a rotation.
+    fn for_law(self, friction: &Friction, has_dampers: bool, rotates: bool) -> Self {
+        let is_swept = match friction {
             Friction::Coulomb(Coulomb { law, ageing, .. }) => {
-                law == FrictionLaw::Projection && ageing.is_none()
+                *law == FrictionLaw::Projection && ageing.is_none()
             }
             Friction::RateAndState(_) | Friction::ContactSprings(_) => false,
-        } && model.slider.viscosity_time == 0.0
-            && model.drive.rotation.is_none();
+        } && !has_dampers
+            && !rotates;
         if is_swept { self } else { Self::General }
+    }
+
+    /// Bytes per block that this kernel takes beside the model, on one thread. Margins of bands and of rows of blocks are not counted.
+    pub fn bytes_per_block(self, options: &ModelOptions) -> f64 {
+        match self {
+            Self::General => general::bytes_per_block(options) as f64,
+            Self::Fused => fused::bytes_per_block(options),
+        }
+    }
+
+    /// Most bytes per block that this kernel takes in addition on several threads.
+    pub fn bytes_per_block_of_bands(self, options: &ModelOptions) -> f64 {
+        match self {
+            Self::General => general::bytes_per_block_of_bands(options),
+            Self::Fused => 0.0,
+        }
     }
 
     /// Its name in a manifest.
@@ -107,7 +136,7 @@ impl Execution {
 impl Default for Execution {
     fn default() -> Self {
         Self {
-            kernel: Kernel::Fused,
+            kernel: Kernel::default(),
             threads: 1,
             skips: true,
         }

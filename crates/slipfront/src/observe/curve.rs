@@ -9,7 +9,7 @@ use crate::measure::CurvePoint;
 use crate::snapshot::Snapshot;
 
 /// One row of the recorded curve.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct CurveRow {
     /// Step.
     pub step: u64,

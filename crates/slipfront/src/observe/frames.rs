@@ -26,6 +26,16 @@ pub struct Frame {
     pub values: Vec<Vec<f32>>,
 }
 
+impl Frame {
+    /// Bytes of a value.
+    pub const VALUE_BYTES: usize = size_of::<f32>();
+
+    /// Bytes of a frame of so many fields, without their values.
+    pub const fn bytes(n_fields: usize) -> usize {
+        size_of::<Self>() + n_fields * size_of::<Vec<f32>>()
+    }
+}
+
 /// Which fields to record, and of which blocks.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Selection {

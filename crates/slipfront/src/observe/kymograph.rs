@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::observer::{Observer, Schedule, Scheduled};
 use crate::error::RunError;
+use crate::lattice::Lattice;
 use crate::model::Model;
 use crate::position_bins::PositionBins;
 use crate::snapshot::Snapshot;
@@ -39,6 +40,16 @@ impl Kymograph {
     pub const MAX_ROWS: usize = 1024;
     /// Steps from one count to the next: so few that a front which takes some t* is resolved, and so many that a run takes no longer.
     pub const INTERVAL: u64 = 8;
+
+    /// Bytes of a count.
+    pub const COUNT_BYTES: usize = size_of::<i64>();
+
+    /// Most counts that it keeps of a run of so many steps: rows of time times bins of place, whatever the direction of the drive.
+    pub fn max_counts(lattice: &Lattice, last_step: u64) -> usize {
+        let samples = last_step / Self::INTERVAL + 1;
+        let rows = samples.min(Self::MAX_ROWS as u64) as usize;
+        rows * (lattice.nx + lattice.ny).min(PositionBins::MAX)
+    }
 
     /// Called when it is due.
     pub fn scheduled(&mut self) -> Scheduled<'_> {

@@ -29,6 +29,14 @@ pub struct Precursors {
 }
 
 impl Precursors {
+    /// Fewest steps from an event to the next, on average. Measured were 175 and more.
+    const MIN_STEPS: u64 = 50;
+
+    /// Most events that are reckoned with in a run of so many steps.
+    pub const fn expected_events(steps: u64) -> u64 {
+        steps.div_ceil(Self::MIN_STEPS)
+    }
+
     /// Nothing found yet, in a slider that is driven at `edge`.
     pub fn new(edge: Edge) -> Self {
         Self {

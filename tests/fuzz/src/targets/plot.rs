@@ -18,7 +18,7 @@ pub(crate) const PLOT: Target = Target {
     files: &[],
     dictionary: Some("plot.dict"),
     max_bytes: 16384,
-    // Canvas and pixels of two pictures: see `budget.rs`.
+    // Canvas and pixels of two pictures: see `pictures.rs` of slipfront-run.
     memory: Memory {
         bytes: 256 << 20,
         per_byte: 1024,

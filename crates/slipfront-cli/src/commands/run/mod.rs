@@ -12,6 +12,7 @@ use slipfront_case::case::Case;
 use slipfront_case::same::Given;
 use slipfront_case::text::{display_path, shell_quoted};
 use slipfront_run::agree::RankFailure;
+use slipfront_run::budget::RunBudget;
 use slipfront_run::checkpoint::Checkpoints;
 use slipfront_run::clock;
 use slipfront_run::results;
@@ -138,7 +139,7 @@ fn claim_folder(
     } else {
         0
     };
-    case.budget
+    RunBudget::of(case)
         .check_disk(&case.file, out, replaced, saves)
         .map_err(Failure::input)?;
     folder

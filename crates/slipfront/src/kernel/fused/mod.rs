@@ -61,6 +61,7 @@ use crate::kernel::totals::{StoredEnergy, Totals};
 use crate::lattice::K_STRAIGHT;
 use crate::model::Model;
 use crate::moduli::Moduli;
+use crate::options::ModelOptions;
 use crate::position_bins::PositionBins;
 use crate::state::State;
 
@@ -590,6 +591,15 @@ impl Engine for Fused {
     fn motion_bounds(&self) -> Option<MotionBounds> {
         Some(self.motion_bounds)
     }
+}
+
+/// Bytes per block without what is kept of the rows beside a band, which a row of blocks takes.
+pub(crate) fn bytes_per_block(options: &ModelOptions) -> f64 {
+    let varied = match variations::options_differ(options) {
+        true => variations::BYTES_PER_ELEMENT,
+        false => 0,
+    };
+    band::BYTES_PER_ELEMENT + varied as f64 + size_of::<AtomicU32>() as f64 / TILE as f64
 }
 
 /// Least number of tiles in a band of several: more bands than threads share out the work more evenly, but each finds springs

@@ -17,6 +17,7 @@ use crate::friction::{Friction, Weakening};
 use crate::lattice::Bond;
 use crate::model::Model;
 use crate::moduli::Moduli;
+use crate::options::ModelOptions;
 
 /// Numbers of the elements of a band.
 #[derive(Debug)]
@@ -32,6 +33,15 @@ pub(super) struct Variations {
     pub(super) weakening: Option<Weakening>,
     /// Kinetic adhesion, which does not weaken.
     pub(super) adhesion: f64,
+}
+
+/// Bytes of [`Variations`] per element: four springs, the drive spring, mass and its inverse, and a kinetic impulse.
+pub(super) const BYTES_PER_ELEMENT: usize = (4 + 4) * size_of::<f64>();
+
+/// Whether blocks of a model with these options need [`Variations`], as far as can be told before it is made.
+pub(super) fn options_differ(options: &ModelOptions) -> bool {
+    let slider = &options.slider;
+    slider.has_moduli || slider.has_densities || slider.drives_some || weakening(&options.friction).is_some()
 }
 
 /// [`Variations`] of some elements, in vectors of eight; nothing of it where all blocks are alike.
@@ -91,7 +101,7 @@ pub(super) fn blocks_differ(model: &Model, largest: &Largest) -> bool {
     slider.stiffness.is_some()
         || slider.density.is_some()
         || drive_springs_differ
-        || weakening(model).is_some()
+        || weakening(&model.friction).is_some()
 }
 
 /// Largest factors of any block of the lattice.
@@ -129,8 +139,8 @@ impl Largest {
     }
 }
 
-fn weakening(model: &Model) -> Option<Weakening> {
-    match model.friction {
+fn weakening(friction: &Friction) -> Option<Weakening> {
+    match friction {
         Friction::Coulomb(coulomb) => coulomb.weakening,
         _ => None,
     }
@@ -153,7 +163,7 @@ impl Variations {
             mass: ones(),
             inverse_mass: ones(),
             weakened_impulses: Aligned::filled(len, f64::INFINITY),
-            weakening: weakening(model),
+            weakening: weakening(&model.friction),
             adhesion: model.surface.adhesion().of_kinetic,
         };
         let before = elements.start as isize - halo as isize;

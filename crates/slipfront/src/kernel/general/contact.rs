@@ -26,6 +26,22 @@ impl Contact {
         }
     }
 
+    /// Bytes per block: the columns of a checkpoint, and what is found from them anew.
+    pub(super) fn bytes_per_block(friction: &Friction) -> usize {
+        let found = match friction {
+            Friction::Coulomb(coulomb) => {
+                // Kinetic friction at the present speed; the threshold at the present age, and whether age counts.
+                let weakened = usize::from(coulomb.weakening.is_some()) * size_of::<f64>();
+                let aged = usize::from(coulomb.ageing.is_some()) * (size_of::<f64>() + size_of::<bool>());
+                weakened + aged
+            }
+            // The load.
+            Friction::RateAndState(_) => size_of::<f64>(),
+            Friction::ContactSprings(_) => 0,
+        };
+        friction.n_columns() * size_of::<f64>() + found
+    }
+
     /// The columns that a checkpoint keeps of it: [`Friction::n_columns`] of them. They are those before the present instant is
     /// evaluated, or the same after it.
     pub(super) fn columns(&self) -> Vec<&[f64]> {

@@ -13,6 +13,9 @@ pub(super) struct Scratch {
 }
 
 impl Scratch {
+    /// Bytes for each block of a part: a velocity, a term and a product.
+    pub(super) const BYTES_PER_BLOCK: usize = (2 + 2) * size_of::<f64>();
+
     pub(super) fn new(n_blocks: usize) -> Self {
         Self {
             velocity: VectorField::zeros(n_blocks),

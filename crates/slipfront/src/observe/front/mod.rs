@@ -44,6 +44,10 @@ pub struct Distribution {
 }
 
 impl Front {
+    /// Bytes per block that it takes to find a front, beside the times: each time again with its place in their order, and its cluster;
+    /// then the slope around the block, and the speed.
+    pub const BYTES_PER_BLOCK: usize = 4 * size_of::<f64>();
+
     /// Of the `times` at which the blocks of a lattice have first slipped, NaN for those that have not and for those without contact;
     /// `n_contact` blocks are in contact. None if no block has slipped.
     ///

@@ -1,0 +1,497 @@
+//! Memory and disk space that a run needs with its files and pictures, told before it begins and compared with what the machine has.
+//!
+//! [`RunBudget::parts`] is the table of what takes how much: the owners of arrays, files and pictures say what a block, a cell, a row or
+//! a picture takes. Memory is that of the largest of three phases: a case is made, it is run and its results are written, its pictures are
+//! drawn. Of several ranks each takes memory for its own rows, and those of a machine share what it has.
+
+use std::ops::Range;
+use std::path::Path;
+
+use slipfront::observe::{CurveRow, Frame, KineticHistory, Kymograph, Precursors, SlipEvent, frames};
+use slipfront_case::case::{Budget, Case, Cause, Demand, MAX_MAPS, PROGRAM, mapped_field};
+use slipfront_case::case_file::{CaseError, CaseFile};
+use slipfront_case::machine::{available_memory, free_disk};
+use slipfront_case::number_format::{byte_size, count};
+use slipfront_plot::{CellMeans, MOVIE_FILE_BYTES, STRESS_FILE_BYTES, front_bytes};
+
+use crate::fields::{SHARE_BYTES, STATIC_BYTES, WORKING_SHARE_BYTES, record_bytes};
+use crate::series::COLUMN_BYTES;
+use crate::{front, movie, pictures, precursors, series};
+
+/// A number of a block.
+const NUMBER: f64 = size_of::<f64>() as f64;
+
+/// Memory and disk space that a run needs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RunBudget {
+    /// What making and stepping the case takes.
+    case: Budget,
+    /// Bytes of a block in a checkpoint.
+    saved: f64,
+    /// Blocks of the rows that this process holds that are kept of a field.
+    cells: f64,
+    /// Blocks of the whole lattice.
+    all_blocks: f64,
+    /// Those of them that are kept of a field.
+    all_cells: f64,
+    frames: f64,
+    fields: f64,
+    rows: f64,
+    /// Bytes of a row in its file.
+    row_text: f64,
+    /// Events of slip of a slider that is driven at an edge.
+    events: f64,
+    /// Maps that are drawn.
+    maps: f64,
+    /// Pictures of the movie.
+    movie: f64,
+    /// Places times instants of the kymograph.
+    kymograph: f64,
+    /// Bytes of the picture of the front.
+    front_picture: f64,
+    /// Whether the run resumes from a checkpoint.
+    is_resumed: bool,
+}
+
+/// What takes memory or disk space.
+struct Part {
+    cause: Cause,
+    /// Bytes in each [`Phase`].
+    bytes: [f64; 5],
+}
+
+/// The phases of a run that take memory, then what takes disk space.
+#[derive(Clone, Copy, Debug)]
+enum Phase {
+    Making,
+    /// What writing files takes for the blocks is less than the kernel's share.
+    Running,
+    /// Two pictures at once, by the first of several ranks.
+    Drawing,
+    Files,
+    /// Blocks, snapshots and rows as they stand in memory, of all ranks.
+    Checkpoint,
+}
+
+impl RunBudget {
+    /// The budget of a run of a case, for the rows that this process holds.
+    pub fn of(case: &Case) -> Self {
+        let (model, output, last_step) = (&case.model, &case.output, case.time_plan.last_step);
+        let lattice = &model.lattice;
+        let kept = |indices: Range<usize>| frames::kept(indices, output.stride).len() as f64;
+        let n_frames = output.max_snapshots(last_step) as f64;
+        Self {
+            case: case.budget,
+            saved: model.n_columns() as f64 * NUMBER,
+            cells: kept(0..lattice.nx) * kept(model.rows.clone()),
+            all_blocks: lattice.n_blocks() as f64,
+            all_cells: kept(0..lattice.nx) * kept(0..lattice.ny),
+            frames: n_frames,
+            fields: output.fields.len() as f64,
+            rows: (last_step / output.series_stride) as f64 + 2.0,
+            row_text: (COLUMN_BYTES * series::n_columns(&case.scales, model)) as f64,
+            events: match case.file.drive.edge() {
+                Some(_) => Precursors::expected_events(last_step) as f64,
+                None => 0.0,
+            },
+            maps: match output.fields.contains(&mapped_field(&case.file)) {
+                true => n_frames.min(MAX_MAPS as f64),
+                false => 0.0,
+            },
+            movie: if output.movie { n_frames } else { 0.0 },
+            kymograph: Kymograph::max_counts(lattice, last_step) as f64,
+            front_picture: front_bytes(lattice.nx, lattice.ny) as f64,
+            is_resumed: false,
+        }
+    }
+
+    /// What takes how many bytes in each phase.
+    fn parts(&self) -> [Part; 5] {
+        let (blocks, all_cells) = (self.case.blocks, self.all_cells);
+        let (frames, fields, rows) = (self.frames, self.fields, self.rows);
+        let drawn = all_cells.min(CellMeans::MAX_CELLS as f64);
+        let frame = Frame::bytes(fields as usize) as f64;
+        let snapshots =
+            |cells: f64| frames * fields * cells * Frame::VALUE_BYTES as f64 + grown(frames) * frame;
+        let row = size_of::<CurveRow>() as f64;
+        let (event, event_columns) = (size_of::<SlipEvent>() as f64, precursors::n_columns() as f64);
+        let event_text = COLUMN_BYTES as f64 * event_columns;
+        [
+            Part {
+                cause: self.case.cause_of_blocks(),
+                bytes: [
+                    blocks * self.case.surface,
+                    self.case.stepping(),
+                    // With the time of its first slip.
+                    blocks * (self.case.surface + NUMBER) + drawn * pictures::CELL_BYTES,
+                    all_cells * STATIC_BYTES as f64,
+                    self.all_blocks * self.saved,
+                ],
+            },
+            Part {
+                cause: Cause {
+                    key: "output.snapshots",
+                    what: format!(
+                        "{} of {}",
+                        count(frames as usize, "snapshot"),
+                        count(fields as usize, "field")
+                    ),
+                    remedy: "take fewer `output.snapshots`, name fewer `output.fields`, or raise `output.stride`",
+                },
+                bytes: [
+                    0.0,
+                    snapshots(self.cells),
+                    // One after the other.
+                    (self.maps * drawn * pictures::MAP_CELL_BYTES)
+                        .max(self.movie * movie::snapshot_bytes(drawn)),
+                    frames * record_bytes(fields, all_cells)
+                        + self.maps * drawn * STRESS_FILE_BYTES as f64
+                        + self.movie * MOVIE_FILE_BYTES as f64,
+                    snapshots(all_cells),
+                ],
+            },
+            Part {
+                cause: Cause {
+                    key: "output.series",
+                    what: format!("{} of the series", count(rows as usize, "row")),
+                    remedy: "raise `output.series`",
+                },
+                bytes: [
+                    0.0,
+                    grown(rows) * row + rows * self.row_text,
+                    grown(rows) * (row + pictures::ROW_BYTES),
+                    rows * self.row_text,
+                    rows * row,
+                ],
+            },
+            Part {
+                cause: Cause {
+                    key: "drive.attach",
+                    what: count(self.events as usize, "slip event"),
+                    remedy: "shorten the run",
+                },
+                bytes: [
+                    0.0,
+                    grown(self.events) * event + grown(self.events * event_text),
+                    // As numbers, then as points.
+                    grown(self.events) * (event_columns + 4.0) * NUMBER,
+                    self.events * event_text,
+                    self.events * event_text,
+                ],
+            },
+            Part {
+                cause: Budget::cause_of_inputs(),
+                bytes: [self.case.laid, 0.0, 0.0, self.case.inputs, 0.0],
+            },
+        ]
+    }
+
+    /// Bytes of a phase, with those that no key of a case changes.
+    fn total(&self, phase: Phase) -> f64 {
+        let counts = grown(self.kymograph) * Kymograph::COUNT_BYTES as f64;
+        let working_shares = self.kymograph * WORKING_SHARE_BYTES as f64;
+        let history = KineticHistory::MAX_BYTES as f64;
+        let with_maps = if self.maps > 0.0 {
+            pictures::WITH_MAPS_BYTES
+        } else {
+            0.0
+        };
+        let of_movie = if self.movie > 0.0 { movie::BATCH_BYTES } else { 0.0 };
+        let fixed = [
+            0.0,
+            history + counts + working_shares,
+            (self.front_picture.max(with_maps) + working_shares).max(of_movie),
+            pictures::FILE_BYTES + self.kymograph * SHARE_BYTES as f64,
+            history + counts,
+        ];
+        let parts = self.parts();
+        parts.iter().map(|part| part.bytes[phase as usize]).sum::<f64>() + fixed[phase as usize]
+    }
+
+    /// The phase that takes the most memory, in a run that writes no files if not `writes`.
+    fn largest(&self, writes: bool) -> Phase {
+        let phases = [Phase::Making, Phase::Running, Phase::Drawing];
+        let phases = phases.into_iter().take(if writes { 3 } else { 2 });
+        let most = phases.max_by(|a, b| self.on_node(*a).total_cmp(&self.on_node(*b)));
+        most.unwrap_or(Phase::Running)
+    }
+
+    /// Bytes of a rank in a phase, with what the first of several has of the others' blocks.
+    fn of_rank(&self, phase: Phase) -> f64 {
+        let gathered = match (phase, self.case.is_shared) {
+            (Phase::Running, true) => front::bytes_of_shared(self.all_blocks),
+            _ => 0.0,
+        };
+        PROGRAM + Budget::resident(self.total(phase) + gathered)
+    }
+
+    /// Bytes of all ranks of this machine in a phase. While one draws, the others have at most what they ran with.
+    fn on_node(&self, phase: Phase) -> f64 {
+        let others = match phase {
+            Phase::Drawing => Phase::Running,
+            phase => phase,
+        };
+        self.of_rank(phase) + (self.case.ranks_on_node - 1.0) * self.of_rank(others)
+    }
+
+    /// Memory of a run with its files and pictures, in bytes; of each rank if there are several.
+    pub fn memory(&self) -> f64 {
+        self.of_rank(self.largest(true))
+    }
+
+    /// Memory of one of several runs at once, each on one thread, in bytes; of one that writes no files if not `writes`.
+    pub fn memory_beside_others(&self, writes: bool) -> f64 {
+        let mut on_one_thread = *self;
+        on_one_thread.case.bands = 0.0;
+        on_one_thread.of_rank(on_one_thread.largest(writes)) - PROGRAM
+    }
+
+    /// The budget of the run when it resumes from a checkpoint, which the kernel takes over without a copy.
+    pub fn resumed(mut self) -> Self {
+        self.is_resumed = true;
+        self
+    }
+
+    /// Room for the files of a run, in bytes.
+    pub fn disk(&self) -> f64 {
+        self.total(Phase::Files)
+    }
+
+    /// Disk space for the snapshots alone, in bytes.
+    pub fn disk_of_snapshots(&self) -> f64 {
+        let [_, snapshots, ..] = self.parts();
+        snapshots.bytes[Phase::Files as usize]
+    }
+
+    /// Room for checkpoints while the run goes on, in bytes: the latest one, the one before it, and one that is being written.
+    pub fn disk_of_checkpoints(&self) -> f64 {
+        3.0 * self.total(Phase::Checkpoint)
+    }
+
+    /// Refuses a run, or to resume one, that needs more memory than there is; surface and slider are there already, of all ranks.
+    ///
+    /// # Errors
+    /// A sentence with both figures, what most of it is for, and the key to change.
+    pub fn check_memory(&self, file: &CaseFile) -> Result<(), CaseError> {
+        let made = self.case.blocks * self.case.surface;
+        self.compare_memory(file, made, available_memory())
+    }
+
+    /// `had` is what each rank has taken of the memory already, `available` what there is beside it.
+    fn compare_memory(&self, file: &CaseFile, had: f64, available: Option<f64>) -> Result<(), CaseError> {
+        let phase = self.largest(true);
+        let (mut cause, bytes) = self.most(phase);
+        let whose = match self.is_resumed {
+            // The case of a run that resumes can be changed no more.
+            true => {
+                cause.remedy = "give it more, in a queue for example with `--mem`";
+                "going on with this run"
+            }
+            false => "a run of this case",
+        };
+        let demand = Demand {
+            file,
+            whose,
+            most: (cause, bytes),
+            of_rank: self.of_rank(phase),
+            on_node: self.on_node(phase),
+            had,
+        };
+        self.case.compare(demand, available)
+    }
+
+    /// Refuses a run whose files, and checkpoints if it saves any, have no room in `folder`, which need not be there yet.
+    /// `replaced` is what goes from there before.
+    ///
+    /// # Errors
+    /// A sentence with both figures, what most of it is for, and the key to change.
+    pub fn check_disk(
+        &self,
+        file: &CaseFile,
+        folder: &Path,
+        replaced: u64,
+        checkpoints: bool,
+    ) -> Result<(), CaseError> {
+        let Some(free) = free_disk(folder).map(|free| free + replaced as f64) else {
+            return Ok(());
+        };
+        let beside = if checkpoints {
+            self.disk_of_checkpoints()
+        } else {
+            0.0
+        };
+        if self.disk() + beside <= free {
+            return Ok(());
+        }
+        let (beside, without) = match checkpoints {
+            true => (
+                format!(" and its checkpoints {}", byte_size(beside)),
+                ", run without checkpoints (--checkpoint off)",
+            ),
+            false => (String::new(), ""),
+        };
+        let (cause, bytes) = self.most(Phase::Files);
+        let sentence = format!(
+            "the files of this run take about {} ({}){beside} where {} are free in {}: free some, {}{without}, \
+             or choose another folder",
+            byte_size(self.disk()),
+            cause.in_words(bytes),
+            byte_size(free),
+            folder.display(),
+            cause.remedy
+        );
+        Err(file.source.error(cause.key, sentence))
+    }
+
+    /// What most bytes of a phase are due to, and how many these are.
+    fn most(&self, phase: Phase) -> (Cause, f64) {
+        let bytes_of = |part: &Part| part.bytes[phase as usize];
+        let [mut most, others @ ..] = self.parts();
+        for part in others {
+            if bytes_of(&part) >= bytes_of(&most) {
+                most = part;
+            }
+        }
+        let bytes = bytes_of(&most);
+        (most.cause, bytes)
+    }
+}
+
+/// Elements for which a vector has room that grew to `length` by doubling.
+pub(crate) fn grown(length: f64) -> f64 {
+    length.max(4.0).log2().ceil().exp2()
+}
+
+#[cfg(test)]
+mod tests {
+    use slipfront::communicator::Threads;
+    use slipfront_case::case::Ranks;
+
+    use super::*;
+
+    fn case(sets: &[&str]) -> Case {
+        let overrides: Vec<String> = sets.iter().map(|&set| set.to_owned()).collect();
+        Case::parse("", "case", &overrides).unwrap()
+    }
+
+    fn budget(sets: &[&str]) -> RunBudget {
+        RunBudget::of(&case(sets))
+    }
+
+    /// Why a run with this budget is refused, if it is.
+    fn refusal(case: &Case, budget: &RunBudget, had: f64, available: Option<f64>) -> Option<String> {
+        let compared = budget.compare_memory(&case.file, had, available);
+        compared.err().map(|error| error.to_string())
+    }
+
+    #[test]
+    fn what_takes_the_most_is_named_with_its_remedy() {
+        for (sets, key, words) in [
+            (
+                vec!["slider.blocks=[2000,2000]", "output.snapshots=[]"],
+                "slider.blocks",
+                ["276.9 MiB of it for 4000000 blocks", "lower `slider.blocks`"],
+            ),
+            (
+                vec!["slider.blocks=[100,100]", "output.snapshots={every=0.1}"],
+                "output.snapshots",
+                ["for 2674 snapshots of 5 fields", "raise `output.stride`"],
+            ),
+            (
+                vec!["output.series=0.1", "time.duration_star=1e6"],
+                "output.series",
+                ["for 10000002 rows of the series", "raise `output.series`"],
+            ),
+        ] {
+            let case = case(&sets);
+            let refused = refusal(&case, &RunBudget::of(&case), 0.0, Some(2e8)).unwrap();
+            // The place is the override of the key.
+            assert!(refused.starts_with(&format!("--set {key}=")), "{key}: {refused}");
+            for word in ["where 190.7 MiB are available"].iter().chain(&words) {
+                assert!(refused.contains(word), "{word}: {refused}");
+            }
+            assert!(!refused.contains("rank"), "{refused}");
+        }
+    }
+
+    /// Four ranks, two of them on this machine.
+    #[test]
+    fn ranks_share_what_a_run_takes() {
+        let overrides = ["slider.blocks=[2000,2000]", "output.snapshots={every=20}"].map(str::to_owned);
+        let made = |communicator: &Threads, on_node| {
+            let ranks = Ranks {
+                communicator,
+                on_node,
+            };
+            let file = CaseFile::parse("", "case", &overrides).unwrap();
+            Case::to_run_on_ranks(file, "case", Path::new(""), &mut |_| true, ranks).unwrap()
+        };
+        let alone = budget(&["slider.blocks=[2000,2000]", "output.snapshots={every=20}"]);
+        let cases = Threads::run(4, |communicator| made(communicator, 2));
+        let budgets: Vec<RunBudget> = cases.iter().map(RunBudget::of).collect();
+        // What is there once for every process: the numbers that do not belong to blocks.
+        let beside = |phase: Phase| {
+            let mut none = alone;
+            (none.case.blocks, none.cells, none.all_cells) = (0.0, 0.0, 0.0);
+            none.total(phase)
+        };
+        for phase in [Phase::Making, Phase::Running] {
+            let shared: f64 = budgets
+                .iter()
+                .map(|budget| budget.total(phase) - beside(phase))
+                .sum();
+            assert_eq!(shared, alone.total(phase) - beside(phase), "{phase:?}");
+        }
+        for budget in &budgets {
+            for phase in [Phase::Files, Phase::Checkpoint] {
+                assert_eq!(budget.total(phase), alone.total(phase), "{phase:?}");
+            }
+            assert_eq!(budget.disk(), alone.disk());
+            assert_eq!(budget.disk_of_checkpoints(), alone.disk_of_checkpoints());
+        }
+        let budget = budgets[0];
+        // While it draws, the other one has what it ran with.
+        let drawing = budget.of_rank(Phase::Drawing) + budget.of_rank(Phase::Running);
+        assert_eq!(budget.on_node(Phase::Drawing), drawing);
+        let needed = budget.on_node(budget.largest(true));
+        assert_eq!(refusal(&cases[0], &budget, 0.0, Some(needed)), None);
+        assert_eq!(refusal(&cases[0], &budget, 1e6, Some(needed - 2e6)), None);
+        let refused = refusal(&cases[0], &budget, 1e6, Some(needed - 3e6)).unwrap();
+        for word in [
+            " of memory per rank (",
+            &format!(", {} for the 2 ranks of this machine, where ", byte_size(needed)),
+            ", or share it among more machines",
+        ] {
+            assert!(refused.contains(word), "{word}: {refused}");
+        }
+        let spread = Threads::run(4, |communicator| made(communicator, 1));
+        let refused = refusal(&spread[3], &RunBudget::of(&spread[3]), 0.0, Some(1e6)).unwrap();
+        assert!(
+            refused.contains(" of memory per rank (") && !refused.contains("ranks"),
+            "{refused}"
+        );
+    }
+
+    /// The case itself is in memory when its run is judged.
+    #[test]
+    fn what_has_been_taken_already_counts_as_available() {
+        let case = case(&["slider.blocks=[2000,1000]", "output.snapshots=[]"]);
+        let budget = RunBudget::of(&case);
+        let made = budget.total(Phase::Making);
+        let enough = budget.memory() - made;
+        assert_eq!(refusal(&case, &budget, made, Some(enough)), None);
+        assert!(refusal(&case, &budget, made, Some(0.99 * enough)).is_some());
+        // A system that does not say what it has is asked for all of it.
+        assert_eq!(refusal(&case, &budget, made, None), None);
+        let mut huge = budget;
+        huge.case.blocks = 1e16;
+        let refused = refusal(&case, &huge, 0.0, None).unwrap();
+        assert!(refused.contains("ulimit -v"), "{refused}");
+        // Of a run that has begun no key can be changed.
+        let refused = refusal(&case, &budget.resumed(), made, Some(0.0)).unwrap();
+        assert!(
+            refused.contains("give it more") && !refused.contains("lower"),
+            "{refused}"
+        );
+    }
+}
