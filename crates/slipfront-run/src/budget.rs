@@ -390,7 +390,7 @@ mod tests {
             (
                 vec!["slider.blocks=[2000,2000]", "output.snapshots=[]"],
                 "slider.blocks",
-                ["276.9 MiB of it for 4000000 blocks", "lower `slider.blocks`"],
+                ["277.3 MiB of it for 4000000 blocks", "lower `slider.blocks`"],
             ),
             (
                 vec!["slider.blocks=[100,100]", "output.snapshots={every=0.1}"],
