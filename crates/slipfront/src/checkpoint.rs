@@ -8,7 +8,8 @@
 use serde::{Deserialize, Serialize};
 
 use crate::fixed_point::{FixedPoint, Window};
-use crate::kernel::totals::{ContactTotals, Totals};
+use crate::friction::ContactTotals;
+use crate::kernel::totals::Totals;
 use crate::measure::Peak;
 use crate::model::Model;
 

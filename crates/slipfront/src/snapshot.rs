@@ -2,9 +2,10 @@
 
 use crate::checkpoint::BlockColumn;
 use crate::communicator::Communicator;
+use crate::friction::ContactTotals;
 use crate::kernel::block::{Block, Field};
 use crate::kernel::engine::Engine;
-use crate::kernel::totals::{ContactTotals, StoredEnergy, Totals};
+use crate::kernel::totals::{StoredEnergy, Totals};
 use crate::measure::{CurvePoint, Peak};
 use crate::model::Model;
 

@@ -1,7 +1,6 @@
 //! The largest time step with which a slider is stable.
 
 use crate::communicator::Communicator;
-use crate::friction::Friction;
 use crate::lattice::{Bond, K_DRIVE, dt_star_limit};
 use crate::model::Model;
 use crate::moduli::Moduli;
@@ -35,10 +34,7 @@ impl Model {
     /// All `ranks` of a lattice must call this together.
     pub fn stable_step_limit(&self, ranks: &dyn Communicator) -> f64 {
         let (lattice, slider) = (&self.lattice, &self.slider);
-        let contact = match self.friction {
-            Friction::ContactSprings(springs) => springs.stiffness,
-            Friction::Coulomb(_) | Friction::RateAndState(_) => 0.0,
-        };
+        let contact = self.friction.contact_stiffness();
         let is_plain = self.slider == Slider::default() && contact == 0.0;
         if is_plain && self.drive.k_drive <= K_DRIVE {
             return dt_star_limit();

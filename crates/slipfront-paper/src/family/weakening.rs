@@ -23,9 +23,8 @@ const DAMPINGS: [f64; 5] = [0.0, 0.2, 0.3, 0.4, 0.6];
 fn computed(damping: f64) -> f64 {
     let lattice = Lattice::free(2, 2);
     let friction = Friction::Coulomb(Coulomb {
-        law: FrictionLaw::Projection,
         weakening: Some(LAW),
-        ageing: None,
+        ..FrictionLaw::Projection.into()
     });
     let surface = Surface::uniform(&lattice, 1.0, 0.5);
     let model = Model::new(lattice, surface, Drive::along_x(V_STAR), damping, 0.0, friction);

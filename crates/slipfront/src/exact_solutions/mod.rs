@@ -3,23 +3,17 @@
 //! In the units of this crate (lengths in blocks, times in `l sqrt(rho/E)`, forces in
 //! `P mu_s l^2`). The tests under `tests/physics` hold the kernels against them.
 
-mod ageing;
-mod contact_springs;
 mod edge_drive;
-mod rate_and_state;
+mod friction;
 mod sliders;
 mod torsion;
-mod weakening;
 
-pub use ageing::{StopOfSteadySliding, ageing_slip_time};
-pub use contact_springs::{chain_slip_force, static_over_kinetic_of_springs};
 pub use edge_drive::precursor_load;
-pub use rate_and_state::{friction_after_speed_step, rate_and_state_growth};
+pub use friction::*;
 pub use sliders::{
     PairMode, composite_peak, graded_first_slip_time_star, lagged_decay_rate, pair_modes, viscous_decay_rate,
 };
 pub use torsion::{torsion_first_slip, torsion_of_decoupled_blocks, torsion_of_decoupled_disc};
-pub use weakening::weakening_growth;
 
 use crate::lattice::{K_DIAGONAL, K_DRIVE, K_STRAIGHT};
 use crate::scales::damping;

@@ -1,18 +1,29 @@
 //! The laws of friction: what the force and motion of a block become where it touches the substrate.
+//!
+//! Each law is a file, which holds its parameters, says what it [`Needs`], and computes it in the general kernel, with what it remembers
+//! of every block. [`Friction`] and [`Contact`] here have a row for each.
 
-mod ageing;
 mod contact_springs;
 mod coulomb;
+mod integrator;
+mod needs;
 mod rate_and_state;
-mod weakening;
 
-pub use self::ageing::Ageing;
+use std::ops::Range;
+
+use serde::{Deserialize, Serialize};
+
 pub use self::contact_springs::ContactSprings;
-pub use self::coulomb::FrictionLaw;
-pub(crate) use self::coulomb::{BlockState, Integrator, Law, Literal, Projection, Reversal};
+pub use self::coulomb::*;
+pub(crate) use self::integrator::Integrator;
+pub use self::needs::Needs;
 pub use self::rate_and_state::RateAndState;
-pub(crate) use self::rate_and_state::{LogFactors, Sliding};
-pub use self::weakening::Weakening;
+
+use self::contact_springs::SpringContact;
+use self::rate_and_state::StateContact;
+use crate::fixed_point::RunningSum;
+use crate::forces::Forces;
+use crate::state::State;
 use crate::surface::Surface;
 
 /// The law of friction of all blocks.
@@ -26,27 +37,50 @@ pub enum Friction {
     ContactSprings(ContactSprings),
 }
 
-/// Eq. 4, and what its thresholds may depend on.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Coulomb {
-    /// Reading of Eq. 4.
-    pub law: FrictionLaw,
-    /// Kinetic friction that falls with speed.
-    pub weakening: Option<Weakening>,
-    /// Static friction that grows while a block is stuck.
-    pub ageing: Option<Ageing>,
+impl From<FrictionLaw> for Friction {
+    fn from(law: FrictionLaw) -> Self {
+        Self::Coulomb(law.into())
+    }
 }
 
 impl Friction {
+    /// What the law needs beside the thresholds of the blocks.
+    pub fn needs(&self) -> Needs {
+        match self {
+            Self::Coulomb(law) => law.needs(),
+            Self::RateAndState(_) => RateAndState::NEEDS,
+            Self::ContactSprings(_) => ContactSprings::NEEDS,
+        }
+    }
+
     /// Numbers of a block that the law remembers beside its velocity: columns of a checkpoint.
     pub fn n_columns(&self) -> usize {
+        self.needs().columns
+    }
+
+    /// Whether blocks are held up to a threshold, so that friction loses something when they slip.
+    pub fn has_thresholds(&self) -> bool {
+        !matches!(self, Self::RateAndState(_))
+    }
+
+    /// Whether a block may take the threshold of any other, so that whoever computes it must know all of them.
+    pub fn lends_thresholds(&self) -> bool {
+        matches!(self, Self::ContactSprings(law) if law.redraw.is_some())
+    }
+
+    /// Stiffness of what holds a block to the substrate until it slips, in units of `E l`; 0 of contacts that do not yield.
+    pub(crate) fn contact_stiffness(&self) -> f64 {
         match self {
-            // When it has stopped.
-            Self::Coulomb(coulomb) => usize::from(coulomb.ageing.is_some()),
-            // Its state.
-            Self::RateAndState(_) => 1,
-            // The anchor of its spring, and how often this has broken.
-            Self::ContactSprings(_) => 3,
+            Self::Coulomb(_) | Self::RateAndState(_) => 0.0,
+            Self::ContactSprings(law) => law.stiffness,
+        }
+    }
+
+    /// Eq. 4 with its options, if that is the law.
+    pub(crate) fn coulomb(&self) -> Option<&Coulomb> {
+        match self {
+            Self::Coulomb(law) => Some(law),
+            Self::RateAndState(_) | Self::ContactSprings(_) => None,
         }
     }
 
@@ -54,30 +88,25 @@ impl Friction {
     /// all extensions alike, half the mean of their thresholds.
     pub(crate) fn steady_force(&self, surface: &Surface, speed: f64) -> f64 {
         match self {
-            Self::Coulomb(coulomb) => {
-                let at_rest = surface.mean_kinetic_force();
-                coulomb.weakening.map_or(at_rest, |law| {
-                    law.kinetic_force(at_rest, surface.mean_kinetic_adhesion(), speed)
-                })
+            Self::Coulomb(law) => {
+                let (at_rest, adhesion) = (surface.mean_kinetic_force(), surface.mean_kinetic_adhesion());
+                law.steady_force(at_rest, adhesion, speed)
             }
             Self::RateAndState(law) => surface.mean_normal_force() * law.steady_coefficient(speed),
             Self::ContactSprings(_) => 0.5 * surface.mean_static_force(),
         }
     }
 
-    /// Friction of block `b` in steady sliding at a speed, in the same units.
+    /// Friction of block `b` in steady sliding at a speed, in units of `P mu_s l^2`.
     pub(crate) fn steady_force_of(&self, surface: &Surface, b: usize, speed: f64) -> f64 {
         match self {
-            Self::Coulomb(coulomb) => {
-                let at_rest = surface.kinetic_force(b);
+            Self::Coulomb(law) => {
                 let adhesion = if surface.textured[b] {
                     0.0
                 } else {
                     surface.adhesion().of_kinetic
                 };
-                coulomb
-                    .weakening
-                    .map_or(at_rest, |law| law.kinetic_force(at_rest, adhesion, speed))
+                law.steady_force(surface.kinetic_force(b), adhesion, speed)
             }
             Self::RateAndState(law) => surface.normal_force(b) * law.steady_coefficient(speed),
             Self::ContactSprings(_) => 0.5 * surface.static_limit(b),
@@ -85,42 +114,162 @@ impl Friction {
     }
 
     /// Pull `F` of the drive springs of stiffness `k`, which rises as `k V t`, at which a block of this threshold slips on a surface
-    /// without texture: for springs in contact the pull that the whole slider would need if they did not yield. Ageing is that of a threshold
-    /// above kinetic friction. Under rate and state no block slips at a moment; the pull is that of steady sliding.
+    /// without texture: for springs in contact the pull that the whole slider would need if they did not yield. Under rate and state no
+    /// block slips at a moment; the pull is that of steady sliding.
     pub(crate) fn first_slip_pull(&self, surface: &Surface, threshold: f64, k: f64, speed: f64) -> f64 {
         match self {
-            Self::Coulomb(Coulomb { ageing: None, .. }) => threshold,
-            Self::Coulomb(Coulomb {
-                ageing: Some(law), ..
-            }) => {
-                // The threshold grows more slowly than the pull, from a pull at which it is higher: each round comes nearer.
-                let adhesion = surface.adhesion().of_static;
-                let aged = |pull: f64| law.static_limit(threshold, adhesion, pull / (k * speed));
-                (0..MAX_ROUNDS).fold(threshold, |pull, _| aged(pull))
-            }
+            Self::Coulomb(law) => law.first_slip_pull(surface, threshold, k, speed),
             Self::RateAndState(_) => self.steady_force(surface, speed),
-            Self::ContactSprings(law) => threshold * (k + law.stiffness) / law.stiffness,
+            Self::ContactSprings(law) => threshold * law.pull_over_rigid(k),
         }
     }
 
     /// By how much longer a drive through springs of stiffness `k` takes to load contacts that yield than rigid ones.
     pub(crate) fn loading_delay(&self, k: f64) -> f64 {
         match self {
-            Self::ContactSprings(law) => (k + law.stiffness) / law.stiffness,
             Self::Coulomb(_) | Self::RateAndState(_) => 1.0,
+            Self::ContactSprings(law) => law.pull_over_rigid(k),
         }
     }
 }
 
-/// Rounds after which a fixed point that is approached by at least a factor of 2 in each is found to the last bit.
-const MAX_ROUNDS: usize = 60;
+/// Sums over all blocks under laws of friction that store energy or have a state; 0 under all others.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct ContactTotals {
+    /// Energy of the springs between blocks and substrate at t_n, of those that have not broken.
+    pub spring_energy: f64,
+    /// Energy of the springs that break at t_n.
+    pub broken_energy: f64,
+    /// Mean state variable of the blocks in contact, t*.
+    pub mean_state: f64,
+}
 
-impl From<FrictionLaw> for Friction {
-    fn from(law: FrictionLaw) -> Self {
-        Self::Coulomb(Coulomb {
-            law,
-            weakening: None,
-            ageing: None,
-        })
+impl ContactTotals {
+    /// Totals from the sums that [`Contact::add_up`] makes.
+    pub(crate) fn of([spring_energy, broken_energy, state]: [f64; 3], surface: &Surface) -> Self {
+        Self {
+            spring_energy,
+            broken_energy,
+            mean_state: state / surface.n_contact() as f64,
+        }
+    }
+}
+
+/// A law of friction with what it remembers of the blocks of a band of the general kernel.
+#[derive(Debug)]
+pub(crate) enum Contact {
+    Coulomb(Thresholds),
+    RateAndState(StateContact),
+    Springs(SpringContact),
+}
+
+impl Contact {
+    /// The memory of a law at the start. `first_block`: number of the first block of the band in the whole lattice.
+    pub(crate) fn new(friction: &Friction, surface: &Surface, first_block: usize) -> Self {
+        let n = surface.n_blocks();
+        match friction {
+            Friction::Coulomb(law) => Self::Coulomb(Thresholds::new(law, surface.adhesion(), n)),
+            Friction::RateAndState(law) => Self::RateAndState(StateContact::new(*law, surface)),
+            Friction::ContactSprings(law) => Self::Springs(SpringContact::new(*law, n, first_block)),
+        }
+    }
+
+    /// The [`Friction::n_columns`] columns that a checkpoint keeps. They are those before the present instant is evaluated, or the same
+    /// after it.
+    pub(crate) fn columns(&self) -> Vec<&[f64]> {
+        match self {
+            Self::Coulomb(thresholds) => thresholds.columns(),
+            Self::RateAndState(contact) => vec![&contact.theta],
+            Self::Springs(springs) => vec![&springs.anchor.x, &springs.anchor.y, &springs.breaks],
+        }
+    }
+
+    /// The columns that a checkpoint keeps, to be filled.
+    pub(crate) fn columns_mut(&mut self) -> Vec<&mut [f64]> {
+        match self {
+            Self::Coulomb(thresholds) => thresholds.columns_mut(),
+            Self::RateAndState(contact) => vec![&mut contact.theta],
+            Self::Springs(springs) => {
+                let SpringContact { anchor, breaks, .. } = springs;
+                vec![&mut anchor.x, &mut anchor.y, breaks]
+            }
+        }
+    }
+
+    /// Finds the static thresholds that follow from the columns of a checkpoint.
+    pub(crate) fn resume(&self, surface: &Surface, static_limit: &mut [f64]) {
+        if let Self::Springs(springs) = self {
+            springs.find_thresholds(surface, static_limit);
+        }
+    }
+
+    /// Remembers what some blocks did in the step before, which `forces` holds, before they move over a step.
+    #[inline(always)]
+    pub(crate) fn remember(
+        &mut self,
+        surface: &Surface,
+        blocks: &Range<usize>,
+        state: &State,
+        forces: &Forces,
+        static_limit: &mut [f64],
+        dt_star: f64,
+    ) {
+        match self {
+            Self::Coulomb(_) => {}
+            Self::RateAndState(contact) => contact.evolve(blocks, &state.velocity, dt_star),
+            Self::Springs(springs) => {
+                let breaks = &forces.slides;
+                springs.form_again(surface, blocks, &state.displacement, breaks, static_limit);
+            }
+        }
+    }
+
+    /// Eqs. 4-7: friction and damping of some blocks, their velocities half a step later and whether they slide. `limits`: static and kinetic
+    /// thresholds of all blocks; `integrator`: of the first, the second and so on of these blocks.
+    #[inline(always)]
+    pub(crate) fn apply(
+        &mut self,
+        surface: &Surface,
+        blocks: &Range<usize>,
+        limits: [&[f64]; 2],
+        (state, time_star): (&State, f64),
+        integrator: impl Fn(usize) -> Integrator,
+        forces: &mut Forces,
+    ) {
+        match self {
+            Self::Coulomb(thresholds) => {
+                thresholds.apply(blocks, limits, state, integrator, forces, time_star);
+            }
+            Self::RateAndState(contact) => contact.apply(blocks, state, integrator, forces),
+            Self::Springs(springs) => springs.apply(surface, blocks, state, limits[0], integrator, forces),
+        }
+    }
+
+    /// Adds what the [`ContactTotals`] are made of, of some blocks whose next velocities are known. There is room for two numbers of each
+    /// block.
+    #[inline(always)]
+    pub(crate) fn add_up(
+        &self,
+        surface: &Surface,
+        blocks: &Range<usize>,
+        state: &State,
+        slides: &[bool],
+        [held, broken, states]: [&mut RunningSum; 3],
+        room: [&mut [f64]; 2],
+    ) {
+        match self {
+            Self::Coulomb(_) => {}
+            Self::RateAndState(contact) => contact.add_states(surface, blocks, states, room[0]),
+            Self::Springs(springs) => {
+                let u = &state.displacement;
+                springs.add_energies(surface, blocks, u, slides, [held, broken], room);
+            }
+        }
+    }
+
+    /// Whether the power of friction is lost at once, and not stored until contacts break.
+    #[inline(always)]
+    pub(crate) fn dissipates(&self) -> bool {
+        !matches!(self, Self::Springs(_))
     }
 }

@@ -1,8 +1,9 @@
 //! What every kernel does.
 
 use super::block::{Block, Field};
-use super::totals::{ContactTotals, Totals};
+use super::totals::Totals;
 use crate::checkpoint::{BlockColumn, MotionBounds};
+use crate::friction::ContactTotals;
 use crate::model::Model;
 use crate::position_bins::PositionBins;
 use crate::state::State;

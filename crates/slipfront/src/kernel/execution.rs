@@ -9,7 +9,7 @@ use super::fused::{self, Fused};
 use super::general::{self, General};
 use crate::checkpoint::{BlockColumn, Checkpoint};
 use crate::communicator::Communicator;
-use crate::friction::{Coulomb, Friction, FrictionLaw};
+use crate::friction::Friction;
 use crate::model::Model;
 use crate::options::ModelOptions;
 use crate::state::State;
@@ -19,8 +19,8 @@ use crate::state::State;
 pub enum Kernel {
     /// One pass per equation, to be read along with the paper, for every model.
     General,
-    /// One sweep for all equations. The general kernel computes what this does not: other laws than
-    /// [`FrictionLaw::Projection`], ageing, internal viscosity, and drives that rotate.
+    /// One sweep for all equations. The general kernel computes what this does not: [some laws of friction](crate::Needs::is_fused),
+    /// internal viscosity, and drives that rotate.
     #[default]
     Fused,
 }
@@ -42,8 +42,8 @@ pub struct Execution {
 impl Kernel {
     /// The kernel that computes a model when this one is asked for.
     pub fn for_model(self, model: &Model) -> Self {
-        let has_dampers = model.slider.is_viscous();
-        self.for_law(&model.friction, has_dampers, model.drive.rotation.is_some())
+        let (is_viscous, rotates) = (model.slider.is_viscous(), model.drive.rotation.is_some());
+        self.for_law(&model.friction, is_viscous, rotates)
     }
 
     /// The kernel that computes models with these options when this one is asked for.
@@ -53,14 +53,8 @@ impl Kernel {
 
     /// The kernel that computes a law of friction, with or without dampers and a rotation.
     fn for_law(self, friction: &Friction, has_dampers: bool, rotates: bool) -> Self {
-        let is_swept = match friction {
-            Friction::Coulomb(Coulomb { law, ageing, .. }) => {
-                *law == FrictionLaw::Projection && ageing.is_none()
-            }
-            Friction::RateAndState(_) | Friction::ContactSprings(_) => false,
-        } && !has_dampers
-            && !rotates;
-        if is_swept { self } else { Self::General }
+        let is_fused = friction.needs().is_fused && !has_dampers && !rotates;
+        if is_fused { self } else { Self::General }
     }
 
     /// Bytes per block that this kernel takes beside the model, on one thread. Margins of bands and of rows of blocks are not counted.

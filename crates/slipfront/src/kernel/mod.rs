@@ -13,4 +13,4 @@ pub(crate) mod totals;
 
 pub use block::Block;
 pub use execution::{Execution, Kernel, simd_width};
-pub use totals::{ContactTotals, StoredEnergy, Totals};
+pub use totals::{StoredEnergy, Totals};

@@ -41,14 +41,3 @@ impl StoredEnergy {
         self.kinetic + self.lattice + self.drive_springs
     }
 }
-
-/// What laws of friction that store energy or have a state add to the [`Totals`]; 0 under all others.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct ContactTotals {
-    /// Energy of the springs between blocks and substrate at t_n, of those that have not broken.
-    pub spring_energy: f64,
-    /// Energy of the springs that break at t_n.
-    pub broken_energy: f64,
-    /// Mean state variable of the blocks in contact, t*.
-    pub mean_state: f64,
-}

@@ -170,9 +170,8 @@ impl Slider {
             ..Drive::at_angle(self.v_star, self.degrees)
         };
         let friction = Friction::Coulomb(Coulomb {
-            law: self.law,
             weakening: self.weakening,
-            ageing: None,
+            ..self.law.into()
         });
         let damping = scales::damping(self.omega_star);
         Model::of_rows(lattice, rows, surface, drive, damping, self.epsilon, friction).with_slider(body)

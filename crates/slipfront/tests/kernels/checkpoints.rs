@@ -101,9 +101,9 @@ fn goes_on_from_checkpoints(slider: &Slider, every: u64) {
 /// What a law remembers is part of a checkpoint: ages, anchors and breaks with their thresholds, states.
 #[rstest]
 #[case(Friction::Coulomb(Coulomb {
-    law: FrictionLaw::Projection,
     weakening: Some(Weakening { critical_speed: 0.1, ratio: 0.4 }),
     ageing: Some(Ageing { beta: 0.1, time: 1.0 }),
+    ..FrictionLaw::Projection.into()
 }))]
 #[case(Friction::ContactSprings(ContactSprings { stiffness: 0.5, redraw: Some(3) }))]
 #[case(Friction::RateAndState(RateAndState {

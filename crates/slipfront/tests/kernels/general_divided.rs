@@ -55,12 +55,11 @@ fn change(options: &[Variety], model: &mut Model, ranks: &dyn Communicator) {
             Law(_) | Viscous | Differ => {}
             Ages => {
                 model.friction = Friction::Coulomb(Coulomb {
-                    law: FrictionLaw::Projection,
-                    weakening: None,
                     ageing: Some(Ageing {
                         beta: 0.02,
                         time: 0.5,
                     }),
+                    ..FrictionLaw::Projection.into()
                 });
             }
             RateState => {

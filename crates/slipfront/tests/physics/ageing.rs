@@ -41,9 +41,8 @@ fn model(law: Ageing, damping: f64, segments: &[(f64, f64)], adhesion: Adhesion)
         ..Drive::along_x(V)
     };
     let friction = Friction::Coulomb(Coulomb {
-        law: FrictionLaw::Projection,
-        weakening: None,
         ageing: Some(law),
+        ..FrictionLaw::Projection.into()
     });
     Model::new(lattice, surface, drive, damping, 0.0, friction)
 }

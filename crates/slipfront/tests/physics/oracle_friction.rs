@@ -154,11 +154,10 @@ impl World {
 }
 
 fn coulomb(weakening: Option<Weakening>, ageing: Option<Ageing>) -> Friction {
-    let law = FrictionLaw::Projection;
     Friction::Coulomb(Coulomb {
-        law,
         weakening,
         ageing,
+        ..FrictionLaw::Projection.into()
     })
 }
 

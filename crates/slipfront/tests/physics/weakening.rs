@@ -13,9 +13,8 @@ use crate::growth::growth_rate;
 
 fn weakening(law: Weakening) -> Friction {
     Friction::Coulomb(Coulomb {
-        law: FrictionLaw::Projection,
         weakening: Some(law),
-        ageing: None,
+        ..FrictionLaw::Projection.into()
     })
 }
 

@@ -15,7 +15,7 @@ use super::quanta::Quanta;
 use super::rest::{RestingVector, steps_until_slip};
 use super::springs::Geometry;
 use super::step::Step;
-use super::variations::{Variation, Variations, present, weaken};
+use super::variations::{Variation, Variations, present};
 use super::vector::{Chunks, ChunksMut, LANES, Vec2x8, lane_max, load, load_vec2, splat, subtract};
 use crate::checkpoint::BlockColumn;
 use crate::fixed_point::FixedPoint;
@@ -639,15 +639,20 @@ impl Band {
         let mut kinetic_impulses: Chunks = self.kinetic_impulses[elements.clone()].as_chunks().0;
         let mut variation = Variation::default();
         if let Some(variations) = self.variations.as_mut().filter(|_| G::BLOCKS_DIFFER) {
-            if let Some(weakening) = &variations.weakening {
-                let weakened = variations.weakened_impulses[elements.clone()].as_chunks_mut().0;
-                let velocity = chunks(&self.velocity, elements.start, n);
-                let inverse_mass = variations.inverse_mass[elements.clone()].as_chunks().0;
-                let adhesive = step.integrator.force_to_velocity * variations.adhesion;
-                let at_rest = (kinetic_impulses, inverse_mass, adhesive);
-                weaken(simd, weakening, velocity, at_rest, weakened);
-                kinetic_impulses = variations.weakened_impulses[elements.clone()].as_chunks().0;
-            }
+            let velocity = chunks(&self.velocity, elements.start, n);
+            let inverse_mass = variations.inverse_mass[elements.clone()].as_chunks().0;
+            let at_rest = (kinetic_impulses, inverse_mass);
+            let thresholds = &mut variations.thresholds;
+            thresholds.update(
+                simd,
+                &elements,
+                velocity,
+                at_rest,
+                step.integrator.force_to_velocity,
+            );
+            kinetic_impulses = variations
+                .thresholds
+                .kinetic_impulses(elements.clone(), kinetic_impulses);
             variation = variations.of(elements.clone());
         }
         FrictionLoop {
@@ -669,13 +674,13 @@ impl Band {
         }
     }
 
-    /// Kinetic friction of an element, as weakened by its speed before the latest sweep, from that of slow sliding.
-    pub(super) fn weakened_force(&self, k: usize, kinetic_force: f64, velocity_to_force: f64) -> f64 {
-        let variations = self.variations.as_ref();
-        match variations.filter(|variations| variations.weakening.is_some()) {
-            Some(variations) => variations.weakened_impulses[k] * variations.mass[k] * velocity_to_force,
-            None => kinetic_force,
-        }
+    /// Kinetic friction of an element at the latest sweep, from that of slow sliding.
+    pub(super) fn kinetic_force(&self, k: usize, at_rest: f64, velocity_to_force: f64) -> f64 {
+        let changed = self.variations.as_ref().and_then(|variations| {
+            let impulse = variations.thresholds.changed_impulse(k)?;
+            Some(impulse * variations.mass[k] * velocity_to_force)
+        });
+        changed.unwrap_or(at_rest)
     }
 
     /// Springs to the east of the eight elements from `first` on.

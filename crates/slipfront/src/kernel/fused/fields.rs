@@ -108,7 +108,7 @@ pub(super) fn read_rows<S: Simd, G: Geometry>(
                             let b = model.lattice.block(i, j);
                             model.surface.read_kinetic_forces(b, kinetic);
                             for (k, force) in (first - band.first..).zip(kinetic) {
-                                *force = band.weakened_force(k, *force, step.integrator.velocity_to_force);
+                                *force = band.kinetic_force(k, *force, step.integrator.velocity_to_force);
                             }
                         }
                     }

@@ -26,6 +26,7 @@ mod schedule;
 mod sparse;
 mod springs;
 mod step;
+mod thresholds;
 mod variations;
 mod vector;
 
@@ -367,11 +368,11 @@ impl Fused {
         }
     }
 
-    /// Kinetic friction of block `b`, weakened by its speed before the latest sweep.
+    /// Kinetic friction of block `b` at the latest sweep.
     fn kinetic_force(&self, model: &Model, b: usize) -> f64 {
         let (band, k) = self.locate(self.layout.element_of(b));
         let velocity_to_force = Integrator::new(model.damping, self.dt_star).velocity_to_force;
-        self.bands[band].weakened_force(k, model.surface.kinetic_force(b), velocity_to_force)
+        self.bands[band].kinetic_force(k, model.surface.kinetic_force(b), velocity_to_force)
     }
 
     /// Band of an element, and its index there.

@@ -1,4 +1,4 @@
-//! What differs from block to block beside the thresholds: springs, drive springs, masses, and kinetic friction that follows speed.
+//! What differs from block to block beside the thresholds: springs, drive springs, masses, and what changes thresholds.
 //!
 //! Where all blocks are alike none of it is stored or computed: the sweep is compiled for both kinds of slider ([`Geometry`]).
 //! An outline needs nothing of it, either: blocks outside are elements that are no blocks, and their springs are masked.
@@ -7,13 +7,11 @@
 
 use std::ops::Range;
 
-use fearless_simd::{Simd, SimdBase, SimdFloat};
-
 use super::aligned::Aligned;
 use super::layout::Layout;
-use super::vector::{Chunks, ChunksMut, load, load_vec2, splat, square};
+use super::thresholds::Thresholds;
+use super::vector::Chunks;
 use crate::communicator::Communicator;
-use crate::friction::{Friction, Weakening};
 use crate::lattice::Bond;
 use crate::model::Model;
 use crate::moduli::Moduli;
@@ -28,11 +26,7 @@ pub(super) struct Variations {
     pub(super) drive_springs: Aligned,
     pub(super) mass: Aligned,
     pub(super) inverse_mass: Aligned,
-    /// Kinetic impulses of the latest sweep: those of slow sliding, weakened by speed.
-    pub(super) weakened_impulses: Aligned,
-    pub(super) weakening: Option<Weakening>,
-    /// Kinetic adhesion, which does not weaken.
-    pub(super) adhesion: f64,
+    pub(super) thresholds: Thresholds,
 }
 
 /// Bytes of [`Variations`] per element: four springs, the drive spring, mass and its inverse, and a kinetic impulse.
@@ -41,7 +35,7 @@ pub(super) const BYTES_PER_ELEMENT: usize = (4 + 4) * size_of::<f64>();
 /// Whether blocks of a model with these options need [`Variations`], as far as can be told before it is made.
 pub(super) fn options_differ(options: &ModelOptions) -> bool {
     let slider = &options.slider;
-    slider.has_moduli || slider.has_densities || slider.drives_some || weakening(&options.friction).is_some()
+    slider.has_moduli || slider.has_densities || slider.drives_some || options.friction.needs().varies
 }
 
 /// [`Variations`] of some elements, in vectors of eight; nothing of it where all blocks are alike.
@@ -65,31 +59,6 @@ impl<'a> Variation<'a> {
     }
 }
 
-/// Kinetic impulses at these velocities, from those of slow sliding: the operations of [`Weakening::kinetic_force`]. `adhesive` is
-/// the impulse of adhesion on a block of mass 1. What is no block has an infinite impulse, which becomes no number, and moves as
-/// little.
-#[inline(always)]
-pub(super) fn weaken<S: Simd>(
-    simd: S,
-    weakening: &Weakening,
-    [vx, vy]: [Chunks; 2],
-    (impulses, inverse_mass, adhesive): (Chunks, Chunks, f64),
-    weakened: ChunksMut,
-) {
-    let n = weakened.len();
-    let (vx, vy, impulses, inverse_mass) = (&vx[..n], &vy[..n], &impulses[..n], &inverse_mass[..n]);
-    let [adhesive, zero] = [adhesive, 0.0].map(|number| splat(simd, number));
-    let fall = splat(simd, 1.0 - weakening.ratio);
-    let critical_speed = splat(simd, weakening.critical_speed);
-    for c in 0..n {
-        let speed = square(load_vec2(simd, [vx, vy], c)).sqrt();
-        let lost = fall * (speed / (critical_speed + speed));
-        let at_rest = load(simd, &impulses[c]);
-        let of_load = (at_rest - adhesive * load(simd, &inverse_mass[c])).max(zero);
-        (at_rest - lost * of_load).store_array(&mut weakened[c]);
-    }
-}
-
 /// Whether the blocks of a model need [`Variations`].
 pub(super) fn blocks_differ(model: &Model, largest: &Largest) -> bool {
     let slider = &model.slider;
@@ -101,7 +70,7 @@ pub(super) fn blocks_differ(model: &Model, largest: &Largest) -> bool {
     slider.stiffness.is_some()
         || slider.density.is_some()
         || drive_springs_differ
-        || weakening(&model.friction).is_some()
+        || model.friction.needs().varies
 }
 
 /// Largest factors of any block of the lattice.
@@ -139,13 +108,6 @@ impl Largest {
     }
 }
 
-fn weakening(friction: &Friction) -> Option<Weakening> {
-    match friction {
-        Friction::Coulomb(coulomb) => coulomb.weakening,
-        _ => None,
-    }
-}
-
 impl Variations {
     /// Of the elements from `first` on, and of springs also of a `halo` of elements before.
     pub(super) fn new(
@@ -162,9 +124,7 @@ impl Variations {
             drive_springs: ones(),
             mass: ones(),
             inverse_mass: ones(),
-            weakened_impulses: Aligned::filled(len, f64::INFINITY),
-            weakening: weakening(&model.friction),
-            adhesion: model.surface.adhesion().of_kinetic,
+            thresholds: Thresholds::new(model, len),
         };
         let before = elements.start as isize - halo as isize;
         for k in 0..halo + len {

@@ -2,15 +2,13 @@
 
 use std::ops::Range;
 
-use super::contact::Contact;
 use super::drive::DrivenBlocks;
-use super::forces::{Forces, part, part_mut};
-use super::friction::friction_forces;
 use super::rows::Rows;
 use super::springs::{damper_forces, lattice_forces, row_energies};
 use super::weighted::{Scratch, add_weighted, dot_products};
 use crate::fixed_point::RunningSum;
-use crate::friction::{FrictionLaw, Integrator, Literal, Projection, Reversal};
+use crate::forces::{Forces, part, part_mut};
+use crate::friction::{Contact, Integrator};
 use crate::kernel::block::Block;
 use crate::lattice::Bond;
 use crate::model::Model;
@@ -49,10 +47,8 @@ pub(super) struct Found<T> {
     pub(super) friction_power: T,
     /// `F_v . v`.
     pub(super) viscous_power: T,
-    /// Energy of the springs in contact that hold, and of those that break.
-    pub(super) spring_energies: [T; 2],
-    /// States of the blocks in contact.
-    pub(super) state: T,
+    /// What the law of friction adds up, see [`Contact::add_up`].
+    pub(super) contact: [T; 3],
 }
 
 impl<T> From<[T; 12]> for Found<T> {
@@ -67,9 +63,9 @@ impl<T> From<[T; 12]> for Found<T> {
             square,
             friction,
             viscous,
-            held,
-            broken,
-            state,
+            contact_0,
+            contact_1,
+            contact_2,
         ]: [T; 12],
     ) -> Self {
         Self {
@@ -79,8 +75,7 @@ impl<T> From<[T; 12]> for Found<T> {
             velocity_square: square,
             friction_power: friction,
             viscous_power: viscous,
-            spring_energies: [held, broken],
-            state,
+            contact: [contact_0, contact_1, contact_2],
         }
     }
 }
@@ -100,7 +95,7 @@ pub(super) struct Band {
     /// Displacements at t_n, velocities half a step later.
     pub(super) state: State,
     pub(super) forces: Forces,
-    /// `mu_s F_n`; of springs in contact the thresholds that they have since they last broke.
+    /// `mu_s F_n`, or what the law of friction has made of it since a block last slipped.
     static_limit: Vec<f64>,
     /// `mu_k F_n`.
     kinetic_force: Vec<f64>,
@@ -129,7 +124,7 @@ pub(super) fn bytes_per_block(options: &ModelOptions) -> usize {
     let own = vectors * VECTOR + 3 * size_of::<f64>() + size_of::<bool>();
     own + bytes_per_block_of_bonds(&options.slider)
         + DrivenBlocks::bytes_per_block(options.rotates)
-        + Contact::bytes_per_block(&options.friction)
+        + options.friction.needs().bytes
 }
 
 /// Bytes per block of what a [`Band`] has along each of the four bonds, also of the rows beside its own: forces of springs and of
@@ -154,7 +149,7 @@ impl Band {
         let rows = Rows::new(model);
         let zeros = || VectorField::zeros(n);
         let bonds = || [(); 4].map(|()| VectorField::zeros(rows.lattice.n_blocks()));
-        let slider = &model.slider;
+        let (slider, first_block) = (&model.slider, model.lattice.blocks_of(&model.rows).start);
         let relative = || Bond::ALL.map(|bond| rows.springs_along(moduli, &bond));
         Self {
             dt_star,
@@ -170,7 +165,7 @@ impl Band {
             static_limit: (0..n).map(|b| model.surface.static_limit(b)).collect(),
             kinetic_force: (0..n).map(|b| model.surface.kinetic_force(b)).collect(),
             driven: DrivenBlocks::of(model),
-            contact: Contact::new(model),
+            contact: Contact::new(&model.friction, &model.surface, first_block),
             relative_springs: (!slider.has_equal_springs()).then(relative),
             dampers: slider.is_viscous().then(|| Dampers {
                 force: zeros(),
@@ -189,9 +184,7 @@ impl Band {
 
     /// Finds what follows from the memory of the law of friction, after a checkpoint has given it.
     pub(super) fn resume(&mut self, model: &Model) {
-        if let Contact::Springs(springs) = &self.contact {
-            springs.find_thresholds(model, &mut self.static_limit);
-        }
+        self.contact.resume(&model.surface, &mut self.static_limit);
     }
 
     /// Moves the blocks, unless it is the first step.
@@ -266,18 +259,13 @@ impl Band {
     /// Lets the law of friction remember what some blocks did in the step before, and moves them.
     #[inline(always)]
     fn move_blocks(&mut self, model: &Model, blocks: &Range<usize>) {
+        let (state, limit) = (&self.state, &mut self.static_limit);
+        self.contact
+            .remember(&model.surface, blocks, state, &self.forces, limit, self.dt_star);
         let State {
             displacement,
             velocity,
         } = &mut self.state;
-        match &mut self.contact {
-            Contact::Coulomb(_) => {}
-            Contact::RateAndState(contact) => contact.evolve(blocks, velocity, self.dt_star),
-            Contact::Springs(springs) => {
-                let (breaks, threshold) = (&self.forces.slides, &mut self.static_limit);
-                springs.form_again(model, blocks, displacement, breaks, threshold);
-            }
-        }
         move_blocks(displacement, velocity, blocks, self.dt_star);
     }
 
@@ -314,30 +302,10 @@ impl Band {
         time_star: f64,
         model: &Model,
     ) {
-        let (state, forces) = (&self.state, &mut self.forces);
-        match &mut self.contact {
-            Contact::Coulomb(thresholds) => {
-                let (young, at_rest) = (&self.static_limit, &self.kinetic_force);
-                thresholds.update(blocks, young, at_rest, state, forces, time_star);
-                let now = thresholds.now(young, at_rest);
-                match thresholds.law {
-                    FrictionLaw::Projection => {
-                        friction_forces(&Projection, integrator, blocks, now, state, forces);
-                    }
-                    FrictionLaw::Reversal => {
-                        friction_forces(&Reversal, integrator, blocks, now, state, forces);
-                    }
-                    FrictionLaw::Literal => {
-                        friction_forces(&Literal, integrator, blocks, now, state, forces);
-                    }
-                }
-                thresholds.note_stops(blocks, state, forces, time_star);
-            }
-            Contact::RateAndState(contact) => contact.apply(blocks, state, integrator, forces),
-            Contact::Springs(springs) => {
-                springs.apply(model, blocks, state, &self.static_limit, integrator, forces);
-            }
-        }
+        let limits = [&*self.static_limit, &self.kinetic_force];
+        let (now, forces) = ((&self.state, time_star), &mut self.forces);
+        self.contact
+            .apply(&model.surface, blocks, limits, now, integrator, forces);
     }
 
     /// Counts which of some blocks slide, and which of these are in contact; notes the first slips of these.
@@ -394,17 +362,12 @@ impl Band {
             masses,
             &mut scratch.products,
         );
-        match &self.contact {
-            Contact::Coulomb(_) => {}
-            Contact::RateAndState(contact) => contact.add_states(model, blocks, sums.state, scratch),
-            Contact::Springs(springs) => {
-                let breaks = &self.forces.slides;
-                springs.add_energies(model, blocks, displacement, breaks, sums.spring_energies, scratch);
-            }
-        }
+        let (surface, room) = (&model.surface, [&mut scratch.terms[..], &mut scratch.products]);
+        let slides = &self.forces.slides;
+        self.contact
+            .add_up(surface, blocks, &self.state, slides, sums.contact, room);
         let terms = &mut scratch.terms[..n];
-        // What springs to the substrate take is stored, or lost where they break.
-        if !matches!(self.contact, Contact::Springs(_)) {
+        if self.contact.dissipates() {
             dot_products(part(&self.forces.friction, blocks), now, terms);
             sums.friction_power.add(terms);
         }

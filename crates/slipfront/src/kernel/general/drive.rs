@@ -2,9 +2,9 @@
 
 use std::ops::Range;
 
-use super::forces::{part, part_mut};
 use super::weighted::{Scratch, add_weighted, dot_products};
 use crate::fixed_point::RunningSum;
+use crate::forces::{part, part_mut};
 use crate::model::Model;
 use crate::vector_field::VectorField;
 

@@ -9,15 +9,9 @@
 //! other, and ranks too, how their first and last rows move.
 
 mod band;
-mod contact;
-mod contact_springs;
 mod drive;
-mod forces;
-mod friction;
-mod rate_and_state;
 mod rows;
 mod springs;
-mod thresholds;
 mod weighted;
 
 use std::ops::Range;
@@ -31,11 +25,11 @@ use self::weighted::Scratch;
 use super::bands::for_each_band;
 use super::block::{Block, Field};
 use super::engine::Engine;
-use super::totals::{ContactTotals, StoredEnergy, Totals};
+use super::totals::{StoredEnergy, Totals};
 use crate::checkpoint::{BlockColumn, Checkpoint, MotionBounds};
 use crate::communicator::Communicator;
 use crate::fixed_point::RunningSum;
-use crate::friction::Friction;
+use crate::friction::ContactTotals;
 use crate::model::Model;
 use crate::moduli::Moduli;
 use crate::options::ModelOptions;
@@ -317,12 +311,7 @@ impl Engine for General {
         self.ranks.sum(&mut counts);
         let [n_sliding, n_slipping] = counts.map(|count| count as usize);
         self.viscous_power = 0.0 - found.viscous_power;
-        let [held, broken] = found.spring_energies;
-        self.contact_totals = ContactTotals {
-            spring_energy: held,
-            broken_energy: broken,
-            mean_state: found.state / model.surface.n_contact() as f64,
-        };
+        self.contact_totals = ContactTotals::of(found.contact, &model.surface);
         let stored_energy = energies.then(|| self.stored_energy(model, time_star));
         self.bands.iter_mut().for_each(|one| one.band.end_step());
         Totals {
@@ -457,9 +446,8 @@ pub(crate) fn bytes_per_block_of_bands(options: &ModelOptions) -> f64 {
 /// The rows of every band.
 fn bands_of(model: &Model, threads: usize) -> Vec<Range<usize>> {
     let (rows, n_blocks) = (&model.rows, model.surface.n_blocks());
-    // Any block of a rank may lend its threshold to a spring that is drawn anew.
-    let draws = matches!(&model.friction, Friction::ContactSprings(law) if law.redraw.is_some());
-    let most = if threads == 1 || draws { 1 } else { 4 * threads };
+    let is_one = threads == 1 || model.friction.lends_thresholds();
+    let most = if is_one { 1 } else { 4 * threads };
     let n = most
         .min(n_blocks / MIN_BAND_BLOCKS)
         .min(rows.len() / MIN_BAND_ROWS)

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::forces::{part, part_mut};
+use crate::forces::{part, part_mut};
 use crate::lattice::{Bond, Edges, Lattice};
 use crate::model::Model;
 use crate::moduli::Moduli;

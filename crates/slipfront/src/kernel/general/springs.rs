@@ -2,9 +2,9 @@
 
 use std::ops::Range;
 
-use super::forces::{part, part_mut};
 use super::rows::Rows;
 use crate::fixed_point;
+use crate::forces::{part, part_mut};
 use crate::lattice::{Bond, Edges, Lattice};
 use crate::model::Model;
 use crate::state::State;

@@ -5,6 +5,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::friction::integrator::Integrator;
 use crate::vector_field::{add, dot, length};
 
 /// Which reading of Eq. 4 is used.
@@ -39,45 +40,6 @@ pub(crate) struct Update {
     pub friction: [f64; 2],
     /// Whether it slides from t_n on.
     pub slides: bool,
-}
-
-/// Time step and damping (Eq. 5), centred in time so that stability does not depend on it.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Integrator {
-    /// `c-/c+`, with `c-+ = 1 -+ Omega dt/2`: the factor by which damping reduces the velocity in a step.
-    pub(crate) velocity_decay: f64,
-    /// `dt/(m c+)`: change of velocity per force.
-    pub(crate) force_to_velocity: f64,
-    /// `m c+/dt`: force per change of velocity.
-    pub(crate) velocity_to_force: f64,
-}
-
-impl Integrator {
-    pub(crate) fn new(damping: f64, dt: f64) -> Self {
-        let after = 1.0 + 0.5 * damping * dt;
-        Self {
-            velocity_decay: (1.0 - 0.5 * damping * dt) / after,
-            force_to_velocity: dt / after,
-            velocity_to_force: after / dt,
-        }
-    }
-
-    /// That of a block of another mass: damping goes with the mass.
-    #[inline(always)]
-    pub(crate) fn of_mass(self, mass: f64) -> Self {
-        Self {
-            force_to_velocity: self.force_to_velocity / mass,
-            velocity_to_force: self.velocity_to_force * mass,
-            ..self
-        }
-    }
-
-    /// Velocity at `t + dt/2` under a force alone (Eqs. 5-8): `(c- v + dt F/m)/c+`.
-    #[inline(always)]
-    pub(crate) fn accelerate(&self, velocity: [f64; 2], force: [f64; 2]) -> [f64; 2] {
-        let one = |v: f64, f: f64| self.velocity_decay * v + self.force_to_velocity * f;
-        [one(velocity[0], force[0]), one(velocity[1], force[1])]
-    }
 }
 
 /// One reading of Eq. 4.

@@ -2,8 +2,9 @@
 
 use std::ops::Range;
 
-use super::forces::{Forces, part, part_mut};
-use crate::friction::{BlockState, Integrator, Law};
+use super::reading::{BlockState, Law};
+use crate::forces::{Forces, part, part_mut};
+use crate::friction::integrator::Integrator;
 use crate::state::State;
 
 /// Applies the friction law to some blocks: finds friction, velocities and which slide from thresholds, velocities and forces.
@@ -28,7 +29,7 @@ pub(super) fn friction_forces<L: Law>(
     );
 }
 
-/// The same, given separate slices.
+/// Applies the friction law to blocks that are given as separate slices.
 #[inline(always)]
 #[allow(clippy::too_many_arguments)] // Separate slices are known not to overlap, so that the loop is vectorised.
 fn apply_friction<L: Law>(

@@ -1,8 +1,20 @@
 //! Friction that follows speed and the state of the contact.
 
-use crate::elementary::{SMALL_DECAY, exp, ln, mean_decay, small_mean_decay};
+mod slide;
 
-/// Rate and state with the ageing law: `mu = mu_0 + a ln(V/V_0) + b ln(V_0 theta/D_c)`, `dtheta/dt = 1 - V theta/D_c`; coefficients
+use std::ops::Range;
+
+use self::slide::{LARGE, Sliding, slide};
+use super::integrator::Integrator;
+use super::needs::Needs;
+use crate::elementary::{SMALL_DECAY, exp, ln, mean_decay, small_mean_decay};
+use crate::fixed_point::RunningSum;
+use crate::forces::{Forces, part, part_mut};
+use crate::state::State;
+use crate::surface::Surface;
+use crate::vector_field::{VectorField, length};
+
+/// Rate and state with Dieterich's law of the state: `mu = mu_0 + a ln(V/V_0) + b ln(V_0 theta/D_c)`, `dtheta/dt = 1 - V theta/D_c`; coefficients
 /// over `mu_s`. The logarithm of the speed is regularised at V = 0,
 ///
 /// ```text
@@ -26,42 +38,8 @@ pub struct RateAndState {
     pub slip_speed: f64,
 }
 
-/// Above this logarithm of its argument, `asinh x = ln(2 x)` to the last bit; and above this argument `sinh` has one exponential.
-const LARGE: f64 = 20.0;
-
-/// Steps that no solution needs: far from the root each takes two units off the unknown, which begins less than 16 above it or 7
-/// below for any `a` of 1e-8 and more, and comes no farther beyond it than 22; the last few triple the digits.
-const MAX_STEPS: usize = 40;
-
-/// After a step of this size the error, which is below its third power, is beyond the last digit.
-const LAST_STEP: f64 = 1e-5;
-
-/// The speed before is a good guess of the next if it is more than this share of the speed without friction.
-const SLOW: f64 = 1e-3;
-
-/// Least speed of which there is a logarithm; blocks that would be slower do not move.
-const MIN_SPEED: f64 = 1e-300;
-
-/// Least logarithm of the factor of V: below, there is no friction.
-const MIN_LOG_FACTOR: f64 = -300.0;
-
 /// `[c_0, c_1]` of the logarithm of the factor of V as a function of the state, `c_0 + c_1 ln(theta)`.
-pub(crate) type LogFactors = [f64; 2];
-
-/// Speeds and magnitudes of friction of some blocks.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Sliding<const BLOCKS: usize> {
-    /// Speeds after a step.
-    pub(crate) speed: [f64; BLOCKS],
-    /// Magnitudes of friction.
-    pub(crate) friction: [f64; BLOCKS],
-}
-
-/// `x e^-step` of a step of at most [`LAST_STEP`].
-#[inline(always)]
-fn decayed(x: f64, step: f64) -> f64 {
-    x - x * (step * (1.0 - step * (0.5 - step / 6.0)))
-}
+type LogFactors = [f64; 2];
 
 /// `asinh(exp(y))`, without overflow.
 fn asinh_of_exp(y: f64) -> f64 {
@@ -73,8 +51,17 @@ fn asinh_of_exp(y: f64) -> f64 {
 }
 
 impl RateAndState {
+    /// The state and the load of a block.
+    pub(super) const NEEDS: Needs = Needs {
+        is_fused: false,
+        bytes: 2 * size_of::<f64>(),
+        columns: 1,
+        has_state: true,
+        ..Needs::NONE
+    };
+
     /// What does not change from block to block of [`log_factor`](Self::log_factor).
-    pub(crate) fn log_factors(&self) -> LogFactors {
+    fn log_factors(&self) -> LogFactors {
         let at_one = (self.mu_0 + self.b * ln(self.v_0 / self.d_c)) / self.a - ln(2.0 * self.v_0);
         [at_one, self.b / self.a]
     }
@@ -131,12 +118,7 @@ impl RateAndState {
 
     /// [`evolve`](Self::evolve) of some blocks.
     #[inline(always)]
-    pub(crate) fn evolve_all<const BLOCKS: usize>(
-        &self,
-        theta: &mut [f64; BLOCKS],
-        speed: &[f64; BLOCKS],
-        dt: f64,
-    ) {
+    fn evolve_all<const BLOCKS: usize>(&self, theta: &mut [f64; BLOCKS], speed: &[f64; BLOCKS], dt: f64) {
         // Slip over a step is nearly always short, which takes no exponential.
         let per_speed = dt / self.d_c;
         if (0..BLOCKS).fold(true, |all, k| all & (speed[k] * per_speed < SMALL_DECAY)) {
@@ -158,17 +140,9 @@ impl RateAndState {
     /// v + g F_n mu(v, theta) = free
     /// ```
     ///
-    /// with the change of speed per force `g = dt/(m c+)`. With `w = mu/a` as the unknown and `L` the
-    /// [`log_factor`](Self::log_factor), `v = sinh(w) e^-L`, and the equation is
-    ///
-    /// ```text
-    /// h(w) = (e^(w - L) - e^-(w + L))/2 + g F_n a w - free = 0
-    /// ```
-    ///
-    /// It is solved by Halley's method, from the speed before, or, if this was much less, from the speed without friction. After a
-    /// [`LAST_STEP`] a block stays where it is: it has the same bits whatever blocks are beside it.
+    /// with the change of speed per force `g = dt/(m c+)`.
     #[inline(always)]
-    pub(crate) fn slide<const BLOCKS: usize>(
+    fn slide<const BLOCKS: usize>(
         &self,
         factors: LogFactors,
         [free, before]: [&[f64; BLOCKS]; 2],
@@ -176,104 +150,11 @@ impl RateAndState {
         normal_force: &[f64; BLOCKS],
         g: &[f64; BLOCKS],
     ) -> Sliding<BLOCKS> {
-        let zeros = [0.0; BLOCKS];
-        let (mut log_factor, mut per_unit) = (zeros, zeros);
-        // Nothing holds a block over a texture, and nothing moves one that would not move without friction: others take their place.
-        let is_held = |k: usize| (free[k] > MIN_SPEED) & (normal_force[k] > 0.0);
-        let (mut target, mut guess) = (zeros, zeros);
+        let mut log_factor = [0.0; BLOCKS];
         for k in 0..BLOCKS {
-            let is_held = is_held(k);
-            target[k] = if is_held { free[k] } else { 1.0 };
-            guess[k] = if is_held { before[k].min(free[k]) } else { 1.0 };
-            per_unit[k] = if is_held {
-                g[k] * normal_force[k] * self.a
-            } else {
-                0.0
-            };
+            log_factor[k] = Self::log_factor(factors, theta[k]);
         }
-        // The two exponentials, and the latest step.
-        let (mut w, mut rising, mut falling, mut step) = (zeros, zeros, zeros, [f64::INFINITY; BLOCKS]);
-        let mut may_fall = false;
-        for k in 0..BLOCKS {
-            log_factor[k] = Self::log_factor(factors, theta[k]).max(MIN_LOG_FACTOR);
-            let is_slow = guess[k] <= SLOW * target[k];
-            rising[k] = 2.0 * if is_slow { target[k] } else { guess[k] };
-            w[k] = log_factor[k] + ln(rising[k]);
-            may_fall |= w[k] <= LARGE;
-        }
-        // What few blocks need stands behind a condition on all; the others do not change by it.
-        if may_fall {
-            for k in 0..BLOCKS {
-                let guess = 0.5 * rising[k];
-                let whole = guess + (guess * guess + exp(-2.0 * log_factor[k])).sqrt();
-                let falls = w[k] <= LARGE;
-                rising[k] = if falls { whole } else { rising[k] };
-                let sum = log_factor[k] + ln(whole.max(MIN_SPEED));
-                w[k] = if falls { sum } else { w[k] };
-            }
-        }
-        // No friction is more than what stops a block.
-        let is_beyond = |k: usize, w: f64| per_unit[k] * w > target[k];
-        if (0..BLOCKS).fold(false, |any, k| any | is_beyond(k, w[k])) {
-            for k in 0..BLOCKS {
-                let most = target[k] / per_unit[k];
-                let is_beyond = is_beyond(k, w[k]);
-                w[k] = if is_beyond { most } else { w[k] };
-                let exponential = exp(most - log_factor[k]);
-                rising[k] = if is_beyond { exponential } else { rising[k] };
-            }
-        }
-        for _ in 0..MAX_STEPS {
-            if (0..BLOCKS).fold(false, |any, k| any | (w[k] <= LARGE)) {
-                for k in 0..BLOCKS {
-                    let now = if w[k] <= LARGE {
-                        exp(-(log_factor[k] + w[k]))
-                    } else {
-                        0.0
-                    };
-                    falling[k] = if step[k].abs() > LAST_STEP {
-                        now
-                    } else {
-                        falling[k]
-                    };
-                }
-            } else {
-                falling = zeros;
-            }
-            let mut goes_on = false;
-            for k in 0..BLOCKS {
-                let [sinh, cosh] = [rising[k] - falling[k], rising[k] + falling[k]].map(|sum| 0.5 * sum);
-                let error = sinh + per_unit[k] * w[k] - target[k];
-                let slope = cosh + per_unit[k];
-                let next = error * slope / (slope * slope - 0.5 * error * sinh);
-                step[k] = if step[k].abs() > LAST_STEP { next } else { 0.0 };
-                w[k] -= step[k];
-                goes_on |= step[k].abs() > LAST_STEP;
-                rising[k] = decayed(rising[k], step[k]);
-                falling[k] = decayed(falling[k], -step[k]);
-            }
-            if !goes_on {
-                break;
-            }
-            for k in 0..BLOCKS {
-                rising[k] = if step[k].abs() > LAST_STEP {
-                    exp(w[k] - log_factor[k])
-                } else {
-                    rising[k]
-                };
-            }
-        }
-        let mut sliding = Sliding {
-            speed: *free,
-            friction: zeros,
-        };
-        for k in 0..BLOCKS {
-            let is_held = is_held(k);
-            let (speed, friction) = (0.5 * (rising[k] - falling[k]), normal_force[k] * self.a * w[k]);
-            sliding.speed[k] = if is_held { speed } else { free[k] };
-            sliding.friction[k] = if is_held { friction } else { 0.0 };
-        }
-        sliding
+        slide(self.a, [free, before], &log_factor, normal_force, g)
     }
 
     /// Stiffness per block below which steady sliding of a block at `speed` under the normal force `sigma` is unstable (Rice and
@@ -292,9 +173,137 @@ impl RateAndState {
     /// ```
     pub fn critical_stiffness(&self, sigma: f64, damping: f64, speed: f64) -> f64 {
         let viscous = damping * speed;
-        let weakening = (self.b - self.a) * sigma - viscous;
+        let fall = (self.b - self.a) * sigma - viscous;
         let inertia = speed * speed / ((sigma * self.a + viscous) * self.d_c);
-        (weakening / self.d_c * (1.0 + inertia)).max(0.0)
+        (fall / self.d_c * (1.0 + inertia)).max(0.0)
+    }
+}
+
+/// Blocks whose speeds are found together, so that the processor works on some while it waits for others.
+const AT_ONCE: usize = 32;
+
+/// The state of all contacts, which is the memory of the law.
+#[derive(Debug)]
+pub(crate) struct StateContact {
+    law: RateAndState,
+    log_factors: LogFactors,
+    /// `theta`, t*.
+    pub(super) theta: Vec<f64>,
+    /// `F_n`; 0 over a texture.
+    normal_force: Vec<f64>,
+}
+
+impl StateContact {
+    pub(super) fn new(law: RateAndState, surface: &Surface) -> Self {
+        let n = surface.n_blocks();
+        Self {
+            law,
+            log_factors: law.log_factors(),
+            theta: vec![law.theta_0; n],
+            normal_force: (0..n).map(|b| surface.normal_force(b)).collect(),
+        }
+    }
+
+    /// Takes the states of some blocks forward over a step, at the speeds in its middle.
+    #[inline(always)]
+    pub(super) fn evolve(&mut self, blocks: &Range<usize>, velocity: &VectorField, dt_star: f64) {
+        for first in blocks.clone().step_by(AT_ONCE) {
+            let blocks = first..blocks.end.min(first + AT_ONCE);
+            let (n, [vx, vy]) = (blocks.len(), part(velocity, &blocks));
+            let (vx, vy) = (&vx[..n], &vy[..n]);
+            let (mut speed, mut theta) = ([0.0; AT_ONCE], [1.0; AT_ONCE]);
+            for k in 0..n {
+                speed[k] = length([vx[k], vy[k]]);
+            }
+            let own = &mut self.theta[blocks];
+            theta[..n].copy_from_slice(own);
+            self.law.evolve_all(&mut theta, &speed, dt_star);
+            own.copy_from_slice(&theta[..n]);
+        }
+    }
+
+    /// Friction and the velocities half a step later of some blocks. A block counts as sliding above the slip speed.
+    #[inline(always)]
+    pub(super) fn apply(
+        &self,
+        blocks: &Range<usize>,
+        state: &State,
+        integrator: impl Fn(usize) -> Integrator,
+        forces: &mut Forces,
+    ) {
+        for first in blocks.clone().step_by(AT_ONCE) {
+            let end = blocks.end.min(first + AT_ONCE);
+            self.apply_to(
+                &(first..end),
+                state,
+                |k| integrator(first - blocks.start + k),
+                forces,
+            );
+        }
+    }
+
+    /// Friction and the velocities half a step later of at most [`AT_ONCE`] blocks.
+    #[inline(always)]
+    fn apply_to(
+        &self,
+        blocks: &Range<usize>,
+        state: &State,
+        integrator: impl Fn(usize) -> Integrator,
+        forces: &mut Forces,
+    ) {
+        let n = blocks.len();
+        let (zeros, ones) = ([0.0; AT_ONCE], [1.0; AT_ONCE]);
+        // Where there is no block the values are those of one that nothing holds.
+        let (mut velocity, mut free, mut before) = ([zeros; 2], ones, ones);
+        let (mut theta, mut normal_force, mut g) = (ones, zeros, zeros);
+        let ([vx, vy], [dx, dy]) = (part(&state.velocity, blocks), part(&forces.drive, blocks));
+        let [lx, ly] = part(&forces.lattice, blocks);
+        theta[..n].copy_from_slice(&self.theta[blocks.clone()]);
+        normal_force[..n].copy_from_slice(&self.normal_force[blocks.clone()]);
+        for k in 0..n {
+            let integrator = integrator(k);
+            let moved = integrator.accelerate([vx[k], vy[k]], [dx[k] + lx[k], dy[k] + ly[k]]);
+            [velocity[0][k], velocity[1][k]] = moved;
+            (free[k], before[k]) = (length(moved), length([vx[k], vy[k]]));
+            g[k] = integrator.force_to_velocity;
+        }
+        let Sliding { speed, friction } = {
+            let speeds = [&free, &before];
+            self.law
+                .slide(self.log_factors, speeds, &theta, &normal_force, &g)
+        };
+        let ([fx, fy], [wx, wy]) = (
+            part_mut(&mut forces.friction, blocks),
+            part_mut(&mut forces.velocity, blocks),
+        );
+        let (fx, fy, wx, wy) = (&mut fx[..n], &mut fy[..n], &mut wx[..n], &mut wy[..n]);
+        let slides = &mut forces.slides[blocks.clone()][..n];
+        for k in 0..n {
+            let moves = free[k] >= f64::MIN_POSITIVE;
+            let inverse = if moves { 1.0 / free[k] } else { 0.0 };
+            let (x, y) = (inverse * velocity[0][k], inverse * velocity[1][k]);
+            (fx[k], fy[k]) = (-friction[k] * x, -friction[k] * y);
+            (wx[k], wy[k]) = (speed[k] * x, speed[k] * y);
+            slides[k] = speed[k] > self.law.slip_speed;
+        }
+    }
+
+    /// Adds the states of those of some blocks that are in contact. There is room for the terms.
+    #[inline(always)]
+    pub(super) fn add_states(
+        &self,
+        surface: &Surface,
+        blocks: &Range<usize>,
+        sum: &mut RunningSum,
+        states: &mut [f64],
+    ) {
+        let (n, theta) = (blocks.len(), &self.theta[blocks.clone()]);
+        let (theta, textured) = (&theta[..n], &surface.textured[blocks.clone()][..n]);
+        let states = &mut states[..n];
+        for k in 0..n {
+            states[k] = if textured[k] { 0.0 } else { theta[k] };
+        }
+        sum.add(states);
     }
 }
 

@@ -1,0 +1,31 @@
+//! The forces of a step.
+
+use std::ops::Range;
+
+use crate::vector_field::VectorField;
+
+/// Forces at t_n and the outcome of the update that starts there; one value per block.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Forces {
+    pub(crate) drive: VectorField,
+    /// Sum over the springs between blocks and the dampers beside them.
+    pub(crate) lattice: VectorField,
+    pub(crate) friction: VectorField,
+    /// Velocities after the update within a step; between steps those before it.
+    pub(crate) velocity: VectorField,
+    pub(crate) slides: Vec<bool>,
+    /// Force of the spring along each bond, before they are summed into `lattice`.
+    pub(crate) springs: [VectorField; 4],
+}
+
+/// Components of a field over some blocks.
+#[inline(always)]
+pub(crate) fn part<'a>(field: &'a VectorField, blocks: &Range<usize>) -> [&'a [f64]; 2] {
+    [&field.x[blocks.clone()], &field.y[blocks.clone()]]
+}
+
+/// Components of a field over some blocks, to be filled.
+#[inline(always)]
+pub(crate) fn part_mut<'a>(field: &'a mut VectorField, blocks: &Range<usize>) -> [&'a mut [f64]; 2] {
+    [&mut field.x[blocks.clone()], &mut field.y[blocks.clone()]]
+}

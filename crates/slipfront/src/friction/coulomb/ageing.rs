@@ -1,0 +1,134 @@
+//! Static friction that grows while a block is stuck.
+
+use std::ops::Range;
+
+use crate::forces::part;
+use crate::friction::needs::Needs;
+use crate::surface::Adhesion;
+use crate::vector_field::{VectorField, dot};
+
+/// Logarithmic ageing: `mu_s(t) = mu_s [1 + beta ln(1 + t_stuck/tau)]`, with age 0 at t = 0.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ageing {
+    /// `beta`.
+    pub beta: f64,
+    /// `tau`, t*.
+    pub time: f64,
+}
+
+impl Ageing {
+    /// The threshold at the present age, whether age counts, and when the block has stopped, which it remembers.
+    pub(super) const NEEDS: Needs = Needs {
+        is_fused: false,
+        bytes: 2 * size_of::<f64>() + size_of::<bool>(),
+        columns: 1,
+        ..Needs::NONE
+    };
+
+    /// Static friction over that of age 0, less 1: `beta ln(1 + age/tau)`. The logarithm is that of `libm`.
+    ///
+    /// ```
+    /// let ageing = slipfront::Ageing { beta: 0.1, time: 2.0 };
+    /// assert_eq!(ageing.growth(0.0), 0.0);
+    /// assert!((ageing.growth(2.0) - 0.1 * 2.0_f64.ln()).abs() < 1e-16);
+    /// ```
+    #[inline(always)]
+    pub fn growth(&self, age: f64) -> f64 {
+        self.beta * libm::log1p(age / self.time)
+    }
+
+    /// Static threshold `mu_s(t) F_n + tau_a l^2` of a block that has been stuck for `age`, from that of age 0. Adhesion does not
+    /// age: the law is one of the coefficient.
+    ///
+    /// The operations have this order in every kernel: `x = age/tau`, `g = beta log1p(x)`, `m = max(S - tau_a l^2, 0)`, `S + g m`.
+    #[inline(always)]
+    fn static_limit(&self, young: f64, adhesion: f64, age: f64) -> f64 {
+        young + self.growth(age) * (young - adhesion).max(0.0)
+    }
+
+    /// Pull at which a block slips that has been stuck since the pull was 0, if it rises at this `rate` and the threshold is above kinetic
+    /// friction.
+    pub(super) fn first_slip_pull(&self, young: f64, adhesion: f64, rate: f64) -> f64 {
+        // The threshold grows more slowly than the pull, from a pull at which it is higher: each round comes nearer.
+        let aged = |pull: f64| self.static_limit(young, adhesion, pull / rate);
+        (0..MAX_ROUNDS).fold(young, |pull, _| aged(pull))
+    }
+}
+
+/// Rounds after which a fixed point that is approached by at least a factor of 2 in each is found to the last bit.
+const MAX_ROUNDS: usize = 60;
+
+/// Static thresholds of the blocks of a band at their present ages.
+#[derive(Debug)]
+pub(super) struct Aged {
+    law: Ageing,
+    adhesion: f64,
+    pub(super) static_limit: Vec<f64>,
+    /// Whose thresholds these ages raise.
+    is_old: Vec<bool>,
+    /// When a block that is stuck has stopped, t*. The memory of the law.
+    pub(super) stopped_at: Vec<f64>,
+}
+
+impl Aged {
+    pub(super) fn new(law: Ageing, adhesion: Adhesion, n_blocks: usize) -> Self {
+        Self {
+            law,
+            adhesion: adhesion.of_static,
+            static_limit: vec![0.0; n_blocks],
+            is_old: vec![false; n_blocks],
+            stopped_at: vec![0.0; n_blocks],
+        }
+    }
+
+    /// Static thresholds of the blocks that are stuck and whose force exceeds what they had at age 0: only there does age matter.
+    #[inline(always)]
+    pub(super) fn update(
+        &mut self,
+        blocks: &Range<usize>,
+        young: &[f64],
+        velocity: &VectorField,
+        forces: [&VectorField; 2],
+        time_star: f64,
+    ) {
+        let (n, [vx, vy], [[dx, dy], [lx, ly]]) = (
+            blocks.len(),
+            part(velocity, blocks),
+            forces.map(|force| part(force, blocks)),
+        );
+        let (young, vx, vy) = (&young[blocks.clone()][..n], &vx[..n], &vy[..n]);
+        let (dx, dy, lx, ly) = (&dx[..n], &dy[..n], &lx[..n], &ly[..n]);
+        let (static_limit, is_old) = (
+            &mut self.static_limit[blocks.clone()][..n],
+            &mut self.is_old[blocks.clone()][..n],
+        );
+        for k in 0..n {
+            let force = [dx[k] + lx[k], dy[k] + ly[k]];
+            is_old[k] = (vx[k] == 0.0) & (vy[k] == 0.0) & (dot(force, force) > young[k] * young[k]);
+            static_limit[k] = young[k];
+        }
+        // They are few, and have their logarithms one by one.
+        for k in (0..n).filter(|&k| is_old[k]) {
+            let age = time_star - self.stopped_at[blocks.start + k];
+            static_limit[k] = self.law.static_limit(young[k], self.adhesion, age);
+        }
+    }
+
+    /// Notes the blocks that stop now. Evaluated again from the same velocities, a step notes the same.
+    #[inline(always)]
+    pub(super) fn note_stops(
+        &mut self,
+        blocks: &Range<usize>,
+        before: &VectorField,
+        slides: &[bool],
+        time_star: f64,
+    ) {
+        let (n, [vx, vy]) = (blocks.len(), part(before, blocks));
+        let (vx, vy, slides) = (&vx[..n], &vy[..n], &slides[blocks.clone()][..n]);
+        let stopped_at = &mut self.stopped_at[blocks.clone()][..n];
+        for k in 0..n {
+            let stops = ((vx[k] != 0.0) | (vy[k] != 0.0)) & !slides[k];
+            stopped_at[k] = if stops { time_star } else { stopped_at[k] };
+        }
+    }
+}

@@ -1,0 +1,136 @@
+//! Eq. 4, and the laws that its thresholds may follow.
+
+mod ageing;
+mod reading;
+mod update;
+mod weakening;
+
+use std::ops::Range;
+
+pub use self::ageing::Ageing;
+pub use self::reading::FrictionLaw;
+pub use self::weakening::Weakening;
+
+use self::ageing::Aged;
+use self::reading::{Literal, Projection, Reversal};
+use self::update::friction_forces;
+use self::weakening::Weakened;
+use super::integrator::Integrator;
+use super::needs::Needs;
+use crate::forces::Forces;
+use crate::state::State;
+use crate::surface::{Adhesion, Surface};
+
+/// Eq. 4, and what its thresholds may depend on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Coulomb {
+    /// Reading of Eq. 4.
+    pub law: FrictionLaw,
+    /// Kinetic friction that falls with speed.
+    pub weakening: Option<Weakening>,
+    /// Static friction that grows while a block is stuck.
+    pub ageing: Option<Ageing>,
+}
+
+impl From<FrictionLaw> for Coulomb {
+    fn from(law: FrictionLaw) -> Self {
+        Self {
+            law,
+            weakening: None,
+            ageing: None,
+        }
+    }
+}
+
+impl Coulomb {
+    /// What the law needs with its options.
+    pub(super) fn needs(&self) -> Needs {
+        let reading = Needs {
+            is_fused: self.law == FrictionLaw::Projection,
+            ..Needs::NONE
+        };
+        reading
+            .and(self.weakening.map(|_| Weakening::NEEDS))
+            .and(self.ageing.map(|_| Ageing::NEEDS))
+    }
+
+    /// Kinetic friction in steady sliding at a speed, from that at rest, of which a part is `adhesion`.
+    pub(super) fn steady_force(&self, at_rest: f64, adhesion: f64, speed: f64) -> f64 {
+        self.weakening
+            .map_or(at_rest, |law| law.kinetic_force(at_rest, adhesion, speed))
+    }
+
+    /// Pull of the drive springs of stiffness `k`, which rises as `k V t`, at which a block of this threshold slips.
+    pub(super) fn first_slip_pull(&self, surface: &Surface, threshold: f64, k: f64, speed: f64) -> f64 {
+        let adhesion = surface.adhesion().of_static;
+        self.ageing.map_or(threshold, |law| {
+            law.first_slip_pull(threshold, adhesion, k * speed)
+        })
+    }
+}
+
+/// Coulomb's law of the blocks of a band, with thresholds at the present step where they are not those of the surface.
+#[derive(Debug)]
+pub(crate) struct Thresholds {
+    law: FrictionLaw,
+    weakened: Option<Weakened>,
+    aged: Option<Aged>,
+}
+
+impl Thresholds {
+    pub(super) fn new(coulomb: &Coulomb, adhesion: Adhesion, n_blocks: usize) -> Self {
+        Self {
+            law: coulomb.law,
+            weakened: coulomb
+                .weakening
+                .map(|law| Weakened::new(law, adhesion, n_blocks)),
+            aged: coulomb.ageing.map(|law| Aged::new(law, adhesion, n_blocks)),
+        }
+    }
+
+    /// The columns that a checkpoint keeps.
+    pub(super) fn columns(&self) -> Vec<&[f64]> {
+        self.aged.iter().map(|aged| &aged.stopped_at[..]).collect()
+    }
+
+    /// The columns that a checkpoint keeps, to be filled.
+    pub(super) fn columns_mut(&mut self) -> Vec<&mut [f64]> {
+        let aged = self.aged.iter_mut();
+        aged.map(|aged| &mut aged.stopped_at[..]).collect()
+    }
+
+    /// Finds friction, the next velocities and which blocks slide, of some blocks. `limits`: static thresholds of age 0 and kinetic ones
+    /// at rest.
+    #[inline(always)]
+    pub(super) fn apply(
+        &mut self,
+        blocks: &Range<usize>,
+        [young, at_rest]: [&[f64]; 2],
+        state: &State,
+        integrator: impl Fn(usize) -> Integrator,
+        forces: &mut Forces,
+        time_star: f64,
+    ) {
+        if let Some(weakened) = &mut self.weakened {
+            weakened.update(blocks, at_rest, &state.velocity);
+        }
+        if let Some(aged) = &mut self.aged {
+            let pull = [&forces.drive, &forces.lattice];
+            aged.update(blocks, young, &state.velocity, pull, time_star);
+        }
+        let now = [
+            self.aged.as_ref().map_or(young, |aged| &aged.static_limit),
+            self.weakened
+                .as_ref()
+                .map_or(at_rest, |weakened| &weakened.kinetic_force),
+        ];
+        match self.law {
+            FrictionLaw::Projection => friction_forces(&Projection, integrator, blocks, now, state, forces),
+            FrictionLaw::Reversal => friction_forces(&Reversal, integrator, blocks, now, state, forces),
+            FrictionLaw::Literal => friction_forces(&Literal, integrator, blocks, now, state, forces),
+        }
+        if let Some(aged) = &mut self.aged {
+            aged.note_stops(blocks, &state.velocity, &forces.slides, time_star);
+        }
+    }
+}

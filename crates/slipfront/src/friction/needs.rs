@@ -1,0 +1,42 @@
+//! What a law of friction needs of kernels, checkpoints and series.
+
+/// What a law of friction, or an option of one, needs beside the thresholds of the blocks.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Needs {
+    /// Whether the fused kernel computes it; the general kernel computes every law.
+    pub is_fused: bool,
+    /// Whether it changes thresholds in the fused kernel, which then sweeps blocks as ones that differ.
+    pub varies: bool,
+    /// Bytes per block that it adds to the general kernel.
+    pub bytes: usize,
+    /// Numbers per block that it remembers beside the velocity: columns of a checkpoint.
+    pub columns: usize,
+    /// Whether contacts store energy, which is lost when they break.
+    pub stores_energy: bool,
+    /// Whether contacts have a state, whose mean is a result.
+    pub has_state: bool,
+}
+
+impl Needs {
+    /// What a law needs that remembers nothing and that every kernel computes.
+    pub(super) const NONE: Self = Self {
+        is_fused: true,
+        varies: false,
+        bytes: 0,
+        columns: 0,
+        stores_energy: false,
+        has_state: false,
+    };
+
+    /// What a law and an option of it need together.
+    pub(super) fn and(self, option: Option<Self>) -> Self {
+        option.map_or(self, |more| Self {
+            is_fused: self.is_fused && more.is_fused,
+            varies: self.varies || more.varies,
+            bytes: self.bytes + more.bytes,
+            columns: self.columns + more.columns,
+            stores_energy: self.stores_energy || more.stores_energy,
+            has_state: self.has_state || more.has_state,
+        })
+    }
+}
