@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Deserializer, Serialize};
 use slipfront::observe::CurveRow;
-use slipfront::{Friction, Model, Scales};
+use slipfront::{Model, Scales};
 use thiserror::Error;
 
 use crate::friction_unit::FrictionUnit;
@@ -64,7 +64,7 @@ pub struct SeriesRow {
     /// Lost with such springs that broke since the start, J.
     #[serde(default, deserialize_with = "number", skip_serializing_if = "Option::is_none")]
     pub broken_spring_loss_j: Option<f64>,
-    /// Mean state of the contacts, t*; none but under rate and state.
+    /// Mean state of the contacts, t*; none of contacts without a state.
     #[serde(default, deserialize_with = "number", skip_serializing_if = "Option::is_none")]
     pub mean_state_star: Option<f64>,
 }
@@ -90,8 +90,7 @@ impl SeriesRow {
     /// A recorded row of a run of this model with its units.
     pub fn new(row: &CurveRow, scales: &Scales, model: &Model) -> Self {
         let energy = scales.energy();
-        let has_springs = matches!(model.friction, Friction::ContactSprings(_));
-        let has_state = matches!(model.friction, Friction::RateAndState(_));
+        let law = model.friction.needs();
         let viscous_loss = row.energies.viscous_loss * energy;
         let unit = FrictionUnit::of(scales, model);
         Self {
@@ -113,9 +112,11 @@ impl SeriesRow {
             friction_loss_j: row.energies.friction_loss * energy,
             damping_loss_j: row.energies.damping_loss * energy,
             viscous_loss_j: model.slider().is_viscous().then_some(viscous_loss),
-            contact_spring_energy_j: has_springs.then_some(row.energies.contact_springs * energy),
-            broken_spring_loss_j: has_springs.then_some(row.energies.broken_springs_loss * energy),
-            mean_state_star: has_state.then_some(row.mean_state),
+            contact_spring_energy_j: law.stores_energy.then_some(row.energies.contact_springs * energy),
+            broken_spring_loss_j: law
+                .stores_energy
+                .then_some(row.energies.broken_springs_loss * energy),
+            mean_state_star: law.has_state.then_some(row.mean_state),
         }
     }
 }

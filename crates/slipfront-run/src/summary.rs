@@ -9,7 +9,7 @@ use slipfront::observe::{
     Curve, Cycles, Distribution, Energies, Frame, Kinetic, KineticHistory, NoUncertainty, Peak, Precursors,
     Scheduled, SlipEvent,
 };
-use slipfront::{Friction, Scales, Simulation, StopReason};
+use slipfront::{Scales, Simulation, StopReason};
 
 use crate::error::ResultsError;
 use crate::friction_unit::FrictionUnit;
@@ -144,10 +144,10 @@ pub struct Summary {
     /// Lost to the dampers between blocks, J, if there are any.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub viscous_loss_j: Option<f64>,
-    /// Lost with springs in contact that broke, J; none if contacts are no springs.
+    /// Lost with contacts that broke, J; none of contacts that store no energy.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub broken_spring_loss_j: Option<f64>,
-    /// Mean state of the contacts at the end, t*; none but under rate and state.
+    /// Mean state of the contacts at the end, t*; none of contacts without a state.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub mean_state_star: Option<f64>,
     /// What a reader should know before trusting the numbers.
@@ -399,7 +399,7 @@ impl SummaryObservers {
         };
         let last = self.curve.rows.last();
         let (steps, energies) = last.map(|row| (row.step, row.energies)).unwrap_or_default();
-        let friction = &case.model.friction;
+        let law = case.model.friction.needs();
         let (mean, time) = (case.scales.mu_static_mean, case.scales.time());
         let energy = case.scales.energy();
         let instants = instants
@@ -469,12 +469,8 @@ impl SummaryObservers {
                 .slider()
                 .is_viscous()
                 .then_some(energies.viscous_loss * energy),
-            broken_spring_loss_j: matches!(friction, Friction::ContactSprings(_))
-                .then_some(energies.broken_springs_loss * energy),
-            mean_state_star: match friction {
-                Friction::RateAndState(_) => last.map(|row| row.mean_state),
-                _ => None,
-            },
+            broken_spring_loss_j: law.stores_energy.then_some(energies.broken_springs_loss * energy),
+            mean_state_star: last.filter(|_| law.has_state).map(|row| row.mean_state),
             warnings: [case.warnings(), after_run].concat(),
             version: VERSION.to_owned(),
             // The front is found when the simulation has given its memory back.

@@ -4,7 +4,7 @@ use std::ops::RangeInclusive;
 
 use slipfront::Scales;
 
-use crate::case_file::{CaseError, CaseFile, Damping, DriveSpeed, KineticFriction, Law};
+use crate::case_file::{CaseError, CaseFile, Damping, DriveSpeed};
 use crate::number_format::four_digits;
 
 /// The dimensionless groups on which the model depends (Eq. 11).
@@ -55,11 +55,6 @@ impl Groups {
         };
         within(file, key, "V*", v_star, MIN_V_STAR..=MAX_V_STAR)?;
         let friction = &file.friction;
-        let r_star = match friction.kinetic {
-            _ if !friction.has_kinetic_coefficient() => 0.0,
-            KineticFriction::RStar(r_star) => r_star,
-            KineticFriction::MuKinetic(mu) => mu / scales.mu_static_mean,
-        };
         let (key, omega_star) = match &file.slider.damping {
             Damping::OmegaStar(omega_star) => ("slider.omega_star", *omega_star),
             Damping::Rate(rate) => ("slider.damping_rate", scales.omega_star(rate.si())),
@@ -67,11 +62,11 @@ impl Groups {
         within(file, key, "Omega*", omega_star, 0.0..=MAX_OMEGA_STAR)?;
         Ok(Groups {
             v_star,
-            r_star,
+            r_star: friction.mean_ratio(),
             omega_star,
-            sigma_static_star: match friction.law {
-                Law::RateAndState => 0.0,
-                _ => friction.sigma_static_star,
+            sigma_static_star: match friction.has_static_coefficient() {
+                true => friction.sigma_static_star,
+                false => 0.0,
             },
             sigma_kinetic_star: match friction.has_kinetic_coefficient() {
                 true => friction.sigma_kinetic_star,

@@ -4,7 +4,6 @@ mod budget;
 mod coarse;
 mod coefficients;
 mod drive;
-mod friction;
 mod groups;
 mod inputs;
 mod options;

@@ -1,16 +1,14 @@
 //! The options of the model that a case file asks for: the memory that a run needs depends on them before there is a model.
 
-use slipfront::{ModelOptions, SliderOptions};
+use slipfront::{Friction, ModelOptions, SliderOptions};
 
-use super::friction::law;
-use super::groups::Groups;
 use crate::case_file::{Attached, AttachedEdge, CaseFile, Motion, Outline};
 
-/// The options of the model of a case file.
-pub(super) fn options(file: &CaseFile, groups: &Groups) -> ModelOptions {
+/// The options of the model of a case file, with its law of friction.
+pub(super) fn options(file: &CaseFile, friction: Friction) -> ModelOptions {
     let (slider, load) = (&file.slider, &file.load);
     ModelOptions {
-        friction: law(file, groups),
+        friction,
         slider: SliderOptions {
             has_moduli: slider.stiffness_field.is_some() || slider.stiffness_grade.is_some(),
             has_densities: slider.density_field.is_some() || slider.density_grade.is_some(),
@@ -49,7 +47,8 @@ mod tests {
             "load.profile={along='x',relative_slope=0.5}",
         ] {
             let case = Case::parse("", "case", &[set.to_owned()]).unwrap();
-            let (options, model) = (options(&case.file, &case.groups), &case.model);
+            let friction = case.file.friction.in_model(case.groups.v_star);
+            let (options, model) = (options(&case.file, friction), &case.model);
             assert_eq!(options.friction, model.friction, "{set}");
             let kernel = Kernel::Fused.for_model(model);
             assert_eq!(Kernel::Fused.for_options(&options), kernel, "{set}");

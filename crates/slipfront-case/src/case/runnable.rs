@@ -6,12 +6,11 @@ use std::sync::Arc;
 
 use slipfront::scales::damping;
 use slipfront::surface::Texture;
-use slipfront::{Communicator, Lattice, Model, Scales, Surface};
+use slipfront::{Communicator, Friction, Lattice, Model, Scales, Surface};
 
 use super::budget::Budget;
 use super::coefficients::{coefficients, contact};
 use super::drive::{attach, attached, drive, program, refuse_large_angles};
-use super::friction::law;
 use super::groups::Groups;
 use super::inputs::Watch;
 use super::inputs::{Input, Inputs, NamedFiles};
@@ -164,6 +163,7 @@ impl Case {
             scales,
             groups,
             mut budget,
+            friction,
             plan,
         } = derived;
         let inputs = Inputs {
@@ -216,7 +216,7 @@ impl Case {
             drive,
             damping(groups.omega_star),
             groups.epsilon,
-            law(&file, &groups),
+            friction,
         )
         .with_slider(slider);
         let plan = ranks.agree(plan.of_model(&file, &model, &scales, &groups, &ranks))?;
@@ -293,6 +293,7 @@ struct Derived {
     scales: Scales,
     groups: Groups,
     budget: Budget,
+    friction: Friction,
     plan: Plan,
 }
 
@@ -352,23 +353,24 @@ impl Derived {
             );
             return Err(file.source.error("slider.blocks", sentence));
         }
-        if n_ranks > 1 && file.friction.redraw {
-            let sentence = "a spring that forms again takes the coefficient of any block of the slider, and a rank knows those of its own \
-                            rows alone: take one rank, or redraw = false";
-            return Err(file.source.error("friction.redraw", sentence));
+        if let Some((key, why)) = file.friction.takes_one_rank().filter(|_| n_ranks > 1) {
+            return Err(file.source.error(key, why));
         }
         let dynamics = Dynamics::of_file(file, &scales, &groups, lattice);
         let time_plan = TimePlan::of(file, &scales, &groups, dynamics)?;
         let plan = Plan::new(file, dynamics, time_plan)?;
-        let budget = Budget::new(lattice, rows, ranks, file, &options(file, &groups));
-        match to_run {
-            true => budget.check_running(file)?,
-            false => budget.check_making(file)?,
+        let friction = file.friction.in_model(groups.v_star);
+        let budget = Budget::new(lattice, rows, ranks, file, &options(file, friction));
+        if to_run {
+            budget.check_running(file)?;
+        } else {
+            budget.check_making(file)?;
         }
         Ok(Self {
             scales,
             groups,
             budget,
+            friction,
             plan,
         })
     }

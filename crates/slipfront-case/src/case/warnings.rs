@@ -2,14 +2,14 @@
 
 use std::path::Path;
 
-use slipfront::{Edges, Friction};
+use slipfront::Edges;
 
 use super::inputs::is_array;
 use super::runnable::Case;
 use super::textures::arrays;
 use super::topography::Topography;
 use crate::case_file::{
-    Bearing, Count, DEFAULT_THRESHOLD, HeightMap, Law, Mask, Pattern, Pitch, Shape, Texture,
+    Bearing, Count, DEFAULT_THRESHOLD, HeightMap, Law, Mask, Pattern, Pitch, Shape, Texture, friction_warning,
 };
 use crate::number_format::{are, count, four_digits, with_si_prefix};
 
@@ -82,10 +82,10 @@ impl Case {
     }
 
     /// Whether steady sliding takes less force than the blocks hold at rest. If not, friction loses nothing when they slip, and no fall of
-    /// mu* is a transition. Under rate and state nothing holds like a threshold.
+    /// mu* is a transition. A law without thresholds loses nothing that could be compared.
     pub fn can_have_transition(&self) -> bool {
-        let has_thresholds = !matches!(self.model.friction, Friction::RateAndState(_));
-        !has_thresholds || self.expected.steady_level < self.model.surface.mean_static_force()
+        !self.model.friction.has_thresholds()
+            || self.expected.steady_level < self.model.surface.mean_static_force()
     }
 
     /// Where sliding takes as much force as the start of it, and where damping has a part in what is measured as kinetic friction.
@@ -287,18 +287,7 @@ impl Case {
                 "the given pressures have a mean of {mean:.4} times `pressure`: what is starred is relative to `pressure`"
             ));
         }
-        if let Friction::RateAndState(law) = &self.model.friction {
-            let (k_drive, v_star) = (self.model.drive.k_drive, self.groups.v_star);
-            // The slider as a whole has the least stiffness.
-            let critical = law.critical_stiffness(surface.mean_normal_force(), self.model.damping, v_star);
-            if k_drive < critical {
-                warnings.push(format!(
-                    "the drive, of stiffness {k_drive} E l per block, is softer than {}, below which steady sliding at V* = {v_star} is \
-                     unstable: stick-slip is to be expected",
-                    four_digits(critical)
-                ));
-            }
-        }
+        warnings.extend(friction_warning(&self.model));
         let [mean_static, mean_kinetic] = means;
         if mean_kinetic >= mean_static {
             warnings.push(format!(

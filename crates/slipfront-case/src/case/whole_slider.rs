@@ -1,6 +1,6 @@
 //! The static friction coefficient that a slider without texture shows as a whole, which is below that of its blocks.
 
-use slipfront::{Friction, FrictionLaw, Slider};
+use slipfront::{FrictionLaw, Slider};
 
 use super::groups::Groups;
 use super::runnable::Case;
@@ -79,15 +79,9 @@ impl Case {
     fn has_measured_kind(&self) -> bool {
         let (file, model) = (&self.file, &self.model);
         let (drive, load, friction) = (&file.drive, &file.load, &file.friction);
-        let is_plain = match &model.friction {
-            Friction::Coulomb(law) => {
-                law.law == FrictionLaw::Projection && law.weakening.is_none() && law.ageing.is_none()
-            }
-            Friction::RateAndState(_) | Friction::ContactSprings(_) => false,
-        };
         let has_adhesion = friction.adhesion.si() > 0.0 || friction.adhesion_kinetic.si() > 0.0;
         let has_fields = friction.mu_static_field.is_some() || friction.mu_kinetic_field.is_some();
-        is_plain
+        model.friction == FrictionLaw::Projection.into()
             && !has_adhesion
             && !has_fields
             && file.texture.is_empty()

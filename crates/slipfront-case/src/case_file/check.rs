@@ -5,7 +5,7 @@ use std::ops::RangeBounds;
 use std::path::Path;
 
 use super::error::CaseError;
-use super::key_table::{Bounds, Key, Kind, SECTIONS};
+use super::key::{Bounds, Key, Kind};
 use super::source::Source;
 use super::values::AutoOr;
 use crate::number_format::exact;
@@ -20,10 +20,8 @@ pub(super) struct Check<'a> {
 }
 
 impl<'a> Check<'a> {
-    /// The checks of a table or shape of texture, which stands at `path` of the file.
-    pub(super) fn new(source: &'a Source, section: &str, path: &'a str) -> Self {
-        let section = SECTIONS.iter().find(|found| found.name == section);
-        let keys = section.map_or(&[][..], |section| section.keys);
+    /// The checks of a table or shape of texture that has these keys and stands at `path` of the file.
+    pub(super) fn new(source: &'a Source, keys: &'static [Key], path: &'a str) -> Self {
         Self { source, keys, path }
     }
 

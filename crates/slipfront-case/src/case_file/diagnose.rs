@@ -4,7 +4,8 @@ use std::ops::Range;
 
 use super::check::in_words;
 use super::error::CaseError;
-use super::key_table::{Key, Kind, Section};
+use super::key::{Key, Kind};
+use super::key_table::Section;
 use super::keys;
 use super::source::Source;
 use super::synonyms::advice_on;

@@ -11,6 +11,7 @@ use super::diagnose::syntax_error;
 use super::drive::{Attached, Drive};
 use super::error::CaseError;
 use super::friction::Friction;
+use super::key_table::keys_of;
 use super::keys;
 use super::load::read_text;
 use super::motion::Load;
@@ -121,14 +122,14 @@ impl CaseFile {
     /// # Errors
     /// [`CaseError::Invalid`], with the value, its bound and what to do, at the place where the value was written.
     pub fn check(&self) -> Result<(), CaseError> {
-        let check = |table| Check::new(&self.source, table, table);
+        let check = |table| Check::new(&self.source, keys_of(table), table);
         self.slider.check(&check("slider"))?;
         self.load.check(&check("load"))?;
         self.drive.check(&check("drive"), &self.slider)?;
         self.friction.check(&check("friction"))?;
         for (index, texture) in self.texture.iter().enumerate() {
             let path = format!("texture.{index}");
-            texture.check(&Check::new(&self.source, texture.shape.name(), &path))?;
+            texture.check(&Check::new(&self.source, keys_of(texture.shape.name()), &path))?;
         }
         self.time.check(&check("time"), &self.drive.speed)?;
         self.output.check(&check("output"))

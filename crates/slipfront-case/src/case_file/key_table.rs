@@ -1,10 +1,8 @@
 //! The table of keys: for every key of a case file what it takes, its bounds, default and title.
-//!
-//! Bounds on quantities are generous: they refuse typing errors (a block of 1000 km), not unusual materials.
 
 use std::borrow::Cow;
 use std::collections::HashMap;
-use std::ops::Bound::{self, Excluded, Included, Unbounded};
+use std::ops::Bound::{Included, Unbounded};
 use std::sync::LazyLock;
 
 use toml::Spanned;
@@ -14,72 +12,13 @@ use slipfront::observe::Field;
 use slipfront::surface::Orientation;
 use slipfront::{Edges, StopReason};
 
+use super::friction;
+use super::key::{
+    ARRAY, AUTO, Key, Kind, MAX_TIME_STAR, POSITIVE_TIME, Title, above, between, key, number, or_word,
+    quantity, whole, within,
+};
 use super::probe::names_of;
-use super::words::{Arrangement, AttachedEdge, Contact, Law, Motion, Outline};
-
-/// A range of numbers.
-pub type Bounds = (Bound<f64>, Bound<f64>);
-
-/// What a key takes.
-#[derive(Clone, Copy, Debug)]
-#[expect(
-    missing_docs,
-    reason = "the sentence of each variant tells what its fields are"
-)]
-pub enum Kind {
-    /// A number, or one of these words in its place. The remark ends the sentence about a number out of bounds.
-    Number {
-        bounds: Bounds,
-        remark: &'static str,
-        words: &'static [&'static str],
-    },
-    /// A string of number and unit; the bounds are in this unit of the SI.
-    Quantity { unit: &'static str, bounds: Bounds },
-    /// A whole number, or a pair of them. The noun is what it must be, where "from 1 to 64" does not say enough, and the
-    /// remark ends the sentence about a number out of bounds.
-    Whole {
-        least: u64,
-        most: u64,
-        noun: &'static str,
-        remark: &'static str,
-    },
-    /// One of the words of an enum.
-    Words(fn() -> &'static [&'static str]),
-    /// `true` or `false`.
-    Switch,
-    /// The path of a file of one of these formats.
-    File(&'static [&'static str]),
-    /// A value whose bounds depend on others, or that has a form of its own: its bounds in words.
-    Special(&'static str),
-}
-
-/// What a quantity is called along an axis of a picture.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Title {
-    /// What it is, in words.
-    pub words: &'static str,
-    /// Its symbol; empty if it has none. Subscripts are Unicode's subscript letters.
-    pub symbol: &'static str,
-    /// Its unit as pictures print it; empty for a number without unit.
-    pub unit: &'static str,
-}
-
-/// A key of a case file.
-#[derive(Clone, Copy, Debug)]
-pub struct Key {
-    /// Its name within its table.
-    pub name: &'static str,
-    /// What it takes.
-    pub kind: Kind,
-    /// Its default as TOML; empty if it has none.
-    pub default: &'static str,
-    /// The keys that set the same thing: a table has one of them.
-    partners: [Option<&'static str>; 3],
-    /// Its title; none for keys that no picture has along an axis.
-    pub title: Option<Title>,
-    /// What it means, in one line.
-    pub doc: &'static str,
-}
+use super::words::{Arrangement, AttachedEdge, Motion, Outline};
 
 /// The keys that stand together: those of a table, or of a shape of texture.
 #[derive(Clone, Copy, Debug)]
@@ -140,27 +79,16 @@ pub(super) const TEXTURE: &str = "texture";
 pub(crate) const MAX_BLOCKS: u64 = 100_000;
 /// dt* at which the scheme becomes unstable: 2/sqrt(6.5 x 0.75) = 0.9058.
 pub(super) const UNSTABLE_STEP: f64 = 0.9058;
-/// The longest time, in t*.
-pub(super) const MAX_TIME_STAR: f64 = 1e9;
 /// The largest coordinate or size of a texture, m.
 const MAX_LENGTH: f64 = 1e9;
-/// TOML's largest integer.
-const MAX_SEED: u64 = i64::MAX.unsigned_abs();
-
 /// Least and largest property of a block over that of the whole slider.
 pub(crate) const MIN_RELATIVE: f64 = 1e-6;
 pub(crate) const MAX_RELATIVE: f64 = 1e6;
 
-const POSITIVE_TIME: Bounds = above(0.0, MAX_TIME_STAR);
 const COVERAGE: Kind = number(between(0.0, 100.0), "it is in percent of the whole area");
 const DEGREES: Kind = number(within(-360.0, 360.0), "it is in degrees from x towards y");
-const SIGMA: Kind = number(
-    within(0.0, 1.0),
-    "it is relative to the mean coefficient, so that 0.05 is 5 percent",
-);
 pub(super) const SIZE: Kind = quantity("m", above(0.0, MAX_LENGTH));
 pub(super) const COORDINATE: Kind = quantity("m", within(-MAX_LENGTH, MAX_LENGTH));
-const ARRAY: Kind = Kind::File(&["npy", "csv"]);
 /// A slope of a profile.
 pub(super) const RELATIVE_SLOPE: Kind = number(between(-1.0, 1.0), "1 would leave no load on an edge");
 /// A stiffness with its unit.
@@ -176,14 +104,12 @@ pub(super) const RELATIVE_PROPERTY: Kind = number(
     "it is relative, so that 1 changes nothing",
 );
 const GRADE: Kind = Kind::Special("`{ along = \"x\", from = 1, to = 0.1 }`; 1e-6 to 1e6");
-const SHEAR_STRENGTH: Kind = quantity("Pa", within(0.0, 1e15));
-
 /// Every section of a case file.
 pub const SECTIONS: [Section; 11] = [
     section(false, "slider", SLIDER),
     section(false, "load", LOAD),
     section(false, "drive", DRIVE),
-    section(false, "friction", FRICTION),
+    section(false, "friction", friction::KEYS),
     section(false, "time", TIME),
     section(false, "output", OUTPUT),
     section(true, "cavity", CAVITY),
@@ -250,65 +176,6 @@ const DRIVE: &[Key] = &[
     key("total_stiffness_star", "", DRIVE_STIFFNESS, "the same over E l")
         .or("stiffness").or("stiffness_star").or("total_stiffness").title("total drive stiffness", "K\u{209b}*", ""),
 ];
-
-#[rustfmt::skip]
-const FRICTION: &[Key] = &[
-    key("law", "\"projection\"", Kind::Words(names_of::<Law>), "the reading of Eq. 4, or rate and state in its place"),
-    key("mu_static", "1.0", number(above(0.0, 100.0), "it is the scale of all forces"), "mean static coefficient")
-        .title("mean static coefficient", "\u{3bc}\u{209b}", ""),
-    key("r_star", "0.5", number(within(0.0, MAX_R_STAR), "it is the kinetic over the static coefficient"),
-        "mean kinetic over mean static coefficient").or("mu_kinetic").title("friction ratio", "R*", ""),
-    key("mu_kinetic", "", Kind::Special("0 to 10 times `mu_static`"), "mean kinetic coefficient")
-        .or("r_star").title("mean kinetic coefficient", "\u{3bc}\u{2096}", ""),
-    key("sigma_static_star", "0.05", SIGMA, "standard deviation of the static coefficients over their mean")
-        .title("spread of static coefficients", "\u{3c3}\u{209b}*", ""),
-    key("sigma_kinetic_star", "0.05", SIGMA, "standard deviation of the kinetic coefficients over *their* mean")
-        .title("spread of kinetic coefficients", "\u{3c3}\u{2096}*", ""),
-    key("seed", "1", whole(0, MAX_SEED), "seed of the random coefficients").title("seed", "", ""),
-    key("mu_static_field", "", ARRAY, "static coefficients block by block, in place of random ones"),
-    key("mu_kinetic_field", "", ARRAY, "kinetic coefficients block by block, in place of random ones"),
-    key("adhesion", "\"0 Pa\"", SHEAR_STRENGTH, "shear strength without load, added to the static threshold of the blocks in contact")
-        .title("adhesion", "\u{3c4}\u{2090}", "Pa"),
-    key("adhesion_kinetic", "\"0 Pa\"", SHEAR_STRENGTH, "the same, added to their kinetic friction")
-        .title("kinetic adhesion", "\u{3c4}\u{2090}\u{2096}", "Pa"),
-    key("velocity", "", Kind::Special("`{ law = \"weakening\", v_c_star = 0.1, ratio = 0.5 }`; v_c_star more than 0, at most 10; ratio 0 to 1"),
-        "kinetic friction that falls with speed"),
-    key("ageing", "", Kind::Special("`{ law = \"logarithmic\", beta = 0.02, time_star = 1 }`; beta 0 to 10; time_star more than 0, at most 1e9"),
-        "static friction that grows while a block is stuck"),
-    key("contact", "\"rigid\"", Kind::Words(names_of::<Contact>), "what holds a block until its threshold"),
-    key("contact_stiffness_star", "", number(above(0.0, 1e3), "it is over E l, and a spring between blocks has 0.75"),
-        "stiffness of the spring in the contact of a block").title("contact stiffness", "k\u{209c}*", ""),
-    key("redraw", "false", Kind::Switch, "whether a spring that forms again has another threshold"),
-    key("a", "", number(within(1e-6, 10.0), "it is a coefficient, of the order of 0.01"), "direct effect of rate and state")
-        .title("direct effect", "a", ""),
-    key("b", "", number(within(0.0, 10.0), "it is a coefficient, of the order of 0.01"), "evolution effect of rate and state")
-        .title("evolution effect", "b", ""),
-    key("d_c_star", "", number(above(0.0, 1e9), "it is in units of P mu_s l/E"), "slip over which the state follows a change of speed")
-        .title("slip of the state", "D*", ""),
-    key("v_0_star", "", SPEED_STAR, "reference speed of rate and state").title("reference speed", "V\u{2080}*", ""),
-    key("mu_0", "", number(within(0.0, 100.0), "it is a coefficient"), "coefficient of steady sliding at `v_0_star`")
-        .title("coefficient of steady sliding", "\u{3bc}\u{2080}", ""),
-    key("theta_0_star", "", TIME_STAR, "state at the start").title("state at the start", "\u{3b8}\u{2080}*", ""),
-    key("slip_speed_star", "", SPEED_STAR, "speed above which a block counts as sliding under rate and state"),
-];
-
-/// A speed in the unit of V*.
-pub(super) const SPEED_STAR: Kind = number(above(0.0, 10.0), "it is in the unit of V*");
-/// A time in t*.
-pub(super) const TIME_STAR: Kind = number(POSITIVE_TIME, "it is a time t*");
-/// A share of kinetic friction.
-pub(super) const RATIO: Kind = number(
-    within(0.0, 1.0),
-    "it is kinetic friction at high speed over that at rest",
-);
-/// Growth with age.
-pub(super) const BETA: Kind = number(
-    within(0.0, 10.0),
-    "it is the growth per unit of the logarithm of the age",
-);
-
-/// Largest mean kinetic over mean static coefficient.
-pub(super) const MAX_R_STAR: f64 = 10.0;
 
 #[rustfmt::skip]
 const TIME: &[Key] = &[
@@ -419,82 +286,8 @@ const INVERT: Key = key(
 /// A time of a snapshot in a list of them.
 pub(super) const SNAPSHOT_TIME: Kind = number(within(0.0, MAX_TIME_STAR), "snapshots are times t*");
 
-const AUTO: &[&str] = &["auto"];
-
-impl Key {
-    /// The keys that set the same thing: a table has one of them.
-    pub fn partners(&self) -> impl Iterator<Item = &'static str> + use<> {
-        self.partners.into_iter().flatten()
-    }
-
-    const fn or(mut self, partner: &'static str) -> Self {
-        let mut free = 0;
-        while self.partners[free].is_some() {
-            free += 1;
-        }
-        self.partners[free] = Some(partner);
-        self
-    }
-
-    const fn title(mut self, words: &'static str, symbol: &'static str, unit: &'static str) -> Self {
-        self.title = Some(Title { words, symbol, unit });
-        self
-    }
-}
-
 const fn section(is_shape: bool, name: &'static str, keys: &'static [Key]) -> Section {
     Section { name, is_shape, keys }
-}
-
-const fn key(name: &'static str, default: &'static str, kind: Kind, doc: &'static str) -> Key {
-    Key {
-        name,
-        kind,
-        default,
-        partners: [None; 3],
-        title: None,
-        doc,
-    }
-}
-
-const fn number(bounds: Bounds, remark: &'static str) -> Kind {
-    or_word(bounds, remark, &[])
-}
-
-const fn or_word(bounds: Bounds, remark: &'static str, words: &'static [&'static str]) -> Kind {
-    Kind::Number {
-        bounds,
-        remark,
-        words,
-    }
-}
-
-const fn quantity(unit: &'static str, bounds: Bounds) -> Kind {
-    Kind::Quantity { unit, bounds }
-}
-
-const fn whole(least: u64, most: u64) -> Kind {
-    Kind::Whole {
-        least,
-        most,
-        noun: "",
-        remark: "",
-    }
-}
-
-/// From `low` to `high`, both included.
-const fn within(low: f64, high: f64) -> Bounds {
-    (Included(low), Included(high))
-}
-
-/// More than `low`, at most `high`.
-const fn above(low: f64, high: f64) -> Bounds {
-    (Excluded(low), Included(high))
-}
-
-/// More than `low`, less than `high`.
-const fn between(low: f64, high: f64) -> Bounds {
-    (Excluded(low), Excluded(high))
 }
 
 /// The title of a key such as `drive.v_star` or `texture.0.coverage`, and the position of its texture.
@@ -513,6 +306,12 @@ pub fn names_a_file(key: &str) -> bool {
     let name = key.rsplit('.').next().unwrap_or(key);
     let mut keys = SECTIONS.iter().filter_map(|section| section.key(name));
     keys.any(|key| matches!(key.kind, Kind::File(_)))
+}
+
+/// The keys of a table or shape of texture.
+pub(super) fn keys_of(section: &str) -> &'static [Key] {
+    let section = SECTIONS.iter().find(|found| found.name == section);
+    section.map_or(&[], |section| section.keys)
 }
 
 /// The sections of a top-level table.

@@ -12,6 +12,7 @@ mod error;
 mod file;
 mod friction;
 mod height_map;
+mod key;
 mod key_table;
 mod keys;
 mod load;
@@ -34,10 +35,11 @@ pub use diagnose::syntax_error;
 pub use drive::{Attached, Drive, DriveSpeed, DriveStiffness, SpeedSegment};
 pub use error::{CaseError, Invalid, Place};
 pub use file::{CaseFile, FileUse, NamedFile, ParsedCase};
-pub use friction::{Ageing, AgeingLaw, Friction, KineticFriction, Velocity, VelocityLaw};
+pub use friction::*;
 pub use height_map::{Bearing, HeightMap};
-pub use key_table::{Bounds, Key, Kind, SECTIONS, Section, Title, names_a_file, title_of};
+pub use key::{Bounds, Key, Kind, Title};
 pub(crate) use key_table::{MAX_BLOCKS, MAX_COUNT, MAX_RELATIVE, MIN_RELATIVE};
+pub use key_table::{SECTIONS, Section, names_a_file, title_of};
 pub use keys::{
     STUDY_TABLES, TABLES as CASE_TABLES, exclude_each_other, header_below, partners_of,
     unknown as unknown_key, unknown_table as unknown_case_table,
@@ -57,7 +59,7 @@ pub use texture::{
 };
 pub use time::{RunTime, Step, Time};
 pub use values::AutoOr;
-pub use words::{Arrangement, AttachedEdge, Contact, Law, Motion, Outline};
+pub use words::{Arrangement, AttachedEdge, Motion, Outline};
 
 #[cfg(test)]
 mod tests;

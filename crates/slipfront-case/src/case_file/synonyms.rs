@@ -1,7 +1,9 @@
 //! Words that people try first, and what a case file has in their place.
 
+use super::friction;
+
 /// Each word, in small letters if it is longer than one, and the advice on it. Keys stand in backquotes.
-pub(super) const SYNONYMS: &[(&str, &str)] = &[
+const COMMON: &[(&str, &str)] = &[
     ("E", YOUNG),
     ("young", YOUNG),
     ("youngs_modulus", YOUNG),
@@ -236,44 +238,10 @@ pub(super) const SYNONYMS: &[(&str, &str)] = &[
         "simulation",
         "the length of a run and its step stand in [time], what it writes in [output]",
     ),
-    ("weakening", WEAKENING),
-    ("stribeck", WEAKENING),
-    ("weakening_speed", WEAKENING),
-    ("velocity_weakening", WEAKENING),
-    ("critical_speed", WEAKENING),
-    ("v_c", WEAKENING),
-    ("aging", AGEING),
-    ("healing", AGEING),
-    ("strengthening", AGEING),
     ("cohesion", ADHESION),
     ("adhesive", ADHESION),
     ("tau_a", ADHESION),
     ("shear_strength", ADHESION),
-    ("contact_stiffness", CONTACT_SPRINGS),
-    ("k_t", CONTACT_SPRINGS),
-    ("contact_springs", CONTACT_SPRINGS),
-    ("asperities", CONTACT_SPRINGS),
-    ("junctions", CONTACT_SPRINGS),
-    ("rate_and_state", RATE_AND_STATE),
-    ("rsf", RATE_AND_STATE),
-    ("dieterich", RATE_AND_STATE),
-    ("ruina", RATE_AND_STATE),
-    ("rate_state", RATE_AND_STATE),
-    ("state", RATE_AND_STATE),
-    ("d_c", "the slip of rate and state is `friction.d_c_star`"),
-    ("dc", "the slip of rate and state is `friction.d_c_star`"),
-    (
-        "v_0",
-        "the reference speed of rate and state is `friction.v_0_star`",
-    ),
-    (
-        "v0",
-        "the reference speed of rate and state is `friction.v_0_star`",
-    ),
-    (
-        "mu0",
-        "the coefficient of rate and state at its reference speed is `friction.mu_0`",
-    ),
     ("temperature", "the model has no temperature"),
 ];
 
@@ -291,11 +259,6 @@ const KINETIC: &str =
 const SPREAD: &str =
     "the spreads of the coefficients are `friction.sigma_static_star` and `friction.sigma_kinetic_star`";
 const DURATION: &str = "the length of the run is `time.duration_star`, or `time.duration` with its unit";
-const WEAKENING: &str = "friction that falls with speed is `friction.velocity` = { law = \"weakening\", v_c_star = 0.1, ratio = 0.5 }";
-const AGEING: &str = "static friction that grows with age is `friction.ageing` = { law = \"logarithmic\", beta = 0.02, time_star = 1 }";
-const CONTACT_SPRINGS: &str =
-    "springs in contact are `friction.contact` = \"springs\", of stiffness `friction.contact_stiffness_star`";
-const RATE_AND_STATE: &str = "rate and state is `friction.law` = \"rate_and_state\"";
 const VISCOSITY: &str =
     "the internal viscosity is `slider.viscosity_time_star`; damping of any motion is `slider.omega_star`";
 const SPRINGS_OF_EACH: &str = "the springs between blocks follow from `slider.young_modulus`, those of the drive are `drive.stiffness`, and those \
@@ -315,12 +278,16 @@ const HEIGHT_MAP: &str =
 const PITCH: &str = "the distance between the copies of a shape is `pitch`";
 const PATTERN: &str = "a shape is repeated by `array` = [4, 4] or `pitch` = \"12 um\", arranged by `lattice`";
 
+/// Each word with the advice on it.
+fn synonyms() -> impl Iterator<Item = &'static (&'static str, &'static str)> {
+    COMMON.iter().chain(friction::SYNONYMS.iter().copied().flatten())
+}
+
 /// The advice on a word.
 pub(super) fn advice_on(word: &str) -> Option<&'static str> {
     // Of one letter, E and e, V and v differ.
     let small = word.to_lowercase();
-    let mut known = SYNONYMS.iter();
-    known
+    synonyms()
         .find(|(known, _)| *known == word || (word.len() > 1 && *known == small))
         .map(|(_, advice)| *advice)
 }
@@ -334,7 +301,7 @@ mod tests {
     /// advice names it.
     #[test]
     fn advice_names_keys_that_exist() {
-        for (word, advice) in SYNONYMS {
+        for (word, advice) in synonyms() {
             let has = |table: &str, name: &str| {
                 let mut sections = SECTIONS.iter().filter(|section| section.table() == table);
                 sections.any(|section| section.key(name).is_some())
@@ -352,11 +319,7 @@ mod tests {
                 "{word}"
             );
             assert!(word.len() == 1 || *word == word.to_lowercase(), "{word}");
-            assert_eq!(
-                SYNONYMS.iter().filter(|(other, _)| other == word).count(),
-                1,
-                "{word}"
-            );
+            assert_eq!(synonyms().filter(|(other, _)| other == word).count(), 1, "{word}");
             assert_eq!(advice_on(word), Some(*advice));
         }
         assert_eq!(advice_on("E"), Some(YOUNG));

@@ -9,7 +9,8 @@ use super::check::Check;
 use super::choice::keys_with_choice;
 use super::drive::DriveSpeed;
 use super::error::CaseError;
-use super::key_table::{MAX_TIME_STAR, UNSTABLE_STEP};
+use super::key::MAX_TIME_STAR;
+use super::key_table::UNSTABLE_STEP;
 
 use super::values::{AutoOr, WordOrNumber, word};
 use crate::quantity::Duration;

@@ -40,30 +40,6 @@ pub enum Motion {
     Rotation,
 }
 
-/// The law of friction.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Law {
-    /// Eq. 4, integrated implicitly.
-    Projection,
-    /// Eq. 4, explicit, for comparison.
-    Reversal,
-    /// Eq. 4 as printed, for comparison.
-    Literal,
-    /// Coefficients that follow speed and state.
-    RateAndState,
-}
-
-/// What holds a block until its threshold.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Contact {
-    /// It does not move.
-    Rigid,
-    /// A spring, which breaks.
-    Springs,
-}
-
 /// `lattice`: how columns and rows lie to each other.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]

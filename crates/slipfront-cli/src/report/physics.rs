@@ -1,7 +1,6 @@
 //! The resolved physics of a case.
 
 use slipfront::surface::Clearance;
-use slipfront::{Friction, FrictionLaw};
 use slipfront_case::case::{Case, Topography};
 use slipfront_case::case_file::{Attached, AttachedEdge, DriveStiffness, Grade, Motion, Outline};
 use slipfront_case::number_format::{count, four_digits, with_si_prefix};
@@ -15,7 +14,7 @@ pub fn physics(case: &Case) -> String {
         ("material", material(case)),
         ("load", load(case)),
         ("drive", drive(case)),
-        ("friction", friction(case)),
+        ("friction", case.file.friction.in_words(&case.model.friction)),
         ("texture", texture(case)),
         ("time", time(case)),
     ];
@@ -118,68 +117,6 @@ fn drive(case: &Case) -> String {
         ),
     };
     format!("{speed} {motion}{at}{stiffness}")
-}
-
-fn friction(case: &Case) -> String {
-    let (groups, friction) = (&case.groups, &case.file.friction);
-    let spread = |field: &Option<String>, sigma: f64| match field {
-        Some(file) => format!("from {file}"),
-        None => format!("spread {}", four_digits(sigma)),
-    };
-    let coefficients = || {
-        let mu_static = four_digits(friction.mu_static);
-        let of_static = spread(&friction.mu_static_field, groups.sigma_static_star);
-        format!("mu_s = {mu_static} ({of_static})")
-    };
-    match &case.model.friction {
-        Friction::Coulomb(coulomb) => {
-            let law = match coulomb.law {
-                FrictionLaw::Projection => "",
-                FrictionLaw::Reversal => ", law \"reversal\" (for comparison)",
-                FrictionLaw::Literal => ", law \"literal\" (for comparison)",
-            };
-            let weakening = coulomb.weakening.map_or(String::new(), |law| {
-                let (ratio, speed) = (four_digits(law.ratio), four_digits(law.critical_speed));
-                format!(", falling to {ratio} of mu_k about V* = {speed}")
-            });
-            let ageing = coulomb.ageing.map_or(String::new(), |law| {
-                let (beta, time) = (four_digits(law.beta), four_digits(law.time));
-                format!(", ageing by {beta} ln(1 + t*/{time})")
-            });
-            format!(
-                "{}, R* = {} ({}), seed {}{law}{weakening}{ageing}",
-                coefficients(),
-                four_digits(groups.r_star),
-                spread(&friction.mu_kinetic_field, groups.sigma_kinetic_star),
-                friction.seed
-            )
-        }
-        Friction::RateAndState(law) => {
-            let of_mean = |coefficient: f64| four_digits(coefficient * friction.mu_static);
-            format!(
-                "rate and state: a = {}, b = {}, D_c* = {}, V_0* = {}, mu_0 = {}, state {} at the start",
-                of_mean(law.a),
-                of_mean(law.b),
-                four_digits(law.d_c),
-                four_digits(law.v_0),
-                of_mean(law.mu_0),
-                four_digits(law.theta_0)
-            )
-        }
-        Friction::ContactSprings(law) => {
-            let again = if law.redraw.is_some() {
-                ", thresholds drawn anew"
-            } else {
-                ""
-            };
-            let stiffness = four_digits(law.stiffness);
-            format!(
-                "{}, seed {}, springs of {stiffness} E l that break{again}",
-                coefficients(),
-                friction.seed
-            )
-        }
-    }
 }
 
 /// The share of the blocks that is textured, the share asked for, and the roughness of height maps.

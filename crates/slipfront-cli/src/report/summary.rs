@@ -1,6 +1,5 @@
 //! The summary of a run, to be read at a glance.
 
-use slipfront::Friction;
 use slipfront_case::case::Case;
 use slipfront_case::case_file::Motion;
 use slipfront_case::number_format::{four_digits, with_si_prefix, with_uncertainty};
@@ -70,9 +69,9 @@ fn sliding_blocks(case: &Case, summary: &Summary) -> String {
     let kinetic = kinetic.map_or(String::new(), |kinetic| {
         format!(", {kinetic:.1} % in that window")
     });
-    // Where springs in contact are what slides, a block without one does not count.
-    let has_springs = matches!(case.model.friction, Friction::ContactSprings(_));
-    let textured = if summary.texture_percent > 0.0 && !has_springs {
+    // Where contacts that break are what slides, a block without one does not count.
+    let breaks = case.model.friction.needs().stores_energy;
+    let textured = if summary.texture_percent > 0.0 && !breaks {
         format!(
             "; {:.1} % are textured, held by nothing, and slide from the start",
             summary.texture_percent

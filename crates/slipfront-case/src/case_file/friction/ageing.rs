@@ -1,0 +1,68 @@
+//! `ageing`: static friction that grows while a block is stuck.
+
+use serde::{Deserialize, Serialize};
+use slipfront::Ageing as Law;
+
+use crate::case_file::check::Check;
+use crate::case_file::error::CaseError;
+use crate::case_file::key::{Key, Kind, TIME_STAR, key, number, within};
+use crate::case_file::values::word;
+use crate::number_format::four_digits;
+
+#[rustfmt::skip]
+pub(super) const KEYS: &[Key] = &[
+    key("ageing", "", Kind::Special("`{ law = \"logarithmic\", beta = 0.02, time_star = 1 }`; beta 0 to 10; time_star more than 0, at most 1e9"),
+        "static friction that grows while a block is stuck"),
+];
+
+/// Growth with age.
+const BETA: Kind = number(
+    within(0.0, 10.0),
+    "it is the growth per unit of the logarithm of the age",
+);
+
+pub(super) const SYNONYMS: &[(&str, &str)] =
+    &[("aging", ADVICE), ("healing", ADVICE), ("strengthening", ADVICE)];
+const ADVICE: &str = "static friction that grows with age is `friction.ageing` = { law = \"logarithmic\", beta = 0.02, time_star = 1 }";
+
+/// `ageing`: static friction that grows while a block is stuck, mu_s [1 + beta ln(1 + t/time)].
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Ageing {
+    /// The law.
+    #[serde(deserialize_with = "word")]
+    pub law: AgeingLaw,
+    /// Growth per unit of the logarithm, 0 to 10.
+    pub beta: f64,
+    /// Time after which it shows, t*; more than 0, at most 1e9.
+    pub time_star: f64,
+}
+
+/// How static friction depends on age.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum AgeingLaw {
+    /// With the logarithm of the age.
+    Logarithmic,
+}
+
+impl Ageing {
+    pub(super) fn check(&self, check: &Check) -> Result<(), CaseError> {
+        check.value_of(&BETA, "ageing.beta", &self.beta)?;
+        check.value_of(&TIME_STAR, "ageing.time_star", &self.time_star)
+    }
+
+    /// The law of the model.
+    pub(super) fn law(self) -> Law {
+        Law {
+            beta: self.beta,
+            time: self.time_star,
+        }
+    }
+}
+
+/// The law in words, behind those of static and kinetic friction.
+pub(super) fn in_words(law: &Law) -> String {
+    let (beta, time) = (four_digits(law.beta), four_digits(law.time));
+    format!(", ageing by {beta} ln(1 + t*/{time})")
+}

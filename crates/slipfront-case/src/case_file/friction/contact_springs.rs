@@ -1,0 +1,50 @@
+//! `contact` = "springs": springs to the substrate that break and form again.
+
+use slipfront::ContactSprings;
+
+use crate::case_file::key::{Key, Kind, above, key, number};
+use crate::number_format::four_digits;
+
+#[rustfmt::skip]
+pub(super) const KEYS: &[Key] = &[
+    key("contact_stiffness_star", "", number(above(0.0, 1e3), "it is over E l, and a spring between blocks has 0.75"),
+        "stiffness of the spring in the contact of a block").title("contact stiffness", "k\u{209c}*", ""),
+    key("redraw", "false", Kind::Switch, "whether a spring that forms again has another threshold"),
+];
+
+pub(super) const SYNONYMS: &[(&str, &str)] = &[
+    ("contact_stiffness", ADVICE),
+    ("k_t", ADVICE),
+    ("contact_springs", ADVICE),
+    ("asperities", ADVICE),
+    ("junctions", ADVICE),
+];
+const ADVICE: &str =
+    "springs in contact are `friction.contact` = \"springs\", of stiffness `friction.contact_stiffness_star`";
+
+/// Why other keys have no meaning beside springs.
+pub(super) const ALONE: &str = "with `contact` = \"springs\" a block is held by its spring at any speed, and there is no kinetic \
+                                friction; leave it out, or take `contact` = \"rigid\"";
+
+/// Why the keys of springs have no meaning beside another contact.
+pub(super) const ELSEWHERE: &str = "it belongs to `contact` = \"springs\"; set that, or leave it out";
+
+/// What is wrong with springs of which no stiffness is given, at the key of this path.
+pub(super) fn without_stiffness(path: &str) -> String {
+    format!("`{path}` = \"springs\" needs their stiffness, `contact_stiffness_star`")
+}
+
+/// Why springs that are drawn anew take one rank.
+pub(super) const ONE_RANK: &str = "a spring that forms again takes the coefficient of any block of the slider, and a rank knows those of its own \
+                                   rows alone: take one rank, or redraw = false";
+
+/// The law in words, behind those of static friction.
+pub(super) fn in_words(law: &ContactSprings) -> String {
+    let again = if law.redraw.is_some() {
+        ", thresholds drawn anew"
+    } else {
+        ""
+    };
+    let stiffness = four_digits(law.stiffness);
+    format!(", springs of {stiffness} E l that break{again}")
+}

@@ -1,0 +1,100 @@
+//! `law` = "rate_and_state": friction that follows speed and the state of the contact.
+
+use slipfront::{Model, RateAndState};
+
+use crate::case_file::key::{Key, SPEED_STAR, TIME_STAR, above, key, number, within};
+use crate::number_format::four_digits;
+
+#[rustfmt::skip]
+pub(super) const KEYS: &[Key] = &[
+    key("a", "", number(within(1e-6, 10.0), "it is a coefficient, of the order of 0.01"), "direct effect of rate and state")
+        .title("direct effect", "a", ""),
+    key("b", "", number(within(0.0, 10.0), "it is a coefficient, of the order of 0.01"), "evolution effect of rate and state")
+        .title("evolution effect", "b", ""),
+    key("d_c_star", "", number(above(0.0, 1e9), "it is in units of P mu_s l/E"), "slip over which the state follows a change of speed")
+        .title("slip of the state", "D*", ""),
+    key("v_0_star", "", SPEED_STAR, "reference speed of rate and state").title("reference speed", "V\u{2080}*", ""),
+    key("mu_0", "", number(within(0.0, 100.0), "it is a coefficient"), "coefficient of steady sliding at `v_0_star`")
+        .title("coefficient of steady sliding", "\u{3bc}\u{2080}", ""),
+    key("theta_0_star", "", TIME_STAR, "state at the start").title("state at the start", "\u{3b8}\u{2080}*", ""),
+    key("slip_speed_star", "", SPEED_STAR, "speed above which a block counts as sliding under rate and state"),
+];
+
+/// How many of the [`KEYS`] have no default and must be there, the first of them.
+pub(super) const NEEDED: usize = 4;
+
+pub(super) const SYNONYMS: &[(&str, &str)] = &[
+    ("rate_and_state", ADVICE),
+    ("rsf", ADVICE),
+    ("dieterich", ADVICE),
+    ("ruina", ADVICE),
+    ("rate_state", ADVICE),
+    ("state", ADVICE),
+    ("d_c", SLIP),
+    ("dc", SLIP),
+    ("v_0", REFERENCE_SPEED),
+    ("v0", REFERENCE_SPEED),
+    (
+        "mu0",
+        "the coefficient of rate and state at its reference speed is `friction.mu_0`",
+    ),
+];
+const ADVICE: &str = "rate and state is `friction.law` = \"rate_and_state\"";
+const SLIP: &str = "the slip of rate and state is `friction.d_c_star`";
+const REFERENCE_SPEED: &str = "the reference speed of rate and state is `friction.v_0_star`";
+
+/// Why other keys have no meaning beside this law.
+pub(super) const ALONE: &str = "`law` = \"rate_and_state\" has no static and kinetic coefficients, and its friction follows speed and age \
+                                already; leave it out, or take `law` = \"projection\"";
+
+/// Why the keys of this law have no meaning beside another.
+pub(super) const ELSEWHERE: &str = "it belongs to `law` = \"rate_and_state\"; set that, or leave it out";
+
+/// What is wrong where a key is missing that the law needs, which stands at this path.
+pub(super) fn without_key(path: &str, key: &str) -> String {
+    format!("`{path}` = \"rate_and_state\" needs `{key}`: it needs `a`, `b`, `d_c_star` and `v_0_star`")
+}
+
+/// The law of the model, with coefficients over `mu_static`, from the values of the [`KEYS`] and the speed of the drive. The file has the
+/// keys without a default, or it would not have been read.
+pub(super) fn law(values: [Option<f64>; KEYS.len()], mu_static: f64, v_star: f64) -> RateAndState {
+    let [a, b, d_c, v_0, mu_0, theta_0, slip_speed] = values;
+    let given = |key: Option<f64>| key.unwrap_or(f64::NAN);
+    let (d_c, v_0) = (given(d_c), given(v_0));
+    RateAndState {
+        a: given(a) / mu_static,
+        b: given(b) / mu_static,
+        d_c,
+        v_0,
+        mu_0: mu_0.map_or(1.0, |mu_0| mu_0 / mu_static),
+        theta_0: theta_0.unwrap_or(d_c / v_0),
+        slip_speed: slip_speed.unwrap_or(0.1 * v_star),
+    }
+}
+
+/// The law in words.
+pub(super) fn in_words(law: &RateAndState, mu_static: f64) -> String {
+    let of_mean = |coefficient: f64| four_digits(coefficient * mu_static);
+    format!(
+        "rate and state: a = {}, b = {}, D_c* = {}, V_0* = {}, mu_0 = {}, state {} at the start",
+        of_mean(law.a),
+        of_mean(law.b),
+        four_digits(law.d_c),
+        four_digits(law.v_0),
+        of_mean(law.mu_0),
+        four_digits(law.theta_0)
+    )
+}
+
+/// A warning where steady sliding of the slider as a whole, which has the least stiffness, is unstable.
+pub(super) fn warning(law: &RateAndState, model: &Model) -> Option<String> {
+    let (k_drive, v_star) = (model.drive.k_drive, model.drive.v_star);
+    let critical = law.critical_stiffness(model.surface.mean_normal_force(), model.damping, v_star);
+    (k_drive < critical).then(|| {
+        format!(
+            "the drive, of stiffness {k_drive} E l per block, is softer than {}, below which steady sliding at V* = {v_star} is \
+             unstable: stick-slip is to be expected",
+            four_digits(critical)
+        )
+    })
+}

@@ -1,0 +1,74 @@
+//! `velocity`: kinetic friction that falls with speed.
+
+use serde::{Deserialize, Serialize};
+use slipfront::Weakening;
+
+use crate::case_file::check::Check;
+use crate::case_file::error::CaseError;
+use crate::case_file::key::{Key, Kind, SPEED_STAR, key, number, within};
+use crate::case_file::values::word;
+use crate::number_format::four_digits;
+
+#[rustfmt::skip]
+pub(super) const KEYS: &[Key] = &[
+    key("velocity", "", Kind::Special("`{ law = \"weakening\", v_c_star = 0.1, ratio = 0.5 }`; v_c_star more than 0, at most 10; ratio 0 to 1"),
+        "kinetic friction that falls with speed"),
+];
+
+/// A share of kinetic friction.
+const RATIO: Kind = number(
+    within(0.0, 1.0),
+    "it is kinetic friction at high speed over that at rest",
+);
+
+pub(super) const SYNONYMS: &[(&str, &str)] = &[
+    ("weakening", ADVICE),
+    ("stribeck", ADVICE),
+    ("weakening_speed", ADVICE),
+    ("velocity_weakening", ADVICE),
+    ("critical_speed", ADVICE),
+    ("v_c", ADVICE),
+];
+const ADVICE: &str = "friction that falls with speed is `friction.velocity` = { law = \"weakening\", v_c_star = 0.1, ratio = 0.5 }";
+
+/// `velocity`: kinetic friction that falls with speed, mu_k [ratio + (1 - ratio)/(1 + v/v_c)].
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Velocity {
+    /// The law.
+    #[serde(deserialize_with = "word")]
+    pub law: VelocityLaw,
+    /// Speed at which half of the fall is reached, in the unit of V*; more than 0, at most 10.
+    pub v_c_star: f64,
+    /// Kinetic friction at high speed over that at rest, 0 to 1.
+    pub ratio: f64,
+}
+
+/// How kinetic friction depends on speed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum VelocityLaw {
+    /// It falls.
+    Weakening,
+}
+
+impl Velocity {
+    pub(super) fn check(&self, check: &Check) -> Result<(), CaseError> {
+        check.value_of(&SPEED_STAR, "velocity.v_c_star", &self.v_c_star)?;
+        check.value_of(&RATIO, "velocity.ratio", &self.ratio)
+    }
+
+    /// The law of the model.
+    pub(super) fn law(self) -> Weakening {
+        Weakening {
+            critical_speed: self.v_c_star,
+            ratio: self.ratio,
+        }
+    }
+}
+
+/// The law in words, behind those of static and kinetic friction.
+pub(super) fn in_words(law: &Weakening) -> String {
+    let (ratio, speed) = (four_digits(law.ratio), four_digits(law.critical_speed));
+    format!(", falling to {ratio} of mu_k about V* = {speed}")
+}

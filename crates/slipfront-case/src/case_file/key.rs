@@ -1,0 +1,185 @@
+//! Keys of a case file: what a key takes, its bounds, default and title, and the words by which rows of the table are written.
+//!
+//! Bounds on quantities are generous: they refuse typing errors (a block of 1000 km), not unusual materials.
+
+use std::ops::Bound::{self, Excluded, Included};
+
+/// A range of numbers.
+pub type Bounds = (Bound<f64>, Bound<f64>);
+
+/// What a key takes.
+#[derive(Clone, Copy, Debug)]
+#[expect(
+    missing_docs,
+    reason = "the sentence of each variant tells what its fields are"
+)]
+pub enum Kind {
+    /// A number, or one of these words in its place. The remark ends the sentence about a number out of bounds.
+    Number {
+        bounds: Bounds,
+        remark: &'static str,
+        words: &'static [&'static str],
+    },
+    /// A string of number and unit; the bounds are in this unit of the SI.
+    Quantity { unit: &'static str, bounds: Bounds },
+    /// A whole number, or a pair of them. The noun is what it must be, where "from 1 to 64" does not say enough, and the
+    /// remark ends the sentence about a number out of bounds.
+    Whole {
+        least: u64,
+        most: u64,
+        noun: &'static str,
+        remark: &'static str,
+    },
+    /// One of the words of an enum.
+    Words(fn() -> &'static [&'static str]),
+    /// `true` or `false`.
+    Switch,
+    /// The path of a file of one of these formats.
+    File(&'static [&'static str]),
+    /// A value whose bounds depend on others, or that has a form of its own: its bounds in words.
+    Special(&'static str),
+}
+
+/// What a quantity is called along an axis of a picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Title {
+    /// What it is, in words.
+    pub words: &'static str,
+    /// Its symbol; empty if it has none. Subscripts are Unicode's subscript letters.
+    pub symbol: &'static str,
+    /// Its unit as pictures print it; empty for a number without unit.
+    pub unit: &'static str,
+}
+
+/// A key of a case file.
+#[derive(Clone, Copy, Debug)]
+pub struct Key {
+    /// Its name within its table.
+    pub name: &'static str,
+    /// What it takes.
+    pub kind: Kind,
+    /// Its default as TOML; empty if it has none.
+    pub default: &'static str,
+    /// The keys that set the same thing: a table has one of them.
+    partners: [Option<&'static str>; 3],
+    /// Its title; none for keys that no picture has along an axis.
+    pub title: Option<Title>,
+    /// What it means, in one line.
+    pub doc: &'static str,
+}
+
+impl Key {
+    /// The keys that set the same thing: a table has one of them.
+    pub fn partners(&self) -> impl Iterator<Item = &'static str> + use<> {
+        self.partners.into_iter().flatten()
+    }
+
+    pub(super) const fn or(mut self, partner: &'static str) -> Self {
+        let mut free = 0;
+        while self.partners[free].is_some() {
+            free += 1;
+        }
+        self.partners[free] = Some(partner);
+        self
+    }
+
+    pub(super) const fn title(
+        mut self,
+        words: &'static str,
+        symbol: &'static str,
+        unit: &'static str,
+    ) -> Self {
+        self.title = Some(Title { words, symbol, unit });
+        self
+    }
+}
+
+pub(super) const fn key(name: &'static str, default: &'static str, kind: Kind, doc: &'static str) -> Key {
+    Key {
+        name,
+        kind,
+        default,
+        partners: [None; 3],
+        title: None,
+        doc,
+    }
+}
+
+pub(super) const fn number(bounds: Bounds, remark: &'static str) -> Kind {
+    or_word(bounds, remark, &[])
+}
+
+pub(super) const fn or_word(bounds: Bounds, remark: &'static str, words: &'static [&'static str]) -> Kind {
+    Kind::Number {
+        bounds,
+        remark,
+        words,
+    }
+}
+
+pub(super) const fn quantity(unit: &'static str, bounds: Bounds) -> Kind {
+    Kind::Quantity { unit, bounds }
+}
+
+pub(super) const fn whole(least: u64, most: u64) -> Kind {
+    Kind::Whole {
+        least,
+        most,
+        noun: "",
+        remark: "",
+    }
+}
+
+/// From `low` to `high`, both included.
+pub(super) const fn within(low: f64, high: f64) -> Bounds {
+    (Included(low), Included(high))
+}
+
+/// More than `low`, at most `high`.
+pub(super) const fn above(low: f64, high: f64) -> Bounds {
+    (Excluded(low), Included(high))
+}
+
+/// More than `low`, less than `high`.
+pub(super) const fn between(low: f64, high: f64) -> Bounds {
+    (Excluded(low), Excluded(high))
+}
+
+/// The longest time, in t*.
+pub(super) const MAX_TIME_STAR: f64 = 1e9;
+/// Bounds of a time that has passed.
+pub(super) const POSITIVE_TIME: Bounds = above(0.0, MAX_TIME_STAR);
+/// A file of numbers, block by block.
+pub(super) const ARRAY: Kind = Kind::File(&["npy", "csv"]);
+/// A speed in the unit of V*.
+pub(super) const SPEED_STAR: Kind = number(above(0.0, 10.0), "it is in the unit of V*");
+/// A time in t*.
+pub(super) const TIME_STAR: Kind = number(POSITIVE_TIME, "it is a time t*");
+/// The word that stands for a number which the case decides.
+pub(super) const AUTO: &[&str] = &["auto"];
+
+/// How many keys there are in some lists of them.
+pub(super) const fn count(lists: &[&[Key]]) -> usize {
+    let (mut sum, mut list) = (0, 0);
+    while list < lists.len() {
+        sum += lists[list].len();
+        list += 1;
+    }
+    sum
+}
+
+/// Some lists of keys as one, of [`count`] keys.
+pub(super) const fn joined<const COUNT: usize>(lists: &[&[Key]]) -> [Key; COUNT] {
+    let mut keys = [lists[0][0]; COUNT];
+    let (mut place, mut list) = (0, 0);
+    while list < lists.len() {
+        let mut of_list = 0;
+        while of_list < lists[list].len() {
+            keys[place] = lists[list][of_list];
+            of_list += 1;
+            place += 1;
+        }
+        list += 1;
+    }
+    keys
+}
