@@ -5,7 +5,6 @@ use std::f64::consts::TAU;
 use serde::Serialize;
 use slipfront::surface::{Contour, Ellipse, Piece, contours};
 use slipfront_case::case::Case;
-use slipfront_case::case_file::{Shape, Texture};
 
 /// The outlines of one texture, in blocks.
 #[derive(Debug, Serialize)]
@@ -23,9 +22,13 @@ const POINTS: usize = 72;
 
 /// The outlines of the textures of a case that have one.
 pub(crate) fn outlines(case: &Case) -> Vec<ShapeOutlines> {
-    let has_outline = |texture: &Texture| !matches!(texture.shape, Shape::Mask(_) | Shape::HeightMap(_));
     // Where there are images alone they are not read again: this is told at every stroke of a brush.
-    if !case.file.texture.iter().any(has_outline) {
+    if !case
+        .file
+        .texture
+        .iter()
+        .any(|texture| texture.shape.has_outline())
+    {
         return Vec::new();
     }
     // A mask that cannot be read any more has no outline either.

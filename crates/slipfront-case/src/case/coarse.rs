@@ -4,7 +4,7 @@ use slipfront::surface::{Clearance, clearance};
 
 use super::runnable::Case;
 use super::textures::outlines_in_blocks;
-use crate::case_file::{MAX_BLOCKS, MAX_BLOCKS_TOTAL, Outline, Shape, Texture};
+use crate::case_file::{MAX_BLOCKS, MAX_BLOCKS_TOTAL, Outline, Texture};
 use crate::number_format::{exact, four_digits, si_prefix, with_si_prefix};
 
 /// Blocks that a feature needs across, so that its area is meshed well.
@@ -81,18 +81,13 @@ impl Case {
 
 /// What is textured and what is between, as their user calls it.
 fn names(textures: &[Texture]) -> [&'static str; 2] {
-    let drawn = || {
-        let shapes = textures.iter();
-        shapes.filter(|texture| !matches!(texture.shape, Shape::Mask(_) | Shape::HeightMap(_)))
-    };
-    let all = |is: fn(&Texture) -> bool| drawn().all(is);
-    match () {
-        () if all(|texture| texture.pattern.invert) => ["gap", "pillar"],
-        () if drawn().any(|texture| texture.pattern.invert) => ["feature", "gap"],
-        () if all(|texture| matches!(texture.shape, Shape::Cavity(_))) => ["dimple", "gap"],
-        () if all(|texture| matches!(texture.shape, Shape::Groove(_))) => ["groove", "gap"],
-        () => ["feature", "gap"],
+    let drawn = |texture: &Texture| Some((texture.shape.outline()?.noun(), texture.pattern.invert));
+    let drawn: Vec<(&str, bool)> = textures.iter().filter_map(drawn).collect();
+    if drawn.iter().all(|(_, is_inverted)| *is_inverted) {
+        return ["gap", "pillar"];
     }
+    let is_alike = drawn.iter().all(|one| *one == (drawn[0].0, false));
+    [if is_alike { drawn[0].0 } else { "feature" }, "gap"]
 }
 
 fn greatest_common_divisor([one, other]: [u64; 2]) -> u64 {

@@ -65,6 +65,17 @@ pub struct Expected {
     pub onset_star: [f64; 2],
 }
 
+impl Expected {
+    fn of(file: &CaseFile, model: &Model, ranks: &dyn Communicator) -> Self {
+        Self {
+            steady_level: model.steady_level(ranks),
+            steady_drag: model.steady_drag(ranks),
+            first_slip_star: model.first_slip_estimate(ranks),
+            onset_star: model.onset_estimate(load_factor(file, model)),
+        }
+    }
+}
+
 /// The texture as asked and as meshed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TextureReport {
@@ -225,12 +236,7 @@ impl Case {
         } = plan;
         model.drive.program = program(&file, time_plan.dt_star)?;
         refuse_large_angles(&file, &model.drive, groups.epsilon, time_plan.end_star())?;
-        let expected = Expected {
-            steady_level: model.steady_level(ranks.communicator),
-            steady_drag: model.steady_drag(ranks.communicator),
-            first_slip_star: model.first_slip_estimate(ranks.communicator),
-            onset_star: model.onset_estimate(load_factor(&file, &model)),
-        };
+        let expected = Expected::of(&file, &model, ranks.communicator);
         budget.inputs = inputs.files.iter().map(|input| input.length as f64).sum();
         Ok(Self {
             name: name.to_owned(),

@@ -11,9 +11,9 @@ use super::inputs::{Inputs, Watch};
 use super::slider::outline;
 use super::topography::{self, Ground, Topography};
 use crate::arrays::Slab;
-use crate::case_file;
 use crate::case_file::{
-    Arrangement, CaseError, CaseFile, Count, MAX_COUNT, Mask, Outline, Pattern, Pitch, Shape,
+    Arrangement, Blocks, CaseError, CaseFile, Count, Form, MAX_COUNT, Mask, Outline, Pattern, Pitch, Shape,
+    Texture,
 };
 use crate::quantity::Length;
 
@@ -65,16 +65,19 @@ pub(super) fn shapes_in_blocks(
         let key = format!("texture.{index}");
         let arrays = arrays(&texture.pattern, scales, lattice)
             .map_err(|(name, sentence)| file.source.error(&format!("{key}.{name}"), sentence))?;
-        let (shape, percent) = match &texture.shape {
-            Shape::Cavity(cavity) => cavity_in_blocks(cavity, scales, lattice, n_blocks, &arrays),
-            Shape::Groove(groove) => groove_in_blocks(groove, scales, lattice, n_blocks, &arrays),
-            Shape::Polygon(polygon) => (polygon_in_blocks(polygon, scales), None),
-            Shape::Mask(mask) => {
+        let (shape, percent) = match texture.shape.form() {
+            Form::Outline(outline) => outline.in_blocks(&Blocks {
+                scales,
+                lattice,
+                n_blocks,
+                arrays: &arrays,
+            }),
+            Form::Mask(mask) => {
                 let size = cell(&arrays, lattice).map_err(|sentence| file.source.error(&key, sentence))?;
                 let tile = masks.read(file, index, mask, size, inputs, watch)?;
                 (surface::Shape::Tile(tile), None)
             }
-            Shape::HeightMap(map) => {
+            Form::HeightMap(map) => {
                 let size = cell(&arrays, lattice).map_err(|sentence| file.source.error(&key, sentence))?;
                 let ground = Ground {
                     lattice,
@@ -118,14 +121,14 @@ pub(super) fn outlines_in_blocks(
     lattice: &Lattice,
     n_blocks: usize,
 ) -> Vec<surface::Texture> {
-    let outline = |texture: &case_file::Texture| {
+    let outline = |texture: &Texture| {
         let arrays = arrays(&texture.pattern, scales, lattice).ok()?;
-        let shape = match &texture.shape {
-            Shape::Cavity(cavity) => cavity_in_blocks(cavity, scales, lattice, n_blocks, &arrays).0,
-            Shape::Groove(groove) => groove_in_blocks(groove, scales, lattice, n_blocks, &arrays).0,
-            Shape::Polygon(polygon) => polygon_in_blocks(polygon, scales),
-            Shape::Mask(_) | Shape::HeightMap(_) => return None,
-        };
+        let (shape, _) = texture.shape.outline()?.in_blocks(&Blocks {
+            scales,
+            lattice,
+            n_blocks,
+            arrays: &arrays,
+        });
         let inverted = texture.pattern.invert;
         Some(surface::Texture {
             shape,
@@ -315,73 +318,4 @@ fn within_reach(shape: &surface::Shape, arrays: &[surface::Array], lattice: &Lat
 
 fn in_blocks(scales: &Scales, [x, y]: &[Length; 2]) -> [f64; 2] {
     [scales.in_blocks(x.si()), scales.in_blocks(y.si())]
-}
-
-fn cavity_in_blocks(
-    cavity: &case_file::Cavity,
-    scales: &Scales,
-    lattice: &Lattice,
-    n_blocks: usize,
-    arrays: &[surface::Array],
-) -> (surface::Shape, Option<f64>) {
-    let (s, w) = (cavity.s, cavity.w);
-    let count = surface::n_copies(arrays);
-    let (lambda, percent) = match &cavity.size {
-        case_file::CavitySize::Coverage(percent) => {
-            (surface::cavity_lambda(*percent, n_blocks, s, w, count), *percent)
-        }
-        case_file::CavitySize::Lambda(lambda) => {
-            let lambda = scales.in_blocks(lambda.si());
-            (lambda, surface::cavity_percent(lambda, n_blocks, s, w, count))
-        }
-    };
-    let center = match &cavity.center {
-        case_file::Center::Middle => [0.5 * lattice.nx as f64, 0.5 * lattice.ny as f64],
-        case_file::Center::At(center) => in_blocks(scales, center),
-    };
-    let cavity = surface::Cavity {
-        center,
-        lambda,
-        s,
-        w,
-        across: cavity.across,
-        rotate: cavity.rotate,
-    };
-    (surface::Shape::Cavity(cavity), Some(percent))
-}
-
-fn groove_in_blocks(
-    groove: &case_file::Groove,
-    scales: &Scales,
-    lattice: &Lattice,
-    n_blocks: usize,
-    arrays: &[surface::Array],
-) -> (surface::Shape, Option<f64>) {
-    let of_width = |width: f64| {
-        surface::Shape::Groove(surface::Groove {
-            orientation: groove.orientation,
-            width,
-            offset: scales.in_blocks(groove.offset.si()),
-        })
-    };
-    let count = of_width(0.0).n_copies(arrays) as f64;
-    // A groove is as long as the lattice: the share of it that the slider fills is that of its area.
-    let share = n_blocks as f64 / lattice.n_blocks() as f64;
-    let breadth = match groove.orientation {
-        surface::Orientation::Across => lattice.nx as f64 * share,
-        surface::Orientation::Along => lattice.ny as f64 * share,
-    };
-    let (width, percent) = match &groove.size {
-        case_file::GrooveSize::Coverage(percent) => (breadth * percent / 100.0 / count, *percent),
-        case_file::GrooveSize::Width(width) => {
-            let width = scales.in_blocks(width.si());
-            (width, 100.0 * width / breadth * count)
-        }
-    };
-    (of_width(width), Some(percent))
-}
-
-fn polygon_in_blocks(polygon: &case_file::Polygon, scales: &Scales) -> surface::Shape {
-    let points = polygon.points.iter().map(|point| in_blocks(scales, point));
-    surface::Shape::Polygon(points.collect())
 }

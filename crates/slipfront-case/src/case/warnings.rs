@@ -9,7 +9,7 @@ use super::runnable::Case;
 use super::textures::arrays;
 use super::topography::Topography;
 use crate::case_file::{
-    Bearing, Count, DEFAULT_THRESHOLD, HeightMap, Law, Mask, Pattern, Pitch, Shape, Texture, friction_warning,
+    Count, DEFAULT_THRESHOLD, Law, Mask, Pattern, Pitch, Shape, Texture, friction_warning,
 };
 use crate::number_format::{are, count, four_digits, with_si_prefix};
 
@@ -301,23 +301,8 @@ impl Case {
 
 /// Why a texture covers no block, and what to look at.
 fn why_empty(texture: &Texture) -> &'static str {
-    match &texture.shape {
-        _ if texture.pattern.invert => {
-            "the inside of its shapes, which `invert` leaves free, covers all of them"
-        }
-        Shape::HeightMap(HeightMap {
-            bearing: Bearing::Percent(_),
-            ..
-        }) => "none is lower than the lowest that touch; lower `bearing_percent`",
-        Shape::HeightMap(HeightMap {
-            bearing: Bearing::Depth(_),
-            ..
-        }) => "none is below the height of contact; lower `depth`",
-        Shape::Mask(_) => {
-            "no pixel at the centre of a block is dark, and no number of an array is 1; look at its file"
-        }
-        Shape::Cavity(_) | Shape::Groove(_) | Shape::Polygon(_) => {
-            "it lies off the slider, or between the centres of blocks; look at its size and place"
-        }
+    match texture.pattern.invert {
+        true => "the inside of its shapes, which `invert` leaves free, covers all of them",
+        false => texture.shape.why_empty(),
     }
 }

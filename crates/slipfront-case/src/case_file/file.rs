@@ -17,10 +17,11 @@ use super::load::read_text;
 use super::motion::Load;
 use super::output::Output;
 use super::overrides::Override;
+use super::shapes::Shape;
 use super::slider::Slider;
 use super::source::Source;
 use super::tables::Tables;
-use super::texture::{Shape, Texture};
+use super::texture::Texture;
 use super::time::Time;
 
 /// A whole case file. The default is the baseline of Fig. 3, Table 1 case 8.

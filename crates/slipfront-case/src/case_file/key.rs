@@ -149,6 +149,16 @@ pub(super) const fn between(low: f64, high: f64) -> Bounds {
 pub(super) const MAX_TIME_STAR: f64 = 1e9;
 /// Bounds of a time that has passed.
 pub(super) const POSITIVE_TIME: Bounds = above(0.0, MAX_TIME_STAR);
+/// The largest coordinate or size of a texture, m.
+const MAX_LENGTH: f64 = 1e9;
+/// A size of a texture, or a distance in it.
+pub(super) const SIZE: Kind = quantity("m", above(0.0, MAX_LENGTH));
+/// A coordinate of a texture.
+pub(super) const COORDINATE: Kind = quantity("m", within(-MAX_LENGTH, MAX_LENGTH));
+/// A share of the area of the slider.
+pub(super) const COVERAGE: Kind = number(between(0.0, 100.0), "it is in percent of the whole area");
+/// A direction.
+pub(super) const DEGREES: Kind = number(within(-360.0, 360.0), "it is in degrees from x towards y");
 /// A file of numbers, block by block.
 pub(super) const ARRAY: Kind = Kind::File(&["npy", "csv"]);
 /// A speed in the unit of V*.

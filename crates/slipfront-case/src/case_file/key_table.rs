@@ -9,16 +9,16 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use slipfront::observe::Field;
-use slipfront::surface::Orientation;
 use slipfront::{Edges, StopReason};
 
 use super::friction;
 use super::key::{
-    ARRAY, AUTO, Key, Kind, MAX_TIME_STAR, POSITIVE_TIME, Title, above, between, key, number, or_word,
-    quantity, whole, within,
+    ARRAY, AUTO, DEGREES, Key, Kind, MAX_TIME_STAR, POSITIVE_TIME, Title, above, between, key, number,
+    or_word, quantity, whole, within,
 };
 use super::probe::names_of;
-use super::words::{Arrangement, AttachedEdge, Motion, Outline};
+use super::shapes;
+use super::words::{AttachedEdge, Motion, Outline};
 
 /// The keys that stand together: those of a table, or of a shape of texture.
 #[derive(Clone, Copy, Debug)]
@@ -79,16 +79,10 @@ pub(super) const TEXTURE: &str = "texture";
 pub(crate) const MAX_BLOCKS: u64 = 100_000;
 /// dt* at which the scheme becomes unstable: 2/sqrt(6.5 x 0.75) = 0.9058.
 pub(super) const UNSTABLE_STEP: f64 = 0.9058;
-/// The largest coordinate or size of a texture, m.
-const MAX_LENGTH: f64 = 1e9;
 /// Least and largest property of a block over that of the whole slider.
 pub(crate) const MIN_RELATIVE: f64 = 1e-6;
 pub(crate) const MAX_RELATIVE: f64 = 1e6;
 
-const COVERAGE: Kind = number(between(0.0, 100.0), "it is in percent of the whole area");
-const DEGREES: Kind = number(within(-360.0, 360.0), "it is in degrees from x towards y");
-pub(super) const SIZE: Kind = quantity("m", above(0.0, MAX_LENGTH));
-pub(super) const COORDINATE: Kind = quantity("m", within(-MAX_LENGTH, MAX_LENGTH));
 /// A slope of a profile.
 pub(super) const RELATIVE_SLOPE: Kind = number(between(-1.0, 1.0), "1 would leave no load on an edge");
 /// A stiffness with its unit.
@@ -104,20 +98,31 @@ pub(super) const RELATIVE_PROPERTY: Kind = number(
     "it is relative, so that 1 changes nothing",
 );
 const GRADE: Kind = Kind::Special("`{ along = \"x\", from = 1, to = 0.1 }`; 1e-6 to 1e6");
-/// Every section of a case file.
-pub const SECTIONS: [Section; 11] = [
+/// The sections that are tables.
+const TABLES: [Section; 6] = [
     section(false, "slider", SLIDER),
     section(false, "load", LOAD),
     section(false, "drive", DRIVE),
     section(false, "friction", friction::KEYS),
     section(false, "time", TIME),
     section(false, "output", OUTPUT),
-    section(true, "cavity", CAVITY),
-    section(true, "groove", GROOVE),
-    section(true, "polygon", POLYGON),
-    section(true, "mask", MASK),
-    section(true, "height_map", HEIGHT_MAP),
 ];
+
+/// Every section of a case file: the tables, and the shapes of textures.
+pub const SECTIONS: [Section; TABLES.len() + shapes::ALL.len()] = {
+    let mut sections = [TABLES[0]; TABLES.len() + shapes::ALL.len()];
+    let mut place = 0;
+    while place < sections.len() {
+        sections[place] = if place < TABLES.len() {
+            TABLES[place]
+        } else {
+            let (shape, keys) = shapes::ALL[place - TABLES.len()];
+            section(true, shape, keys)
+        };
+        place += 1;
+    }
+    sections
+};
 
 #[rustfmt::skip]
 const SLIDER: &[Key] = &[
@@ -204,84 +209,6 @@ const OUTPUT: &[Key] = &[
 
 /// A time between snapshots or rows.
 pub(super) const SPACING: Kind = or_word(POSITIVE_TIME, "it is a spacing in t*", AUTO);
-
-#[rustfmt::skip]
-const CAVITY: &[Key] = &[
-    key("s", "1", Kind::Whole { least: 1, most: 64, noun: "a whole number ", remark: "" },
-        "kind of outline: an ellipse for 1, else a polygon of s + 1 curved edges").title("cavity shape", "s", ""),
-    key("w", "0", Kind::Special("-1 < w < 1 for s = 1, else -1/s to 1/s"), "how far the outline is from a circle")
-        .title("cavity shape", "w", ""),
-    key("coverage", "", COVERAGE, "size: percent of the whole area")
-        .or("lambda").title("texture coverage", "A*", "%"),
-    key("lambda", "", SIZE, "size: the length of Eq. 17, a circle's radius")
-        .or("coverage").title("cavity size", "\u{3bb}", "m"),
-    key("across", "false", Kind::Switch, "the paper's swap of x and y"),
-    key("center", "\"middle\"", Kind::Special("`\"middle\"`, or a pair within 1e9 m"), "centre of the cavity, or of its pattern"),
-    key("rotate", "0", DEGREES, "rotation, degrees from x towards y").title("rotation of the texture", "", "\u{b0}"),
-    PITCH, ARRAY_OF_COPIES, LATTICE, REPEAT, INVERT,
-];
-
-#[rustfmt::skip]
-const GROOVE: &[Key] = &[
-    key("orientation", "\"across\"", Kind::Words(names_of::<Orientation>),
-        "whether the groove runs along y (across the x axis) or along x"),
-    key("coverage", "", COVERAGE, "size: percent of the whole area").or("width").title("texture coverage", "A*", "%"),
-    key("width", "", SIZE, "size: the width").or("coverage").title("groove width", "", "m"),
-    key("offset", "\"0 um\"", COORDINATE, "distance of the groove's middle line from the slider's")
-        .title("groove offset", "", "m"),
-    PITCH, ARRAY_OF_COPIES, LATTICE, REPEAT, INVERT,
-];
-
-#[rustfmt::skip]
-const POLYGON: &[Key] = &[
-    key("points", "", Kind::Special("at least 3 pairs within 1e9 m"), "the corners"),
-    PITCH, ARRAY_OF_COPIES, LATTICE, REPEAT, INVERT,
-];
-
-#[rustfmt::skip]
-const MASK: &[Key] = &[
-    key("file", "", Kind::File(&["png", "npy"]), "an image, stretched over the slider"),
-    key("threshold", "0.5", number(between(0.0, 1.0), "it is a share of white"),
-        "a pixel of an image is dark below this share of white"),
-    PITCH, ARRAY_OF_COPIES, LATTICE, REPEAT, INVERT,
-];
-
-#[rustfmt::skip]
-const HEIGHT_MAP: &[Key] = &[
-    key("file", "", Kind::File(&["npy", "csv", "gsf", "x3p", "png", "tif", "tiff"]), "measured heights, stretched over the slider"),
-    key("bearing_percent", "", COVERAGE, "the share of the area that touches, the highest parts first")
-        .or("depth").title("bearing area", "", "%"),
-    key("depth", "", SIZE, "how far below the reference a block still touches").or("bearing_percent").title("depth of contact", "", "m"),
-    key("reference", "", COORDINATE, "height from which `depth` is counted; that of the highest block if left out"),
-    key("height_unit", "", SIZE, "the height that a value of 1 in the file means, if the file has no unit"),
-    key("pixel_size", "", Kind::Special("a length, or a pair; more than 0, at most 1e9 m"),
-        "distance of neighbouring points, if the file does not have it"),
-    PITCH, ARRAY_OF_COPIES, LATTICE, REPEAT, INVERT,
-];
-
-/// Most columns, and most rows, of all arrays of a texture together.
-pub(crate) const MAX_COUNT: u64 = 1000;
-/// Columns and rows.
-pub(super) const COUNT: Kind = whole(1, MAX_COUNT);
-
-// The keys of a pattern, which all shapes have.
-#[rustfmt::skip]
-const PITCH: Key = key("pitch", "", Kind::Special("a length, or a pair; more than 0, at most 1e9 m"),
-    "distance between neighbouring copies").title("pitch", "", "m");
-#[rustfmt::skip]
-const ARRAY_OF_COPIES: Key = key("array", "\"auto\"", Kind::Special("`\"auto\"`, or a pair from 1 to 1000"),
-    "columns and rows of copies");
-#[rustfmt::skip]
-const LATTICE: Key = key("lattice", "\"square\"", Kind::Words(names_of::<Arrangement>), "how the copies are arranged");
-#[rustfmt::skip]
-const REPEAT: Key = key("repeat", "", Kind::Special("`{ array = [3, 3], pitch = \"20 um\", lattice = \"square\" }`"),
-    "a pattern of such patterns");
-const INVERT: Key = key(
-    "invert",
-    "false",
-    Kind::Switch,
-    "whether all but the inside is textured",
-);
 
 /// A time of a snapshot in a list of them.
 pub(super) const SNAPSHOT_TIME: Kind = number(within(0.0, MAX_TIME_STAR), "snapshots are times t*");

@@ -11,7 +11,6 @@ mod drive;
 mod error;
 mod file;
 mod friction;
-mod height_map;
 mod key;
 mod key_table;
 mod keys;
@@ -21,6 +20,7 @@ mod output;
 mod overrides;
 mod pattern;
 mod probe;
+mod shapes;
 mod slider;
 mod source;
 mod synonyms;
@@ -36,9 +36,8 @@ pub use drive::{Attached, Drive, DriveSpeed, DriveStiffness, SpeedSegment};
 pub use error::{CaseError, Invalid, Place};
 pub use file::{CaseFile, FileUse, NamedFile, ParsedCase};
 pub use friction::*;
-pub use height_map::{Bearing, HeightMap};
 pub use key::{Bounds, Key, Kind, Title};
-pub(crate) use key_table::{MAX_BLOCKS, MAX_COUNT, MAX_RELATIVE, MIN_RELATIVE};
+pub(crate) use key_table::{MAX_BLOCKS, MAX_RELATIVE, MIN_RELATIVE};
 pub use key_table::{SECTIONS, Section, names_a_file, title_of};
 pub use keys::{
     STUDY_TABLES, TABLES as CASE_TABLES, exclude_each_other, header_below, partners_of,
@@ -48,15 +47,15 @@ pub use load::read_text;
 pub use motion::{Along, Load, Profile};
 pub use output::{Output, Snapshots};
 pub use overrides::Override;
+pub(crate) use pattern::MAX_COUNT;
 pub use pattern::{Array, Count, Pattern, Pitch};
 pub use probe::names_of;
+pub use shapes::*;
 pub(crate) use slider::MAX_BLOCKS_TOTAL;
 pub use slider::{Damping, Grade, Slider};
 pub use source::Source;
 pub use tables::Tables;
-pub use texture::{
-    Cavity, CavitySize, Center, DEFAULT_THRESHOLD, Groove, GrooveSize, Mask, Polygon, Shape, Texture,
-};
+pub use texture::Texture;
 pub use time::{RunTime, Step, Time};
 pub use values::AutoOr;
 pub use words::{Arrangement, AttachedEdge, Motion, Outline};

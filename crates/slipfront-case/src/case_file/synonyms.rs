@@ -1,6 +1,6 @@
 //! Words that people try first, and what a case file has in their place.
 
-use super::friction;
+use super::{friction, shapes};
 
 /// Each word, in small letters if it is longer than one, and the advice on it. Keys stand in backquotes.
 const COMMON: &[(&str, &str)] = &[
@@ -141,13 +141,6 @@ const COMMON: &[(&str, &str)] = &[
         "frames",
         "what is written when are `output.snapshots` and `output.fields`",
     ),
-    ("circle", CIRCLE),
-    ("circular", CIRCLE),
-    ("dimple", CIRCLE),
-    (
-        "dimples",
-        "many dimples are one `shape` = \"cavity\" with `array` = [4, 4]",
-    ),
     ("spacing", PITCH),
     ("period", PITCH),
     ("distance", PITCH),
@@ -165,49 +158,6 @@ const COMMON: &[(&str, &str)] = &[
     ),
     ("pattern", PATTERN),
     ("arrangement", PATTERN),
-    ("disc", CIRCLE),
-    ("disk", CIRCLE),
-    ("hole", CIRCLE),
-    ("pit", CIRCLE),
-    ("pocket", CIRCLE),
-    ("sphere", CIRCLE),
-    (
-        "ellipse",
-        "an ellipse is `shape` = \"cavity\" with `w` between -1 and 1",
-    ),
-    (
-        "triangle",
-        "a triangle is `shape` = \"cavity\" with `s` = 2 and `w` between -1/2 and 1/2, or a \"polygon\"",
-    ),
-    (
-        "square",
-        "a square is `shape` = \"cavity\" with `s` = 3 and `w` between -1/3 and 1/3, or a \"polygon\"",
-    ),
-    (
-        "rectangle",
-        "a rectangle is `shape` = \"polygon\" with its four `points`",
-    ),
-    ("line", GROOVE),
-    ("stripe", GROOVE),
-    ("channel", GROOVE),
-    (
-        "groove_across",
-        "a groove is `shape` = \"groove\" with `orientation` = \"across\"",
-    ),
-    (
-        "groove_along",
-        "a groove is `shape` = \"groove\" with `orientation` = \"along\"",
-    ),
-    (
-        "image",
-        "an image is `shape` = \"mask\" with `file` = \"mask.png\"",
-    ),
-    ("topography", HEIGHT_MAP),
-    ("heightmap", HEIGHT_MAP),
-    ("heights", HEIGHT_MAP),
-    ("png", "an image is `shape` = \"mask\" with `file` = \"mask.png\""),
-    ("radius", RADIUS),
-    ("diameter", RADIUS),
     (
         "size",
         "the size of a texture is `coverage`, or `lambda` of a cavity and `width` of a groove; that of the slider is \
@@ -270,17 +220,13 @@ const PROGRAM: &str = "speeds that follow one another, 0 for a hold, are `drive.
 const PROFILE: &str =
     "a load that rises along the slider is `load.profile` = { along = \"x\", relative_slope = 0.5 }";
 const ADHESION: &str = "adhesion adds to static friction as `friction.adhesion`, and to kinetic friction as `friction.adhesion_kinetic`";
-const CIRCLE: &str = "a circle is `shape` = \"cavity\" with `coverage`, or with `lambda`, its radius";
-const GROOVE: &str = "a straight one is `shape` = \"groove\" with `coverage` or `width`";
-const RADIUS: &str = "the radius of a circle is `lambda`";
-const HEIGHT_MAP: &str =
-    "measured heights are `shape` = \"height_map\" with `file` and `bearing_percent` or `depth`";
 const PITCH: &str = "the distance between the copies of a shape is `pitch`";
 const PATTERN: &str = "a shape is repeated by `array` = [4, 4] or `pitch` = \"12 um\", arranged by `lattice`";
 
 /// Each word with the advice on it.
 fn synonyms() -> impl Iterator<Item = &'static (&'static str, &'static str)> {
-    COMMON.iter().chain(friction::SYNONYMS.iter().copied().flatten())
+    let own = friction::SYNONYMS.iter().chain(shapes::SYNONYMS);
+    COMMON.iter().chain(own.copied().flatten())
 }
 
 /// The advice on a word.

@@ -2,12 +2,32 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::check::Check;
-use super::choice::keys_with_choice;
-use super::error::CaseError;
-use super::key_table::SIZE;
-use super::pattern::Pitch;
+use crate::case_file::check::Check;
+use crate::case_file::choice::keys_with_choice;
+use crate::case_file::error::CaseError;
+use crate::case_file::key::{COORDINATE, COVERAGE, Key, Kind, SIZE, key};
+use crate::case_file::pattern::Pitch;
 use crate::quantity::Length;
+
+#[rustfmt::skip]
+pub(super) const KEYS: &[Key] = &[
+    key("file", "", Kind::File(&["npy", "csv", "gsf", "x3p", "png", "tif", "tiff"]), "measured heights, stretched over the slider"),
+    key("bearing_percent", "", COVERAGE, "the share of the area that touches, the highest parts first")
+        .or("depth").title("bearing area", "", "%"),
+    key("depth", "", SIZE, "how far below the reference a block still touches").or("bearing_percent").title("depth of contact", "", "m"),
+    key("reference", "", COORDINATE, "height from which `depth` is counted; that of the highest block if left out"),
+    key("height_unit", "", SIZE, "the height that a value of 1 in the file means, if the file has no unit"),
+    key("pixel_size", "", Kind::Special("a length, or a pair; more than 0, at most 1e9 m"),
+        "distance of neighbouring points, if the file does not have it"),
+];
+
+pub(super) const SYNONYMS: &[(&str, &str)] = &[
+    ("topography", HEIGHT_MAP),
+    ("heightmap", HEIGHT_MAP),
+    ("heights", HEIGHT_MAP),
+];
+const HEIGHT_MAP: &str =
+    "measured heights are `shape` = \"height_map\" with `file` and `bearing_percent` or `depth`";
 
 /// A measured surface stretched over the slider: what lies below the height of contact is textured.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -35,6 +55,14 @@ pub enum Bearing {
 }
 
 impl HeightMap {
+    /// Why a height map covers no block.
+    pub(super) fn why_empty(&self) -> &'static str {
+        match self.bearing {
+            Bearing::Percent(_) => "none is lower than the lowest that touch; lower `bearing_percent`",
+            Bearing::Depth(_) => "none is below the height of contact; lower `depth`",
+        }
+    }
+
     pub(super) fn check(&self, check: &Check) -> Result<(), CaseError> {
         check.value("file", &self.file)?;
         self.bearing.check(check)?;

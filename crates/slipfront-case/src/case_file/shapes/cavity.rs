@@ -1,0 +1,203 @@
+//! `shape` = "cavity": the closed curves of Eq. 17.
+
+use std::ops::Bound::{Excluded, Included};
+
+use serde::{Deserialize, Serialize};
+use slipfront::surface;
+
+use super::outlined::{Blocks, Outlined};
+use crate::case_file::check::Check;
+use crate::case_file::choice::keys_with_choice;
+use crate::case_file::error::CaseError;
+use crate::case_file::key::{COORDINATE, COVERAGE, DEGREES, Key, Kind, SIZE, key};
+use crate::case_file::values::{Pair, length};
+use crate::quantity::Length;
+
+#[rustfmt::skip]
+pub(super) const KEYS: &[Key] = &[
+    key("s", "1", Kind::Whole { least: 1, most: 64, noun: "a whole number ", remark: "" },
+        "kind of outline: an ellipse for 1, else a polygon of s + 1 curved edges").title("cavity shape", "s", ""),
+    key("w", "0", Kind::Special("-1 < w < 1 for s = 1, else -1/s to 1/s"), "how far the outline is from a circle")
+        .title("cavity shape", "w", ""),
+    key("coverage", "", COVERAGE, "size: percent of the whole area")
+        .or("lambda").title("texture coverage", "A*", "%"),
+    key("lambda", "", SIZE, "size: the length of Eq. 17, a circle's radius")
+        .or("coverage").title("cavity size", "\u{3bb}", "m"),
+    key("across", "false", Kind::Switch, "the paper's swap of x and y"),
+    key("center", "\"middle\"", Kind::Special("`\"middle\"`, or a pair within 1e9 m"), "centre of the cavity, or of its pattern"),
+    key("rotate", "0", DEGREES, "rotation, degrees from x towards y").title("rotation of the texture", "", "\u{b0}"),
+];
+
+pub(super) const SYNONYMS: &[(&str, &str)] = &[
+    ("circle", CIRCLE),
+    ("circular", CIRCLE),
+    ("dimple", CIRCLE),
+    (
+        "dimples",
+        "many dimples are one `shape` = \"cavity\" with `array` = [4, 4]",
+    ),
+    ("disc", CIRCLE),
+    ("disk", CIRCLE),
+    ("hole", CIRCLE),
+    ("pit", CIRCLE),
+    ("pocket", CIRCLE),
+    ("sphere", CIRCLE),
+    (
+        "ellipse",
+        "an ellipse is `shape` = \"cavity\" with `w` between -1 and 1",
+    ),
+    (
+        "triangle",
+        "a triangle is `shape` = \"cavity\" with `s` = 2 and `w` between -1/2 and 1/2, or a \"polygon\"",
+    ),
+    (
+        "square",
+        "a square is `shape` = \"cavity\" with `s` = 3 and `w` between -1/3 and 1/3, or a \"polygon\"",
+    ),
+    ("radius", RADIUS),
+    ("diameter", RADIUS),
+];
+const CIRCLE: &str = "a circle is `shape` = \"cavity\" with `coverage`, or with `lambda`, its radius";
+const RADIUS: &str = "the radius of a circle is `lambda`";
+
+/// A cavity with the outline of Eq. 17.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "CavityKeys", into = "CavityKeys")]
+pub struct Cavity {
+    /// Kind of outline (s), 1 to 64: an ellipse for 1, else a polygon of s + 1 curved edges.
+    pub s: u32,
+    /// How far the outline is from a circle (w): |w| < 1 for s = 1, |w| <= 1/s, where vertices are sharp, otherwise.
+    pub w: f64,
+    /// The size: `coverage` or `lambda`.
+    pub size: CavitySize,
+    /// Whether x and y of the outline are swapped: an ellipse of w > 0 is then elongated along y, not x.
+    pub across: bool,
+    /// The centre, or that of the pattern.
+    pub center: Center,
+    /// Rotation about the centre, degrees from x towards y, -360 to 360.
+    pub rotate: f64,
+}
+
+/// The size of a cavity.
+#[derive(Clone, Debug, PartialEq)]
+pub enum CavitySize {
+    /// `coverage`: percent of the whole area (Eq. 18), all cavities of the pattern together; more than 0, less than 100.
+    Coverage(f64),
+    /// `lambda`: the length of Eq. 17, the radius of the circle that w = 0 gives, m.
+    Lambda(Length),
+}
+
+/// Where a cavity lies.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "CenterKey", into = "CenterKey")]
+pub enum Center {
+    /// `"middle"`: the middle of the slider.
+    Middle,
+    /// `[x, y]` from the slider's lower left corner, m.
+    At([Length; 2]),
+}
+
+impl Cavity {
+    pub(super) fn check(&self, check: &Check) -> Result<(), CaseError> {
+        check.value("s", &u64::from(self.s))?;
+        let (most, remark) = match self.s {
+            1 => (Excluded(1.0), "at 1 the cavity is a line".to_owned()),
+            s => (
+                Included(1.0 / f64::from(s)),
+                format!("beyond 1/s = 1/{s} the outline crosses itself"),
+            ),
+        };
+        let least = most.map(|most: f64| -most);
+        check.number_within("w", self.w, (least, most), &remark)?;
+        self.size.check(check)?;
+        if let Center::At(center) = &self.center {
+            let mut lengths = center.iter();
+            lengths.try_for_each(|length| check.value_of(&COORDINATE, "center", length))?;
+        }
+        check.value("rotate", &self.rotate)
+    }
+}
+
+impl Outlined for Cavity {
+    fn noun(&self) -> &'static str {
+        "dimple"
+    }
+
+    fn in_blocks(&self, on: &Blocks) -> (surface::Shape, Option<f64>) {
+        let (s, w) = (self.s, self.w);
+        let count = surface::n_copies(on.arrays);
+        let (lambda, percent) = match &self.size {
+            CavitySize::Coverage(percent) => (
+                surface::cavity_lambda(*percent, on.n_blocks, s, w, count),
+                *percent,
+            ),
+            CavitySize::Lambda(lambda) => {
+                let lambda = on.scales.in_blocks(lambda.si());
+                (lambda, surface::cavity_percent(lambda, on.n_blocks, s, w, count))
+            }
+        };
+        let center = match &self.center {
+            Center::Middle => [0.5 * on.lattice.nx as f64, 0.5 * on.lattice.ny as f64],
+            Center::At(center) => on.point(center),
+        };
+        let cavity = surface::Cavity {
+            center,
+            lambda,
+            s,
+            w,
+            across: self.across,
+            rotate: self.rotate,
+        };
+        (surface::Shape::Cavity(cavity), Some(percent))
+    }
+}
+
+keys_with_choice! {
+    Cavity: CavityKeys {
+        s: u32,
+        w: f64,
+        (size: CavitySize {
+            coverage: f64 => Coverage,
+            lambda: Length => Lambda,
+            _ => "a cavity needs a size: `coverage = 10` (percent of the area) or `lambda = \"8 um\"`"
+        }),
+        across: bool,
+        center: Center,
+        rotate: f64,
+    }
+}
+
+/// `center` as it stands in the file.
+#[derive(Serialize, Deserialize)]
+#[serde(
+    untagged,
+    expecting = "expected \"middle\" or a pair of lengths such as [\"25 um\", \"25 um\"]"
+)]
+enum CenterKey {
+    Word(String),
+    /// Texts, so that a length that cannot be read keeps its own message.
+    At(Pair<String>),
+}
+
+impl TryFrom<CenterKey> for Center {
+    type Error = String;
+
+    fn try_from(key: CenterKey) -> Result<Self, String> {
+        match key {
+            CenterKey::Word(word) if word == "middle" => Ok(Self::Middle),
+            CenterKey::Word(_) => {
+                Err("expected \"middle\" or a pair of lengths such as [\"25 um\", \"25 um\"]".to_owned())
+            }
+            CenterKey::At(Pair([x, y])) => Ok(Self::At([length(&x)?, length(&y)?])),
+        }
+    }
+}
+
+impl From<Center> for CenterKey {
+    fn from(center: Center) -> Self {
+        match center {
+            Center::Middle => Self::Word("middle".to_owned()),
+            Center::At(center) => Self::At(Pair(center.map(|length| length.to_string()))),
+        }
+    }
+}

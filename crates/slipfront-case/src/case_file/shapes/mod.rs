@@ -1,0 +1,133 @@
+//! The shapes of `[[texture]]`.
+//!
+//! Each is a file, with its keys, the words that people try for them, what a user calls it, and the shape in blocks that they make. What
+//! stands here is a row for each.
+
+mod cavity;
+mod groove;
+mod height_map;
+mod mask;
+mod outlined;
+mod polygon;
+
+use serde::Serialize;
+
+pub use self::cavity::{Cavity, CavitySize, Center};
+pub use self::groove::{Groove, GrooveSize};
+pub use self::height_map::{Bearing, HeightMap};
+pub use self::mask::{DEFAULT_THRESHOLD, Mask};
+pub(crate) use self::outlined::{Blocks, Outlined};
+pub use self::polygon::Polygon;
+use super::check::Check;
+use super::error::CaseError;
+use super::key::{Key, count, joined};
+use super::pattern;
+
+/// The keys of a shape, and those that all shapes have.
+macro_rules! keys {
+    ($own:expr) => {
+        &joined::<{ count(&[$own, pattern::KEYS]) }>(&[$own, pattern::KEYS])
+    };
+}
+
+/// The names of the shapes and their keys, in the order of the documentation.
+pub(super) const ALL: [(&str, &[Key]); 5] = [
+    ("cavity", keys!(cavity::KEYS)),
+    ("groove", keys!(groove::KEYS)),
+    ("polygon", keys!(polygon::KEYS)),
+    ("mask", keys!(mask::KEYS)),
+    ("height_map", keys!(height_map::KEYS)),
+];
+
+/// Words that people try first, each with the advice on it, by shape.
+pub(super) const SYNONYMS: &[&[(&str, &str)]] = &[
+    cavity::SYNONYMS,
+    groove::SYNONYMS,
+    polygon::SYNONYMS,
+    mask::SYNONYMS,
+    height_map::SYNONYMS,
+];
+
+/// The shape of a texture.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(tag = "shape", rename_all = "snake_case")]
+pub enum Shape {
+    /// A cavity with the outline of Eq. 17.
+    Cavity(Cavity),
+    /// A straight groove through the whole slider (Eq. 15).
+    Groove(Groove),
+    /// The inside of a closed polygon, by the even-odd rule.
+    Polygon(Polygon),
+    /// The dark pixels of an image, or the ones of an array.
+    Mask(Mask),
+    /// Measured topography.
+    HeightMap(HeightMap),
+}
+
+/// Where the inside of a shape comes from.
+pub(crate) enum Form<'a> {
+    /// An outline.
+    Outline(&'a dyn Outlined),
+    /// A file of blocks that are inside.
+    Mask(&'a Mask),
+    /// A file of heights.
+    HeightMap(&'a HeightMap),
+}
+
+impl Shape {
+    /// Its name in the file.
+    pub(super) fn name(&self) -> &'static str {
+        match self {
+            Self::Cavity(_) => "cavity",
+            Self::Groove(_) => "groove",
+            Self::Polygon(_) => "polygon",
+            Self::Mask(_) => "mask",
+            Self::HeightMap(_) => "height_map",
+        }
+    }
+
+    /// Where its inside comes from.
+    pub(crate) fn form(&self) -> Form<'_> {
+        match self {
+            Self::Cavity(cavity) => Form::Outline(cavity),
+            Self::Groove(groove) => Form::Outline(groove),
+            Self::Polygon(polygon) => Form::Outline(polygon),
+            Self::Mask(mask) => Form::Mask(mask),
+            Self::HeightMap(map) => Form::HeightMap(map),
+        }
+    }
+
+    /// Its outline, if that is known before any file is read.
+    pub(crate) fn outline(&self) -> Option<&dyn Outlined> {
+        match self.form() {
+            Form::Outline(outline) => Some(outline),
+            Form::Mask(_) | Form::HeightMap(_) => None,
+        }
+    }
+
+    /// Whether its outline is known before any file is read.
+    pub fn has_outline(&self) -> bool {
+        self.outline().is_some()
+    }
+
+    /// Why it covers no block, and what to look at.
+    pub(crate) fn why_empty(&self) -> &'static str {
+        match self.form() {
+            Form::Outline(_) => {
+                "it lies off the slider, or between the centres of blocks; look at its size and place"
+            }
+            Form::Mask(_) => Mask::EMPTY,
+            Form::HeightMap(map) => map.why_empty(),
+        }
+    }
+
+    pub(super) fn check(&self, check: &Check) -> Result<(), CaseError> {
+        match self {
+            Self::Cavity(cavity) => cavity.check(check),
+            Self::Groove(groove) => groove.check(check),
+            Self::Polygon(polygon) => polygon.check(check),
+            Self::Mask(mask) => mask.check(check),
+            Self::HeightMap(map) => map.check(check),
+        }
+    }
+}

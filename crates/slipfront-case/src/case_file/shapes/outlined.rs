@@ -1,0 +1,33 @@
+//! Shapes of which outlines are known before any file is read.
+
+use slipfront::surface::{self, Array};
+use slipfront::{Lattice, Scales};
+
+use crate::quantity::Length;
+
+/// Blocks over which shapes are laid.
+pub(crate) struct Blocks<'a> {
+    pub(crate) scales: &'a Scales,
+    pub(crate) lattice: &'a Lattice,
+    /// How many of them exist.
+    pub(crate) n_blocks: usize,
+    /// The pattern of the copies of a shape.
+    pub(crate) arrays: &'a [Array],
+}
+
+impl Blocks<'_> {
+    /// A point in blocks.
+    pub(super) fn point(&self, [x, y]: &[Length; 2]) -> [f64; 2] {
+        [self.scales.in_blocks(x.si()), self.scales.in_blocks(y.si())]
+    }
+}
+
+/// A shape with an outline.
+pub(crate) trait Outlined {
+    /// What its user calls one of its copies.
+    fn noun(&self) -> &'static str;
+
+    /// The shape in blocks, and the area of all copies as asked for, % of that of the blocks that exist, if it is known before the shape is
+    /// meshed.
+    fn in_blocks(&self, on: &Blocks) -> (surface::Shape, Option<f64>);
+}

@@ -1,0 +1,63 @@
+//! `shape` = "polygon": any closed line of corners.
+
+use serde::{Deserialize, Serialize};
+use slipfront::surface;
+
+use super::outlined::{Blocks, Outlined};
+use crate::case_file::check::Check;
+use crate::case_file::error::CaseError;
+use crate::case_file::key::{COORDINATE, Key, Kind, key};
+use crate::case_file::values::Pair;
+use crate::number_format::count;
+use crate::quantity::Length;
+
+#[rustfmt::skip]
+pub(super) const KEYS: &[Key] = &[
+    key("points", "", Kind::Special("at least 3 pairs within 1e9 m"), "the corners"),
+];
+
+pub(super) const SYNONYMS: &[(&str, &str)] = &[(
+    "rectangle",
+    "a rectangle is `shape` = \"polygon\" with its four `points`",
+)];
+
+/// The inside of a closed polygon.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Polygon {
+    /// The corners [x, y], at least 3, from the slider's lower left corner, m.
+    #[serde(deserialize_with = "read_points")]
+    pub points: Vec<[Length; 2]>,
+}
+
+impl Polygon {
+    pub(super) fn check(&self, check: &Check) -> Result<(), CaseError> {
+        let corners = self.points.len();
+        if corners < 3 {
+            return check.refuse("points", |key| {
+                format!(
+                    "`{key}` has {}: a polygon needs at least 3",
+                    count(corners, "point")
+                )
+            });
+        }
+        let mut lengths = self.points.iter().flatten();
+        lengths.try_for_each(|length| check.value_of(&COORDINATE, "points", length))
+    }
+}
+
+impl Outlined for Polygon {
+    fn noun(&self) -> &'static str {
+        "feature"
+    }
+
+    fn in_blocks(&self, on: &Blocks) -> (surface::Shape, Option<f64>) {
+        let points = self.points.iter().map(|point| on.point(point));
+        (surface::Shape::Polygon(points.collect()), None)
+    }
+}
+
+fn read_points<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<Vec<[Length; 2]>, D::Error> {
+    let points: Vec<Pair<Length>> = Vec::deserialize(deserializer)?;
+    Ok(points.into_iter().map(|Pair(point)| point).collect())
+}
