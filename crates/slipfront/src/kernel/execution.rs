@@ -17,7 +17,7 @@ use crate::state::State;
 /// Which kernel computes the steps.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Kernel {
-    /// One pass per equation, to be read along with the paper, for every model.
+    /// One pass over the blocks per equation, for every model.
     General,
     /// One sweep for all equations. The general kernel computes what this does not: [some laws of friction](crate::Needs::is_fused),
     /// internal viscosity, and drives that rotate.

@@ -1,0 +1,577 @@
+//! Both kernels against the reference, step by step, over random sliders with every option.
+
+use std::cell::RefCell;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use proptest::prelude::*;
+use proptest::test_runner::{TestCaseError, TestCaseResult, TestRunner};
+use slipfront::communicator::Alone;
+use slipfront::observe::{Curve, CurveRow, Scheduled};
+use slipfront::surface::{Contact, Load, mesh};
+use slipfront::{
+    Ageing, ContactSprings, Coulomb, Drive, Edge, Edges, Execution, Friction, FrictionLaw, Kernel, Model,
+    Outline, Program, RateAndState, Rotation, Simulation, Snapshot, State, Stop, Surface, VectorField,
+    Weakening, scales,
+};
+
+use crate::common::Slider;
+use crate::reference::Reference;
+use crate::slider;
+
+/// Steps of a comparison, in which blocks slip, stop, age and slip again.
+const STEPS: u64 = 40;
+
+/// What is not said by [`Slider`].
+#[derive(Clone, Debug)]
+struct Options {
+    friction: Friction,
+    /// Moduli, densities and pressures, block by block.
+    graded: [bool; 3],
+    outline: bool,
+    attached: Option<Edge>,
+    viscosity_time: f64,
+    /// Speeds of a program over V*, and after how many steps they end.
+    program: Option<Vec<(f64, u32)>>,
+    rotates: bool,
+    k_drive: f64,
+    constant_force: [f64; 2],
+    /// Scale of forces over the mean static coefficient.
+    mu_static_mean: f64,
+    /// Size of displacements and velocities at the start, and which of the blocks have a velocity: every n-th.
+    start: Option<(f64, usize)>,
+    /// Whether the reference is given the state of the kernel before each step.
+    follows: bool,
+}
+
+fn friction() -> impl Strategy<Value = Friction> {
+    let coulomb = |law, weakening, ageing| {
+        Friction::Coulomb(Coulomb {
+            law,
+            weakening,
+            ageing,
+        })
+    };
+    let weakening = || {
+        let law = |(critical_speed, ratio)| Weakening {
+            critical_speed,
+            ratio,
+        };
+        (0.01..1.0, 0.0..1.0).prop_map(law)
+    };
+    let ageing = || (0.01..3.0, 0.01..10.0).prop_map(|(beta, time)| Ageing { beta, time });
+    let projection = FrictionLaw::Projection;
+    prop_oneof![
+        4 => Just(coulomb(projection, None, None)),
+        1 => Just(coulomb(FrictionLaw::Reversal, None, None)),
+        1 => Just(coulomb(FrictionLaw::Literal, None, None)),
+        2 => weakening().prop_map(move |law| coulomb(projection, Some(law), None)),
+        1 => ageing().prop_map(move |law| coulomb(projection, None, Some(law))),
+        1 => (weakening(), ageing()).prop_map(move |(falls, grows)| coulomb(projection, Some(falls), Some(grows))),
+        2 => rate_and_state().prop_map(Friction::RateAndState),
+        2 => (0.05..2.0, prop::option::of(any::<u64>()))
+            .prop_map(|(stiffness, redraw)| Friction::ContactSprings(ContactSprings { stiffness, redraw })),
+    ]
+}
+
+prop_compose! {
+    /// So that friction is felt at all speeds: where `ln(2 V_0) - (mu_0 + b ln(V_0 theta/D_c))/a` is large there is next to none, and the
+    /// library finds speeds to an absolute error of the exponential of that times the last place alone.
+    fn rate_and_state()(
+        a in 0.005..0.03,
+        b_over_a in 0.0..3.0,
+        d_c in 0.05..1.0,
+        v_0 in 0.01..0.2,
+        mu_0 in 0.5..1.0,
+        theta_0 in 0.1..50.0,
+        slip_speed in 0.01..0.3,
+    ) -> RateAndState {
+        RateAndState { a, b: b_over_a * a, d_c, v_0, mu_0, theta_0, slip_speed }
+    }
+}
+
+prop_compose! {
+    fn options()(
+        friction in friction(),
+        graded in any::<[bool; 3]>(),
+        outline in any::<bool>(),
+        attached in prop::option::of(prop::sample::select(vec![Edge::Left, Edge::Right, Edge::Bottom, Edge::Top])),
+        viscosity_time in prop_oneof![3 => Just(0.0), 1 => 0.01..1.0],
+        program in prop::option::of(prop::collection::vec((-1.0..1.0, 1..20_u32), 1..4)),
+        rotates in prop::bool::weighted(0.25),
+        k_drive in 0.02..0.6,
+        constant_force in prop_oneof![3 => Just([0.0; 2]), 1 => [-0.3..0.3, -0.3..0.3]],
+        mu_static_mean in 0.5..2.0,
+        start in prop::option::of((prop_oneof![1e-3..0.1, 0.1..2.0], 1..5_usize)),
+        follows in any::<bool>(),
+    ) -> Options {
+        Options {
+            friction, graded, outline, attached, viscosity_time, program, rotates, k_drive, constant_force, mu_static_mean,
+            start, follows,
+        }
+    }
+}
+
+/// Numbers from `low` to `high`, one for each block.
+fn spread(n: usize, seed: u64, low: f64, high: f64) -> Vec<f64> {
+    let phase = 1.0 + (seed % 1000) as f64;
+    let one = |b: usize| low + (high - low) * 0.5 * (1.0 + (phase * (b as f64 + 1.0)).sin());
+    (0..n).map(one).collect()
+}
+
+/// What both sides compute.
+struct Setting {
+    model: Model,
+    contact: Contact,
+    dt: f64,
+    state: State,
+    follows: bool,
+}
+
+impl Setting {
+    /// None where nothing is in contact.
+    fn new(slider: &Slider, options: &Options) -> Option<Self> {
+        let (lattice, seed) = (slider.lattice(), slider.seed);
+        let n = lattice.n_blocks();
+        let given = |number: usize, low, high| {
+            options.graded[number].then(|| spread(n, seed.wrapping_add(number as u64), low, high))
+        };
+        let exists: Vec<bool> = spread(n, seed.wrapping_add(3), 0.0, 1.0)
+            .iter()
+            .map(|&x| x > 0.2)
+            .collect();
+        let outline = options.outline.then(|| Outline::new(exists, &Alone));
+        let mut body = slipfront::Slider::new(given(0, 0.25, 1.0), given(1, 0.5, 2.0), outline, &Alone);
+        if let Some(edge) = options.attached {
+            body.attach_edge(&lattice, &(0..lattice.ny), edge, &Alone);
+        }
+        body.viscosity_time = options.viscosity_time;
+        let mut contact = Contact {
+            mu_static_mean: options.mu_static_mean,
+            ..slider.contact(0..lattice.ny)
+        };
+        contact.pressure = given(2, 0.1, 2.0).or(contact.pressure);
+        let textured = mesh(&lattice, &slider.textures).textured;
+        let surface =
+            Surface::of_ranks(slider.coefficients(), textured, contact.clone(), &body, &Alone).ok()?;
+        let drive = Drive {
+            k_drive: options.k_drive,
+            constant_force: options.constant_force,
+            ..Drive::at_angle(slider.v_star, slider.degrees)
+        };
+        let damping = scales::damping(slider.omega_star);
+        let mut model = Model::new(lattice, surface, drive, damping, slider.epsilon, options.friction);
+        model = model.with_slider(body);
+        let dt = slider.dt_star * model.stable_step_limit(&Alone);
+        if let Some(parts) = &options.program {
+            let mut steps = 0;
+            let segments = parts.iter().map(|&(speed, count)| {
+                steps += count;
+                (speed * slider.v_star, f64::from(steps) * dt)
+            });
+            model.drive.program = Some(Arc::new(Program::new(segments)));
+        }
+        // A single block has no arm.
+        if options.rotates && model.n_blocks() > 1 {
+            let rotation = Rotation::about_centroid(&lattice, &model.rows, model.slider(), &Alone);
+            model.drive.rotation = Some(rotation);
+        }
+        let state = start(&model, options.start, seed);
+        Some(Self {
+            model,
+            contact,
+            dt,
+            state,
+            follows: options.follows,
+        })
+    }
+
+    /// All options, and whether this setting uses them.
+    fn options(&self) -> [(&'static str, bool); 31] {
+        let (model, body) = (&self.model, self.model.slider());
+        let coulomb = match model.friction {
+            Friction::Coulomb(coulomb) => Some(coulomb),
+            Friction::RateAndState(_) | Friction::ContactSprings(_) => None,
+        };
+        let reads = |law| coulomb.is_some_and(|coulomb| coulomb.law == law);
+        let springs = |redraws: bool| matches!(model.friction, Friction::ContactSprings(ContactSprings { redraw, .. }) if redraw.is_some() == redraws);
+        let [of_static, of_kinetic] = [self.contact.adhesion.of_static, self.contact.adhesion.of_kinetic];
+        [
+            ("projection", reads(FrictionLaw::Projection)),
+            ("reversal", reads(FrictionLaw::Reversal)),
+            ("literal", reads(FrictionLaw::Literal)),
+            (
+                "weakening",
+                coulomb.is_some_and(|coulomb| coulomb.weakening.is_some()),
+            ),
+            ("ageing", coulomb.is_some_and(|coulomb| coulomb.ageing.is_some())),
+            (
+                "rate and state",
+                matches!(model.friction, Friction::RateAndState(_)),
+            ),
+            ("contact springs", springs(false)),
+            ("contact springs drawn anew", springs(true)),
+            ("free edges", model.lattice.edges.contains(&Edges::Free)),
+            ("periodic edges", model.lattice.edges.contains(&Edges::Periodic)),
+            ("chain", model.lattice.ny == 1),
+            ("outline", body.outline.is_some()),
+            ("moduli", body.stiffness.is_some()),
+            ("densities", body.density.is_some()),
+            ("viscosity", body.viscosity_time > 0.0),
+            ("damping", model.damping > 0.0),
+            ("exact geometry", model.epsilon > 0.0),
+            ("texture", model.surface.textured.contains(&true)),
+            ("redistributed load", self.contact.load == Load::Redistributed),
+            ("kept load", self.contact.load == Load::Kept),
+            ("uneven pressure", self.contact.pressure.is_some()),
+            (
+                "adhesion",
+                coulomb.is_some() && of_static > 0.0 && of_kinetic > 0.0,
+            ),
+            (
+                "edge drive",
+                body.drive_springs
+                    .as_ref()
+                    .is_some_and(|springs| springs.relative.contains(&0.0)),
+            ),
+            ("constant force", model.drive.constant_force != [0.0; 2]),
+            ("program", model.drive.program.is_some()),
+            ("translation", model.drive.rotation.is_none()),
+            ("rotation", model.drive.rotation.is_some()),
+            ("start in motion", self.state.velocity.x.iter().any(|&v| v != 0.0)),
+            ("start at rest", self.state.velocity.x.iter().all(|&v| v == 0.0)),
+            ("single steps", self.takes_single_steps()),
+            ("chains of steps", !self.takes_single_steps()),
+        ]
+    }
+
+    /// Whether every step begins in the state of the kernel. It must where an error does not stay small by itself: where friction falls
+    /// with speed, or follows the direction of a velocity that may be nearly zero.
+    fn takes_single_steps(&self) -> bool {
+        let keeps_errors_small = match self.model.friction {
+            Friction::Coulomb(coulomb) => {
+                coulomb.law == FrictionLaw::Projection && coulomb.weakening.is_none()
+            }
+            Friction::ContactSprings(_) => true,
+            Friction::RateAndState(_) => false,
+        };
+        self.follows || !keeps_errors_small
+    }
+}
+
+/// Displacements, and velocities of every `apart`-th block, of the blocks that exist.
+fn start(model: &Model, start: Option<(f64, usize)>, seed: u64) -> State {
+    let n = model.lattice.n_blocks();
+    let Some((size, apart)) = start else {
+        return State::at_rest(n);
+    };
+    let component = |number: u64, apart: usize| {
+        let mut values = spread(n, seed.wrapping_add(number), -size, size);
+        let still = |b: &usize| !b.is_multiple_of(apart) || !model.slider().exists(*b);
+        (0..n).filter(still).for_each(|b| values[b] = 0.0);
+        values
+    };
+    State {
+        displacement: VectorField {
+            x: component(5, 1),
+            y: component(6, 1),
+        },
+        velocity: VectorField {
+            x: component(7, apart),
+            y: component(8, apart),
+        },
+    }
+}
+
+/// How far results may be apart.
+struct Tolerance {
+    force: f64,
+    velocity: f64,
+    displacement: f64,
+    /// Of sums of energies over all blocks, and of what a step adds to work and losses.
+    energy: f64,
+}
+
+impl Tolerance {
+    /// A force is a sum of some ten terms, each found in a few operations, all of which round to half of the last place of the largest:
+    /// 32 last places. In a step a velocity changes by it times dt/(m c_+), and so does what is lost of it to the next; in n steps that
+    /// begin where the one before has ended, velocities gather n such errors and displacements n^2, since no law that is followed so
+    /// amplifies them.
+    fn new(setting: &Setting, state: &State, step: u64) -> Self {
+        let (model, slider) = (&setting.model, setting.model.slider());
+        let blocks = || (0..model.lattice.n_blocks()).filter(|&b| slider.exists(b));
+        let most = |values: &VectorField| {
+            values
+                .x
+                .iter()
+                .chain(&values.y)
+                .fold(0.0_f64, |most, x| most.max(x.abs()))
+        };
+        let lightest = blocks().map(|b| slider.mass(b)).fold(f64::INFINITY, f64::min);
+        let heaviest = blocks().map(|b| slider.mass(b)).fold(0.0, f64::max);
+        let threshold = |b: usize| {
+            let surface = &model.surface;
+            surface.normal_force(b) + surface.static_limit(b) + surface.kinetic_force(b)
+        };
+        let bears = blocks().map(threshold).fold(0.0, f64::max);
+        let (distance, speed) = (most(&state.displacement), most(&state.velocity));
+        let path = model.drive.farthest_path(step as f64 * setting.dt);
+        // All springs of a block together are less stiff than 10, and dampers than that times their time.
+        let springs = 10.0 * (distance + path + slider.viscosity_time * speed) + 1.0;
+        let inertia = (1.0 + model.damping * setting.dt) * speed / setting.dt;
+        let largest = springs + bears + heaviest * inertia;
+        let steps = if setting.takes_single_steps() {
+            1.0
+        } else {
+            (step * step).max(1) as f64
+        };
+        let force = 32.0 * f64::EPSILON * largest * steps;
+        let velocity = force * setting.dt / lightest;
+        // Terms of sums are rounded to a last place of their bounds. Those on speeds assume that springs are stretched as far as blocks may
+        // have moved since displacements were measured, which is done every 16 steps.
+        let gap = distance + path + 2.0 * 16.0 * setting.dt * speed;
+        let highest = speed + (10.0 * gap + bears) * setting.dt / lightest;
+        let powers = heaviest * (1.0 + model.damping * setting.dt) / setting.dt * highest * highest;
+        let potentials = 10.0 * gap * gap;
+        let n = model.n_blocks() as f64;
+        Self {
+            force,
+            velocity,
+            displacement: velocity * setting.dt + 2.0 * f64::EPSILON * distance,
+            energy: n * 8.0 * f64::EPSILON * (powers * 2.0 * setting.dt + potentials) * steps,
+        }
+    }
+}
+
+/// How much the comparisons have seen.
+#[derive(Clone, Copy, Debug, Default)]
+struct Seen {
+    instants: usize,
+    /// Those of them at which it is not known what slides.
+    undecided: usize,
+    /// Blocks that begin to slide.
+    slips: usize,
+    /// Blocks that stop.
+    stops: usize,
+}
+
+/// The kernel against the reference over [`STEPS`] steps.
+fn compare(setting: &Setting, kernel: Kernel, seen: &mut Seen) -> TestCaseResult {
+    let execution = Execution {
+        kernel,
+        ..Execution::default()
+    };
+    let begin = Some(setting.state.clone());
+    let mut simulation = Simulation::with_execution(setting.model.clone(), setting.dt, begin, execution);
+    let mut reference = Reference::new(&setting.model, &setting.contact, setting.dt, &setting.state);
+    let mut curve = Curve::every(1);
+    // Work and losses keep the errors of all steps so far.
+    let mut energy_tolerance = 0.0;
+    let mut largest_stress = 0.0_f64;
+    for step in 0..=STEPS {
+        if step > 0 {
+            if setting.takes_single_steps() {
+                reference.move_to(&simulation.state());
+            }
+            let before = reference.slides.clone();
+            reference.step();
+            for (before, now) in before.into_iter().zip(&reference.slides) {
+                seen.slips += usize::from(!before && *now);
+                seen.stops += usize::from(before && !now);
+            }
+        }
+        let ended = simulation.run(Stop::at_step(step), &mut [Scheduled::always(&mut curve)]);
+        prop_assert!(ended.is_ok(), "{:?}", ended);
+        largest_stress = largest_stress.max(reference.largest_contact_stress());
+        let state = simulation.state();
+        let (now, tolerance) = (simulation.snapshot(), Tolerance::new(setting, &state, step));
+        energy_tolerance += tolerance.energy;
+        let tolerance = Tolerance {
+            energy: energy_tolerance,
+            ..tolerance
+        };
+        let place = |error| TestCaseError::fail(format!("{kernel:?}, step {step}: {error}"));
+        compare_blocks(&now, &reference, &tolerance).map_err(place)?;
+        compare_sums(&curve.rows[step as usize], &reference, &tolerance).map_err(place)?;
+        let stress = simulation.contact_stress_max();
+        agree("largest stress", stress, largest_stress, 2.0 * tolerance.force).map_err(place)?;
+        seen.instants += 1;
+        if is_undecided(&setting.model, &state, &reference, &tolerance) {
+            seen.undecided += 1;
+        } else {
+            compare_counts(&now, &reference).map_err(place)?;
+        }
+    }
+    Ok(())
+}
+
+fn agree(what: &str, found: f64, expected: f64, tolerance: f64) -> TestCaseResult {
+    let is_near = (found - expected).abs() <= tolerance;
+    prop_assert!(
+        is_near,
+        "{what}: {found:e}, expected {expected:e} within {tolerance:e}"
+    );
+    Ok(())
+}
+
+/// Whether rounding decides if a block slides: one that no friction holds, and that moves by no more than rounding, since the forces on it
+/// cancel or a wave has just come to it. Of others it decides with a chance of 1e-13 per block and step, where a force comes so close to
+/// a threshold.
+fn is_undecided(model: &Model, state: &State, reference: &Reference, tolerance: &Tolerance) -> bool {
+    let is_tiny = |[x, y]: [f64; 2]| {
+        let speed = x.hypot(y);
+        speed > 0.0 && speed <= 2.0 * tolerance.velocity
+    };
+    let is_free = |b: &usize| model.surface.static_limit(*b) == 0.0;
+    let mut free = (0..reference.velocity.len()).filter(is_free);
+    free.any(|b| is_tiny(state.velocity.at(b)) || is_tiny(reference.velocity[b]))
+}
+
+/// Motion of every block and the forces on it.
+fn compare_blocks(now: &Snapshot, reference: &Reference, tolerance: &Tolerance) -> TestCaseResult {
+    for b in (0..reference.velocity.len()).filter(|&b| now.model.slider().exists(b)) {
+        let block = now.block(b);
+        for (what, found, expected, tolerance) in [
+            (
+                "displacement",
+                block.displacement,
+                reference.displacement[b],
+                tolerance.displacement,
+            ),
+            (
+                "drive",
+                block.force_drive,
+                reference.force_drive[b],
+                tolerance.force,
+            ),
+            (
+                "lattice",
+                block.force_lattice,
+                reference.force_lattice[b],
+                tolerance.force,
+            ),
+            (
+                "friction",
+                block.force_friction,
+                reference.force_friction[b],
+                tolerance.force,
+            ),
+            (
+                "velocity",
+                block.velocity,
+                reference.velocity[b],
+                tolerance.velocity,
+            ),
+        ] {
+            for axis in 0..2 {
+                agree(what, found[axis], expected[axis], tolerance)?;
+            }
+        }
+        let stress = reference.contact_stress(b);
+        agree(
+            "contact stress",
+            block.contact_stress(),
+            stress,
+            2.0 * tolerance.force,
+        )?;
+    }
+    Ok(())
+}
+
+/// What slides now, and when it first has.
+fn compare_counts(now: &Snapshot, reference: &Reference) -> TestCaseResult {
+    let bits = |times: &[f64]| -> Vec<u64> { times.iter().map(|time| time.to_bits()).collect() };
+    prop_assert_eq!(bits(&now.first_slip_time_star()), bits(&reference.first_slips));
+    prop_assert_eq!([now.totals.n_sliding, now.totals.n_slipping], reference.sliding());
+    // A quotient of whole numbers.
+    agree("N*", now.point.sliding_percent, reference.n_star(), 1e-13)
+}
+
+/// mu* and the account of energy.
+fn compare_sums(row: &CurveRow, reference: &Reference, tolerance: &Tolerance) -> TestCaseResult {
+    let (point, energies, losses) = (&row.point, &row.energies, reference.losses());
+    let [mu_star, mu_lateral_star] = reference.mu_star();
+    agree("mu*", point.mu_star, mu_star, tolerance.force)?;
+    agree(
+        "lateral mu*",
+        point.mu_lateral_star,
+        mu_lateral_star,
+        tolerance.force,
+    )?;
+    for (what, found, expected) in [
+        (
+            "kinetic energy",
+            energies.stored.kinetic,
+            reference.kinetic_energy(),
+        ),
+        (
+            "lattice energy",
+            energies.stored.lattice,
+            reference.lattice_energy(),
+        ),
+        (
+            "drive energy",
+            energies.stored.drive_springs,
+            reference.drive_energy(),
+        ),
+        (
+            "contact energy",
+            energies.contact_springs,
+            reference.contact_energy(),
+        ),
+        ("work", energies.work, losses.work),
+        ("friction loss", energies.friction_loss, losses.friction),
+        ("damping loss", energies.damping_loss, losses.damping),
+        ("viscous loss", energies.viscous_loss, losses.viscosity),
+        (
+            "broken springs",
+            energies.broken_springs_loss,
+            losses.broken_springs,
+        ),
+    ] {
+        agree(what, found, expected, tolerance.energy)?;
+    }
+    let state = reference.mean_state();
+    // Each step rounds the state of a contact some ten times.
+    agree(
+        "state",
+        row.mean_state,
+        state,
+        1e-14 * (row.step + 1) as f64 * state,
+    )
+}
+
+/// Both kernels take single steps from arbitrary states, and chains of them, as the reference does, whatever the options.
+#[test]
+fn kernels_agree_with_the_reference() {
+    let reached = RefCell::new(BTreeMap::<&str, usize>::new());
+    let seen = RefCell::new(Seen::default());
+    let config = ProptestConfig {
+        cases: 600,
+        failure_persistence: None,
+        ..ProptestConfig::default()
+    };
+    let outcome = TestRunner::new(config).run(&(slider(), options()), |(slider, options)| {
+        let Some(setting) = Setting::new(&slider, &options) else {
+            return Err(TestCaseError::reject("nothing is in contact"));
+        };
+        let fused = (Kernel::Fused.for_model(&setting.model) == Kernel::Fused).then_some(Kernel::Fused);
+        for kernel in fused.into_iter().chain([Kernel::General]) {
+            compare(&setting, kernel, &mut seen.borrow_mut())?;
+        }
+        let used = setting.options().into_iter();
+        for (option, is_used) in used.chain([("fused kernel", fused.is_some())]) {
+            *reached.borrow_mut().entry(option).or_insert(0) += usize::from(is_used);
+        }
+        Ok(())
+    });
+    outcome.unwrap_or_else(|failure| panic!("{failure}"));
+    let (reached, seen) = (reached.into_inner(), seen.into_inner());
+    for (option, count) in reached {
+        assert!(count > 0, "no slider has this option: {option}");
+    }
+    assert!(
+        10 * seen.undecided < seen.instants && seen.slips > 1000 && seen.stops > 1000,
+        "{seen:?}"
+    );
+}

@@ -1,0 +1,86 @@
+//! Static and kinetic friction with memory (Eq. 4), in its three readings; weakening with speed, and ageing.
+
+use slipfront::{Ageing, FrictionLaw, Weakening};
+
+use super::step::{Motion, Update};
+use super::vector::{Vector, dot, length, sum, times, unit};
+
+/// Share of kinetic friction that is left at a speed: `ratio + (1 - ratio)/(1 + |v|/v_c)`.
+pub(crate) fn weakened(law: Option<Weakening>, speed: f64) -> f64 {
+    law.map_or(1.0, |law| {
+        law.ratio + (1.0 - law.ratio) / (1.0 + speed / law.critical_speed)
+    })
+}
+
+/// Static friction after `age` over that of age 0: `1 + beta ln(1 + t_stuck/tau)`.
+pub(crate) fn aged(law: Option<Ageing>, age: f64) -> f64 {
+    law.map_or(1.0, |law| 1.0 + law.beta * (1.0 + age / law.time).ln())
+}
+
+/// The update of a block on which `force` acts beside friction, which bears `holds` while it is stuck and `slows` while it slides.
+pub(crate) fn update(law: FrictionLaw, motion: &Motion, force: Vector, holds: f64, slows: f64) -> Update {
+    match law {
+        FrictionLaw::Projection => projection(motion, force, holds, slows),
+        FrictionLaw::Reversal => reversal(motion, force, holds, slows),
+        FrictionLaw::Literal => literal(motion, force, holds, slows),
+    }
+}
+
+/// A block that stays where it is: friction balances the other forces.
+fn stuck(force: Vector) -> Update {
+    Update {
+        velocity: [0.0, 0.0],
+        friction: times(-1.0, force),
+    }
+}
+
+/// Moreau's time-stepping: kinetic friction takes `q = dt mu_k F_n/(m c_+)` from the velocity that the block would have without it.
+fn projection(motion: &Motion, force: Vector, holds: f64, slows: f64) -> Update {
+    if motion.is_at_rest() && length(force) <= holds {
+        return stuck(force);
+    }
+    let free = motion.accelerated(force);
+    let most = motion.change_of_velocity(slows);
+    if length(free) <= most {
+        return stuck(force);
+    }
+    Update {
+        velocity: times(1.0 - most / length(free), free),
+        friction: times(-slows, unit(free)),
+    }
+}
+
+/// Explicit friction along `-v`, along minus the force for a block that starts; a block whose velocity turns round within the static
+/// threshold sticks.
+fn reversal(motion: &Motion, force: Vector, holds: f64, slows: f64) -> Update {
+    let starts = motion.is_at_rest();
+    // D12: what does not overcome kinetic friction does not start.
+    if starts && length(force) <= holds.max(slows) {
+        return stuck(force);
+    }
+    let friction = times(-slows, unit(if starts { force } else { motion.velocity }));
+    let velocity = motion.accelerated(sum(force, friction));
+    let turns = dot(velocity, motion.velocity) <= 0.0;
+    if !starts && turns && length(force) <= holds {
+        return stuck(force);
+    }
+    Update { velocity, friction }
+}
+
+/// Eq. 4 as printed but for the sign (D1): friction balances the forces below the threshold, at any velocity.
+fn literal(motion: &Motion, force: Vector, holds: f64, slows: f64) -> Update {
+    let against = if motion.is_at_rest() {
+        force
+    } else {
+        motion.velocity
+    };
+    let friction = if length(force) <= holds {
+        times(-1.0, force)
+    } else {
+        times(-slows, unit(against))
+    };
+    Update {
+        velocity: motion.accelerated(sum(force, friction)),
+        friction,
+    }
+}

@@ -1,0 +1,85 @@
+//! The drive: springs whose far ends move along a path X(t) (Eq. 2).
+
+use slipfront::Model;
+
+use super::lattice::{exists, place};
+use super::vector::{Vector, difference, left_of, length, sum, times};
+
+/// Path X of the far ends at `time`: `V t`, or the sum of the parts of a program.
+pub(crate) fn path(model: &Model, time: f64) -> f64 {
+    let Some(program) = &model.drive.program else {
+        return model.drive.v_star * time;
+    };
+    let segments = program.segments();
+    let mut path = 0.0;
+    for (n, segment) in segments.iter().enumerate() {
+        let end = segments.get(n + 1).map_or(time, |next| next.from_star.min(time));
+        path += segment.v_star * (end - segment.from_star).max(0.0);
+    }
+    path
+}
+
+/// Middle of all blocks that exist, about which a rotation turns.
+fn middle(model: &Model) -> Vector {
+    let (mut total, mut count) = ([0.0, 0.0], 0.0);
+    for b in (0..model.lattice.n_blocks()).filter(|&b| exists(model, b)) {
+        total = sum(total, place(model, b));
+        count += 1.0;
+    }
+    [total[0] / count, total[1] / count]
+}
+
+/// Arms **r** of all blocks of a rotation, from its axis to their middles; 0 for blocks that do not exist.
+fn arms(model: &Model) -> Vec<Vector> {
+    let axis = middle(model);
+    let arm = |b| {
+        if exists(model, b) {
+            difference(place(model, b), axis)
+        } else {
+            [0.0, 0.0]
+        }
+    };
+    (0..model.lattice.n_blocks()).map(arm).collect()
+}
+
+/// Directions **g** of the far ends over all blocks: **d** of a translation, `z x r/r_max` of a rotation.
+pub(crate) fn directions(model: &Model) -> Vec<Vector> {
+    if model.drive.rotation.is_none() {
+        return vec![model.drive.direction; model.lattice.n_blocks()];
+    }
+    let arms = arms(model);
+    let largest = arms.iter().map(|&arm| length(arm)).fold(0.0, f64::max);
+    arms.iter()
+        .map(|&arm| left_of(times(1.0 / largest, arm)))
+        .collect()
+}
+
+/// Stiffness of the drive spring of block `b` over `k_s`; 0 where there is none.
+fn relative_stiffness(model: &Model, b: usize) -> f64 {
+    match &model.slider().drive_springs {
+        _ if !exists(model, b) => 0.0,
+        Some(springs) => springs.relative[b],
+        None => 1.0,
+    }
+}
+
+/// Stiffness `k_s,i` of the drive spring of block `b`.
+pub(crate) fn stiffness(model: &Model, b: usize) -> f64 {
+    model.drive.k_drive * relative_stiffness(model, b)
+}
+
+/// Force of the drive spring (Eq. 2): `F_s = k_s,i (X g_i - u_i)`.
+pub(crate) fn spring_force(stiffness: f64, path: f64, direction: Vector, displacement: Vector) -> Vector {
+    times(stiffness, difference(times(path, direction), displacement))
+}
+
+/// The constant force beside the drive spring of block `b`, in proportion to its stiffness: along x and y, of a rotation along the
+/// direction **g** of the block and across it.
+pub(crate) fn constant_force(model: &Model, b: usize, direction: Vector) -> Vector {
+    let [along, across] = model.drive.constant_force;
+    let force = match model.drive.rotation {
+        None => [along, across],
+        Some(_) => sum(times(along, direction), times(across, left_of(direction))),
+    };
+    times(relative_stiffness(model, b), force)
+}

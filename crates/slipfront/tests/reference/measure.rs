@@ -1,0 +1,183 @@
+//! What is observed of the whole slider at t_n.
+
+use slipfront::Friction;
+
+use super::springs::elastic_energy;
+use super::vector::{Vector, difference, dot, left_of, length, sum, times};
+use super::{Reference, drive};
+
+/// Powers at an instant.
+#[derive(Clone, Copy, Debug, Default)]
+struct Powers {
+    /// Force of the drive springs along their direction, `sum F_s . g`, which works along the path X.
+    pull: f64,
+    constant_force: f64,
+    friction: f64,
+    damping: f64,
+    viscosity: f64,
+}
+
+/// Work of the drive and losses since the start.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Losses {
+    pub(crate) work: f64,
+    pub(crate) friction: f64,
+    pub(crate) damping: f64,
+    pub(crate) viscosity: f64,
+    pub(crate) broken_springs: f64,
+    /// Those of the instant before.
+    before: Option<Powers>,
+}
+
+impl Reference<'_> {
+    /// Velocity of block `b` at t_n, the mean of the half steps around it.
+    fn velocity_now(&self, b: usize) -> Vector {
+        times(0.5, sum(self.velocity_before[b], self.velocity[b]))
+    }
+
+    /// Pull of the drive spring of block `b`, without the constant force.
+    fn pull(&self, b: usize) -> Vector {
+        difference(self.force_drive[b], self.blocks[b].constant_force)
+    }
+
+    fn sum_over(&self, of_block: impl Fn(usize) -> f64) -> f64 {
+        (0..self.blocks.len()).map(of_block).sum()
+    }
+
+    /// Number of blocks that exist, N.
+    fn n_blocks(&self) -> f64 {
+        self.blocks.iter().filter(|block| block.exists).count() as f64
+    }
+
+    /// mu* and the component to the left of the drive (Eq. 9): of a translation `sum F_s . d/N`, of a rotation `sum F_s . (z x r)/sum r`,
+    /// the torque over the sum of radii.
+    pub(crate) fn mu_star(&self) -> [f64; 2] {
+        let over = match self.model.drive.rotation {
+            None => self.n_blocks(),
+            Some(_) => self.sum_over(|b| length(self.blocks[b].direction)),
+        };
+        let along = self.sum_over(|b| dot(self.pull(b), self.blocks[b].direction));
+        let across = self.sum_over(|b| dot(self.pull(b), left_of(self.blocks[b].direction)));
+        [along / over, across / over]
+    }
+
+    /// Number of blocks that slide, and of those in contact that do.
+    pub(crate) fn sliding(&self) -> [usize; 2] {
+        let slides = |b: &usize| self.slides[*b];
+        let all = (0..self.blocks.len()).filter(slides);
+        let in_contact = all.clone().filter(|&b| self.blocks[b].in_contact);
+        [all.count(), in_contact.count()]
+    }
+
+    /// N*, in % of all blocks that exist (Eq. 11a).
+    pub(crate) fn n_star(&self) -> f64 {
+        100.0 * self.sliding()[0] as f64 / self.n_blocks()
+    }
+
+    /// Contact stress `tau_c = |F_f + F_c|` (Eq. 10).
+    pub(crate) fn contact_stress(&self, b: usize) -> f64 {
+        length(sum(self.force_friction[b], self.force_lattice[b]))
+    }
+
+    /// The largest contact stress of the blocks in contact.
+    pub(crate) fn largest_contact_stress(&self) -> f64 {
+        let in_contact = (0..self.blocks.len()).filter(|&b| self.blocks[b].in_contact);
+        in_contact.map(|b| self.contact_stress(b)).fold(0.0, f64::max)
+    }
+
+    /// Mean state of the contacts under rate and state, 0 under other laws.
+    pub(crate) fn mean_state(&self) -> f64 {
+        let in_contact = |b: usize| f64::from(u8::from(self.blocks[b].in_contact));
+        let state = |b: usize| in_contact(b) * self.memory[b].theta;
+        self.sum_over(state) / self.sum_over(in_contact)
+    }
+
+    /// Kinetic energy, `m v^2/2` as the mean of the half steps around t_n.
+    pub(crate) fn kinetic_energy(&self) -> f64 {
+        let square = |v: Vector| dot(v, v);
+        self.sum_over(|b| {
+            let mean = 0.5 * (square(self.velocity_before[b]) + square(self.velocity[b]));
+            0.5 * self.blocks[b].mass * mean
+        })
+    }
+
+    /// Energy of the springs between blocks, `k_ij (r_ij - d_ij)^2/2`.
+    pub(crate) fn lattice_energy(&self) -> f64 {
+        let epsilon = self.model.epsilon;
+        self.sum_over(|b| elastic_energy(b, &self.blocks[b].springs, &self.displacement, epsilon))
+    }
+
+    /// Energy of the drive springs, `k_s,i (X g_i - u_i)^2/2`.
+    pub(crate) fn drive_energy(&self) -> f64 {
+        let path = drive::path(self.model, self.time());
+        self.sum_over(|b| {
+            let block = &self.blocks[b];
+            let stretch = difference(times(path, block.direction), self.displacement[b]);
+            0.5 * block.drive_stiffness * dot(stretch, stretch)
+        })
+    }
+
+    /// Energy of the springs in contacts, `k_t (u - a)^2/2`; of those that break now it is lost.
+    pub(crate) fn contact_energy(&self) -> f64 {
+        let Friction::ContactSprings(law) = self.model.friction else {
+            return 0.0;
+        };
+        self.sum_over(|b| {
+            let stretch = difference(self.displacement[b], self.memory[b].anchor);
+            let is_held = self.blocks[b].in_contact;
+            if is_held {
+                0.5 * law.stiffness * dot(stretch, stretch)
+            } else {
+                0.0
+            }
+        })
+    }
+
+    /// Energy of the springs in contacts that break now, which is lost.
+    fn broken_energy(&self) -> f64 {
+        let Friction::ContactSprings(law) = self.model.friction else {
+            return 0.0;
+        };
+        let broken = |b: usize| self.broken[b].map_or(0.0, |stretch| dot(stretch, stretch));
+        self.sum_over(|b| 0.5 * law.stiffness * broken(b))
+    }
+
+    /// Powers at t_n. What springs in contacts take is stored, and lost when they break.
+    fn powers(&self) -> Powers {
+        let is_stored = matches!(self.model.friction, Friction::ContactSprings(_));
+        let friction = |b: usize| -dot(self.force_friction[b], self.velocity_now(b));
+        let damping = |b: usize| {
+            let v = self.velocity_now(b);
+            self.model.damping * self.blocks[b].mass * dot(v, v)
+        };
+        Powers {
+            pull: self.sum_over(|b| dot(self.pull(b), self.blocks[b].direction)),
+            constant_force: self.sum_over(|b| dot(self.blocks[b].constant_force, self.velocity_now(b))),
+            friction: if is_stored { 0.0 } else { self.sum_over(friction) },
+            damping: self.sum_over(damping),
+            viscosity: self.sum_over(|b| -dot(self.force_dampers[b], self.velocity_now(b))),
+        }
+    }
+
+    /// Adds the step that ends at t_n, by the trapezoidal rule: the work of the drive is `(F_n-1 + F_n)/2 (X_n - X_n-1)`.
+    pub(super) fn add_losses(&mut self) {
+        let now = self.powers();
+        let broken = self.broken_energy();
+        let losses = &mut self.losses;
+        losses.broken_springs += broken;
+        if let Some(before) = losses.before.replace(now) {
+            let mean = |of: fn(&Powers) -> f64| 0.5 * (of(&before) + of(&now));
+            let paths = [self.step - 1, self.step].map(|step| drive::path(self.model, step as f64 * self.dt));
+            let work_of_drive = mean(|powers| powers.pull) * (paths[1] - paths[0]);
+            losses.work += work_of_drive + self.dt * mean(|powers| powers.constant_force);
+            losses.friction += self.dt * mean(|powers| powers.friction);
+            losses.damping += self.dt * mean(|powers| powers.damping);
+            losses.viscosity += self.dt * mean(|powers| powers.viscosity);
+        }
+    }
+
+    /// Work and losses since the start.
+    pub(crate) fn losses(&self) -> Losses {
+        self.losses
+    }
+}

@@ -1,0 +1,275 @@
+//! The model of `docs/model.md`, to be read beside the paper: one thread, plain loops, one function per equation, every option.
+//!
+//! It takes lattices, surfaces and parameters from the library, and computes everything itself: no force, threshold, friction or sum
+//! is the library's. Units are those of the library (Eq. 11).
+
+mod contact_springs;
+mod coulomb;
+mod drive;
+mod lattice;
+mod load;
+mod measure;
+mod rate_and_state;
+mod springs;
+mod step;
+mod vector;
+
+use slipfront::surface::Contact;
+use slipfront::{Friction, Model, State};
+
+use self::lattice::Spring;
+use self::load::Threshold;
+use self::measure::Losses;
+use self::step::{Motion, Update};
+use self::vector::{Vector, difference, length, sum, times};
+
+/// What never changes of a block.
+#[derive(Clone, Debug)]
+struct Block {
+    exists: bool,
+    in_contact: bool,
+    mass: f64,
+    springs: Vec<Spring>,
+    /// Stiffness `k_s,i` of its drive spring.
+    drive_stiffness: f64,
+    /// Direction **g** of the far end of its drive spring.
+    direction: Vector,
+    /// Constant force beside its drive spring.
+    constant_force: Vector,
+    normal_force: f64,
+    kinetic: Threshold,
+}
+
+/// What a law of friction remembers of a block.
+#[derive(Clone, Copy, Debug)]
+struct Memory {
+    /// When it has stopped.
+    stopped_at: f64,
+    /// State of its contact.
+    theta: f64,
+    /// Where the spring of its contact has no force.
+    anchor: Vector,
+    /// How often that has broken.
+    breaks: u64,
+}
+
+/// The slider at t_n. Friction and sliding are those of the update that starts there.
+pub(crate) struct Reference<'a> {
+    model: &'a Model,
+    contact: &'a Contact,
+    dt: f64,
+    step: u64,
+    blocks: Vec<Block>,
+    memory: Vec<Memory>,
+    /// **u** at t_n.
+    pub(crate) displacement: Vec<Vector>,
+    /// Half a step before t_n.
+    velocity_before: Vec<Vector>,
+    /// Half a step after t_n.
+    pub(crate) velocity: Vec<Vector>,
+    /// `F_s` with the constant force.
+    pub(crate) force_drive: Vec<Vector>,
+    /// `F_v` of the dampers.
+    force_dampers: Vec<Vector>,
+    /// `F_c` with the dampers.
+    pub(crate) force_lattice: Vec<Vector>,
+    /// `F_f`.
+    pub(crate) force_friction: Vec<Vector>,
+    /// Stretch `u - a` of the springs that break now.
+    broken: Vec<Option<Vector>>,
+    pub(crate) slides: Vec<bool>,
+    /// The t_n of the first slip of each block in contact; NaN before.
+    pub(crate) first_slips: Vec<f64>,
+    losses: Losses,
+}
+
+impl<'a> Reference<'a> {
+    /// The slider at t = 0, with the velocities of the state half a step before.
+    pub(crate) fn new(model: &'a Model, contact: &'a Contact, dt: f64, state: &State) -> Self {
+        let n = model.lattice.n_blocks();
+        let (surface, directions) = (&model.surface, drive::directions(model));
+        let exists: Vec<bool> = (0..n).map(|b| lattice::exists(model, b)).collect();
+        let normal_forces = load::normal_forces(surface, contact, &exists);
+        let block = |b: usize| {
+            let (load, in_contact) = (normal_forces[b], !surface.textured[b]);
+            let adhesion = contact.adhesion.of_kinetic;
+            Block {
+                exists: exists[b],
+                in_contact,
+                mass: lattice::mass(model, b),
+                springs: lattice::springs(model, b),
+                drive_stiffness: drive::stiffness(model, b),
+                direction: directions[b],
+                constant_force: drive::constant_force(model, b, directions[b]),
+                normal_force: load,
+                kinetic: Threshold::new(surface.mu_kinetic[b], contact, load, in_contact, adhesion),
+            }
+        };
+        let theta = match model.friction {
+            Friction::RateAndState(law) => law.theta_0,
+            Friction::Coulomb(_) | Friction::ContactSprings(_) => 0.0,
+        };
+        let memory = Memory {
+            stopped_at: 0.0,
+            theta,
+            anchor: [0.0, 0.0],
+            breaks: 0,
+        };
+        let zeros = vec![[0.0; 2]; n];
+        let mut reference = Self {
+            model,
+            contact,
+            dt,
+            step: 0,
+            blocks: (0..n).map(block).collect(),
+            memory: vec![memory; n],
+            displacement: zeros.clone(),
+            velocity_before: zeros.clone(),
+            velocity: zeros.clone(),
+            force_drive: zeros.clone(),
+            force_dampers: zeros.clone(),
+            force_lattice: zeros.clone(),
+            force_friction: zeros,
+            broken: vec![None; n],
+            slides: vec![false; n],
+            first_slips: vec![f64::NAN; n],
+            losses: Losses::default(),
+        };
+        reference.move_to(state);
+        reference.velocity_before.clone_from(&reference.velocity);
+        reference.evaluate();
+        reference
+    }
+
+    /// Puts blocks where a state has them, with its velocities for those half a step after t_n; memory stays.
+    pub(crate) fn move_to(&mut self, state: &State) {
+        let [u, v] = [&state.displacement, &state.velocity];
+        for b in 0..self.blocks.len() {
+            self.displacement[b] = [u.x[b], u.y[b]];
+            self.velocity[b] = [v.x[b], v.y[b]];
+        }
+    }
+
+    /// t_n, a product and no sum.
+    fn time(&self) -> f64 {
+        self.step as f64 * self.dt
+    }
+
+    /// From t_n to t_n+1: the displacements (Eq. 8), what contacts remember of the way, and all that belongs to the new instant.
+    pub(crate) fn step(&mut self) {
+        self.step += 1;
+        for b in 0..self.blocks.len() {
+            let moved = times(self.dt, self.velocity[b]);
+            self.displacement[b] = sum(self.displacement[b], moved);
+            if let Friction::RateAndState(law) = &self.model.friction {
+                let speed = length(self.velocity[b]);
+                self.memory[b].theta = rate_and_state::evolved(law, self.memory[b].theta, speed, self.dt);
+            }
+        }
+        self.velocity_before.clone_from(&self.velocity);
+        self.evaluate();
+    }
+
+    /// Forces at t_n (Eqs. 2, 3), friction (Eq. 4), velocities half a step later (Eqs. 5 to 8), and what is measured.
+    fn evaluate(&mut self) {
+        for b in 0..self.blocks.len() {
+            self.force_drive[b] = self.drive_force(b);
+            self.force_dampers[b] = self.damper_force(b);
+            self.force_lattice[b] = sum(self.elastic_force(b), self.force_dampers[b]);
+        }
+        for b in 0..self.blocks.len() {
+            let update = self.friction(b);
+            self.velocity[b] = update.velocity;
+            self.force_friction[b] = update.friction;
+            if self.slides[b] && self.blocks[b].in_contact && self.first_slips[b].is_nan() {
+                self.first_slips[b] = self.time();
+            }
+        }
+        self.add_losses();
+    }
+
+    /// Eq. 2, and the constant force.
+    fn drive_force(&self, b: usize) -> Vector {
+        let (block, path) = (&self.blocks[b], drive::path(self.model, self.time()));
+        let u = self.displacement[b];
+        let spring = drive::spring_force(block.drive_stiffness, path, block.direction, u);
+        sum(spring, block.constant_force)
+    }
+
+    /// Eq. 3.
+    fn elastic_force(&self, b: usize) -> Vector {
+        let (springs, epsilon) = (&self.blocks[b].springs, self.model.epsilon);
+        springs::elastic_force(b, springs, &self.displacement, epsilon)
+    }
+
+    /// Internal viscosity.
+    fn damper_force(&self, b: usize) -> Vector {
+        let (u, v) = (&self.displacement, &self.velocity_before);
+        let (time, epsilon) = (self.model.slider().viscosity_time, self.model.epsilon);
+        springs::damper_force(b, &self.blocks[b].springs, u, v, time, epsilon)
+    }
+
+    /// The update of block `b` (Eqs. 4 to 8) by the law of friction, which takes note of it.
+    fn friction(&mut self, b: usize) -> Update {
+        let (block, memory, now) = (&self.blocks[b], self.memory[b], self.time());
+        let force = sum(self.force_drive[b], self.force_lattice[b]);
+        let motion = Motion {
+            velocity: self.velocity_before[b],
+            mass: block.mass,
+            damping: self.model.damping,
+            dt: self.dt,
+        };
+        match &self.model.friction {
+            Friction::Coulomb(law) => {
+                let age = now - memory.stopped_at;
+                let coefficient = self.model.surface.mu_static[b];
+                let holds = self
+                    .static_threshold(b, coefficient)
+                    .scaled(coulomb::aged(law.ageing, age));
+                let slows = block
+                    .kinetic
+                    .scaled(coulomb::weakened(law.weakening, length(motion.velocity)));
+                let update = coulomb::update(law.law, &motion, force, holds, slows);
+                self.slides[b] = update.velocity != [0.0, 0.0];
+                if !motion.is_at_rest() && !self.slides[b] {
+                    self.memory[b].stopped_at = now;
+                }
+                update
+            }
+            Friction::RateAndState(law) => {
+                let update = rate_and_state::update(law, &motion, force, block.normal_force, memory.theta);
+                self.slides[b] = length(update.velocity) > law.slip_speed;
+                update
+            }
+            Friction::ContactSprings(law) if block.in_contact => {
+                let coefficient = contact_springs::coefficient(law, &self.model.surface, b, memory.breaks);
+                let holds = self.static_threshold(b, coefficient).scaled(1.0);
+                let stretch = difference(self.displacement[b], memory.anchor);
+                let (update, breaks) = contact_springs::update(law, &motion, force, stretch, holds);
+                self.slides[b] = breaks;
+                self.broken[b] = breaks.then_some(stretch);
+                if breaks {
+                    self.memory[b].anchor = self.displacement[b];
+                    self.memory[b].breaks += 1;
+                }
+                update
+            }
+            Friction::ContactSprings(_) => Update {
+                velocity: motion.accelerated(force),
+                friction: [0.0, 0.0],
+            },
+        }
+    }
+
+    /// Static threshold of block `b` at this coefficient.
+    fn static_threshold(&self, b: usize, coefficient: f64) -> Threshold {
+        let (block, adhesion) = (&self.blocks[b], self.contact.adhesion.of_static);
+        Threshold::new(
+            coefficient,
+            self.contact,
+            block.normal_force,
+            block.in_contact,
+            adhesion,
+        )
+    }
+}
