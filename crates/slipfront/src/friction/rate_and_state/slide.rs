@@ -81,8 +81,15 @@ pub(super) fn slide<const BLOCKS: usize>(
     };
     for k in 0..BLOCKS {
         let is_held = is_held(k);
-        let speed = 0.5 * (roots.rising[k] - roots.falling[k]);
-        let friction = normal_force[k] * a * roots.w[k];
+        let w = roots.w[k].max(0.0);
+        let friction = normal_force[k] * a * w;
+        let (rising, falling) = (roots.rising[k], roots.falling[k]);
+        let [sinh, cosh] = [rising - falling, rising + falling].map(|sum| 0.5 * sum);
+        // Rounding leaves an error of cosh(w) e^-L, in units of the last place, in the one, and of these in the other: where friction has
+        // nearly vanished sinh is the difference of two large numbers.
+        let left = (equations.target[k] - equations.per_unit[k] * w).max(0.0);
+        let is_left = cosh > equations.target[k] + equations.per_unit[k];
+        let speed = if is_left { left } else { sinh };
         sliding.speed[k] = if is_held { speed } else { free[k] };
         sliding.friction[k] = if is_held { friction } else { 0.0 };
     }
