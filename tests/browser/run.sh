@@ -1,5 +1,5 @@
 #!/bin/bash
-# Lets a real browser, Debian's Chromium, use the laboratory: page and server together.
+# Checks the types of the page of the laboratory, and lets a real browser, Debian's Chromium, use it: page and server together.
 #
 #     tests/browser/run.sh
 #
@@ -17,5 +17,6 @@ if ! [ -x /usr/bin/chromium ]; then
 fi
 [ -n "${SLIPFRONT:-}" ] || cargo build --quiet --locked -p slipfront-cli
 npm ci --prefix tests/browser --silent --no-audit --no-fund || exit 2
+tests/browser/node_modules/.bin/tsc --project crates/slipfront-lab
 node --test --test-reporter=spec crates/slipfront-lab/tests/page/*.test.mjs
 node --test --test-reporter=spec tests/browser/main.mjs

@@ -4,6 +4,8 @@ import { parse } from './frames.js';
 import { forget, hasToken, proofs, takeToken } from './proof.js';
 import { put } from './store.js';
 
+/** @import { Reply, Request } from '../types/page' */
+
 const SHORTEST_WAIT_MS = 500;
 const LONGEST_WAIT_MS = 5000;
 /** How long whoever answers may take to prove that it is the server. */
@@ -17,10 +19,12 @@ let socket = null;
 /** @param {MessageEvent} event */
 function receive({ data }) {
   if (typeof data === 'string') {
-    const message = JSON.parse(data);
-    put(message.is, message);
+    /** @type {Reply} */
+    const reply = JSON.parse(data);
+    put(reply.is, reply);
   } else {
-    put(...parse(data));
+    const [topic, picture] = parse(data);
+    put(topic, picture);
   }
 }
 
@@ -83,7 +87,7 @@ export async function connect() {
   }
 }
 
-/** Sends an order, if there is a connection. @param {Record<string, any>} order */
-export function send(order) {
-  if (socket?.readyState === WebSocket.OPEN) socket.send(JSON.stringify(order));
+/** Sends a request, if there is a connection. @param {Request} request */
+export function send(request) {
+  if (socket?.readyState === WebSocket.OPEN) socket.send(JSON.stringify(request));
 }

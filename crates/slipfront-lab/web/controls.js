@@ -9,7 +9,7 @@ import { say } from './text.js';
 /** Places of a slider. */
 const PLACES = 1000;
 
-/** @typedef {{id: string, key: string, si_key: string|null, unit: string, min: number, max: number, logarithmic: boolean, whole: boolean}} Control */
+/** @import { Control, ControlValue } from '../types/protocol' */
 
 /** Whether the control has no dimensionless key: its slider then goes over the value with a unit. @param {Control} control */
 const dimensional = (control) => control.key === control.si_key;
@@ -30,7 +30,7 @@ function placeOf({ min, max, logarithmic }, value) {
 /** What is set for a value: a number, or a text with its unit. @param {Control} control @param {number} value */
 const keysFor = (control, value) => ({ [control.key]: dimensional(control) ? `${value} ${control.unit}` : value });
 
-/** The two forms of a value: that of the number field, and the other one beside it. @param {Control} control @param {{star: number|null, si: number|null}} value */
+/** The two forms of a value: that of the number field, and the other one beside it. @param {Control} control @param {ControlValue} value */
 function forms(control, { star, si }) {
   if (dimensional(control)) return { main: si, other: star === null ? '' : say(`other_${control.id}`, { value: number(star) }) };
   return { main: star, other: si === null ? control.unit : `= ${quantity(si, control.unit)}` };
@@ -58,7 +58,7 @@ function listen({ control, slider, field }) {
     gesture ??= gradual();
     const value = valueAt(control, slider.valueAsNumber);
     field.value = String(value);
-    gesture.send({ do: 'set', keys: keysFor(control, value) });
+    gesture.change(keysFor(control, value));
   });
   slider.addEventListener('change', () => {
     gesture?.end();

@@ -1,10 +1,15 @@
 // @ts-check
 // The curves mu*(t*) and N*(t*), with the instants, the beginnings of legs, the slider without texture and a recorded curve.
-import uPlot from './vendor/uPlot.esm.js';
+import vendored from './vendor/uPlot.esm.js';
 import { atMost, find } from './element.js';
 import { on, state } from './store.js';
 import { say } from './text.js';
 import { colour, onTheme } from './theme.js';
+
+/** @import { CurveReply } from '../types/protocol' */
+/** @import { Scale, Series, uPlot } from '../types/uplot' */
+
+const Plot = /** @type {typeof uPlot} */ (/** @type {unknown} */ (vendored));
 
 const SPACING_MS = 200;
 /** With more points than this every second one is left out: no screen shows more. */
@@ -19,7 +24,7 @@ const twin = { t: [], mu: [], sliding: [] };
 const recorded = { t: [], mu: [], sliding: [] };
 /** Where legs begin, t* since rest. @type {number[]} */
 const legs = [];
-/** @type {Array<any>} */
+/** @type {uPlot[]} */
 let plots = [];
 
 /** @param {Run} curve */
@@ -38,24 +43,24 @@ function extend(curve, t, mu, sliding = []) {
   for (const key of /** @type {Array<keyof Run>} */ (['t', 'mu', 'sliding'])) curve[key] = curve[key].filter((_, k) => k % 2 === 0);
 }
 
-/** @param {any} message */
+/** @param {CurveReply} message */
 function take(message) {
   if (message.from_rest) {
     clear(run);
     legs.length = 0;
   }
   if (message.leg > legs.length) legs.push(message.t[0] ?? run.t.at(-1) ?? 0);
-  extend(run, message.t ?? [], message.mu ?? [], message.sliding ?? []);
+  extend(run, message.t, message.mu, message.sliding);
   if (message.twin_reset) clear(twin);
-  extend(twin, message.twin_t ?? [], message.twin_mu ?? []);
-  if (message.recorded_t) {
+  extend(twin, message.twin_t, message.twin_mu);
+  if (message.recorded_t && message.recorded_mu) {
     clear(recorded);
     extend(recorded, message.recorded_t, message.recorded_mu);
   }
   refresh();
 }
 
-/** Vertical lines: dashed where legs begin, dotted with a letter at the instants. @param {any} plot */
+/** Vertical lines: dashed where legs begin, dotted with a letter at the instants. @param {uPlot} plot */
 function marks(plot) {
   const { ctx: context, bbox: { top, height, left, width } } = plot;
   const ratio = devicePixelRatio;
@@ -92,9 +97,9 @@ function axes(label, numbered) {
 /** @param {string} name @param {() => string} stroke @param {number[]} dash */
 const series = (name, stroke, dash = []) => ({ label: name, stroke, dash, width: 1.5, spanGaps: true, points: { show: false } });
 
-/** @param {HTMLElement} place @param {any} options */
+/** @param {HTMLElement} place @param {{scale: Scale, label: string, lines: Series[], numbered: boolean}} options */
 function plotIn(place, { scale, label, lines, numbered }) {
-  return new /** @type {any} */ (uPlot)({
+  return new Plot({
     width: place.clientWidth,
     height: place.clientHeight,
     padding: [6, 8, 0, 0],
@@ -107,19 +112,18 @@ function plotIn(place, { scale, label, lines, numbered }) {
   }, [[], ...lines.map(() => [])], place);
 }
 
-/** Tells the values under the cursor. @param {any} plot */
+/** Tells the values under the cursor. @param {uPlot} plot */
 function showCursor(plot) {
   const { idx } = plot.cursor;
   if (plot !== plots[0]) return;
-  const t = idx === null || idx === undefined ? null : plot.data[0][idx];
-  const mu = t === null ? null : plot.data[1][idx];
-  find('curve-cursor').textContent = t === null || mu === null || mu === undefined ? '' : say('curve_cursor', { t: t.toFixed(1), mu: mu.toFixed(3) });
+  const [t, mu] = idx === null || idx === undefined ? [] : [plot.data[0][idx], plot.data[1][idx]];
+  find('curve-cursor').textContent = t === null || t === undefined || mu === null || mu === undefined ? '' : say('curve_cursor', { t: t.toFixed(1), mu: mu.toFixed(3) });
 }
 
 function draw() {
   if (plots.length === 0) return;
   // Both plots have all times, so that one stands below the other.
-  const [t, mu, sliding, ...others] = uPlot.join([[run.t, run.mu, run.sliding], [twin.t, twin.mu], [recorded.t, recorded.mu]]);
+  const [t, mu, sliding, ...others] = Plot.join([[run.t, run.mu, run.sliding], [twin.t, twin.mu], [recorded.t, recorded.mu]]);
   plots[0].setData([t, mu, ...others]);
   plots[1].setData([t, sliding]);
   find('curve-twin').hidden = twin.t.length === 0;
@@ -130,7 +134,7 @@ const refresh = atMost(draw, SPACING_MS);
 function fit() {
   for (const plot of plots) {
     const place = plot.root.parentElement;
-    if (place.clientWidth > 0 && place.clientHeight > 0) plot.setSize({ width: place.clientWidth, height: place.clientHeight });
+    if (place && place.clientWidth > 0 && place.clientHeight > 0) plot.setSize({ width: place.clientWidth, height: place.clientHeight });
   }
 }
 
@@ -148,7 +152,7 @@ export function startCurves() {
     series('recorded', () => colour('recorded'), [2, 3]),
   ];
   plots = [
-    plotIn(find('plot-mu'), { label: say('axis_mu'), lines, numbered: false, scale: { range: (/** @type {any} */ _, /** @type {number} */ low, /** @type {number} */ high) => [Math.min(0, low ?? 0), 1.08 * Math.max(high ?? 0, 0.1)] } }),
+    plotIn(find('plot-mu'), { label: say('axis_mu'), lines, numbered: false, scale: { range: (_, low, high) => [Math.min(0, low ?? 0), 1.08 * Math.max(high ?? 0, 0.1)] } }),
     plotIn(find('plot-sliding'), { label: say('axis_sliding'), lines: [series('run', () => colour('curve'))], numbered: true, scale: { range: [0, 100] } }),
   ];
   on('curve', take);

@@ -2,6 +2,8 @@
 // Changes of the case. What belongs to one gesture of the reader is one step of undo.
 import { send } from './connection.js';
 
+/** @import { CaseKeys } from '../types/protocol' */
+
 /** Between two changes of one gesture: more often than this nobody sees a difference. */
 const SPACING_MS = 50;
 
@@ -10,13 +12,13 @@ let gestures = 0;
 /** The number of a new gesture. */
 export const newGesture = () => ++gestures;
 
-/** Changes keys of the case at once. @param {Record<string, any>} keys */
+/** Changes keys of the case at once. @param {CaseKeys} keys */
 export const change = (keys, gesture = newGesture()) => send({ do: 'set', keys, gesture });
 
-/** Orders of one gesture, of which only the newest is sent, and no more than one in `SPACING_MS`. */
+/** Changes of keys that belong to one gesture, of which only the newest is sent, and no more than one in `SPACING_MS`. */
 export function gradual() {
   const gesture = newGesture();
-  /** @type {Record<string, any>|null} */
+  /** @type {CaseKeys|null} */
   let waiting = null;
   let sentAt = -Infinity;
   let timer = 0;
@@ -24,14 +26,14 @@ export function gradual() {
     clearTimeout(timer);
     timer = 0;
     if (!waiting) return;
-    send({ ...waiting, gesture });
+    change(waiting, gesture);
     waiting = null;
     sentAt = performance.now();
   };
   return {
-    /** @param {Record<string, any>} order */
-    send(order) {
-      waiting = order;
+    /** @param {CaseKeys} keys */
+    change(keys) {
+      waiting = keys;
       if (!timer) timer = window.setTimeout(flush, Math.max(0, sentAt + SPACING_MS - performance.now()));
     },
     end: flush,

@@ -1,18 +1,24 @@
 // @ts-check
 // Elements of the page, found and made.
 
-/** The element with an id that index.html has. @param {string} id @returns {any} */
-export const find = (id) => document.getElementById(id);
+/** @import { Elements } from '../types/page' */
+
+/**
+ * The element with an id that index.html has, or that was made with it.
+ * @template {string} Id @param {Id} id
+ */
+export const find = (id) => /** @type {Id extends keyof Elements ? Elements[Id] : HTMLElement} */ (document.getElementById(id));
 
 /**
  * Makes an element. Properties are set as such, attributes with a dash or `role` as attributes.
- * @param {string} name @param {Record<string, any>} [properties] @param {Array<Node|string>} [content] @returns {any}
+ * @template {keyof HTMLElementTagNameMap} Name
+ * @param {Name} name @param {Record<string, string|number|boolean>} [properties] @param {Array<Node|string>} [content]
  */
 export function make(name, properties = {}, content = []) {
   const element = document.createElement(name);
   for (const [key, value] of Object.entries(properties)) {
-    if (key.includes('-') || key === 'role' || key === 'for') element.setAttribute(key, value);
-    else /** @type {any} */ (element)[key] = value;
+    if (key.includes('-') || key === 'role' || key === 'for') element.setAttribute(key, String(value));
+    else Object.assign(element, { [key]: value });
   }
   element.append(...content);
   return element;

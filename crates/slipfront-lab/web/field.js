@@ -11,6 +11,9 @@ import { say } from './text.js';
 import { colour, onTheme } from './theme.js';
 import { setView } from './view.js';
 
+/** @import { FieldPicture } from '../types/page' */
+/** @import { CaseReply, Field } from '../types/protocol' */
+
 const BAR_SPACING_MS = 250;
 const BAR_HEIGHT = 46;
 
@@ -21,7 +24,7 @@ export const pointers = { ring: null, cursor: null };
 
 /** @type {Picture} */
 let picture;
-/** @type {any} The newest picture, and whether it was given to the graphics. */
+/** The newest picture, and whether it was given to the graphics. @type {FieldPicture|null} */
 let newest = null;
 let taken = true;
 let waiting = 0;
@@ -75,7 +78,7 @@ function drawBarOfPage() {
   const [ratio, width] = [devicePixelRatio, canvas.clientWidth];
   canvas.width = Math.round(width * ratio);
   canvas.height = Math.round(BAR_HEIGHT * ratio);
-  const context = canvas.getContext('2d');
+  const context = /** @type {CanvasRenderingContext2D} */ (canvas.getContext('2d'));
   context.setTransform(ratio, 0, 0, ratio, 0, 0);
   barInto(context, 1, 0, width - 2);
 }
@@ -97,7 +100,7 @@ function fitCanvas() {
   redraw();
 }
 
-/** @param {any} came */
+/** @param {FieldPicture} came */
 function take(came) {
   const changed = !newest || came.field !== newest.field || came.low !== newest.low || came.high !== newest.high;
   newest = came;
@@ -106,7 +109,7 @@ function take(came) {
   redrawPicture();
 }
 
-/** @param {any} shown */
+/** @param {CaseReply} shown */
 function showCase({ blocks }) {
   const same = camera.blocks[0] === blocks[0] && camera.blocks[1] === blocks[1];
   if (!same) camera.reset(blocks);
@@ -114,7 +117,8 @@ function showCase({ blocks }) {
 }
 
 function showLegend() {
-  find('legend-not-yet').parentElement.hidden = state.view.field !== 'first_slip';
+  const notYet = /** @type {HTMLElement} */ (find('legend-not-yet').parentElement);
+  notYet.hidden = state.view.field !== 'first_slip';
   if (find('field').value !== state.view.field) find('field').value = state.view.field;
 }
 
@@ -130,7 +134,7 @@ export function startField() {
   });
   find('field').append(...FIELDS.map((field) => make('option', { value: field, textContent: say(`field_${field}`) })));
   find('colourmap').append(...['viridis', 'cividis'].map((name) => make('option', { value: name, textContent: say(`colourmap_${name}`) })));
-  find('field').addEventListener('change', () => setView({ field: find('field').value }));
+  find('field').addEventListener('change', () => setView({ field: /** @type {Field} */ (find('field').value) }));
   find('colourmap').addEventListener('change', recolour);
   for (const [id, factor] of /** @type {Array<[string, number]>} */ ([['zoom-in', 1.5], ['zoom-out', 1 / 1.5]])) {
     onPress(id, () => {

@@ -1,6 +1,10 @@
 // @ts-check
 // The binary messages of the server, little endian.
 
+/** @import { FieldPicture, KymographPicture } from '../types/page' */
+/** @import { Field } from '../types/protocol' */
+
+/** The fields in the order of their numbers. @type {Field[]} */
 export const FIELDS = ['contact_stress', 'traction', 'displacement', 'speed', 'sliding', 'first_slip'];
 export const UNITS = ['Pa', 'Pa', 'm', 'm/s', '', 't*'];
 /** Bytes of a picture that are no value. */
@@ -10,11 +14,7 @@ export const TEXTURED = 255;
 /** The byte of the largest value. */
 export const LARGEST = 250;
 
-/**
- * A picture of the field. @param {DataView} view
- * @returns {{field: string, unit: string, recorded: boolean, number: number, step: number, tStar: number, muStar: number,
- *   slidingPercent: number, low: number, high: number, nx: number, ny: number, bytes: Uint8Array}}
- */
+/** A picture of the field. @param {DataView} view @returns {FieldPicture} */
 function picture(view) {
   const field = view.getUint8(1);
   const [nx, ny] = [view.getUint16(32, true), view.getUint16(34, true)];
@@ -35,7 +35,7 @@ function picture(view) {
   };
 }
 
-/** What slides where and when: `rows` instants of `bins` places. @param {DataView} view */
+/** What slides where and when. @param {DataView} view @returns {KymographPicture} */
 function kymograph(view) {
   const [rows, bins] = [view.getUint32(4, true), view.getUint32(8, true)];
   return {
@@ -49,7 +49,7 @@ function kymograph(view) {
   };
 }
 
-/** The topic and the value of a binary message. @param {ArrayBuffer} buffer @returns {[string, any]} */
+/** The topic and the value of a binary message. @param {ArrayBuffer} buffer @returns {['picture', FieldPicture]|['kymograph', KymographPicture]} */
 export function parse(buffer) {
   const view = new DataView(buffer);
   return view.getUint8(0) === 1 ? ['picture', picture(view)] : ['kymograph', kymograph(view)];

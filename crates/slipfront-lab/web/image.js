@@ -35,7 +35,7 @@ async function take(file) {
 export function startImage() {
   onPress('tool-image', () => find('image-file').click());
   find('image-file').addEventListener('change', () => {
-    const [file] = find('image-file').files;
+    const file = find('image-file').files?.[0];
     if (file) take(file);
     find('image-file').value = '';
   });

@@ -10,6 +10,8 @@ import { exported } from './session.js';
 import { on, state } from './store.js';
 import { say } from './text.js';
 
+/** @import { SavedReply, SavingReply } from '../types/protocol' */
+
 const name = () => state.case?.name ?? 'case';
 
 async function copyLink() {
@@ -63,23 +65,23 @@ function savingRow(name) {
   return row;
 }
 
-/** Shows every run that is being saved, also those that another page has begun, or this one before it was loaded again. @param {{under_way: Array<{name: string, share: number}>}} saving */
+/** Shows every run that is being saved, also those that another page has begun, or this one before it was loaded again. @param {SavingReply} saving */
 function showSaving({ under_way: all }) {
   const list = find('saving');
-  const rows = new Map([...list.children].map((row) => [row.dataset.name, row]));
+  const rows = new Map([...list.querySelectorAll('li')].map((row) => [row.dataset.name, row]));
   // A row stays as it is, so that its button keeps the focus.
   for (const { name, share } of all) {
     const row = rows.get(name) ?? list.appendChild(savingRow(name));
-    row.querySelector('progress').value = share;
+    /** @type {HTMLProgressElement} */ (row.querySelector('progress')).value = share;
     rows.delete(name);
   }
   for (const row of rows.values()) row.remove();
   list.hidden = all.length === 0;
 }
 
-/** @param {{folder: string, folders: string[]}} saved */
+/** @param {SavedReply} saved */
 function showSaved({ folder, folders }) {
-  state.hello.folders = folders;
+  if (state.hello) state.hello.folders = folders;
   notice(say('saved', { folder }));
   announce(say('saved', { folder }));
 }
@@ -90,7 +92,7 @@ export function startKeep() {
     find('save-name').value = name();
     find('keep').showModal();
   });
-  const closing = (/** @type {string} */ id, /** @type {() => any} */ action) => onPress(id, () => {
+  const closing = (/** @type {string} */ id, /** @type {() => void} */ action) => onPress(id, () => {
     find('keep').close();
     action();
   });

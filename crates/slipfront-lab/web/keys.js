@@ -3,7 +3,7 @@
 import { send } from './connection.js';
 import { find } from './element.js';
 import { camera, pointers, redraw } from './field.js';
-import { on, put, state } from './store.js';
+import { on, presentCase, put, state } from './store.js';
 import { chooseTool, moveSelected, press, probeAt, removeSelected, sizeSelected, TOOLS, turnSelected } from './tools.js';
 import { setView } from './view.js';
 
@@ -12,8 +12,8 @@ const FAR = 5;
 
 /** @param {number[]} by */
 function moveCursor([dx, dy]) {
-  const { blocks } = state.case;
-  const [x, y] = pointers.cursor ?? blocks.map((/** @type {number} */ count) => Math.floor(count / 2) + 0.5);
+  const { blocks } = presentCase();
+  const [x, y] = pointers.cursor ?? blocks.map((count) => Math.floor(count / 2) + 0.5);
   pointers.cursor = [Math.min(Math.max(x + dx, 0.5), blocks[0] - 0.5), Math.min(Math.max(y + dy, 0.5), blocks[1] - 0.5)];
   probeAt(pointers.cursor);
   redraw();
@@ -82,7 +82,7 @@ export function startKeys() {
   document.addEventListener('keydown', (event) => {
     if (!typing(event) && pageKey(event)) event.preventDefault();
   });
-  on('case', () => {
-    if (pointers.cursor && pointers.cursor.some((value, axis) => value > state.case.blocks[axis])) pointers.cursor = null;
+  on('case', ({ blocks }) => {
+    if (pointers.cursor?.some((value, axis) => value > blocks[axis])) pointers.cursor = null;
   });
 }

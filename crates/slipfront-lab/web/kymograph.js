@@ -7,9 +7,11 @@ import { on, state } from './store.js';
 import { say } from './text.js';
 import { onTheme } from './theme.js';
 
+/** @import { KymographPicture } from '../types/page' */
+
 const SPACING_MS = 500;
 
-/** @type {any} */
+/** @type {KymographPicture|null} */
 let newest = null;
 
 function draw() {
@@ -18,7 +20,7 @@ function draw() {
   const canvas = find('kymograph');
   canvas.width = rows;
   canvas.height = bins;
-  const context = canvas.getContext('2d');
+  const context = /** @type {CanvasRenderingContext2D} */ (canvas.getContext('2d'));
   const image = context.createImageData(rows, bins);
   const pixels = new Uint32Array(image.data.buffer);
   const colours = new Uint32Array(table(find('colourmap').value).buffer);

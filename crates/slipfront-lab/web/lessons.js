@@ -9,12 +9,17 @@ import { on, put, state } from './store.js';
 import { say } from './text.js';
 import { setView, startsPaused } from './view.js';
 
-/** @type {any[]} */
+/** @import { Lesson, LessonPlace, LessonStep, LessonWords } from '../types/page' */
+
+/** @type {Lesson[]} */
 let lessons = [];
-/** @type {Record<string, any>} */
+/** @type {Record<string, LessonWords>} */
 let words = {};
 /** @type {Record<string, {says: string}>} */
 let numbers = {};
+
+/** The lesson of this id. @param {string} wanted */
+const lessonOf = (wanted) => /** @type {Lesson} */ (lessons.find(({ id }) => id === wanted));
 
 /** @param {string} file */
 const load = async (file) => (await fetch(file)).json();
@@ -34,9 +39,9 @@ function paragraph(text) {
   return make('p', {}, parts.map((part, k) => (k % 2 === 1 ? make('em', { textContent: part }) : part)));
 }
 
-/** @param {any} step @param {Record<string, string>} labels */
+/** @param {LessonStep} step @param {Record<string, string>} labels */
 function buttons(step, labels) {
-  return (step.set ?? []).map((/** @type {any} */ button) => {
+  return (step.set ?? []).map((button) => {
     const element = make('button', { type: 'button', textContent: told(labels[button.id]) });
     element.addEventListener('click', () => {
       if (button.view) setView(button.view);
@@ -46,7 +51,7 @@ function buttons(step, labels) {
   });
 }
 
-/** Loads the case of a step and sets the view. @param {any} step */
+/** Loads the case of a step and sets the view. @param {LessonStep} step */
 async function prepare(step) {
   const answer = await fetch(step.case);
   if (!answer.ok) return notice(say('lesson_missing', { file: step.case }));
@@ -55,13 +60,13 @@ async function prepare(step) {
   open({ name: step.case.replace(/^.*\/|\.toml$/g, ''), toml, files: {} });
 }
 
-/** @param {{lesson: string, step: number}|null} place */
+/** @param {LessonPlace|null} place */
 function show(place) {
   const left = !find('lesson').hidden && place === null;
   find('lesson').hidden = place === null;
   if (left) setView({ twin: true });
   if (!place) return;
-  const lesson = lessons.find(({ id }) => id === place.lesson);
+  const lesson = lessonOf(place.lesson);
   const step = lesson.steps[place.step];
   const said = words[lesson.id];
   const text = said.steps[step.id];
@@ -81,8 +86,8 @@ function show(place) {
 
 /** @param {number} by */
 function turnPage(by) {
-  const { lesson, step } = state.lesson;
-  const count = lessons.find(({ id }) => id === lesson).steps.length;
+  const { lesson, step } = /** @type {LessonPlace} */ (state.lesson);
+  const count = lessonOf(lesson).steps.length;
   put('lesson', step + by < count ? { lesson, step: step + by } : null);
 }
 

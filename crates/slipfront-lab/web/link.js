@@ -31,7 +31,7 @@ export async function makeLink(content) {
   return text.length > MAX_LENGTH ? null : text;
 }
 
-/** A value that is a text. @param {any} value @returns {string} */
+/** A value that is a text. @param {unknown} value @returns {string} */
 function text(value) {
   if (typeof value !== 'string') throw new TypeError('not a text');
   return value;

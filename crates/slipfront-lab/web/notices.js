@@ -20,12 +20,12 @@ export function notice(text, { topic = text, serious = false } = {}) {
   const list = find('notices');
   list.append(item);
   if (!serious) setTimeout(() => item.remove(), LONGEST_MS);
-  while (list.children.length > MOST) list.firstElementChild.remove();
+  while (list.children.length > MOST) list.firstElementChild?.remove();
 }
 
 /** Takes the sentence of a topic away. @param {string} topic */
 export function withdraw(topic) {
-  for (const item of [...find('notices').children]) if (item.dataset.topic === topic) item.remove();
+  for (const item of find('notices').querySelectorAll('p')) if (item.dataset.topic === topic) item.remove();
 }
 
 let lost = '';
@@ -54,7 +54,7 @@ export function startNotices() {
     withdraw('refused');
     withdraw('warnings');
     // What stands beside the shapes lies on nothing.
-    const told = warnings.filter((/** @type {string} */ warning) => warning !== tooCoarse);
+    const told = warnings.filter((warning) => warning !== tooCoarse);
     // A lesson says itself what its case is for.
     if (told.length > 0 && why === 'open' && !state.lesson) notice(told.join(' '), { topic: 'warnings' });
   });
@@ -65,7 +65,7 @@ export const announce = (text) => put('announcement', text);
 
 /** Reads announcements out, the newest, and no more than one in some seconds. */
 export function startAnnouncements() {
-  on('announcement', atMost(() => (find('announcements').textContent = state.announcement), ANNOUNCED_MS));
+  on('announcement', atMost(() => (find('announcements').textContent = state.announcement ?? ''), ANNOUNCED_MS));
   on('case', ({ why, name, texture_percent: percent }) => {
     if (why !== 'rest' && why !== 'refused') announce(say('tell_case', { name, percent: fixed(percent, 1) }));
   });

@@ -7,6 +7,8 @@ import { fixed, number, quantity } from './quantity.js';
 import { on, state } from './store.js';
 import { say } from './text.js';
 
+/** @import { Estimate, NumbersReply, PeakReply, RepeatedReply, Summary } from '../types/protocol' */
+
 /** @param {number|null|undefined} percent */
 const signed = (percent, digits = 1) => (percent === null || percent === undefined ? '\u2013' : `${percent > 0 ? '+' : ''}${fixed(percent, digits)} %`);
 
@@ -24,21 +26,21 @@ function fill(id, rows) {
   }
 }
 
-/** A peak, with a tilde while it may still rise. @param {any} peak @param {string} key */
+/** A peak, with a tilde while it may still rise. @param {PeakReply|null} peak @param {'t_star'|'mu_star'} key */
 const peakValue = (peak, key, digits = 3) => (peak ? `${peak.certain ? '' : '\u2248 '}${fixed(peak[key], digits)}` : '\u2013');
 
-/** @param {any} numbers */
+/** @param {NumbersReply} numbers */
 function showHeadline({ peak, twin_peak: twin, change_percent: change, ended }) {
   const certain = Boolean(peak?.certain && (change === null || twin?.certain));
   const against = change !== null && change !== undefined;
   find('headline').textContent = against ? signed(change) : peakValue(peak, 'mu_star');
   find('headline-name').textContent = say(against ? 'headline_change' : 'headline_static');
-  const note = peak ? (certain ? 'certain' : ended ? 'no_transition' : 'preliminary') : state.case?.leg > 0 ? 'not_from_rest' : 'no_peak_yet';
+  const note = peak ? (certain ? 'certain' : ended ? 'no_transition' : 'preliminary') : (state.case?.leg ?? 0) > 0 ? 'not_from_rest' : 'no_peak_yet';
   find('headline-note').textContent = say(note);
   find('headline').classList.toggle('preliminary', !certain);
 }
 
-/** @param {any} numbers */
+/** @param {NumbersReply} numbers */
 function showRows(numbers) {
   const { peak, twin_peak: twin } = numbers;
   fill('numbers', [
@@ -54,16 +56,16 @@ function showRows(numbers) {
   ]);
 }
 
-/** @param {any} summary */
+/** @param {Summary|null} summary */
 function showSummary(summary) {
   find('summary').hidden = !summary;
   if (!summary) return;
-  const speed = summary.front_speed_c_s;
+  const { front_speed_c_s: share, front_speed_m_s: speed } = summary;
   fill('summary-values', [
     [say('summary_static'), `${summary.transition ? '' : '\u2265 '}${fixed(summary.static_friction_star, 4)}`],
     [say('summary_onset'), fixed(summary.onset_time_star, 1)],
     [say('summary_kinetic'), fixed(summary.kinetic_friction_star, 4)],
-    [say('summary_front'), speed === null || speed === undefined ? '\u2013' : say('summary_front_value', { share: number(speed), speed: quantity(summary.front_speed_m_s, 'm/s') })],
+    [say('summary_front'), share === null || speed === null ? '\u2013' : say('summary_front_value', { share: number(share), speed: quantity(speed, 'm/s') })],
     [say('summary_duration'), fixed(summary.front_duration_star, 1)],
     [say('summary_sites'), String(summary.nucleation_sites ?? '\u2013')],
     [say('summary_energy'), number(summary.energy_error)],
@@ -72,7 +74,7 @@ function showSummary(summary) {
 
 let told = '';
 
-/** Says what has become certain. @param {any} numbers */
+/** Says what has become certain. @param {NumbersReply} numbers */
 function tell({ peak, change_percent: change, ended, kinetic }) {
   let text = '';
   if (ended) text = say('tell_ended', { kinetic: fixed(kinetic) });
@@ -81,7 +83,7 @@ function tell({ peak, change_percent: change, ended, kinetic }) {
   told = text;
 }
 
-/** @param {any} numbers */
+/** @param {NumbersReply} numbers */
 function show(numbers) {
   showHeadline(numbers);
   showRows(numbers);
@@ -89,14 +91,14 @@ function show(numbers) {
   tell(numbers);
 }
 
-/** @param {any} repeated */
+/** @param {RepeatedReply} repeated */
 function showRepeated({ done, of, finished, change_percent: change, with: textured, without, without_transition: creeping }) {
   find('repeat-progress').hidden = finished;
   find('repeat-progress').max = of;
   find('repeat-progress').value = done;
   find('repeat').textContent = say(finished ? 'repeat' : 'repeat_stop');
   find('repeat').dataset.busy = finished ? '' : 'yes';
-  const both = (/** @type {any} */ sample, digits = 3) => (sample.half_width === null ? fixed(sample.mean, digits) : `${fixed(sample.mean, digits)} \u00b1 ${fixed(sample.half_width, digits)}`);
+  const both = (/** @type {Estimate|null} */ sample, digits = 3) => (sample === null || sample.half_width === null ? fixed(sample?.mean, digits) : `${fixed(sample.mean, digits)} \u00b1 ${fixed(sample.half_width, digits)}`);
   const text = change
     ? say('repeated_change', { change: both(change, 1), with: both(textured), without: both(without), done })
     : textured ? say('repeated_plain', { with: both(textured), done }) : say('repeated_none', { done, of });

@@ -1,7 +1,7 @@
 // @ts-check
 // What is drawn above the field: outlines, handles, the brush, the cursor of the keyboard. Points are in blocks.
 import { handles } from './shapes.js';
-import { state } from './store.js';
+import { presentCase, state } from './store.js';
 import { colour } from './theme.js';
 
 /** @typedef {{ring: {point: number[], radius: number}|null, cursor: number[]|null}} Pointers */
@@ -41,7 +41,7 @@ function drawShapes(context, camera) {
       context.strokeStyle = colour('outline');
       context.stroke();
     }
-    if (selected && outlines.length > 0) drawHandles(context, camera, handles(state.case.texture[index], outlines[0]));
+    if (selected && outlines.length > 0) drawHandles(context, camera, handles(presentCase().texture[index], outlines[0]));
   }
 }
 
@@ -80,7 +80,7 @@ function drawCursor(context, camera, point) {
 
 /** The part of the frame that is drawn on, [left, top, right, bottom] in pixels. @param {import('./camera.js').Camera} camera @param {Pointers} pointers */
 function extent(camera, { ring, cursor }) {
-  const points = (state.case?.shapes ?? []).flatMap((/** @type {any} */ shape) => shape.outlines.flat()).map((/** @type {number[]} */ point) => camera.toPixels(point));
+  const points = (state.case?.shapes ?? []).flatMap((shape) => shape.outlines.flat()).map((point) => camera.toPixels(point));
   if (cursor) points.push(camera.toPixels(cursor));
   if (ring) {
     const [x, y] = camera.toPixels(ring.point);

@@ -5,7 +5,9 @@ import { open } from './session.js';
 import { on, put, state } from './store.js';
 import { say } from './text.js';
 
-/** @param {string} title @param {string} hint @param {Record<string, any>} source */
+/** @import { HelloReply, Source } from '../types/protocol' */
+
+/** @param {string} title @param {string} hint @param {Source} source */
 function entry(title, hint, source) {
   const button = make('button', { type: 'button' }, [make('strong', { textContent: title }), make('span', { textContent: hint })]);
   button.addEventListener('click', () => {
@@ -16,18 +18,18 @@ function entry(title, hint, source) {
   return make('li', {}, [button]);
 }
 
-/** The groups: key of their heading and entries of what matches. @param {string} wanted */
+/** The groups: key of their heading and entries of what matches. @param {string} wanted @returns {Array<[string, HTMLElement[]]>} */
 function groups(wanted) {
-  const { presets, folders } = state.hello;
+  const { presets, folders } = /** @type {HelloReply} */ (state.hello);
   const words = wanted.toLowerCase().split(/\s+/);
   const matches = (/** @type {string} */ text) => words.every((word) => text.toLowerCase().includes(word));
   const ofGroup = (/** @type {string} */ group) => presets
-    .filter((/** @type {any} */ preset) => preset.group === group && matches(`${preset.name} ${preset.title}`))
-    .map((/** @type {any} */ { name, title }) => entry(name, title, { preset: name }));
+    .filter((preset) => preset.group === group && matches(`${preset.name} ${preset.title}`))
+    .map(({ name, title }) => entry(name, title, { preset: name }));
   return [
     ['presets_cases', ofGroup('cases')],
     ['presets_paper', ofGroup('paper')],
-    ['presets_folders', folders.filter(matches).map((/** @type {string} */ name) => entry(name, say('folder_hint'), { folder: name }))],
+    ['presets_folders', folders.filter(matches).map((name) => entry(name, say('folder_hint'), { folder: name }))],
   ];
 }
 

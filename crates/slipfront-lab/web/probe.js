@@ -6,7 +6,9 @@ import { fixed, quantity } from './quantity.js';
 import { on, state } from './store.js';
 import { say } from './text.js';
 
-/** The lines of a block: what it is called and what it has. @param {any} probe @returns {Array<[string, string]>} */
+/** @import { ProbeReply } from '../types/protocol' */
+
+/** The lines of a block: what it is called and what it has. @param {ProbeReply} probe @returns {Array<[string, string]>} */
 function lines(probe) {
   if (!probe.exists) return [[say('probe_state'), say('probe_no_block')]];
   if (probe.textured) return [[say('probe_state'), say('probe_textured')]];
@@ -23,7 +25,7 @@ function lines(probe) {
   ];
 }
 
-/** @param {any} probe */
+/** @param {ProbeReply} probe */
 function show(probe) {
   const [i, j] = probe.block;
   find('probe').hidden = false;

@@ -32,9 +32,9 @@ export function quantity(value, unit, digits = 3) {
   return `${number(value / factor, digits)} ${letter}${unit}`;
 }
 
-/** A length of the case file, `"25 um"`, in metres; null if it is none. @param {any} text */
-export function metres(text) {
-  const match = /^\s*([-+]?[\d.]+(?:e[-+]?\d+)?)\s*([fpnu\u00b5\u03bcmcdhkMGT]?)m\s*$/i.exec(String(text));
+/** A length of the case file, `"25 um"`, in metres; null if it is none. @param {string} [text] */
+export function metres(text = '') {
+  const match = /^\s*([-+]?[\d.]+(?:e[-+]?\d+)?)\s*([fpnu\u00b5\u03bcmcdhkMGT]?)m\s*$/i.exec(text);
   const value = match ? Number(match[1]) * PREFIXES[/** @type {keyof typeof PREFIXES} */ (match[2])] : NaN;
   return Number.isFinite(value) ? value : null;
 }

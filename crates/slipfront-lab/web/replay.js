@@ -8,7 +8,7 @@ import { say } from './text.js';
 
 function show() {
   const index = find('replay').valueAsNumber - 1;
-  const text = index < 0 ? say('replay_live') : say('replay_at', { t: fixed(state.recorded.times_star[index], 1) });
+  const text = index < 0 ? say('replay_live') : say('replay_at', { t: fixed(state.recorded?.times_star[index], 1) });
   find('replay-value').textContent = text;
   find('replay').setAttribute('aria-valuetext', text);
 }

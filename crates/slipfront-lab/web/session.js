@@ -5,6 +5,8 @@ import { readLink } from './link.js';
 import { next, on, put, state } from './store.js';
 import { sendView } from './view.js';
 
+/** @import { CaseReply, Source } from '../types/protocol' */
+
 /** Files are asked for when the case has stood still for so long: they are large, and only needed after a lost connection. */
 const QUIET_MS = 1500;
 
@@ -13,14 +15,14 @@ let quiet = 0;
 /** @type {Record<string, string>} */
 let files = {};
 
-/** Opens another case. @param {Record<string, any>} source */
+/** Opens another case. @param {Source} source */
 export function open(source) {
   put('recorded', null);
   put('selected', null);
   send({ do: 'open', source });
 }
 
-/** The present case with its files and as a zip. @returns {Promise<{toml: string, files: Record<string, string>, zip: string}>} */
+/** The present case with its files and as a zip. */
 export function exported() {
   const answer = next('exported');
   send({ do: 'export' });
@@ -45,7 +47,7 @@ function begin() {
   opened = true;
 }
 
-/** @param {any} shown */
+/** @param {CaseReply} shown */
 function holdFiles(shown) {
   clearTimeout(quiet);
   if (shown.files.length === 0) files = {};

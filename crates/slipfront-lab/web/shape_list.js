@@ -3,31 +3,35 @@
 import { change } from './edit.js';
 import { find, make } from './element.js';
 import { fixed, length, metres, typed } from './quantity.js';
-import { center, kind } from './shapes.js';
-import { on, put, state } from './store.js';
+import { center, kind, sliderOf } from './shapes.js';
+import { on, presentCase, put, state } from './store.js';
 import { say } from './text.js';
 import { removeSelected } from './tools.js';
 
-/** @typedef {{key: string, value: number, set: (value: number) => Record<string, any>}} Field `key` names it in en.json; `set` gives the keys that change */
+/** @import { Texture } from '../types/protocol' */
+/** @typedef {{key: string, value: number, set: (value: number) => Partial<Texture>}} Field `key` names it in en.json; `set` gives the keys that change */
 
 const MICRO = 1e6;
 
 /** Whether the case has changed while a number was typed. */
 let waiting = false;
-const slider = () => ({ blocks: state.case.blocks, blockSize: state.case.block_size_m, count: state.case.n_blocks });
 
-/** @param {any} table @param {string} key @returns {Field} */
+/** @param {Texture} table @param {'coverage'|'rotate'|'s'|'w'|'threshold'|'bearing_percent'} key @returns {Field} */
 const plain = (table, key, standard = 0) => ({ key, value: table[key] ?? standard, set: (value) => ({ [key]: value }) });
 
-/** A length in micrometres. @param {any} table @param {string} key @returns {Field} */
-const micrometres = (table, key) => ({ key, value: (metres(table[key] ?? '0 m') ?? 0) * MICRO, set: (value) => ({ [key]: length(value / MICRO) }) });
+/** A length in micrometres. @param {Texture} table @param {'lambda'|'width'|'offset'} key @returns {Field} */
+const micrometres = (table, key) => ({ key, value: (metres(table[key]) ?? 0) * MICRO, set: (value) => ({ [key]: length(value / MICRO) }) });
 
-/** @param {any} table @returns {Field[]} */
-const sizes = (table) => ['coverage', 'lambda', 'width'].filter((key) => key in table).map((key) => (key === 'coverage' ? plain(table, key) : micrometres(table, key)));
+/** @param {Texture} table @returns {Field[]} */
+const sizes = (table) => [
+  ...('coverage' in table ? [plain(table, 'coverage')] : []),
+  ...('lambda' in table ? [micrometres(table, 'lambda')] : []),
+  ...('width' in table ? [micrometres(table, 'width')] : []),
+];
 
-/** @param {any} table @returns {Field[]} */
+/** @param {Texture} table @returns {Field[]} */
 function centers(table) {
-  const at = center(table, slider());
+  const at = center(table, sliderOf(presentCase()));
   return ['x', 'y'].map((key, axis) => ({
     key,
     value: at[axis] * MICRO,
@@ -35,17 +39,18 @@ function centers(table) {
   }));
 }
 
-/** @param {any} table @returns {Field[]} */
+/** @param {Texture} table @returns {Field[]} */
 function copies(table) {
-  if (!Array.isArray(table.array)) return [];
+  const { array } = table;
+  if (!Array.isArray(array)) return [];
   return ['columns', 'rows'].map((key, axis) => ({
     key,
-    value: table.array[axis],
-    set: (value) => ({ array: table.array.map((/** @type {number} */ old, /** @type {number} */ k) => (k === axis ? value : old)) }),
+    value: array[axis],
+    set: (value) => ({ array: array.map((old, k) => (k === axis ? value : old)) }),
   }));
 }
 
-/** The numbers of a texture. @param {any} table @returns {Field[]} */
+/** The numbers of a texture. @param {Texture} table @returns {Field[]} */
 function fields(table) {
   if (table.shape === 'cavity') return [...sizes(table), ...centers(table), plain(table, 'rotate'), plain(table, 's', 1), plain(table, 'w'), ...copies(table)];
   if (table.shape === 'groove') return [...sizes(table), micrometres(table, 'offset'), ...copies(table)];
@@ -68,13 +73,12 @@ function row(index, { key, value, set }) {
     delete input.dataset.typing;
     const given = typed(input.value);
     if (given === null) return show();
-    const { texture } = state.case;
-    change({ texture: texture.map((/** @type {any} */ old, /** @type {number} */ k) => (k === index ? { ...old, ...set(given) } : old)) });
+    change({ texture: presentCase().texture.map((old, k) => (k === index ? { ...old, ...set(given) } : old)) });
   });
   return make('div', {}, [make('label', { for: id, textContent: say(`shape_${key}`) }), input]);
 }
 
-/** @param {any} table @param {number} index */
+/** @param {Texture} table @param {number} index */
 function item(table, index) {
   const selected = index === state.selected;
   const share = 'coverage' in table ? `${fixed(table.coverage, 1)} %` : '';
@@ -90,14 +94,15 @@ function show() {
   const list = find('shapes');
   const texture = state.case?.texture ?? [];
   const focused = list.contains(document.activeElement) ? document.activeElement : null;
-  const [id, place] = [focused?.id, [...list.querySelectorAll('button')].indexOf(/** @type {any} */ (focused))];
+  const [id, place] = [focused?.id, [...list.querySelectorAll('button')].findIndex((button) => button === focused)];
   list.replaceChildren(...texture.map(item));
   find('no-shapes').hidden = texture.length > 0;
   find('too-coarse').textContent = state.case?.too_coarse ?? '';
   // The list is made anew, but the reader stays where he was, and what he types replaces the number as after Tab.
   if (id) {
-    find(id)?.focus();
-    find(id)?.select?.();
+    const again = document.getElementById(id);
+    again?.focus();
+    if (again instanceof HTMLInputElement) again.select();
   } else if (focused) list.querySelectorAll('button')[place]?.focus();
 }
 

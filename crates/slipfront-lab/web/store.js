@@ -2,33 +2,35 @@
 // What the page knows of the simulation, by topic, and who wants to hear when it changes. Topics are the names of the server's
 // messages (`case`, `numbers`, ...) and of what the page decides itself (`view`, `tool`, `selected`, ...).
 
-/** @type {Record<string, any>} */
-export const state = {};
+/** @import { State, Topics } from '../types/page' */
+/** @import { CaseReply } from '../types/protocol' */
 
-/** @type {Map<string, Array<(value: any) => void>>} */
+export const state = /** @type {State} */ ({ selected: null });
+
+/** The case that is shown, for what happens only while there is one. */
+export const presentCase = () => /** @type {CaseReply} */ (state.case);
+
+/** Each takes the values of its own topic. @type {Map<keyof Topics, Array<(value: never) => void>>} */
 const listeners = new Map();
 
-/** Calls `action` whenever `topic` gets a value. @param {string} topic @param {(value: any) => void} action */
+/** Calls `action` whenever `topic` gets a value. @template {keyof Topics} Topic @param {Topic} topic @param {(value: Topics[Topic]) => void} action */
 export function on(topic, action) {
-  const list = listeners.get(topic) ?? [];
-  list.push(action);
-  listeners.set(topic, list);
+  listeners.set(topic, [...(listeners.get(topic) ?? []), action]);
 }
 
-/** Gives `topic` a value and tells it. @param {string} topic @param {any} value */
+/** Gives `topic` a value and calls who listens. @template {keyof Topics} Topic @param {Topic} topic @param {Topics[Topic]} value */
 export function put(topic, value) {
-  state[topic] = value;
-  for (const action of listeners.get(topic) ?? []) action(value);
+  Object.assign(state, { [topic]: value });
+  for (const action of listeners.get(topic) ?? []) action(/** @type {never} */ (value));
 }
 
-/** The next value of `topic`. @param {string} topic @returns {Promise<any>} */
+/** The next value of `topic`. @template {keyof Topics} Topic @param {Topic} topic @returns {Promise<Topics[Topic]>} */
 export function next(topic) {
   return new Promise((resolve) => {
-    const list = listeners.get(topic) ?? [];
-    const once = (/** @type {any} */ value) => {
+    const once = (/** @type {Topics[Topic]} */ value) => {
       listeners.set(topic, (listeners.get(topic) ?? []).filter((action) => action !== once));
       resolve(value);
     };
-    listeners.set(topic, [...list, once]);
+    on(topic, once);
   });
 }

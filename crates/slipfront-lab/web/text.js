@@ -1,6 +1,8 @@
 // @ts-check
 // The words of the page: all of them stand in en.json.
 
+/** @import { Words } from '../types/page' */
+
 /** @type {Record<string, string>} */
 let words = {};
 
@@ -10,7 +12,7 @@ export async function loadText() {
   document.documentElement.lang = words.language;
 }
 
-/** The text of `key`, with every `{name}` in it replaced by the value of that name. @param {string} key @param {Record<string, any>} [values] */
+/** The text of `key`, with every `{name}` in it replaced by the value of that name. @param {string} key @param {Words} [values] */
 export function say(key, values = {}) {
   const text = words[key] ?? key;
   return text.replace(/\{(\w+)\}/g, (whole, name) => (name in values ? String(values[name]) : whole));

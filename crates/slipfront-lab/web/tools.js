@@ -4,11 +4,15 @@ import { send } from './connection.js';
 import { change, gradual, newGesture } from './edit.js';
 import { atMost, find, make } from './element.js';
 import { camera, pointers, redraw } from './field.js';
-import { box, create, enlarge, handles, inside, move, turn } from './shapes.js';
-import { on, put, state } from './store.js';
+import { box, create, enlarge, handles, inside, move, sliderOf, turn } from './shapes.js';
+import { on, presentCase, put, state } from './store.js';
 import { say } from './text.js';
 import { setView } from './view.js';
 
+/** @import { Tool } from '../types/page' */
+/** @import { ShapeOutlines, Texture } from '../types/protocol' */
+
+/** @type {Tool[]} */
 export const TOOLS = ['probe', 'brush', 'eraser', 'circle', 'ellipse', 'polygon', 'groove', 'array'];
 const PAINT_SPACING_MS = 33;
 const PROBE_SPACING_MS = 50;
@@ -17,15 +21,14 @@ const GRIP_PIXELS = 12;
 /** A drag of less than this many pixels is a click. */
 const CLICK_PIXELS = 4;
 
-/** The slider as shapes.js wants it. */
-const slider = () => ({ blocks: state.case.blocks, blockSize: state.case.block_size_m, count: state.case.n_blocks });
+const slider = () => sliderOf(presentCase());
 
 const paints = () => state.tool === 'brush' || state.tool === 'eraser';
 const radius = () => find('brush-size').valueAsNumber / 2;
 
 /** What the fields below the tools say of a new shape. */
 function options() {
-  const value = (/** @type {string} */ id) => find(id).valueAsNumber;
+  const value = (/** @type {`option-${'s'|'sharp'|'w'|'columns'|'rows'}`} */ id) => find(id).valueAsNumber;
   const polygon = state.tool === 'polygon';
   return {
     s: polygon ? value('option-s') : 1,
@@ -36,36 +39,36 @@ function options() {
   };
 }
 
-/** Replaces one texture. @param {any[]} texture @param {number} index @param {any} table */
+/** Replaces one texture. @param {Texture[]} texture @param {number} index @param {Texture} table */
 const replaced = (texture, index, table) => texture.map((old, k) => (k === index ? table : old));
 
 /** The shape below a point, the last one if there are several. @param {number[]} point */
 function shapeAt(point) {
-  const hit = (state.case?.shapes ?? []).filter((/** @type {any} */ shape) => inside(shape.outlines, point));
+  const hit = (state.case?.shapes ?? []).filter((shape) => inside(shape.outlines, point));
   return hit.length > 0 ? hit[hit.length - 1] : null;
 }
 
 /** The selected shape with its outlines. */
-const selectedShape = () => (state.case?.shapes ?? []).find((/** @type {any} */ shape) => shape.index === state.selected);
+const selectedShape = () => (state.case?.shapes ?? []).find((shape) => shape.index === state.selected);
 
 /** Whether the point grips a handle of the selected shape. @param {number[]} point */
 function gripped(point) {
   const shape = selectedShape();
   if (!shape || shape.outlines.length === 0) return false;
   const pixel = camera.toPixels(point);
-  return handles(state.case.texture[shape.index], shape.outlines[0]).some((handle) => {
+  return handles(presentCase().texture[shape.index], shape.outlines[0]).some((handle) => {
     const at = camera.toPixels(handle);
     return Math.hypot(at[0] - pixel[0], at[1] - pixel[1]) <= GRIP_PIXELS;
   });
 }
 
-/** A drag that changes the selected shape: `alter` makes the new table of the old one and the present point. @param {(table: any, point: number[]) => any} alter */
+/** A drag that changes the selected shape: `alter` makes the new table of the old one and the present point. @param {(table: Texture, point: number[]) => Texture} alter */
 function drag(alter) {
-  const { selected } = state;
-  const { texture } = state.case;
+  const selected = /** @type {number} */ (state.selected);
+  const { texture } = presentCase();
   const steps = gradual();
   return {
-    move: (/** @type {number[]} */ point) => steps.send({ do: 'set', keys: { texture: replaced(texture, selected, alter(texture[selected], point)) } }),
+    move: (/** @type {number[]} */ point) => steps.change({ texture: replaced(texture, selected, alter(texture[selected], point)) }),
     end: steps.end,
   };
 }
@@ -77,13 +80,12 @@ function dragToMove(from) {
 
 /** @param {number[]} from */
 function dragToSize(from) {
-  const { index, outlines } = selectedShape();
+  const { index, outlines } = /** @type {ShapeOutlines} */ (selectedShape());
+  const { shape, orientation } = presentCase().texture[index];
   const [left, bottom, right, top] = box(outlines[0]);
-  const groove = state.case.texture[index].shape === 'groove';
-  const along = state.case.texture[index].orientation === 'along';
   const reach = ([x, y] = from) => {
     const [dx, dy] = [x - (left + right) / 2, y - (bottom + top) / 2];
-    return groove ? Math.abs(along ? dy : dx) : Math.hypot(dx, dy);
+    return shape === 'groove' ? Math.abs(orientation === 'along' ? dy : dx) : Math.hypot(dx, dy);
   };
   return drag((table, point) => enlarge(table, Math.max(0.05, reach(point) / Math.max(reach(), 1e-6))));
 }
@@ -116,8 +118,9 @@ function stroke(from) {
 /** Adds a shape around a point and selects it. @param {number[]} point @param {number} size radius in blocks, 0 for the ordinary size */
 function place(point, size) {
   const table = create(state.tool, options(), point, size, slider());
-  change({ texture: [...state.case.texture, table] });
-  put('selected', state.case.texture.length);
+  const { texture } = presentCase();
+  change({ texture: [...texture, table] });
+  put('selected', texture.length);
   chooseTool('probe');
 }
 
@@ -201,11 +204,11 @@ export function press(point) {
 /** Shows what a block under the cursor has. @param {number[]} point */
 export const probeAt = (point) => probeSoon(point);
 
-/** Changes the selected shape, if there is one. @param {(table: any) => any} alter */
+/** Changes the selected shape, if there is one. @param {(table: Texture) => Texture} alter */
 function alterSelected(alter) {
   const { selected } = state;
-  const table = state.case?.texture[selected];
-  if (table) change({ texture: replaced(state.case.texture, selected, alter(table)) });
+  if (selected === null || !state.case?.texture[selected]) return;
+  change({ texture: replaced(state.case.texture, selected, alter(state.case.texture[selected])) });
 }
 
 /** @param {number} dx blocks @param {number} dy blocks */
@@ -219,11 +222,11 @@ export const turnSelected = (degrees) => alterSelected((table) => turn(table, de
 export function removeSelected() {
   const { selected } = state;
   if (selected === null || !state.case?.texture[selected]) return;
-  change({ texture: state.case.texture.filter((/** @type {any} */ _, /** @type {number} */ k) => k !== selected) });
+  change({ texture: state.case.texture.filter((_, k) => k !== selected) });
   put('selected', null);
 }
 
-/** @param {string} tool */
+/** @param {Tool} tool */
 export function chooseTool(tool) {
   put('tool', tool);
 }

@@ -8,6 +8,8 @@ import { say } from './text.js';
 import { setView, startsPaused } from './view.js';
 import { notice } from './notices.js';
 
+/** @import { CaseReply } from '../types/protocol' */
+
 /** Places of the pace slider are steps of a tenth of a decade from this; the last one is as fast as possible. */
 const SLOWEST = 0.5;
 const LAST = 34;
@@ -36,7 +38,7 @@ function showEffect() {
   find('effect').textContent = say(key);
 }
 
-/** @param {any} shown */
+/** @param {CaseReply} shown */
 function showCase(shown) {
   find('undo').disabled = !shown.can_undo;
   find('redo').disabled = !shown.can_redo;

@@ -3,6 +3,8 @@
 import { send } from './connection.js';
 import { put, state } from './store.js';
 
+/** @import { ViewChange } from '../types/protocol' */
+
 const calm = matchMedia('(prefers-reduced-motion: reduce)').matches;
 
 put('view', {
@@ -20,7 +22,7 @@ put('view', {
 /** Whether the page starts paused, since its reader asks for little motion. */
 export const startsPaused = calm;
 
-/** Changes a part of the view. @param {Record<string, any>} part */
+/** Changes a part of the view. @param {ViewChange} part */
 export function setView(part) {
   put('view', { ...state.view, ...part });
   send({ do: 'view', ...part });

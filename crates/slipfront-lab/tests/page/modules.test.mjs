@@ -47,6 +47,21 @@ test('modules hold no style attribute and no character beyond ASCII', () => {
   }
 });
 
+test('types are checked in every module, and none of them is left open', () => {
+  for (const name of sources) {
+    assert.ok(read(name).startsWith('// @ts-check\n'), name);
+    assert.doesNotMatch(read(name), /[{<(,|] ?any\b/, name);
+  }
+});
+
+test('types/page.d.ts has the elements of index.html that are more than an HTMLElement', () => {
+  const kinds = { button: 'Button', canvas: 'Canvas', details: 'Details', dialog: 'Dialog', form: 'Form', input: 'Input', progress: 'Progress', select: 'Select' };
+  const found = [...read('index.html').matchAll(/<([a-z]+)\s[^>]*?\bid="([^"]+)"/g)].filter(([, tag]) => tag in kinds);
+  const declared = read('../types/page.d.ts').split('interface Elements {')[1];
+  const types = [...declared.matchAll(/^ {2}'?([a-z-]+)'?: HTML(\w+)Element;$/gm)];
+  assert.deepEqual(types.map(([, id, kind]) => [id, kind]), found.map(([, tag, id]) => [id, kinds[tag]]));
+});
+
 test('quantities have the prefix that leaves one to three digits before the point', () => {
   assert.equal(quantity(0.0379, 'm/s'), '37.9 mm/s');
   assert.equal(quantity(1e5, 'Pa'), '100 kPa');

@@ -1,0 +1,353 @@
+// What the page and the server say to each other, as `src/protocol.rs` has it: `src/page_types.rs` holds the two against each other,
+// and reads plain interfaces and unions alone. A number that is not finite is sent as null. Browsers are not given this file.
+
+/** A value of a key of the case, as in TOML. */
+export type CaseValue = string | number | boolean | CaseValue[] | { [key: string]: CaseValue };
+
+/** Values of keys of the case such as `drive.v_star`; null removes a key. */
+export type CaseKeys = Record<string, CaseValue | Texture[] | null>;
+
+/** A `[[texture]]` of the case with the keys of every shape; lengths are texts such as `25 um`. */
+export interface Texture {
+  shape: 'cavity' | 'groove' | 'polygon' | 'mask' | 'height_map';
+  s?: number;
+  w?: number;
+  coverage?: number;
+  lambda?: string;
+  across?: boolean;
+  center?: string | string[];
+  rotate?: number;
+  orientation?: string;
+  width?: string;
+  offset?: string;
+  points?: string[][];
+  file?: string;
+  threshold?: number;
+  bearing_percent?: number;
+  depth?: string;
+  reference?: string;
+  height_unit?: string;
+  pixel_size?: string | string[];
+  pitch?: string | string[];
+  array?: string | number[];
+  lattice?: string;
+  repeat?: CaseValue;
+  invert?: boolean;
+}
+
+/** A field of all blocks, in the order of the numbers that pictures have for them. */
+export type Field = 'contact_stress' | 'traction' | 'displacement' | 'speed' | 'sliding' | 'first_slip';
+
+/** How the run goes on after the case was changed. */
+export type AfterChange = 'rest' | 'go_on';
+
+/** What the page asks for, by its name under the key `do`. */
+export interface Requests {
+  open: OpenRequest;
+  set: SetRequest;
+  paint: PaintRequest;
+  image: ImageRequest;
+  undo: NoKeys;
+  redo: NoKeys;
+  rest: NoKeys;
+  view: ViewChange;
+  step: StepRequest;
+  repeat: RepeatRequest;
+  save: SaveRequest;
+  save_stop: SaveRequest;
+  export: NoKeys;
+  frames_of: FramesOfRequest;
+}
+
+/** A request without keys of its own. */
+export interface NoKeys {}
+
+export interface OpenRequest {
+  source: Source;
+}
+
+/** Where a case is taken from: the laboratory starts with its own if nothing is given. */
+export interface Source {
+  preset?: string;
+  folder?: string;
+  toml?: string;
+  name?: string;
+  /** Contents of the files that the TOML names, in Base64. */
+  files?: Record<string, string>;
+}
+
+export interface SetRequest {
+  keys: CaseKeys;
+  gesture: number;
+}
+
+/** Blocks within a radius of a line through points become texture, or contact. Lengths are in blocks. */
+export interface PaintRequest {
+  points: number[][];
+  radius: number;
+  textured: boolean;
+  gesture: number;
+}
+
+/** A PNG image in Base64 as the texture: what is darker than the threshold. */
+export interface ImageRequest {
+  png: string;
+  threshold: number;
+  gesture: number;
+}
+
+/** What changes of the view. */
+export interface ViewChange {
+  field?: Field;
+  visible?: boolean;
+  paused?: boolean;
+  /** t* in a second; 0 for as fast as possible. */
+  pace?: number;
+  twin?: boolean;
+  kymograph?: boolean;
+  frames_per_second?: number;
+  after_change?: AfterChange;
+  /** The block that is probed; null for none. */
+  probe?: number[] | null;
+}
+
+export interface StepRequest {
+  count: number;
+}
+
+/** Static friction over several seeds; 0 stops it. */
+export interface RepeatRequest {
+  seeds: number;
+}
+
+export interface SaveRequest {
+  name: string;
+}
+
+/** A recorded snapshot in place of the live field, or null for the live field. */
+export interface FramesOfRequest {
+  index: number | null;
+}
+
+/** What the server tells, by its name under the key `is`. */
+export interface Replies {
+  hello: HelloReply;
+  case: CaseReply;
+  curve: CurveReply;
+  numbers: NumbersReply;
+  probe: ProbeReply;
+  repeated: RepeatedReply;
+  saving: SavingReply;
+  saved: SavedReply;
+  exported: ExportedReply;
+  recorded: RecordedReply;
+  refused: RefusedReply;
+  failed: FailedReply;
+}
+
+export interface HelloReply {
+  version: string;
+  presets: PresetEntry[];
+  folders: string[];
+  results: string;
+  max_blocks: number;
+  controls: Control[];
+}
+
+/** A case to choose. */
+export interface PresetEntry {
+  name: string;
+  group: string;
+  title: string;
+}
+
+/** A quantity with a slider. */
+export interface Control {
+  id: string;
+  /** The key that holds it as a number. */
+  key: string;
+  /** The key that holds it with its unit, if there is one. */
+  si_key: string | null;
+  unit: string;
+  min: number;
+  max: number;
+  logarithmic: boolean;
+  whole: boolean;
+}
+
+/** A quantity as a dimensionless group and with its unit. */
+export interface ControlValue {
+  star: number | null;
+  si: number | null;
+}
+
+/** The case that is shown. */
+export interface CaseReply {
+  name: string;
+  toml: string;
+  files: string[];
+  link_files_bytes: number;
+  blocks: number[];
+  block_size_m: number;
+  n_blocks: number;
+  texture_percent: number;
+  texture: Texture[];
+  shapes: ShapeOutlines[];
+  values: Record<string, ControlValue>;
+  units: Units;
+  dt_star: number;
+  duration_star: number;
+  /** Null before the peak that it is counted from. */
+  kinetic_from_star: number | null;
+  steady_level: number;
+  can_undo: boolean;
+  can_redo: boolean;
+  leg: number;
+  why: string;
+  time_before_s: number;
+  twin: boolean;
+  has_memory: boolean;
+  warnings: string[];
+  /** The one of the warnings that blocks are too coarse for the outlines of the texture. */
+  too_coarse: string | null;
+}
+
+/** The outlines of one texture, in blocks. */
+export interface ShapeOutlines {
+  /** Its place among the textures, from 0. */
+  index: number;
+  outlines: number[][][];
+}
+
+/** Units of the dimensionless quantities. */
+export interface Units {
+  time_s: number;
+  displacement_m: number;
+  speed_m_s: number;
+  stress_pa: number;
+}
+
+/** New points of the curves. */
+export interface CurveReply {
+  leg: number;
+  from_rest: boolean;
+  t: number[];
+  mu: number[];
+  sliding: number[];
+  twin_reset: boolean;
+  twin_t: number[];
+  twin_mu: number[];
+  recorded_t?: number[];
+  recorded_mu?: number[];
+}
+
+/** The run at this instant. */
+export interface NumbersReply {
+  step: number;
+  t_star: number;
+  time_s: number;
+  mu_star: number;
+  sliding_percent: number;
+  peak: PeakReply | null;
+  twin_peak: PeakReply | null;
+  change_percent: number | null;
+  kinetic: number | null;
+  instants: Record<string, number>;
+  steps_per_second: number;
+  ended: boolean;
+  summary: Summary | null;
+}
+
+/** The first peak of mu*, which is certain once the fall after it has been seen. */
+export interface PeakReply {
+  t_star: number;
+  mu_star: number;
+  certain: boolean;
+}
+
+/** What the page shows of `summary.json`, which has more. */
+export interface Summary {
+  transition: boolean;
+  static_friction_star: number;
+  onset_time_star: number;
+  kinetic_friction_star: number | null;
+  front_speed_c_s: number | null;
+  front_speed_m_s: number | null;
+  front_duration_star: number | null;
+  nucleation_sites: number | null;
+  energy_error: number;
+  [key: string]: unknown;
+}
+
+/** The block under the pointer. */
+export interface ProbeReply {
+  block: number[];
+  exists: boolean;
+  textured: boolean;
+  sliding: boolean;
+  mu_static: number;
+  mu_kinetic: number;
+  contact_stress_pa: number;
+  traction_pa: number;
+  displacement_m: number;
+  speed_m_s: number;
+  first_slip_star: number | null;
+}
+
+/** Static friction over several seeds. */
+export interface RepeatedReply {
+  done: number;
+  of: number;
+  finished: boolean;
+  change_percent: Estimate | null;
+  with: Estimate | null;
+  without: Estimate | null;
+  /** How many of the runs had no transition. */
+  without_transition: number;
+}
+
+/** A mean and the half width of its interval. */
+export interface Estimate {
+  mean: number;
+  half_width: number | null;
+}
+
+/** All runs that are being saved, from whichever page. */
+export interface SavingReply {
+  under_way: SavingEntry[];
+}
+
+/** A run that is being saved, and the share of it that is done. */
+export interface SavingEntry {
+  name: string;
+  share: number;
+}
+
+export interface SavedReply {
+  name: string;
+  folder: string;
+  folders: string[];
+}
+
+/** The case as files, in Base64. */
+export interface ExportedReply {
+  toml: string;
+  files: Record<string, string>;
+  zip: string;
+}
+
+/** Snapshots of the run folder that is shown. */
+export interface RecordedReply {
+  times_star: number[];
+}
+
+/** A request that was refused; nothing changed. */
+export interface RefusedReply {
+  of: string;
+  sentence: string;
+}
+
+/** A run that has failed. */
+export interface FailedReply {
+  sentence: string;
+}
