@@ -20,6 +20,8 @@ mod history;
 mod live;
 mod opening;
 mod outbox;
+#[cfg(test)]
+mod page_types;
 mod picture;
 mod presets;
 mod protocol;

@@ -1,4 +1,4 @@
-// What the page and the server say to each other, as `src/protocol.rs` has it: `src/page_types.rs` holds the two against each other,
+// What the page and the server say to each other, as `src/protocol.rs` has it: `src/page_types/` holds the two against each other,
 // and reads plain interfaces and unions alone. A number that is not finite is sent as null. Browsers are not given this file.
 
 /** A value of a key of the case, as in TOML. */
