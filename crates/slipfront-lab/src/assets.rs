@@ -6,8 +6,8 @@ use include_dir::{Dir, include_dir};
 
 static WEB: Dir = include_dir!("$CARGO_MANIFEST_DIR/web");
 
-/// What a file is, by its ending.
-fn kind_of(path: &str) -> &'static str {
+/// The media type of a file, by its ending.
+fn content_type(path: &str) -> &'static str {
     match path.rsplit('.').next() {
         Some("html") => "text/html; charset=utf-8",
         Some("js") => "text/javascript; charset=utf-8",
@@ -25,7 +25,7 @@ pub(crate) async fn serve(uri: Uri) -> Response {
         path => path,
     };
     match WEB.get_file(path) {
-        Some(file) => ([(header::CONTENT_TYPE, kind_of(path))], file.contents()).into_response(),
+        Some(file) => ([(header::CONTENT_TYPE, content_type(path))], file.contents()).into_response(),
         None => (StatusCode::NOT_FOUND, "the laboratory has no such file\n").into_response(),
     }
 }

@@ -5,12 +5,12 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::Sender;
 use std::thread;
 
-/// Work in the background, which ends when this is dropped.
-pub(crate) struct Stoppable(Arc<AtomicBool>);
+/// Work in a thread of its own, which is asked to stop when this is dropped.
+pub(crate) struct BackgroundTask(Arc<AtomicBool>);
 
-impl Stoppable {
+impl BackgroundTask {
     /// Begins work in a thread, which holds `working` and looks now and then whether it shall stop.
-    pub(crate) fn begin(
+    pub(crate) fn spawn(
         working: &Sender<()>,
         work: impl FnOnce(&AtomicBool) + Send + 'static,
     ) -> std::io::Result<Self> {
@@ -24,7 +24,7 @@ impl Stoppable {
     }
 }
 
-impl Drop for Stoppable {
+impl Drop for BackgroundTask {
     fn drop(&mut self) {
         self.0.store(true, Ordering::Relaxed);
     }

@@ -9,9 +9,9 @@ use slipfront_case::case::Case;
 #[derive(Debug, Serialize)]
 pub(crate) struct Control {
     id: &'static str,
-    /// The key that holds it as a number.
+    /// The key that holds the quantity as a number.
     key: &'static str,
-    /// The key that holds it with its unit, if there is one.
+    /// The key that holds the quantity with its unit, if there is one.
     si_key: Option<&'static str>,
     unit: &'static str,
     /// The range of the slider, of the number where it has one; the key may hold more.
@@ -24,7 +24,7 @@ pub(crate) struct Control {
 /// A quantity as a dimensionless group and with its unit.
 #[derive(Debug, Serialize)]
 pub(crate) struct ControlValue {
-    pub(crate) star: Option<f64>,
+    pub(crate) star: f64,
     pub(crate) si: Option<f64>,
 }
 
@@ -41,7 +41,7 @@ const fn group(id: &'static str, key: &'static str, [min, max]: [f64; 2]) -> Con
     }
 }
 
-/// All of them.
+/// The quantities with a slider.
 pub(crate) static CONTROLS: [Control; 8] = [
     Control {
         si_key: Some("drive.speed"),
@@ -74,27 +74,24 @@ pub(crate) static CONTROLS: [Control; 8] = [
     },
 ];
 
-/// Their values in a case.
+/// The values that the quantities with a slider have in a case, by their ids.
 pub(crate) fn values(case: &Case) -> BTreeMap<&'static str, ControlValue> {
     let (groups, scales, file) = (&case.groups, &case.scales, &case.file);
     let value = |star, si| ControlValue { star, si };
     BTreeMap::from([
         (
             "speed",
-            value(Some(groups.v_star), Some(groups.v_star * scales.speed())),
+            value(groups.v_star, Some(groups.v_star * scales.speed())),
         ),
-        ("load", value(Some(groups.epsilon), Some(scales.pressure))),
-        ("r_star", value(Some(groups.r_star), None)),
+        ("load", value(groups.epsilon, Some(scales.pressure))),
+        ("r_star", value(groups.r_star, None)),
         (
             "omega_star",
-            value(
-                Some(groups.omega_star),
-                Some(scales.damping_rate(groups.omega_star)),
-            ),
+            value(groups.omega_star, Some(scales.damping_rate(groups.omega_star))),
         ),
-        ("sigma", value(Some(groups.sigma_static_star), None)),
-        ("sigma_kinetic", value(Some(groups.sigma_kinetic_star), None)),
-        ("seed", value(Some(file.friction.seed as f64), None)),
-        ("direction", value(Some(file.drive.direction), None)),
+        ("sigma", value(groups.sigma_static_star, None)),
+        ("sigma_kinetic", value(groups.sigma_kinetic_star, None)),
+        ("seed", value(file.friction.seed as f64, None)),
+        ("direction", value(file.drive.direction, None)),
     ])
 }

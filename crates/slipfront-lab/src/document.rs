@@ -10,7 +10,7 @@ use slipfront_case::case_file::{CaseError, CaseFile, partners_of, parts_of};
 use slipfront_case::text::truncated;
 use toml::{Table, Value};
 
-use crate::files::{KeptFile, MAX_FILES, Reach, plain_name, temporary};
+use crate::files::{MAX_FILES, ReadableFolders, TemporaryFile, plain_name, temporary};
 
 /// Most blocks of a case: such that the run, its twin and the pictures stay within the memory of a small machine.
 pub(crate) const MAX_BLOCKS: usize = 1 << 19;
@@ -24,19 +24,19 @@ pub(crate) struct Document {
     /// Name of the case.
     pub(crate) name: String,
     keys: Table,
-    /// The files that it names, by their plain names.
-    files: BTreeMap<String, Arc<KeptFile>>,
+    /// The files that the case names, by their plain names.
+    files: BTreeMap<String, Arc<TemporaryFile>>,
 }
 
 /// A file of a case, in a folder of its own.
-fn kept(name: &str, contents: &[u8]) -> Result<Arc<KeptFile>, CaseError> {
-    let file = KeptFile::new(name, contents);
+fn temporary_file(name: &str, contents: &[u8]) -> Result<Arc<TemporaryFile>, CaseError> {
+    let file = TemporaryFile::new(name, contents);
     file.map(Arc::new)
-        .map_err(|error| refused(format!("{name} cannot be written to a temporary folder: {error}")))
+        .map_err(|error| case_error(format!("{name} cannot be written to a temporary folder: {error}")))
 }
 
 /// A sentence as the error of a case.
-fn refused(sentence: String) -> CaseError {
+fn case_error(sentence: String) -> CaseError {
     CaseFile::default().source.error("", sentence)
 }
 
@@ -52,7 +52,7 @@ impl Document {
     ) -> Result<Self, CaseError> {
         // First, since its errors name the place in the text as it was written.
         let mut case = CaseFile::parse(text, name, &[])?;
-        let mut keys: Table = text.parse().map_err(|error| refused(format!("{error}")))?;
+        let mut keys: Table = text.parse().map_err(|error| case_error(format!("{error}")))?;
         let mut contents: BTreeMap<String, Vec<u8>> = BTreeMap::new();
         let (mut bytes, mut renamed) = (0, Vec::new());
         let (named, source) = case.files_mut();
@@ -73,14 +73,14 @@ impl Document {
             renamed.push((file.key, plain));
         }
         for (key, plain) in renamed {
-            put(&mut keys, &key, plain.into()).map_err(refused)?;
+            put(&mut keys, &key, plain.into()).map_err(case_error)?;
         }
         Ok(Self {
             name: name.to_owned(),
             keys,
             files: contents
                 .into_iter()
-                .map(|(name, contents)| Ok((name.clone(), kept(&name, &contents)?)))
+                .map(|(name, contents)| Ok((name.clone(), temporary_file(&name, &contents)?)))
                 .collect::<Result<_, CaseError>>()?,
         })
     }
@@ -88,11 +88,11 @@ impl Document {
     /// The case of a file, with the files that stand in its folder or in those that are `allowed`.
     ///
     /// # Errors
-    /// As for [`new`](Self::new), and when it names a file elsewhere.
+    /// When it is no case, a file cannot be read or lies elsewhere, or there is too much of it.
     pub(crate) fn load(path: &Path, name: &str, allowed: &[PathBuf]) -> Result<Self, CaseError> {
         let text = slipfront_case::case_file::read_text(path)?;
         let folder = path.parent().unwrap_or(Path::new(""));
-        let reach = Reach::new(folder, "the case", allowed).map_err(refused)?;
+        let reach = ReadableFolders::new(folder, "the case", allowed).map_err(case_error)?;
         Self::new(name, &text, |file| reach.read(file))
     }
 
@@ -101,12 +101,12 @@ impl Document {
         self.keys.to_string()
     }
 
-    /// The files that it names, by their plain names.
-    pub(crate) fn files(&self) -> &BTreeMap<String, Arc<KeptFile>> {
+    /// The files that the case names, by their plain names.
+    pub(crate) fn files(&self) -> &BTreeMap<String, Arc<TemporaryFile>> {
         &self.files
     }
 
-    /// Bytes of memory that its keys take, about.
+    /// Bytes of memory that the keys take, about.
     pub(crate) fn bytes_of_keys(&self) -> usize {
         bytes_of_table(&self.keys)
     }
@@ -119,7 +119,7 @@ impl Document {
         })
     }
 
-    /// Whether it has textures.
+    /// Whether the case has textures.
     pub(crate) fn has_texture(&self) -> bool {
         self.keys
             .get("texture")
@@ -127,14 +127,14 @@ impl Document {
             .is_some_and(|all| !all.is_empty())
     }
 
-    /// The same case without texture.
+    /// A copy of the case without texture.
     pub(crate) fn without_texture(&self) -> Self {
         let mut twin = self.clone();
         twin.keys.remove("texture");
         twin
     }
 
-    /// The same case with other values of keys, none to remove one. A key that sets the same thing as another replaces it.
+    /// A copy of the case with other values of keys, none to remove one. A key that sets the same thing as another replaces it.
     ///
     /// # Errors
     /// A sentence, if a key has no place in the case.
@@ -155,7 +155,7 @@ impl Document {
         Ok(changed)
     }
 
-    /// The same case with an image in place of its textures.
+    /// A copy of the case with an image in place of its textures.
     ///
     /// # Errors
     /// When it cannot be written, or is no case without the image either.
@@ -172,7 +172,7 @@ impl Document {
         if threshold != slipfront_case::case_file::DEFAULT_THRESHOLD {
             texture.insert("threshold".to_owned(), threshold.into());
         }
-        painted.files.insert(name.clone(), kept(&name, png)?);
+        painted.files.insert(name.clone(), temporary_file(&name, png)?);
         painted
             .keys
             .insert("texture".to_owned(), Value::Array(vec![texture.into()]));
@@ -193,30 +193,33 @@ impl Document {
         Ok(())
     }
 
-    /// The same case with a texture that is this mask, one value per block from y = 0 upwards.
+    /// A copy of the case with this mask as its texture, one value per block from y = 0 upwards.
     ///
     /// # Errors
-    /// As for [`with_image`](Self::with_image).
+    /// When the image of the mask cannot be written, or the case is none without it either.
     pub(crate) fn with_mask(&self, textured: &[bool], nx: usize) -> Result<Self, CaseError> {
         if !textured.contains(&true) {
             return Ok(self.without_texture());
         }
         let png = mask_image(textured, nx)
-            .map_err(|error| refused(format!("the mask cannot be written: {error}")))?;
+            .map_err(|error| case_error(format!("the mask cannot be written: {error}")))?;
         self.with_image(&png, slipfront_case::case_file::DEFAULT_THRESHOLD)
     }
 
     /// The case that can be run, as `slipfront run` makes it.
     ///
     /// # Errors
-    /// Those of a case, and one with more than [`MAX_BLOCKS`] blocks.
+    /// When the keys are no case that can be run, or it has more than [`MAX_BLOCKS`] blocks.
     pub(crate) fn case(&self) -> Result<Case, CaseError> {
-        self.made(&[])
+        self.build(&[])
     }
 
-    /// The same case as it is shown: it writes nothing, and keeps no more than the instants A-F for it.
+    /// The case that is shown: it writes nothing, and keeps no more snapshots than the instants A-F.
+    ///
+    /// # Errors
+    /// When the keys are no case that can be run, or it has more than [`MAX_BLOCKS`] blocks.
     pub(crate) fn case_to_show(&self) -> Result<Case, CaseError> {
-        self.made(&[
+        self.build(&[
             "output.fields=[\"sliding\"]",
             "output.snapshots=\"auto\"",
             "output.series=\"auto\"",
@@ -224,7 +227,11 @@ impl Document {
         ])
     }
 
-    fn made(&self, overrides: &[&str]) -> Result<Case, CaseError> {
+    /// The case with other values of keys, each as `key=value`.
+    ///
+    /// # Errors
+    /// When the keys are no case that can be run, or it has more than [`MAX_BLOCKS`] blocks.
+    fn build(&self, overrides: &[&str]) -> Result<Case, CaseError> {
         let overrides: Vec<String> = overrides.iter().map(|&text| text.to_owned()).collect();
         let mut file = CaseFile::parse(&self.toml(), &self.name, &overrides)?;
         self.find_files(&mut file)?;

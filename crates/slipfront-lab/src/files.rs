@@ -12,18 +12,18 @@ use tempfile::TempDir;
 /// Most bytes of all files of a case.
 pub(crate) const MAX_FILES: u64 = 64 << 20;
 
-/// A file of a case, in a temporary folder of its own, which goes with it. The cases that name it share it.
+/// A file of a case, in a temporary folder of its own that is removed with it. The cases that name the file share it.
 #[derive(Debug)]
-pub(crate) struct KeptFile {
+pub(crate) struct TemporaryFile {
     folder: TempDir,
     /// The folder of temporary files of this process, which must outlive the one in it.
     _parent: Arc<TemporaryFolder>,
     name: String,
-    /// Its length.
+    /// Length of the file, bytes.
     pub(crate) bytes: usize,
 }
 
-impl KeptFile {
+impl TemporaryFile {
     /// Writes a file under a plain name.
     pub(crate) fn new(name: &str, contents: &[u8]) -> std::io::Result<Self> {
         let parent = TemporaryFolder::shared()?;
@@ -37,12 +37,12 @@ impl KeptFile {
         })
     }
 
-    /// Its contents.
+    /// Reads the contents of the file.
     pub(crate) fn read(&self) -> std::io::Result<Vec<u8>> {
         read_limited(&self.folder.path().join(&self.name), MAX_FILES)
     }
 
-    /// Its path from the folder of temporary files.
+    /// The path of the file from the folder of temporary files.
     pub(crate) fn path(&self) -> String {
         let folder = self.folder.path();
         let folder = folder.strip_prefix(temporary()).unwrap_or(folder);
@@ -57,7 +57,7 @@ pub(crate) fn temporary() -> PathBuf {
 
 /// The folders in which files of the disk may be read: one, and those that the user allows. What leads out of them, by its name
 /// or by symbolic links, is refused.
-pub(crate) struct Reach<'a> {
+pub(crate) struct ReadableFolders<'a> {
     folder: &'a Path,
     /// What the folder is called in messages.
     of: &'static str,
@@ -65,12 +65,13 @@ pub(crate) struct Reach<'a> {
     roots: Vec<PathBuf>,
 }
 
-impl<'a> Reach<'a> {
-    /// A folder, which messages call for example that of `the case`, and the allowed ones.
+impl<'a> ReadableFolders<'a> {
+    /// The folder of what messages call `of`, such as `the case`, and the allowed folders.
     pub(crate) fn new(folder: &'a Path, of: &'static str, allowed: &[PathBuf]) -> Result<Self, String> {
-        let folder = match folder.as_os_str().is_empty() {
-            true => Path::new("."),
-            false => folder,
+        let folder = if folder.as_os_str().is_empty() {
+            Path::new(".")
+        } else {
+            folder
         };
         let resolved = |path: &Path| {
             let found = path.canonicalize();
@@ -107,7 +108,7 @@ impl<'a> Reach<'a> {
     /// Reads a file.
     ///
     /// # Errors
-    /// As for [`resolve`](Self::resolve), and if it is too large or no file.
+    /// A sentence, if there is none, it lies elsewhere, is too large, or is no file.
     pub(crate) fn read(&self, name: &str) -> Result<Vec<u8>, String> {
         let path = self.resolve(name)?;
         let sentence = |error: std::io::Error| error.to_string();
@@ -131,7 +132,7 @@ fn is_at(opened: &std::fs::File, path: &Path) -> bool {
     there.is_some() && there == id(opened.metadata()) && path.canonicalize().is_ok_and(|found| found == path)
 }
 
-/// Elsewhere nothing tells which file it is.
+/// Whether a file that was opened is the one at this path: only its path tells, on systems without inodes.
 #[cfg(not(unix))]
 fn is_at(_opened: &std::fs::File, path: &Path) -> bool {
     path.canonicalize().is_ok_and(|found| found == path)
@@ -195,7 +196,7 @@ mod tests {
         let all = folders();
         let case = all.path().join("case");
         let shared = all.path().join("shared").canonicalize().unwrap();
-        let own = Reach::new(&case, "the case", &[]).unwrap();
+        let own = ReadableFolders::new(&case, "the case", &[]).unwrap();
         let absolute = shared.join("x.csv").display().to_string();
         for (name, file) in [
             ("a.csv", "case/a.csv"),
@@ -205,7 +206,7 @@ mod tests {
         ] {
             assert_eq!(own.read(name).unwrap(), file.as_bytes(), "{name}");
         }
-        let allowed = Reach::new(&case, "the case", &[all.path().join("shared")]).unwrap();
+        let allowed = ReadableFolders::new(&case, "the case", &[all.path().join("shared")]).unwrap();
         for name in [
             "../shared/x.csv",
             "link-outside.csv",
@@ -232,7 +233,7 @@ mod tests {
         ] {
             assert!(own.read(name).is_err(), "{name}");
         }
-        assert!(Reach::new(&case, "the case", &[all.path().join("none")]).is_err());
+        assert!(ReadableFolders::new(&case, "the case", &[all.path().join("none")]).is_err());
     }
 
     /// The file is found, and then its folder becomes a link to another one.

@@ -44,7 +44,7 @@ pub(crate) async fn guard(State(port): State<u16>, request: Request, next: Next)
 }
 
 /// Whether this is a name of this machine with the port of the server.
-fn is_here(host: &str, port: u16) -> bool {
+fn is_this_server(host: &str, port: u16) -> bool {
     let names = ["127.0.0.1", "localhost", "[::1]"];
     names.iter().any(|name| host == format!("{name}:{port}"))
 }
@@ -52,7 +52,9 @@ fn is_here(host: &str, port: u16) -> bool {
 fn refusal(headers: &HeaderMap, uri: &Uri, port: u16) -> Option<(StatusCode, &'static str)> {
     let text = |name| headers.get(name).map(|value| value.to_str().unwrap_or_default());
     let hosts = headers.get_all(header::HOST).iter().count();
-    if hosts != 1 || uri.authority().is_some() || !text(header::HOST).is_some_and(|host| is_here(host, port))
+    if hosts != 1
+        || uri.authority().is_some()
+        || !text(header::HOST).is_some_and(|host| is_this_server(host, port))
     {
         return Some((
             StatusCode::MISDIRECTED_REQUEST,
@@ -62,7 +64,7 @@ fn refusal(headers: &HeaderMap, uri: &Uri, port: u16) -> Option<(StatusCode, &'s
     let foreign = |origin: &str| {
         !origin
             .strip_prefix("http://")
-            .is_some_and(|host| is_here(host, port))
+            .is_some_and(|host| is_this_server(host, port))
     };
     if text(header::ORIGIN).is_some_and(foreign) {
         return Some((

@@ -38,7 +38,7 @@ impl History {
         &self.present
     }
 
-    /// A changed case; the changes of one gesture are undone at once.
+    /// Makes a changed case the present one; the changes of one gesture are undone at once.
     pub(crate) fn change(&mut self, document: Document, gesture: u64) {
         let before = std::mem::replace(&mut self.present, document);
         if self.gesture != Some(gesture) {

@@ -10,23 +10,23 @@ use slipfront_run::summary::Summary;
 use crate::protocol::PeakReply;
 
 /// A run from rest, and the legs that changes of its case have begun since.
-pub(crate) struct Live {
+pub(crate) struct LiveRun {
     running: Running,
-    /// Number of this leg; that from rest is 0.
+    /// Number of this leg, 0 for the one that begins at rest.
     pub(crate) leg: usize,
-    /// Steps, t* and s of the legs before.
-    before: Gone,
+    /// Steps and time of the legs before this one.
+    before: Elapsed,
     /// Where the drive stood when this leg began, m, block by block; none from rest.
     origin: Option<Vec<[f32; 2]>>,
-    /// Points of the curve of this leg that were told.
-    told: usize,
-    /// Why it ended, if it did.
+    /// Points of the curve of this leg that the page has been sent.
+    n_sent: usize,
+    /// Why the run ended, if it did.
     pub(crate) ended: Option<StopReason>,
 }
 
-/// What has passed since rest.
+/// Steps and time that have passed.
 #[derive(Clone, Copy, Debug, Default)]
-struct Gone {
+struct Elapsed {
     steps: u64,
     time_star: f64,
     time_s: f64,
@@ -40,20 +40,20 @@ pub(crate) struct Points {
     pub(crate) sliding_percent: Vec<f64>,
 }
 
-impl Live {
-    /// Begins at rest.
+impl LiveRun {
+    /// A run of a case that begins at rest.
     pub(crate) fn from_rest(case: &Arc<Case>, threads: usize) -> Self {
         Self {
             running: Running::start(case, threads),
             leg: 0,
-            before: Gone::default(),
+            before: Elapsed::default(),
             origin: None,
-            told: 0,
+            n_sent: 0,
             ended: None,
         }
     }
 
-    /// The next leg, under another case.
+    /// Lets the run go on under another case, as its next leg.
     ///
     /// # Errors
     /// A sentence, if a run cannot go on under that case.
@@ -69,7 +69,7 @@ impl Live {
             origin[0] += before[0];
             origin[1] += before[1];
         }
-        self.before = Gone {
+        self.before = Elapsed {
             steps: self.before.steps + leg.steps,
             time_star: self.before.time_star + leg.steps as f64 * dt_star,
             time_s: self.before.time_s + leg.time_s,
@@ -77,7 +77,7 @@ impl Live {
         self.origin = Some(origin);
         self.running = leg.running;
         self.leg += 1;
-        self.told = 0;
+        self.n_sent = 0;
         self.ended = None;
         Ok(())
     }
@@ -94,12 +94,12 @@ impl Live {
         self.origin.as_deref()
     }
 
-    /// Whether its contacts remember more than a displacement and a velocity.
+    /// Whether contacts of the run remember more than a displacement and a velocity.
     pub(crate) fn has_memory(&self) -> bool {
         self.case().model.friction.n_columns() > 0
     }
 
-    /// At most so many steps.
+    /// Takes at most so many steps.
     ///
     /// # Errors
     /// A sentence, when the run diverges.
@@ -125,20 +125,20 @@ impl Live {
         self.before.time_s + self.running.snapshot().time_star * self.case().scales.time()
     }
 
-    /// Time of the legs before, s.
+    /// Time of the legs before this one, s.
     pub(crate) fn time_before_s(&self) -> f64 {
         self.before.time_s
     }
 
-    /// t* of the legs before.
+    /// t* of the legs before this one.
     pub(crate) fn time_before_star(&self) -> f64 {
         self.before.time_star
     }
 
-    /// The points of the curve that were not told yet.
-    pub(crate) fn new_points(&mut self) -> Points {
-        let rows = &self.running.rows()[self.told..];
-        self.told += rows.len();
+    /// The points of the curve that the page has not been sent yet; from now on they count as sent.
+    pub(crate) fn take_unsent_points(&mut self) -> Points {
+        let rows = &self.running.rows()[self.n_sent..];
+        self.n_sent += rows.len();
         let before = self.before.time_star;
         Points {
             time_star: rows.iter().map(|row| before + row.time_star).collect(),
@@ -147,9 +147,9 @@ impl Live {
         }
     }
 
-    /// All points of this leg are told again.
-    pub(crate) fn tell_again(&mut self) {
-        self.told = 0;
+    /// Lets all points of this leg be sent again.
+    pub(crate) fn resend_points(&mut self) {
+        self.n_sent = 0;
     }
 
     /// The first peak of mu* since rest; none of a later leg, which does not begin at rest.

@@ -9,10 +9,10 @@ use crate::replay;
 
 /// What the page shows first.
 #[derive(Default)]
-pub struct Start(pub(crate) Opened);
+pub struct Start(pub(crate) StartSource);
 
 #[derive(Default)]
-pub(crate) enum Opened {
+pub(crate) enum StartSource {
     /// A case of the laboratory itself.
     #[default]
     Preset,
@@ -37,11 +37,11 @@ impl Start {
         if path.is_dir() {
             let (document, _) = replay::read(path, allow_files).map_err(OpeningError)?;
             document.case_to_show().map_err(refused)?;
-            return Ok(Self(Opened::Folder(path.to_owned())));
+            return Ok(Self(StartSource::Folder(path.to_owned())));
         }
         let name = path.file_stem().unwrap_or_default().to_string_lossy();
         let document = Document::load(path, &name, allow_files).map_err(refused)?;
         document.case_to_show().map_err(refused)?;
-        Ok(Self(Opened::Case(Box::new(document))))
+        Ok(Self(StartSource::Case(Box::new(document))))
     }
 }

@@ -9,22 +9,22 @@ use tokio::sync::Notify;
 use crate::protocol::Reply;
 
 /// Replies that may wait before the run does.
-const MANY: usize = 64;
+const MAX_WAITING_REPLIES: usize = 64;
 
 /// Bytes of replies that may wait before the next request does: those to a page that does not read them do not fill the memory.
-const MANY_BYTES: usize = 4 << 20;
+const MAX_WAITING_BYTES: usize = 4 << 20;
 
 /// Filled by the session and the work it has begun, emptied by the connection.
 #[derive(Default)]
 pub(crate) struct Outbox {
-    waiting: Mutex<Waiting>,
+    waiting: Mutex<Queue>,
     filled: Notify,
     /// Tells that there is room again.
     taken: Condvar,
 }
 
 #[derive(Default)]
-struct Waiting {
+struct Queue {
     replies: VecDeque<String>,
     /// Whether the page is gone.
     closed: bool,
@@ -32,18 +32,19 @@ struct Waiting {
     kymograph: Option<Bytes>,
 }
 
-/// What is sent next.
+/// A message of the server.
 pub(crate) enum Outgoing {
     Reply(String),
     Picture(Bytes),
 }
 
 impl Outbox {
-    fn waiting(&self) -> MutexGuard<'_, Waiting> {
+    fn waiting(&self) -> MutexGuard<'_, Queue> {
         // Nothing panics while it is locked; what waits is whole in any case.
         self.waiting.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
+    /// Adds a reply to those that wait.
     pub(crate) fn reply(&self, reply: &Reply) {
         // Texts and finite or infinite numbers, which become null: nothing that JSON does not have.
         let text = serde_json::to_string(reply).expect("replies are JSON");
@@ -53,9 +54,9 @@ impl Outbox {
 
     /// Waits until there is room for the answer to another request, or the page is gone.
     pub(crate) fn wait_for_room(&self) {
-        let is_full = |waiting: &mut Waiting| {
+        let is_full = |waiting: &mut Queue| {
             let bytes: usize = waiting.replies.iter().map(String::len).sum();
-            bytes >= MANY_BYTES && !waiting.closed
+            bytes >= MAX_WAITING_BYTES && !waiting.closed
         };
         drop(self.taken.wait_while(self.waiting(), is_full));
     }
@@ -66,13 +67,13 @@ impl Outbox {
         self.taken.notify_all();
     }
 
-    /// A picture in place of one that has not been sent yet.
+    /// Puts a picture in the place of one that has not been sent yet.
     pub(crate) fn picture(&self, picture: Bytes) {
         self.waiting().picture = Some(picture);
         self.filled.notify_one();
     }
 
-    /// The same of the kymograph.
+    /// Puts a kymograph in the place of one that has not been sent yet.
     pub(crate) fn kymograph(&self, kymograph: Bytes) {
         self.waiting().kymograph = Some(kymograph);
         self.filled.notify_one();
@@ -80,15 +81,15 @@ impl Outbox {
 
     /// Whether the page is so far behind that it is given no more than answers.
     pub(crate) fn is_full(&self) -> bool {
-        self.waiting().replies.len() >= MANY
+        self.waiting().replies.len() >= MAX_WAITING_REPLIES
     }
 
-    /// All replies that wait; pictures are left out.
+    /// Takes all replies that wait; pictures are left out.
     pub(crate) fn take_replies(&self) -> Vec<String> {
         self.waiting().replies.drain(..).collect()
     }
 
-    /// What comes next, as soon as there is something.
+    /// The next message, as soon as there is one.
     pub(crate) async fn next(&self) -> Outgoing {
         loop {
             if let Some(outgoing) = self.take() {
@@ -128,7 +129,7 @@ mod tests {
         let filled = Arc::clone(&outbox);
         let session = thread::spawn(move || {
             // Two are more than may wait.
-            let sentence = "x".repeat(MANY_BYTES / 2);
+            let sentence = "x".repeat(MAX_WAITING_BYTES / 2);
             for number in 0..6 {
                 filled.wait_for_room();
                 let sentence = sentence.clone();

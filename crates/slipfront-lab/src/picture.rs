@@ -6,10 +6,10 @@ use slipfront::Snapshot;
 use slipfront::observe::{Field, Kymograph};
 use slipfront::{PositionBins, Scales};
 
-/// What is shown of every block.
+/// The field of all blocks that is shown; its number stands in pictures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub(crate) enum Shown {
+pub(crate) enum DisplayedField {
     ContactStress,
     Traction,
     Displacement,
@@ -19,7 +19,7 @@ pub(crate) enum Shown {
 }
 
 /// Byte of the largest value.
-const TOP: f32 = 250.0;
+const MAX_BYTE: f32 = 250.0;
 /// Bytes of blocks without a value.
 const NOT_YET: u8 = 253;
 const NO_BLOCK: u8 = 254;
@@ -37,7 +37,7 @@ pub(crate) struct Painter {
     other: Vec<f32>,
     times: Vec<f64>,
     /// The largest value of the scale of a field.
-    high: Option<(Shown, f32)>,
+    high: Option<(DisplayedField, f32)>,
 }
 
 /// What belongs to a picture beside its values.
@@ -53,18 +53,18 @@ pub(crate) struct Frame<'a> {
 }
 
 impl Painter {
-    /// The scale begins anew.
-    pub(crate) fn forget_scale(&mut self) {
+    /// Forgets the scale, so that the next picture finds its own.
+    pub(crate) fn reset_scale(&mut self) {
         self.high = None;
     }
 
-    /// The present picture of a run. Displacements count from rest: `origin` is where the drive stood when the leg began, m.
-    pub(crate) fn live(
+    /// The picture of a run at this instant. Displacements count from rest: `origin` is where the drive stood when the leg began, m.
+    pub(crate) fn paint_snapshot(
         &mut self,
         now: &Snapshot,
         scales: &Scales,
         origin: Option<&[[f32; 2]]>,
-        shown: Shown,
+        shown: DisplayedField,
     ) -> Bytes {
         let lattice = &now.model.lattice;
         let surface = &now.model.surface;
@@ -74,17 +74,17 @@ impl Painter {
         let (values, other) = (&mut self.values, &mut self.other);
         let stress = scales.stress() as f32;
         match shown {
-            Shown::ContactStress => read_scaled(now, Field::ContactStress, stress, values),
-            Shown::Traction => read_scaled(now, Field::Traction, stress, values),
-            Shown::Sliding => now.read_field(Field::Sliding, values),
-            Shown::FirstSlip => {
+            DisplayedField::ContactStress => read_scaled(now, Field::ContactStress, stress, values),
+            DisplayedField::Traction => read_scaled(now, Field::Traction, stress, values),
+            DisplayedField::Sliding => now.read_field(Field::Sliding, values),
+            DisplayedField::FirstSlip => {
                 self.times.resize(n_blocks, 0.0);
                 now.read_first_slips(&mut self.times);
                 for (value, time) in values.iter_mut().zip(&self.times) {
                     *value = *time as f32;
                 }
             }
-            Shown::Displacement => {
+            DisplayedField::Displacement => {
                 let unit = scales.displacement() as f32;
                 read_scaled(now, Field::DisplacementX, unit, values);
                 read_scaled(now, Field::DisplacementY, unit, other);
@@ -96,7 +96,7 @@ impl Painter {
                 }
                 lengths(values, other);
             }
-            Shown::Speed => {
+            DisplayedField::Speed => {
                 let unit = scales.speed() as f32;
                 read_scaled(now, Field::VelocityX, unit, values);
                 read_scaled(now, Field::VelocityY, unit, other);
@@ -119,16 +119,16 @@ impl Painter {
             .outline
             .as_ref()
             .map(|outline| &*outline.exists);
-        let picture = self.picture(&frame, shown, &values, exists);
+        let picture = self.paint(&frame, shown, &values, exists);
         self.values = values;
         picture
     }
 
-    /// A picture of these values, in the unit of the field.
-    pub(crate) fn picture(
+    /// The picture of these values, which are in the unit of the field.
+    pub(crate) fn paint(
         &mut self,
         frame: &Frame,
-        shown: Shown,
+        shown: DisplayedField,
         values: &[f32],
         exists: Option<&[bool]>,
     ) -> Bytes {
@@ -147,21 +147,24 @@ impl Painter {
         for count in frame.size {
             bytes.extend((count as u16).to_le_bytes());
         }
-        let factor = if high > low { TOP / (high - low) } else { 0.0 };
-        let missing = if shown == Shown::FirstSlip {
+        let factor = if high > low { MAX_BYTE / (high - low) } else { 0.0 };
+        let missing = if shown == DisplayedField::FirstSlip {
             NOT_YET
         } else {
             NO_BLOCK
         };
-        let byte = |value: &f32| match value.is_nan() {
-            true => missing,
-            false => ((value - low) * factor + 0.5).clamp(0.0, TOP) as u8,
+        let byte = |value: &f32| {
+            if value.is_nan() {
+                missing
+            } else {
+                ((value - low) * factor + 0.5).clamp(0.0, MAX_BYTE) as u8
+            }
         };
         let first = bytes.len();
         bytes.extend(values.iter().map(byte));
         let pixels = &mut bytes[first..];
         // Where nothing touches there is no contact stress; how such blocks move is shown as that of others.
-        if !matches!(shown, Shown::Displacement | Shown::Speed) {
+        if !matches!(shown, DisplayedField::Displacement | DisplayedField::Speed) {
             for (pixel, textured) in pixels.iter_mut().zip(frame.textured) {
                 *pixel = if *textured { TEXTURED } else { *pixel };
             }
@@ -177,12 +180,12 @@ impl Painter {
     }
 
     /// The values of the first and the last colour.
-    fn scale(&mut self, shown: Shown, values: &[f32]) -> [f32; 2] {
-        if shown == Shown::Sliding {
+    fn scale(&mut self, shown: DisplayedField, values: &[f32]) -> [f32; 2] {
+        if shown == DisplayedField::Sliding {
             return [0.0, 1.0];
         }
         let largest = values.iter().copied().fold(0.0, f32::max);
-        if shown == Shown::FirstSlip {
+        if shown == DisplayedField::FirstSlip {
             let earliest = values.iter().copied().fold(f32::INFINITY, f32::min);
             return [earliest.min(largest), largest];
         }
@@ -221,7 +224,7 @@ fn round_up(value: f32) -> f32 {
     step.unwrap_or(10.0) * power
 }
 
-/// What slides against place and time, as a picture; `before_star` is t* of the legs before.
+/// The share of blocks that slide against place and time, as a picture; `before_star` is t* of the legs before this one.
 pub(crate) fn kymograph(
     of: &Kymograph,
     bins: &PositionBins,
@@ -237,9 +240,12 @@ pub(crate) fn kymograph(
     for number in [times[0], times[1], bins.start, bins.width as f64] {
         bytes.extend((number as f32).to_le_bytes());
     }
-    let byte = |share: &f32| match share.is_nan() {
-        true => TEXTURED,
-        false => (share * TOP + 0.5) as u8,
+    let byte = |share: &f32| {
+        if share.is_nan() {
+            TEXTURED
+        } else {
+            (share * MAX_BYTE + 0.5) as u8
+        }
     };
     bytes.extend(rows.iter().flat_map(|(_, shares)| shares).map(byte));
     Some(bytes.into())

@@ -10,10 +10,10 @@ use crate::protocol::PresetEntry;
 
 static CASES: Dir = include_dir!("$CARGO_MANIFEST_DIR/cases");
 
-/// The case with which the page opens unless another one is named: that of the circle, of more blocks.
+/// The case with which the page opens unless another one is named: the circle, with more blocks.
 ///
 /// # Errors
-/// As for [`document`].
+/// A sentence, if the case cannot be made.
 pub(crate) fn opening() -> Result<Document, String> {
     let blocks = Value::Array(vec![Value::Integer(100); 2]);
     document("circle")?.with([("slider.blocks".to_owned(), Some(blocks))])
@@ -34,7 +34,7 @@ fn figures() -> impl Iterator<Item = (&'static str, &'static str)> {
     slipfront_paper::cases().filter(|(name, _)| name.starts_with("fig") || name.starts_with("table"))
 }
 
-/// The list of them all.
+/// The list of all cases to choose from.
 pub(crate) fn entries() -> Vec<PresetEntry> {
     let entry = |group, prefix: &'static str| {
         move |(name, text): (&str, &str)| PresetEntry {

@@ -1,4 +1,6 @@
 //! What the page and the server say to each other: requests as JSON, replies as JSON, pictures as bytes.
+//!
+//! The page is written against the types of `types/protocol.d.ts`, which a test holds against those here.
 
 use std::collections::BTreeMap;
 
@@ -38,9 +40,9 @@ pub(crate) enum Request {
     },
     /// The case before the last gesture.
     Undo,
-    /// The case after it again.
+    /// The case before the last undo.
     Redo,
-    /// The same case from rest.
+    /// The present case again, from rest.
     Rest,
     /// What is shown, and how fast.
     View(ViewChange),
@@ -62,7 +64,7 @@ pub(crate) enum Request {
 }
 
 impl Request {
-    /// Its name in messages.
+    /// The name of the request in messages.
     pub(crate) fn name(&self) -> &'static str {
         match self {
             Self::Open { .. } => "open",
@@ -85,7 +87,7 @@ impl Request {
     }
 }
 
-/// Where a case is taken from; that with which the laboratory was started if nothing is given.
+/// Where a case is taken from: if nothing is given, the case with which the laboratory was started.
 #[derive(Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Source {

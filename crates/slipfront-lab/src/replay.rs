@@ -9,17 +9,17 @@ use slipfront_run::names::{CASE, FIELDS, MANIFEST, SERIES, SUMMARY};
 use slipfront_run::{series, summary, verify};
 
 use crate::document::Document;
-use crate::files::{Reach, is_plain_name};
-use crate::picture::{Shown, lengths};
+use crate::files::{ReadableFolders, is_plain_name};
+use crate::picture::{DisplayedField, lengths};
 
 /// Largest file of fields whose snapshots are shown, in bytes.
 const MAX_FIELDS: u64 = 32 << 20;
 
 /// A run that was read from its folder.
-pub(crate) struct Recorded {
+pub(crate) struct RecordedRun {
     pub(crate) time_star: Vec<f64>,
     pub(crate) mu_star: Vec<f64>,
-    /// Its snapshots, unless they are too large, or of fewer blocks than the lattice has.
+    /// The snapshots of the run, unless they are too large, or of fewer blocks than the lattice has.
     pub(crate) snapshots: Option<FieldsData>,
     contact_stress_max_pa: f32,
 }
@@ -47,7 +47,7 @@ pub(crate) fn folder(results: &Path, name: &str, allowed: &[PathBuf]) -> Result<
             truncated(name)
         ));
     }
-    let found = Reach::new(results, "the results", allowed).and_then(|reach| reach.resolve(name));
+    let found = ReadableFolders::new(results, "the results", allowed).and_then(|reach| reach.resolve(name));
     found.map_err(|error| format!("{} cannot be read: {error}", display_path(&results.join(name))))
 }
 
@@ -55,12 +55,12 @@ pub(crate) fn folder(results: &Path, name: &str, allowed: &[PathBuf]) -> Result<
 ///
 /// # Errors
 /// A sentence, if it is none, or was changed since it was written, or one of its files lies elsewhere and not where it is `allowed`.
-pub(crate) fn read(folder: &Path, allowed: &[PathBuf]) -> Result<(Document, Recorded), String> {
+pub(crate) fn read(folder: &Path, allowed: &[PathBuf]) -> Result<(Document, RecordedRun), String> {
     /// Any error as its sentence.
     fn sentence(error: impl std::fmt::Display) -> String {
         error.to_string()
     }
-    let reach = Reach::new(folder, "the run", allowed)?;
+    let reach = ReadableFolders::new(folder, "the run", allowed)?;
     for name in [MANIFEST, CASE, SUMMARY, SERIES, FIELDS] {
         let path = folder.join(name);
         if path.symlink_metadata().is_ok() {
@@ -78,11 +78,12 @@ pub(crate) fn read(folder: &Path, allowed: &[PathBuf]) -> Result<(Document, Reco
     let rows = series::read_csv(&folder.join(SERIES)).map_err(sentence)?;
     let fields = folder.join(FIELDS);
     let is_small = fields.metadata().is_ok_and(|found| found.len() <= MAX_FIELDS);
-    let snapshots = match is_small {
-        true => Some(read_fields(&fields).map_err(sentence)?),
-        false => None,
+    let snapshots = if is_small {
+        Some(read_fields(&fields).map_err(sentence)?)
+    } else {
+        None
     };
-    let recorded = Recorded {
+    let recorded = RecordedRun {
         contact_stress_max_pa: summary.si.map_or(f64::NAN, |si| si.contact_stress_max_pa) as f32,
         time_star: rows.iter().map(|row| row.time_star).collect(),
         mu_star: rows.iter().map(|row| row.mu_star).collect(),
@@ -91,9 +92,9 @@ pub(crate) fn read(folder: &Path, allowed: &[PathBuf]) -> Result<(Document, Reco
     Ok((document, recorded))
 }
 
-impl Recorded {
+impl RecordedRun {
     /// The values of a recorded field in the unit in which it is shown; none if it was not recorded.
-    pub(crate) fn values(&self, index: usize, shown: Shown) -> Option<Vec<f32>> {
+    pub(crate) fn values(&self, index: usize, shown: DisplayedField) -> Option<Vec<f32>> {
         let of = self.snapshots.as_ref()?;
         let frame = of.frames.get(index)?;
         let recorded = |field: Field| {
@@ -107,18 +108,20 @@ impl Recorded {
         };
         match shown {
             // It is recorded over its largest value.
-            Shown::ContactStress => {
+            DisplayedField::ContactStress => {
                 let mut stress = recorded(Field::ContactStress)?;
                 stress
                     .iter_mut()
                     .for_each(|star| *star *= self.contact_stress_max_pa);
                 Some(stress)
             }
-            Shown::Traction => recorded(Field::Traction),
-            Shown::Sliding => recorded(Field::Sliding),
-            Shown::Displacement => length(Field::DisplacementX, Field::DisplacementY),
-            Shown::Speed => length(Field::VelocityX, Field::VelocityY),
-            Shown::FirstSlip => Some(of.first_slip_time_star.iter().map(|time| *time as f32).collect()),
+            DisplayedField::Traction => recorded(Field::Traction),
+            DisplayedField::Sliding => recorded(Field::Sliding),
+            DisplayedField::Displacement => length(Field::DisplacementX, Field::DisplacementY),
+            DisplayedField::Speed => length(Field::VelocityX, Field::VelocityY),
+            DisplayedField::FirstSlip => {
+                Some(of.first_slip_time_star.iter().map(|time| *time as f32).collect())
+            }
         }
     }
 }

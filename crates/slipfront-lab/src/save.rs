@@ -18,7 +18,7 @@ use crate::document::Document;
 use crate::files::is_plain_name;
 
 /// Time from one report of the progress to the next.
-const REPORT: Duration = Duration::from_millis(200);
+const REPORT_INTERVAL: Duration = Duration::from_millis(200);
 
 /// The folder of this name among the results.
 ///
@@ -42,7 +42,7 @@ fn is_taken(folder: &Path) -> String {
     format!("{} exists already: take another name", display_path(folder))
 }
 
-/// Makes a new folder. What stands there already is not taken for one, not even a link to an empty folder.
+/// Makes a new folder. Fails if anything has that name already, even a link to an empty folder.
 fn make_folder(path: &Path) -> Result<(), String> {
     let above = path.parent().map_or(Ok(()), make_folders);
     above
@@ -53,8 +53,8 @@ fn make_folder(path: &Path) -> Result<(), String> {
         })
 }
 
-/// Runs the case to its end and writes it into a new folder; tells now and then the share that is done, and looks whether it shall
-/// stop. Gives whether the run is there.
+/// Runs the case to its end and writes it into a new folder; reports now and then the share that is done, and looks whether it shall
+/// stop. Gives whether the run was completed.
 ///
 /// # Errors
 /// A sentence; then there is no folder.
@@ -63,7 +63,7 @@ pub(crate) fn save(
     out: &Path,
     threads: usize,
     stop: &AtomicBool,
-    tell: impl Fn(f64),
+    report_progress: impl Fn(f64),
 ) -> Result<bool, String> {
     /// Any error as its sentence.
     fn sentence(error: impl std::fmt::Display) -> String {
@@ -81,27 +81,27 @@ pub(crate) fn save(
         sentence(error)
     })?;
     if let Err(error) = results::write_case(&case, &mut folder) {
-        give_up(folder);
+        discard_folder(folder);
         return Err(sentence(error));
     }
     let mut running = Running::start(&case, threads);
-    let mut told = Instant::now();
+    let mut last_report = Instant::now();
     let reason = loop {
         match running.advance(case.steps_per_poll()) {
             Ok(Some(reason)) => break reason,
             Ok(None) => {}
             Err(error) => {
-                give_up(folder);
+                discard_folder(folder);
                 return Err(sentence(error));
             }
         }
         if stop.load(Ordering::Relaxed) {
-            give_up(folder);
+            discard_folder(folder);
             return Ok(false);
         }
-        if told.elapsed() > REPORT {
-            told = Instant::now();
-            tell(running.snapshot().step as f64 / case.time_plan.last_step as f64);
+        if last_report.elapsed() > REPORT_INTERVAL {
+            last_report = Instant::now();
+            report_progress(running.snapshot().step as f64 / case.time_plan.last_step as f64);
         }
     };
     let mut record = running.record(reason);
@@ -109,8 +109,8 @@ pub(crate) fn save(
     Ok(true)
 }
 
-/// Takes away the folder of a run that is not completed, which was made for it.
-fn give_up(folder: RunFolder) {
+/// Removes the folder that was made for a run that is not completed.
+fn discard_folder(folder: RunFolder) {
     let path = folder.path().to_owned();
     folder.discard();
     // One in which somebody else has put something stays.

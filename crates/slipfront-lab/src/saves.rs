@@ -17,29 +17,29 @@ use crate::{replay, save};
 /// Most runs that are saved at once.
 const MAX_SAVES: usize = 4;
 
-/// All runs that are being saved, and the pages that are told of them.
+/// All runs that are being saved, and the pages that hear of them.
 pub(crate) struct Saves {
-    list: Mutex<List>,
-    /// Tells a sentence in the terminal.
-    tell: fn(&str),
+    list: Mutex<ActiveSaves>,
+    /// Prints a sentence in the terminal.
+    print: fn(&str),
 }
 
 #[derive(Default)]
-struct List {
-    under_way: Vec<UnderWay>,
+struct ActiveSaves {
+    under_way: Vec<ActiveSave>,
     pages: Vec<Weak<Outbox>>,
     /// Whether the server ends.
     ends: bool,
 }
 
-struct UnderWay {
+struct ActiveSave {
     name: String,
     share: f64,
     stop: Arc<AtomicBool>,
 }
 
-impl List {
-    fn find(&mut self, name: &str) -> Option<&mut UnderWay> {
+impl ActiveSaves {
+    fn find(&mut self, name: &str) -> Option<&mut ActiveSave> {
         self.under_way.iter_mut().find(|one| one.name == name)
     }
 
@@ -48,15 +48,15 @@ impl List {
         self.pages.iter().filter_map(Weak::upgrade).collect()
     }
 
-    /// Tells all pages what is under way.
-    fn show(&mut self) {
+    /// Sends all pages the list of runs that are being saved.
+    fn notify_pages(&mut self) {
         for page in self.pages() {
             page.reply(&self.reply());
         }
     }
 
     fn reply(&self) -> Reply<'_> {
-        let entry = |one: &UnderWay| SavingEntry {
+        let entry = |one: &ActiveSave| SavingEntry {
             name: one.name.clone(),
             share: one.share,
         };
@@ -67,20 +67,20 @@ impl List {
 }
 
 impl Saves {
-    /// None are under way.
-    pub(crate) fn new(tell: fn(&str)) -> Self {
+    /// No run is being saved yet.
+    pub(crate) fn new(print: fn(&str)) -> Self {
         Self {
             list: Mutex::default(),
-            tell,
+            print,
         }
     }
 
-    fn list(&self) -> MutexGuard<'_, List> {
+    fn list(&self) -> MutexGuard<'_, ActiveSaves> {
         // Nothing panics while it is locked.
         self.list.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// A page that is told from now on, and what is under way already.
+    /// Lets a page hear of all saves from now on, and tells it of those under way.
     pub(crate) fn add_page(&self, page: &Arc<Outbox>) {
         let mut list = self.list();
         list.pages.push(Arc::downgrade(page));
@@ -117,15 +117,15 @@ impl Saves {
         }
         name.clone_into(&mut document.name);
         let stop = Arc::new(AtomicBool::new(false));
-        list.under_way.push(UnderWay {
+        list.under_way.push(ActiveSave {
             name: name.to_owned(),
             share: 0.0,
             stop: Arc::clone(&stop),
         });
         let (saves, working) = (Arc::clone(self), working.clone());
         let begun = thread::Builder::new().name("save".to_owned()).spawn(move || {
-            let told = |share| saves.advance(&document.name, share);
-            let work = || save::save(&document, &out, threads, &stop, told);
+            let report_progress = |share| saves.advance(&document.name, share);
+            let work = || save::save(&document, &out, threads, &stop, report_progress);
             let outcome = catch_unwind(AssertUnwindSafe(work))
                 .unwrap_or_else(|_| Err("a defect of the simulation, which stands above".to_owned()));
             saves.finish(&document.name, &out, &outcome);
@@ -135,17 +135,17 @@ impl Saves {
             list.under_way.retain(|one| one.name != name);
             return Err(format!("the system refuses a thread to save the run: {error}"));
         }
-        list.show();
+        list.notify_pages();
         Ok(())
     }
 
-    /// The share of a run that is done.
+    /// Notes the share of a run that is done, and sends it to all pages.
     fn advance(&self, name: &str, share: f64) {
         let mut list = self.list();
         if let Some(one) = list.find(name) {
             one.share = share;
         }
-        list.show();
+        list.notify_pages();
     }
 
     /// Tells terminal and pages how the saving of a run has ended: whether it is there, or why not.
@@ -169,7 +169,7 @@ impl Saves {
             Err(error) => format!("{folder} was not saved: {error}"),
         };
         // Not while the list is locked, since a terminal may hold up what is printed.
-        (self.tell)(&sentence);
+        (self.print)(&sentence);
         let reply = match outcome {
             Ok(true) => Some(Reply::Saved {
                 name,
@@ -184,7 +184,7 @@ impl Saves {
         for page in list.pages() {
             reply.iter().for_each(|reply| page.reply(reply));
         }
-        list.show();
+        list.notify_pages();
     }
 
     /// Stops saving a run, if it is under way.
@@ -194,7 +194,7 @@ impl Saves {
         }
     }
 
-    /// Stops them all, since the server ends.
+    /// Stops saving all runs, since the server ends.
     pub(crate) fn end(&self) {
         let mut list = self.list();
         list.ends = true;
@@ -203,11 +203,11 @@ impl Saves {
         }
     }
 
-    /// Tells in the terminal which have not ended although they were stopped.
-    pub(crate) fn tell_left(&self, results: &Path) {
+    /// Prints in the terminal which runs have not ended although they were stopped.
+    pub(crate) fn print_unfinished(&self, results: &Path) {
         for one in &self.list().under_way {
             let folder = display_path(&results.join(&one.name));
-            (self.tell)(&format!(
+            (self.print)(&format!(
                 "{folder} is not whole: its run could not be ended in time; remove the folder"
             ));
         }

@@ -18,15 +18,15 @@ use crate::opening::Start;
 use crate::saves::Saves;
 use crate::session::Setting;
 use crate::socket::{MAX_PAGES, Shared};
-use crate::start_page::Entrance;
+use crate::start_page::StartPage;
 use crate::token::Token;
 use crate::{assets, connections, guard, presets, socket};
 
 /// How long pages are waited for that are told that the server ends.
-const TIME_TO_PART: Duration = Duration::from_secs(5);
+const PAGES_TIMEOUT: Duration = Duration::from_secs(5);
 
 /// How long runs that are being saved have to take their unfinished folders away when the server ends.
-const TIME_TO_END: Duration = Duration::from_secs(10);
+const WORK_TIMEOUT: Duration = Duration::from_secs(10);
 
 /// How the laboratory is started.
 pub struct Options {
@@ -36,8 +36,8 @@ pub struct Options {
     pub results: PathBuf,
     /// Other folders in which files that cases name may lie: else they lie in the folder of the case.
     pub allow_files: Vec<PathBuf>,
-    /// Tells a sentence in the terminal: what became of a run that was saved.
-    pub tell: fn(&str),
+    /// Prints a sentence in the terminal: what became of a run that was saved.
+    pub print: fn(&str),
     /// The port; 0 for any that is free.
     pub port: u16,
     /// Threads of a run.
@@ -49,7 +49,7 @@ pub struct Laboratory {
     listener: TcpListener,
     port: u16,
     token: Token,
-    entrance: Entrance,
+    start_page: StartPage,
     setting: Arc<Setting>,
 }
 
@@ -65,12 +65,12 @@ impl Laboratory {
             port: listener.local_addr()?.port(),
             listener,
             token: Token::draw()?,
-            entrance: Entrance::default(),
+            start_page: StartPage::default(),
             setting: Arc::new(Setting {
                 start: options.start,
                 results: options.results,
                 allow_files: options.allow_files,
-                saves: Arc::new(Saves::new(options.tell)),
+                saves: Arc::new(Saves::new(options.print)),
                 threads: options.threads,
                 presets: presets::entries(),
             }),
@@ -93,7 +93,7 @@ impl Laboratory {
     /// # Errors
     /// When the system refuses to write.
     pub fn start_page(&self, link: Option<&str>) -> io::Result<PathBuf> {
-        self.entrance.open(&self.address(link))
+        self.start_page.open(&self.address(link))
     }
 
     /// Answers until `stop` is done. Then pages are told, whatever is open is closed, and what is being saved takes its unfinished
@@ -109,20 +109,20 @@ impl Laboratory {
             stop.await;
             saves.end();
         };
-        let served = self.answer(stopped, working);
-        wait_for(&all_work);
-        setting.saves.tell_left(&setting.results);
+        let served = self.listen(stopped, working);
+        wait_for_threads(&all_work);
+        setting.saves.print_unfinished(&setting.results);
         served
     }
 
-    fn answer(self, stop: impl Future<Output = ()>, working: Sender<()>) -> io::Result<()> {
+    fn listen(self, stop: impl Future<Output = ()>, working: Sender<()>) -> io::Result<()> {
         let (end, ends) = watch::channel(false);
         let pages = Arc::new(Semaphore::new(MAX_PAGES));
-        let entrance = self.entrance.clone();
+        let start_page = self.start_page.clone();
         let shared = Shared {
             setting: self.setting,
             token: Arc::new(self.token),
-            entrance: self.entrance,
+            start_page: self.start_page,
             pages: Arc::clone(&pages),
             ends,
             working,
@@ -142,16 +142,16 @@ impl Laboratory {
                 () = stop => {}
                 never = connections::serve(listener, router) => match never {},
             }
-            entrance.close();
+            start_page.close();
             let _ = end.send(true);
             // When all places are free, all pages are gone.
-            let _ = timeout(TIME_TO_PART, pages.acquire_many(MAX_PAGES as u32)).await;
+            let _ = timeout(PAGES_TIMEOUT, pages.acquire_many(MAX_PAGES as u32)).await;
             Ok(())
         })
     }
 }
 
-/// Waits until all threads have ended, or for as long as they are given.
-fn wait_for(all_work: &Receiver<()>) {
-    let _ = all_work.recv_timeout(TIME_TO_END);
+/// Waits until all threads have ended, for [`WORK_TIMEOUT`] at most.
+fn wait_for_threads(all_work: &Receiver<()>) {
+    let _ = all_work.recv_timeout(WORK_TIMEOUT);
 }

@@ -9,7 +9,7 @@ use slipfront_case::case::Case;
 /// The outlines of one texture, in blocks.
 #[derive(Debug, Serialize)]
 pub(crate) struct ShapeOutlines {
-    /// Its place among the textures, from 0.
+    /// The place of the texture among all textures, from 0.
     index: usize,
     outlines: Vec<Vec<[f64; 2]>>,
 }

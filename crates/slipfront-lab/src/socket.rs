@@ -16,27 +16,27 @@ use tokio::time::{sleep, timeout};
 use crate::outbox::{Outbox, Outgoing};
 use crate::protocol::{MAX_MESSAGE, PROTOCOL, Request};
 use crate::session::{self, Setting};
-use crate::start_page::Entrance;
+use crate::start_page::StartPage;
 use crate::token::{Caller, Token};
 
 /// Most pages at once.
 pub(crate) const MAX_PAGES: usize = 4;
 
 /// Requests that wait for the session.
-const WAITING: usize = 64;
+const MAX_WAITING_REQUESTS: usize = 64;
 
 /// How long a page may take to receive a message.
-const PATIENCE: Duration = Duration::from_secs(10);
+const SEND_TIMEOUT: Duration = Duration::from_secs(10);
 
 /// Time between two attempts to hand a request to a session that is busy.
-const RETRY: Duration = Duration::from_millis(5);
+const RETRY_INTERVAL: Duration = Duration::from_millis(5);
 
-/// What every connection is given.
+/// What all connections share.
 #[derive(Clone)]
 pub(crate) struct Shared {
     pub(crate) setting: Arc<Setting>,
     pub(crate) token: Arc<Token>,
-    pub(crate) entrance: Entrance,
+    pub(crate) start_page: StartPage,
     pub(crate) pages: Arc<Semaphore>,
     /// Turns true when the server ends.
     pub(crate) ends: watch::Receiver<bool>,
@@ -53,7 +53,7 @@ pub(crate) async fn prove(
     Ok(shared.token.proof_of_server(caller))
 }
 
-/// Begins a session with a page that knows the token. What it says of itself, browsers send as subprotocols.
+/// Begins a session with a page that knows the token. Browsers send tab, nonce and proof of a page as subprotocols.
 pub(crate) async fn connect(
     State(shared): State<Shared>,
     headers: HeaderMap,
@@ -63,7 +63,7 @@ pub(crate) async fn connect(
         let sentence = "the token is missing or wrong: open the address that the terminal shows\n";
         return (StatusCode::UNAUTHORIZED, sentence).into_response();
     };
-    shared.entrance.close();
+    shared.start_page.close();
     let Ok(page) = Arc::clone(&shared.pages).try_acquire_owned() else {
         let sentence = format!("{MAX_PAGES} pages are open already: close one of them\n");
         return (StatusCode::SERVICE_UNAVAILABLE, sentence).into_response();
@@ -97,7 +97,7 @@ fn proof_for(headers: &HeaderMap, token: &Token) -> Option<String> {
 
 async fn serve(mut socket: WebSocket, shared: &Shared) {
     let outbox = Arc::new(Outbox::default());
-    let (requests, waiting) = sync_channel(WAITING);
+    let (requests, waiting) = sync_channel(MAX_WAITING_REQUESTS);
     let (setting, filled, working) = (
         Arc::clone(&shared.setting),
         Arc::clone(&outbox),
@@ -110,12 +110,12 @@ async fn serve(mut socket: WebSocket, shared: &Shared) {
         let sentence = "the system refuses a thread for the simulation";
         return close(&mut socket, close_code::ERROR, sentence).await;
     }
-    pass_on(&mut socket, &outbox, &requests, shared.ends.clone()).await;
+    forward(&mut socket, &outbox, &requests, shared.ends.clone()).await;
     outbox.close();
 }
 
 /// Passes on what page and session have for each other, until one of them is gone or the server ends.
-async fn pass_on(
+async fn forward(
     socket: &mut WebSocket,
     outbox: &Outbox,
     requests: &SyncSender<Request>,
@@ -155,7 +155,7 @@ async fn pass_on(
                 Some(Ok(Message::Ping(_) | Message::Pong(_))) => {}
                 Some(Ok(Message::Close(_)) | Err(_)) | None => return,
             },
-            () = sleep(RETRY), if kept.is_some() => {}
+            () = sleep(RETRY_INTERVAL), if kept.is_some() => {}
             _ = ends.changed() => {
                 return close(socket, close_code::AWAY, "the laboratory was stopped in its terminal").await;
             }
@@ -165,10 +165,10 @@ async fn pass_on(
 
 /// Sends a message; none to a page that is gone, or does not read.
 async fn send(socket: &mut WebSocket, message: Message) -> Option<()> {
-    timeout(PATIENCE, socket.send(message)).await.ok()?.ok()
+    timeout(SEND_TIMEOUT, socket.send(message)).await.ok()?.ok()
 }
 
-/// Ends the connection with a reason, of which there is room for 123 bytes.
+/// Closes the connection with a reason, for which there is room for 123 bytes.
 async fn close(socket: &mut WebSocket, code: u16, sentence: &str) {
     let reason: String = sentence.chars().filter(char::is_ascii).take(120).collect();
     let frame = CloseFrame {

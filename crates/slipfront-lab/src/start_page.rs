@@ -10,39 +10,39 @@ use std::sync::{Arc, Mutex, PoisonError};
 use slipfront_case::unfinished::TemporaryFolder;
 use tempfile::{Builder, NamedTempFile};
 
-/// The start page, as long as there is one.
+/// The start page of a laboratory, while its file exists.
 #[derive(Clone, Default)]
-pub(crate) struct Entrance(Arc<Mutex<Option<StartPage>>>);
+pub(crate) struct StartPage(Arc<Mutex<Option<StartPageFile>>>);
 
-impl Entrance {
+impl StartPage {
     /// Writes the page that leads to this address; gives its path.
     ///
     /// # Errors
     /// When the system refuses to write.
     pub(crate) fn open(&self, address: &str) -> io::Result<PathBuf> {
-        let page = StartPage::write(address)?;
+        let page = StartPageFile::write(address)?;
         let path = page.page.path().to_owned();
         self.put(Some(page));
         Ok(path)
     }
 
-    /// Removes the page.
+    /// Removes the file of the start page.
     pub(crate) fn close(&self) {
         self.put(None);
     }
 
-    fn put(&self, page: Option<StartPage>) {
+    fn put(&self, page: Option<StartPageFile>) {
         *self.0.lock().unwrap_or_else(PoisonError::into_inner) = page;
     }
 }
 
-/// A page in the folder of temporary files of this process, which is removed when this is dropped.
-struct StartPage {
+/// The file of a start page in the folder of temporary files of this process; it is removed when this is dropped.
+struct StartPageFile {
     page: NamedTempFile,
     _folder: Arc<TemporaryFolder>,
 }
 
-impl StartPage {
+impl StartPageFile {
     /// Writes a page that leads to this address.
     ///
     /// # Errors
@@ -59,7 +59,7 @@ impl StartPage {
     }
 }
 
-/// It needs no script, and leaves no address of its own in what a server is told.
+/// The start page: it needs no script, and sends servers no address of its own.
 fn html(address: &str) -> String {
     let address = address
         .replace('&', "&amp;")
@@ -82,8 +82,8 @@ mod tests {
 
     #[test]
     fn only_its_owner_can_read_it() {
-        let entrance = Entrance::default();
-        let page = entrance.open(ADDRESS).unwrap();
+        let start_page = StartPage::default();
+        let page = start_page.open(ADDRESS).unwrap();
         let folder = page.parent().unwrap();
         let text = fs::read_to_string(&page).unwrap();
         assert!(
@@ -96,7 +96,7 @@ mod tests {
             let mode = |path: &std::path::Path| path.metadata().unwrap().permissions().mode() & 0o777;
             assert_eq!((mode(&page), mode(folder)), (0o600, 0o700));
         }
-        entrance.close();
+        start_page.close();
         assert!(!page.exists());
     }
 

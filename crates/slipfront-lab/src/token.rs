@@ -20,7 +20,7 @@ pub(crate) struct Caller<'a> {
 }
 
 impl<'a> Caller<'a> {
-    /// None if these are not such as a page draws.
+    /// A caller, or none if tab or nonce is not one that a page draws.
     pub(crate) fn new(tab: &'a str, nonce: &'a str) -> Option<Self> {
         let is_drawn = |text: &str| text.len() == 32 && text.bytes().all(|byte| byte.is_ascii_hexdigit());
         (is_drawn(tab) && is_drawn(nonce)).then_some(Self { tab, nonce })
@@ -28,7 +28,7 @@ impl<'a> Caller<'a> {
 }
 
 impl Token {
-    /// Draws another one.
+    /// Draws a token.
     ///
     /// # Errors
     /// When the system gives no random numbers.

@@ -2,13 +2,13 @@
 
 use serde::Deserialize;
 
-use crate::picture::Shown;
+use crate::picture::DisplayedField;
 
 /// What the page asks to be shown.
 #[derive(Debug, Default, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub(crate) struct ViewChange {
-    field: Option<Shown>,
+    field: Option<DisplayedField>,
     visible: Option<bool>,
     paused: Option<bool>,
     pace: Option<f64>,
@@ -17,12 +17,14 @@ pub(crate) struct ViewChange {
     frames_per_second: Option<f64>,
     after_change: Option<AfterChange>,
     /// The block that is probed; null for none.
-    #[serde(deserialize_with = "given")]
+    #[serde(deserialize_with = "deserialize_nullable")]
     probe: Option<Option<[usize; 2]>>,
 }
 
-/// Tells a key that is null from one that is not there.
-fn given<'de, D: serde::Deserializer<'de>>(from: D) -> Result<Option<Option<[usize; 2]>>, D::Error> {
+/// Reads a key that may be null, which is not the same as a key that is absent.
+fn deserialize_nullable<'de, D: serde::Deserializer<'de>>(
+    from: D,
+) -> Result<Option<Option<[usize; 2]>>, D::Error> {
     Deserialize::deserialize(from).map(Some)
 }
 
@@ -40,13 +42,13 @@ pub(crate) enum AfterChange {
 /// What is shown.
 #[derive(Debug)]
 pub(crate) struct View {
-    pub(crate) field: Shown,
+    pub(crate) field: DisplayedField,
     /// Whether the page is seen.
     pub(crate) visible: bool,
     pub(crate) paused: bool,
     /// t* in a second; 0 for as fast as possible.
     pub(crate) pace: f64,
-    /// Whether the slider without texture runs beside it.
+    /// Whether the slider without texture runs beside the run.
     pub(crate) twin: bool,
     pub(crate) kymograph: bool,
     pub(crate) frames_per_second: f64,
@@ -57,7 +59,7 @@ pub(crate) struct View {
 impl Default for View {
     fn default() -> Self {
         Self {
-            field: Shown::Traction,
+            field: DisplayedField::Traction,
             visible: true,
             paused: false,
             pace: 25.0,
@@ -71,7 +73,7 @@ impl Default for View {
 }
 
 impl View {
-    /// Changes what is given.
+    /// Changes the parts of the view that are given.
     ///
     /// # Errors
     /// A sentence with the bound that a number is beyond; then nothing changes.

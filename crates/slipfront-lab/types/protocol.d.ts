@@ -177,7 +177,7 @@ export interface Control {
 
 /** A quantity as a dimensionless group and with its unit. */
 export interface ControlValue {
-  star: number | null;
+  star: number;
   si: number | null;
 }
 

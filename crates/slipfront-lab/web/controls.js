@@ -32,7 +32,7 @@ const keysFor = (control, value) => ({ [control.key]: dimensional(control) ? `${
 
 /** The two forms of a value: that of the number field, and the other one beside it. @param {Control} control @param {ControlValue} value */
 function forms(control, { star, si }) {
-  if (dimensional(control)) return { main: si, other: star === null ? '' : say(`other_${control.id}`, { value: number(star) }) };
+  if (dimensional(control)) return { main: si, other: say(`other_${control.id}`, { value: number(star) }) };
   return { main: star, other: si === null ? control.unit : `= ${quantity(si, control.unit)}` };
 }
 

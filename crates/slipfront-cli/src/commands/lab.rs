@@ -72,7 +72,7 @@ impl Lab {
             start,
             results: self.results,
             allow_files: self.allow_files,
-            tell: print_stderr,
+            print: print_stderr,
             port: self.port,
             threads,
         });

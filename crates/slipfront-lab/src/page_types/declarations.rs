@@ -25,6 +25,16 @@ pub(super) enum Type {
     Named(String),
 }
 
+impl Type {
+    /// What lists and objects with any keys hold at last.
+    fn within(&self) -> &Self {
+        match self {
+            Self::List(of) | Self::Map(of) => of.within(),
+            one => one,
+        }
+    }
+}
+
 /// A key of an interface.
 #[derive(Clone, Debug)]
 pub(super) struct Key {
@@ -128,28 +138,21 @@ impl Declarations {
             })
     }
 
-    /// What `check` finds if examples show all that an interface and those within it may hold.
-    pub(super) fn all_of(&self, name: &str, all: &mut Seen) {
-        for (key, Key { optional, holds }) in &self.interface(name).keys {
+    /// What `check` finds if examples show all that an interface and those within it, `except` one, may hold.
+    pub(super) fn all_of(&self, interface: &str, except: &str, all: &mut Seen) {
+        for (key, Key { optional, holds }) in &self.interface(interface).keys {
             if *optional {
-                all.insert((name.to_owned(), key.clone(), None));
+                all.insert((interface.to_owned(), key.clone(), None));
             }
             for one in self.alternatives(holds) {
-                self.all_within(&one, all);
-                all.insert((name.to_owned(), key.clone(), Some(one)));
-            }
-        }
-    }
-
-    fn all_within(&self, of: &Type, all: &mut Seen) {
-        match of {
-            Type::Named(name) => self.all_of(name, all),
-            Type::List(of) | Type::Map(of) => {
-                for one in self.alternatives(of) {
-                    self.all_within(&one, all);
+                let within = one.within();
+                all.insert((interface.to_owned(), key.clone(), Some(one.clone())));
+                if let Type::Named(name) = within
+                    && name != except
+                {
+                    self.all_of(name, except, all);
                 }
             }
-            _ => {}
         }
     }
 

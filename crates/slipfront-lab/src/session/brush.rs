@@ -48,9 +48,10 @@ pub(super) fn stroke(
 fn distance([x, y]: [f64; 2], from: [f64; 2], to: [f64; 2]) -> f64 {
     let (dx, dy) = (to[0] - from[0], to[1] - from[1]);
     let square = dx * dx + dy * dy;
-    let along = match square > 0.0 {
-        true => (((x - from[0]) * dx + (y - from[1]) * dy) / square).clamp(0.0, 1.0),
-        false => 0.0,
+    let along = if square > 0.0 {
+        (((x - from[0]) * dx + (y - from[1]) * dy) / square).clamp(0.0, 1.0)
+    } else {
+        0.0
     };
     (x - from[0] - along * dx).hypot(y - from[1] - along * dy)
 }

@@ -1,19 +1,19 @@
-//! When what is done: pictures, numbers, steps.
+//! When pictures, numbers and steps are due.
 
 use std::time::{Duration, Instant};
 
 /// Longest time of steps between two looks at the clock.
-const PIECE: Duration = Duration::from_millis(3);
+const SLICE: Duration = Duration::from_millis(3);
 
-/// When things were done last.
+/// When pictures and numbers were sent last, and how fast steps are taken.
 pub(super) struct Clock {
     pub(super) picture: Instant,
     pub(super) numbers: Instant,
     pub(super) probe: Instant,
     pub(super) kymograph: Instant,
-    /// Steps that are due, as a number with its fraction, and when this was found out.
+    /// Steps that are due, with a fraction, and when they were counted last.
     pub(super) due: f64,
-    asked: Instant,
+    last_call: Instant,
     counted_from: Instant,
     counted_steps: u64,
     steps_per_second: f64,
@@ -30,7 +30,7 @@ impl Clock {
             probe: long_ago,
             kymograph: long_ago,
             due: 0.0,
-            asked: now,
+            last_call: now,
             counted_from: now,
             counted_steps: 0,
             steps_per_second: 0.0,
@@ -38,15 +38,15 @@ impl Clock {
         }
     }
 
-    /// Seconds since this was asked last, a quarter of one at most: a page that was hidden is not made up for.
-    pub(super) fn since_asked(&mut self) -> f64 {
-        let since = self.asked.elapsed().as_secs_f64();
-        self.asked = Instant::now();
+    /// Seconds since the last call, 0.25 at most: a page that was hidden is not made up for.
+    pub(super) fn seconds_since_last_call(&mut self) -> f64 {
+        let since = self.last_call.elapsed().as_secs_f64();
+        self.last_call = Instant::now();
         since.min(0.25)
     }
 
     /// Counts steps that took some time.
-    pub(super) fn count(&mut self, steps: u64, took: Duration) {
+    pub(super) fn record_steps(&mut self, steps: u64, took: Duration) {
         if steps == 0 {
             return;
         }
@@ -55,8 +55,8 @@ impl Clock {
         self.counted_steps += steps;
     }
 
-    /// The steps of the last second.
-    pub(super) fn rate(&mut self) -> f64 {
+    /// Steps per second, counted over the last second.
+    pub(super) fn steps_per_second(&mut self) -> f64 {
         let elapsed = self.counted_from.elapsed().as_secs_f64();
         if elapsed >= 1.0 {
             self.steps_per_second = self.counted_steps as f64 / elapsed;
@@ -65,13 +65,13 @@ impl Clock {
         self.steps_per_second
     }
 
-    /// Steps that take a small piece of time.
-    pub(super) fn piece(&self) -> u64 {
-        ((PIECE.as_secs_f64() / self.seconds_per_step) as u64).max(1)
+    /// Steps that take [`SLICE`], at least one.
+    pub(super) fn steps_per_slice(&self) -> u64 {
+        ((SLICE.as_secs_f64() / self.seconds_per_step) as u64).max(1)
     }
 }
 
-/// Whether so much time has passed since; if so, it counts anew.
+/// Whether the interval `every` has passed since `last`, which then becomes the present.
 pub(super) fn is_due(last: &mut Instant, every: Duration) -> bool {
     let due = last.elapsed() >= every;
     if due {

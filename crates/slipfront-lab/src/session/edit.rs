@@ -7,13 +7,13 @@ use slipfront_case::text::truncated;
 use toml::Value;
 
 use super::brush::stroke;
-use super::state::{Edited, Session};
+use super::state::{PendingEdit, Session};
 use crate::document::Document;
 use crate::files::is_plain_name;
 use crate::history::History;
-use crate::opening::Opened;
+use crate::opening::StartSource;
 use crate::protocol::{Reply, Source};
-use crate::replay::{self, Recorded};
+use crate::replay::{self, RecordedRun};
 use crate::view::AfterChange;
 use crate::{base64, presets};
 
@@ -40,9 +40,9 @@ impl Session {
             Document::new(&name, &toml, read).map_err(|error| error.to_string())?
         } else {
             match &self.setting.start.0 {
-                Opened::Preset => presets::opening()?,
-                Opened::Case(document) => Document::clone(document),
-                Opened::Folder(path) => {
+                StartSource::Preset => presets::opening()?,
+                StartSource::Case(document) => Document::clone(document),
+                StartSource::Folder(path) => {
                     let (document, found) = replay::read(path, &self.setting.allow_files)?;
                     recorded = Some(found);
                     document
@@ -55,8 +55,8 @@ impl Session {
         (self.repeating, self.shown_recording) = (None, None);
         self.history = Some(History::new(document));
         self.recorded = recorded;
-        self.news.recorded = self.recorded.is_some();
-        self.begin(&case, "open", true)?;
+        self.pending.recorded = self.recorded.is_some();
+        self.start_run(&case, "open", true)?;
         if let Some(snapshots) = self
             .recorded
             .as_ref()
@@ -69,7 +69,7 @@ impl Session {
     }
 
     /// The run of this name among the results.
-    fn recorded_run(&self, name: &str) -> Result<(Document, Recorded), String> {
+    fn recorded_run(&self, name: &str) -> Result<(Document, RecordedRun), String> {
         let allowed = &self.setting.allow_files;
         replay::read(&replay::folder(&self.setting.results, name, allowed)?, allowed)
     }
@@ -79,7 +79,7 @@ impl Session {
         keys: serde_json::Map<String, serde_json::Value>,
         gesture: u64,
     ) -> Result<(), String> {
-        self.run_painted();
+        self.apply_painted_mask();
         let mut changes = Vec::new();
         for (key, value) in keys {
             let value = match value {
@@ -92,7 +92,7 @@ impl Session {
             changes.push((key, value));
         }
         let document = self.document()?.with(changes)?;
-        self.edited = Some(Edited {
+        self.edited = Some(PendingEdit {
             document,
             gesture,
             of: "set",
@@ -107,7 +107,7 @@ impl Session {
         textured: bool,
         gesture: u64,
     ) -> Result<(), String> {
-        self.run_set();
+        self.apply_edited_document();
         let live = self.live.as_ref().ok_or("no case is open yet")?;
         let model = &live.case().model;
         let lattice = &model.lattice;
@@ -119,13 +119,13 @@ impl Session {
     }
 
     pub(super) fn image(&mut self, text: &str, threshold: f64, gesture: u64) -> Result<(), String> {
-        self.run_painted();
+        self.apply_painted_mask();
         let image = base64::decode(text)?;
         let document = self
             .document()?
             .with_image(&image, threshold)
             .map_err(|error| error.to_string())?;
-        self.edited = Some(Edited {
+        self.edited = Some(PendingEdit {
             document,
             gesture,
             of: "image",
@@ -133,22 +133,28 @@ impl Session {
         Ok(())
     }
 
-    pub(super) fn go_back(&mut self, why: &'static str, go: fn(&mut History) -> bool) -> Result<(), String> {
-        self.run_edited();
-        match self.history.as_mut().is_some_and(go) {
-            true => self.run_present(why, self.view.after_change == AfterChange::Rest),
-            false => Ok(()),
+    /// Undoes or redoes a change of the case, as `go` says, and runs the case that is present then.
+    pub(super) fn move_in_history(
+        &mut self,
+        why: &'static str,
+        go: fn(&mut History) -> bool,
+    ) -> Result<(), String> {
+        self.apply_edits();
+        if self.history.as_mut().is_some_and(go) {
+            self.run_present_case(why, self.view.after_change == AfterChange::Rest)
+        } else {
+            Ok(())
         }
     }
 
-    /// Runs the case with all that was edited since.
-    pub(super) fn run_edited(&mut self) {
-        self.run_painted();
-        self.run_set();
+    /// Runs the case with all edits that are not run yet.
+    pub(super) fn apply_edits(&mut self) {
+        self.apply_painted_mask();
+        self.apply_edited_document();
     }
 
-    /// Makes a case of what was painted.
-    fn run_painted(&mut self) {
+    /// Makes the painted mask the texture of the case, and runs it.
+    fn apply_painted_mask(&mut self) {
         let Some((mask, gesture)) = self.mask.take() else {
             return;
         };
@@ -158,12 +164,12 @@ impl Session {
         });
         match made.and_then(|made| made) {
             Ok(document) => {
-                self.edited = Some(Edited {
+                self.edited = Some(PendingEdit {
                     document,
                     gesture,
                     of: "paint",
                 });
-                self.run_set();
+                self.apply_edited_document();
             }
             Err(sentence) => self.outbox.reply(&Reply::Refused {
                 of: "paint",
@@ -172,9 +178,9 @@ impl Session {
         }
     }
 
-    /// Runs the case whose keys were changed.
-    fn run_set(&mut self) {
-        let Some(Edited {
+    /// Runs the edited case, or sends why it cannot be run.
+    fn apply_edited_document(&mut self) {
+        let Some(PendingEdit {
             mut document,
             gesture,
             of,
@@ -189,12 +195,12 @@ impl Session {
             if let Some(history) = &mut self.history {
                 history.change(document, gesture);
             }
-            self.begin(&Arc::new(case), "change", from_rest)
+            self.start_run(&Arc::new(case), "change", from_rest)
         });
         if let Err(sentence) = begun {
             self.outbox.reply(&Reply::Refused { of, sentence });
-            // The page shows what it has asked for: it is told what holds.
-            self.tell_case("refused");
+            // The page shows what it has asked for, which is not what holds.
+            self.send_case("refused");
         }
     }
 }

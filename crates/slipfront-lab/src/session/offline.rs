@@ -39,16 +39,16 @@ impl OfflineSession {
         }
     }
 
-    /// Does what a message of the page asks for, and one picture's worth of work; gives the replies, each as JSON.
+    /// Handles a message of the page, and runs until the next picture is due; gives the replies, each as JSON.
     ///
     /// # Errors
     /// A sentence, if it is no request: a page would lose its connection.
-    pub fn ask(&mut self, message: &str) -> Result<Vec<String>, String> {
+    pub fn handle(&mut self, message: &str) -> Result<Vec<String>, String> {
         let request: Request =
             serde_json::from_str(message).map_err(|error| format!("not a request: {error}"))?;
-        self.session.answer(request);
-        self.session.run_edited();
-        self.session.work();
+        self.session.handle(request);
+        self.session.apply_edits();
+        self.session.run_until_next_picture();
         Ok(self.outbox.take_replies())
     }
 

@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use super::state::Session;
-use crate::background::Stoppable;
-use crate::files::KeptFile;
+use crate::background::BackgroundTask;
+use crate::files::TemporaryFile;
 use crate::history::History;
 use crate::protocol::{Reply, Request};
 use crate::repeat::repeat;
@@ -14,14 +14,19 @@ use crate::{base64, zip};
 const MAX_SEEDS: u64 = 32;
 
 impl Session {
-    pub(super) fn answer(&mut self, request: Request) {
+    /// Does what a request asks for, and tells the page if it is refused.
+    pub(super) fn handle(&mut self, request: Request) {
         let of = request.name();
-        if let Err(sentence) = self.obey(request) {
+        if let Err(sentence) = self.perform(request) {
             self.outbox.reply(&Reply::Refused { of, sentence });
         }
     }
 
-    fn obey(&mut self, request: Request) -> Result<(), String> {
+    /// Does what a request asks for.
+    ///
+    /// # Errors
+    /// A sentence, if the request is refused; then nothing has changed.
+    fn perform(&mut self, request: Request) -> Result<(), String> {
         match request {
             Request::Open { source } => self.open(source),
             Request::Set { keys, gesture } => self.set(keys, gesture),
@@ -36,19 +41,19 @@ impl Session {
                 threshold,
                 gesture,
             } => self.image(&png, threshold, gesture),
-            Request::Undo => self.go_back("undo", History::undo),
-            Request::Redo => self.go_back("redo", History::redo),
+            Request::Undo => self.move_in_history("undo", History::undo),
+            Request::Redo => self.move_in_history("redo", History::redo),
             Request::Rest => {
-                self.run_edited();
-                self.run_present("rest", true)
+                self.apply_edits();
+                self.run_present_case("rest", true)
             }
             Request::View(change) => {
                 let had_twin = self.view.twin;
                 self.view.change(&change)?;
-                self.news.redraw = true;
+                self.pending.redraw = true;
                 self.clock.due = 0.0;
                 if had_twin != self.view.twin && self.history.is_some() {
-                    self.begin_twin(true)?;
+                    self.start_twin(true)?;
                 }
                 Ok(())
             }
@@ -65,8 +70,8 @@ impl Session {
             Request::Export => self.export(),
             Request::FramesOf { index } => {
                 self.shown_recording = index;
-                self.painter.forget_scale();
-                self.news.redraw = true;
+                self.painter.reset_scale();
+                self.pending.redraw = true;
                 Ok(())
             }
             #[cfg(test)]
@@ -84,15 +89,15 @@ impl Session {
                 "{seeds} seeds were asked for, where there may be 2 to {MAX_SEEDS}"
             ));
         }
-        self.run_edited();
+        self.apply_edits();
         let (document, outbox) = (self.document()?.clone(), Arc::clone(&self.outbox));
-        let work = Stoppable::begin(&self.working, move |stop| repeat(&document, seeds, &outbox, stop));
+        let work = BackgroundTask::spawn(&self.working, move |stop| repeat(&document, seeds, &outbox, stop));
         self.repeating = Some(work.map_err(|error| error.to_string())?);
         Ok(())
     }
 
     fn save(&mut self, name: &str) -> Result<(), String> {
-        self.run_edited();
+        self.apply_edits();
         let (document, setting) = (self.document()?.clone(), &self.setting);
         setting
             .saves
@@ -100,10 +105,10 @@ impl Session {
     }
 
     fn export(&mut self) -> Result<(), String> {
-        self.run_edited();
+        self.apply_edits();
         let document = self.document()?;
         let toml = document.toml();
-        let read = |(name, file): (&String, &Arc<KeptFile>)| match file.read() {
+        let read = |(name, file): (&String, &Arc<TemporaryFile>)| match file.read() {
             Ok(contents) => Ok((name.clone(), contents)),
             Err(error) => Err(format!(
                 "{name} cannot be read from the temporary folder any more: {error}"

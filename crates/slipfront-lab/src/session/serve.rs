@@ -22,7 +22,7 @@ pub(crate) fn serve(
     requests: &Receiver<Request>,
     working: &Sender<()>,
 ) {
-    Session::greet(setting, outbox);
+    Session::send_hello(setting, outbox);
     setting.saves.add_page(outbox);
     loop {
         let mut session = Session::new(setting, outbox, working);
@@ -37,8 +37,8 @@ pub(crate) fn serve(
 }
 
 impl Session {
-    /// Tells what there is to choose from.
-    fn greet(setting: &Setting, outbox: &Outbox) {
+    /// Sends what a page can choose from: presets, recorded runs, quantities.
+    fn send_hello(setting: &Setting, outbox: &Outbox) {
         outbox.reply(&Reply::Hello {
             version: VERSION,
             presets: &setting.presets,
@@ -57,22 +57,22 @@ impl Session {
                 requests.recv_timeout(self.time_to_wait())
             };
             match first {
-                Ok(request) => self.answer_to_reader(request),
+                Ok(request) => self.handle_when_room(request),
                 Err(RecvTimeoutError::Timeout) => {}
                 Err(RecvTimeoutError::Disconnected) => return,
             }
             while let Ok(request) = requests.try_recv() {
-                self.answer_to_reader(request);
+                self.handle_when_room(request);
             }
-            self.run_edited();
-            self.work();
+            self.apply_edits();
+            self.run_until_next_picture();
         }
     }
 
-    /// Answers once the page has read most of what it was answered before.
-    fn answer_to_reader(&mut self, request: Request) {
+    /// Handles a request once there is room for its replies, which a page that does not read them leaves none.
+    fn handle_when_room(&mut self, request: Request) {
         self.outbox.wait_for_room();
-        self.answer(request);
+        self.handle(request);
     }
 
     /// Whether there is nothing to do before the page asks for something.
@@ -82,14 +82,15 @@ impl Session {
         }
         let runs = usize::from(self.live.is_some()) + usize::from(self.twin.is_some());
         let moves = self.count_ended() < runs && (!self.view.paused || self.single_steps > 0);
-        !(moves || self.news.redraw || self.news.ends_told != self.count_ended())
+        !(moves || self.pending.redraw || self.pending.ends_sent != self.count_ended())
     }
 
     fn time_to_wait(&self) -> Duration {
         let next = self.clock.picture + Duration::from_secs_f64(1.0 / self.view.frames_per_second);
-        match self.news.redraw || self.clock.due >= 1.0 {
-            true => Duration::ZERO,
-            false => next.saturating_duration_since(Instant::now()),
+        if self.pending.redraw || self.clock.due >= 1.0 {
+            Duration::ZERO
+        } else {
+            next.saturating_duration_since(Instant::now())
         }
     }
 }

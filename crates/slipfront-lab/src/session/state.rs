@@ -5,15 +5,15 @@ use std::sync::Arc;
 use std::sync::mpsc::Sender;
 
 use super::clock::Clock;
-use crate::background::Stoppable;
+use crate::background::BackgroundTask;
 use crate::document::Document;
 use crate::history::History;
-use crate::live::Live;
+use crate::live::LiveRun;
 use crate::opening::Start;
 use crate::outbox::Outbox;
 use crate::picture::Painter;
 use crate::protocol::PresetEntry;
-use crate::replay::Recorded;
+use crate::replay::RecordedRun;
 use crate::saves::Saves;
 use crate::view::View;
 
@@ -29,14 +29,14 @@ pub(crate) struct Setting {
     pub(crate) presets: Vec<PresetEntry>,
 }
 
-/// Whose untextured twin it is, as the text of its case.
+/// The run of the slider without texture, and the text of its case.
 pub(super) struct Twin {
-    pub(super) live: Live,
+    pub(super) live: LiveRun,
     pub(super) toml: String,
 }
 
-/// An edited case that is not run yet.
-pub(super) struct Edited {
+/// An edit of the case that is not run yet.
+pub(super) struct PendingEdit {
     pub(super) document: Document,
     pub(super) gesture: u64,
     pub(super) of: &'static str,
@@ -49,32 +49,32 @@ pub(super) struct Session {
     pub(super) outbox: Arc<Outbox>,
     pub(super) view: View,
     pub(super) history: Option<History>,
-    pub(super) edited: Option<Edited>,
+    pub(super) edited: Option<PendingEdit>,
     /// The texture while it is painted.
     pub(super) mask: Option<(Vec<bool>, u64)>,
-    pub(super) live: Option<Live>,
+    pub(super) live: Option<LiveRun>,
     pub(super) twin: Option<Twin>,
-    pub(super) recorded: Option<Recorded>,
+    pub(super) recorded: Option<RecordedRun>,
     pub(super) shown_recording: Option<usize>,
     pub(super) painter: Painter,
     pub(super) clock: Clock,
     /// Steps that were asked for one by one.
     pub(super) single_steps: u64,
-    pub(super) repeating: Option<Stoppable>,
-    /// What is to be told with the next points.
-    pub(super) news: News,
+    pub(super) repeating: Option<BackgroundTask>,
+    /// What is to be sent with the next points.
+    pub(super) pending: PendingUpdates,
 }
 
-/// What the page has not been told yet.
+/// What the page has not been sent yet.
 #[derive(Default)]
-pub(super) struct News {
+pub(super) struct PendingUpdates {
     /// Something is to be drawn although nothing moved.
     pub(super) redraw: bool,
     pub(super) from_rest: bool,
     pub(super) twin_reset: bool,
     pub(super) recorded: bool,
-    /// How many ends of the run and its twin were told.
-    pub(super) ends_told: usize,
+    /// How many ends of the run and its twin have been sent.
+    pub(super) ends_sent: usize,
 }
 
 impl Session {
@@ -95,7 +95,7 @@ impl Session {
             clock: Clock::new(),
             single_steps: 0,
             repeating: None,
-            news: News::default(),
+            pending: PendingUpdates::default(),
         }
     }
 

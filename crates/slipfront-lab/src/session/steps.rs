@@ -6,8 +6,8 @@ use super::state::Session;
 use crate::protocol::Reply;
 
 impl Session {
-    /// Steps until the next picture is due, and tells what is new.
-    pub(super) fn work(&mut self) {
+    /// Takes the steps that are due until the next picture, and sends what is new when it is due.
+    pub(super) fn run_until_next_picture(&mut self) {
         if !self.view.visible || self.live.is_none() || self.outbox.is_full() {
             return;
         }
@@ -18,9 +18,9 @@ impl Session {
             (self.live, self.twin) = (None, None);
             return;
         }
-        if self.news.redraw || self.clock.picture.elapsed() >= period {
+        if self.pending.redraw || self.clock.picture.elapsed() >= period {
             self.clock.picture = Instant::now();
-            self.tell();
+            self.send_updates();
         }
     }
 
@@ -30,26 +30,28 @@ impl Session {
         let dt_star = live.case().time_plan.dt_star;
         if self.view.paused {
             live.advance(std::mem::take(&mut self.single_steps))?;
-            self.news.redraw = true;
+            self.pending.redraw = true;
             return Ok(());
         }
         self.clock.due = match self.view.pace {
             0.0 => f64::INFINITY,
             // What cannot be taken until the next picture is left out: the run is slower than asked for then.
-            pace => (self.clock.due + pace / dt_star * self.clock.since_asked()).min(pace / dt_star),
+            pace => {
+                (self.clock.due + pace / dt_star * self.clock.seconds_since_last_call()).min(pace / dt_star)
+            }
         };
         loop {
             let before = live.step();
             let began = Instant::now();
-            let steps = self.clock.piece().min(self.clock.due as u64);
+            let steps = self.clock.steps_per_slice().min(self.clock.due as u64);
             live.advance(steps)?;
             let taken = live.step() - before;
-            self.clock.count(taken, began.elapsed());
+            self.clock.record_steps(taken, began.elapsed());
             self.clock.due -= taken as f64;
             let twin = self.twin.as_mut().filter(|twin| twin.live.ended.is_none());
             let twin_left = match twin {
                 Some(twin) if twin.live.time_star() < live.time_star() || live.ended.is_some() => {
-                    twin.live.advance(self.clock.piece())?;
+                    twin.live.advance(self.clock.steps_per_slice())?;
                     true
                 }
                 _ => false,

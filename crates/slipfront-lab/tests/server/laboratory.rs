@@ -39,7 +39,7 @@ impl Served {
             start,
             results: folder.path().join("results"),
             allow_files: Vec::new(),
-            tell: |sentence| TOLD.lock().unwrap().push(sentence.to_owned()),
+            print: |sentence| TOLD.lock().unwrap().push(sentence.to_owned()),
             port: 0,
             threads: 1,
         });

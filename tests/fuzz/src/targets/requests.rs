@@ -68,10 +68,10 @@ fn requests(input: &[u8]) {
 fn converse(messages: &[String], results: std::path::PathBuf) {
     let mut session = OfflineSession::new(results);
     // It steps when it is told to: else it would take steps for a picture's time after every message.
-    session.ask("{\"do\":\"view\",\"paused\":true}").unwrap();
+    session.handle("{\"do\":\"view\",\"paused\":true}").unwrap();
     let mut toml = None;
     for message in messages {
-        let Ok(replies) = session.ask(message) else {
+        let Ok(replies) = session.handle(message) else {
             continue;
         };
         let replies: Vec<Value> = replies
@@ -101,7 +101,7 @@ fn converse(messages: &[String], results: std::path::PathBuf) {
     if let Some(case) = toml {
         let source = json!({ "toml": case["toml"], "files": case["files"] });
         session
-            .ask(&json!({ "do": "open", "source": source }).to_string())
+            .handle(&json!({ "do": "open", "source": source }).to_string())
             .unwrap();
         let again = exported(&mut session).unwrap();
         assert_eq!((&again["toml"], &again["files"]), (&case["toml"], &case["files"]));
@@ -111,7 +111,7 @@ fn converse(messages: &[String], results: std::path::PathBuf) {
 
 /// The case as a page keeps it; none if none is open.
 fn exported(session: &mut OfflineSession) -> Option<Value> {
-    let replies = session.ask("{\"do\":\"export\"}").unwrap();
+    let replies = session.handle("{\"do\":\"export\"}").unwrap();
     let replies = replies
         .iter()
         .map(|text| serde_json::from_str::<Value>(text).unwrap());

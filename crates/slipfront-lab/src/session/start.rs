@@ -1,24 +1,24 @@
-//! Runs begin: from rest, or as the next leg.
+//! Starts runs: from rest, or as the next leg of the present one.
 
 use std::sync::Arc;
 
 use slipfront_case::case::Case;
 
 use super::state::{Session, Twin};
-use crate::live::Live;
+use crate::live::LiveRun;
 
 impl Session {
     /// Runs the present case again, from rest or from where it is.
-    pub(super) fn run_present(&mut self, why: &'static str, from_rest: bool) -> Result<(), String> {
+    pub(super) fn run_present_case(&mut self, why: &'static str, from_rest: bool) -> Result<(), String> {
         let case = self
             .document()?
             .case_to_show()
             .map_err(|error| error.to_string())?;
-        self.begin(&Arc::new(case), why, from_rest)
+        self.start_run(&Arc::new(case), why, from_rest)
     }
 
-    /// Runs a case, of which the document is the present one.
-    pub(super) fn begin(
+    /// Runs a case that was made of the present document, from rest or from where the run is.
+    pub(super) fn start_run(
         &mut self,
         case: &Arc<Case>,
         why: &'static str,
@@ -30,20 +30,20 @@ impl Session {
             _ => false,
         };
         if !went_on {
-            self.live = Some(Live::from_rest(case, self.setting.threads));
-            self.painter.forget_scale();
+            self.live = Some(LiveRun::from_rest(case, self.setting.threads));
+            self.painter.reset_scale();
             self.clock.due = 0.0;
         }
-        self.news.from_rest |= !went_on;
-        self.news.redraw = true;
+        self.pending.from_rest |= !went_on;
+        self.pending.redraw = true;
         self.shown_recording = None;
-        self.begin_twin(!went_on)?;
-        self.tell_case(why);
+        self.start_twin(!went_on)?;
+        self.send_case(why);
         Ok(())
     }
 
-    /// Lets the slider without texture run beside it, if there is one to compare with.
-    pub(super) fn begin_twin(&mut self, from_rest: bool) -> Result<(), String> {
+    /// Lets the slider without texture run beside the run, if the case has a texture to compare with.
+    pub(super) fn start_twin(&mut self, from_rest: bool) -> Result<(), String> {
         let document = self.document()?;
         if !self.view.twin || !document.has_texture() {
             self.twin = None;
@@ -67,9 +67,9 @@ impl Session {
             _ => false,
         };
         if !went_on {
-            let live = Live::from_rest(&case, self.setting.threads);
+            let live = LiveRun::from_rest(&case, self.setting.threads);
             self.twin = Some(Twin { live, toml });
-            self.news.twin_reset = true;
+            self.pending.twin_reset = true;
         }
         Ok(())
     }

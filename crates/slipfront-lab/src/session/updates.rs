@@ -1,4 +1,4 @@
-//! What a page is told: the case, the curve, pictures, numbers.
+//! What a page is sent: the case, the curve, pictures, numbers.
 
 use std::time::Duration;
 
@@ -6,19 +6,20 @@ use slipfront::PositionBins;
 use slipfront_run::summary::summary_json;
 
 use super::clock::is_due;
-use super::state::{News, Session};
+use super::state::{PendingUpdates, Session};
 use crate::live::Points;
 use crate::picture::{self, Frame};
 use crate::protocol::{CaseReply, CurveReply, NumbersReply, ProbeReply, Reply, Units};
 use crate::{controls, shapes};
 
 /// Time between two reports of numbers, two of the block under the pointer, and two kymographs.
-const NUMBERS: Duration = Duration::from_millis(200);
-const PROBE: Duration = Duration::from_millis(100);
-const KYMOGRAPH: Duration = Duration::from_millis(500);
+const NUMBERS_INTERVAL: Duration = Duration::from_millis(200);
+const PROBE_INTERVAL: Duration = Duration::from_millis(100);
+const KYMOGRAPH_INTERVAL: Duration = Duration::from_millis(500);
 
 impl Session {
-    pub(super) fn tell_case(&mut self, why: &'static str) {
+    /// Sends the present case, with the reason why it is sent.
+    pub(super) fn send_case(&mut self, why: &'static str) {
         let (Some(history), Some(live)) = (&self.history, &self.live) else {
             return;
         };
@@ -64,55 +65,57 @@ impl Session {
         self.outbox.reply(&Reply::Case(Box::new(reply)));
     }
 
-    /// Tells what is new: curve, picture, numbers.
-    pub(super) fn tell(&mut self) {
+    /// Sends what is new: curve, picture, numbers.
+    pub(super) fn send_updates(&mut self) {
         let ends = self.count_ended();
         let Some(live) = &mut self.live else { return };
-        let ended_now = ends != self.news.ends_told;
-        let points = live.new_points();
+        let ended_now = ends != self.pending.ends_sent;
+        let points = live.take_unsent_points();
         let twin = self.twin.as_mut().map_or_else(Points::default, |twin| {
-            if self.news.twin_reset {
-                twin.live.tell_again();
+            if self.pending.twin_reset {
+                twin.live.resend_points();
             }
-            twin.live.new_points()
+            twin.live.take_unsent_points()
         });
-        let recorded = self.recorded.as_ref().filter(|_| self.news.recorded);
-        if self.news.from_rest
-            || self.news.twin_reset
+        let recorded = self.recorded.as_ref().filter(|_| self.pending.recorded);
+        if self.pending.from_rest
+            || self.pending.twin_reset
             || !points.time_star.is_empty()
             || !twin.time_star.is_empty()
         {
             self.outbox.reply(&Reply::Curve(CurveReply {
                 leg: live.leg,
-                from_rest: self.news.from_rest,
+                from_rest: self.pending.from_rest,
                 t: points.time_star,
                 mu: points.mu_star,
                 sliding: points.sliding_percent,
-                twin_reset: self.news.twin_reset,
+                twin_reset: self.pending.twin_reset,
                 twin_t: twin.time_star,
                 twin_mu: twin.mu_star,
                 recorded_t: recorded.map(|recorded| &*recorded.time_star),
                 recorded_mu: recorded.map(|recorded| &*recorded.mu_star),
             }));
         }
-        let redraw = self.news.redraw;
-        self.news = News {
-            ends_told: ends,
-            ..News::default()
+        let redraw = self.pending.redraw;
+        self.pending = PendingUpdates {
+            ends_sent: ends,
+            ..PendingUpdates::default()
         };
-        self.paint_picture();
-        if redraw | ended_now | is_due(&mut self.clock.numbers, NUMBERS) {
-            self.tell_numbers();
+        self.send_picture();
+        if redraw | ended_now | is_due(&mut self.clock.numbers, NUMBERS_INTERVAL) {
+            self.send_numbers();
         }
-        if redraw | ended_now | is_due(&mut self.clock.probe, PROBE) {
-            self.tell_probe();
+        if redraw | ended_now | is_due(&mut self.clock.probe, PROBE_INTERVAL) {
+            self.send_probe();
         }
-        if self.view.kymograph && (redraw | ended_now | is_due(&mut self.clock.kymograph, KYMOGRAPH)) {
-            self.tell_kymograph();
+        if self.view.kymograph && (redraw | ended_now | is_due(&mut self.clock.kymograph, KYMOGRAPH_INTERVAL))
+        {
+            self.send_kymograph();
         }
     }
 
-    fn paint_picture(&mut self) {
+    /// Sends the picture of the run, or of the recorded snapshot that is shown.
+    fn send_picture(&mut self) {
         let Some(live) = &self.live else { return };
         let case = live.case();
         let shown = self.view.field;
@@ -139,17 +142,19 @@ impl Session {
                     .outline
                     .as_ref()
                     .map(|outline| &*outline.exists);
-                self.painter.picture(&frame, shown, &values, exists)
+                self.painter.paint(&frame, shown, &values, exists)
             }
             None => {
                 let now = live.running().snapshot();
-                self.painter.live(&now, &case.scales, live.origin(), shown)
+                self.painter
+                    .paint_snapshot(&now, &case.scales, live.origin(), shown)
             }
         };
         self.outbox.picture(picture);
     }
 
-    fn tell_numbers(&mut self) {
+    /// Sends the numbers of the run at this instant.
+    fn send_numbers(&mut self) {
         let Some(live) = &self.live else { return };
         let now = live.running().snapshot();
         let (peak, twin_peak) = (live.peak(), self.twin.as_ref().and_then(|twin| twin.live.peak()));
@@ -176,14 +181,15 @@ impl Session {
             change_percent,
             kinetic: live.running().kinetic().map(|kinetic| kinetic.mu_star),
             instants: instants.collect(),
-            steps_per_second: self.clock.rate(),
+            steps_per_second: self.clock.steps_per_second(),
             ended: live.ended.is_some(),
             summary,
         };
         self.outbox.reply(&Reply::Numbers(Box::new(reply)));
     }
 
-    fn tell_probe(&mut self) {
+    /// Sends what the block under the pointer has.
+    fn send_probe(&mut self) {
         let (Some(live), Some([i, j])) = (&self.live, self.view.probe) else {
             return;
         };
@@ -219,7 +225,8 @@ impl Session {
         }));
     }
 
-    fn tell_kymograph(&mut self) {
+    /// Sends the kymograph of this leg.
+    fn send_kymograph(&mut self) {
         let Some(live) = &self.live else { return };
         let case = live.case();
         let bins = PositionBins::of(&case.model.lattice, &case.model.drive);
