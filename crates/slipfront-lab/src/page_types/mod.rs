@@ -49,7 +49,7 @@ fn read(name: &str, place: &[&str], value: Value) -> Result<Request, serde_json:
 }
 
 /// Holds the keys of an interface at a place of a request, and the words that they take, against those that are read.
-fn check_request(declared: &Declarations, request: &str, place: &mut Vec<&str>, interface: &str) {
+fn check_request(declared: &Declarations, request: &str, place: &[&str], interface: &str) {
     let keys = &declared.interface(interface).keys;
     if keys.is_empty() {
         return;
@@ -57,6 +57,7 @@ fn check_request(declared: &Declarations, request: &str, place: &mut Vec<&str>, 
     let found = expected(read(request, place, json!({ "no such key": 0 })));
     assert_eq!(found, names(keys.keys()), "{interface}");
     for (key, declared_key) in keys {
+        let at = [place, &[key.as_str()]].concat();
         let alternatives = declared.alternatives(&declared_key.holds);
         let words = alternatives.iter().filter_map(|one| match one {
             Type::Literal(word) => Some(word),
@@ -64,8 +65,6 @@ fn check_request(declared: &Declarations, request: &str, place: &mut Vec<&str>, 
         });
         let words = names(words);
         if !words.is_empty() {
-            let mut at = place.clone();
-            at.push(key);
             assert_eq!(
                 expected(read(request, &at, json!("no such word"))),
                 words,
@@ -75,9 +74,7 @@ fn check_request(declared: &Declarations, request: &str, place: &mut Vec<&str>, 
         if let Type::Named(inner) = &declared_key.holds
             && declared.is_interface(inner)
         {
-            let mut at = place.clone();
-            at.push(key);
-            check_request(declared, request, &mut at, inner);
+            check_request(declared, request, &at, inner);
         }
     }
 }
@@ -101,11 +98,11 @@ fn requests_are_read_as_the_page_sends_them() {
                 read(name, &[], sample.clone()).unwrap_or_else(|error| panic!("{name} {sample}: {error}"));
             assert_eq!(request.name(), name);
         }
-        check_request(&declared, name, &mut Vec::new(), interface);
+        check_request(&declared, name, &[], interface);
     }
 }
 
-/// Replies that have between them every value that the page is told of: whoever adds one to `Reply` adds it here.
+/// Hands `check` every kind of reply, which between them have every kind of value that each of their keys may hold.
 fn each_reply(check: &mut impl FnMut(&Reply)) {
     let text = "[[texture]]\nshape = 'cavity'\ncoverage = 5\n";
     let document = Document::new("case", text, |_| Err("there is no file".to_owned())).unwrap();
@@ -270,7 +267,7 @@ fn replies_have_the_keys_and_values_that_the_page_expects() {
     let declared = declarations();
     let replies = &declared.interface("Replies").keys;
     let (mut seen, mut all) = (Seen::new(), Seen::new());
-    let mut told = BTreeSet::new();
+    let mut shown = BTreeSet::new();
     each_reply(&mut |reply| {
         let mut value = serde_json::to_value(reply).unwrap();
         let is = value.as_object_mut().unwrap().remove("is").unwrap();
@@ -279,9 +276,9 @@ fn replies_have_the_keys_and_values_that_the_page_expects() {
             declared.check(&value, &replies[name].holds, &mut seen),
             "{name}: {value}"
         );
-        told.insert(name.to_owned());
+        shown.insert(name.to_owned());
     });
-    assert_eq!(told, names(replies.keys()));
+    assert_eq!(shown, names(replies.keys()));
     for key in replies.values() {
         let Type::Named(interface) = &key.holds else {
             panic!("{key:?}")

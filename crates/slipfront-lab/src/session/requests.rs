@@ -25,7 +25,7 @@ impl Session {
     /// Does what a request asks for.
     ///
     /// # Errors
-    /// A sentence, if the request is refused; then nothing has changed.
+    /// A sentence, if the request is refused.
     fn perform(&mut self, request: Request) -> Result<(), String> {
         match request {
             Request::Open { source } => self.open(source),

@@ -69,7 +69,7 @@ impl Session {
         }
     }
 
-    /// Handles a request once there is room for its replies, which a page that does not read them leaves none.
+    /// Handles a request once there is room for its replies: a page that reads none leaves none.
     fn handle_when_room(&mut self, request: Request) {
         self.outbox.wait_for_room();
         self.handle(request);
