@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# Compares the results of two builds of slipfront, byte for byte: every case under cases/, every study under cases/studies and
-# the whole paper. Pictures and manifests are left out: those change with the drawing, these with time and place.
+# Compares the results of two builds of slipfront, byte for byte: every case under cases/, every study under cases/studies, the whole
+# paper and the exact answers of the family. Pictures and manifests are left out: those change with the drawing, these with time and
+# place.
 #
 #   tests/compare_builds.sh OLD_PROGRAM NEW_PROGRAM [FOLDER]
 #
@@ -26,15 +27,16 @@ produce() {
         "$program" study --quiet "$study" --out "$out/study/$(basename "$study" .toml)" > "$out/$(basename "$study").txt"
     done
     "$program" paper --quiet --out "$out/paper" > "$out/paper.txt"
+    "$program" family --docs "$out/family" > "$out/family.txt"
 }
 
 mkdir -p "$folder/old" "$folder/new"
 produce "$old" "$folder/old"
 produce "$new" "$folder/new"
 
-# What a run, a study and the paper answer with.
+# What a run, a study, the paper and the family answer with.
 results() {
-    find "$1" -type f \( -name '*.csv' -o -name '*.nc' -o -name 'summary.json' -o -name '*.txt' -o -name 'paper.md' \) -printf '%P\n' | sort
+    find "$1" -type f \( -name '*.csv' -o -name '*.nc' -o -name 'summary.json' -o -name '*.txt' -o -name '*.md' \) -printf '%P\n' | sort
 }
 # A file, of runs.csv without the identities of the runs.
 without_identity() {
