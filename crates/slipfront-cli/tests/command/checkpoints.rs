@@ -323,7 +323,7 @@ fn a_checkpoint_that_is_not_whole_or_not_its_own_is_refused() {
         "was written by slipfront 7.",
     );
     refused(
-        &text("\"slipfront_checkpoint\":2", "\"slipfront_checkpoint\":1"),
+        &text("\"slipfront_checkpoint\":3", "\"slipfront_checkpoint\":1"),
         "has layout 1, and this version reads layout 3",
     );
     for (from, to) in [
