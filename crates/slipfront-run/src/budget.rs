@@ -1,6 +1,6 @@
 //! Memory and disk space that a run needs with its files and pictures, told before it begins and compared with what the machine has.
 //!
-//! [`RunBudget::parts`] is the table of what takes how much: the owners of arrays, files and pictures say what a block, a cell, a row or
+//! The parts of a [`RunBudget`] are the table of what takes how much: the owners of arrays, files and pictures say what a block, a cell, a row or
 //! a picture takes. Memory is that of the largest of three phases: a case is made, it is run and its results are written, its pictures are
 //! drawn. Of several ranks each takes memory for its own rows, and those of a machine share what it has.
 
