@@ -32,7 +32,7 @@ pub struct RunBudget {
     cells: f64,
     /// Blocks of the whole lattice.
     all_blocks: f64,
-    /// Those of them that are kept of a field.
+    /// Blocks of the whole lattice that are kept of a field.
     all_cells: f64,
     frames: f64,
     fields: f64,

@@ -347,7 +347,7 @@ impl Tolerance {
 #[derive(Clone, Copy, Debug, Default)]
 struct Seen {
     instants: usize,
-    /// Those of them at which it is not known what slides.
+    /// Instants at which it is not known what slides.
     undecided: usize,
     /// Blocks that begin to slide.
     slips: usize,

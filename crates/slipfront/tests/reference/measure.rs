@@ -25,7 +25,7 @@ pub(crate) struct Losses {
     pub(crate) damping: f64,
     pub(crate) viscosity: f64,
     pub(crate) broken_springs: f64,
-    /// Those of the instant before.
+    /// Powers at the instant before.
     before: Option<Powers>,
 }
 

@@ -126,7 +126,7 @@ pub struct Friction {
     pub mu_kinetic_field: Option<String>,
     /// Shear strength of the contact without load (tau_a), which adds `tau_a l^2` to the static threshold, Pa.
     pub adhesion: Pressure,
-    /// The same of kinetic friction, Pa.
+    /// Shear strength of the sliding contact without load, which adds to the kinetic threshold, Pa.
     pub adhesion_kinetic: Pressure,
     /// Kinetic friction that falls with speed.
     pub velocity: Option<Velocity>,
