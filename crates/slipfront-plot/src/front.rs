@@ -73,9 +73,10 @@ pub struct SpaceTime {
 /// Most bytes while [`front`] draws a lattice, in pixels and primitives: at most 1.8 million pixels with the panels beside each other,
 /// and 2.6 million with the map above.
 pub fn front_bytes(nx: usize, ny: usize) -> usize {
-    match is_above(ny as f64 / nx as f64) {
-        true => 12 << 20,
-        false => 8 << 20,
+    if is_above(ny as f64 / nx as f64) {
+        12 << 20
+    } else {
+        8 << 20
     }
 }
 

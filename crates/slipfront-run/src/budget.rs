@@ -94,9 +94,10 @@ impl RunBudget {
                 Some(_) => Precursors::expected_events(last_step) as f64,
                 None => 0.0,
             },
-            maps: match output.fields.contains(&mapped_field(&case.file)) {
-                true => n_frames.min(MAX_MAPS as f64),
-                false => 0.0,
+            maps: if output.fields.contains(&mapped_field(&case.file)) {
+                n_frames.min(MAX_MAPS as f64)
+            } else {
+                0.0
             },
             movie: if output.movie { n_frames } else { 0.0 },
             kymograph: Kymograph::max_counts(lattice, last_step) as f64,
@@ -112,7 +113,7 @@ impl RunBudget {
         let drawn = all_cells.min(CellMeans::MAX_CELLS as f64);
         let frame = Frame::bytes(fields as usize) as f64;
         let snapshots =
-            |cells: f64| frames * fields * cells * Frame::VALUE_BYTES as f64 + grown(frames) * frame;
+            |cells: f64| frames * fields * cells * Frame::VALUE_BYTES as f64 + Budget::grown(frames) * frame;
         let row = size_of::<CurveRow>() as f64;
         let (event, event_columns) = (size_of::<SlipEvent>() as f64, precursors::n_columns() as f64);
         let event_text = COLUMN_BYTES as f64 * event_columns;
@@ -158,8 +159,8 @@ impl RunBudget {
                 },
                 bytes: [
                     0.0,
-                    grown(rows) * row + rows * self.row_text,
-                    grown(rows) * (row + pictures::ROW_BYTES),
+                    Budget::grown(rows) * row + rows * self.row_text,
+                    Budget::grown(rows) * (row + pictures::ROW_BYTES),
                     rows * self.row_text,
                     rows * row,
                 ],
@@ -172,9 +173,9 @@ impl RunBudget {
                 },
                 bytes: [
                     0.0,
-                    grown(self.events) * event + grown(self.events * event_text),
+                    Budget::grown(self.events) * event + Budget::grown(self.events * event_text),
                     // As numbers, then as points.
-                    grown(self.events) * (event_columns + 4.0) * NUMBER,
+                    Budget::grown(self.events) * (event_columns + 4.0) * NUMBER,
                     self.events * event_text,
                     self.events * event_text,
                 ],
@@ -188,7 +189,7 @@ impl RunBudget {
 
     /// Bytes of a phase, with those that no key of a case changes.
     fn total(&self, phase: Phase) -> f64 {
-        let counts = grown(self.kymograph) * Kymograph::COUNT_BYTES as f64;
+        let counts = Budget::grown(self.kymograph) * Kymograph::COUNT_BYTES as f64;
         let working_shares = self.kymograph * WORKING_SHARE_BYTES as f64;
         let history = KineticHistory::MAX_BYTES as f64;
         let with_maps = if self.maps > 0.0 {
@@ -281,13 +282,12 @@ impl RunBudget {
     fn compare_memory(&self, file: &CaseFile, had: f64, available: Option<f64>) -> Result<(), CaseError> {
         let phase = self.largest(true);
         let (mut cause, bytes) = self.most(phase);
-        let whose = match self.is_resumed {
+        let whose = if self.is_resumed {
             // The case of a run that resumes can be changed no more.
-            true => {
-                cause.remedy = "give it more, in a queue for example with `--mem`";
-                "going on with this run"
-            }
-            false => "a run of this case",
+            cause.remedy = "give it more, in a queue for example with `--mem`";
+            "going on with this run"
+        } else {
+            "a run of this case"
         };
         let demand = Demand {
             file,
@@ -323,12 +323,13 @@ impl RunBudget {
         if self.disk() + beside <= free {
             return Ok(());
         }
-        let (beside, without) = match checkpoints {
-            true => (
+        let (beside, without) = if checkpoints {
+            (
                 format!(" and its checkpoints {}", byte_size(beside)),
                 ", run without checkpoints (--checkpoint off)",
-            ),
-            false => (String::new(), ""),
+            )
+        } else {
+            (String::new(), "")
         };
         let (cause, bytes) = self.most(Phase::Files);
         let sentence = format!(
@@ -355,11 +356,6 @@ impl RunBudget {
         let bytes = bytes_of(&most);
         (most.cause, bytes)
     }
-}
-
-/// Elements for which a vector has room that grew to `length` by doubling.
-pub(crate) fn grown(length: f64) -> f64 {
-    length.max(4.0).log2().ceil().exp2()
 }
 
 #[cfg(test)]

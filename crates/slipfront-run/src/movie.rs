@@ -11,7 +11,6 @@ use slipfront_plot::{
     MoviePictures, PictureError,
 };
 
-use crate::budget::grown;
 use crate::error::ResultsError;
 use crate::fields;
 use crate::friction_picture::marked_curve;
@@ -44,7 +43,10 @@ pub fn memory(folder: &Path) -> Result<f64, ResultsError> {
     let snapshots = snapshots.min(MAX_PICTURES) as f64;
     let cells = CellMeans::MAX_CELLS as f64;
     Ok(Budget::resident(
-        cells * CELL_BYTES + grown(rows) * ROW_BYTES + snapshots * snapshot_bytes(cells) + BATCH_BYTES,
+        cells * CELL_BYTES
+            + Budget::grown(rows) * ROW_BYTES
+            + snapshots * snapshot_bytes(cells)
+            + BATCH_BYTES,
     ))
 }
 

@@ -2,7 +2,6 @@
 
 #[cfg(feature = "plot")]
 use {
-    crate::budget::grown,
     crate::error::ResultsError,
     crate::fields::{self, FieldFrame, Reduction},
     crate::friction_picture::{self, in_print},
@@ -114,7 +113,9 @@ pub fn memory(folders: &[PathBuf]) -> Result<f64, ResultsError> {
     let shares = kymograph as f64 / fields::SHARE_BYTES as f64;
     let maps = CellMeans::MAX_CELLS as f64 * (CELL_BYTES + MAX_MAPS as f64 * MAP_CELL_BYTES);
     Ok(Budget::resident(
-        maps + grown(rows) * ROW_BYTES + shares * fields::WORKING_SHARE_BYTES as f64 + WITH_MAPS_BYTES,
+        maps + Budget::grown(rows) * ROW_BYTES
+            + shares * fields::WORKING_SHARE_BYTES as f64
+            + WITH_MAPS_BYTES,
     ))
 }
 

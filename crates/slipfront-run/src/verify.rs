@@ -41,6 +41,8 @@ pub enum VerifyError {
     Changed { difference: String, manifest: PathBuf },
     #[error(transparent)]
     Folder(#[from] FolderError),
+    #[error("cannot make a folder to compare with: {0}; name one that is writable in TMPDIR")]
+    Temporary(std::io::Error),
 }
 
 /// Refuses files `which` of a complete run that are not as they were written; without a manifest nothing is known of them.

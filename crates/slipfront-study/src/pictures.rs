@@ -170,10 +170,11 @@ impl<'a> Measured<'a> {
         };
         let shown = shown_at(level);
         let mut others = (0..self.axes[axis].levels.len()).filter(|&other| other != level);
-        match others.any(|other| shown_at(other) == shown) {
+        if others.any(|other| shown_at(other) == shown) {
             // What is meshed does not tell it from another one.
-            true => format!("{shown} ({asked} asked)"),
-            false => shown,
+            format!("{shown} ({asked} asked)")
+        } else {
+            shown
         }
     }
 

@@ -43,8 +43,6 @@ pub enum VerifyStudyError {
     Run(#[from] VerifyError),
     #[error(transparent)]
     Folder(#[from] FolderError),
-    #[error("cannot make a folder to compare with: {0}; name one that is writable in TMPDIR")]
-    Temporary(std::io::Error),
 }
 
 /// Whether a study has been run in the folder.
@@ -76,7 +74,7 @@ fn verify_study(folder: &Path) -> Result<Verdict, VerifyStudyError> {
         }
     };
     plan.check_memory(0)?;
-    let temporary = TemporaryFolder::new(folder).map_err(VerifyStudyError::Temporary)?;
+    let temporary = TemporaryFolder::new(folder).map_err(VerifyError::Temporary)?;
     let mut again = StudyFolder::open(temporary.path(), &file)?;
     again.records.merge(folder)?;
     let records = folder.join(Records::FILE);
@@ -96,7 +94,7 @@ fn verify_study(folder: &Path) -> Result<Verdict, VerifyStudyError> {
         Err(error) => return Err(error.into()),
     };
     write(&plan, &results, &again)?;
-    let mut files = files_below(temporary.path(), "").map_err(VerifyStudyError::Temporary)?;
+    let mut files = files_below(temporary.path(), "").map_err(VerifyError::Temporary)?;
     files.retain(|file| file.name != Records::FILE);
     let differ = differences(&files, folder, "follow from the records");
     verdict.differences.extend(differ);

@@ -45,9 +45,12 @@ pub(super) fn values(
     is_wrong: impl Fn(f64) -> bool,
 ) -> Result<Vec<f64>, ArrayError> {
     let Slab { nx, ny, ref rows } = *slab;
-    let mut array = Array::open(path, source, |shape| match shape == [ny as u64, nx as u64] {
-        true => Ok([ny, nx]),
-        false => Err(wrong_shape(path, shape, nx, ny)),
+    let mut array = Array::open(path, source, |shape| {
+        if shape == [ny as u64, nx as u64] {
+            Ok([ny, nx])
+        } else {
+            Err(wrong_shape(path, shape, nx, ny))
+        }
     })?;
     let mut values = vec![0.0; slab.n_blocks()];
     match array.order {

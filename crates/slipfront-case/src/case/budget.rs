@@ -109,6 +109,11 @@ impl Budget {
         HEAP * allocated
     }
 
+    /// Elements for which a vector has room that grew to `length` by doubling.
+    pub fn grown(length: f64) -> f64 {
+        length.max(4.0).log2().ceil().exp2()
+    }
+
     /// Bytes while the case is made.
     pub fn making(&self) -> f64 {
         self.blocks * self.surface + self.laid
@@ -143,9 +148,10 @@ impl Budget {
             return Ok(());
         }
         let of_blocks = self.blocks * self.surface;
-        let most = match self.laid >= of_blocks {
-            true => (Self::cause_of_inputs(), self.laid),
-            false => (self.cause_of_blocks(), of_blocks),
+        let most = if self.laid >= of_blocks {
+            (Self::cause_of_inputs(), self.laid)
+        } else {
+            (self.cause_of_blocks(), of_blocks)
         };
         self.compare(
             self.demand(file, "this case", most, self.making()),
@@ -198,9 +204,10 @@ impl Budget {
             _ if !can_be_had(of_rank - had) => "the system gives less at once (see `ulimit -v`)".to_owned(),
             _ => return Ok(()),
         };
-        let (each, or) = match self.is_shared {
-            true => (" per rank", ", or share it among more machines"),
-            false => ("", ""),
+        let (each, or) = if self.is_shared {
+            (" per rank", ", or share it among more machines")
+        } else {
+            ("", "")
         };
         let together = match self.ranks_on_node {
             1.0 => String::new(),

@@ -44,9 +44,10 @@ pub(super) fn contact(
     lattice: &Lattice,
     inputs: &Inputs,
 ) -> Result<Contact, CaseError> {
-    let load = match file.load.redistribute {
-        true => Load::Redistributed,
-        false => Load::Kept,
+    let load = if file.load.redistribute {
+        Load::Redistributed
+    } else {
+        Load::Kept
     };
     let given = inputs.read_field(file, "load.pressure_field", &file.load.pressure_field)?;
     let pressure = match &file.load.profile {

@@ -64,13 +64,15 @@ impl Groups {
             v_star,
             r_star: friction.mean_ratio(),
             omega_star,
-            sigma_static_star: match friction.has_static_coefficient() {
-                true => friction.sigma_static_star,
-                false => 0.0,
+            sigma_static_star: if friction.has_static_coefficient() {
+                friction.sigma_static_star
+            } else {
+                0.0
             },
-            sigma_kinetic_star: match friction.has_kinetic_coefficient() {
-                true => friction.sigma_kinetic_star,
-                false => 0.0,
+            sigma_kinetic_star: if friction.has_kinetic_coefficient() {
+                friction.sigma_kinetic_star
+            } else {
+                0.0
             },
             epsilon,
         })

@@ -101,9 +101,10 @@ impl NamedFiles {
         let seen = format!("{} {}", machine_number(), stamps.collect::<String>());
         let seen = of_all(communicator, words_of(&blake3::hash(seen.as_bytes()))[0]);
         let reader = seen.iter().position(|other| *other == seen[communicator.rank()]);
-        let own = match reader == Some(communicator.rank()) {
-            true => self.hash(file, lattice).map(Some),
-            false => Ok(None),
+        let own = if reader == Some(communicator.rank()) {
+            self.hash(file, lattice).map(Some)
+        } else {
+            Ok(None)
         };
         let own = ranks.agree(own)?;
         let digests = self.of_first(own.as_deref(), communicator);
@@ -273,11 +274,14 @@ impl Inputs {
         slab: &Slab,
         watch: &mut Watch,
     ) -> Result<Vec<bool>, CaseError> {
-        self.read(file, key, name, |path, source| match is_array(path) {
-            true => arrays::mask_npy(path, source, slab),
-            false => arrays::mask_png(path, source, threshold, slab, &mut |share| {
-                watch(share).then_some(()).ok_or(ArrayError::Stopped)
-            }),
+        self.read(file, key, name, |path, source| {
+            if is_array(path) {
+                arrays::mask_npy(path, source, slab)
+            } else {
+                arrays::mask_png(path, source, threshold, slab, &mut |share| {
+                    watch(share).then_some(()).ok_or(ArrayError::Stopped)
+                })
+            }
         })
     }
 

@@ -70,9 +70,10 @@ mod tests {
             if stopped == Some(rank) {
                 return Err(CaseError::Stopped);
             }
-            match failing.contains(&rank) {
-                true => Err(CaseError::invalid(None, format!("{rank} {long}"))),
-                false => Ok(rank),
+            if failing.contains(&rank) {
+                Err(CaseError::invalid(None, format!("{rank} {long}")))
+            } else {
+                Ok(rank)
             }
         };
         let agreed = |failing: &[usize], stopped| -> Vec<Result<usize, String>> {

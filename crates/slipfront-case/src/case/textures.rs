@@ -278,9 +278,10 @@ impl<'a> Masks<'a> {
         let key = format!("texture.{index}.file");
         let [nx, ny] = size;
         // Of a mask that covers the slider, a rank needs its own rows.
-        let slab = match (nx, ny) == (inputs.slab.nx, inputs.slab.ny) {
-            true => inputs.slab.clone(),
-            false => Slab::whole(nx, ny),
+        let slab = if (nx, ny) == (inputs.slab.nx, inputs.slab.ny) {
+            inputs.slab.clone()
+        } else {
+            Slab::whole(nx, ny)
         };
         let blocks = inputs.read_mask(file, &key, &mask.file, mask.threshold, &slab, watch)?;
         let tile = Tile {

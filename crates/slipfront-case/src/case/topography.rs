@@ -92,9 +92,10 @@ impl Ground<'_> {
             file.source.error(&key, sentence)
         })?;
         // Of a map that covers the slider, a rank needs its own rows.
-        let slab = match self.size == [inputs.slab.nx, inputs.slab.ny] {
-            true => inputs.slab.clone(),
-            false => Slab::whole(self.size[0], self.size[1]),
+        let slab = if self.size == [inputs.slab.nx, inputs.slab.ny] {
+            inputs.slab.clone()
+        } else {
+            Slab::whole(self.size[0], self.size[1])
         };
         let kept = &read.blocks[slab.rows.start * slab.nx..slab.rows.end * slab.nx];
         let textured: Vec<bool> = kept.iter().map(|height| *height < contact_height).collect();

@@ -301,8 +301,9 @@ impl Case {
 
 /// Why a texture covers no block, and what to look at.
 fn why_empty(texture: &Texture) -> &'static str {
-    match texture.pattern.invert {
-        true => "the inside of its shapes, which `invert` leaves free, covers all of them",
-        false => texture.shape.why_empty(),
+    if texture.pattern.invert {
+        "the inside of its shapes, which `invert` leaves free, covers all of them"
+    } else {
+        texture.shape.why_empty()
     }
 }

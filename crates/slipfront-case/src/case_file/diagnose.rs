@@ -134,19 +134,21 @@ fn expected_by(message: &str) -> Option<&str> {
     let is_about_type = ["invalid type: ", "invalid value: ", "invalid length "]
         .iter()
         .any(|start| message.starts_with(start));
-    match is_about_type {
-        true => message.rsplit_once(", expected ").map(|(_, expected)| expected),
-        false => message
+    if is_about_type {
+        message.rsplit_once(", expected ").map(|(_, expected)| expected)
+    } else {
+        message
             .strip_prefix("expected ")
-            .or_else(|| message.strip_prefix("wanted ")),
+            .or_else(|| message.strip_prefix("wanted "))
     }
 }
 
 /// What a key takes by the table of keys; none where serde says more of its form.
 fn takes(key: &Key, message: &str) -> Option<String> {
-    let example = match key.default.starts_with('[') {
-        true => format!(", such as {}", key.default),
-        false => String::new(),
+    let example = if key.default.starts_with('[') {
+        format!(", such as {}", key.default)
+    } else {
+        String::new()
     };
     Some(match key.kind {
         Kind::Number { bounds, words, .. } => {

@@ -55,9 +55,10 @@ fn similar_file(path: &Path) -> Option<PathBuf> {
     let stem = path.file_name()?.to_str()?.trim_end_matches(".toml");
     let within = ["", "cases", "cases/studies"].map(|inner| folder.join(inner));
     within.iter().find_map(|folder| {
-        let listed = match folder.as_os_str().is_empty() {
-            true => Path::new("."),
-            false => folder,
+        let listed = if folder.as_os_str().is_empty() {
+            Path::new(".")
+        } else {
+            folder
         };
         let entries = std::fs::read_dir(listed).ok()?.take(MAX_ENTRIES).flatten();
         let mut stems: Vec<String> = entries

@@ -52,9 +52,10 @@ fn the_reference_tells_every_key_as_it_is() {
     let text = fs::read_to_string(path).unwrap();
     let parts: Vec<&str> = text.split("\n##").collect();
     for section in &SECTIONS {
-        let title = match section.is_shape {
-            true => format!("# `shape = \"{}\"`", section.name),
-            false => format!(" `[{}]`", section.name),
+        let title = if section.is_shape {
+            format!("# `shape = \"{}\"`", section.name)
+        } else {
+            format!(" `[{}]`", section.name)
         };
         let part = parts.iter().find(|part| part.starts_with(&title)).unwrap();
         let rows: Vec<Vec<&str>> = part

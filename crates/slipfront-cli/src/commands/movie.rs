@@ -86,14 +86,13 @@ impl Movie {
         expect_memory(movie::memory(folder).map_err(Failure::input)?)?;
         let movie = movie::of_run(folder, self.field).map_err(Failure::input)?;
         let movie = movie.ok_or_else(|| refused(self.no_snapshots(run.case.as_ref().ok())))?;
-        let bytes = match is_mp4 {
-            true => mp4(folder, &movie)?,
-            false => {
-                let bytes = movie::gif(&movie).map_err(Failure::input)?;
-                // Not before: until here a signal ends the process, and nothing is left behind.
-                Signals::catch().map_err(Failure::running)?;
-                bytes
-            }
+        let bytes = if is_mp4 {
+            mp4(folder, &movie)?
+        } else {
+            let bytes = movie::gif(&movie).map_err(Failure::input)?;
+            // Not before: until here a signal ends the process, and nothing is left behind.
+            Signals::catch().map_err(Failure::running)?;
+            bytes
         };
         write_atomic(&out, &bytes)
             .map_err(|error| Failure::running(anyhow::anyhow!("cannot write {}: {error}", out.display())))?;

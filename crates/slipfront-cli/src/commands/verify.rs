@@ -16,8 +16,8 @@ use slipfront_run::results;
 use slipfront_run::run_folder::RunFolder;
 use slipfront_run::run_folder::inspection::{CaseDefect, Inspection};
 use slipfront_run::running::Running;
-use slipfront_run::verify::{Verdict, differences, inspect, verify_run};
-use slipfront_study::verify::{VerifyStudyError, has_records, verify};
+use slipfront_run::verify::{Verdict, VerifyError, differences, inspect, verify_run};
+use slipfront_study::verify::{has_records, verify};
 
 use crate::failure::Failure;
 use crate::make_case::make_case;
@@ -126,8 +126,8 @@ impl Verify {
             Err(CaseDefect::Unreadable(_) | CaseDefect::Invalid(_)) => Case::load(&case, &[], watch),
         });
         let case = Arc::new(case?);
-        let again = TemporaryFolder::new(folder)
-            .map_err(|error| Failure::running(VerifyStudyError::Temporary(error)))?;
+        let again =
+            TemporaryFolder::new(folder).map_err(|error| Failure::running(VerifyError::Temporary(error)))?;
         RunBudget::of(&case)
             .check_disk(&case.file, again.path(), 0, false)
             .map_err(Failure::input)?;

@@ -152,9 +152,10 @@ fn between_ellipses(one: &Ellipse, other: &Ellipse, shift: [f64; 2]) -> Closest 
     let is_circle = |ellipse: &Ellipse| ellipse.semi_axes[0] == ellipse.semi_axes[1];
     let best = if is_circle(one) && is_circle(other) {
         let length = libm::hypot(from_one[0], from_one[1]);
-        match length > 0.0 {
-            true => from_one.map(|part| part / length),
-            false => [1.0, 0.0],
+        if length > 0.0 {
+            from_one.map(|part| part / length)
+        } else {
+            [1.0, 0.0]
         }
     } else {
         let step = TAU / DIRECTIONS as f64;
@@ -164,9 +165,10 @@ fn between_ellipses(one: &Ellipse, other: &Ellipse, shift: [f64; 2]) -> Closest 
         let (mut low, mut high) = (guess - step, guess + step);
         for _ in 0..CUTS {
             let third = (high - low) / 3.0;
-            match value(&(low + third)) < value(&(high - third)) {
-                true => low += third,
-                false => high -= third,
+            if value(&(low + third)) < value(&(high - third)) {
+                low += third;
+            } else {
+                high -= third;
             }
         }
         direction(0.5 * (low + high))

@@ -18,9 +18,12 @@ fn by_block(simulation: &Simulation, field: Field) -> Vec<f32> {
     let now = simulation.snapshot();
     let textured = &now.model.surface.textured;
     (0..textured.len())
-        .map(|b| match now.model.slider().exists(b) {
-            true => field.value(&now.block(b), textured[b]) as f32,
-            false => f32::NAN,
+        .map(|b| {
+            if now.model.slider().exists(b) {
+                field.value(&now.block(b), textured[b]) as f32
+            } else {
+                f32::NAN
+            }
         })
         .collect()
 }

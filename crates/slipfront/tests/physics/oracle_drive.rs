@@ -130,9 +130,13 @@ proptest! {
                 Some(Edge::Bottom) => j == 0,
                 Some(Edge::Top) => j + 1 == blocks.1,
             };
-            let end = match turns {
-                false => [path * cos, path * sin],
-                true => [-path * (j as f64 + 0.5 - cy) / radius, path * (i as f64 + 0.5 - cx) / radius],
+            let end = if turns {
+                [
+                    -path * (j as f64 + 0.5 - cy) / radius,
+                    path * (i as f64 + 0.5 - cx) / radius,
+                ]
+            } else {
+                [path * cos, path * sin]
             };
             (if is_driven { k_drive } else { 0.0 }, end)
         });

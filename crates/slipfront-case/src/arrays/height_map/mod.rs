@@ -106,9 +106,10 @@ pub fn height_map(
         deviations.extend(line.heights.iter().map(|height| height - mean));
         moments.add(&deviations);
         averages.add(&Line {
-            row: match grid.top_first {
-                true => points[1] - 1 - line.row,
-                false => line.row,
+            row: if grid.top_first {
+                points[1] - 1 - line.row
+            } else {
+                line.row
             },
             ..*line
         });
@@ -204,9 +205,10 @@ fn height_unit(path: &Path, grid: &Grid, units: &Units) -> Result<f64, ArrayErro
 fn keep_aspect(path: &Path, size: [f64; 2], room: &Room) -> Result<(), ArrayError> {
     let blocks = room.blocks;
     let aspect = size[0] / size[1];
-    let (longer, shorter, ratio) = match aspect >= 1.0 {
-        true => (0, 1, aspect),
-        false => (1, 0, 1.0 / aspect),
+    let (longer, shorter, ratio) = if aspect >= 1.0 {
+        (0, 1, aspect)
+    } else {
+        (1, 0, 1.0 / aspect)
     };
     let wanted = blocks[shorter] as f64 * ratio;
     if (wanted - blocks[longer] as f64).abs() <= 0.5 {

@@ -83,8 +83,7 @@ pub(super) fn slide<const BLOCKS: usize>(
         let is_held = is_held(k);
         let w = roots.w[k].max(0.0);
         let friction = normal_force[k] * a * w;
-        let (rising, falling) = (roots.rising[k], roots.falling[k]);
-        let [sinh, cosh] = [rising - falling, rising + falling].map(|sum| 0.5 * sum);
+        let [sinh, cosh] = sinh_and_cosh(roots.rising[k], roots.falling[k]);
         // Rounding leaves an error of cosh(w) e^-L, in units of the last place, in the one, and of these in the other: where friction has
         // nearly vanished sinh is the difference of two large numbers.
         let left = (equations.target[k] - equations.per_unit[k] * w).max(0.0);
@@ -198,7 +197,7 @@ impl<const BLOCKS: usize> Roots<BLOCKS> {
         }
         let mut goes_on = false;
         for k in 0..BLOCKS {
-            let [sinh, cosh] = [rising[k] - falling[k], rising[k] + falling[k]].map(|sum| 0.5 * sum);
+            let [sinh, cosh] = sinh_and_cosh(rising[k], falling[k]);
             let error = sinh + per_unit[k] * w[k] - target[k];
             let slope = cosh + per_unit[k];
             let next = error * slope / (slope * slope - 0.5 * error * sinh);
@@ -219,6 +218,12 @@ impl<const BLOCKS: usize> Roots<BLOCKS> {
         }
         goes_on
     }
+}
+
+/// `sinh w e^-L` and `cosh w e^-L` from `e^(w - L)` and `e^-(w + L)`.
+#[inline(always)]
+fn sinh_and_cosh(rising: f64, falling: f64) -> [f64; 2] {
+    [rising - falling, rising + falling].map(|sum| 0.5 * sum)
 }
 
 /// `x e^-step` of a step of at most [`LAST_STEP`].

@@ -596,9 +596,10 @@ impl Engine for Fused {
 
 /// Bytes per block without what is kept of the rows beside a band, which a row of blocks takes.
 pub(crate) fn bytes_per_block(options: &ModelOptions) -> f64 {
-    let varied = match variations::options_differ(options) {
-        true => variations::BYTES_PER_ELEMENT,
-        false => 0,
+    let varied = if variations::options_differ(options) {
+        variations::BYTES_PER_ELEMENT
+    } else {
+        0
     };
     band::BYTES_PER_ELEMENT + varied as f64 + size_of::<AtomicU32>() as f64 / TILE as f64
 }

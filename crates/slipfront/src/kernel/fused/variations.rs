@@ -87,9 +87,12 @@ impl Largest {
     /// Of all blocks of this rank and of the others, which call this together.
     pub(super) fn of(model: &Model, communicator: &dyn Communicator) -> Self {
         let slider = &model.slider;
-        let largest = |differs: bool, value: &dyn Fn(usize) -> f64| match differs {
-            true => (0..model.surface.n_blocks()).map(value).fold(0.0, f64::max),
-            false => 1.0,
+        let largest = |differs: bool, value: &dyn Fn(usize) -> f64| {
+            if differs {
+                (0..model.surface.n_blocks()).map(value).fold(0.0, f64::max)
+            } else {
+                1.0
+            }
         };
         let mut found = [
             largest(slider.stiffness.is_some(), &|b| slider.modulus(b)),

@@ -92,9 +92,10 @@ impl Axis {
     /// Most places of a window.
     fn window(&self) -> usize {
         let all = 2 * REACH + 1;
-        match self.is_periodic {
-            true => 2 * self.reach + 1,
-            false => all.min(self.count),
+        if self.is_periodic {
+            2 * self.reach + 1
+        } else {
+            all.min(self.count)
         }
     }
 
@@ -104,9 +105,10 @@ impl Axis {
         let reach = if is_periodic { self.reach } else { REACH } as i32;
         (-reach..=reach).filter_map(move |offset| {
             let place = middle as isize + offset as isize;
-            let wrapped = match is_periodic {
-                true => place.rem_euclid(count as isize) as usize,
-                false => usize::try_from(place).ok().filter(|place| *place < count)?,
+            let wrapped = if is_periodic {
+                place.rem_euclid(count as isize) as usize
+            } else {
+                usize::try_from(place).ok().filter(|place| *place < count)?
             };
             Some((offset, wrapped))
         })
@@ -188,9 +190,10 @@ impl Sums {
     /// R^2, the share of the variance of the times that the plane of this slope explains; none of a window that slips at once.
     fn explained(&self, slope: [f64; 2]) -> f64 {
         let variance = f64::from(self.n) * self.tt - self.t * self.t;
-        match variance > 0.0 {
-            true => dot(slope, self.with_time()) / variance,
-            false => 0.0,
+        if variance > 0.0 {
+            dot(slope, self.with_time()) / variance
+        } else {
+            0.0
         }
     }
 }
