@@ -10,7 +10,7 @@ use pyo3::types::{PyBytes, PyDict};
 use slipfront::Surface;
 use slipfront_case::case::Case as SlipfrontCase;
 use slipfront_case::case_file::{CaseError as Error, CaseFile};
-use slipfront_run::budget::RunBudget;
+use slipfront_run::pictures;
 
 use crate::arrays::borrowed;
 use crate::errors::{CaseError, case_error};
@@ -39,7 +39,7 @@ pub(crate) fn make(
             }
             signal.is_none()
         })?;
-        RunBudget::of(&case).check_memory(&case.file)?;
+        pictures::run_budget(&case).check_memory(&case.file)?;
         Ok(case)
     })?;
     match (made, signal) {

@@ -9,6 +9,7 @@ use pyo3::types::PyDict;
 use slipfront_case::case::Case as SlipfrontCase;
 use slipfront_case::field_info::field_info;
 use slipfront_run::fields::{FieldsData, KymographData};
+use slipfront_run::pictures;
 use slipfront_run::precursors::{self, PrecursorRow};
 use slipfront_run::results;
 use slipfront_run::run_folder::RunFolder;
@@ -70,7 +71,8 @@ impl Record {
             results::write_case(case, &mut run).map_err(folder_error)?;
             // Writing takes the fields out of what it is given.
             let mut record = self.record.clone();
-            results::write(case, &mut record, run, started, threads).map_err(folder_error)?;
+            results::write(case, &mut record, &mut run).map_err(folder_error)?;
+            pictures::complete(case, run, started, threads).map_err(folder_error)?;
             Ok(())
         })?
     }

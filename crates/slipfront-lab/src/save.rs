@@ -8,8 +8,8 @@ use std::time::{Duration, Instant};
 
 use slipfront_case::disk::make_folders;
 use slipfront_case::text::{display_path, truncated};
-use slipfront_run::budget::RunBudget;
 use slipfront_run::clock;
+use slipfront_run::pictures;
 use slipfront_run::results;
 use slipfront_run::run_folder::RunFolder;
 use slipfront_run::running::Running;
@@ -71,7 +71,7 @@ pub(crate) fn save(
     }
     let started = clock::now();
     let case = Arc::new(document.case().map_err(sentence)?);
-    let budget = RunBudget::of(&case);
+    let budget = pictures::run_budget(&case);
     budget.check_memory(&case.file).map_err(sentence)?;
     budget.check_disk(&case.file, out, 0, false).map_err(sentence)?;
     make_folder(out)?;
@@ -105,7 +105,8 @@ pub(crate) fn save(
         }
     };
     let mut record = running.record(reason);
-    results::write(&case, &mut record, folder, started, threads).map_err(sentence)?;
+    results::write(&case, &mut record, &mut folder).map_err(sentence)?;
+    pictures::complete(&case, folder, started, threads).map_err(sentence)?;
     Ok(true)
 }
 

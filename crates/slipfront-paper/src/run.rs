@@ -11,7 +11,7 @@ use crate::statistics::{deviation, largest};
 use slipfront::observe::Field;
 use slipfront_case::case::{Case, Snapshots};
 use slipfront_plot::{FieldMap, FrictionCurve};
-use slipfront_run::friction_picture::marked_curve;
+use slipfront_run::pictures::friction::marked_curve;
 use slipfront_run::running::Record;
 
 /// A case that ends at the last of these times, with its fields at these alone.

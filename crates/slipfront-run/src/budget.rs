@@ -8,18 +8,37 @@ use std::ops::Range;
 use std::path::Path;
 
 use slipfront::observe::{CurveRow, Frame, KineticHistory, Kymograph, Precursors, SlipEvent, frames};
-use slipfront_case::case::{Budget, Case, Cause, Demand, MAX_MAPS, PROGRAM, mapped_field};
+use slipfront_case::case::{Budget, Case, Cause, Demand, PROGRAM};
 use slipfront_case::case_file::{CaseError, CaseFile};
 use slipfront_case::machine::{available_memory, free_disk};
 use slipfront_case::number_format::{byte_size, count};
-use slipfront_plot::{CellMeans, MOVIE_FILE_BYTES, STRESS_FILE_BYTES, front_bytes};
 
 use crate::fields::{SHARE_BYTES, STATIC_BYTES, WORKING_SHARE_BYTES, record_bytes};
 use crate::series::COLUMN_BYTES;
-use crate::{front, movie, pictures, precursors, series};
+use crate::{front, precursors, series};
 
 /// A number of a block.
 const NUMBER: f64 = size_of::<f64>() as f64;
+
+/// Bytes of the files of all pictures without those of maps, of the summary and of the manifest (measured: at most 0.7 MB).
+const FILE_BYTES: f64 = 2e6;
+
+/// Bytes that the pictures of a run take.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct PictureBytes {
+    /// Of the cells of the lattice while maps are read.
+    pub(crate) cells: f64,
+    /// Of the maps, or of the pictures of the movie, as values.
+    pub(crate) snapshots: f64,
+    /// Of each row of the series.
+    pub(crate) row: f64,
+    /// Of the two pictures that are drawn at once.
+    pub(crate) two: f64,
+    /// Of the pictures of the movie that are drawn at once.
+    pub(crate) batch: f64,
+    /// Of the files of maps and movie.
+    pub(crate) files: f64,
+}
 
 /// Memory and disk space that a run needs.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,22 +52,17 @@ pub struct RunBudget {
     /// Blocks of the whole lattice.
     all_blocks: f64,
     /// Blocks of the whole lattice that are kept of a field.
-    all_cells: f64,
-    frames: f64,
+    pub(crate) all_cells: f64,
+    pub(crate) frames: f64,
     fields: f64,
     rows: f64,
     /// Bytes of a row in its file.
     row_text: f64,
     /// Events of slip of a slider that is driven at an edge.
     events: f64,
-    /// Maps that are drawn.
-    maps: f64,
-    /// Pictures of the movie.
-    movie: f64,
     /// Places times instants of the kymograph.
     kymograph: f64,
-    /// Bytes of the picture of the front.
-    front_picture: f64,
+    pub(crate) pictures: PictureBytes,
     /// Whether the run resumes from a checkpoint.
     is_resumed: bool,
 }
@@ -74,7 +88,7 @@ enum Phase {
 }
 
 impl RunBudget {
-    /// The budget of a run of a case, for the rows that this process holds.
+    /// The budget of a run of a case, for the rows that this process holds, without pictures.
     pub fn of(case: &Case) -> Self {
         let (model, output, last_step) = (&case.model, &case.output, case.time_plan.last_step);
         let lattice = &model.lattice;
@@ -94,23 +108,16 @@ impl RunBudget {
                 Some(_) => Precursors::expected_events(last_step) as f64,
                 None => 0.0,
             },
-            maps: if output.fields.contains(&mapped_field(&case.file)) {
-                n_frames.min(MAX_MAPS as f64)
-            } else {
-                0.0
-            },
-            movie: if output.movie { n_frames } else { 0.0 },
             kymograph: Kymograph::max_counts(lattice, last_step) as f64,
-            front_picture: front_bytes(lattice.nx, lattice.ny) as f64,
+            pictures: PictureBytes::default(),
             is_resumed: false,
         }
     }
 
     /// What takes how many bytes in each phase.
     fn parts(&self) -> [Part; 5] {
-        let (blocks, all_cells) = (self.case.blocks, self.all_cells);
+        let (blocks, all_cells, pictures) = (self.case.blocks, self.all_cells, &self.pictures);
         let (frames, fields, rows) = (self.frames, self.fields, self.rows);
-        let drawn = all_cells.min(CellMeans::MAX_CELLS as f64);
         let frame = Frame::bytes(fields as usize) as f64;
         let snapshots =
             |cells: f64| frames * fields * cells * Frame::VALUE_BYTES as f64 + Budget::grown(frames) * frame;
@@ -124,7 +131,7 @@ impl RunBudget {
                     blocks * self.case.surface,
                     self.case.stepping(),
                     // With the time of its first slip.
-                    blocks * (self.case.surface + NUMBER) + drawn * pictures::CELL_BYTES,
+                    blocks * (self.case.surface + NUMBER) + pictures.cells,
                     all_cells * STATIC_BYTES as f64,
                     self.all_blocks * self.saved,
                 ],
@@ -142,12 +149,8 @@ impl RunBudget {
                 bytes: [
                     0.0,
                     snapshots(self.cells),
-                    // One after the other.
-                    (self.maps * drawn * pictures::MAP_CELL_BYTES)
-                        .max(self.movie * movie::snapshot_bytes(drawn)),
-                    frames * record_bytes(fields, all_cells)
-                        + self.maps * drawn * STRESS_FILE_BYTES as f64
-                        + self.movie * MOVIE_FILE_BYTES as f64,
+                    pictures.snapshots,
+                    frames * record_bytes(fields, all_cells) + pictures.files,
                     snapshots(all_cells),
                 ],
             },
@@ -160,7 +163,7 @@ impl RunBudget {
                 bytes: [
                     0.0,
                     Budget::grown(rows) * row + rows * self.row_text,
-                    Budget::grown(rows) * (row + pictures::ROW_BYTES),
+                    Budget::grown(rows) * (row + pictures.row),
                     rows * self.row_text,
                     rows * row,
                 ],
@@ -192,17 +195,11 @@ impl RunBudget {
         let counts = Budget::grown(self.kymograph) * Kymograph::COUNT_BYTES as f64;
         let working_shares = self.kymograph * WORKING_SHARE_BYTES as f64;
         let history = KineticHistory::MAX_BYTES as f64;
-        let with_maps = if self.maps > 0.0 {
-            pictures::WITH_MAPS_BYTES
-        } else {
-            0.0
-        };
-        let of_movie = if self.movie > 0.0 { movie::BATCH_BYTES } else { 0.0 };
         let fixed = [
             0.0,
             history + counts + working_shares,
-            (self.front_picture.max(with_maps) + working_shares).max(of_movie),
-            pictures::FILE_BYTES + self.kymograph * SHARE_BYTES as f64,
+            (self.pictures.two + working_shares).max(self.pictures.batch),
+            FILE_BYTES + self.kymograph * SHARE_BYTES as f64,
             history + counts,
         ];
         let parts = self.parts();
@@ -370,8 +367,20 @@ mod tests {
         Case::parse("", "case", &overrides).unwrap()
     }
 
-    fn budget(sets: &[&str]) -> RunBudget {
-        RunBudget::of(&case(sets))
+    /// The budget of a run whose pictures take some bytes.
+    fn budget_of(case: &Case) -> RunBudget {
+        let pictures = PictureBytes {
+            cells: 1e6,
+            snapshots: 1e6,
+            row: 64.0,
+            two: 2e7,
+            batch: 1e7,
+            files: 1e6,
+        };
+        RunBudget {
+            pictures,
+            ..RunBudget::of(case)
+        }
     }
 
     /// Why a run with this budget is refused, if it is.
@@ -400,7 +409,7 @@ mod tests {
             ),
         ] {
             let case = case(&sets);
-            let refused = refusal(&case, &RunBudget::of(&case), 0.0, Some(2e8)).unwrap();
+            let refused = refusal(&case, &budget_of(&case), 0.0, Some(2e8)).unwrap();
             // The place is the override of the key.
             assert!(refused.starts_with(&format!("--set {key}=")), "{key}: {refused}");
             for word in ["where 190.7 MiB are available"].iter().chain(&words) {
@@ -422,9 +431,12 @@ mod tests {
             let file = CaseFile::parse("", "case", &overrides).unwrap();
             Case::to_run_on_ranks(file, "case", Path::new(""), &mut |_| true, ranks).unwrap()
         };
-        let alone = budget(&["slider.blocks=[2000,2000]", "output.snapshots={every=20}"]);
+        let alone = budget_of(&case(&[
+            "slider.blocks=[2000,2000]",
+            "output.snapshots={every=20}",
+        ]));
         let cases = Threads::run(4, |communicator| made(communicator, 2));
-        let budgets: Vec<RunBudget> = cases.iter().map(RunBudget::of).collect();
+        let budgets: Vec<RunBudget> = cases.iter().map(budget_of).collect();
         // What is there once for every process: the numbers that do not belong to blocks.
         let beside = |phase: Phase| {
             let mut none = alone;
@@ -461,7 +473,7 @@ mod tests {
             assert!(refused.contains(word), "{word}: {refused}");
         }
         let spread = Threads::run(4, |communicator| made(communicator, 1));
-        let refused = refusal(&spread[3], &RunBudget::of(&spread[3]), 0.0, Some(1e6)).unwrap();
+        let refused = refusal(&spread[3], &budget_of(&spread[3]), 0.0, Some(1e6)).unwrap();
         assert!(
             refused.contains(" of memory per rank (") && !refused.contains("ranks"),
             "{refused}"
@@ -472,7 +484,7 @@ mod tests {
     #[test]
     fn what_has_been_taken_already_counts_as_available() {
         let case = case(&["slider.blocks=[2000,1000]", "output.snapshots=[]"]);
-        let budget = RunBudget::of(&case);
+        let budget = budget_of(&case);
         let made = budget.total(Phase::Making);
         let enough = budget.memory() - made;
         assert_eq!(refusal(&case, &budget, made, Some(enough)), None);

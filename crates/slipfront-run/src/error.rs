@@ -4,8 +4,6 @@ use std::path::PathBuf;
 
 use slipfront_case::case_file::CaseError;
 use slipfront_case::text;
-#[cfg(feature = "plot")]
-use slipfront_plot::PictureError;
 use thiserror::Error;
 
 use crate::fields::FieldsError;
@@ -30,28 +28,5 @@ pub enum ResultsError {
     Summary {
         path: PathBuf,
         source: serde_json::Error,
-    },
-    #[error(
-        "{0} has no units in its summary and series: it was written by an older version; run its case.toml again"
-    )]
-    NoUnits(PathBuf),
-    #[error(
-        "forces and torques have no axis in common: {0} is a rotation or not, other than the runs beside it"
-    )]
-    NotComparable(PathBuf),
-    #[error(
-        "a movie has at most {0} pictures, and the run has kept more snapshots: raise `every` of `output.snapshots`"
-    )]
-    TooManySnapshots(usize),
-    #[cfg(feature = "plot")]
-    #[error(
-        "{path} has no maps of {field}: name it in `output.fields`, leave `output.snapshots` at its default or list instants, and run the case again"
-    )]
-    NoMaps { path: PathBuf, field: &'static str },
-    #[cfg(feature = "plot")]
-    #[error("cannot draw {name}: {source}")]
-    Picture {
-        name: &'static str,
-        source: PictureError,
     },
 }

@@ -4,10 +4,10 @@
 //! Case -> Record -> files -> pictures
 //! ```
 //!
-//! Each arrow is one function: [`running::run`], [`results::write`], `pictures::draw` (with the feature `plot`).
+//! Each arrow is one function: [`running::run`], [`results::write`], `pictures::complete` (with the feature `plot`), which also writes the
+//! manifest.
 
 pub mod agree;
-#[cfg(feature = "plot")]
 pub mod budget;
 pub mod checkpoint;
 pub mod checksum;
@@ -15,17 +15,13 @@ pub mod clock;
 pub mod columns;
 pub mod error;
 pub mod fields;
-#[cfg(feature = "plot")]
-pub mod friction_picture;
 mod friction_unit;
 mod front;
 pub mod leg;
 pub mod manifest;
-#[cfg(feature = "plot")]
 pub mod measured;
-#[cfg(feature = "plot")]
-pub mod movie;
 pub mod names;
+#[cfg(feature = "plot")]
 pub mod pictures;
 pub mod precursors;
 pub mod program;
@@ -35,6 +31,4 @@ pub mod run_folder;
 pub mod running;
 pub mod series;
 pub mod summary;
-#[cfg(feature = "plot")]
-pub mod texture_file;
 pub mod verify;

@@ -35,3 +35,46 @@ pub const RECORDS: &str = "records.jsonl";
 pub const TABLES: [&str; 3] = ["runs.csv", "points.csv", "anisotropy.csv"];
 /// Subfolder of the run folders that a study keeps.
 pub const RUNS: &str = "runs";
+
+/// A picture of a run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RunPicture {
+    /// Friction and sliding blocks against time.
+    Friction,
+    /// Maps of the contact stress.
+    Stress,
+    /// First slips, and sliding against place and time.
+    Front,
+    /// How far events of slip reach under the load.
+    Precursors,
+}
+
+impl RunPicture {
+    /// Every picture of a run.
+    pub const ALL: [Self; 4] = [Self::Friction, Self::Stress, Self::Front, Self::Precursors];
+
+    /// Name of its files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Friction => "friction",
+            Self::Stress => "stress",
+            Self::Front => "front",
+            Self::Precursors => "precursors",
+        }
+    }
+
+    /// What it shows, in words.
+    pub fn shows(self) -> &'static str {
+        match self {
+            Self::Friction => "friction and sliding blocks against time",
+            Self::Stress => "maps of the contact stress",
+            Self::Front => "first slips, and sliding against place and time",
+            Self::Precursors => "how far events of slip reach under the load",
+        }
+    }
+
+    /// Names of its files, with their endings.
+    pub fn files(self) -> [String; 2] {
+        ["svg", "png"].map(|ending| format!("{}.{ending}", self.name()))
+    }
+}

@@ -1,6 +1,4 @@
 //! [`Record`] -> files.
-//!
-//! Pictures are always drawn from the files, so that those of a run and those of `slipfront plot` are equal.
 
 use std::borrow::Cow;
 use std::path::Path;
@@ -14,30 +12,20 @@ use tempfile::TempPath;
 
 use crate::error::ResultsError;
 use crate::fields::{self, FieldFrame, FieldsData, FieldsError, FieldsFile, StaticFields};
-use crate::manifest::Manifest;
 use crate::names::{CASE, FIELDS, KYMOGRAPH, PRECURSORS, SERIES, SUMMARY};
 use crate::precursors;
 use crate::run_folder::RunFolder;
 use crate::run_folder::unfinished::Unfinished;
 use crate::running::Record;
 use crate::series::{self, SeriesRow};
-#[cfg(feature = "plot")]
-use crate::{movie, names::MOVIE, pictures};
 
-/// Writes the results of a run to its folder, where the case stands already, and the manifest, which completes it; with
-/// the feature `plot` the pictures as well. The fields are moved out of the record, which frees their memory before the
-/// pictures are drawn. After an error the folder is left without a manifest.
-pub fn write(
-    case: &Case,
-    record: &mut Record,
-    mut folder: RunFolder,
-    started: jiff::Timestamp,
-    threads: usize,
-) -> Result<Manifest, ResultsError> {
-    write_tables(case, record, &mut folder)?;
+/// Writes the results of a run on one rank to its folder, where the case stands already: what stands in tables, then the fields, which are
+/// moved out of the record. Pictures and the manifest follow.
+pub fn write(case: &Case, record: &mut Record, folder: &mut RunFolder) -> Result<(), ResultsError> {
+    write_tables(case, record, folder)?;
     match write_fields(case, record, folder.path(), &Alone)? {
-        Some(fields) => finish(case, folder, fields, started, threads),
-        None => Ok(folder.complete(case, started, threads)?),
+        Some(fields) => Ok(folder.place(FIELDS, fields)?),
+        None => Ok(()),
     }
 }
 
@@ -57,29 +45,6 @@ pub fn write_tables(case: &Case, record: &Record, folder: &mut RunFolder) -> Res
         )?),
         None => Ok(()),
     }
-}
-
-/// All that follows the [fields](write_fields), by one of the ranks.
-pub fn finish(
-    case: &Case,
-    mut folder: RunFolder,
-    fields: TempPath,
-    started: jiff::Timestamp,
-    threads: usize,
-) -> Result<Manifest, ResultsError> {
-    folder.place(FIELDS, fields)?;
-    #[cfg(feature = "plot")]
-    for (name, picture) in pictures::draw(folder.path())? {
-        folder.write(&format!("{name}.svg"), picture.svg.as_bytes())?;
-        folder.write(&format!("{name}.png"), &picture.png)?;
-    }
-    #[cfg(feature = "plot")]
-    if case.output.movie
-        && let Some(movie) = movie::of_run(folder.path(), None)?
-    {
-        folder.write(MOVIE, &movie::gif(&movie)?)?;
-    }
-    Ok(folder.complete(case, started, threads)?)
 }
 
 /// Writes the case and copies of the files that it reads: enough to run it again.
@@ -196,7 +161,7 @@ mod tests {
         let out = folder.path().join("out");
         let mut run = RunFolder::prepare(&out, false, &case.inputs).unwrap();
         write_case(&case, &mut run).unwrap();
-        write(&case, &mut record, run, jiff::Timestamp::UNIX_EPOCH, 1).unwrap();
+        write(&case, &mut record, &mut run).unwrap();
         let fields = fields::read_fields(&out.join(FIELDS)).unwrap();
         // NaN are equal as they are printed.
         assert_eq!(format!("{in_memory:?}"), format!("{fields:?}"));

@@ -7,7 +7,7 @@ use std::fs;
 use std::path::Path;
 
 use slipfront_case::case::Case;
-use slipfront_run::texture_file::{smallest, textured_blocks, write};
+use slipfront_run::pictures::texture_file::{smallest, textured_blocks, write};
 
 /// A piece of a closed line, in blocks.
 #[derive(Clone, Copy, Debug)]

@@ -8,7 +8,7 @@ use slipfront_case::case_file::CaseError;
 use slipfront_case::number_format::{are, count};
 use slipfront_case::text::display_path;
 use slipfront_plot::PictureError;
-use slipfront_run::error::ResultsError;
+use slipfront_run::pictures::error::RunPictureError;
 use slipfront_run::program;
 use slipfront_run::run_folder::error::FolderError;
 
@@ -83,7 +83,7 @@ pub enum StudyError {
         "cannot keep the folder of a run: {0}; finished runs are safe, and the study goes on from there when \
         started again"
     )]
-    Keep(#[from] ResultsError),
+    Keep(#[from] RunPictureError),
     #[error(
         "{} in none of the shards{}: finish them, or run the rest with `slipfront study` on the study.toml of the united \
         folder, with --out the folder itself",

@@ -16,10 +16,10 @@ use crate::study_file::RetainRuns;
 use crate::study_results::{Progress, StudyResults};
 use slipfront_case::case::Case;
 use slipfront_case::case_file::CaseError;
-use slipfront_run::error::ResultsError;
 use slipfront_run::names::RUNS;
+use slipfront_run::pictures::error::RunPictureError;
 use slipfront_run::run_folder::RunFolder;
-use slipfront_run::{clock, results, running};
+use slipfront_run::{clock, pictures, results, running};
 
 /// Whether runs should be given up: after a signal, and when the study cannot go on.
 type IsStopped<'a> = dyn Fn() -> bool + Sync + 'a;
@@ -157,11 +157,12 @@ fn write_folder(
     record: Option<&mut running::Record>,
     path: &Path,
     started: jiff::Timestamp,
-) -> Result<(), ResultsError> {
+) -> Result<(), RunPictureError> {
     let mut folder = RunFolder::prepare(path, true, &case.inputs)?;
     results::write_case(case, &mut folder)?;
     if let Some(record) = record {
-        results::write(case, record, folder, started, 1)?;
+        results::write(case, record, &mut folder)?;
+        pictures::complete(case, folder, started, 1)?;
     }
     Ok(())
 }

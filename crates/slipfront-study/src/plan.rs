@@ -17,7 +17,7 @@ use slipfront_case::machine::available_of;
 use slipfront_case::number_format::byte_size;
 use slipfront_case::text::display_path;
 use slipfront_plot::Picture;
-use slipfront_run::budget::RunBudget;
+use slipfront_run::pictures;
 
 /// Every run that a study may need.
 #[derive(Clone, Debug)]
@@ -263,7 +263,7 @@ impl Plan {
         }
         let case = self.trimmed(file, "point", &mut |_| true)?;
         let writes = self.settings.keep == RetainRuns::All;
-        let budget = RunBudget::of(&case);
+        let budget = pictures::run_budget(&case);
         let spec = RunSpec {
             seed: case.file.friction.seed,
             physics: physics(&case, base.known())?,

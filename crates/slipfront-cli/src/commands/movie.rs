@@ -13,9 +13,8 @@ use slipfront_case::disk::{folder_of, is_same, write_atomic};
 use slipfront_case::field_info::{FIELDS, field_info, field_named};
 use slipfront_case::unfinished::TemporaryFolder;
 use slipfront_plot::{MOVIE_PIXELS, MoviePictures};
-use slipfront_run::movie;
 use slipfront_run::names::MOVIE;
-use slipfront_run::pictures;
+use slipfront_run::pictures::{self, movie};
 use slipfront_run::verify::{expect_as_written, inspect};
 
 use super::plot::{expect_memory, expect_results, in_the_way, refuse_other_run};

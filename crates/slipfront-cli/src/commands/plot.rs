@@ -11,10 +11,10 @@ use slipfront_case::field_info::{FIELDS, field_info, field_named};
 use slipfront_case::machine::available_of;
 use slipfront_case::number_format::{byte_size, four_digits, with_si_prefix};
 use slipfront_plot::Picture;
-use slipfront_run::friction_picture::{self, Against, Fit, Measured, Overlay, Units};
 use slipfront_run::measured::{Column, Measure, MeasuredError, Record};
 use slipfront_run::names::MANIFEST;
 use slipfront_run::pictures;
+use slipfront_run::pictures::friction::{Against, Fit, Measured, Overlay, Units, overlay, overlay_measured};
 use slipfront_run::run_folder::inspection::Inspection;
 use slipfront_run::verify::{expect_as_written, inspect};
 use slipfront_study::verify::has_records;
@@ -204,10 +204,10 @@ impl Plot {
             }
             (_, Some(path)) => {
                 let measured = self.measured(path).map_err(Failure::input)?;
-                friction_picture::overlay_measured(folders, self.against().unwrap_or_default(), &measured)
+                overlay_measured(folders, self.against().unwrap_or_default(), &measured)
             }
-            (Some(UnitsName::Si), None) => friction_picture::overlay(folders, Units::Si, self.against()),
-            (_, None) => friction_picture::overlay(folders, Units::Star, self.against()),
+            (Some(UnitsName::Si), None) => overlay(folders, Units::Si, self.against()),
+            (_, None) => overlay(folders, Units::Star, self.against()),
         };
         drawn.map_err(Failure::input)
     }

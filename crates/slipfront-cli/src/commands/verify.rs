@@ -8,9 +8,9 @@ use slipfront_case::case::Case;
 use slipfront_case::number_format::count;
 use slipfront_case::text::truncated;
 use slipfront_case::unfinished::TemporaryFolder;
-use slipfront_run::budget::RunBudget;
 use slipfront_run::clock;
 use slipfront_run::manifest::Manifest;
+use slipfront_run::pictures;
 use slipfront_run::program;
 use slipfront_run::results;
 use slipfront_run::run_folder::RunFolder;
@@ -128,7 +128,7 @@ impl Verify {
         let case = Arc::new(case?);
         let again =
             TemporaryFolder::new(folder).map_err(|error| Failure::running(VerifyError::Temporary(error)))?;
-        RunBudget::of(&case)
+        pictures::run_budget(&case)
             .check_disk(&case.file, again.path(), 0, false)
             .map_err(Failure::input)?;
         let mut running = Running::start(&case, rayon::current_num_threads());
@@ -145,7 +145,8 @@ impl Verify {
         let made = again.path().join("run");
         let mut made = RunFolder::prepare(&made, false, &case.inputs).map_err(Failure::running)?;
         results::write_case(&case, &mut made).map_err(Failure::running)?;
-        let now = results::write(&case, &mut record, made, started, 1).map_err(Failure::running)?;
+        results::write(&case, &mut record, &mut made).map_err(Failure::running)?;
+        let now = pictures::complete(&case, made, started, 1).map_err(Failure::running)?;
         verdict
             .differences
             .extend(differences(&now.files, folder, "are written now"));

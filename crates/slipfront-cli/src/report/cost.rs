@@ -3,7 +3,7 @@
 use slipfront_case::case::Case;
 use slipfront_case::machine::available_memory;
 use slipfront_case::number_format::{byte_size, four_digits, with_half_width, with_si_prefix};
-use slipfront_run::budget::RunBudget;
+use slipfront_run::pictures;
 
 use super::summary::notes;
 use super::times::{duration, instant};
@@ -108,7 +108,7 @@ fn scales(case: &Case) -> String {
 }
 
 fn resources(case: &Case, seconds: f64) -> String {
-    let budget = RunBudget::of(case);
+    let budget = pictures::run_budget(case);
     let available = available_memory().map_or(String::new(), |there| {
         format!(" of {} available", byte_size(there))
     });

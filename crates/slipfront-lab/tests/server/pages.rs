@@ -103,12 +103,13 @@ fn a_saved_run_has_the_bytes_of_the_command() {
 
 /// A run of the case into a folder, by the functions of `slipfront run`.
 fn slipfront_run_of(case: &std::path::Path, out: &std::path::Path) -> bool {
-    use slipfront_run::{results, run_folder::RunFolder, running};
+    use slipfront_run::{pictures, results, run_folder::RunFolder, running};
     let case = std::sync::Arc::new(slipfront_case::case::Case::load(case, &[], &mut |_| true).unwrap());
     let mut folder = RunFolder::prepare(out, false, &case.inputs).unwrap();
     results::write_case(&case, &mut folder).unwrap();
     let mut record = running::run(&case, 1).unwrap();
-    results::write(&case, &mut record, folder, slipfront_run::clock::now(), 1).is_ok()
+    results::write(&case, &mut record, &mut folder).unwrap();
+    pictures::complete(&case, folder, slipfront_run::clock::now(), 1).is_ok()
 }
 
 /// Names and contents of all files below a folder.

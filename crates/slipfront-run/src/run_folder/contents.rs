@@ -7,15 +7,14 @@ use slipfront_case::disk::{found_at, is_folder, remove_if_there};
 use super::error::FolderError;
 use super::unfinished::Unfinished;
 use crate::manifest::ManifestFile;
-use crate::names::{CASE, FIELDS, KYMOGRAPH, MANIFEST, MOVIE, PRECURSORS, SERIES, SUMMARY};
-use crate::pictures::{RUN_PICTURES, RunPicture};
+use crate::names::{CASE, FIELDS, KYMOGRAPH, MANIFEST, MOVIE, PRECURSORS, RunPicture, SERIES, SUMMARY};
 
 /// The files that a run leaves beside its case and the copies in `inputs/`, the manifest first.
 pub(super) fn result_files() -> impl Iterator<Item = String> {
     let files = [MANIFEST, SUMMARY, SERIES, PRECURSORS, KYMOGRAPH, FIELDS, MOVIE].map(str::to_owned);
     files
         .into_iter()
-        .chain(RUN_PICTURES.iter().flat_map(RunPicture::files))
+        .chain(RunPicture::ALL.into_iter().flat_map(RunPicture::files))
 }
 
 /// The files of an earlier run in a folder, in the order in which they may be removed: the manifest first, so that the

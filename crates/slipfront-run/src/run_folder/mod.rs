@@ -307,7 +307,7 @@ impl RunFolder {
 
     /// Makes a finished temporary file one of the run: it is listed in the journal, and then takes its name, where no
     /// foreign file stands in its place.
-    pub(crate) fn place(&mut self, name: &str, file: TempPath) -> Result<(), FolderError> {
+    pub fn place(&mut self, name: &str, file: TempPath) -> Result<(), FolderError> {
         let listed = hash_temp(&file, name).map_err(FolderError::write(&self.path.join(name)))?;
         self.place_listed(listed, file)
     }
@@ -333,7 +333,7 @@ impl RunFolder {
     }
 
     /// Writes the manifest: the run is complete, if every file is still as it was written.
-    pub(crate) fn complete(
+    pub fn complete(
         mut self,
         case: &Case,
         started: jiff::Timestamp,

@@ -11,7 +11,6 @@ use png::{BitDepth, ColorType, Encoder};
 use slipfront::communicator::{Alone, Threads};
 use slipfront_case::case::{Case, Ranks};
 use slipfront_case::case_file::CaseFile;
-use slipfront_run::budget::RunBudget;
 use slipfront_run::checkpoint::Checkpoints;
 use slipfront_run::run_folder::RunFolder;
 use slipfront_run::run_folder::unfinished::Unfinished;
@@ -174,8 +173,9 @@ fn what_is_said_is_what_is_taken() {
             let mut record = running::run(&case, 2).unwrap();
             let mut out = RunFolder::prepare(&out, false, &case.inputs).unwrap();
             results::write_case(&case, &mut out).unwrap();
-            results::write(&case, &mut record, out, jiff::Timestamp::now(), 1).unwrap();
-            let budget = RunBudget::of(&case);
+            results::write(&case, &mut record, &mut out).unwrap();
+            pictures::complete(&case, out, jiff::Timestamp::now(), 1).unwrap();
+            let budget = pictures::run_budget(&case);
             (budget.memory(), budget.disk())
         };
         assert_honest_drawing(sets, || {
@@ -215,7 +215,7 @@ fn bands(folder: &Path) {
                 let case = Case::new(file, "case", folder, &mut |_| true, Ranks::ALONE).unwrap();
                 let case = Arc::new(case);
                 running::run(&case, threads).unwrap();
-                RunBudget::of(&case).memory()
+                pictures::run_budget(&case).memory()
             });
             assert_honest(&format!("{sets} on {threads} threads"), said, taken - before);
         }
@@ -289,11 +289,11 @@ fn checkpoints(folder: &Path) {
             let loaded = Checkpoints::load(&out, &case, false, &Alone).unwrap().unwrap();
             let running = loaded.resume(&case, 1, Arc::new(Alone)).unwrap().unwrap();
             save(&case, &running);
-            RunBudget::of(&case).memory()
+            pictures::run_budget(&case).memory()
         });
         let taken = taken - before;
         assert_honest(&format!("to go on with {sets}"), said, taken);
-        let room = RunBudget::of(&made()).disk_of_checkpoints() / 3.0;
+        let room = pictures::run_budget(&made()).disk_of_checkpoints() / 3.0;
         assert_room(sets, room, &out);
         std::fs::remove_dir_all(out).unwrap();
     }
@@ -311,8 +311,9 @@ fn pictures_of_a_large_lattice(folder: &Path) {
     let case = Arc::new(Case::new(file, "case", folder, &mut |_| true, Ranks::ALONE).unwrap());
     let mut record = running::run(&case, 1).unwrap();
     let out = folder.join("out");
-    let prepared = RunFolder::prepare(&out, false, &case.inputs).unwrap();
-    results::write(&case, &mut record, prepared, jiff::Timestamp::now(), 1).unwrap();
+    let mut prepared = RunFolder::prepare(&out, false, &case.inputs).unwrap();
+    results::write(&case, &mut record, &mut prepared).unwrap();
+    pictures::complete(&case, prepared, jiff::Timestamp::now(), 1).unwrap();
     drop((case, record));
     assert_honest_drawing("pictures of a large lattice", || {
         let before = LIVE.load(Ordering::Relaxed) as f64;

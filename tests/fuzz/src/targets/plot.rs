@@ -1,7 +1,7 @@
 //! Pictures from the files of a run folder.
 
-use slipfront_run::friction_picture::{Against, Units, overlay};
 use slipfront_run::pictures::draw;
+use slipfront_run::pictures::friction::{Against, Units, overlay};
 use slipfront_run::summary::summary_json;
 
 use super::json::summary;
@@ -18,7 +18,7 @@ pub(crate) const PLOT: Target = Target {
     files: &[],
     dictionary: Some("plot.dict"),
     max_bytes: 16384,
-    // Canvas and pixels of two pictures: see `pictures.rs` of slipfront-run.
+    // Canvas and pixels of two pictures: see `pictures/` of slipfront-run.
     memory: Memory {
         bytes: 256 << 20,
         per_byte: 1024,

@@ -6,8 +6,9 @@ use std::sync::Arc;
 use slipfront_case::case::Case;
 use slipfront_run::agree::RankFailure;
 use slipfront_run::checkpoint::Checkpoints;
-use slipfront_run::error::ResultsError;
-use slipfront_run::pictures::RUN_PICTURES;
+use slipfront_run::names::{FIELDS, RunPicture};
+use slipfront_run::pictures;
+use slipfront_run::pictures::error::RunPictureError;
 use slipfront_run::results;
 use slipfront_run::run_folder::RunFolder;
 use slipfront_run::running::Running;
@@ -51,17 +52,18 @@ pub(super) fn complete(
     progress.finish();
     let steps = running.snapshot().step - first_step;
     let mut record = running.record(reason);
-    let failed = |error: ResultsError| Failure::running(anyhow::anyhow!("{error}; {}", timer.remedy()));
+    let failed = |error: RunPictureError| Failure::running(anyhow::anyhow!("{error}; {}", timer.remedy()));
     let mut folder = folder;
     let tables = folder
         .as_mut()
         .map(|folder| results::write_tables(&case, &record, folder));
-    ranks.agree(tables.transpose().map_err(failed))?;
+    ranks.agree(tables.transpose().map_err(|error| failed(error.into())))?;
     let fields = results::write_fields(&case, &mut record, out, &*ranks.communicator());
     let fields = ranks.agree(fields.map_err(|error| failed(error.into())))?;
-    let finished = folder
-        .zip(fields)
-        .map(|(folder, fields)| results::finish(&case, folder, fields, started, threads));
+    let finished = folder.zip(fields).map(|(mut folder, fields)| {
+        folder.place(FIELDS, fields)?;
+        pictures::complete(&case, folder, started, threads)
+    });
     ranks.agree(finished.transpose().map_err(failed))?;
     if options.json {
         ranks.first(|| print(&summary_json(&record.summary)))?;
@@ -76,9 +78,9 @@ pub(super) fn complete(
 }
 
 fn files(case: &Case, out: &Path) -> String {
-    let pictures = RUN_PICTURES
+    let pictures = RunPicture::ALL
         .iter()
-        .map(|picture| (picture.name, ".svg .png", picture.shows));
+        .map(|picture| (picture.name(), ".svg .png", picture.shows()));
     let files = [
         ("series", ".csv", "the curve, row by row"),
         ("precursors", ".csv", "the events of slip, row by row"),

@@ -12,9 +12,9 @@ use slipfront_case::case::Case;
 use slipfront_case::same::Given;
 use slipfront_case::text::{display_path, shell_quoted};
 use slipfront_run::agree::RankFailure;
-use slipfront_run::budget::RunBudget;
 use slipfront_run::checkpoint::Checkpoints;
 use slipfront_run::clock;
+use slipfront_run::pictures;
 use slipfront_run::results;
 use slipfront_run::run_folder::error::FolderError;
 use slipfront_run::run_folder::{ClaimedFolder, OpenedFolder, RunFolder, expect_shared};
@@ -139,7 +139,7 @@ fn claim_folder(
     } else {
         0
     };
-    RunBudget::of(case)
+    pictures::run_budget(case)
         .check_disk(&case.file, out, replaced, saves)
         .map_err(Failure::input)?;
     folder

@@ -7,9 +7,9 @@ use slipfront::communicator::Alone;
 use slipfront_case::case::Case;
 use slipfront_case::case_file::{CaseError, CaseFile};
 use slipfront_run::agree::RankFailure;
-use slipfront_run::budget::RunBudget;
 use slipfront_run::checkpoint::{CheckpointError, Checkpoints, LoadedCheckpoint};
 use slipfront_run::clock;
+use slipfront_run::pictures;
 use slipfront_run::run_folder::inspection::{Contents, Inspection};
 use slipfront_run::run_folder::unfinished::Unfinished;
 use slipfront_run::run_folder::{OpenedFolder, expect_shared};
@@ -61,7 +61,7 @@ fn open(path: &Path, locks: bool) -> Result<OpenedFolder, Failure> {
 
 fn check_disk(run: &Inspection, case: &Case, options: &RunOptions) -> Result<(), Failure> {
     let replaced = run.managed_bytes().map_err(Failure::input)?;
-    RunBudget::of(case)
+    pictures::run_budget(case)
         .check_disk(&case.file, &run.path, replaced, options.interval.saves())
         .map_err(Failure::input)
 }
@@ -118,7 +118,7 @@ fn case_to_resume(path: &Path, file: CaseFile, options: &RunOptions) -> Result<C
         }
         failure => failure,
     })?;
-    let budget = RunBudget::of(&case).resumed();
+    let budget = pictures::run_budget(&case).resumed();
     budget.check_memory(&case.file).map_err(Failure::input)?;
     Ok(case)
 }

@@ -6,11 +6,14 @@ use slipfront_case::case_file::Motion;
 use slipfront_case::number_format::si_prefix;
 use slipfront_plot::{self as plot, FrictionAxes, FrictionCurve, Instant, Kinetic, Picture};
 
-use crate::error::ResultsError;
+use super::error::RunPictureError;
 use crate::measured::{Measure, Record};
 use crate::names::SERIES;
 use crate::series::{self, SeriesRow};
 use crate::summary::{SiSummary, Summary, read_summary};
+
+/// Bytes of a row of the series while pictures are drawn from it: three numbers that are read of it, and the points of its curves.
+pub(super) const ROW_BYTES: f64 = (3 + 2 + 3) as f64 * size_of::<f64>() as f64;
 
 /// What the axes count in.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -97,7 +100,11 @@ impl Scale {
 ///
 /// # Errors
 /// When a folder cannot be read, or its run has not what is asked for.
-pub fn overlay(folders: &[PathBuf], units: Units, against: Option<Against>) -> Result<Overlay, ResultsError> {
+pub fn overlay(
+    folders: &[PathBuf],
+    units: Units,
+    against: Option<Against>,
+) -> Result<Overlay, RunPictureError> {
     let runs = Run::read_all(folders)?;
     let (scale, note) = match units {
         Units::Si => (in_si(&runs, against.unwrap_or_default(), Measure::Force)?, None),
@@ -115,7 +122,7 @@ pub fn overlay_measured(
     folders: &[PathBuf],
     against: Against,
     measured: &Measured,
-) -> Result<Overlay, ResultsError> {
+) -> Result<Overlay, RunPictureError> {
     let runs = Run::read_all(folders)?;
     let scale = in_si(&runs, against, measured.measure)?;
     let mut curves = scale.curves(&runs);
@@ -153,8 +160,8 @@ pub fn overlay_measured(
     })
 }
 
-fn draw(scale: &Scale, curves: &[FrictionCurve]) -> Result<Picture, ResultsError> {
-    plot::friction(curves, &scale.axes).map_err(|source| ResultsError::Picture {
+fn draw(scale: &Scale, curves: &[FrictionCurve]) -> Result<Picture, RunPictureError> {
+    plot::friction(curves, &scale.axes).map_err(|source| RunPictureError::Picture {
         name: "friction",
         source,
     })
@@ -221,7 +228,7 @@ fn best_shift(record: (&[f64], &[f64]), curve: (&[f64], &[f64])) -> f64 {
 }
 
 /// Draws the friction curve of a run folder against t*.
-pub(crate) fn of_run(folder: &Path) -> Result<Picture, ResultsError> {
+pub(super) fn of_run(folder: &Path) -> Result<Picture, RunPictureError> {
     overlay(&[folder.to_owned()], Units::Star, Some(Against::Time)).map(|overlay| overlay.picture)
 }
 
@@ -250,11 +257,11 @@ pub fn marked_curve(label: String, summary: &Summary) -> FrictionCurve {
 }
 
 impl Run {
-    fn read_all(folders: &[PathBuf]) -> Result<Vec<Self>, ResultsError> {
+    fn read_all(folders: &[PathBuf]) -> Result<Vec<Self>, RunPictureError> {
         folders.iter().map(|folder| Self::read(folder)).collect()
     }
 
-    fn read(folder: &Path) -> Result<Self, ResultsError> {
+    fn read(folder: &Path) -> Result<Self, RunPictureError> {
         let summary = read_summary(folder)?;
         let unit = summary.si.as_ref().map_or(f64::NAN, |si| si.displacement_unit_m);
         let row = |row: SeriesRow| {
@@ -273,9 +280,9 @@ impl Run {
     }
 
     /// Its units, which older versions did not write.
-    fn si(&self) -> Result<&SiSummary, ResultsError> {
+    fn si(&self) -> Result<&SiSummary, RunPictureError> {
         let found = self.summary.si.as_ref();
-        found.ok_or_else(|| ResultsError::NoUnits(self.folder.clone()))
+        found.ok_or_else(|| RunPictureError::NoUnits(self.folder.clone()))
     }
 
     /// Path of the drive at a time, between two rows of the series in proportion.
@@ -321,7 +328,7 @@ impl Run {
 }
 
 /// Axes without units, and why they are not mu* against t*.
-fn dimensionless(runs: &[Run], asked: Option<Against>) -> Result<(Scale, Option<String>), ResultsError> {
+fn dimensionless(runs: &[Run], asked: Option<Against>) -> Result<(Scale, Option<String>), RunPictureError> {
     let units: Vec<Option<&SiSummary>> = runs.iter().map(|run| run.summary.si.as_ref()).collect();
     let differs = |unit: fn(&SiSummary) -> f64| {
         let mut known = units.iter().flatten().map(|si| unit(si));
@@ -375,15 +382,15 @@ fn dimensionless(runs: &[Run], asked: Option<Against>) -> Result<(Scale, Option<
 }
 
 /// A prefix of a unit as it is printed.
-pub(crate) fn in_print(prefix: &'static str) -> &'static str {
+pub(super) fn in_print(prefix: &'static str) -> &'static str {
     if prefix == "u" { "\u{b5}" } else { prefix }
 }
 
 /// Axes of newtons, or of coefficients, and of seconds or metres, with the prefixes that suit the largest numbers.
-fn in_si(runs: &[Run], against: Against, measure: Measure) -> Result<Scale, ResultsError> {
+fn in_si(runs: &[Run], against: Against, measure: Measure) -> Result<Scale, RunPictureError> {
     let turns = runs.iter().all(Run::is_rotation);
     if let Some(run) = runs.iter().find(|run| run.is_rotation() != turns) {
-        return Err(ResultsError::NotComparable(run.folder.clone()));
+        return Err(RunPictureError::NotComparable(run.folder.clone()));
     }
     let mut factors = Vec::with_capacity(runs.len());
     for run in runs {

@@ -11,11 +11,12 @@ use slipfront_plot::{
     MoviePictures, PictureError,
 };
 
-use crate::error::ResultsError;
+use super::error::RunPictureError;
+use super::files::case_of;
+use super::friction::{ROW_BYTES, marked_curve};
+use super::maps::{CELL_BYTES, MapScale, MuStar, field_of_maps, separated};
 use crate::fields;
-use crate::friction_picture::marked_curve;
 use crate::names::{FIELDS, SERIES};
-use crate::pictures::{CELL_BYTES, MapScale, MuStar, ROW_BYTES, case_of, field_of_maps, separated};
 use crate::series::{self, SeriesRow};
 use crate::summary::read_summary;
 
@@ -29,15 +30,15 @@ const INSTANT: usize = 5;
 /// Most pictures that are drawn at once.
 const BATCH: usize = 8;
 /// Bytes while so many are drawn.
-pub(crate) const BATCH_BYTES: f64 = (BATCH * MOVIE_PICTURE_BYTES) as f64;
+pub(super) const BATCH_BYTES: f64 = (BATCH * MOVIE_PICTURE_BYTES) as f64;
 
 /// Bytes of a snapshot of so many cells while a movie is made: its values, and its picture in the file.
-pub(crate) fn snapshot_bytes(cells: f64) -> f64 {
+pub(super) fn snapshot_bytes(cells: f64) -> f64 {
     cells * size_of::<f32>() as f64 + MOVIE_FILE_BYTES as f64
 }
 
 /// Memory in which the movie of a run folder is made, in bytes.
-pub fn memory(folder: &Path) -> Result<f64, ResultsError> {
+pub fn memory(folder: &Path) -> Result<f64, RunPictureError> {
     let snapshots = fields::count_snapshots(&folder.join(FIELDS))?;
     let rows = series::estimate_rows(&folder.join(SERIES))?;
     let snapshots = snapshots.min(MAX_PICTURES) as f64;
@@ -54,7 +55,7 @@ pub fn memory(folder: &Path) -> Result<f64, ResultsError> {
 ///
 /// # Errors
 /// When a file cannot be read, or there are more than 1000 snapshots.
-pub fn of_run(folder: &Path, field: Option<Field>) -> Result<Option<Movie>, ResultsError> {
+pub fn of_run(folder: &Path, field: Option<Field>) -> Result<Option<Movie>, RunPictureError> {
     let case = case_of(folder)?;
     let field = field.unwrap_or_else(|| field_of_maps(case.as_ref()));
     let fields = fields::read_maps::<CellMeans>(&folder.join(FIELDS), field, |labels| {
@@ -64,7 +65,7 @@ pub fn of_run(folder: &Path, field: Option<Field>) -> Result<Option<Movie>, Resu
         return Ok(None);
     }
     if fields.frames.len() > MAX_PICTURES {
-        return Err(ResultsError::TooManySnapshots(MAX_PICTURES));
+        return Err(RunPictureError::TooManySnapshots(MAX_PICTURES));
     }
     let summary = read_summary(folder)?;
     let point = |row: SeriesRow| (row.step, row.time_star, row.mu_star);
@@ -118,7 +119,7 @@ pub fn delays(movie: &Movie) -> Vec<u16> {
 ///
 /// # Errors
 /// When they cannot be drawn.
-pub fn pictures(movie: &Movie) -> Result<MoviePictures<'_>, ResultsError> {
+pub fn pictures(movie: &Movie) -> Result<MoviePictures<'_>, RunPictureError> {
     MoviePictures::of(movie).map_err(not_drawn)
 }
 
@@ -143,7 +144,7 @@ pub fn draw<E>(
 ///
 /// # Errors
 /// When a picture cannot be drawn.
-pub fn gif(movie: &Movie) -> Result<Vec<u8>, ResultsError> {
+pub fn gif(movie: &Movie) -> Result<Vec<u8>, RunPictureError> {
     let pictures = pictures(movie)?;
     let mut delays = delays(movie).into_iter();
     let mut file = MovieGif::of(pictures.palette()).map_err(not_drawn)?;
@@ -153,8 +154,8 @@ pub fn gif(movie: &Movie) -> Result<Vec<u8>, ResultsError> {
     drawn.and_then(|()| file.finish()).map_err(not_drawn)
 }
 
-fn not_drawn(source: PictureError) -> ResultsError {
-    ResultsError::Picture {
+fn not_drawn(source: PictureError) -> RunPictureError {
+    RunPictureError::Picture {
         name: "the movie",
         source,
     }

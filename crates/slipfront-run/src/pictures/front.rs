@@ -1,0 +1,71 @@
+//! The picture of the slip front: when each block has slipped first, and what slides against place and time.
+
+use std::ops::Range;
+use std::path::Path;
+
+use slipfront_case::case_file::Motion;
+use slipfront_plot::{self as plot, CellMeans, FrontMap, Picture, SpaceTime};
+
+use super::error::RunPictureError;
+use super::files::found;
+use crate::fields;
+use crate::names::{FIELDS, KYMOGRAPH};
+use crate::summary::{Summary, read_summary};
+
+/// Rows of the kymograph that are shown at least, where the run has so many.
+const MIN_INSTANTS: usize = 32;
+
+/// Draws how slip has spread, in a run with a transition.
+pub(super) fn of_run(folder: &Path) -> Result<Option<Picture>, RunPictureError> {
+    let (summary, path) = (read_summary(folder)?, folder.join(KYMOGRAPH));
+    if !summary.transition || found(&path)?.is_none() {
+        return Ok(None);
+    }
+    let kymograph = fields::read_kymograph(&path)?;
+    let mut fields = fields::read_first_slips::<CellMeans>(&folder.join(FIELDS))?;
+    let first_slips = fields.frames.pop().and_then(|mut frame| frame.values.pop());
+    let map = FrontMap {
+        nx: fields.columns(),
+        ny: fields.rows(),
+        block_size: fields.block_size * fields.stride as f64,
+        textured: fields.textured,
+        first_slips: first_slips.unwrap_or_default(),
+        nucleations: summary
+            .nucleations
+            .iter()
+            .map(|site| [site.x_m, site.y_m])
+            .collect(),
+    };
+    let rows = rows_of_the_front(&kymograph.time_star, &summary);
+    let columns = kymograph.columns();
+    let times = &kymograph.time_star[rows.clone()];
+    let [first, last] = [times.first(), times.last()].map(|time| time.copied().unwrap_or_default());
+    // A row stands for the time around it.
+    let half = 0.5 * (last - first) / (times.len() as f64 - 1.0).max(1.0);
+    let space_time = SpaceTime {
+        place: match summary.motion {
+            Some(Motion::Rotation) => "distance from the axis".to_owned(),
+            _ => "place along the drive".to_owned(),
+        },
+        places: kymograph.places,
+        times: [first - half, last + half],
+        columns,
+        shares: kymograph.sliding_share[rows.start * columns..rows.end * columns].to_vec(),
+    };
+    let drawn = plot::front(&map, &space_time).map(Some);
+    drawn.map_err(|source| RunPictureError::Picture {
+        name: "front",
+        source,
+    })
+}
+
+/// The rows of a kymograph while the front passes, with a quarter of that time before and as much again after it.
+fn rows_of_the_front(times: &[f64], summary: &Summary) -> Range<usize> {
+    let from = summary.first_slip_time_star.unwrap_or(summary.onset_time_star);
+    let passes = summary.front_duration_star.unwrap_or_default();
+    let duration = (1.2 * passes).max(summary.onset_time_star - from).max(0.0);
+    let start = times.partition_point(|time| *time < from - 0.25 * duration);
+    let end = times.partition_point(|time| *time <= from + 2.0 * duration);
+    let more = MIN_INSTANTS.saturating_sub(end.saturating_sub(start)).div_ceil(2);
+    start.saturating_sub(more)..(end.max(start) + more).min(times.len())
+}

@@ -1,0 +1,235 @@
+//! Maps of a field of a run at its snapshots.
+
+use std::collections::HashMap;
+use std::path::Path;
+
+use slipfront::observe::Field;
+use slipfront_case::case::{MAX_MAPS, mapped_field, scales};
+use slipfront_case::case_file::{CaseFile, Motion};
+use slipfront_case::field_info::field_info;
+use slipfront_case::number_format::si_prefix;
+use slipfront_plot::{self as plot, CellMeans, Picture, StressMap, StressMaps};
+
+use super::error::RunPictureError;
+use super::files::case_of;
+use super::friction::in_print;
+use crate::fields::{self, FieldFrame, Reduction};
+use crate::names::{FIELDS, SERIES};
+use crate::series::{self, SeriesRow};
+use crate::summary::{InstantSummary, Summary, read_summary};
+
+/// Bytes of a cell of a lattice while maps of it are read: whether it is textured, and its mean.
+pub(super) const CELL_BYTES: f64 = (size_of::<bool>() + CellMeans::BYTES_PER_CELL) as f64;
+
+/// Bytes of a cell of a map in the picture of the stress while it is drawn: its value, and what it takes of the files.
+pub(super) const MAP_CELL_BYTES: f64 = (size_of::<f32>() + plot::STRESS_FILE_BYTES) as f64;
+
+/// Maps are read as the means that are drawn, so that they take no more memory for a larger lattice.
+impl Reduction for CellMeans {
+    fn of(columns: usize, rows: usize) -> Self {
+        Self::new(columns, rows)
+    }
+
+    fn add(&mut self, values: impl Iterator<Item = f32>) {
+        self.add(values);
+    }
+
+    fn finish(self) -> Vec<f32> {
+        self.finish()
+    }
+}
+
+/// mu* of snapshots: of an instant from the summary, else of its row of the series, which a thinned one may lack.
+pub(super) struct MuStar<'a> {
+    instants: &'a [InstantSummary],
+    /// By steps.
+    rows: HashMap<u64, f64>,
+}
+
+impl<'a> MuStar<'a> {
+    pub(super) fn of(instants: &'a [InstantSummary], rows: impl Iterator<Item = (u64, f64)>) -> Self {
+        Self {
+            instants,
+            rows: rows.collect(),
+        }
+    }
+
+    /// mu* of a snapshot; not a number if it is not known.
+    pub(super) fn at(&self, frame: &FieldFrame) -> f64 {
+        let mut instants = self.instants.iter();
+        let instant = instants.find(|instant| instant.time_star == frame.time_star);
+        let found = instant.map(|instant| instant.mu_star);
+        found
+            .or_else(|| self.rows.get(&frame.step).copied())
+            .unwrap_or(f64::NAN)
+    }
+}
+
+/// Draws the maps of the stress of a run; none if it kept no such field.
+pub(super) fn of_run(folder: &Path) -> Result<Option<Picture>, RunPictureError> {
+    let case = case_of(folder)?;
+    draw_maps(folder, case.as_ref(), field_of_maps(case.as_ref()))
+}
+
+/// Draws the maps of a field of a run folder from its files, which must be there and undamaged.
+///
+/// # Errors
+/// When it cannot be read, or holds no such maps.
+pub fn draw_field(folder: &Path, field: Field) -> Result<Picture, RunPictureError> {
+    draw_maps(folder, case_of(folder)?.as_ref(), field)?.ok_or_else(|| RunPictureError::NoMaps {
+        path: folder.join(FIELDS),
+        field: field_info(field).name,
+    })
+}
+
+/// The field whose maps are drawn of a run.
+pub(super) fn field_of_maps(case: Option<&CaseFile>) -> Field {
+    case.map_or(Field::ContactStress, mapped_field)
+}
+
+/// The scale of the maps of a field.
+pub(super) struct MapScale {
+    /// What a colour bar says of it.
+    title: String,
+    /// The same in short.
+    pub(super) symbol: String,
+    /// The unit in which its values are drawn.
+    pub(super) unit: f32,
+    /// The values at the ends of the bar.
+    pub(super) range: [f64; 2],
+}
+
+impl MapScale {
+    /// Of these values of a field, in the unit of its file.
+    pub(super) fn of(field: Field, case: Option<&CaseFile>, values: impl Iterator<Item = f32>) -> Self {
+        let symbol = match (field, case) {
+            (Field::ContactStress, _) => "\u{3c4}_c*",
+            (Field::Traction, Some(_)) => "\u{3c4}_f*",
+            (Field::Traction, None) => "\u{3c4}_f",
+            (Field::DisplacementX, _) => "u_x",
+            (Field::DisplacementY, _) => "u_y",
+            (Field::VelocityX, _) => "v_x",
+            (Field::VelocityY, _) => "v_y",
+            (Field::Sliding, _) => "sliding",
+        };
+        let extent = extent(values);
+        let (title, symbol, unit) = match (field, case) {
+            (Field::ContactStress, _) => return Self::of_share(format!("contact stress {symbol}"), symbol),
+            (Field::Sliding, _) => return Self::of_share("share that slides".to_owned(), symbol),
+            (Field::Traction, Some(case)) => {
+                let unit = scales(case).stress();
+                (format!("traction {symbol}"), symbol.to_owned(), unit)
+            }
+            _ => {
+                let info = field_info(field);
+                let (size, prefix) = si_prefix(extent[1].max(-extent[0]));
+                let unit = format!("{}{}", in_print(prefix), info.unit.replace(" s-1", "/s"));
+                (
+                    format!("{} ({unit})", info.long_name),
+                    format!("{symbol} ({unit})"),
+                    size,
+                )
+            }
+        };
+        let [lo, hi] = extent.map(|end| end / unit);
+        Self {
+            title,
+            symbol,
+            unit: unit as f32,
+            range: if lo < hi { [lo, hi] } else { [0.0, 1.0] },
+        }
+    }
+
+    /// Of values from 0 to 1.
+    fn of_share(title: String, symbol: &str) -> Self {
+        Self {
+            title,
+            symbol: symbol.to_owned(),
+            unit: 1.0,
+            range: [0.0, 1.0],
+        }
+    }
+}
+
+/// The smallest and the largest of some values and of 0.
+fn extent(values: impl Iterator<Item = f32>) -> [f64; 2] {
+    let finite = values.filter(|value| value.is_finite()).map(f64::from);
+    finite.fold([0.0, 0.0], |[lo, hi]: [f64; 2], value| {
+        [lo.min(value), hi.max(value)]
+    })
+}
+
+/// Draws the maps of a field of a run; none if it has not kept it.
+fn draw_maps(
+    folder: &Path,
+    case: Option<&CaseFile>,
+    field: Field,
+) -> Result<Option<Picture>, RunPictureError> {
+    let fields = fields::read_maps::<CellMeans>(&folder.join(FIELDS), field, |labels| {
+        fields::few_of(labels, MAX_MAPS)
+    })?;
+    if fields.names.is_empty() || fields.frames.is_empty() {
+        return Ok(None);
+    }
+    let values = fields.frames.iter().flat_map(|frame| &frame.values).flatten();
+    let scale = MapScale::of(field, case, values.copied());
+    let point = |row: SeriesRow| (row.step, row.mu_star);
+    let rows = series::read_rows(&folder.join(SERIES), SERIES, point)?;
+    let Summary { instants, motion, .. } = read_summary(folder)?;
+    let mu_star = MuStar::of(&instants, rows.into_iter());
+    let (nx, ny) = (fields.columns(), fields.rows());
+    let maps = fields.frames.into_iter().map(|frame| StressMap {
+        mu_star: mu_star.at(&frame),
+        label: separated(&frame.label),
+        time_star: frame.time_star,
+        values: {
+            let values = frame.values.into_iter().next().unwrap_or_default();
+            values.into_iter().map(|value| value / scale.unit).collect()
+        },
+    });
+    let maps = StressMaps {
+        nx,
+        ny,
+        block_size: fields.block_size * fields.stride as f64,
+        textured: fields.textured,
+        maps: maps.collect(),
+        value_title: scale.title,
+        range: scale.range,
+        is_torque: motion == Some(Motion::Rotation),
+    };
+    let drawn = plot::stress(&maps).map(Some);
+    drawn.map_err(|source| RunPictureError::Picture {
+        name: field_info(field).name,
+        source,
+    })
+}
+
+/// The letters of the instants of a map, which its file joins.
+pub(super) fn separated(letters: &str) -> String {
+    letters.chars().map(String::from).collect::<Vec<_>>().join(", ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn scales_have_the_unit_that_suits() {
+        let values = [-2e-9_f32, f32::NAN, 5e-9];
+        let scale = MapScale::of(Field::DisplacementX, None, values.into_iter());
+        assert_eq!((scale.symbol.as_str(), scale.unit), ("u_x (nm)", 1e-9));
+        // Numbers of 32 bits.
+        assert!((scale.range[0] + 2.0).abs() < 1e-6 && (scale.range[1] - 5.0).abs() < 1e-6);
+        for field in [Field::VelocityY, Field::Sliding] {
+            let scale = MapScale::of(field, None, [0.0; 3].into_iter());
+            assert_eq!(scale.range, [0.0, 1.0]);
+        }
+        // Of a case, in units of P mu_s.
+        let case = CaseFile::parse("load.pressure = '2 MPa'\nfriction.mu_static = 0.5", "case", &[]).unwrap();
+        let scale = MapScale::of(Field::Traction, Some(&case), [5e5].into_iter());
+        assert_eq!(
+            (scale.symbol.as_str(), scale.unit, scale.range),
+            ("\u{3c4}_f*", 1e6, [0.0, 0.5])
+        );
+    }
+}
