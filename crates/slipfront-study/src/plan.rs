@@ -72,6 +72,24 @@ const LARGE: u64 = 250_000;
 /// What is known of a run, and the warnings about it.
 type Spec = Result<(RunSpec, Vec<String>), CaseError>;
 
+/// What became of the cases of points in a row.
+enum MadeRow {
+    /// They were made, and this is known of their runs.
+    Made(Vec<Spec>),
+    /// One of them has too many blocks to be made beside others.
+    TooLarge,
+}
+
+impl MadeRow {
+    /// What is known of the runs, if the cases were made.
+    fn specs(self) -> Vec<Spec> {
+        match self {
+            Self::Made(specs) => specs,
+            Self::TooLarge => Vec::new(),
+        }
+    }
+}
+
 /// Points whose cases are made before what is known of them is taken down.
 const POINTS_AT_ONCE: usize = 4096;
 
@@ -143,13 +161,16 @@ impl Plan {
         for (chunk, points) in self.points.chunks(POINTS_AT_ONCE).enumerate() {
             let rows = points.chunk_by(|a, b| a.index / length == b.index / length);
             let rows: Vec<&[Point]> = rows.flat_map(|row| row.chunks(POINTS_OF_A_BASE)).collect();
-            let made: Vec<Option<_>> = rows
+            let made: Vec<MadeRow> = rows
                 .par_iter()
-                .map(|row| self.specs_of_row(&base, row, slow, LARGE))
+                .map(|row| self.make_row(&base, row, slow, LARGE))
                 .collect();
             let made = made.into_iter().zip(rows).flat_map(|(made, row)| {
-                let alone = || self.specs_of_row(&base, row, slow, u64::MAX);
-                made.or_else(alone).unwrap_or_default()
+                let made = match made {
+                    MadeRow::TooLarge => self.make_row(&base, row, slow, u64::MAX),
+                    made @ MadeRow::Made(_) => made,
+                };
+                made.specs()
             });
             // In order, so that the first invalid point is named.
             for (run, made) in made.enumerate() {
@@ -174,9 +195,8 @@ impl Plan {
         (slow, length)
     }
 
-    /// What is known of the runs of points with the same levels of the first `slow` axes, and the warnings about them; none if a case has
-    /// more blocks than `most`.
-    fn specs_of_row(&self, base: &ParsedCase, row: &[Point], slow: usize, most: u64) -> Option<Vec<Spec>> {
+    /// Makes the cases of points with the same levels of the first `slow` axes, unless one of them has more blocks than `most`.
+    fn make_row(&self, base: &ParsedCase, row: &[Point], slow: usize, most: u64) -> MadeRow {
         let bases = self.roles().map(|role| {
             let overrides = self.overrides(&row[0], role, 0..slow);
             Ok((role, Prepared::new(base.prepared(&overrides)?)?))
@@ -184,14 +204,21 @@ impl Plan {
         let bases = match bases.collect::<Result<Vec<_>, CaseError>>() {
             Ok(bases) => bases,
             // It is that of the first of them.
-            Err(error) => return Some(vec![Err(error)]),
+            Err(error) => return MadeRow::Made(vec![Err(error)]),
         };
-        let specs = |point| {
-            bases
-                .iter()
-                .map(move |(role, base)| self.spec(base, point, *role, slow, most).transpose())
-        };
-        row.iter().flat_map(specs).collect()
+        let mut specs = Vec::with_capacity(row.len() * bases.len());
+        for point in row {
+            for (role, base) in &bases {
+                let file = self.varied_file(base, point, *role, slow);
+                let n_blocks =
+                    |file: &CaseFile| file.slider.blocks.into_iter().map(u64::from).product::<u64>();
+                if file.as_ref().is_ok_and(|file| n_blocks(file) > most) {
+                    return MadeRow::TooLarge;
+                }
+                specs.push(file.and_then(|file| self.spec(base, file, *role)));
+            }
+        }
+        MadeRow::Made(specs)
     }
 
     /// The roles of the runs of a point: the point itself, and its reference if the study has one.
@@ -246,21 +273,23 @@ impl Plan {
         self.trimmed(file, "point", &mut |_| true)
     }
 
-    /// Makes the case of a point; gives what is known of its runs, and the warnings about it. None if it has more blocks than `most`.
-    fn spec(
+    /// The case file of a point: its base with the overrides of its levels of the axes after the first `slow`.
+    fn varied_file(
         &self,
         base: &Prepared,
         point: &Point,
         role: Role,
         slow: usize,
-        most: u64,
-    ) -> Result<Option<(RunSpec, Vec<String>)>, CaseError> {
-        let overrides = self.overrides(point, role, slow..self.axes.len());
-        let file = base.case.with(&overrides)?;
+    ) -> Result<CaseFile, CaseError> {
+        let file = base
+            .case
+            .with(&self.overrides(point, role, slow..self.axes.len()))?;
         self.check_seeds(&file)?;
-        if file.slider.blocks.into_iter().map(u64::from).product::<u64>() > most {
-            return Ok(None);
-        }
+        Ok(file)
+    }
+
+    /// Makes the case of a point; gives what is known of its runs, and the warnings about it.
+    fn spec(&self, base: &Prepared, file: CaseFile, role: Role) -> Spec {
         let case = self.trimmed(file, "point", &mut |_| true)?;
         let writes = self.settings.keep == RetainRuns::All;
         let budget = pictures::run_budget(&case);
@@ -279,7 +308,7 @@ impl Plan {
         if role == Role::Point && self.settings.max_replicates() > 1 {
             warnings.extend(note_on_replicates(&case).map(str::to_owned));
         }
-        Ok(Some((spec, warnings)))
+        Ok((spec, warnings))
     }
 
     /// Refuses a seed from which the replicates would count beyond the largest one.
