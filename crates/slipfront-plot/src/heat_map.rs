@@ -67,37 +67,17 @@ pub struct HeatAxis {
 /// are cells are needed.
 pub fn heat_map(map: &HeatMap) -> Result<Picture, PictureError> {
     let (mut x, mut y) = (Cells::of(&map.x)?, Cells::of(&map.y)?);
-    let (columns, rows) = (x.values.len(), y.values.len());
-    let in_order = |values: &[f64]| {
-        if columns.checked_mul(rows) != Some(values.len()) {
-            let values = values.len();
-            return Err(PictureError::Cells {
-                columns,
-                rows,
-                values,
-            });
-        }
-        let value = |cell: usize| {
-            let value = values[y.order[cell / columns] * columns + x.order[cell % columns]];
-            if drawable(value) { value } else { f64::NAN }
-        };
-        Ok((0..values.len()).map(value).collect())
-    };
-    let values: Vec<f64> = in_order(&map.values)?;
-    let half_widths: Vec<f64> = if map.half_widths.is_empty() {
+    let values = in_order([&x, &y], &map.values)?;
+    let half_widths = if map.half_widths.is_empty() {
         vec![f64::NAN; values.len()]
     } else {
-        in_order(&map.half_widths)?
+        in_order([&x, &y], &map.half_widths)?
     };
-    let crossed: Vec<f64> = if map.crossed.is_empty() {
+    let crossed = if map.crossed.is_empty() {
         vec![0.0; values.len()]
     } else {
-        in_order(
-            &map.crossed
-                .iter()
-                .map(|&is| f64::from(u8::from(is)))
-                .collect::<Vec<f64>>(),
-        )?
+        let crossed: Vec<f64> = map.crossed.iter().map(|&is| f64::from(u8::from(is))).collect();
+        in_order([&x, &y], &crossed)?
     };
     let half = median(&half_widths);
     let with_half = values.iter().flat_map(|value| [value - half, value + half]);
@@ -150,6 +130,24 @@ pub fn heat_map(map: &HeatMap) -> Result<Picture, PictureError> {
     }
     note.draw(&mut canvas);
     canvas.finish()
+}
+
+/// Values of cells in the order in which they are drawn; NaN in place of what cannot be.
+fn in_order([x, y]: [&Cells; 2], values: &[f64]) -> Result<Vec<f64>, PictureError> {
+    let (columns, rows) = (x.values.len(), y.values.len());
+    if columns.checked_mul(rows) != Some(values.len()) {
+        let values = values.len();
+        return Err(PictureError::Cells {
+            columns,
+            rows,
+            values,
+        });
+    }
+    let value = |cell: usize| {
+        let value = values[y.order[cell / columns] * columns + x.order[cell % columns]];
+        if drawable(value) { value } else { f64::NAN }
+    };
+    Ok((0..values.len()).map(value).collect())
 }
 
 /// Draws a cross in the lower left corner of the cells that are not whole.

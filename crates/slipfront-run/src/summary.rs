@@ -227,6 +227,17 @@ pub struct InstantSummary {
     pub sliding_percent: f64,
 }
 
+impl InstantSummary {
+    fn of((letter, frame): &(char, Frame)) -> Self {
+        Self {
+            instant: *letter,
+            time_star: frame.time_star,
+            mu_star: frame.point.mu_star,
+            sliding_percent: frame.point.sliding_percent,
+        }
+    }
+}
+
 /// A site at which slip has nucleated.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -402,26 +413,9 @@ impl SummaryObservers {
         let law = case.model.friction.needs();
         let (mean, time) = (case.scales.mu_static_mean, case.scales.time());
         let energy = case.scales.energy();
-        let instants = instants
-            .iter()
-            .map(|(letter, frame)| InstantSummary {
-                instant: *letter,
-                time_star: frame.time_star,
-                mu_star: frame.point.mu_star,
-                sliding_percent: frame.point.sliding_percent,
-            })
-            .collect();
         let kinetic_star = kinetic.map(|kinetic| kinetic.mu_star);
         let transition = case.can_have_transition() && peak.ended && !is_kept_up(&peak, kinetic);
-        let [static_star, lateral_star, onset_star] = if transition {
-            [peak.mu_star, peak.mu_lateral_star, peak.time_star]
-        } else {
-            [
-                peak.largest.mu_star,
-                peak.largest.mu_lateral_star,
-                peak.largest.time_star,
-            ]
-        };
+        let [static_star, lateral_star, onset_star] = static_friction(&peak, transition);
         let si = si(case, static_star, kinetic_star, simulation.contact_stress_max());
         let after_run = after_run(reason, &peak, transition, first_slip, kinetic, &energies);
         Summary {
@@ -441,7 +435,7 @@ impl SummaryObservers {
             sliding_percent_max: self.history.sliding_percent_max(),
             mu_star_max: peak.largest.mu_star,
             transition,
-            instants,
+            instants: instants.iter().map(InstantSummary::of).collect(),
             si: Some(si),
             v_star: case.groups.v_star,
             r_star: case.groups.r_star,
@@ -476,6 +470,16 @@ impl SummaryObservers {
             // The front is found when the simulation has given its memory back.
             ..Summary::default()
         }
+    }
+}
+
+/// mu* along and across the drive and t* of static friction: at the first peak, or where mu* is largest if there is no transition.
+fn static_friction(peak: &Peak, transition: bool) -> [f64; 3] {
+    if transition {
+        [peak.mu_star, peak.mu_lateral_star, peak.time_star]
+    } else {
+        let largest = &peak.largest;
+        [largest.mu_star, largest.mu_lateral_star, largest.time_star]
     }
 }
 

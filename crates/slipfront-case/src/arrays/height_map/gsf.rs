@@ -28,53 +28,11 @@ pub(super) fn read(
         return Err(refuse("no zero byte ends its header"));
     };
     let text = String::from_utf8_lossy(&lines[..end]);
-    let value = |name: &str| {
-        let lines = text.lines().filter_map(|line| line.split_once('='));
-        let mut values = lines.filter(|(key, _)| key.trim() == name);
-        values.next().map(|(_, value)| value.trim())
-    };
-    let size = |name: &str| {
-        let size = value(name).and_then(|text| text.parse::<u64>().ok());
-        size.ok_or_else(|| refuse(&format!("it has no whole number `{name}`")))
-    };
-    let points = points(path, ".gsf", size("XRes")?, size("YRes")?)?;
-    let unit = |name: &str| value(name).filter(|unit| !unit.is_empty());
-    let in_metres = |name: &str| -> Result<Option<f64>, ArrayError> {
-        let Some(unit) = unit(name) else { return Ok(None) };
-        match format!("1 {unit}").parse::<Length>() {
-            Ok(length) => Ok(Some(length.si())),
-            Err(_) => {
-                let unit = truncated(unit);
-                let problem =
-                    format!("has `{name}` = {unit}, which is no unit of length: export a map of heights");
-                Err(contents_error(path, problem))
-            }
-        }
-    };
-    let real = |name: &str| -> Result<Option<f64>, ArrayError> {
-        let Some(text) = value(name) else { return Ok(None) };
-        let real = text
-            .parse::<f64>()
-            .ok()
-            .filter(|real| real.is_finite() && *real > 0.0);
-        let detail = || format!("`{name}` = {} is no number above 0", truncated(text));
-        real.map(Some).ok_or_else(|| refuse(&detail()))
-    };
-    let lateral = in_metres("XYUnits")?;
-    let pixel = match (real("XReal")?, real("YReal")?, lateral) {
-        (Some(x), Some(y), Some(unit)) => Some([x * unit / points[0] as f64, y * unit / points[1] as f64]),
-        _ => None,
-    };
-    let grid = Grid {
-        points,
-        top_first: true,
-        pixel,
-        height_unit: in_metres("ZUnits")?,
-    };
+    let grid = Header { path, text: &text }.grid()?;
 
     // From one to four zeros follow the text.
     let start = ((MAGIC.len() + end) / 4 * 4 + 4) as u64;
-    let [nx, ny] = points;
+    let [nx, ny] = grid.points;
     let wanted = start + 4 * nx as u64 * ny as u64;
     if length != wanted {
         let detail = format!("it has {length} bytes where its header asks for {wanted}");
@@ -95,4 +53,72 @@ pub(super) fn read(
         })?;
     }
     Ok(grid)
+}
+
+/// The header of a file: lines of `name = value`.
+struct Header<'a> {
+    path: &'a Path,
+    text: &'a str,
+}
+
+impl<'a> Header<'a> {
+    fn grid(&self) -> Result<Grid, ArrayError> {
+        let points = points(self.path, ".gsf", self.size("XRes")?, self.size("YRes")?)?;
+        let lateral = self.in_metres("XYUnits")?;
+        let pixel = match (self.real("XReal")?, self.real("YReal")?, lateral) {
+            (Some(x), Some(y), Some(unit)) => {
+                Some([x * unit / points[0] as f64, y * unit / points[1] as f64])
+            }
+            _ => None,
+        };
+        Ok(Grid {
+            points,
+            top_first: true,
+            pixel,
+            height_unit: self.in_metres("ZUnits")?,
+        })
+    }
+
+    fn value(&self, name: &str) -> Option<&'a str> {
+        let lines = self.text.lines().filter_map(|line| line.split_once('='));
+        let mut values = lines.filter(|(key, _)| key.trim() == name);
+        values.next().map(|(_, value)| value.trim())
+    }
+
+    fn size(&self, name: &str) -> Result<u64, ArrayError> {
+        let size = self.value(name).and_then(|text| text.parse::<u64>().ok());
+        size.ok_or_else(|| self.refuse(&format!("it has no whole number `{name}`")))
+    }
+
+    /// A unit of length, in m.
+    fn in_metres(&self, name: &str) -> Result<Option<f64>, ArrayError> {
+        let Some(unit) = self.value(name).filter(|unit| !unit.is_empty()) else {
+            return Ok(None);
+        };
+        match format!("1 {unit}").parse::<Length>() {
+            Ok(length) => Ok(Some(length.si())),
+            Err(_) => {
+                let unit = truncated(unit);
+                let problem =
+                    format!("has `{name}` = {unit}, which is no unit of length: export a map of heights");
+                Err(contents_error(self.path, problem))
+            }
+        }
+    }
+
+    fn real(&self, name: &str) -> Result<Option<f64>, ArrayError> {
+        let Some(text) = self.value(name) else {
+            return Ok(None);
+        };
+        let real = text
+            .parse::<f64>()
+            .ok()
+            .filter(|real| real.is_finite() && *real > 0.0);
+        let detail = || format!("`{name}` = {} is no number above 0", truncated(text));
+        real.map(Some).ok_or_else(|| self.refuse(&detail()))
+    }
+
+    fn refuse(&self, detail: &str) -> ArrayError {
+        broken(self.path, ".gsf", detail)
+    }
 }

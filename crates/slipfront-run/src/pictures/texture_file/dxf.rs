@@ -11,6 +11,8 @@ use super::drawing::Drawing;
 const MODEL_SPACE: u64 = 0x1f;
 const PAPER_SPACE: u64 = 0x1b;
 const FIRST_FREE: u64 = 0x100;
+/// The blocks that every drawing has.
+const SPACES: [(&str, u64); 2] = [("*Model_Space", MODEL_SPACE), ("*Paper_Space", PAPER_SPACE)];
 
 /// The drawing as a file.
 pub(super) fn text(drawing: &Drawing) -> String {
@@ -28,6 +30,7 @@ pub(super) fn text(drawing: &Drawing) -> String {
         ..File::new()
     };
     tables.tables(&layers);
+    tables.blocks();
     let mut file = File::new();
     file.section("HEADER");
     file.pairs(&[
@@ -191,7 +194,7 @@ impl File {
         }
     }
 
-    /// The tables and blocks that a drawing must have, and its layers.
+    /// The tables that a drawing must have, and its layers.
     fn tables(&mut self, layers: &[&str]) {
         self.section("TABLES");
         self.table("VPORT", "8", &[]);
@@ -237,8 +240,7 @@ impl File {
             (100, &"AcDbSymbolTable"),
             (70, &2),
         ]);
-        let spaces = [("*Model_Space", MODEL_SPACE), ("*Paper_Space", PAPER_SPACE)];
-        for (name, handle) in spaces {
+        for (name, handle) in SPACES {
             self.pairs(&[
                 (0, &"BLOCK_RECORD"),
                 (5, &hex(handle)),
@@ -248,8 +250,12 @@ impl File {
             self.pairs(&[(100, &"AcDbBlockTableRecord"), (2, &name)]);
         }
         self.pairs(&[(0, &"ENDTAB"), (0, &"ENDSEC")]);
+    }
+
+    /// The blocks that a drawing must have.
+    fn blocks(&mut self) {
         self.section("BLOCKS");
-        for (name, owner) in spaces {
+        for (name, owner) in SPACES {
             for (kind, class) in [("BLOCK", "AcDbBlockBegin"), ("ENDBLK", "AcDbBlockEnd")] {
                 let handle = self.handle();
                 self.pairs(&[

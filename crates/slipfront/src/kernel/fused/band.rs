@@ -155,6 +155,25 @@ pub(super) fn halo(layout: &Layout) -> usize {
     whole_vectors(layout.stride + 1 + LANES)
 }
 
+/// Which of the four springs of each element are there: of the `halo` before element `first`, and of `len` from there on.
+fn spring_masks(
+    layout: &Layout,
+    model: &Model,
+    moduli: &Moduli,
+    first: usize,
+    halo: usize,
+    len: usize,
+) -> [Vec<u8>; 4] {
+    let mut masks = [(); 4].map(|()| vec![0; (halo + len) / LANES]);
+    for k in 0..halo + len {
+        let springs = present(moduli, model, layout, (first + k) as isize - halo as isize);
+        for (masks, present) in masks.iter_mut().zip(springs) {
+            masks[k / LANES] |= u8::from(present) << (k % LANES);
+        }
+    }
+    masks
+}
+
 impl Band {
     /// The given tiles of a lattice in `state`, or at rest, with time steps of `dt_star`.
     pub(super) fn new(
@@ -171,13 +190,6 @@ impl Band {
         let halo = halo(layout);
         let ring = whole_vectors(layout.stride + 1 + TILE + LANES) + MIRROR;
         let bytes = || vec![0; len / LANES];
-        let mut masks = [(); 4].map(|()| vec![0; (halo + len) / LANES]);
-        for k in 0..halo + len {
-            let springs = present(moduli, model, layout, (first + k) as isize - halo as isize);
-            for (masks, present) in masks.iter_mut().zip(springs) {
-                masks[k / LANES] |= u8::from(present) << (k % LANES);
-            }
-        }
         let mut band = Self {
             first_tile: tiles.start,
             first,
@@ -195,7 +207,7 @@ impl Band {
             // A ghost has the velocity of its block: infinite friction keeps it from moving by itself.
             kinetic_impulses: Aligned::filled(len, f64::INFINITY),
             first_slip: vec![NEVER; len],
-            masks,
+            masks: spring_masks(layout, model, moduli, first, halo, len),
             blocks: bytes(),
             in_contact: bytes(),
             moving: bytes(),

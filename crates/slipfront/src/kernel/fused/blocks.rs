@@ -340,6 +340,33 @@ pub(super) struct Sums<I, M, N = u32> {
     pub(super) slipping: N,
 }
 
+/// What [`integers`] adds to numbers for the sums of every step, and the centres of the displacements, for each of eight lanes.
+#[derive(Clone, Copy)]
+struct Shifts<S: Simd> {
+    centres: Vec2x8<S>,
+    displacement: Vec2x8<S>,
+    weighted_displacement: Vec2x8<S>,
+    velocity: f64x8<S>,
+    motion_square: f64x8<S>,
+    friction_work: f64x8<S>,
+}
+
+impl<S: Simd> Shifts<S> {
+    #[inline(always)]
+    fn of(simd: S, quanta: &Quanta) -> Self {
+        let [x, y] = quanta.displacement;
+        let [weighted_x, weighted_y] = quanta.weighted_displacement;
+        Self {
+            centres: [splat(simd, x.centre()), splat(simd, y.centre())],
+            displacement: [splat(simd, x.shift()), splat(simd, y.shift())],
+            weighted_displacement: [splat(simd, weighted_x.shift()), splat(simd, weighted_y.shift())],
+            velocity: splat(simd, quanta.velocity.shift()),
+            motion_square: splat(simd, quanta.motion_square.shift()),
+            friction_work: splat(simd, quanta.friction_work.shift()),
+        }
+    }
+}
+
 impl<S: Simd> Sums<i64x8<S>, f64x8<S>> {
     #[inline(always)]
     pub(super) fn zero(simd: S) -> Self {
@@ -356,6 +383,34 @@ impl<S: Simd> Sums<i64x8<S>, f64x8<S>> {
             speed_square: none,
             sliding: 0,
             slipping: 0,
+        }
+    }
+
+    /// Adds what eight blocks contribute to the sums of `w (u - c)` and `w v(t + dt/2)`.
+    #[inline(always)]
+    fn add_motion<const DIFFER: bool>(
+        &mut self,
+        simd: S,
+        shifts: &Shifts<S>,
+        displacement: Vec2x8<S>,
+        velocity: Vec2x8<S>,
+        drive_springs: Chunks,
+        chunk: usize,
+    ) {
+        let [ux, uy] = &mut self.displacement;
+        let [vx, vy] = &mut self.velocity;
+        if DIFFER {
+            let w = load(simd, &drive_springs[chunk]);
+            let differences = subtract(displacement, shifts.centres);
+            *ux += integers(w * differences[0], shifts.weighted_displacement[0]);
+            *uy += integers(w * differences[1], shifts.weighted_displacement[1]);
+            *vx += integers(w * velocity[0], shifts.velocity);
+            *vy += integers(w * velocity[1], shifts.velocity);
+        } else {
+            *ux += integers(displacement[0], shifts.displacement[0]);
+            *uy += integers(displacement[1], shifts.displacement[1]);
+            *vx += integers(velocity[0], shifts.velocity);
+            *vy += integers(velocity[1], shifts.velocity);
         }
     }
 
@@ -540,15 +595,8 @@ pub(super) fn friction<S: Simd, const ENERGY: bool, const DIFFER: bool>(
     let (moving, slipped) = (&mut arrays.moving[..n], &mut arrays.slipped[..n]);
     let first_slip = &mut arrays.first_slip[..n];
     let zero = splat(simd, 0.0);
-    let windows = quanta.displacement;
-    let in_window = [splat(simd, windows[0].shift()), splat(simd, windows[1].shift())];
-    let centres = [splat(simd, windows[0].centre()), splat(simd, windows[1].centre())];
-    let velocity_shift = splat(simd, quanta.velocity.shift());
-    let motion_shift = splat(simd, quanta.motion_square.shift());
-    let work_shift = splat(simd, quanta.friction_work.shift());
+    let shifts = Shifts::of(simd, quanta);
     let variation = arrays.variation.first::<DIFFER>(n);
-    let weighted = quanta.weighted_displacement;
-    let weighted = [splat(simd, weighted[0].shift()), splat(simd, weighted[1].shift())];
     for c in 0..n {
         for lines in arrays.prefetched {
             lines.prefetch(c);
@@ -580,24 +628,14 @@ pub(super) fn friction<S: Simd, const ENERGY: bool, const DIFFER: bool>(
         let kinetic = scale(removed_fraction * velocity_to_force, free);
         let against = select(slides, kinetic, force);
         let both = zero_missing(simd, blocks[c], add(before, after));
-        let displacement = or_else(simd, blocks[c], load_vec2(simd, u, c), centres);
+        let displacement = or_else(simd, blocks[c], load_vec2(simd, u, c), shifts.centres);
         let mut motion_square = square(both);
         if DIFFER {
-            let w = load(simd, &variation.drive_springs[c]);
-            let differences = subtract(displacement, centres);
-            sums.displacement[0] += integers(w * differences[0], weighted[0]);
-            sums.displacement[1] += integers(w * differences[1], weighted[1]);
-            sums.velocity[0] += integers(w * after[0], velocity_shift);
-            sums.velocity[1] += integers(w * after[1], velocity_shift);
             motion_square = load(simd, &variation.mass[c]) * motion_square;
-        } else {
-            sums.displacement[0] += integers(displacement[0], in_window[0]);
-            sums.displacement[1] += integers(displacement[1], in_window[1]);
-            sums.velocity[0] += integers(after[0], velocity_shift);
-            sums.velocity[1] += integers(after[1], velocity_shift);
         }
-        sums.motion_square += integers(motion_square, motion_shift);
-        sums.friction_work += integers(dot(against, both), work_shift);
+        sums.add_motion::<DIFFER>(simd, &shifts, displacement, after, variation.drive_springs, c);
+        sums.motion_square += integers(motion_square, shifts.motion_square);
+        sums.friction_work += integers(dot(against, both), shifts.friction_work);
         sums.speed_square = sums.speed_square.max(square(after));
         // Eq. 10; for a stuck block F_f + F_c = -F_s to the last bit.
         let stress = select(slides, subtract(lattice, kinetic), drive);
@@ -605,13 +643,13 @@ pub(super) fn friction<S: Simd, const ENERGY: bool, const DIFFER: bool>(
         sums.stress_square = sums.stress_square.max(square(stress));
         if ENERGY {
             let mut motion = square(before) + square(after);
-            let mut stretch = square(subtract(displacement, centres));
+            let mut stretch = square(subtract(displacement, shifts.centres));
             if DIFFER {
                 motion = load(simd, &variation.mass[c]) * motion;
                 stretch = load(simd, &variation.drive_springs[c]) * stretch;
             }
             let motion = zero_missing(simd, blocks[c], [motion, zero])[0];
-            sums.velocity_squares += integers(motion, motion_shift);
+            sums.velocity_squares += integers(motion, shifts.motion_square);
             let shift = splat(simd, quanta.displacement_square.shift());
             sums.displacement_square += integers(stretch, shift);
         }
