@@ -621,18 +621,13 @@ pub(super) fn friction<S: Simd, const ENERGY: bool, const DIFFER: bool>(
         after[1].store_array(&mut vy[c]);
 
         // Minus the friction force: kinetic friction of a sliding block, else the sum of the other forces.
-        let mut velocity_to_force = splat(simd, step.integrator.velocity_to_force);
-        if DIFFER {
-            velocity_to_force *= load(simd, &variation.mass[c]);
-        }
+        let velocity_to_force = splat(simd, step.integrator.velocity_to_force);
+        let velocity_to_force = weighted::<S, DIFFER>(simd, velocity_to_force, variation.mass, c);
         let kinetic = scale(removed_fraction * velocity_to_force, free);
         let against = select(slides, kinetic, force);
         let both = zero_missing(simd, blocks[c], add(before, after));
         let displacement = or_else(simd, blocks[c], load_vec2(simd, u, c), shifts.centres);
-        let mut motion_square = square(both);
-        if DIFFER {
-            motion_square = load(simd, &variation.mass[c]) * motion_square;
-        }
+        let motion_square = weighted::<S, DIFFER>(simd, square(both), variation.mass, c);
         sums.add_motion::<DIFFER>(simd, &shifts, displacement, after, variation.drive_springs, c);
         sums.motion_square += integers(motion_square, shifts.motion_square);
         sums.friction_work += integers(dot(against, both), shifts.friction_work);
@@ -642,18 +637,31 @@ pub(super) fn friction<S: Simd, const ENERGY: bool, const DIFFER: bool>(
         let stress = zero_missing(simd, in_contact[c], stress);
         sums.stress_square = sums.stress_square.max(square(stress));
         if ENERGY {
-            let mut motion = square(before) + square(after);
-            let mut stretch = square(subtract(displacement, shifts.centres));
-            if DIFFER {
-                motion = load(simd, &variation.mass[c]) * motion;
-                stretch = load(simd, &variation.drive_springs[c]) * stretch;
-            }
+            let motion = square(before) + square(after);
+            let motion = weighted::<S, DIFFER>(simd, motion, variation.mass, c);
+            let stretch = square(subtract(displacement, shifts.centres));
+            let stretch = weighted::<S, DIFFER>(simd, stretch, variation.drive_springs, c);
             let motion = zero_missing(simd, blocks[c], [motion, zero])[0];
             sums.velocity_squares += integers(motion, shifts.motion_square);
             let shift = splat(simd, quanta.displacement_square.shift());
             sums.displacement_square += integers(stretch, shift);
         }
         mark_first_slips(slips, &mut slipped[c], &mut first_slip[c], step.number as u32);
+    }
+}
+
+/// Numbers of eight blocks, times the weight of each where blocks differ.
+#[inline(always)]
+fn weighted<S: Simd, const DIFFER: bool>(
+    simd: S,
+    numbers: f64x8<S>,
+    weights: Chunks,
+    chunk: usize,
+) -> f64x8<S> {
+    if DIFFER {
+        load(simd, &weights[chunk]) * numbers
+    } else {
+        numbers
     }
 }
 
