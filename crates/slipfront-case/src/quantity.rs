@@ -288,7 +288,7 @@ impl<K: Kind> FromStr for Quantity<K> {
                 example: K::EXAMPLE,
             });
         }
-        let number = Number::split(text.trim()).ok_or_else(|| QuantityError::NoNumber {
+        let number = DecimalText::split(text.trim()).ok_or_else(|| QuantityError::NoNumber {
             text: text.to_owned(),
             wanted: K::NAME,
             example: K::EXAMPLE,
@@ -378,14 +378,14 @@ impl<K: Kind> Visitor<'_> for QuantityVisitor<K> {
 /// assert!(WrittenQuantity::read("free").is_none());
 /// ```
 pub struct WrittenQuantity<'a> {
-    number: Number<'a>,
+    number: DecimalText<'a>,
     unit: Unit,
 }
 
 impl<'a> WrittenQuantity<'a> {
     /// The quantity that a text is; none if it is no number with a unit that is read.
     pub fn read(text: &'a str) -> Option<Self> {
-        let number = Number::split(text.trim()).filter(|_| text.len() <= MAX_TEXT)?;
+        let number = DecimalText::split(text.trim()).filter(|_| text.len() <= MAX_TEXT)?;
         let unit = number.rest.trim();
         if unit.is_empty() {
             return None;
@@ -410,14 +410,14 @@ impl<'a> WrittenQuantity<'a> {
 }
 
 /// A decimal number cut out of the front of a text, not yet rounded.
-struct Number<'a> {
+struct DecimalText<'a> {
     /// Sign, digits and decimal point.
     mantissa: &'a str,
     exponent: i32,
     rest: &'a str,
 }
 
-impl<'a> Number<'a> {
+impl<'a> DecimalText<'a> {
     fn split(text: &'a str) -> Option<Self> {
         let unsigned = text.strip_prefix(['+', '-']).unwrap_or(text);
         let after_digits = unsigned.trim_start_matches(|c: char| c.is_ascii_digit() || c == '.');

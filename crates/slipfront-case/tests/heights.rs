@@ -10,7 +10,7 @@ use rstest::rstest;
 use serde_json::Value;
 use slipfront::communicator::Threads;
 use slipfront_case::arrays::{
-    ArrayError, HeightMap, Room, Units, height_map, open_height_map, write_mask_png,
+    ArrayError, HeightMap, HeightMapUnits, Room, height_map, open_height_map, write_mask_png,
 };
 use slipfront_case::case::{Case, Ranks};
 use slipfront_case::case_file::CaseFile;
@@ -19,7 +19,7 @@ fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/heights")
 }
 
-fn read(path: &Path, units: Units, blocks: [usize; 2]) -> Result<HeightMap, ArrayError> {
+fn read(path: &Path, units: HeightMapUnits, blocks: [usize; 2]) -> Result<HeightMap, ArrayError> {
     let mut source = BufReader::new(open_height_map(path)?);
     let room = Room {
         blocks,
@@ -35,7 +35,7 @@ fn reference() -> Value {
 const PIXEL: f64 = 0.5e-6;
 const SIZE: Option<[f64; 2]> = Some([PIXEL; 2]);
 /// The file has its units.
-const OWN: Units = Units {
+const OWN: HeightMapUnits = HeightMapUnits {
     height: None,
     pixel: None,
 };
@@ -44,19 +44,23 @@ const OWN: Units = Units {
 /// 32-bit numbers are good to 2^-24 of 6 um, of 64 bits, as grey levels and in decimals to rounding, as integers to half a step: their
 /// range, less than 6 um, over 2^32 or 2^16.
 #[rstest]
-#[case("map.npy", Units { height: Some(1.0), pixel: SIZE }, 1e-15)]
-#[case("map_f4_fortran.npy", Units { height: Some(1e-6), pixel: SIZE }, 4e-13)]
-#[case("map.csv", Units { height: Some(1e-6), pixel: SIZE }, 1e-15)]
-#[case("map.png", Units { height: Some(2e-9), pixel: SIZE }, 1e-15)]
-#[case("map.tif", Units { height: Some(2e-9), pixel: SIZE }, 1e-15)]
-#[case("map_lzw.tif", Units { height: Some(2e-9), pixel: SIZE }, 1e-15)]
-#[case("map_tiles.tif", Units { height: Some(1e-6), pixel: SIZE }, 4e-13)]
+#[case("map.npy", HeightMapUnits { height: Some(1.0), pixel: SIZE }, 1e-15)]
+#[case("map_f4_fortran.npy", HeightMapUnits { height: Some(1e-6), pixel: SIZE }, 4e-13)]
+#[case("map.csv", HeightMapUnits { height: Some(1e-6), pixel: SIZE }, 1e-15)]
+#[case("map.png", HeightMapUnits { height: Some(2e-9), pixel: SIZE }, 1e-15)]
+#[case("map.tif", HeightMapUnits { height: Some(2e-9), pixel: SIZE }, 1e-15)]
+#[case("map_lzw.tif", HeightMapUnits { height: Some(2e-9), pixel: SIZE }, 1e-15)]
+#[case("map_tiles.tif", HeightMapUnits { height: Some(1e-6), pixel: SIZE }, 4e-13)]
 #[case("map.gsf", OWN, 4e-13)]
 #[case("map.x3p", OWN, 1e-15)]
 #[case("map_f4.x3p", OWN, 4e-13)]
 #[case("map_i4.x3p", OWN, 1e-15)]
 #[case("map_i2.x3p", OWN, 5e-11)]
-fn every_format_gives_what_numpy_computes(#[case] name: &str, #[case] units: Units, #[case] error: f64) {
+fn every_format_gives_what_numpy_computes(
+    #[case] name: &str,
+    #[case] units: HeightMapUnits,
+    #[case] error: f64,
+) {
     let reference = reference();
     for (grid, means) in reference["blocks"].as_object().unwrap() {
         let (nx, ny) = grid.split_once('x').unwrap();
@@ -95,7 +99,7 @@ fn blocks_over_a_plateau_have_its_height() {
     let plateau = ["0.1"; 30].join(",");
     let corner = plateau.replacen("0.1", "-1000.3", 1);
     std::fs::write(&path, format!("{corner}\n{}", format!("{plateau}\n").repeat(19))).unwrap();
-    let units = Units {
+    let units = HeightMapUnits {
         height: Some(1e-6),
         pixel: SIZE,
     };
@@ -113,13 +117,17 @@ fn blocks_over_a_plateau_have_its_height() {
 /// What is wrong, and what to do about it.
 #[rstest]
 #[case("map.npy", OWN, "does not say how large a pixel is: add `pixel_size`")]
-#[case("map.png", Units { pixel: SIZE, ..OWN }, "does not say which height a value of 1 is: add `height_unit`")]
-#[case("map.gsf", Units { pixel: SIZE, ..OWN }, "says itself that a pixel is 500 nm x 500 nm: leave out `pixel_size`")]
-#[case("map.x3p", Units { height: Some(1e-6), ..OWN }, "in units of 1 m: leave out `height_unit`")]
+#[case("map.png", HeightMapUnits { pixel: SIZE, ..OWN }, "does not say which height a value of 1 is: add `height_unit`")]
+#[case("map.gsf", HeightMapUnits { pixel: SIZE, ..OWN }, "says itself that a pixel is 500 nm x 500 nm: leave out `pixel_size`")]
+#[case("map.x3p", HeightMapUnits { height: Some(1e-6), ..OWN }, "in units of 1 m: leave out `height_unit`")]
 #[case("grey8.png", OWN, "grey levels of 8 bits, too coarse")]
 #[case("colours.png", OWN, "is a picture in colours, which do not tell heights")]
 #[case("colours.tif", OWN, "is a picture in colours, which do not tell heights")]
-fn what_cannot_be_known_is_refused(#[case] name: &str, #[case] units: Units, #[case] sentence: &str) {
+fn what_cannot_be_known_is_refused(
+    #[case] name: &str,
+    #[case] units: HeightMapUnits,
+    #[case] sentence: &str,
+) {
     let said = read(&folder().join(name), units, [15, 10])
         .unwrap_err()
         .to_string();
@@ -247,7 +255,7 @@ fn read_bytes(name: &str, bytes: &[u8]) -> Result<HeightMap, ArrayError> {
     let path = folder.path().join(name);
     std::fs::write(&path, bytes).unwrap();
     let units = match name {
-        "a.csv" | "a.png" | "a.tif" => Units {
+        "a.csv" | "a.png" | "a.tif" => HeightMapUnits {
             height: Some(1e-6),
             pixel: SIZE,
         },

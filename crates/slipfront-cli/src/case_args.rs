@@ -8,7 +8,7 @@ use slipfront_case::case_file::CaseFile;
 
 use crate::failure::Failure;
 use crate::make_case::make_case;
-use crate::ranks::Ranks;
+use crate::ranks::CommandRanks;
 use crate::signals::Signals;
 
 /// The case file and the changes of it that the command line asks for.
@@ -32,7 +32,7 @@ impl CaseArgs {
     }
 
     /// Reads the case, or takes the baseline that is embedded in the program.
-    pub(crate) fn load(self, ranks: &Ranks, signals: &Signals, quiet: bool) -> Result<Case, Failure> {
+    pub(crate) fn load(self, ranks: &CommandRanks, signals: &Signals, quiet: bool) -> Result<Case, Failure> {
         let mut overrides = self.overrides;
         overrides.extend(self.seed.map(|seed| format!("friction.seed={seed}")));
         make_case(ranks, signals, quiet, |watch, ranks| match self.case {

@@ -11,7 +11,7 @@ use slipfront_run::running::Running;
 
 use crate::failure::Failure;
 use crate::progress::run::RunProgress;
-use crate::ranks::Ranks;
+use crate::ranks::CommandRanks;
 use crate::signals::Signals;
 
 /// Wall time from one checkpoint to the next; none for no checkpoints at all.
@@ -65,7 +65,7 @@ pub(crate) struct CheckpointTimer {
     interval: Interval,
     due: Option<Instant>,
     signals: Signals,
-    ranks: Ranks,
+    ranks: CommandRanks,
 }
 
 impl CheckpointTimer {
@@ -75,7 +75,7 @@ impl CheckpointTimer {
         checkpoints: Checkpoints,
         interval: Interval,
         signals: Signals,
-        ranks: Ranks,
+        ranks: CommandRanks,
     ) -> Self {
         Self {
             ranks,

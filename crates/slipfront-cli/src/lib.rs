@@ -35,11 +35,11 @@ use slipfront_run::agree::RankFailure;
 use slipfront_run::program::this_build;
 use slipfront_study::StudyFile;
 
-use crate::commands::run::{CHECKPOINTS_HELP, Run};
+use crate::commands::run::{CHECKPOINTS_HELP, RunCommand};
 use crate::failure::{Failure, report};
 use crate::print::{expect_printed, print};
 use crate::print_stderr::silence;
-use crate::ranks::Ranks;
+use crate::ranks::CommandRanks;
 pub use crate::report::physics;
 
 /// Friction of micro-textured surfaces: the lattice spring-block model of the transition from static to kinetic
@@ -71,18 +71,18 @@ enum Command {
 {CHECKPOINTS_HELP}"
         )
     )]
-    Run(Run),
-    Check(commands::check::Check),
-    Study(commands::study::Study),
-    Family(commands::family::Family),
-    Paper(commands::paper::Paper),
-    Texture(commands::texture::Texture),
-    Plot(commands::plot::Plot),
-    Movie(commands::movie::Movie),
-    Lab(commands::lab::Lab),
-    Verify(commands::verify::Verify),
-    Completions(commands::completions::Completions),
-    Licences(commands::licences::Licences),
+    Run(RunCommand),
+    Check(commands::check::CheckCommand),
+    Study(commands::study::StudyCommand),
+    Family(commands::family::FamilyCommand),
+    Paper(commands::paper::PaperCommand),
+    Texture(commands::texture::TextureCommand),
+    Plot(commands::plot::PlotCommand),
+    Movie(commands::movie::MovieCommand),
+    Lab(commands::lab::LabCommand),
+    Verify(commands::verify::VerifyCommand),
+    Completions(commands::completions::CompletionsCommand),
+    Licences(commands::licences::LicencesCommand),
 }
 
 /// Friction of micro-textured surfaces, with one lattice divided over many processes, on one machine or many: what `slipfront
@@ -111,8 +111,8 @@ Examples:
 {CHECKPOINTS_HELP}"
         )
     )]
-    Run(Run),
-    Licences(commands::licences::Licences),
+    Run(RunCommand),
+    Licences(commands::licences::LicencesCommand),
 }
 
 /// Runs the command with these arguments, the first of which is the name of the program; gives its exit status.
@@ -130,7 +130,7 @@ pub fn main(args: impl IntoIterator<Item = OsString>) -> u8 {
     };
     execute(|| {
         let done = match command {
-            Command::Run(run) => return run.execute(&Ranks::alone()),
+            Command::Run(run) => return run.execute(&CommandRanks::alone()),
             Command::Check(check) => check.execute(),
             Command::Study(study) => study.execute(),
             Command::Family(family) => family.execute(),
@@ -149,7 +149,7 @@ pub fn main(args: impl IntoIterator<Item = OsString>) -> u8 {
 
 /// The same for the command `slipfront-mpi`, of which there is a process for every rank of the communicator.
 pub fn main_on_ranks(args: impl IntoIterator<Item = OsString>, communicator: Arc<dyn Communicator>) -> u8 {
-    let ranks = Ranks::new("slipfront-mpi", communicator);
+    let ranks = CommandRanks::new("slipfront-mpi", communicator);
     if !ranks.is_first() {
         silence();
     }
@@ -169,8 +169,8 @@ pub fn main_on_ranks(args: impl IntoIterator<Item = OsString>, communicator: Arc
 
 /// What the arguments of a rank ask for.
 enum Parsed {
-    Run(Box<Run>),
-    Licences(commands::licences::Licences),
+    Run(Box<RunCommand>),
+    Licences(commands::licences::LicencesCommand),
     /// Help or version, which clap gives as an error.
     Shown(clap::Error),
 }

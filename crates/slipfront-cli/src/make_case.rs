@@ -6,12 +6,12 @@ use slipfront_run::pictures;
 
 use crate::failure::Failure;
 use crate::progress::mesh::MeshProgress;
-use crate::ranks::Ranks;
+use crate::ranks::CommandRanks;
 use crate::signals::Signals;
 
 /// The case that `make` gives on all ranks, refused if a run of it has no memory; it is handed what watches its texture.
 pub(crate) fn make_case(
-    ranks: &Ranks,
+    ranks: &CommandRanks,
     signals: &Signals,
     quiet: bool,
     make: impl FnOnce(&mut Watch, case::Ranks) -> Result<Case, CaseError>,

@@ -34,7 +34,7 @@ struct Elapsed {
 
 /// Points of a curve: t* since rest, mu*, N*.
 #[derive(Default)]
-pub(crate) struct Points {
+pub(crate) struct CurvePoints {
     pub(crate) time_star: Vec<f64>,
     pub(crate) mu_star: Vec<f64>,
     pub(crate) sliding_percent: Vec<f64>,
@@ -136,11 +136,11 @@ impl LiveRun {
     }
 
     /// The points of the curve that the page has not been sent yet; from now on they count as sent.
-    pub(crate) fn take_unsent_points(&mut self) -> Points {
+    pub(crate) fn take_unsent_points(&mut self) -> CurvePoints {
         let rows = &self.running.rows()[self.n_sent..];
         self.n_sent += rows.len();
         let before = self.before.time_star;
-        Points {
+        CurvePoints {
             time_star: rows.iter().map(|row| before + row.time_star).collect(),
             mu_star: rows.iter().map(|row| row.point.mu_star).collect(),
             sliding_percent: rows.iter().map(|row| row.point.sliding_percent).collect(),

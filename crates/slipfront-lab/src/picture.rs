@@ -41,7 +41,7 @@ pub(crate) struct Painter {
 }
 
 /// What belongs to a picture beside its values.
-pub(crate) struct Frame<'a> {
+pub(crate) struct PictureFrame<'a> {
     pub(crate) step: u64,
     pub(crate) time_star: f64,
     pub(crate) mu_star: f64,
@@ -103,7 +103,7 @@ impl Painter {
                 lengths(values, other);
             }
         }
-        let frame = Frame {
+        let frame = PictureFrame {
             step: now.step,
             time_star: now.time_star,
             mu_star: now.point.mu_star,
@@ -127,7 +127,7 @@ impl Painter {
     /// The picture of these values, which are in the unit of the field.
     pub(crate) fn paint(
         &mut self,
-        frame: &Frame,
+        frame: &PictureFrame,
         shown: DisplayedField,
         values: &[f32],
         exists: Option<&[bool]>,

@@ -29,7 +29,7 @@ const PAGES_TIMEOUT: Duration = Duration::from_secs(5);
 const WORK_TIMEOUT: Duration = Duration::from_secs(10);
 
 /// How the laboratory is started.
-pub struct Options {
+pub struct ServerOptions {
     /// What the page shows first.
     pub start: Start,
     /// The folder of results: where runs are saved, and of which runs can be shown again.
@@ -58,7 +58,7 @@ impl Laboratory {
     ///
     /// # Errors
     /// When the port is taken, or the system gives no random numbers.
-    pub fn bind(options: Options) -> io::Result<Self> {
+    pub fn bind(options: ServerOptions) -> io::Result<Self> {
         let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, options.port))?;
         listener.set_nonblocking(true)?;
         Ok(Self {

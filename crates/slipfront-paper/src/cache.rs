@@ -93,14 +93,14 @@ impl FigureCache {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::number::Number;
+    use crate::number::MeasuredNumber;
 
     #[test]
     fn data_come_back_unless_damaged_or_made_otherwise() {
         let folder = tempfile::tempdir().unwrap();
         let cache = FigureCache::open(folder.path(), true).unwrap();
         let mut data = FigureData::default();
-        data.number("fig99.one", Number::of(&[1.0, 2.0]));
+        data.number("fig99.one", MeasuredNumber::of(&[1.0, 2.0]));
         data.value("fig99.none", f64::INFINITY);
         cache.save("fig99", StepRule::Auto, &data).unwrap();
         assert_eq!(cache.load("fig99", StepRule::Auto).unwrap().numbers, data.numbers);

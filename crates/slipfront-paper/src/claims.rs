@@ -6,7 +6,7 @@ use serde::Deserialize;
 
 use crate::embedded_cases::CLAIMS;
 use crate::error::PaperError;
-use crate::number::Number;
+use crate::number::MeasuredNumber;
 
 /// Why the numbers of claims are not in order.
 pub(super) const NUMBERING: &str = "A claim keeps its number: 2 and 62 are not used, since the paper does not say what they said, and \
@@ -43,14 +43,14 @@ pub struct Claim {
     /// hold as printed is a misprint, which its words put right.
     pub correction: Option<Reading>,
     /// The expected verdict. Another one points to a fault of the program or to a change of the model.
-    pub expected: Verdict,
+    pub expected: ClaimVerdict,
     /// Number of the deviation from the paper's print (D1 to D12) that explains the verdict.
     pub deviation: Option<String>,
     /// A remark for the reader; may be empty.
     #[serde(default)]
     pub remark: String,
     /// What of its wording or criterion was settled only after which measurement; empty if nothing was. A claim of which something
-    /// was counts as [`Verdict::NotAsStated`], not as one that holds.
+    /// was counts as [`ClaimVerdict::NotAsStated`], not as one that holds.
     #[serde(default)]
     pub revised: String,
     /// Whether two surfaces and one time step are enough to judge it.
@@ -81,7 +81,7 @@ fn yes() -> bool {
 /// Whether a claim holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Verdict {
+pub enum ClaimVerdict {
     /// It holds.
     Holds,
     /// It holds under a condition that the paper does not state.
@@ -94,7 +94,7 @@ pub enum Verdict {
     DoesNotHold,
 }
 
-impl Verdict {
+impl ClaimVerdict {
     /// All verdicts, in the order in which they are counted.
     pub const ALL: [Self; 5] = [
         Self::Holds,
@@ -137,9 +137,9 @@ pub struct ClaimResult {
     /// The claim.
     pub claim: Claim,
     /// The measured number.
-    pub number: Number,
+    pub number: MeasuredNumber,
     /// Whether it holds.
-    pub verdict: Verdict,
+    pub verdict: ClaimVerdict,
 }
 
 #[derive(Deserialize)]
@@ -189,7 +189,7 @@ impl Claim {
     ///
     /// # Errors
     /// [`PaperError::Unmeasured`] when its number is not among them.
-    pub fn judge(self, numbers: &BTreeMap<String, Number>) -> Result<ClaimResult, PaperError> {
+    pub fn judge(self, numbers: &BTreeMap<String, MeasuredNumber>) -> Result<ClaimResult, PaperError> {
         let measured = |quantity: &String| {
             let number = numbers.get(quantity).copied();
             number.ok_or_else(|| PaperError::Unmeasured {
@@ -197,7 +197,7 @@ impl Claim {
                 quantity: quantity.clone(),
             })
         };
-        let inside = |number: &Number, [low, high]: [f64; 2]| (low..=high).contains(&number.value);
+        let inside = |number: &MeasuredNumber, [low, high]: [f64; 2]| (low..=high).contains(&number.value);
         let holds_by = |reading: &Option<Reading>| -> Result<Option<bool>, PaperError> {
             let Some(reading) = reading else {
                 return Ok(None);
@@ -207,11 +207,11 @@ impl Claim {
         let number = measured(&self.quantity)?;
         let (general, corrected) = (holds_by(&self.condition)?, holds_by(&self.correction)?);
         let verdict = match (inside(&number, self.within), general, corrected) {
-            (true, ..) if !self.revised.is_empty() => Verdict::NotAsStated,
-            (true, Some(false), _) => Verdict::HoldsWithCondition,
-            (true, ..) => Verdict::Holds,
-            (false, _, Some(true)) => Verdict::Misprint,
-            (false, ..) => Verdict::DoesNotHold,
+            (true, ..) if !self.revised.is_empty() => ClaimVerdict::NotAsStated,
+            (true, Some(false), _) => ClaimVerdict::HoldsWithCondition,
+            (true, ..) => ClaimVerdict::Holds,
+            (false, _, Some(true)) => ClaimVerdict::Misprint,
+            (false, ..) => ClaimVerdict::DoesNotHold,
         };
         Ok(ClaimResult {
             claim: self,
@@ -234,13 +234,13 @@ impl ClaimResult {
         let claim = &self.claim;
         let words_of = |reading: &Option<Reading>| reading.as_ref().map(|reading| reading.words.clone());
         let why = match self.verdict {
-            Verdict::HoldsWithCondition => words_of(&claim.condition),
-            Verdict::NotAsStated => {
+            ClaimVerdict::HoldsWithCondition => words_of(&claim.condition),
+            ClaimVerdict::NotAsStated => {
                 let told = words_of(&claim.condition).unwrap_or_else(|| "by what is measured now".to_owned());
                 Some(format!("it holds {told}"))
             }
-            Verdict::Misprint => words_of(&claim.correction),
-            Verdict::Holds | Verdict::DoesNotHold => None,
+            ClaimVerdict::Misprint => words_of(&claim.correction),
+            ClaimVerdict::Holds | ClaimVerdict::DoesNotHold => None,
         };
         let why = why.map_or(String::new(), |why| format!(": {why}"));
         format!("{words}{why}{deviation}")
@@ -257,8 +257,8 @@ impl ClaimResult {
 }
 
 /// How many claims have each verdict, as a sentence.
-pub(super) fn tally(verdicts: &[Verdict]) -> String {
-    let counted = Verdict::ALL
+pub(super) fn tally(verdicts: &[ClaimVerdict]) -> String {
+    let counted = ClaimVerdict::ALL
         .map(|verdict| verdict.counted(verdicts.iter().filter(|&&other| other == verdict).count()));
     format!("{} claims: {}", verdicts.len(), counted.join(", "))
 }
@@ -279,7 +279,7 @@ mod tests {
             within,
             condition: condition.map(other),
             correction: None,
-            expected: Verdict::Holds,
+            expected: ClaimVerdict::Holds,
             deviation: None,
             remark: String::new(),
             revised: String::new(),
@@ -295,29 +295,32 @@ mod tests {
         }
     }
 
-    fn verdict(claim: Claim, main: f64, other: f64) -> Verdict {
+    fn verdict(claim: Claim, main: f64, other: f64) -> ClaimVerdict {
         let numbers = [("fig99.main", main), ("fig99.other", other)];
-        let numbers = numbers.map(|(name, value)| (name.to_owned(), Number::exact(value)));
+        let numbers = numbers.map(|(name, value)| (name.to_owned(), MeasuredNumber::exact(value)));
         claim.judge(&BTreeMap::from(numbers)).unwrap().verdict
     }
 
     #[test]
     fn a_claim_holds_if_its_number_is_within_bounds() {
-        assert_eq!(verdict(claim([0.0, 1.0], None), 1.0, 9.0), Verdict::Holds);
-        assert_eq!(verdict(claim([0.0, 1.0], None), 1.001, 9.0), Verdict::DoesNotHold);
+        assert_eq!(verdict(claim([0.0, 1.0], None), 1.0, 9.0), ClaimVerdict::Holds);
+        assert_eq!(
+            verdict(claim([0.0, 1.0], None), 1.001, 9.0),
+            ClaimVerdict::DoesNotHold
+        );
         // A claim whose number could not be measured does not hold.
         assert_eq!(
             verdict(claim([0.0, f64::INFINITY], None), f64::NAN, 9.0),
-            Verdict::DoesNotHold
+            ClaimVerdict::DoesNotHold
         );
     }
 
     #[test]
     fn a_condition_restricts_a_claim_that_holds_and_saves_none_that_does_not() {
         let conditioned = || claim([0.0, 1.0], Some([0.0, 1.0]));
-        assert_eq!(verdict(conditioned(), 0.5, 0.5), Verdict::Holds);
-        assert_eq!(verdict(conditioned(), 0.5, 2.0), Verdict::HoldsWithCondition);
-        assert_eq!(verdict(conditioned(), 2.0, 0.5), Verdict::DoesNotHold);
+        assert_eq!(verdict(conditioned(), 0.5, 0.5), ClaimVerdict::Holds);
+        assert_eq!(verdict(conditioned(), 0.5, 2.0), ClaimVerdict::HoldsWithCondition);
+        assert_eq!(verdict(conditioned(), 2.0, 0.5), ClaimVerdict::DoesNotHold);
     }
 
     #[test]
@@ -326,11 +329,11 @@ mod tests {
             correction: Some(other([0.0, 1.0])),
             ..claim([0.0, 1.0], None)
         };
-        assert_eq!(verdict(corrected(), 2.0, 0.5), Verdict::Misprint);
-        assert_eq!(verdict(corrected(), 2.0, 2.0), Verdict::DoesNotHold);
-        assert_eq!(verdict(corrected(), 0.5, 2.0), Verdict::Holds);
+        assert_eq!(verdict(corrected(), 2.0, 0.5), ClaimVerdict::Misprint);
+        assert_eq!(verdict(corrected(), 2.0, 2.0), ClaimVerdict::DoesNotHold);
+        assert_eq!(verdict(corrected(), 0.5, 2.0), ClaimVerdict::Holds);
         let numbers = [("fig99.main", 2.0), ("fig99.other", 0.5)];
-        let numbers = numbers.map(|(name, value)| (name.to_owned(), Number::exact(value)));
+        let numbers = numbers.map(|(name, value)| (name.to_owned(), MeasuredNumber::exact(value)));
         let result = corrected().judge(&BTreeMap::from(numbers)).unwrap();
         assert_eq!(
             result.verdict_in_full(),
@@ -345,12 +348,12 @@ mod tests {
             ..claim([0.0, 1.0], condition)
         };
         for (condition, other) in [(None, 0.5), (Some([0.0, 1.0]), 0.5), (Some([0.0, 1.0]), 2.0)] {
-            assert_eq!(verdict(revised(condition), 0.5, other), Verdict::NotAsStated);
-            assert_eq!(verdict(revised(condition), 2.0, other), Verdict::DoesNotHold);
+            assert_eq!(verdict(revised(condition), 0.5, other), ClaimVerdict::NotAsStated);
+            assert_eq!(verdict(revised(condition), 2.0, other), ClaimVerdict::DoesNotHold);
         }
         let told = |condition| {
             let numbers = [("fig99.main", 0.5), ("fig99.other", 2.0)];
-            let numbers = numbers.map(|(name, value)| (name.to_owned(), Number::exact(value)));
+            let numbers = numbers.map(|(name, value)| (name.to_owned(), MeasuredNumber::exact(value)));
             let result = revised(condition).judge(&BTreeMap::from(numbers)).unwrap();
             result.verdict_in_full()
         };
@@ -366,7 +369,11 @@ mod tests {
 
     #[test]
     fn verdicts_are_counted_by_class() {
-        let verdicts = [Verdict::DoesNotHold, Verdict::Misprint, Verdict::Misprint];
+        let verdicts = [
+            ClaimVerdict::DoesNotHold,
+            ClaimVerdict::Misprint,
+            ClaimVerdict::Misprint,
+        ];
         assert_eq!(
             tally(&verdicts),
             "3 claims: 0 hold, 0 hold with a condition, 0 are not reproduced as stated, 2 are misprints or slips of algebra, 1 does not hold"
@@ -376,7 +383,7 @@ mod tests {
     #[test]
     fn another_verdict_than_the_expected_one_is_noticed() {
         let result = |value| {
-            let numbers = BTreeMap::from([("fig99.main".to_owned(), Number::exact(value))]);
+            let numbers = BTreeMap::from([("fig99.main".to_owned(), MeasuredNumber::exact(value))]);
             claim([0.0, 1.0], None).judge(&numbers).unwrap()
         };
         assert!(result(0.5).as_expected() && !result(2.0).as_expected());
@@ -423,21 +430,21 @@ mod tests {
                 || is_revised
                 || !claim.remark.is_empty();
             assert!(
-                claim.expected == Verdict::Holds || reasoned,
+                claim.expected == ClaimVerdict::Holds || reasoned,
                 "claim {}",
                 claim.number
             );
             assert_eq!(
-                claim.expected == Verdict::HoldsWithCondition,
+                claim.expected == ClaimVerdict::HoldsWithCondition,
                 claim.condition.is_some() && !is_revised,
                 "claim {}",
                 claim.number
             );
             // No criterion is worded anew after its measurement and counts as holding.
-            let holds = [Verdict::Holds, Verdict::HoldsWithCondition].contains(&claim.expected);
+            let holds = [ClaimVerdict::Holds, ClaimVerdict::HoldsWithCondition].contains(&claim.expected);
             assert!(!(is_revised && holds), "claim {}", claim.number);
             assert_eq!(
-                claim.expected == Verdict::Misprint,
+                claim.expected == ClaimVerdict::Misprint,
                 claim.correction.is_some(),
                 "claim {}",
                 claim.number

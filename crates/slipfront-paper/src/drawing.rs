@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::error::PaperError;
-use crate::number::Number;
+use crate::number::MeasuredNumber;
 
 use slipfront_plot::{
     BarChart, FieldMap, FieldMaps, FrictionAxes, FrictionCurve, Picture, PictureError, Response, Responses,
@@ -117,7 +117,7 @@ fn known(value: f64) -> Option<f64> {
     (!value.is_nan()).then_some(value)
 }
 
-pub(super) fn measured(label: &str, x: &[f64], numbers: &[Number]) -> Response {
+pub(super) fn measured(label: &str, x: &[f64], numbers: &[MeasuredNumber]) -> Response {
     let column = |which: usize| numbers.iter().map(|number| number.ends()[which]).collect();
     Response {
         label: label.to_owned(),

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use crate::drawing::Drawing;
-use crate::number::Number;
+use crate::number::MeasuredNumber;
 
 /// A table of the report.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -35,7 +35,7 @@ pub struct Panel {
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct FigureData {
     /// Measured numbers by their names within the figure; claims are judged by them.
-    pub numbers: BTreeMap<String, Number>,
+    pub numbers: BTreeMap<String, MeasuredNumber>,
     /// Pictures.
     pub panels: Vec<Panel>,
     /// Tables.
@@ -44,22 +44,22 @@ pub struct FigureData {
 
 impl FigureData {
     /// The numbers with the name of their figure before their own: `fig12.largest_rise`.
-    pub(super) fn named_numbers(&self, figure: &str) -> impl Iterator<Item = (String, Number)> {
+    pub(super) fn named_numbers(&self, figure: &str) -> impl Iterator<Item = (String, MeasuredNumber)> {
         let numbers = self.numbers.iter();
         numbers.map(move |(name, number)| (format!("{figure}.{name}"), *number))
     }
 
-    pub(super) fn number(&mut self, name: &str, number: Number) {
+    pub(super) fn number(&mut self, name: &str, number: MeasuredNumber) {
         self.numbers.insert(name.to_owned(), number);
     }
 
     pub(super) fn value(&mut self, name: &str, value: f64) {
-        self.number(name, Number::exact(value));
+        self.number(name, MeasuredNumber::exact(value));
     }
 
     /// Adds the mean of values, one for each surface.
     pub(super) fn values(&mut self, name: &str, values: &[f64]) {
-        self.number(name, Number::of(values));
+        self.number(name, MeasuredNumber::of(values));
     }
 
     pub(super) fn panel(&mut self, name: &str, caption: &str, drawing: Drawing) {

@@ -25,13 +25,13 @@ mod step_rule;
 mod sweep;
 
 pub use cache::FigureCache;
-pub use claims::{Claim, ClaimResult, Reading, Verdict, claims};
+pub use claims::{Claim, ClaimResult, ClaimVerdict, Reading, claims};
 pub use drawing::Drawing;
 pub use embedded_cases::cases;
 pub use error::PaperError;
 pub use figure_data::{FigureData, Panel, Table};
 pub use figures::{FIGURES, Figure, figures};
-pub use number::Number;
-pub use paper::{Options, Paper, Stage, run};
+pub use number::MeasuredNumber;
+pub use paper::{Paper, PaperOptions, Stage, run};
 pub use report::{docs_page, foreign_docs, summary, write, write_docs};
 pub use step_rule::StepRule;

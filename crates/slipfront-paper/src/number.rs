@@ -9,14 +9,14 @@ const CONFIDENCE: f64 = 0.95;
 
 /// A measured number.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Number {
+pub struct MeasuredNumber {
     /// The value, or the mean over random surfaces.
     pub value: f64,
     /// The 95 % confidence interval of that mean; none for a single value.
     pub interval: Option<[f64; 2]>,
 }
 
-impl Number {
+impl MeasuredNumber {
     /// A single value.
     pub fn exact(value: f64) -> Self {
         Self {
@@ -49,7 +49,7 @@ impl Number {
 }
 
 /// Values of several numbers, without their intervals.
-pub(super) fn values(numbers: &[Number]) -> Vec<f64> {
+pub(super) fn values(numbers: &[MeasuredNumber]) -> Vec<f64> {
     numbers.iter().map(|number| number.value).collect()
 }
 
@@ -59,7 +59,7 @@ mod tests {
 
     #[test]
     fn numbers_show_what_is_known_of_them() {
-        let number = |value: f64, interval| Number { value, interval }.shown(2);
+        let number = |value: f64, interval| MeasuredNumber { value, interval }.shown(2);
         assert_eq!(number(0.126, Some([0.1, 0.152])), "0.13 \u{b1} 0.03");
         assert_eq!(number(-0.126, None), "-0.13");
         assert_eq!(number(0.0, None), "0");

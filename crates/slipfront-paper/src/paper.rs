@@ -13,13 +13,13 @@ use crate::claims::{Claim, ClaimResult, claims, tally};
 use crate::error::PaperError;
 use crate::figure_data::FigureData;
 use crate::figures::{FIGURES, Figure};
-use crate::number::Number;
+use crate::number::MeasuredNumber;
 use crate::runner::FigureRunner;
 use crate::step_rule::StepRule;
 
 /// How figures are run.
 #[derive(Clone, Copy, Debug)]
-pub struct Options<'a> {
+pub struct PaperOptions<'a> {
     /// Figures at once. Their runs are those of rayon's pool, which has as many threads.
     pub threads: usize,
     /// Set by a signal: all runs end, and the finished runs of studies stay recorded.
@@ -88,7 +88,7 @@ impl Paper {
 pub fn run(
     figures: &[Figure],
     records: &Records,
-    options: &Options,
+    options: &PaperOptions,
     watch: &(dyn Fn(&Stage) + Sync),
 ) -> Result<Paper, PaperError> {
     let rules: &[StepRule] = if options.reduced {
@@ -175,7 +175,7 @@ fn with_finished(wanted: &[Figure], cache: &FigureCache, rules: &[StepRule]) -> 
 fn data_of(
     stage: &Stage,
     records: &Records,
-    options: &Options,
+    options: &PaperOptions,
     cache: &FigureCache,
     watch: &(dyn Fn(&Stage) + Sync),
 ) -> Result<FigureData, PaperError> {
@@ -203,7 +203,7 @@ fn data_of(
 
 /// Judges the claims about these figures.
 fn judge(figures: &[(Figure, FigureData)], reduced: bool) -> Result<Vec<ClaimResult>, PaperError> {
-    let numbers: BTreeMap<String, Number> = figures
+    let numbers: BTreeMap<String, MeasuredNumber> = figures
         .iter()
         .flat_map(|(figure, data)| data.named_numbers(figure.name))
         .collect();

@@ -37,7 +37,7 @@ pub(super) fn blank_map(case: &Case, label: &str) -> FieldMap {
 }
 
 /// Maps of contact stress at the peaks of several runs.
-pub(super) fn peak_maps(runs: &[Run], labels: &[String]) -> Result<Vec<FieldMap>, PaperError> {
+pub(super) fn peak_maps(runs: &[FigureRun], labels: &[String]) -> Result<Vec<FieldMap>, PaperError> {
     let labelled = runs.iter().zip(labels);
     labelled
         .map(|(run, label)| run.stress_map(run.instant('C')?, label))
@@ -45,28 +45,28 @@ pub(super) fn peak_maps(runs: &[Run], labels: &[String]) -> Result<Vec<FieldMap>
 }
 
 /// Friction and sliding blocks of several runs.
-pub(super) fn curves(runs: &[Run], label: impl Fn(usize) -> String) -> Drawing {
+pub(super) fn curves(runs: &[FigureRun], label: impl Fn(usize) -> String) -> Drawing {
     let curves = runs.iter().enumerate();
     Drawing::Curves(curves.map(|(index, run)| run.curve(&label(index))).collect())
 }
 
 /// What is measured on each of several runs.
 pub(super) fn on_each<T>(
-    runs: &[Run],
-    measure: impl Fn(&Run) -> Result<T, PaperError>,
+    runs: &[FigureRun],
+    measure: impl Fn(&FigureRun) -> Result<T, PaperError>,
 ) -> Result<Vec<T>, PaperError> {
     runs.iter().map(measure).collect()
 }
 
 /// A case and the record of its run.
-pub(super) struct Run {
+pub(super) struct FigureRun {
     pub(super) case: Arc<Case>,
     pub(super) record: Record,
     /// Seconds that it took.
     pub(super) wall_time_s: f64,
 }
 
-impl Run {
+impl FigureRun {
     /// The frame of one of the instants A-F.
     pub(super) fn instant(&self, letter: char) -> Result<&Frame, PaperError> {
         let mut frames = self.record.frames.iter();
@@ -134,7 +134,7 @@ impl Run {
     /// The largest difference of a quantity from that of another run, over the rows of this run in a window of time.
     pub(super) fn largest_difference(
         &self,
-        other: &Run,
+        other: &FigureRun,
         [from, until]: [f64; 2],
         value: fn(&CurvePoint) -> f64,
     ) -> f64 {
@@ -147,7 +147,7 @@ impl Run {
     /// The largest difference of a quantity from that of any of these runs in a window of time.
     pub(super) fn largest_difference_of(
         &self,
-        runs: &[Run],
+        runs: &[FigureRun],
         window: [f64; 2],
         value: fn(&CurvePoint) -> f64,
     ) -> f64 {

@@ -10,15 +10,15 @@ use slipfront::StopReason;
 
 use crate::embedded_cases::FILES;
 use crate::error::PaperError;
-use crate::run::{Run, seen_at};
+use crate::run::{FigureRun, seen_at};
 use crate::step_rule::StepRule;
-use crate::sweep::Sweep;
+use crate::sweep::ParameterSweep;
 use slipfront_case::case::Case;
 use slipfront_case::case_file::CaseError;
 use slipfront_run::running;
 use slipfront_run::summary::Summary;
 use slipfront_study as study;
-use slipfront_study::{Outcome, Plan, Record, Records, StudyError, StudyFile, StudyResults};
+use slipfront_study::{FinishedRun, Outcome, Plan, Records, StudyError, StudyFile, StudyResults};
 
 /// Runs the cases and studies of a figure.
 pub(super) struct FigureRunner<'a> {
@@ -50,12 +50,12 @@ impl FigureRunner<'_> {
     }
 
     /// Runs cases in parallel and returns the runs in the order of the cases.
-    pub(super) fn run(&self, cases: Vec<Case>) -> Result<Vec<Run>, PaperError> {
+    pub(super) fn run(&self, cases: Vec<Case>) -> Result<Vec<FigureRun>, PaperError> {
         let stop = self.stop;
         cases.into_par_iter().map(|case| run_case(case, stop)).collect()
     }
 
-    pub(super) fn run_one(&self, case: Case) -> Result<Run, PaperError> {
+    pub(super) fn run_one(&self, case: Case) -> Result<FigureRun, PaperError> {
         // On the pool as all others, which limits the runs at once.
         rayon::scope(|_| run_case(case, self.stop))
     }
@@ -65,9 +65,9 @@ impl FigureRunner<'_> {
     pub(super) fn run_seen_at_shares(
         &self,
         case: Case,
-        run: &Run,
+        run: &FigureRun,
         shares: &[f64],
-    ) -> Result<Run, PaperError> {
+    ) -> Result<FigureRun, PaperError> {
         let times = shares.iter().map(|&share| run.time_of_share(share));
         let mut again = self.run_one(seen_at(case, &times.collect::<Result<Vec<_>, _>>()?))?;
         again.record.contact_stress_max = run.record.contact_stress_max;
@@ -75,20 +75,20 @@ impl FigureRunner<'_> {
     }
 
     /// A study of this crate, of which nothing is run.
-    pub(super) fn plan(&self, name: &str) -> Result<Sweep, PaperError> {
+    pub(super) fn plan(&self, name: &str) -> Result<ParameterSweep, PaperError> {
         let mut file = StudyFile::parse(text_of(name)?, name, name, Path::new(""))?;
         file.base.text = with_step(&file.base.text, self.step)?;
         if self.reduced {
             file.settings.replicates = file.settings.replicates.min(2);
         }
-        Ok(Sweep {
+        Ok(ParameterSweep {
             plan: Plan::new(&file, None)?,
             results: StudyResults::default(),
         })
     }
 
     /// A study of this crate with its results: recorded runs are taken from the records, the others are run.
-    pub(super) fn study(&mut self, name: &str) -> Result<Sweep, PaperError> {
+    pub(super) fn study(&mut self, name: &str) -> Result<ParameterSweep, PaperError> {
         let plan = self.plan(name)?.plan;
         // No run folders are kept, so that the folder is not used.
         let results = study::execute(&plan, self.records, Path::new(""), self.stop, self.watch)?;
@@ -98,7 +98,7 @@ impl FigureRunner<'_> {
                 reason: reason.to_owned(),
             });
         }
-        Ok(Sweep { plan, results })
+        Ok(ParameterSweep { plan, results })
     }
 
     /// The same, and the runs of the first `replicates` of its points with their curves and fields, in the order of
@@ -107,14 +107,14 @@ impl FigureRunner<'_> {
         &mut self,
         name: &str,
         replicates: usize,
-    ) -> Result<(Sweep, Vec<Run>), PaperError> {
+    ) -> Result<(ParameterSweep, Vec<FigureRun>), PaperError> {
         let plan = self.plan(name)?;
         let keys = plan.keys(replicates);
         let cases = keys.iter().map(|&key| plan.case_of(key));
         let runs = self.run(cases.collect::<Result<_, _>>()?)?;
         let whole = keys.iter().zip(&runs);
         let whole = whole.filter(|(_, run)| run.case.file.time.stop == StopReason::End);
-        let records = whole.map(|(&key, run)| Record {
+        let records = whole.map(|(&key, run)| FinishedRun {
             id: plan.plan.identity(key),
             wall_time_s: run.wall_time_s,
             // A study has no instants A-F.
@@ -128,7 +128,7 @@ impl FigureRunner<'_> {
     }
 }
 
-fn run_case(case: Case, stop: &AtomicBool) -> Result<Run, PaperError> {
+fn run_case(case: Case, stop: &AtomicBool) -> Result<FigureRun, PaperError> {
     let began = Instant::now();
     let case = Arc::new(case);
     let record =
@@ -137,7 +137,7 @@ fn run_case(case: Case, stop: &AtomicBool) -> Result<Run, PaperError> {
         name: case.name.clone(),
         source,
     })?;
-    Ok(Run {
+    Ok(FigureRun {
         case,
         record,
         wall_time_s: began.elapsed().as_secs_f64(),

@@ -3,16 +3,16 @@
 use slipfront::Stop;
 
 use crate::error::PaperError;
-use crate::number::{Number, values};
+use crate::number::{MeasuredNumber, values};
 use slipfront_case::case::Case;
-use slipfront_study::{Plan, Quantity, RetainRuns, Role, RunKey, StudyResults};
+use slipfront_study::{Plan, RetainRuns, Role, RunKey, RunQuantity, StudyResults};
 
-pub(super) struct Sweep {
+pub(super) struct ParameterSweep {
     pub(super) plan: Plan,
     pub(super) results: StudyResults,
 }
 
-impl Sweep {
+impl ParameterSweep {
     /// Numbers of an axis; on an axis of names, the positions of its levels.
     pub(super) fn axis(&self, axis: usize) -> Vec<f64> {
         let levels = self.plan.axes[axis].levels.iter().enumerate();
@@ -35,19 +35,19 @@ impl Sweep {
 
     /// A quantity at the point with these levels: one value for each surface.
     pub(super) fn values(&self, levels: &[usize], quantity: &str) -> Vec<f64> {
-        let (point, quantity) = (self.point(levels), Quantity::named(quantity));
+        let (point, quantity) = (self.point(levels), RunQuantity::named(quantity));
         let replicates = 0..self.results.points[point].replicates;
         let values = replicates.map(|replicate| self.results.value(point, replicate, quantity?));
         values.flatten().collect()
     }
 
     /// Mean and interval of a quantity over the surfaces of a point.
-    pub(super) fn number(&self, levels: &[usize], quantity: &str) -> Number {
-        Number::of(&self.values(levels, quantity))
+    pub(super) fn number(&self, levels: &[usize], quantity: &str) -> MeasuredNumber {
+        MeasuredNumber::of(&self.values(levels, quantity))
     }
 
     /// Mean and interval of a quantity along the first axis, at these levels of the other axes.
-    pub(super) fn numbers(&self, others: &[usize], quantity: &str) -> Vec<Number> {
+    pub(super) fn numbers(&self, others: &[usize], quantity: &str) -> Vec<MeasuredNumber> {
         (0..self.plan.axes[0].levels.len())
             .map(|level| self.number(&[&[level], others].concat(), quantity))
             .collect()

@@ -1,7 +1,7 @@
 //! A linear or logarithmic axis: values to pixels, and which values it can show.
 
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Axis {
+pub(crate) struct DrawnAxis {
     /// The ends, as the axis measures them: values, or their decimal logarithms.
     pub(crate) lo: f64,
     pub(crate) hi: f64,
@@ -11,7 +11,7 @@ pub(crate) struct Axis {
     pub(crate) is_log: bool,
 }
 
-impl Axis {
+impl DrawnAxis {
     /// An axis around `values` with a margin of `pad` times its length at both ends, yet to be placed.
     ///
     /// It is logarithmic if `log` says so and every value that can be drawn is positive.
@@ -108,13 +108,13 @@ mod tests {
 
     #[test]
     fn an_axis_through_zero_is_never_logarithmic() {
-        assert!(!Axis::around(&[0.0, 1.0], true, 0.0).is_log);
-        assert!(Axis::around(&[f64::NAN, 1.0], true, 0.0).is_log);
+        assert!(!DrawnAxis::around(&[0.0, 1.0], true, 0.0).is_log);
+        assert!(DrawnAxis::around(&[f64::NAN, 1.0], true, 0.0).is_log);
     }
 
     #[test]
     fn values_are_placed_by_their_logarithms() {
-        let axis = Axis::around(&[1.0, 100.0], true, 0.0).placed(10.0, 30.0);
+        let axis = DrawnAxis::around(&[1.0, 100.0], true, 0.0).placed(10.0, 30.0);
         assert_eq!([1.0, 10.0, 100.0].map(|value| axis.at(value)), [10.0, 20.0, 30.0]);
         assert!(axis.contains(50.0) && !axis.contains(101.0) && axis.clamped(1e9) == 30.0);
     }

@@ -2,12 +2,12 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::axis::{Axis, drawable};
+use crate::axis::{DrawnAxis, drawable};
 use crate::canvas::Canvas;
 use crate::category_axis::{CategoryAxis, MIN_SLOT};
 use crate::frame::{left_room, left_side};
 use crate::geometry::Area;
-use crate::legend::{Legend, Sample};
+use crate::legend::{Legend, LegendSample};
 use crate::note::Note;
 use crate::picture::{Picture, PictureError};
 use crate::series::{cross, error_bar, interval};
@@ -83,7 +83,11 @@ pub fn bars(chart: &BarChart) -> Result<Picture, PictureError> {
     let room = COLUMN_WIDTH.round() - MARGIN - left;
     let narrowest = MIN_SLOT.max(MIN_BAR_WIDTH * places.legend.len() as f64 / SHARE_GROUP);
     let width = room.max(narrowest * places.names.len() as f64).round();
-    let legend_names: Vec<_> = places.legend.iter().map(|&name| (name, Sample::Patch)).collect();
+    let legend_names: Vec<_> = places
+        .legend
+        .iter()
+        .map(|&name| (name, LegendSample::Patch))
+        .collect();
     let legend = Legend::of(&chart.legend_title, &legend_names, left, left + width);
     let area = Area::new(left, MARGIN + legend.height, width, HEIGHT);
     let y = y.placed(area.bottom(), area.y);
@@ -109,7 +113,13 @@ pub fn bars(chart: &BarChart) -> Result<Picture, PictureError> {
     canvas.finish()
 }
 
-fn draw_bar(canvas: &mut Canvas, y: &Axis, Placed { bar, colour, .. }: &Placed, middle: f64, width: f64) {
+fn draw_bar(
+    canvas: &mut Canvas,
+    y: &DrawnAxis,
+    PlacedBar { bar, colour, .. }: &PlacedBar,
+    middle: f64,
+    width: f64,
+) {
     /// From the foot of a bar to the cross that marks it.
     const LIFT: f64 = 14.0;
     if !drawable(bar.mean) {
@@ -132,18 +142,18 @@ fn draw_bar(canvas: &mut Canvas, y: &Axis, Placed { bar, colour, .. }: &Placed, 
 }
 
 /// y from zero, with all bars and error bars.
-fn value_axis(bars: &[Placed]) -> Axis {
-    let extent = |Placed { bar, .. }: &Placed| {
+fn value_axis(bars: &[PlacedBar]) -> DrawnAxis {
+    let extent = |PlacedBar { bar, .. }: &PlacedBar| {
         let (low, high) = interval(bar.mean, bar.low, bar.high).unwrap_or((bar.mean, bar.mean));
         [0.0, bar.mean, low, high]
     };
     let values: Vec<f64> = bars.iter().flat_map(extent).collect();
-    let whole = Axis::around(&values, false, 0.06);
+    let whole = DrawnAxis::around(&values, false, 0.06);
     // Beyond zero no margin, unless bars lie on that side.
     let beyond = |side: f64| values.iter().any(|&value| drawable(value) && value * side > 0.0);
     match (beyond(-1.0), beyond(1.0)) {
-        (false, true) => Axis::linear(0.0, whole.hi),
-        (true, false) => Axis::linear(whole.lo, 0.0),
+        (false, true) => DrawnAxis::linear(0.0, whole.hi),
+        (true, false) => DrawnAxis::linear(whole.lo, 0.0),
         _ => whole,
     }
 }
@@ -152,10 +162,10 @@ fn value_axis(bars: &[Placed]) -> Axis {
 struct Places<'a> {
     names: Vec<&'a str>,
     legend: Vec<&'a str>,
-    bars: Vec<Placed<'a>>,
+    bars: Vec<PlacedBar<'a>>,
 }
 
-struct Placed<'a> {
+struct PlacedBar<'a> {
     bar: &'a Bar,
     /// The index of the name below it.
     name: usize,
@@ -167,7 +177,7 @@ struct Placed<'a> {
 impl<'a> Places<'a> {
     fn of(chart: &'a BarChart) -> Self {
         if let [group] = &chart.groups[..] {
-            let placed = |(name, bar)| Placed {
+            let placed = |(name, bar)| PlacedBar {
                 bar,
                 name,
                 step: 0.0,
@@ -189,7 +199,7 @@ impl<'a> Places<'a> {
         for (name, group) in chart.groups.iter().enumerate() {
             for bar in &group.bars {
                 let index = legend.iter().position(|label| *label == bar.label).unwrap_or(0);
-                bars.push(Placed {
+                bars.push(PlacedBar {
                     bar,
                     name,
                     step: index as f64 - 0.5 * (legend.len() - 1) as f64,

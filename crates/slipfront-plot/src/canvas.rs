@@ -1,7 +1,7 @@
 //! What a picture is drawn on: a list of lines, shapes, texts and images, in the order in which they cover each other.
 
 use crate::color_image::Image;
-use crate::geometry::{Align, Area, Point};
+use crate::geometry::{Align, Area, CanvasPoint};
 use crate::style::{BLACK, CurveStyle, Rgb, TICK_LENGTH, WHITE, WIDTH_CURVE, WIDTH_FRAME, WIDTH_MARK};
 use crate::text::{Text, width};
 
@@ -26,22 +26,22 @@ pub(crate) enum Primitive {
     /// A line through points, and back to the first one if it is closed. The lengths of dashes and of the gaps after them; none for a
     /// line without gaps.
     Line {
-        points: Vec<Point>,
+        points: Vec<CanvasPoint>,
         width: f64,
         closed: bool,
         dashes: &'static [f64],
     },
-    Polygon(Vec<Point>),
+    Polygon(Vec<CanvasPoint>),
     Rectangle(Area),
     Disc {
-        centre: Point,
+        centre: CanvasPoint,
         radius: f64,
     },
     /// Letters on a baseline that starts at `at`, turned to read upwards or not.
     Letters {
         text: String,
         size: u32,
-        at: Point,
+        at: CanvasPoint,
         upwards: bool,
     },
 }
@@ -64,12 +64,12 @@ impl Canvas {
         });
     }
 
-    pub(crate) fn line(&mut self, from: Point, to: Point, width: f64, colour: Rgb) {
+    pub(crate) fn line(&mut self, from: CanvasPoint, to: CanvasPoint, width: f64, colour: Rgb) {
         self.polyline(vec![from, to], width, colour);
     }
 
     /// Adds a line through points, closed if it ends where it starts.
-    pub(crate) fn polyline(&mut self, mut points: Vec<Point>, width: f64, colour: Rgb) {
+    pub(crate) fn polyline(&mut self, mut points: Vec<CanvasPoint>, width: f64, colour: Rgb) {
         let closed = points.len() > 3 && points.first() == points.last();
         if closed {
             points.pop();
@@ -84,7 +84,7 @@ impl Canvas {
     }
 
     /// Adds a curve, or a part of one.
-    pub(crate) fn curve(&mut self, points: Vec<Point>, CurveStyle { colour, dashes }: CurveStyle) {
+    pub(crate) fn curve(&mut self, points: Vec<CanvasPoint>, CurveStyle { colour, dashes }: CurveStyle) {
         let line = Primitive::Line {
             points,
             width: WIDTH_CURVE,
@@ -98,12 +98,12 @@ impl Canvas {
         self.add(Primitive::Rectangle(area), colour, opacity);
     }
 
-    pub(crate) fn polygon(&mut self, points: Vec<Point>, colour: Rgb, opacity: f64) {
+    pub(crate) fn polygon(&mut self, points: Vec<CanvasPoint>, colour: Rgb, opacity: f64) {
         self.add(Primitive::Polygon(points), colour, opacity);
     }
 
     /// Adds an area with its edge.
-    pub(crate) fn edged_area(&mut self, mut points: Vec<Point>, colour: Rgb, opacity: f64, edge: Rgb) {
+    pub(crate) fn edged_area(&mut self, mut points: Vec<CanvasPoint>, colour: Rgb, opacity: f64, edge: Rgb) {
         self.polygon(points.clone(), colour, opacity);
         points.extend(points.first().copied());
         self.polyline(points, WIDTH_MARK, edge);
@@ -123,23 +123,23 @@ impl Canvas {
     }
 
     /// Adds a disc with a thin white rim, which parts it from the curve below.
-    pub(crate) fn dot(&mut self, centre: Point, radius: f64, colour: Rgb) {
+    pub(crate) fn dot(&mut self, centre: CanvasPoint, radius: f64, colour: Rgb) {
         for (radius, colour) in [(radius + 1.5, WHITE), (radius, colour)] {
             self.add(Primitive::Disc { centre, radius }, colour, 1.0);
         }
     }
 
     /// Adds a text on the baseline through `at`.
-    pub(crate) fn text(&mut self, text: &Text, at: Point, align: Align, colour: Rgb) {
+    pub(crate) fn text(&mut self, text: &Text, at: CanvasPoint, align: Align, colour: Rgb) {
         self.runs(text, at, align, colour, false);
     }
 
     /// Adds a text that reads upwards, its baseline the vertical through `at`.
-    pub(crate) fn text_upwards(&mut self, text: &Text, at: Point, align: Align, colour: Rgb) {
+    pub(crate) fn text_upwards(&mut self, text: &Text, at: CanvasPoint, align: Align, colour: Rgb) {
         self.runs(text, at, align, colour, true);
     }
 
-    fn runs(&mut self, text: &Text, (x, y): Point, align: Align, colour: Rgb, upwards: bool) {
+    fn runs(&mut self, text: &Text, (x, y): CanvasPoint, align: Align, colour: Rgb, upwards: bool) {
         let mut along = -align.offset(text.width());
         for run in &text.runs {
             // SVG drops the spaces that a text starts with, so they are stepped over.
@@ -164,21 +164,21 @@ impl Canvas {
     }
 
     /// Adds a tick below `at` and its number.
-    pub(crate) fn tick_below(&mut self, at: Point, number: &Text) {
+    pub(crate) fn tick_below(&mut self, at: CanvasPoint, number: &Text) {
         self.line(at, (at.0, at.1 + TICK_LENGTH), WIDTH_FRAME, BLACK);
         let baseline = at.1 + TICK_LENGTH + 7.0 + number.height();
         self.text(number, (at.0, baseline), Align::Middle, BLACK);
     }
 
     /// Adds a tick left of `at` and its number.
-    pub(crate) fn tick_left(&mut self, at: Point, number: &Text) {
+    pub(crate) fn tick_left(&mut self, at: CanvasPoint, number: &Text) {
         self.line((at.0 - TICK_LENGTH, at.1), at, WIDTH_FRAME, BLACK);
         let place = (at.0 - TICK_LENGTH - 7.0, at.1 + 0.5 * number.height());
         self.text(number, place, Align::End, BLACK);
     }
 
     /// Adds a tick right of `at` and its number.
-    pub(crate) fn tick_right(&mut self, at: Point, number: &Text) {
+    pub(crate) fn tick_right(&mut self, at: CanvasPoint, number: &Text) {
         self.line(at, (at.0 + TICK_LENGTH, at.1), WIDTH_FRAME, BLACK);
         let place = (at.0 + TICK_LENGTH + 7.0, at.1 + 0.5 * number.height());
         self.text(number, place, Align::Start, BLACK);

@@ -2,7 +2,7 @@
 
 use crate::canvas::Canvas;
 use crate::frame::{BAR_WIDTH, bar_room, colour_bar};
-use crate::geometry::{Align, Area, Point};
+use crate::geometry::{Align, Area, CanvasPoint};
 use crate::style::{BLACK, SIZE_LABEL};
 use crate::text::Text;
 
@@ -53,7 +53,7 @@ impl ColourBar {
     }
 
     /// Draws it with its upper left corner here, and its name, if that is above it, on the line `above`.
-    pub(crate) fn draw(&self, canvas: &mut Canvas, (x, top): Point, above: f64) {
+    pub(crate) fn draw(&self, canvas: &mut Canvas, (x, top): CanvasPoint, above: f64) {
         let area = Area::new(x, top, BAR_WIDTH, self.height);
         colour_bar(canvas, area, self.range);
         let right = x + self.room();

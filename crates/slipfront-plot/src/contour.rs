@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::geometry::Point;
+use crate::geometry::CanvasPoint;
 
 /// The means of the values around each over `2 reach + 1` columns and rows, without those that are NaN; NaN stays NaN. Row by row.
 pub(crate) fn smoothed(values: &[f32], columns: usize, reach: usize) -> Vec<f32> {
@@ -29,7 +29,7 @@ pub(crate) fn smoothed(values: &[f32], columns: usize, reach: usize) -> Vec<f32>
 
 /// The lines on which values, interpolated linearly between the middles of cells, are `level`: each a chain of points in columns and
 /// rows from the middle of the first cell, closed if it ends where it starts. None pass a cell without a value.
-pub(crate) fn contours(values: &[f32], columns: usize, level: f64) -> Vec<Vec<Point>> {
+pub(crate) fn contours(values: &[f32], columns: usize, level: f64) -> Vec<Vec<CanvasPoint>> {
     let rows = values.len() / columns;
     let value = |column: usize, row: usize| f64::from(values[row * columns + column]);
     // A line crosses the sides between cells: each is named by its first cell and by whether it leads upwards.

@@ -1,6 +1,6 @@
 //! The numbered sides of panels and colour bars: ticks, their numbers, titles.
 
-use crate::axis::Axis;
+use crate::axis::DrawnAxis;
 use crate::canvas::Canvas;
 use crate::color_image::Image;
 use crate::geometry::{Align, Area};
@@ -73,7 +73,7 @@ pub(crate) fn short_ticks(canvas: &mut Canvas, area: Area, direction: Direction,
 
 /// The numbers beside a colour bar over this range: round ones.
 fn bar_ticks([lo, hi]: [f64; 2], bottom: f64, top: f64) -> Vec<Tick> {
-    Axis::linear(lo, hi)
+    DrawnAxis::linear(lo, hi)
         .placed(bottom, top)
         .ticks(Direction::Y, BAR_STEPS)
 }

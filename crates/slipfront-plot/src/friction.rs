@@ -2,11 +2,11 @@
 
 use crate::axis::drawable;
 use crate::canvas::Canvas;
-use crate::friction_curve::{FrictionAxes, FrictionCurve, Kinetic};
+use crate::friction_curve::{FrictionAxes, FrictionCurve, KineticLine};
 use crate::friction_layout::Panels;
-use crate::geometry::{Align, Area, Point};
+use crate::geometry::{Align, Area, CanvasPoint};
 use crate::label_placement::{Placer, around};
-use crate::legend::{Legend, Sample};
+use crate::legend::{Legend, LegendSample};
 use crate::picture::{Picture, PictureError, check_columns};
 use crate::series::segments;
 use crate::style::{
@@ -49,10 +49,12 @@ pub fn friction(curves: &[FrictionCurve], axes: &FrictionAxes) -> Result<Picture
     }
     let panels = Panels::of(curves);
     let named = curves.iter().filter(|_| curves.len() > 1);
-    let names: Vec<_> = named.map(|curve| (curve.label.as_str(), Sample::Line)).collect();
+    let names: Vec<_> = named
+        .map(|curve| (curve.label.as_str(), LegendSample::Line))
+        .collect();
     let legend = Legend::of("", &names, panels.x.start, panels.x.end);
     let panels = panels.lowered(if curves.len() > 1 { legend.height } else { ABOVE });
-    let mut drawing = Drawing {
+    let mut drawing = FrictionDrawing {
         canvas: Canvas::new(COLUMN_WIDTH, panels.bottom()),
         panels,
         axes,
@@ -68,7 +70,7 @@ pub fn friction(curves: &[FrictionCurve], axes: &FrictionAxes) -> Result<Picture
     drawing.canvas.finish()
 }
 
-struct Drawing<'a> {
+struct FrictionDrawing<'a> {
     canvas: Canvas,
     panels: Panels,
     axes: &'a FrictionAxes,
@@ -76,7 +78,7 @@ struct Drawing<'a> {
     placer: Placer,
 }
 
-impl Drawing<'_> {
+impl FrictionDrawing<'_> {
     /// One curve with its marks.
     fn draw_one(&mut self, curve: &FrictionCurve) {
         let Panels {
@@ -84,7 +86,7 @@ impl Drawing<'_> {
             mu,
             sliding,
         } = self.panels;
-        let is_window = |window: &Kinetic| drawable(window.mean) && window.from < window.to;
+        let is_window = |window: &KineticLine| drawable(window.mean) && window.from < window.to;
         let window = curve.kinetic.filter(is_window);
         if let Some(window) = &window {
             self.shade_window(window);
@@ -110,7 +112,7 @@ impl Drawing<'_> {
     }
 
     /// Names the line of the first slip and the window of kinetic friction.
-    fn write_above(&mut self, first_slip: Option<f64>, window: Option<&Kinetic>) {
+    fn write_above(&mut self, first_slip: Option<f64>, window: Option<&KineticLine>) {
         let panel = self.panels.area(&self.panels.mu);
         let baseline = panel.y - 14.0;
         // Centred on what it names, between two ends.
@@ -157,7 +159,7 @@ impl Drawing<'_> {
     }
 
     /// Shades the window of kinetic friction in both panels, and the uncertainty of its mean.
-    fn shade_window(&mut self, window: &Kinetic) {
+    fn shade_window(&mut self, window: &KineticLine) {
         let Panels {
             x: across,
             mu,
@@ -195,7 +197,7 @@ impl Drawing<'_> {
 
     /// Draws the dots of these marks, each with its label, that of the peak first: it is the longest.
     fn draw_marks(&mut self, marks: &[Mark]) {
-        let dots: Vec<Point> = marks.iter().map(|mark| mark.at).collect();
+        let dots: Vec<CanvasPoint> = marks.iter().map(|mark| mark.at).collect();
         for (x, y) in &dots {
             self.placer
                 .take(Area::new(x - DOT, y - DOT, 2.0 * DOT, 2.0 * DOT));
@@ -220,7 +222,7 @@ impl Drawing<'_> {
 
 /// A point of a curve that is marked by a dot.
 struct Mark {
-    at: Point,
+    at: CanvasPoint,
     /// The instants there.
     letters: Vec<String>,
     /// Friction there, if it is the peak.
@@ -241,7 +243,7 @@ impl Mark {
 
 /// The peak of a curve, if one is given, and its instants, as far as they lie in the panel. Those whose dots would cover each other are
 /// one mark: their letters could not be told apart.
-fn marks(panels: &Panels, curve: &FrictionCurve, peak: Option<Point>) -> Vec<Mark> {
+fn marks(panels: &Panels, curve: &FrictionCurve, peak: Option<CanvasPoint>) -> Vec<Mark> {
     let mark = |at, letters, peak| Mark { at, letters, peak };
     let peak = peak.and_then(|(x, value)| Some(mark(panels.point((x, value))?, Vec::new(), Some(value))));
     let mut marks: Vec<Mark> = peak.into_iter().collect();
@@ -260,7 +262,7 @@ fn marks(panels: &Panels, curve: &FrictionCurve, peak: Option<Point>) -> Vec<Mar
 }
 
 /// The mean and, if known, its uncertainty, with as many digits as that deserves.
-fn with_uncertainty(window: &Kinetic) -> String {
+fn with_uncertainty(window: &KineticLine) -> String {
     let Some(uncertainty) = window.uncertainty.filter(|&u| u > 0.0 && drawable(u)) else {
         return number(window.mean, 3);
     };
@@ -302,7 +304,7 @@ mod tests {
             x,
             first_slip: Some(71.0),
             peak: Some((78.0, 0.883)),
-            kinetic: Some(Kinetic {
+            kinetic: Some(KineticLine {
                 from: 161.0,
                 to: 267.0,
                 mean: 0.53,
@@ -399,7 +401,7 @@ mod tests {
             FrictionCurve {
                 peak: Some((9.0, f64::NAN)),
                 first_slip: Some(f64::NAN),
-                kinetic: Some(Kinetic {
+                kinetic: Some(KineticLine {
                     from: f64::NAN,
                     to: 1.0,
                     mean: 1.0,

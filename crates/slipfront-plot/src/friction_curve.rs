@@ -47,14 +47,14 @@ pub struct FrictionCurve {
     /// Where the peak is, and friction there.
     pub peak: Option<(f64, f64)>,
     /// The window of kinetic friction.
-    pub kinetic: Option<Kinetic>,
+    pub kinetic: Option<KineticLine>,
     /// Instants to letter.
     pub instants: Vec<Instant>,
 }
 
 /// Kinetic friction: its mean over a window.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Kinetic {
+pub struct KineticLine {
     /// Where the window begins.
     pub from: f64,
     /// Where the window ends.

@@ -1,10 +1,10 @@
 //! The two panels of a friction picture: friction above, N* below, on one axis of time or path.
 
-use crate::axis::{Axis, range};
+use crate::axis::{DrawnAxis, range};
 use crate::canvas::Canvas;
 use crate::frame::{LOWER_ROOM, left_room, left_side, lower_title, right_end};
 use crate::friction_curve::{FrictionAxes, FrictionCurve};
-use crate::geometry::{Area, Point};
+use crate::geometry::{Area, CanvasPoint};
 use crate::style::{BLACK, COLUMN_WIDTH, MARGIN, SIZE_LABEL, TICK_LENGTH, WIDTH_LEADER};
 use crate::text::Text;
 use crate::ticks::{Direction, MAX_STEPS, Tick};
@@ -15,9 +15,9 @@ const GAP: f64 = 34.0;
 
 #[derive(Clone, Copy)]
 pub(crate) struct Panels {
-    pub(crate) x: Axis,
-    pub(crate) mu: Axis,
-    pub(crate) sliding: Axis,
+    pub(crate) x: DrawnAxis,
+    pub(crate) mu: DrawnAxis,
+    pub(crate) sliding: DrawnAxis,
 }
 
 impl Panels {
@@ -39,19 +39,20 @@ impl Panels {
         let room = 0.1 * (hi - lo);
         let mu_bottom = MARGIN + HEIGHT_FRICTION;
         let sliding_top = mu_bottom + GAP;
-        let mu = Axis::linear(if lo == 0.0 { lo } else { lo - room }, hi + room).placed(mu_bottom, MARGIN);
-        let sliding = Axis::linear(0.0, 100.0).placed(sliding_top + HEIGHT_SLIDING, sliding_top);
+        let mu =
+            DrawnAxis::linear(if lo == 0.0 { lo } else { lo - room }, hi + room).placed(mu_bottom, MARGIN);
+        let sliding = DrawnAxis::linear(0.0, 100.0).placed(sliding_top + HEIGHT_SLIDING, sliding_top);
         let left = left_room(&[mu_ticks(&mu), sliding_ticks(&sliding)].concat());
         // The last number on the axis may stand half beyond its end.
         let right = COLUMN_WIDTH.round() - 28.0;
-        let x = Axis::linear(from, to).placed(left, right);
+        let x = DrawnAxis::linear(from, to).placed(left, right);
         let x = x.placed(left, right_end(&x_ticks(&x), left, right, COLUMN_WIDTH));
         Self { x, mu, sliding }
     }
 
     /// These panels, further down.
     pub(crate) fn lowered(self, by: f64) -> Self {
-        let lowered = |axis: Axis| axis.placed(axis.start + by, axis.end + by);
+        let lowered = |axis: DrawnAxis| axis.placed(axis.start + by, axis.end + by);
         Self {
             mu: lowered(self.mu),
             sliding: lowered(self.sliding),
@@ -60,12 +61,12 @@ impl Panels {
     }
 
     /// The panel of friction or of sliding.
-    pub(crate) fn area(&self, axis: &Axis) -> Area {
+    pub(crate) fn area(&self, axis: &DrawnAxis) -> Area {
         Area::between(self.x.start, self.x.end, axis.start, axis.end)
     }
 
     /// The pixel of a point that lies in the panel of friction.
-    pub(crate) fn point(&self, (x, mu): Point) -> Option<Point> {
+    pub(crate) fn point(&self, (x, mu): CanvasPoint) -> Option<CanvasPoint> {
         let is_inside = self.x.contains(x) && self.mu.contains(mu);
         is_inside.then(|| (self.x.at(x), self.mu.at(mu)))
     }
@@ -104,15 +105,15 @@ impl Panels {
     }
 }
 
-fn x_ticks(x: &Axis) -> Vec<Tick> {
+fn x_ticks(x: &DrawnAxis) -> Vec<Tick> {
     x.ticks(Direction::X, MAX_STEPS)
 }
 
-fn mu_ticks(mu: &Axis) -> Vec<Tick> {
+fn mu_ticks(mu: &DrawnAxis) -> Vec<Tick> {
     mu.ticks(Direction::Y, MAX_STEPS)
 }
 
-fn sliding_ticks(sliding: &Axis) -> Vec<Tick> {
+fn sliding_ticks(sliding: &DrawnAxis) -> Vec<Tick> {
     sliding.ticks(Direction::Y, 2)
 }
 

@@ -1,6 +1,6 @@
 //! How slip has spread: when every block has first slipped, and what slides where and when along the drive.
 
-use crate::axis::{Axis, range};
+use crate::axis::{DrawnAxis, range};
 use crate::canvas::Canvas;
 use crate::cell_means::CellMeans;
 use crate::color_bar::{ABOVE, ColourBar};
@@ -93,7 +93,7 @@ fn is_above(ratio: f64) -> bool {
 /// A lattice without blocks, an array of the wrong length, a block size that is not a positive length, no instant.
 pub fn front(map: &FrontMap, space_time: &SpaceTime) -> Result<Picture, PictureError> {
     check(map, space_time)?;
-    let layout = Layout::of(map, space_time);
+    let layout = FrontLayout::of(map, space_time);
     let mut canvas = Canvas::new(layout.width, layout.height);
     draw_map(&mut canvas, map, &layout);
     draw_space_time(&mut canvas, space_time, &layout);
@@ -119,15 +119,15 @@ fn check(map: &FrontMap, space_time: &SpaceTime) -> Result<(), PictureError> {
 }
 
 /// A panel with its axes and its colour bar.
-struct Panel {
+struct FrontPanel {
     area: Area,
     /// Where the room left of it begins.
     edge: f64,
-    axes: [Axis; 2],
+    axes: [DrawnAxis; 2],
     bar: ColourBar,
 }
 
-impl Panel {
+impl FrontPanel {
     fn draw_axes(&self, canvas: &mut Canvas, [x_title, y_title]: [&str; 2]) {
         let area = self.area;
         canvas.frame(area);
@@ -153,7 +153,7 @@ impl Panel {
 }
 
 /// Numbers along a side, fewer along a short one.
-fn ticks(axis: Axis, area: Area, direction: Direction) -> Vec<Tick> {
+fn ticks(axis: DrawnAxis, area: Area, direction: Direction) -> Vec<Tick> {
     let (axis, side) = match direction {
         Direction::X => (axis.placed(area.x, area.right()), area.width),
         Direction::Y => (axis.placed(area.bottom(), area.y), area.height),
@@ -162,33 +162,33 @@ fn ticks(axis: Axis, area: Area, direction: Direction) -> Vec<Tick> {
 }
 
 /// Where everything is.
-struct Layout {
+struct FrontLayout {
     width: f64,
     height: f64,
-    map: Panel,
-    space_time: Panel,
+    map: FrontPanel,
+    space_time: FrontPanel,
     /// Titles of the axes of the map, and of the places of the other panel.
     titles: [String; 3],
 }
 
-impl Layout {
+impl FrontLayout {
     fn of(map: &FrontMap, space_time: &SpaceTime) -> Self {
         let lengths = [map.nx, map.ny].map(|count| count as f64 * map.block_size);
         let units = lengths.map(unit_of);
-        let sides = [0, 1].map(|axis| Axis::linear(0.0, lengths[axis] * units[axis].1));
+        let sides = [0, 1].map(|axis| DrawnAxis::linear(0.0, lengths[axis] * units[axis].1));
         let [from, to] = space_time.places;
         let (place_unit, factor) = unit_of(from.abs().max(to.abs()));
         let around = |[from, to]: [f64; 2]| {
             let (lo, hi) = range([from, to].into_iter());
-            Axis::linear(lo, hi)
+            DrawnAxis::linear(lo, hi)
         };
         let axes = [around([from * factor, to * factor]), around(space_time.times)];
         let first_slips: [f64; 2] = range(quantiles(&map.first_slips).into_iter()).into();
         let map_bar = |height| ColourBar::labelled("first slip t*", first_slips, height);
         let bar = |height| ColourBar::labelled("share that slides", [0.0, 1.0], height);
-        let left = |axis: Axis| left_room(&axis.placed(MAX_SIDE, 0.0).ticks(Direction::Y, 5));
+        let left = |axis: DrawnAxis| left_room(&axis.placed(MAX_SIDE, 0.0).ticks(Direction::Y, 5));
         let [map_left, left] = [left(sides[1]), left(axes[1])];
-        let panel = |area: Area, room: f64, axes: [Axis; 2], bar: ColourBar| Panel {
+        let panel = |area: Area, room: f64, axes: [DrawnAxis; 2], bar: ColourBar| FrontPanel {
             edge: area.x - room,
             area,
             axes,
@@ -250,7 +250,7 @@ fn quantiles(times: &[f32]) -> [f64; 2] {
     [at(0.0), at(0.98)]
 }
 
-fn draw_map(canvas: &mut Canvas, map: &FrontMap, layout: &Layout) {
+fn draw_map(canvas: &mut Canvas, map: &FrontMap, layout: &FrontLayout) {
     let (area, panel) = (layout.map.area, &layout.map);
     let [columns, rows] = CellMeans::cells(map.nx, map.ny);
     Cells::of(map.nx, map.ny, &map.textured).draw(canvas, area, &map.first_slips, panel.bar.range);
@@ -300,7 +300,7 @@ fn levels([lo, hi]: [f64; 2], first_slips: &[f32], means: &[f32], side: usize) -
     }
 }
 
-fn draw_space_time(canvas: &mut Canvas, space_time: &SpaceTime, layout: &Layout) {
+fn draw_space_time(canvas: &mut Canvas, space_time: &SpaceTime, layout: &FrontLayout) {
     let panel = &layout.space_time;
     let rows = space_time.shares.len() / space_time.columns;
     let means = CellMeans::of(space_time.columns, rows, space_time.shares.iter().copied());
@@ -360,7 +360,7 @@ mod tests {
             (1000, 300),
         ] {
             let (map, space_time) = (map(nx, ny), space_time(nx.min(1024), 90));
-            let layout = Layout::of(&map, &space_time);
+            let layout = FrontLayout::of(&map, &space_time);
             assert!(layout.width <= TEXT_WIDTH + 12.0, "{nx} x {ny}: {}", layout.width);
             for panel in [&layout.map, &layout.space_time] {
                 assert!(

@@ -1,6 +1,6 @@
 //! Points (x, y) and rectangles of a picture, in pixels, y downwards.
 
-pub(crate) type Point = (f64, f64);
+pub(crate) type CanvasPoint = (f64, f64);
 
 #[derive(Clone, Copy, Default)]
 pub(crate) struct Area {
@@ -33,7 +33,7 @@ impl Area {
         self.y + self.height
     }
 
-    pub(crate) fn centre(&self) -> Point {
+    pub(crate) fn centre(&self) -> CanvasPoint {
         (self.x + 0.5 * self.width, self.y + 0.5 * self.height)
     }
 }

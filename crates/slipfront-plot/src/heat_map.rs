@@ -1,6 +1,6 @@
 //! A quantity over two axes of a parametric study.
 
-use crate::axis::{Axis, drawable, range, widened};
+use crate::axis::{DrawnAxis, drawable, range, widened};
 use crate::canvas::Canvas;
 use crate::color_bar::ColourBar;
 use crate::color_image::{Image, level, level_colour};
@@ -66,7 +66,7 @@ pub struct HeatAxis {
 /// An axis without values, with one that is not a number, or with the same one twice; as many values as there
 /// are cells are needed.
 pub fn heat_map(map: &HeatMap) -> Result<Picture, PictureError> {
-    let (mut x, mut y) = (Cells::of(&map.x)?, Cells::of(&map.y)?);
+    let (mut x, mut y) = (HeatCells::of(&map.x)?, HeatCells::of(&map.y)?);
     let values = in_order([&x, &y], &map.values)?;
     let half_widths = if map.half_widths.is_empty() {
         vec![f64::NAN; values.len()]
@@ -133,7 +133,7 @@ pub fn heat_map(map: &HeatMap) -> Result<Picture, PictureError> {
 }
 
 /// Values of cells in the order in which they are drawn; NaN in place of what cannot be.
-fn in_order([x, y]: [&Cells; 2], values: &[f64]) -> Result<Vec<f64>, PictureError> {
+fn in_order([x, y]: [&HeatCells; 2], values: &[f64]) -> Result<Vec<f64>, PictureError> {
     let (columns, rows) = (x.values.len(), y.values.len());
     if columns.checked_mul(rows) != Some(values.len()) {
         let values = values.len();
@@ -151,7 +151,7 @@ fn in_order([x, y]: [&Cells; 2], values: &[f64]) -> Result<Vec<f64>, PictureErro
 }
 
 /// Draws a cross in the lower left corner of the cells that are not whole.
-fn draw_crosses(canvas: &mut Canvas, [x, y]: [&Cells; 2], crossed: &[f64]) {
+fn draw_crosses(canvas: &mut Canvas, [x, y]: [&HeatCells; 2], crossed: &[f64]) {
     /// From the corner to the middle of the cross.
     const INSET: f64 = 14.0;
     let (edges_x, edges_y, columns) = (x.edges(), y.edges(), x.values.len());
@@ -172,7 +172,7 @@ fn median(values: &[f64]) -> f64 {
 fn draw_panel(
     canvas: &mut Canvas,
     area: Area,
-    [x, y]: [&Cells; 2],
+    [x, y]: [&HeatCells; 2],
     (values, bar): (&[f64], &ColourBar),
     texts: Option<Vec<Vec<Text>>>,
     [x_title, y_title]: [&str; 2],
@@ -197,8 +197,8 @@ fn draw_panel(
 }
 
 /// The cells along an axis, in rising order.
-struct Cells {
-    axis: Axis,
+struct HeatCells {
+    axis: DrawnAxis,
     /// The index of every cell among the axis' values.
     order: Vec<usize>,
     values: Vec<f64>,
@@ -206,7 +206,7 @@ struct Cells {
     edges: Vec<f64>,
 }
 
-impl Cells {
+impl HeatCells {
     fn of(axis: &HeatAxis) -> Result<Self, PictureError> {
         let error = |reason| PictureError::CellAxis {
             title: axis.title.clone(),
@@ -221,7 +221,7 @@ impl Cells {
         let mut order: Vec<usize> = (0..axis.values.len()).collect();
         order.sort_by(|&a, &b| axis.values[a].total_cmp(&axis.values[b]));
         let values: Vec<f64> = order.iter().map(|&index| axis.values[index]).collect();
-        let whole = Axis::around(&values, axis.log, 0.0);
+        let whole = DrawnAxis::around(&values, axis.log, 0.0);
         let measured: Vec<f64> = values.iter().map(|&value| whole.measure(value)).collect();
         if measured.windows(2).any(|pair| pair[0] >= pair[1]) {
             return Err(error("two values are the same"));
@@ -237,7 +237,7 @@ impl Cells {
         edges.insert(0, lo);
         edges.push(hi);
         Ok(Self {
-            axis: Axis::between(lo, hi, whole.is_log),
+            axis: DrawnAxis::between(lo, hi, whole.is_log),
             order,
             values,
             edges,
@@ -306,7 +306,7 @@ fn draw_blank(canvas: &mut Canvas, bar: Area) {
 }
 
 /// The cells as an image with a pixel for every pixel of the picture: an image's own columns are all alike.
-fn image(area: Area, x: &Cells, y: &Cells, values: &[f64], range: [f64; 2]) -> Image {
+fn image(area: Area, x: &HeatCells, y: &HeatCells, values: &[f64], range: [f64; 2]) -> Image {
     let (columns, rows) = (area.width as usize, area.height as usize);
     let (edges_x, edges_y) = (x.edges(), y.edges());
     // The cell is the last one that starts before the pixel's middle.
@@ -332,8 +332,8 @@ fn image(area: Area, x: &Cells, y: &Cells, values: &[f64], range: [f64; 2]) -> I
 
 /// The lines in every cell, its value and its half width if it has one; none if they have no room.
 fn cell_texts(
-    x: &Cells,
-    y: &Cells,
+    x: &HeatCells,
+    y: &HeatCells,
     values: &[f64],
     half_widths: &[f64],
     [lo, hi]: [f64; 2],
@@ -390,7 +390,7 @@ fn plus_minus(half: f64, decimals: usize) -> String {
 /// Writes its lines into every cell.
 fn draw_numbers(
     canvas: &mut Canvas,
-    [x, y]: [&Cells; 2],
+    [x, y]: [&HeatCells; 2],
     texts: &[Vec<Text>],
     (values, range): (&[f64], [f64; 2]),
 ) {
@@ -442,10 +442,10 @@ mod tests {
 
     #[test]
     fn cells_reach_half_way_to_their_neighbours() {
-        let cells = Cells::of(&axis(&[4.0, 1.0, 2.0], false)).unwrap();
+        let cells = HeatCells::of(&axis(&[4.0, 1.0, 2.0], false)).unwrap();
         assert_eq!(cells.order, [1, 2, 0]);
         assert_eq!(cells.edges, [0.5, 1.5, 3.0, 5.0]);
-        let cells = Cells::of(&axis(&[1.0, 100.0], true)).unwrap();
+        let cells = HeatCells::of(&axis(&[1.0, 100.0], true)).unwrap();
         assert_eq!(cells.edges, [-1.0, 1.0, 3.0]);
     }
 

@@ -1,6 +1,6 @@
 //! Places labels near what they name, clear of each other and, where there is room, of the curve.
 
-use crate::geometry::{Area, Point};
+use crate::geometry::{Area, CanvasPoint};
 
 /// Labels keep so far from each other.
 const CLEARANCE: f64 = 5.0;
@@ -10,7 +10,7 @@ const CLEARANCE: f64 = 5.0;
 pub(crate) struct Placer {
     bounds: Area,
     taken: Vec<Area>,
-    lines: Vec<[Point; 2]>,
+    lines: Vec<[CanvasPoint; 2]>,
 }
 
 /// A possible place of a label, and how unwelcome it is: pixels away from the best one.
@@ -18,7 +18,7 @@ pub(crate) struct Candidate {
     pub(crate) area: Area,
     pub(crate) penalty: f64,
     /// The line that would join label and point.
-    pub(crate) leader: Option<[Point; 2]>,
+    pub(crate) leader: Option<[CanvasPoint; 2]>,
 }
 
 impl Placer {
@@ -35,7 +35,7 @@ impl Placer {
     }
 
     /// Asks labels to keep off the line through these points.
-    pub(crate) fn avoid(&mut self, points: &[Point]) {
+    pub(crate) fn avoid(&mut self, points: &[CanvasPoint]) {
         let segments = points.windows(2).map(|pair| [pair[0], pair[1]]);
         self.lines.extend(segments);
     }
@@ -89,7 +89,11 @@ impl Placer {
 
 /// Places around `point` for a label of this size, near ones first. Far ones get a leader, and so do those which one of the
 /// other `dots` is as near to: there it would be taken for theirs.
-pub(crate) fn around(point: Point, (width, height): (f64, f64), dots: &[Point]) -> Vec<Candidate> {
+pub(crate) fn around(
+    point: CanvasPoint,
+    (width, height): (f64, f64),
+    dots: &[CanvasPoint],
+) -> Vec<Candidate> {
     let mut candidates = Vec::new();
     for gap in [14.0, 22.0, 34.0, 50.0, 70.0, 95.0, 130.0, 180.0] {
         for step in 0..24 {
@@ -101,13 +105,13 @@ pub(crate) fn around(point: Point, (width, height): (f64, f64), dots: &[Point]) 
             let y = point.1 + sin * (gap + 0.5 * height) - 0.5 * height;
             let area = Area::new(x, y, width, height);
             let (right, bottom) = (area.right() + 3.0, area.bottom() + 3.0);
-            let to_label = |dot: Point| {
+            let to_label = |dot: CanvasPoint| {
                 let nearest = (dot.0.clamp(x - 3.0, right), dot.1.clamp(y - 3.0, bottom));
                 (nearest.0 - dot.0, nearest.1 - dot.1)
             };
             let (dx, dy) = to_label(point);
             let distance = libm::hypot(dx, dy);
-            let is_near = |&dot: &Point| {
+            let is_near = |&dot: &CanvasPoint| {
                 let (dx, dy) = to_label(dot);
                 dot != point && libm::hypot(dx, dy) < 1.5 * distance
             };
@@ -142,7 +146,7 @@ pub(crate) fn overlap(a: &Area, b: &Area) -> bool {
 }
 
 /// True when part of the segment lies in the area (Liang and Barsky's clipping).
-fn crosses([from, to]: [Point; 2], area: &Area) -> bool {
+fn crosses([from, to]: [CanvasPoint; 2], area: &Area) -> bool {
     let (mut enters, mut leaves) = (0.0f64, 1.0f64);
     for (start, step, lo, hi) in [
         (from.0, to.0 - from.0, area.x, area.right()),

@@ -3,7 +3,7 @@
 use crate::canvas::Canvas;
 use crate::cell_means::CellMeans;
 use crate::color_image::{Image, level};
-use crate::geometry::{Align, Area, Point};
+use crate::geometry::{Align, Area, CanvasPoint};
 use crate::mask_outline::outline;
 use crate::picture::PictureError;
 use crate::style::{BLACK, RADIUS_MARKER, Rgb, SIZE_LABEL, SIZE_TICK, WHITE, WIDTH_MARK};
@@ -91,7 +91,7 @@ impl Cells {
         let (columns, rows) = (self.columns as f64, self.rows as f64);
         let corner = |&(x, y): &(usize, usize)| place(area, (x as f64 / columns, y as f64 / rows));
         let lines = self.outlines.iter();
-        let lines: Vec<Vec<Point>> = lines.map(|line| line.iter().map(corner).collect()).collect();
+        let lines: Vec<Vec<CanvasPoint>> = lines.map(|line| line.iter().map(corner).collect()).collect();
         // As wide as a stripe of the same area and edge is, the texture or what lies between.
         let edge: f64 = lines.iter().map(|line| length(line)).sum();
         let share = self.textured_share.min(1.0 - self.textured_share);
@@ -104,7 +104,7 @@ impl Cells {
 }
 
 /// The point of a map at these fractions of the lattice's sides.
-pub(crate) fn place(area: Area, (x, y): Point) -> Point {
+pub(crate) fn place(area: Area, (x, y): CanvasPoint) -> CanvasPoint {
     (area.x + x * area.width, area.bottom() - y * area.height)
 }
 
@@ -114,25 +114,25 @@ pub(crate) const MARK: Rgb = [0xd5, 0x2b, 0x1e];
 const MARK_CORNERS: usize = 24;
 
 /// A circle with a pale rim, seen on every colour of the ramp.
-pub(crate) fn circle(canvas: &mut Canvas, (x, y): Point, colour: Rgb) {
+pub(crate) fn circle(canvas: &mut Canvas, (x, y): CanvasPoint, colour: Rgb) {
     let corner = |k: usize| {
         let (sin, cos) = libm::sincos(std::f64::consts::TAU * k as f64 / MARK_CORNERS as f64);
         (x + 1.5 * RADIUS_MARKER * cos, y + 1.5 * RADIUS_MARKER * sin)
     };
-    let mut circle: Vec<Point> = (0..MARK_CORNERS).map(corner).collect();
+    let mut circle: Vec<CanvasPoint> = (0..MARK_CORNERS).map(corner).collect();
     circle.push(circle[0]);
     rimmed_line(canvas, circle, WIDTH_MARK, colour);
 }
 
 /// A line with a pale rim, seen on every colour of the ramp.
-fn rimmed_line(canvas: &mut Canvas, points: Vec<Point>, width: f64, colour: Rgb) {
+fn rimmed_line(canvas: &mut Canvas, points: Vec<CanvasPoint>, width: f64, colour: Rgb) {
     canvas.polyline(points.clone(), 2.2 * width, WHITE);
     canvas.polyline(points, width, colour);
 }
 
 /// The length of a line through points that are joined along x or y.
-fn length(points: &[Point]) -> f64 {
-    let step = |pair: &[Point]| (pair[0].0 - pair[1].0).abs() + (pair[0].1 - pair[1].1).abs();
+fn length(points: &[CanvasPoint]) -> f64 {
+    let step = |pair: &[CanvasPoint]| (pair[0].0 - pair[1].0).abs() + (pair[0].1 - pair[1].1).abs();
     points.windows(2).map(step).sum()
 }
 

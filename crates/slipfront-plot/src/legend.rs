@@ -1,7 +1,7 @@
 //! The legend above a panel with several curves or bars.
 
 use crate::canvas::Canvas;
-use crate::geometry::{Align, Area, Point};
+use crate::geometry::{Align, Area, CanvasPoint};
 use crate::series::marker;
 use crate::short_names::fitted_names;
 use crate::style::{BLACK, MARGIN, OPACITY_BAR, RADIUS_MARKER, SIZE_TICK, bar_colour, curve_style};
@@ -13,13 +13,13 @@ pub(crate) struct Legend {
     /// How much room it takes above the panels.
     pub(crate) height: f64,
     title: Text,
-    title_at: Point,
+    title_at: CanvasPoint,
     entries: Vec<Entry>,
 }
 
 /// What stands before a name.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Sample {
+pub(crate) enum LegendSample {
     Line,
     /// A line with the curve's marker.
     Marker,
@@ -28,7 +28,7 @@ pub(crate) enum Sample {
 }
 
 struct Entry {
-    sample: Sample,
+    sample: LegendSample,
     x: f64,
     y: f64,
     text: Text,
@@ -44,7 +44,7 @@ const COLUMN_GAP: f64 = 30.0;
 impl Legend {
     /// Places the names in rows between `left` and `right`, from the top of the picture down, with the title before
     /// them, or above them if it is long. Without a name there is no legend.
-    pub(crate) fn of(title: &str, names: &[(&str, Sample)], left: f64, right: f64) -> Self {
+    pub(crate) fn of(title: &str, names: &[(&str, LegendSample)], left: f64, right: f64) -> Self {
         if names.is_empty() {
             return Self::default();
         }
@@ -81,13 +81,13 @@ impl Legend {
         for (index, entry) in self.entries.iter().enumerate() {
             let (x, y, style) = (entry.x, entry.y, curve_style(index));
             let (middle, end) = (x + 0.5 * SAMPLE_WIDTH, x + SAMPLE_WIDTH);
-            if entry.sample == Sample::Patch {
+            if entry.sample == LegendSample::Patch {
                 let patch = Area::new(middle - 14.0, y - 12.0, 28.0, 24.0);
                 canvas.fill(patch, bar_colour(index, self.entries.len()), OPACITY_BAR);
             } else {
                 canvas.curve(vec![(x, y), (end, y)], style);
             }
-            if entry.sample == Sample::Marker {
+            if entry.sample == LegendSample::Marker {
                 marker(canvas, index, (middle, y), RADIUS_MARKER, style.colour);
             }
             let at = (end + NAME_GAP, y + 0.5 * entry.text.height());

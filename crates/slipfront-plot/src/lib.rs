@@ -51,7 +51,7 @@ pub use bars::{Bar, BarChart, BarGroup, bars};
 pub use cell_means::CellMeans;
 pub use field_maps::{FieldMap, FieldMaps, field_maps};
 pub use friction::{FRICTION_BYTES, friction};
-pub use friction_curve::{FrictionAxes, FrictionCurve, Instant, Kinetic};
+pub use friction_curve::{FrictionAxes, FrictionCurve, Instant, KineticLine};
 pub use front::{FrontMap, SpaceTime, front, front_bytes};
 pub use gif_file::MovieGif;
 pub use heat_map::{HeatAxis, HeatMap, heat_map};

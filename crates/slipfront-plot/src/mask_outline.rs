@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 /// An edge between a textured block, on its left, and another one: y and x of the corner where it starts, and the
 /// index of its direction.
-type Edge = (usize, usize, usize);
+type PixelEdge = (usize, usize, usize);
 
 /// The directions from a corner: right, up, left, down.
 const DIRECTIONS: [(isize, isize); 4] = [(1, 0), (0, 1), (-1, 0), (0, -1)];
@@ -17,8 +17,9 @@ pub fn outline(textured: &[bool], nx: usize, ny: usize) -> Vec<Vec<(usize, usize
     let mut edges = edges(textured, nx, ny);
     // Open chains first: they must be entered at an end. A closed one is then entered at its first corner in
     // this order, which is never in the middle of a straight line.
-    let is_at_border = |&(y, x, _): &Edge| x == 0 || y == 0 || x == nx || y == ny;
-    let (border, inside): (Vec<Edge>, Vec<Edge>) = edges.iter().partition(|edge| is_at_border(edge));
+    let is_at_border = |&(y, x, _): &PixelEdge| x == 0 || y == 0 || x == nx || y == ny;
+    let (border, inside): (Vec<PixelEdge>, Vec<PixelEdge>) =
+        edges.iter().partition(|edge| is_at_border(edge));
     let mut chains = Vec::new();
     for edge in border.into_iter().chain(inside) {
         if edges.contains(&edge) {
@@ -28,7 +29,7 @@ pub fn outline(textured: &[bool], nx: usize, ny: usize) -> Vec<Vec<(usize, usize
     chains
 }
 
-fn edges(textured: &[bool], nx: usize, ny: usize) -> BTreeSet<Edge> {
+fn edges(textured: &[bool], nx: usize, ny: usize) -> BTreeSet<PixelEdge> {
     let mut edges = BTreeSet::new();
     for block in (0..textured.len()).filter(|&block| textured[block]) {
         let (x, y) = (block % nx, block / nx);
@@ -48,7 +49,7 @@ fn edges(textured: &[bool], nx: usize, ny: usize) -> BTreeSet<Edge> {
 }
 
 /// The corners of the chain that starts with this edge; its edges are removed.
-fn follow(edges: &mut BTreeSet<Edge>, (mut y, mut x, mut direction): Edge) -> Vec<(usize, usize)> {
+fn follow(edges: &mut BTreeSet<PixelEdge>, (mut y, mut x, mut direction): PixelEdge) -> Vec<(usize, usize)> {
     let mut chain = vec![(x, y)];
     loop {
         edges.remove(&(y, x, direction));

@@ -3,17 +3,17 @@
 //! Pictures of a movie have 800 x 400 pixels of 256 colours at the most. They are drawn twice as large, and every pixel is the mean of
 //! four, so that letters are as large as in the other pictures beside their lines.
 
-use crate::axis::Axis;
+use crate::axis::DrawnAxis;
 use crate::canvas::Canvas;
 use crate::cell_means::CellMeans;
 use crate::frame::{BAR_WIDTH, bar_room, colour_bar, left_room, left_side, lower_side};
 use crate::friction_curve::{FrictionAxes, FrictionCurve};
-use crate::geometry::{Align, Area, Point};
+use crate::geometry::{Align, Area, CanvasPoint};
 use crate::label_placement::{Placer, around};
 use crate::lattice_map::{Cells, MARK, MIN_RATIO, block_count, check_length, draw_titles};
 use crate::movie_colours::Colours;
 use crate::picture::{PictureError, check_columns};
-use crate::raster::Ground;
+use crate::raster::Pixels;
 use crate::series::segments;
 use crate::style::{
     BLACK, CURVES, GREY, MARGIN, RADIUS_MARKER, SIZE_LABEL, SIZE_TICK, WIDTH_CURVE, WIDTH_LEADER, WIDTH_MARK,
@@ -82,11 +82,11 @@ pub struct MoviePictures<'a> {
     cells: Cells,
     colours: Colours,
     /// What is the same in all pictures.
-    ground: Ground,
+    ground: Pixels,
     map: Area,
     bar: Area,
-    x: Axis,
-    mu: Axis,
+    x: DrawnAxis,
+    mu: DrawnAxis,
 }
 
 impl<'a> MoviePictures<'a> {
@@ -117,7 +117,7 @@ impl<'a> MoviePictures<'a> {
         let times = movie.frames.iter().map(|frame| frame.time_star);
         let times: Vec<f64> = curve.x.iter().copied().chain(times).collect();
         let frictions: Vec<f64> = curve.friction.iter().copied().chain([0.0]).collect();
-        let mu = Axis::around(&frictions, false, 0.06).placed(CURVE_BOTTOM, TOP);
+        let mu = DrawnAxis::around(&frictions, false, 0.06).placed(CURVE_BOTTOM, TOP);
         let right = DRAWN_PIXELS[0] as f64 - 3.0 * MARGIN;
         let left = CURVE_LEFT + left_room(&mu.ticks(Direction::Y, MAX_STEPS));
         let [width, height] = DRAWN_PIXELS.map(|pixels| pixels as u32);
@@ -125,10 +125,10 @@ impl<'a> MoviePictures<'a> {
             movie,
             cells: Cells::of(movie.nx, movie.ny, &movie.textured),
             colours: Colours::default(),
-            ground: Ground::blank(width, height).ok_or_else(no_memory)?,
+            ground: Pixels::blank(width, height).ok_or_else(no_memory)?,
             map,
             bar,
-            x: Axis::around(&times, false, 0.0).placed(left, right),
+            x: DrawnAxis::around(&times, false, 0.0).placed(left, right),
             mu,
         };
         let mut canvas = blank();
@@ -217,7 +217,7 @@ impl<'a> MoviePictures<'a> {
             placer.avoid(&segment);
             canvas.polyline(segment, WIDTH_CURVE, CURVES[0]);
         }
-        let dots: Vec<Point> = curve
+        let dots: Vec<CanvasPoint> = curve
             .instants
             .iter()
             .map(|instant| (self.x.at(instant.x), self.mu.clamped(instant.friction)))

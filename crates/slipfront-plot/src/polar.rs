@@ -2,11 +2,11 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::axis::{Axis, drawable};
+use crate::axis::{DrawnAxis, drawable};
 use crate::canvas::Canvas;
 use crate::frame::{LOWER_ROOM, lower_side};
-use crate::geometry::{Align, Area, Point};
-use crate::legend::{Legend, Sample};
+use crate::geometry::{Align, Area, CanvasPoint};
+use crate::legend::{Legend, LegendSample};
 use crate::note::Note;
 use crate::picture::{Picture, PictureError};
 use crate::response::{Response, check_curves};
@@ -60,14 +60,14 @@ pub fn polar(polar: &Polar) -> Result<Picture, PictureError> {
     let several = rounds.len() > 1;
     let named = polar.curves.iter().filter(|_| several);
     let names: Vec<_> = named
-        .map(|curve| (curve.label.as_str(), Sample::Marker))
+        .map(|curve| (curve.label.as_str(), LegendSample::Marker))
         .collect();
     let legend = Legend::of(&polar.legend_title, &names, left, right);
     let numbers = f64::from(SIZE_TICK) + GAP + MARGIN;
     let centre = (centre_x, legend.height + numbers + RADIUS);
     // The axis of the radius, from the centre to the right, below the circles.
     let side = Area::new(centre.0, centre.1 + RADIUS + BELOW, RADIUS, 0.0);
-    let radius = Axis::linear(0.0, 1.05 * largest).placed(0.0, RADIUS);
+    let radius = DrawnAxis::linear(0.0, 1.05 * largest).placed(0.0, RADIUS);
     let note = Note::of(&polar.note, centre.0, COLUMN_WIDTH);
 
     let mut canvas = Canvas::new(COLUMN_WIDTH, side.y + LOWER_ROOM + note.height);
@@ -155,7 +155,7 @@ impl Round {
     }
 
     /// The points of a part at these values, back to the first if the curve is closed.
-    fn path(&self, part: &[RoundPoint], ring: &Ring, value: impl Fn(&RoundPoint) -> f64) -> Vec<Point> {
+    fn path(&self, part: &[RoundPoint], ring: &Ring, value: impl Fn(&RoundPoint) -> f64) -> Vec<CanvasPoint> {
         let first = part.first().filter(|_| self.is_closed);
         let points = part.iter().chain(first);
         points.map(|point| ring.at(point.degrees, value(point))).collect()
@@ -164,17 +164,17 @@ impl Round {
 
 /// Where directions and values are.
 struct Ring {
-    centre: Point,
-    radius: Axis,
+    centre: CanvasPoint,
+    radius: DrawnAxis,
 }
 
 impl Ring {
-    fn at(&self, degrees: f64, value: f64) -> Point {
+    fn at(&self, degrees: f64, value: f64) -> CanvasPoint {
         self.around(degrees, self.radius.clamped(value))
     }
 
     /// The point of this direction and radius in pixels.
-    fn around(&self, degrees: f64, radius: f64) -> Point {
+    fn around(&self, degrees: f64, radius: f64) -> CanvasPoint {
         let (sine, cosine) = libm::sincos(degrees.to_radians());
         (self.centre.0 + radius * cosine, self.centre.1 - radius * sine)
     }
@@ -319,7 +319,7 @@ mod tests {
     fn directions_and_values_have_their_places() {
         let ring = Ring {
             centre: (100.0, 100.0),
-            radius: Axis::linear(0.0, 2.0).placed(0.0, 50.0),
+            radius: DrawnAxis::linear(0.0, 2.0).placed(0.0, 50.0),
         };
         for (degrees, value, (x, y)) in [
             (0.0, 1.0, (125.0, 100.0)),

@@ -8,12 +8,12 @@ use tiny_skia::{
 use crate::canvas::{Canvas, Element, Primitive};
 use crate::color_image::{Image, palette};
 use crate::font;
-use crate::geometry::Point;
+use crate::geometry::CanvasPoint;
 use crate::style::Rgb;
 
 /// Red, green and blue of every pixel, row by row; none if there are too many for the memory.
 pub(crate) fn rgb(canvas: &Canvas) -> Option<Vec<u8>> {
-    let mut ground = Ground::blank(canvas.width as u32, canvas.height as u32)?;
+    let mut ground = Pixels::blank(canvas.width as u32, canvas.height as u32)?;
     ground.draw(canvas);
     // In place, without opacity, which is full: the page is white below everything.
     let mut bytes = ground.0.take();
@@ -27,9 +27,9 @@ pub(crate) fn rgb(canvas: &Canvas) -> Option<Vec<u8>> {
 
 /// Pixels on which canvases are drawn, one over the other.
 #[derive(Clone)]
-pub(crate) struct Ground(Pixmap);
+pub(crate) struct Pixels(Pixmap);
 
-impl Ground {
+impl Pixels {
     /// White pixels; none if there are too many for the memory.
     pub(crate) fn blank(width: u32, height: u32) -> Option<Self> {
         let mut pixmap = Pixmap::new(width, height)?;
@@ -92,7 +92,7 @@ fn draw(pixmap: &mut Pixmap, element: &Element) {
 }
 
 /// A path through points; none through fewer than two, or where one is no number.
-fn path(points: &[Point], closed: bool) -> Option<Path> {
+fn path(points: &[CanvasPoint], closed: bool) -> Option<Path> {
     let mut path = PathBuilder::new();
     for &(x, y) in points {
         if path.is_empty() {
@@ -108,7 +108,7 @@ fn path(points: &[Point], closed: bool) -> Option<Path> {
 }
 
 /// The outlines of letters on a baseline.
-fn letters(text: &str, size: f64, at: Point, upwards: bool) -> Option<Path> {
+fn letters(text: &str, size: f64, at: CanvasPoint, upwards: bool) -> Option<Path> {
     let mut path = PathBuilder::new();
     let scale = size as f32;
     // Steps along the line and above it, y downwards.

@@ -2,11 +2,11 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::axis::{Axis, drawable};
+use crate::axis::{DrawnAxis, drawable};
 use crate::canvas::Canvas;
 use crate::frame::{LOWER_ROOM, left_room, left_side, lower_side, right_end, short_ticks};
 use crate::geometry::Area;
-use crate::legend::{Legend, Sample};
+use crate::legend::{Legend, LegendSample};
 use crate::note::Note;
 use crate::picture::{Picture, PictureError, check_columns};
 use crate::series::{cross, error_bar, interval, marker, segments};
@@ -84,15 +84,21 @@ pub fn response(responses: &Responses) -> Result<Picture, PictureError> {
     check_curves(&responses.curves, "points")?;
     let curves: Vec<Response> = responses.curves.iter().map(sorted).collect();
     let xs: Vec<f64> = curves.iter().flat_map(|curve| curve.x.clone()).collect();
-    let x = Axis::around(&xs, responses.log_x, 0.04);
+    let x = DrawnAxis::around(&xs, responses.log_x, 0.04);
     let ys: Vec<f64> = curves.iter().flat_map(values).collect();
-    let y = Axis::around(&ys, responses.log_y, 0.06);
+    let y = DrawnAxis::around(&ys, responses.log_y, 0.06);
 
     let left = left_room(&y.placed(HEIGHT, 0.0).ticks(Direction::Y, MAX_STEPS));
     let right = COLUMN_WIDTH.round() - RIGHT;
     let x_ticks = x.placed(left, right).ticks(Direction::X, MAX_STEPS);
     let right = right_end(&x_ticks, left, right, COLUMN_WIDTH);
-    let sample = |curve: &Response| if curve.line { Sample::Line } else { Sample::Marker };
+    let sample = |curve: &Response| {
+        if curve.line {
+            LegendSample::Line
+        } else {
+            LegendSample::Marker
+        }
+    };
     let named = curves.iter().filter(|_| curves.len() > 1);
     let names: Vec<_> = named.map(|curve| (curve.label.as_str(), sample(curve))).collect();
     let legend = Legend::of(&responses.legend_title, &names, left, right);
@@ -147,7 +153,7 @@ fn values(curve: &Response) -> impl Iterator<Item = f64> {
 }
 
 /// Draws ticks, numbers and titles, and a line at zero.
-fn draw_sides(canvas: &mut Canvas, area: Area, x: &Axis, y: &Axis, responses: &Responses) {
+fn draw_sides(canvas: &mut Canvas, area: Area, x: &DrawnAxis, y: &DrawnAxis, responses: &Responses) {
     let title = Text::fitted(&responses.y_title, area.height);
     left_side(canvas, area, 0.0, &y.ticks(Direction::Y, MAX_STEPS), &title);
     short_ticks(canvas, area, Direction::Y, &y.short_ticks());
@@ -160,7 +166,7 @@ fn draw_sides(canvas: &mut Canvas, area: Area, x: &Axis, y: &Axis, responses: &R
 }
 
 /// Draws all bands, then all curves, then all points: nothing hides a point.
-fn draw_curves(canvas: &mut Canvas, x: &Axis, y: &Axis, curves: &[Response]) {
+fn draw_curves(canvas: &mut Canvas, x: &DrawnAxis, y: &DrawnAxis, curves: &[Response]) {
     let opacity = if curves.len() > 4 { 0.13 } else { 0.2 };
     let colour = |index: usize| curve_style(index).colour;
     for (index, curve) in curves.iter().enumerate() {
@@ -190,7 +196,7 @@ fn draw_curves(canvas: &mut Canvas, x: &Axis, y: &Axis, curves: &[Response]) {
 }
 
 /// Draws the marks of points that are not whole.
-fn draw_crosses(canvas: &mut Canvas, area: Area, x: &Axis, y: &Axis, curves: &[Response]) {
+fn draw_crosses(canvas: &mut Canvas, area: Area, x: &DrawnAxis, y: &DrawnAxis, curves: &[Response]) {
     /// Above the lower side, where a cross stands for a point without a mean.
     const LIFT: f64 = 14.0;
     for curve in curves {

@@ -1,19 +1,19 @@
 //! What a series of values is drawn of: lines with gaps, markers and error bars.
 
-use crate::axis::{Axis, drawable};
+use crate::axis::{DrawnAxis, drawable};
 use crate::canvas::Canvas;
-use crate::geometry::Point;
+use crate::geometry::CanvasPoint;
 use crate::style::{BLACK, Rgb, WHITE, WIDTH_MARK};
 
 /// Longer curves are thinned.
 const MAX_POINTS: usize = 4000;
 
 /// A curve in pixels: one segment for every stretch without a gap.
-pub(crate) fn segments(xs: &[f64], ys: &[f64], x: &Axis, y: &Axis) -> Vec<Vec<Point>> {
-    let points: Vec<Point> = xs.iter().copied().zip(ys.iter().copied()).collect();
-    let pixel = |&(at, value): &Point| (x.at(at), y.clamped(value));
-    let pixels = |segment: &[Point]| {
-        let pixels: Vec<Point> = segment.iter().map(pixel).collect();
+pub(crate) fn segments(xs: &[f64], ys: &[f64], x: &DrawnAxis, y: &DrawnAxis) -> Vec<Vec<CanvasPoint>> {
+    let points: Vec<CanvasPoint> = xs.iter().copied().zip(ys.iter().copied()).collect();
+    let pixel = |&(at, value): &CanvasPoint| (x.at(at), y.clamped(value));
+    let pixels = |segment: &[CanvasPoint]| {
+        let pixels: Vec<CanvasPoint> = segment.iter().map(pixel).collect();
         let is_long = xs.len() > MAX_POINTS;
         if is_long { thinned(&pixels) } else { pixels }
     };
@@ -25,7 +25,7 @@ pub(crate) fn segments(xs: &[f64], ys: &[f64], x: &Axis, y: &Axis) -> Vec<Vec<Po
 }
 
 /// The first, lowest, highest and last point of every pixel column, in their order.
-fn thinned(points: &[Point]) -> Vec<Point> {
+fn thinned(points: &[CanvasPoint]) -> Vec<CanvasPoint> {
     let mut kept = Vec::new();
     for column in points.chunk_by(|a, b| a.0.floor() == b.0.floor()) {
         let by_height = |&a: &usize, &b: &usize| column[a].1.total_cmp(&column[b].1);
@@ -40,7 +40,7 @@ fn thinned(points: &[Point]) -> Vec<Point> {
 }
 
 /// The corners of the markers after the disc, for a size of 1; all look equally large.
-const MARKERS: [&[Point]; 4] = [
+const MARKERS: [&[CanvasPoint]; 4] = [
     &[(-0.9, -0.9), (0.9, -0.9), (0.9, 0.9), (-0.9, 0.9)],
     &[(0.0, -1.3), (1.2, 0.8), (-1.2, 0.8)],
     &[(0.0, -1.3), (1.3, 0.0), (0.0, 1.3), (-1.3, 0.0)],
@@ -49,18 +49,18 @@ const MARKERS: [&[Point]; 4] = [
 
 /// Draws the marker of curve `index`, in a shape of its own because colours do not survive a copier, with a thin white rim
 /// that parts it from the curves below.
-pub(crate) fn marker(canvas: &mut Canvas, index: usize, (x, y): Point, radius: f64, colour: Rgb) {
+pub(crate) fn marker(canvas: &mut Canvas, index: usize, (x, y): CanvasPoint, radius: f64, colour: Rgb) {
     let Some(shape) = (index % (MARKERS.len() + 1)).checked_sub(1) else {
         return canvas.dot((x, y), radius, colour);
     };
     for (size, colour) in [(radius + 1.5, WHITE), (radius, colour)] {
-        let corner = |&(across, down): &Point| (x + size * across, y + size * down);
+        let corner = |&(across, down): &CanvasPoint| (x + size * across, y + size * down);
         canvas.polygon(MARKERS[shape].iter().map(corner).collect(), colour, 1.0);
     }
 }
 
 /// Draws a cross, the mark of what is not whole.
-pub(crate) fn cross(canvas: &mut Canvas, (x, y): Point) {
+pub(crate) fn cross(canvas: &mut Canvas, (x, y): CanvasPoint) {
     /// How far it reaches to each side.
     const ARM: f64 = 9.0;
     for slope in [ARM, -ARM] {
@@ -90,7 +90,7 @@ mod tests {
 
     #[test]
     fn thinning_keeps_the_spikes_and_the_order() {
-        let mut points: Vec<Point> = (0..10_000).map(|i| (0.05 * f64::from(i), 100.0)).collect();
+        let mut points: Vec<CanvasPoint> = (0..10_000).map(|i| (0.05 * f64::from(i), 100.0)).collect();
         points[4321].1 = 3.0;
         points[4322].1 = 250.0;
         let kept = thinned(&points);
@@ -101,7 +101,7 @@ mod tests {
 
     #[test]
     fn a_missing_value_leaves_a_gap() {
-        let axis = Axis::linear(0.0, 4.0).placed(0.0, 4.0);
+        let axis = DrawnAxis::linear(0.0, 4.0).placed(0.0, 4.0);
         let times = [0.0, 1.0, 2.0, 3.0, 4.0];
         let parts = segments(&times, &[0.0, 1.0, f64::NAN, 3.0, 4.0], &axis, &axis);
         assert_eq!(parts, [[(0.0, 0.0), (1.0, 1.0)], [(3.0, 3.0), (4.0, 4.0)]]);

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::canvas::Canvas;
-use crate::geometry::{Align, Point};
+use crate::geometry::{Align, CanvasPoint};
 use crate::picture::{Picture, PictureError};
 use crate::style::{
     BLACK, BLANK, COLUMN_WIDTH, CURVES, GREY, MARGIN, SIZE_LABEL, WIDTH_CURVE, WIDTH_FRAME, WIDTH_MARK,
@@ -83,7 +83,7 @@ pub fn sketch(sketch: &Sketch) -> Result<Picture, PictureError> {
     canvas.finish()
 }
 
-fn draw(canvas: &mut Canvas, style: StrokeStyle, mut points: Vec<Point>) {
+fn draw(canvas: &mut Canvas, style: StrokeStyle, mut points: Vec<CanvasPoint>) {
     match style {
         StrokeStyle::Area => canvas.edged_area(points, CURVES[0], 0.25, CURVES[0]),
         StrokeStyle::Body => canvas.edged_area(points, BLANK, 1.0, BLACK),

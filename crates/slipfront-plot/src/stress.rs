@@ -1,6 +1,6 @@
 //! Maps of the contact stress, or of another field, with axes along the slider's sides.
 
-use crate::axis::Axis;
+use crate::axis::DrawnAxis;
 use crate::canvas::Canvas;
 use crate::cell_means::CellMeans;
 use crate::color_bar::{ABOVE, ColourBar};
@@ -78,7 +78,7 @@ pub const STRESS_FILE_BYTES: usize = 6;
 /// length.
 pub fn stress(maps: &StressMaps) -> Result<Picture, PictureError> {
     check(maps)?;
-    let layout = Layout::of(maps);
+    let layout = StressLayout::of(maps);
     let mut canvas = Canvas::new(layout.width, layout.height);
     let cells = Cells::of(maps.nx, maps.ny, &maps.textured);
     for (map, &area) in maps.maps.iter().zip(&layout.areas) {
@@ -112,7 +112,7 @@ fn check(maps: &StressMaps) -> Result<(), PictureError> {
 }
 
 /// Where everything is.
-struct Layout {
+struct StressLayout {
     width: f64,
     height: f64,
     /// Maps in a row.
@@ -129,7 +129,7 @@ struct Layout {
 
 /// A side of the slider, in its unit.
 struct Side {
-    axis: Axis,
+    axis: DrawnAxis,
     title: Text,
 }
 
@@ -137,7 +137,7 @@ impl Side {
     fn of(name: &str, length: f64) -> Self {
         let (unit, factor) = unit_of(length);
         Self {
-            axis: Axis::linear(0.0, length * factor),
+            axis: DrawnAxis::linear(0.0, length * factor),
             title: Text::plain(&format!("{name} ({unit})"), SIZE_LABEL),
         }
     }
@@ -148,7 +148,7 @@ impl Side {
     }
 }
 
-impl Layout {
+impl StressLayout {
     fn of(maps: &StressMaps) -> Self {
         let [length_x, length_y] = [maps.nx, maps.ny].map(|count| count as f64 * maps.block_size);
         let sides = [Side::of("x", length_x), Side::of("y", length_y)];
@@ -307,7 +307,7 @@ mod tests {
             (400, 4, 6, 1),
             (4, 400, 6, 6),
         ] {
-            let layout = Layout::of(&maps(nx, ny, count));
+            let layout = StressLayout::of(&maps(nx, ny, count));
             assert_eq!(layout.columns, columns, "{nx} x {ny}, {count}");
             let bottom = layout.areas[count - 1].bottom();
             assert_eq!(layout.height, bottom + LOWER_ROOM);
@@ -333,7 +333,7 @@ mod tests {
             (300, 20, 2),
         ] {
             let maps = maps(nx, ny, count);
-            let layout = Layout::of(&maps);
+            let layout = StressLayout::of(&maps);
             assert!(layout.width <= TEXT_WIDTH + 6.0, "{nx} x {ny}: {}", layout.width);
             let last = layout.areas[count - 1];
             assert!(last.bottom() < layout.height && last.width >= 40.0 && last.height >= 40.0);

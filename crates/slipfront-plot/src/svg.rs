@@ -8,7 +8,7 @@ use base64::prelude::BASE64_STANDARD as BASE64;
 use crate::canvas::{Canvas, Element, Primitive};
 use crate::color_image::{Image, palette};
 use crate::font::WOFF2;
-use crate::geometry::{Area, Point};
+use crate::geometry::{Area, CanvasPoint};
 use crate::picture::PictureError;
 use crate::png_file;
 use crate::style::{DPI, Rgb};
@@ -115,7 +115,7 @@ fn image_png(image: &Image) -> Result<Vec<u8>, PictureError> {
 }
 
 /// The data of a path through points: after the first pair of coordinates, each is the end of a line.
-fn path_data(points: &[Point]) -> String {
+fn path_data(points: &[CanvasPoint]) -> String {
     let mut data = String::new();
     for (x, y) in points {
         let before = if data.is_empty() { 'M' } else { ' ' };

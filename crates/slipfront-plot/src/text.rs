@@ -12,13 +12,13 @@ pub(crate) const MINUS: &str = "\u{2212}";
 /// A line of text.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Text {
-    pub(crate) runs: Vec<Run>,
+    pub(crate) runs: Vec<TextRun>,
     pub(crate) size: u32,
 }
 
 /// Part of a line, all of one size and height.
 #[derive(Clone, Debug)]
-pub(crate) struct Run {
+pub(crate) struct TextRun {
     pub(crate) text: String,
     pub(crate) size: u32,
     /// How far below the line it stands.
@@ -69,7 +69,7 @@ impl Text {
                 Height::Below => (0.72, 0.16),
                 Height::Above => (0.72, -0.38),
             };
-            Run {
+            TextRun {
                 text: run.iter().map(|(c, _)| c).collect(),
                 size: (f64::from(size) * small).round() as u32,
                 drop: drop * f64::from(size),
@@ -117,7 +117,7 @@ impl Text {
 
     /// How far its lowest letter reaches below the line.
     pub(crate) fn depth(&self) -> f64 {
-        let reach = |run: &Run| {
+        let reach = |run: &TextRun| {
             let letters = ['g', 'j', 'p', 'q', 'y', '\u{3bc}', '(', ')', ','];
             let descends = run.text.contains(letters);
             run.drop + if descends { 0.24 * f64::from(run.size) } else { 0.0 }
@@ -206,7 +206,7 @@ mod tests {
     #[test]
     fn subscript_letters_and_powers_become_small_digits() {
         let parts = |text: Text| -> Vec<(String, f64)> {
-            let height = |run: Run| (run.text, run.drop.signum() * f64::from(u8::from(run.size < 30)));
+            let height = |run: TextRun| (run.text, run.drop.signum() * f64::from(u8::from(run.size < 30)));
             text.runs.into_iter().map(height).collect()
         };
         let of = |list: &[(&str, f64)]| -> Vec<(String, f64)> {

@@ -1,6 +1,6 @@
 //! Round numbers along an axis, as many as keep apart.
 
-use crate::axis::Axis;
+use crate::axis::DrawnAxis;
 use crate::style::SIZE_TICK;
 use crate::text::{MINUS, Text, number};
 
@@ -22,7 +22,7 @@ const APART_Y: f64 = 14.0;
 /// Over more decades than this, short ticks would be too dense.
 const SHORT_TICK_DECADES: f64 = 4.0;
 
-impl Axis {
+impl DrawnAxis {
     /// Numbered ticks, as many as have room: round numbers in at most `most` steps, or 1, 2, 5 times powers of ten.
     pub(crate) fn ticks(&self, direction: Direction, most: usize) -> Vec<Tick> {
         let mut choices = Vec::new();
@@ -157,12 +157,12 @@ mod tests {
     }
 
     fn linear(lo: f64, hi: f64) -> Vec<String> {
-        let axis = Axis::linear(lo, hi).placed(0.0, 3000.0);
+        let axis = DrawnAxis::linear(lo, hi).placed(0.0, 3000.0);
         texts(axis.ticks(Direction::X, MAX_STEPS))
     }
 
     fn around(values: &[f64], log: bool, length: f64) -> Vec<String> {
-        let axis = Axis::around(values, log, 0.0).placed(0.0, length);
+        let axis = DrawnAxis::around(values, log, 0.0).placed(0.0, length);
         let ticks = axis.ticks(Direction::X, MAX_STEPS);
         assert!(apart(&ticks, Direction::X), "{values:?}");
         texts(ticks)
@@ -179,7 +179,7 @@ mod tests {
     #[test]
     fn a_short_axis_is_numbered_at_its_ends() {
         let numbers = |length: f64| {
-            let axis = Axis::linear(0.0, 1.0).placed(length, 0.0);
+            let axis = DrawnAxis::linear(0.0, 1.0).placed(length, 0.0);
             texts(axis.ticks(Direction::Y, 2))
         };
         assert_eq!(numbers(80.0), ["0.0", "0.5", "1.0"]);

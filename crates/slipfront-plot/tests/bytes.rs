@@ -4,8 +4,8 @@
 
 use slipfront_plot::{
     Bar, BarChart, BarGroup, FieldMap, FieldMaps, FrictionAxes, FrictionCurve, HeatAxis, HeatMap, Instant,
-    Kinetic, Picture, Polar, Response, Responses, Shape, StressMap, StressMaps, bars, field_maps, friction,
-    heat_map, polar, response, shapes, stress,
+    KineticLine, Picture, Polar, Response, Responses, Shape, StressMap, StressMaps, bars, field_maps,
+    friction, heat_map, polar, response, shapes, stress,
 };
 
 /// The first digits of the hashes of both files.
@@ -32,7 +32,7 @@ fn curve() -> FrictionCurve {
         x,
         first_slip: Some(60.0),
         peak: Some((80.0, 0.95)),
-        kinetic: Some(Kinetic {
+        kinetic: Some(KineticLine {
             from: 150.0,
             to: 249.0,
             mean: 0.92,

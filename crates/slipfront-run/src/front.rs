@@ -4,7 +4,7 @@ use std::ops::RangeInclusive;
 
 use slipfront::communicator::Communicator;
 use slipfront::observe::frames::kept;
-use slipfront::observe::{Distribution, Front};
+use slipfront::observe::{Front, Quantiles};
 use slipfront::{Edges, Lattice};
 use slipfront_case::case::Case;
 
@@ -28,7 +28,7 @@ const NO_CONTACT: f64 = f64::INFINITY;
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct LatticeFront {
     pub(crate) nucleations: Vec<Nucleation>,
-    pub(crate) speed: Option<Distribution>,
+    pub(crate) speed: Option<Quantiles>,
     pub(crate) share: Option<f64>,
     pub(crate) duration_star: Option<f64>,
 }
@@ -107,7 +107,7 @@ fn of_thinned(
     let wider = |speed: f64| speed * stride as f64;
     Some(LatticeFront {
         nucleations,
-        speed: speed.map(|speed| Distribution {
+        speed: speed.map(|speed| Quantiles {
             low: wider(speed.low),
             median: wider(speed.median),
             high: wider(speed.high),

@@ -84,7 +84,7 @@ const HEAD_BYTES: u64 = 1 << 16;
 
 /// Two columns in SI units, of which the first never falls.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Record {
+pub struct MeasuredRecord {
     /// Times or displacements.
     pub x: Vec<f64>,
     /// Forces or coefficients.
@@ -118,7 +118,7 @@ impl Measure {
     }
 }
 
-impl Record {
+impl MeasuredRecord {
     /// Reads two columns of a table whose fields are separated by commas, semicolons, tabs or blanks; where it is not commas,
     /// numbers may have decimal commas. Lines that begin with `#`, and those without a number in one of the columns, count as none.
     ///
@@ -297,7 +297,7 @@ mod tests {
 
     use super::*;
 
-    fn read(text: &str, names: [&str; 2], units: [Option<&str>; 2]) -> Result<Record, MeasuredError> {
+    fn read(text: &str, names: [&str; 2], units: [Option<&str>; 2]) -> Result<MeasuredRecord, MeasuredError> {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("force.csv");
         std::fs::write(&path, text).unwrap();
@@ -305,7 +305,7 @@ mod tests {
             name: names[k].to_owned(),
             unit: units[k].map(str::to_owned),
         });
-        Record::read(&path, [&x, &y], [Measure::Time, Measure::Force])
+        MeasuredRecord::read(&path, [&x, &y], [Measure::Time, Measure::Force])
     }
 
     #[rstest]

@@ -6,7 +6,7 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 use slipfront::lattice::shear_wave_speed;
 use slipfront::observe::{
-    Curve, Cycles, Distribution, Energies, Frame, Kinetic, KineticHistory, NoUncertainty, Peak, Precursors,
+    Curve, Cycles, Energies, Frame, Kinetic, KineticHistory, NoUncertainty, Peak, Precursors, Quantiles,
     Scheduled, SlipEvent,
 };
 use slipfront::{Scales, Simulation, StopReason};
@@ -533,7 +533,7 @@ impl Summary {
         self.nucleation_x_m = first.map(|nucleation| nucleation.x_m);
         self.nucleation_y_m = first.map(|nucleation| nucleation.y_m);
         let speeds = |unit: f64| {
-            let speed = |of: fn(Distribution) -> f64| front.speed.map(|speed| of(speed) * unit);
+            let speed = |of: fn(Quantiles) -> f64| front.speed.map(|speed| of(speed) * unit);
             [speed(|s| s.median), speed(|s| s.low), speed(|s| s.high)]
         };
         [

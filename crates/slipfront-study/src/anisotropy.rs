@@ -7,7 +7,7 @@ use crate::levels::{Levels, combinations, direction_axis};
 use crate::plan::Plan;
 use crate::statistics::{Sample, mean};
 use crate::study_results::StudyResults;
-use crate::summary_values::Quantity;
+use crate::summary_values::RunQuantity;
 use slipfront_case::number_format::{are, count};
 
 /// Friction and what is across the drive with it.
@@ -75,7 +75,7 @@ pub fn anisotropies(plan: &Plan, results: &StudyResults) -> Vec<Anisotropy> {
     };
     let positions = plan.points.iter().enumerate();
     let positions = positions.map(|(position, point)| (plan.levels(point), position));
-    let points = Points {
+    let points = DirectedPoints {
         plan,
         results,
         over,
@@ -90,7 +90,7 @@ pub fn anisotropies(plan: &Plan, results: &StudyResults) -> Vec<Anisotropy> {
 }
 
 /// The points of a study with directions.
-struct Points<'a> {
+struct DirectedPoints<'a> {
     plan: &'a Plan,
     results: &'a StudyResults,
     /// The axis of the directions.
@@ -99,10 +99,10 @@ struct Points<'a> {
     positions: HashMap<Vec<usize>, usize>,
 }
 
-impl Points<'_> {
+impl DirectedPoints<'_> {
     fn anisotropy(&self, fixed: &Levels, (quantity, across): (&'static str, &str)) -> Option<Anisotropy> {
         let all = self.directions(fixed);
-        let number = Quantity::named(quantity)?;
+        let number = RunQuantity::named(quantity)?;
         let has = |&(_, position): &(f64, usize)| {
             let replicates = 0..self.results.points[position].replicates;
             let values = replicates.filter_map(|replicate| self.results.value(position, replicate, number));
@@ -121,7 +121,7 @@ impl Points<'_> {
             replicates: values.len(),
             left_out: self.left_out(quantity, &all, degrees.len(), values.len()),
             found: over_directions(&degrees, &values, confidence).map(|found| {
-                let lateral = Quantity::named(across).map(|across| self.replicates(&directions, across));
+                let lateral = RunQuantity::named(across).map(|across| self.replicates(&directions, across));
                 OverDirections {
                     lateral: lateral.and_then(|values| largest_in_size(&degrees, &values, confidence)),
                     ..found
@@ -165,7 +165,7 @@ impl Points<'_> {
     }
 
     /// The values of each replicate in all directions; of those that have them all.
-    fn replicates(&self, directions: &[(f64, usize)], quantity: Quantity) -> Vec<Vec<f64>> {
+    fn replicates(&self, directions: &[(f64, usize)], quantity: RunQuantity) -> Vec<Vec<f64>> {
         let counts = directions.iter();
         let counts = counts.map(|(_, position)| self.results.points[*position].replicates);
         let values = |replicate: usize| {

@@ -10,7 +10,7 @@ use std::time::Instant;
 use crate::error::StudyError;
 use crate::journal::Records;
 use crate::plan::{Plan, RunKey};
-use crate::record::{Outcome, Record};
+use crate::record::{FinishedRun, Outcome};
 use crate::scheduler::{Ended, Scheduler, Task};
 use crate::study_file::RetainRuns;
 use crate::study_results::{Progress, StudyResults};
@@ -96,7 +96,7 @@ fn work(run_case: &RunCase, Task { run, id }: Task, finished: &Sender<Ended>, is
         catch_unwind(AssertUnwindSafe(|| run_case(run, is_stopped)))
             .unwrap_or_else(|panic| Ok(Some(Outcome::Failed(panicked(panic.as_ref())))))
     };
-    let record = |outcome| Record {
+    let record = |outcome| FinishedRun {
         id,
         wall_time_s: began.elapsed().as_secs_f64(),
         outcome,

@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use crate::error::StudyError;
-use crate::record::{Record, RunResult, looks_like_ours, may_begin_ours, parse_line, to_line};
+use crate::record::{FinishedRun, RunResult, looks_like_ours, may_begin_ours, parse_line, to_line};
 use slipfront_case::disk::{open_limited, sync_folder};
 use slipfront_case::unfinished::clear_unfinished;
 use slipfront_run::names::RECORDS;
@@ -41,7 +41,7 @@ impl Records {
         let mut file = open_locked(&path, folder)?;
         // A study that has changed since it was killed may not write the same files again.
         clear_unfinished(folder);
-        let lines = Lines::read(&mut file).map_err(failed("open", &path))?;
+        let lines = JournalLines::read(&mut file).map_err(failed("open", &path))?;
         if lines.are_foreign() {
             return Err(StudyError::NotRecords { path });
         }
@@ -85,7 +85,7 @@ impl Records {
 
     /// Appends finished runs that are not recorded yet and waits until the disk has them; what had been recorded before stays
     /// whole.
-    pub fn append(&self, records: &[Record]) -> Result<(), StudyError> {
+    pub fn append(&self, records: &[FinishedRun]) -> Result<(), StudyError> {
         let Written { file, results } = &mut *self.written();
         // Studies that share the file may have made the same run at the same time.
         let unknown = records.iter().filter(|record| !results.contains_key(&record.id));
@@ -113,7 +113,7 @@ impl Records {
     /// Appends the records of another folder that are not here yet, and returns their number.
     pub fn merge(&mut self, folder: &Path) -> Result<usize, StudyError> {
         let path = folder.join(RECORDS);
-        let read = open_limited(&path, u64::MAX).and_then(|mut file| Lines::read(&mut file));
+        let read = open_limited(&path, u64::MAX).and_then(|mut file| JournalLines::read(&mut file));
         let lines = read.map_err(failed("read", &path))?;
         if lines.are_foreign() {
             return Err(StudyError::NotRecords { path });
@@ -130,7 +130,7 @@ impl Records {
 }
 
 /// What is kept in memory of a record.
-fn entry(record: &Record) -> (String, RunResult) {
+fn entry(record: &FinishedRun) -> (String, RunResult) {
     (record.id.clone(), record.outcome.result())
 }
 
@@ -172,8 +172,8 @@ const LINE_MAX_BYTES: u64 = 1 << 20;
 
 /// The contents of a record file.
 #[derive(Default)]
-struct Lines {
-    records: Vec<Record>,
+struct JournalLines {
+    records: Vec<FinishedRun>,
     /// Lines that fail their checksum.
     damaged: usize,
     /// Whether a line is a record or may once have been one.
@@ -187,7 +187,7 @@ struct Lines {
     cut_at: Option<u64>,
 }
 
-impl Lines {
+impl JournalLines {
     /// Reads line by line: a file of any length takes no more memory than its records.
     fn read(file: &mut impl Read) -> std::io::Result<Self> {
         let mut file = BufReader::new(file);
@@ -239,8 +239,8 @@ mod tests {
     use super::*;
     use crate::record::Outcome;
 
-    fn record(id: &str) -> Record {
-        Record {
+    fn record(id: &str) -> FinishedRun {
+        FinishedRun {
             id: id.to_owned(),
             wall_time_s: 0.5,
             outcome: Outcome::Done(Box::default()),
@@ -290,7 +290,7 @@ mod tests {
         for bit in 0..8 {
             let mut damaged = lines.clone();
             damaged[middle] ^= 1 << bit;
-            let lines = Lines::read(&mut damaged.as_slice()).unwrap();
+            let lines = JournalLines::read(&mut damaged.as_slice()).unwrap();
             let ids: Vec<&str> = lines.records.iter().map(|record| record.id.as_str()).collect();
             assert_eq!(ids, ["a", "c"]);
             assert!(lines.damaged >= 1);

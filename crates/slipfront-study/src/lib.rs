@@ -47,12 +47,12 @@ pub use meshed::MeshedCoverage;
 pub use picture_plan::{quantities_without_pictures, why_no_pictures};
 pub use plan::{Plan, Point, Role, RunKey};
 pub use plan_warnings::Warning;
-pub use record::{Outcome, Record, RunResult};
+pub use record::{FinishedRun, Outcome, RunResult};
 pub use shard::Shard;
 pub use statistics::Sample;
 pub use study_file::{Base, RetainRuns, Settings, StoppingRule, StudyFile};
 pub use study_results::{PointResult, Progress, StudyResults};
-pub use summary_values::{Quantity, REDUCTION, SummaryValues, is_column, known as quantities};
+pub use summary_values::{REDUCTION, RunQuantity, SummaryValues, is_column, known as quantities};
 
 /// BLAKE3 hash of the sources of this crate: a part of the identity of the runs that it records.
 pub const SOURCE_HASH: &str = env!("SLIPFRONT_SOURCE_HASH");

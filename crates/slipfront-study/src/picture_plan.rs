@@ -98,8 +98,8 @@ pub fn why_no_pictures(axes: &[Axis]) -> Vec<String> {
 }
 
 fn why_no_curves(axes: &[Axis]) -> Option<String> {
-    let drawing = Drawing::of(axes);
-    let Drawing::Nothing(why) = drawing else {
+    let drawing = ChartKind::of(axes);
+    let ChartKind::Nothing(why) = drawing else {
         return None;
     };
     let values = match map_of(axes) {
@@ -110,7 +110,7 @@ fn why_no_curves(axes: &[Axis]) -> Option<String> {
 }
 
 /// How the values of a study are drawn beside a map.
-enum Drawing {
+enum ChartKind {
     Bars,
     /// Curves over axis `x`; the first `split` of the others take a picture for each combination of their levels.
     Curves {
@@ -120,7 +120,7 @@ enum Drawing {
     Nothing(String),
 }
 
-impl Drawing {
+impl ChartKind {
     fn of(axes: &[Axis]) -> Self {
         let mut over = numeric(axes).into_iter().map(|x| (x, split(axes, x)));
         match (over.next(), axes.len()) {
@@ -159,13 +159,13 @@ fn map_of(axes: &[Axis]) -> Option<[usize; 2]> {
 
 /// The pictures of a quantity, by the axes alone.
 pub(crate) fn planned(axes: &[Axis], quantity: &str) -> Vec<PlannedPicture> {
-    let mut pictures = match Drawing::of(axes) {
-        Drawing::Bars => vec![PlannedPicture {
+    let mut pictures = match ChartKind::of(axes) {
+        ChartKind::Bars => vec![PlannedPicture {
             name: quantity.to_owned(),
             kind: PictureKind::Bars,
         }],
-        Drawing::Curves { x, split } => planned_curves(axes, x, split, quantity),
-        Drawing::Nothing(_) => Vec::new(),
+        ChartKind::Curves { x, split } => planned_curves(axes, x, split, quantity),
+        ChartKind::Nothing(_) => Vec::new(),
     };
     if let Some([x, y]) = map_of(axes) {
         pictures.push(PlannedPicture {
@@ -309,8 +309,8 @@ mod tests {
             let [one, other] = counts;
             axes_of(&(axis("drive.v_star", one) + &axis("friction.r_star", other)))
         };
-        let over = |axes: &[Axis]| match Drawing::of(axes) {
-            Drawing::Curves { x, .. } => Some(x),
+        let over = |axes: &[Axis]| match ChartKind::of(axes) {
+            ChartKind::Curves { x, .. } => Some(x),
             _ => None,
         };
         for (counts, x) in [

@@ -41,7 +41,7 @@ pub(crate) fn draw(
         }
     }
     for quantity in measured_quantities(plan, results) {
-        let measured = Measured::of(plan, results, quantity);
+        let measured = PlottedQuantity::of(plan, results, quantity);
         for some in planned(&plan.axes, quantity).chunks(PICTURES_AT_ONCE) {
             let drawn: Vec<_> = some
                 .par_iter()
@@ -60,7 +60,7 @@ pub(crate) fn draw(
 }
 
 /// A quantity at every point of a study.
-struct Measured<'a> {
+struct PlottedQuantity<'a> {
     axes: &'a [Axis],
     quantity: &'static str,
     /// Mean and the ends of its interval, by the levels of a point; NaN where there is none.
@@ -77,7 +77,7 @@ struct Measured<'a> {
     meshed: Option<MeshedCoverage>,
 }
 
-impl<'a> Measured<'a> {
+impl<'a> PlottedQuantity<'a> {
     fn of(plan: &'a Plan, results: &StudyResults, quantity: &'static str) -> Self {
         let samples: Vec<_> = (0..plan.points.len())
             .map(|position| results.sample(plan, position, quantity))
@@ -344,10 +344,10 @@ fn friction_polar(
     combinations: &[Levels],
 ) -> Result<Option<Picture>, PictureError> {
     let measured = measured_quantities(plan, results);
-    let measured: Vec<Measured> = FRICTION
+    let measured: Vec<PlottedQuantity> = FRICTION
         .iter()
         .filter(|(quantity, _)| measured.contains(quantity))
-        .map(|(quantity, _)| Measured::of(plan, results, quantity))
+        .map(|(quantity, _)| PlottedQuantity::of(plan, results, quantity))
         .collect();
     if measured.is_empty() {
         return Ok(None);
@@ -359,7 +359,7 @@ fn friction_polar(
         .collect();
     let without_transition = measured.iter().map(|measured| measured.without_transition).sum();
     let curves = combinations.iter().flat_map(|varied| {
-        let curve = |measured: &Measured| {
+        let curve = |measured: &PlottedQuantity| {
             let mut response = measured.curve(over, &[], varied);
             let parts = [response.label.as_str(), quantity_symbol(measured.quantity)];
             let parts = parts.into_iter().filter(|part| !part.is_empty());

@@ -46,7 +46,7 @@ impl Outcome {
 
 /// A finished run: one line of the journal.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Record {
+pub struct FinishedRun {
     /// Identity of the run: a hash of all that decides its numbers.
     pub id: String,
     /// Seconds that the run took. A repeated run gives another value here, and only here.
@@ -56,14 +56,14 @@ pub struct Record {
 }
 
 /// The line of a record with its line break.
-pub(crate) fn to_line(record: &Record) -> Vec<u8> {
+pub(crate) fn to_line(record: &FinishedRun) -> Vec<u8> {
     // Our own struct of numbers and strings: serialisation cannot fail.
     let json = serde_json::to_string(record).unwrap_or_default();
     format!("{} {json}\n", checksum(json.as_bytes())).into_bytes()
 }
 
 /// The record of a line without its line break; none if it fails its checksum.
-pub(crate) fn parse_line(line: &[u8]) -> Option<Record> {
+pub(crate) fn parse_line(line: &[u8]) -> Option<FinishedRun> {
     let (sum, json) = line.split_at_checked(CHECKSUM)?;
     let json = json.strip_prefix(b" ")?;
     if checksum(json).as_bytes() != sum {

@@ -11,10 +11,10 @@ use std::time::Duration;
 use crate::error::StudyError;
 use crate::journal::Records;
 use crate::plan::{Plan, RunKey};
-use crate::record::{Record, RunResult};
+use crate::record::{FinishedRun, RunResult};
 use crate::statistics::Sample;
 use crate::study_results::{PointResult, Progress, StudyResults};
-use crate::summary_values::Quantity;
+use crate::summary_values::RunQuantity;
 
 /// A run to be done.
 pub(crate) struct Task {
@@ -24,7 +24,7 @@ pub(crate) struct Task {
 }
 
 /// The record of a run that has ended; none if it was given up.
-pub(crate) type Ended = Result<Option<Record>, StudyError>;
+pub(crate) type Ended = Result<Option<FinishedRun>, StudyError>;
 
 /// Starts runs and decides on the number of replicates.
 pub(crate) struct Scheduler<'a> {
@@ -41,7 +41,7 @@ pub(crate) struct Scheduler<'a> {
     belonging: HashSet<String>,
     points: Vec<PointState>,
     /// The quantity that decides on replication.
-    decisive: Option<Quantity>,
+    decisive: Option<RunQuantity>,
     progress: Progress,
 }
 
@@ -73,7 +73,7 @@ impl<'a> Scheduler<'a> {
             waiting: HashMap::new(),
             belonging: HashSet::new(),
             points: vec![PointState::default(); plan.points.len()],
-            decisive: until.and_then(|until| Quantity::named(&until.key)),
+            decisive: until.and_then(|until| RunQuantity::named(&until.key)),
             progress: Progress::default(),
         }
     }

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use crate::plan::{Plan, Role, RunKey};
 use crate::record::RunResult;
 use crate::statistics::Sample;
-use crate::summary_values::{Quantity, REDUCTION, reduction_percent};
+use crate::summary_values::{REDUCTION, RunQuantity, reduction_percent};
 
 /// How many runs of a study are done.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -44,7 +44,7 @@ pub struct PointResult {
 
 impl StudyResults {
     /// A quantity of a replicate of a point. A reduction is against the reference of the same seed.
-    pub fn value(&self, point: usize, replicate: usize, quantity: Quantity) -> Option<f64> {
+    pub fn value(&self, point: usize, replicate: usize, quantity: RunQuantity) -> Option<f64> {
         let values = |role| {
             let run = RunKey {
                 point,
@@ -54,14 +54,14 @@ impl StudyResults {
             self.runs.get(&run)?.as_ref().ok()
         };
         match quantity {
-            Quantity::Number(position) => values(Role::Point)?.get(position),
-            Quantity::Reduction => reduction_percent(values(Role::Point)?, values(Role::Reference)?),
+            RunQuantity::Number(position) => values(Role::Point)?.get(position),
+            RunQuantity::Reduction => reduction_percent(values(Role::Point)?, values(Role::Reference)?),
         }
     }
 
     /// Statistics of a quantity at the point at `position` of the plan; none if no run has a value.
     pub fn sample(&self, plan: &Plan, position: usize, name: &str) -> Option<Sample> {
-        let quantity = Quantity::named(name)?;
+        let quantity = RunQuantity::named(name)?;
         let replicates = 0..self.points.get(position)?.replicates;
         let values: Vec<f64> = replicates
             .filter_map(|replicate| self.value(position, replicate, quantity))

@@ -104,14 +104,14 @@ pub fn is_column(name: &str) -> bool {
 
 /// A quantity of a run, or of a run and its reference.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Quantity {
+pub enum RunQuantity {
     /// Position in the summary.
     Number(usize),
     /// The reduction of static friction (Eq. 16).
     Reduction,
 }
 
-impl Quantity {
+impl RunQuantity {
     /// The quantity of this name, if there is one.
     pub fn named(name: &str) -> Option<Self> {
         if name == REDUCTION {
@@ -202,7 +202,7 @@ mod tests {
             ..plain.clone()
         };
         assert_eq!(SummaryValues::of(&viscous), SummaryValues::of(&plain));
-        let Some(Quantity::Number(position)) = Quantity::named("steps") else {
+        let Some(RunQuantity::Number(position)) = RunQuantity::named("steps") else {
             panic!("a summary has a number of steps")
         };
         assert_eq!(SummaryValues::of(&viscous).get(position), Some(7.0));
@@ -224,8 +224,8 @@ mod tests {
     }
 
     fn number(values: &SummaryValues, name: &str) -> Option<f64> {
-        match Quantity::named(name) {
-            Some(Quantity::Number(position)) => values.get(position),
+        match RunQuantity::named(name) {
+            Some(RunQuantity::Number(position)) => values.get(position),
             other => panic!("{name}: {other:?}"),
         }
     }

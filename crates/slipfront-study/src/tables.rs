@@ -9,7 +9,7 @@ use crate::plan::{Plan, Role};
 use crate::statistics::Sample;
 use crate::study_results::StudyResults;
 use crate::summary_values::{
-    AFTER_AXES, BEFORE_AXES, Quantity, STATISTICS, is_optional, known, needs_transition,
+    AFTER_AXES, BEFORE_AXES, RunQuantity, STATISTICS, is_optional, known, needs_transition,
 };
 
 /// `runs.csv`: for each run, references included, the levels of its point, the seed, whether it failed and why, and every
@@ -37,11 +37,11 @@ pub(crate) fn runs(plan: &Plan, results: &StudyResults, to: impl Write) -> csv::
         row.extend(status.map(str::to_owned));
         for &(_, quantity) in &quantities {
             let value = match (quantity, run.role) {
-                (Quantity::Number(position), _) => {
+                (RunQuantity::Number(position), _) => {
                     result.as_ref().ok().and_then(|values| values.get(position))
                 }
-                (Quantity::Reduction, Role::Point) => results.value(run.point, run.replicate, quantity),
-                (Quantity::Reduction, Role::Reference) => None,
+                (RunQuantity::Reduction, Role::Point) => results.value(run.point, run.replicate, quantity),
+                (RunQuantity::Reduction, Role::Reference) => None,
             };
             row.push(cell(value));
         }
@@ -52,19 +52,19 @@ pub(crate) fn runs(plan: &Plan, results: &StudyResults, to: impl Write) -> csv::
 
 /// The quantities that the tables of a study have: a reduction only against a reference, and what few runs have only if there is
 /// one of them, or if it decides on replication.
-fn quantities(plan: &Plan, results: &StudyResults) -> Vec<(&'static str, Quantity)> {
+fn quantities(plan: &Plan, results: &StudyResults) -> Vec<(&'static str, RunQuantity)> {
     let until = plan.settings.until.as_ref();
-    let is_there = |name: &str, quantity: Quantity| match quantity {
-        Quantity::Reduction => plan.has_reference(),
-        Quantity::Number(position) if is_optional(name) => {
+    let is_there = |name: &str, quantity: RunQuantity| match quantity {
+        RunQuantity::Reduction => plan.has_reference(),
+        RunQuantity::Number(position) if is_optional(name) => {
             let mut runs = results.runs.values().flatten();
             until.is_some_and(|until| until.key == name) || runs.any(|values| values.get(position).is_some())
         }
-        Quantity::Number(_) => true,
+        RunQuantity::Number(_) => true,
     };
     known()
         .iter()
-        .filter_map(|name| Some((name.as_str(), Quantity::named(name)?)))
+        .filter_map(|name| Some((name.as_str(), RunQuantity::named(name)?)))
         .filter(|(name, quantity)| is_there(name, *quantity))
         .collect()
 }

@@ -7,7 +7,7 @@ use std::fs;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
-use slipfront_study::{self as study, Plan, Quantity, Records, StudyFile, StudyResults, anisotropies};
+use slipfront_study::{self as study, Plan, Records, RunQuantity, StudyFile, StudyResults, anisotropies};
 
 /// The studies of the documentation and of `cases/studies` can be run, and every key of a study is explained.
 #[test]
@@ -74,7 +74,7 @@ fn many_grooves_weaken_the_effect() {
     let reductions = [37.4, 38.5, 38.4, 39.3, 32.0, 15.1];
     assert_eq!(results.points.len(), reductions.len());
     for (point, expected) in reductions.into_iter().enumerate() {
-        let found = results.value(point, 0, Quantity::Reduction).unwrap();
+        let found = results.value(point, 0, RunQuantity::Reduction).unwrap();
         assert!((found - expected).abs() <= 0.05, "{found}, expected {expected}");
     }
 }
@@ -93,7 +93,7 @@ fn results(text: &str) -> (Plan, StudyResults) {
 /// Bits of static and kinetic friction at a point, and of both across the drive, of which a mirror turns the sign.
 fn friction_at(results: &StudyResults, point: usize, handed: f64) -> [u64; 4] {
     let value = |name: &str| {
-        let value = results.value(point, 0, Quantity::named(name).unwrap());
+        let value = results.value(point, 0, RunQuantity::named(name).unwrap());
         value.unwrap_or_else(|| panic!("no {name} at point {point}"))
     };
     // 0 has no sign here.

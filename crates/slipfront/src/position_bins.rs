@@ -13,11 +13,11 @@ pub struct PositionBins {
     pub width: usize,
     /// `r . d` where the first one begins, in blocks.
     pub start: f64,
-    measure: Measure,
+    measure: Coordinate,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Measure {
+enum Coordinate {
     Along([f64; 2]),
     From([f64; 2]),
 }
@@ -49,7 +49,11 @@ impl PositionBins {
                     let ends = [0, 1].map(|axis| choose(end(axis, 0.5), end(axis, sides[axis] - 0.5)));
                     ends[0] + ends[1]
                 });
-                (Measure::Along(direction), from - 0.5, (to - from + 0.5).floor())
+                (
+                    Coordinate::Along(direction),
+                    from - 0.5,
+                    (to - from + 0.5).floor(),
+                )
             }
             Some(rotation) => {
                 let centre = rotation.centre;
@@ -58,7 +62,7 @@ impl PositionBins {
                     ends[0].abs().max(ends[1].abs())
                 });
                 let radius = (farthest[0] * farthest[0] + farthest[1] * farthest[1]).sqrt();
-                (Measure::From(centre), 0.0, radius.floor())
+                (Coordinate::From(centre), 0.0, radius.floor())
             }
         };
         let n = blocks as usize + 1;
@@ -76,8 +80,8 @@ impl PositionBins {
     pub fn bin(&self, i: usize, j: usize) -> usize {
         let (x, y) = (i as f64 + 0.5, j as f64 + 0.5);
         let place = match self.measure {
-            Measure::Along([dx, dy]) => dx * x + dy * y,
-            Measure::From([cx, cy]) => ((x - cx) * (x - cx) + (y - cy) * (y - cy)).sqrt(),
+            Coordinate::Along([dx, dy]) => dx * x + dy * y,
+            Coordinate::From([cx, cy]) => ((x - cx) * (x - cx) + (y - cy) * (y - cy)).sqrt(),
         };
         // Rounding may put the outermost block beyond an end.
         ((place - self.start) / self.width as f64)

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 
-use slipfront_case::case_file::{Kind, SECTIONS};
+use slipfront_case::case_file::{KeyKind, SECTIONS};
 
 use crate::Target;
 use crate::scratch::repository;
@@ -63,8 +63,8 @@ fn words_of_cases() -> BTreeSet<String> {
         for key in section.keys {
             words.insert(format!("{} = ", key.name));
             let values = match key.kind {
-                Kind::Words(words) => words(),
-                Kind::Number { words, .. } => words,
+                KeyKind::Words(words) => words(),
+                KeyKind::Number { words, .. } => words,
                 _ => &[],
             };
             words.extend(values.iter().map(|word| format!("\"{word}\"")));

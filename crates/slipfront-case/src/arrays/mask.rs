@@ -126,13 +126,13 @@ fn read_rows(
 }
 
 /// Pixels of a row of the image that are stored one after the other.
-struct Line {
+struct PixelLine {
     row: usize,
     first: usize,
     step: usize,
 }
 
-impl Line {
+impl PixelLine {
     /// The position of the pixel of this column, if the line has it.
     fn position(&self, column: usize) -> Option<usize> {
         let behind = column.checked_sub(self.first)?;
@@ -141,7 +141,7 @@ impl Line {
 }
 
 /// The lines of an image in the order in which they are stored: row by row, or in the seven passes of Adam7.
-fn lines(width: usize, height: usize, interlaced: bool) -> impl Iterator<Item = Line> {
+fn lines(width: usize, height: usize, interlaced: bool) -> impl Iterator<Item = PixelLine> {
     /// First column and row, and steps between columns and rows.
     const ADAM7: [[usize; 4]; 7] = [
         [0, 0, 8, 8],
@@ -156,7 +156,7 @@ fn lines(width: usize, height: usize, interlaced: bool) -> impl Iterator<Item = 
     let passes = passes.iter().filter(move |[column, ..]| *column < width);
     passes.flat_map(move |&[first, row, step, row_step]| {
         let rows = (row..height).step_by(row_step);
-        rows.map(move |row| Line { row, first, step })
+        rows.map(move |row| PixelLine { row, first, step })
     })
 }
 

@@ -21,7 +21,7 @@ use std::io::{BufRead, Seek};
 use std::path::Path;
 
 pub use error::{ArrayError, extension};
-pub use height_map::{HeightMap, Room, Roughness, Units, height_map};
+pub use height_map::{HeightMap, HeightMapUnits, Room, Roughness, height_map};
 pub use mask::{mask_png, write_mask_png};
 pub use npy::mask_npy;
 pub use slab::Slab;

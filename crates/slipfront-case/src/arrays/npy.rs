@@ -45,7 +45,7 @@ pub(super) fn values(
     is_wrong: impl Fn(f64) -> bool,
 ) -> Result<Vec<f64>, ArrayError> {
     let Slab { nx, ny, ref rows } = *slab;
-    let mut array = Array::open(path, source, |shape| {
+    let mut array = NpyArray::open(path, source, |shape| {
         if shape == [ny as u64, nx as u64] {
             Ok([ny, nx])
         } else {
@@ -80,7 +80,7 @@ pub(super) fn rows(
 ) -> Result<[u64; 2], ArrayError> {
     /// Numbers that are in memory at once: no fewer than a side has.
     const BAND: usize = SIDE_MAX as usize;
-    let mut array = Array::open(path, source, |shape| {
+    let mut array = NpyArray::open(path, source, |shape| {
         let &[height, width] = shape else {
             let problem = format!(
                 "has {} axes where a height map has two, (ny, nx): save the heights alone, and no colours",
@@ -122,10 +122,10 @@ pub(super) fn rows(
 }
 
 /// An array whose numbers can be read.
-struct Array<'a, S> {
+struct NpyArray<'a, S> {
     path: &'a Path,
     source: &'a mut S,
-    number: Number,
+    number: NumberType,
     order: Order,
     /// Rows and columns.
     shape: [usize; 2],
@@ -133,7 +133,7 @@ struct Array<'a, S> {
     at: usize,
 }
 
-impl<'a, S: BufRead + Seek> Array<'a, S> {
+impl<'a, S: BufRead + Seek> NpyArray<'a, S> {
     /// Opens an array whose `shape` is as wanted.
     fn open(
         path: &'a Path,
@@ -142,7 +142,7 @@ impl<'a, S: BufRead + Seek> Array<'a, S> {
     ) -> Result<Self, ArrayError> {
         let (length, head) = length_and_head(path, source, HEADER_MAX_BYTES)?;
         let (header, data_start) = read_header(&head, path)?;
-        let number = Number::of(&header.dtype()).ok_or_else(|| {
+        let number = NumberType::of(&header.dtype()).ok_or_else(|| {
             let problem = format!(
                 "holds values of type {} where real numbers, integers or booleans are wanted; convert the array with \
                  `.astype(float)` before saving it",
@@ -270,16 +270,16 @@ fn wrong_shape(path: &Path, found: &[u64], nx: usize, ny: usize) -> ArrayError {
 }
 
 /// How one number is stored.
-struct Number {
+struct NumberType {
     kind: TypeChar,
     /// 1, 2, 4 or 8 bytes.
     size: usize,
     big_endian: bool,
 }
 
-impl Number {
+impl NumberType {
     /// `None` for anything but booleans, integers and real numbers of at most 64 bits.
-    fn of(dtype: &DType) -> Option<Number> {
+    fn of(dtype: &DType) -> Option<NumberType> {
         let DType::Plain(text) = dtype else { return None };
         let kind = text.type_char();
         let size = match (kind, text.size_field()) {
@@ -287,7 +287,7 @@ impl Number {
             (TypeChar::Int | TypeChar::Uint | TypeChar::Float, size @ (2 | 4 | 8)) => size as usize,
             _ => return None,
         };
-        Some(Number {
+        Some(NumberType {
             kind,
             size,
             big_endian: text.endianness() == Endianness::Big,

@@ -28,7 +28,7 @@ pub(super) fn values(
 ) -> Result<Vec<f64>, ArrayError> {
     let Slab { nx, ny, ref rows } = *slab;
     let line_max = PREAMBLE_MAX_BYTES.saturating_add((nx as u64).saturating_mul(NUMBER_MAX_BYTES));
-    let (length, mut lines) = Lines::of(path, source, line_max)?;
+    let (length, mut lines) = TableLines::of(path, source, line_max)?;
     // A number and what separates it from the next take two bytes at the least.
     let mut values = Vec::with_capacity(slab.n_blocks().min(length as usize / 2 + 1));
     let mut row = 0;
@@ -70,7 +70,7 @@ pub(super) fn rows(
     source: &mut (impl BufRead + Seek),
     mut take: impl FnMut([usize; 2], &[f64]) -> Result<(), ArrayError>,
 ) -> Result<[u64; 2], ArrayError> {
-    let (_, mut lines) = Lines::of(path, source, LINE_MAX_BYTES)?;
+    let (_, mut lines) = TableLines::of(path, source, LINE_MAX_BYTES)?;
     let mut values = Vec::new();
     let (mut columns, mut row) = (None, 0);
     while lines.next()? {
@@ -95,7 +95,7 @@ pub(super) fn rows(
 }
 
 /// The lines of a table that hold numbers, one after the other.
-struct Lines<'a, R> {
+struct TableLines<'a, R> {
     path: &'a Path,
     table: csv::Reader<Take<R>>,
     /// Most bytes of one of them, with comments before it.
@@ -104,7 +104,7 @@ struct Lines<'a, R> {
     record: StringRecord,
 }
 
-impl<'a, R: BufRead + Seek> Lines<'a, &'a mut R> {
+impl<'a, R: BufRead + Seek> TableLines<'a, &'a mut R> {
     /// Opens a table with lines of at most this many bytes, and tells its length in bytes.
     fn of(path: &'a Path, source: &'a mut R, line_max: u64) -> Result<(u64, Self), ArrayError> {
         let (length, preamble) = length_and_head(path, source, PREAMBLE_MAX_BYTES)?;

@@ -343,7 +343,7 @@ fn lines_longer_than_their_numbers_are_refused() {
     let text = message(height_map(
         &path,
         &mut source(),
-        &Units::default(),
+        &HeightMapUnits::default(),
         &room,
         &mut |_| Ok(()),
     ));

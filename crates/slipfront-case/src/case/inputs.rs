@@ -53,7 +53,7 @@ pub fn name_of_copy(plain: &str, is_same: impl Fn(&str) -> Option<bool>) -> (Str
 type Digest = (u64, blake3::Hash);
 
 /// A file that a case names.
-struct Found {
+struct FoundFile {
     key: String,
     holds: FileUse,
     original: PathBuf,
@@ -62,7 +62,7 @@ struct Found {
 }
 
 /// Files that a case names, relative to a folder, as they are before any of them is read.
-pub(super) struct NamedFiles(Vec<Found>);
+pub(super) struct NamedFiles(Vec<FoundFile>);
 
 impl NamedFiles {
     /// Finds the files, and opens none.
@@ -71,7 +71,7 @@ impl NamedFiles {
         let found = files.map(|named| {
             let original = folder.join(&*named.name);
             let stamp = stamp(&original).map_err(|error| source.error(&named.key, error.to_string()))?;
-            Ok(Found {
+            Ok(FoundFile {
                 key: named.key,
                 holds: named.holds,
                 original,
@@ -193,7 +193,7 @@ impl NamedFiles {
     }
 }
 
-impl Found {
+impl FoundFile {
     fn plain_name(&self) -> String {
         let plain = self.original.file_name();
         plain.map_or_else(|| "input".to_owned(), |name| name.to_string_lossy().into_owned())

@@ -12,7 +12,7 @@ use super::slider::outline;
 use super::topography::{self, Ground, Topography};
 use crate::arrays::Slab;
 use crate::case_file::{
-    Arrangement, Blocks, CaseError, CaseFile, Count, Form, MAX_COUNT, Mask, Outline, Pattern, Pitch, Shape,
+    Arrangement, Blocks, CaseError, CaseFile, Count, Inside, MAX_COUNT, Mask, Outline, Pattern, Pitch, Shape,
     Texture,
 };
 use crate::quantity::Length;
@@ -66,18 +66,18 @@ pub(super) fn shapes_in_blocks(
         let arrays = arrays(&texture.pattern, scales, lattice)
             .map_err(|(name, sentence)| file.source.error(&format!("{key}.{name}"), sentence))?;
         let (shape, percent) = match texture.shape.form() {
-            Form::Outline(outline) => outline.in_blocks(&Blocks {
+            Inside::Outline(outline) => outline.in_blocks(&Blocks {
                 scales,
                 lattice,
                 n_blocks,
                 arrays: &arrays,
             }),
-            Form::Mask(mask) => {
+            Inside::Mask(mask) => {
                 let size = cell(&arrays, lattice).map_err(|sentence| file.source.error(&key, sentence))?;
                 let tile = masks.read(file, index, mask, size, inputs, watch)?;
                 (surface::Shape::Tile(tile), None)
             }
-            Form::HeightMap(map) => {
+            Inside::HeightMap(map) => {
                 let size = cell(&arrays, lattice).map_err(|sentence| file.source.error(&key, sentence))?;
                 let ground = Ground {
                     lattice,

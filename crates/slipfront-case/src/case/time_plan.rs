@@ -8,7 +8,7 @@ use slipfront::{Lattice, Model, ONSET_PATH, Scales, Stop, StopReason};
 use super::drive::loading_share;
 use super::groups::Groups;
 use crate::case_file::{
-    Attached, AttachedEdge, AutoOr, CaseError, CaseFile, DriveSpeed, RunTime, Snapshots, Step,
+    Attached, AttachedEdge, AutoOr, CaseError, CaseFile, DriveSpeed, RunTime, Snapshots, TimeStep,
 };
 use crate::number_format::four_digits;
 
@@ -85,9 +85,9 @@ impl TimePlan {
         let limit = dynamics.step_limit;
         let auto = if AUTO_STEP < limit { AUTO_STEP } else { 0.5 * limit };
         let dt_star = match time.step {
-            Step::Auto => auto,
-            Step::Paper => 2.0 / 3.0 * groups.v_star,
-            Step::Number(dt_star) => dt_star,
+            TimeStep::Auto => auto,
+            TimeStep::Paper => 2.0 / 3.0 * groups.v_star,
+            TimeStep::Number(dt_star) => dt_star,
         };
         if dt_star >= limit {
             let sentence = format!(

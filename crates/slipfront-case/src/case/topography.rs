@@ -6,7 +6,7 @@ use slipfront::surface::{Array, Tile, n_copies};
 use slipfront::{Edges, Lattice};
 
 use super::inputs::{Inputs, Watch};
-use crate::arrays::{self, ArrayError, Room, Roughness, Slab, Units};
+use crate::arrays::{self, ArrayError, HeightMapUnits, Room, Roughness, Slab};
 use crate::case_file::{Bearing, CaseError, CaseFile, HeightMap, Pitch};
 use crate::quantity::Length;
 
@@ -59,7 +59,7 @@ impl Ground<'_> {
         inputs: &Inputs,
         watch: &mut Watch,
     ) -> Result<(Tile, Topography, Option<f64>), CaseError> {
-        let units = Units {
+        let units = HeightMapUnits {
             height: map.height_unit.as_ref().map(Length::si),
             pixel: map.pixel_size.as_ref().map(|size| match size {
                 Pitch::Equal(size) => [size.si(); 2],

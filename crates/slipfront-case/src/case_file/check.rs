@@ -5,7 +5,7 @@ use std::ops::RangeBounds;
 use std::path::Path;
 
 use super::error::CaseError;
-use super::key::{Bounds, Key, Kind};
+use super::key::{Bounds, Key, KeyKind};
 use super::source::Source;
 use super::values::AutoOr;
 use crate::number_format::exact;
@@ -50,7 +50,7 @@ impl<'a> Check<'a> {
     }
 
     /// Refuses a value that is not of this kind.
-    pub(super) fn value_of(&self, kind: &Kind, key: &str, value: &dyn Checked) -> Result<(), CaseError> {
+    pub(super) fn value_of(&self, kind: &KeyKind, key: &str, value: &dyn Checked) -> Result<(), CaseError> {
         self.hold(key, value.complaint(kind))
     }
 
@@ -76,12 +76,12 @@ impl<'a> Check<'a> {
 /// A value that is checked against what its key takes.
 pub(super) trait Checked {
     /// What it is, and what it must be, if it is not of this kind.
-    fn complaint(&self, kind: &Kind) -> Option<String>;
+    fn complaint(&self, kind: &KeyKind) -> Option<String>;
 }
 
 impl Checked for f64 {
-    fn complaint(&self, kind: &Kind) -> Option<String> {
-        let Kind::Number { bounds, remark, .. } = kind else {
+    fn complaint(&self, kind: &KeyKind) -> Option<String> {
+        let KeyKind::Number { bounds, remark, .. } = kind else {
             return None;
         };
         out_of(*bounds, *self, remark)
@@ -89,7 +89,7 @@ impl Checked for f64 {
 }
 
 impl Checked for AutoOr {
-    fn complaint(&self, kind: &Kind) -> Option<String> {
+    fn complaint(&self, kind: &KeyKind) -> Option<String> {
         match self {
             Self::Auto => None,
             Self::Number(number) => number.complaint(kind),
@@ -98,8 +98,8 @@ impl Checked for AutoOr {
 }
 
 impl<K: quantity::Kind> Checked for Quantity<K> {
-    fn complaint(&self, kind: &Kind) -> Option<String> {
-        let Kind::Quantity { bounds, unit } = kind else {
+    fn complaint(&self, kind: &KeyKind) -> Option<String> {
+        let KeyKind::Quantity { bounds, unit } = kind else {
             return None;
         };
         (!is_within(*bounds, self.si())).then(|| {
@@ -110,9 +110,9 @@ impl<K: quantity::Kind> Checked for Quantity<K> {
 }
 
 impl Checked for u64 {
-    fn complaint(&self, kind: &Kind) -> Option<String> {
+    fn complaint(&self, kind: &KeyKind) -> Option<String> {
         match kind {
-            Kind::Whole {
+            KeyKind::Whole {
                 least,
                 most,
                 noun,
@@ -126,8 +126,8 @@ impl Checked for u64 {
 }
 
 impl Checked for [u32; 2] {
-    fn complaint(&self, kind: &Kind) -> Option<String> {
-        let Kind::Whole { least, most, .. } = kind else {
+    fn complaint(&self, kind: &KeyKind) -> Option<String> {
+        let KeyKind::Whole { least, most, .. } = kind else {
             return None;
         };
         let [x, y] = self.map(u64::from);
@@ -137,8 +137,8 @@ impl Checked for [u32; 2] {
 }
 
 impl Checked for String {
-    fn complaint(&self, kind: &Kind) -> Option<String> {
-        let Kind::File(formats) = kind else { return None };
+    fn complaint(&self, kind: &KeyKind) -> Option<String> {
+        let KeyKind::File(formats) = kind else { return None };
         let ending = Path::new(self).extension().and_then(|ending| ending.to_str());
         let ending = ending.unwrap_or_default();
         let is_known = formats.iter().any(|format| ending.eq_ignore_ascii_case(format));
@@ -147,7 +147,7 @@ impl Checked for String {
 }
 
 impl<V: Checked> Checked for Option<V> {
-    fn complaint(&self, kind: &Kind) -> Option<String> {
+    fn complaint(&self, kind: &KeyKind) -> Option<String> {
         self.as_ref()?.complaint(kind)
     }
 }

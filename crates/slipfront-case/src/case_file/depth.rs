@@ -50,14 +50,14 @@ pub fn limit_nesting<'t>(source: &Source, offset: usize, text: &'t str) -> Resul
 }
 
 /// A bracket that is open, and the dots since the last key or value began within it.
-struct Level {
+struct OpenBracket {
     bracket: Option<TokenKind>,
     dots: usize,
 }
 
 /// Where the first bracket or dot stands that leads too deep.
 fn too_deep(text: &str) -> Option<usize> {
-    let level = |bracket| Level { bracket, dots: 0 };
+    let level = |bracket| OpenBracket { bracket, dots: 0 };
     // The last one is never closed: brackets that close nothing find no other of their kind.
     let mut open = vec![level(None)];
     let (mut depth, mut joined) = (0, false);

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::check::in_words;
 use super::error::CaseError;
-use super::key::{Key, Kind};
+use super::key::{Key, KeyKind};
 use super::key_table::Section;
 use super::keys;
 use super::source::Source;
@@ -151,33 +151,33 @@ fn takes(key: &Key, message: &str) -> Option<String> {
         String::new()
     };
     Some(match key.kind {
-        Kind::Number { bounds, words, .. } => {
+        KeyKind::Number { bounds, words, .. } => {
             let words: String = words.iter().map(|word| format!(", or \"{word}\"")).collect();
             format!("a number, {}{words}", in_words(bounds))
         }
-        Kind::Whole { least, most, .. } if example.is_empty() => {
+        KeyKind::Whole { least, most, .. } if example.is_empty() => {
             format!("a whole number from {least} to {most}")
         }
-        Kind::Whole { least, most, .. } => {
+        KeyKind::Whole { least, most, .. } => {
             format!("a pair of whole numbers from {least} to {most}{example}")
         }
         // A word or a pair of words has told so itself.
-        Kind::Words(_) if message.starts_with("expected ") => return None,
-        Kind::Words(words) => {
+        KeyKind::Words(_) if message.starts_with("expected ") => return None,
+        KeyKind::Words(words) => {
             let words: Vec<String> = words().iter().map(|word| format!("\"{word}\"")).collect();
             let list = if example.is_empty() { "one of" } else { "a list of" };
             format!("{list} {}", words.join(", "))
         }
-        Kind::Switch => "true or false".to_owned(),
-        Kind::File(formats) => format!("the path of a .{} file, in quotes", formats.join(" or .")),
-        Kind::Quantity { .. } | Kind::Special(_) => return None,
+        KeyKind::Switch => "true or false".to_owned(),
+        KeyKind::File(formats) => format!("the path of a .{} file, in quotes", formats.join(" or .")),
+        KeyKind::Quantity { .. } | KeyKind::Special(_) => return None,
     })
 }
 
 /// What else may help with a value as it was `written`: a number needs no quotes and a point, not a comma, and a key with a unit
 /// may have a partner without, and the other way round. Else a number has its remark.
 fn hint(key: &Key, section: Option<&Section>, written: &str) -> String {
-    let quantity = |key: &Key| matches!(key.kind, Kind::Quantity { .. });
+    let quantity = |key: &Key| matches!(key.kind, KeyKind::Quantity { .. });
     // The same thing with a unit, or without.
     let mut partners = key.partners().filter_map(|name| section?.key(name));
     let partner = partners.find(|partner| quantity(partner) != quantity(key));
@@ -186,22 +186,26 @@ fn hint(key: &Key, section: Option<&Section>, written: &str) -> String {
     let begins_as_number = inside.starts_with(|c: char| c.is_ascii_digit());
     let with_point = inside.replace(',', ".");
     match (key.kind, partner) {
-        (Kind::Number { .. }, _) if begins_as_number && !is_number && with_point.parse::<f64>().is_ok() => {
+        (KeyKind::Number { .. }, _)
+            if begins_as_number && !is_number && with_point.parse::<f64>().is_ok() =>
+        {
             format!("; the decimal sign is a point: {with_point}")
         }
-        (Kind::Number { .. } | Kind::Whole { .. }, _) if is_number && inside != written => {
+        (KeyKind::Number { .. } | KeyKind::Whole { .. }, _) if is_number && inside != written => {
             "; write it without quotes".to_owned()
         }
-        (Kind::Number { .. }, Some(partner))
+        (KeyKind::Number { .. }, Some(partner))
             if quantity(partner) && begins_as_number && inside.ends_with(char::is_alphabetic) =>
         {
             format!("; with a unit, the key is `{}`", partner.name)
         }
         // Its partner is the same thing without a unit, as `v_star` of `speed`, or another one, as `coverage` of `lambda`.
-        (Kind::Quantity { .. }, Some(partner)) if partner.name.ends_with("_star") && written.is_empty() => {
+        (KeyKind::Quantity { .. }, Some(partner))
+            if partner.name.ends_with("_star") && written.is_empty() =>
+        {
             format!("; without a unit, the key is `{}`", partner.name)
         }
-        (Kind::Number { remark, .. }, _) => format!("; {remark}"),
+        (KeyKind::Number { remark, .. }, _) => format!("; {remark}"),
         _ => String::new(),
     }
 }

@@ -13,7 +13,7 @@ pub type Bounds = (Bound<f64>, Bound<f64>);
     missing_docs,
     reason = "the sentence of each variant tells what its fields are"
 )]
-pub enum Kind {
+pub enum KeyKind {
     /// A number, or one of these words in its place. The remark ends the sentence about a number out of bounds.
     Number {
         bounds: Bounds,
@@ -57,7 +57,7 @@ pub struct Key {
     /// Its name within its table.
     pub name: &'static str,
     /// What it takes.
-    pub kind: Kind,
+    pub kind: KeyKind,
     /// Its default as TOML; empty if it has none.
     pub default: &'static str,
     /// The keys that set the same thing: a table has one of them.
@@ -94,7 +94,7 @@ impl Key {
     }
 }
 
-pub(super) const fn key(name: &'static str, default: &'static str, kind: Kind, doc: &'static str) -> Key {
+pub(super) const fn key(name: &'static str, default: &'static str, kind: KeyKind, doc: &'static str) -> Key {
     Key {
         name,
         kind,
@@ -105,24 +105,24 @@ pub(super) const fn key(name: &'static str, default: &'static str, kind: Kind, d
     }
 }
 
-pub(super) const fn number(bounds: Bounds, remark: &'static str) -> Kind {
+pub(super) const fn number(bounds: Bounds, remark: &'static str) -> KeyKind {
     or_word(bounds, remark, &[])
 }
 
-pub(super) const fn or_word(bounds: Bounds, remark: &'static str, words: &'static [&'static str]) -> Kind {
-    Kind::Number {
+pub(super) const fn or_word(bounds: Bounds, remark: &'static str, words: &'static [&'static str]) -> KeyKind {
+    KeyKind::Number {
         bounds,
         remark,
         words,
     }
 }
 
-pub(super) const fn quantity(unit: &'static str, bounds: Bounds) -> Kind {
-    Kind::Quantity { unit, bounds }
+pub(super) const fn quantity(unit: &'static str, bounds: Bounds) -> KeyKind {
+    KeyKind::Quantity { unit, bounds }
 }
 
-pub(super) const fn whole(least: u64, most: u64) -> Kind {
-    Kind::Whole {
+pub(super) const fn whole(least: u64, most: u64) -> KeyKind {
+    KeyKind::Whole {
         least,
         most,
         noun: "",
@@ -152,19 +152,19 @@ pub(super) const POSITIVE_TIME: Bounds = above(0.0, MAX_TIME_STAR);
 /// The largest coordinate or size of a texture, m.
 const MAX_LENGTH: f64 = 1e9;
 /// A size of a texture, or a distance in it.
-pub(super) const SIZE: Kind = quantity("m", above(0.0, MAX_LENGTH));
+pub(super) const SIZE: KeyKind = quantity("m", above(0.0, MAX_LENGTH));
 /// A coordinate of a texture.
-pub(super) const COORDINATE: Kind = quantity("m", within(-MAX_LENGTH, MAX_LENGTH));
+pub(super) const COORDINATE: KeyKind = quantity("m", within(-MAX_LENGTH, MAX_LENGTH));
 /// A share of the area of the slider.
-pub(super) const COVERAGE: Kind = number(between(0.0, 100.0), "it is in percent of the whole area");
+pub(super) const COVERAGE: KeyKind = number(between(0.0, 100.0), "it is in percent of the whole area");
 /// A direction.
-pub(super) const DEGREES: Kind = number(within(-360.0, 360.0), "it is in degrees from x towards y");
+pub(super) const DEGREES: KeyKind = number(within(-360.0, 360.0), "it is in degrees from x towards y");
 /// A file of numbers, block by block.
-pub(super) const ARRAY: Kind = Kind::File(&["npy", "csv"]);
+pub(super) const ARRAY: KeyKind = KeyKind::File(&["npy", "csv"]);
 /// A speed in the unit of V*.
-pub(super) const SPEED_STAR: Kind = number(above(0.0, 10.0), "it is in the unit of V*");
+pub(super) const SPEED_STAR: KeyKind = number(above(0.0, 10.0), "it is in the unit of V*");
 /// A time in t*.
-pub(super) const TIME_STAR: Kind = number(POSITIVE_TIME, "it is a time t*");
+pub(super) const TIME_STAR: KeyKind = number(POSITIVE_TIME, "it is a time t*");
 /// The word that stands for a number which the case decides.
 pub(super) const AUTO: &[&str] = &["auto"];
 

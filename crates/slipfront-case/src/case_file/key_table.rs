@@ -13,7 +13,7 @@ use slipfront::{Edges, StopReason};
 
 use super::friction;
 use super::key::{
-    ARRAY, AUTO, DEGREES, Key, Kind, MAX_TIME_STAR, POSITIVE_TIME, Title, above, between, key, number,
+    ARRAY, AUTO, DEGREES, Key, KeyKind, MAX_TIME_STAR, POSITIVE_TIME, Title, above, between, key, number,
     or_word, quantity, whole, within,
 };
 use super::probe::names_of;
@@ -84,20 +84,20 @@ pub(crate) const MIN_RELATIVE: f64 = 1e-6;
 pub(crate) const MAX_RELATIVE: f64 = 1e6;
 
 /// A slope of a profile.
-pub(super) const RELATIVE_SLOPE: Kind = number(between(-1.0, 1.0), "1 would leave no load on an edge");
+pub(super) const RELATIVE_SLOPE: KeyKind = number(between(-1.0, 1.0), "1 would leave no load on an edge");
 /// A stiffness with its unit.
-pub(super) const STIFFNESS: Kind = quantity("N/m", within(1e-30, 1e30));
-const DRIVE_STIFFNESS: Kind = number(above(0.0, 1e6), "that of the paper is 0.375 on each block");
+pub(super) const STIFFNESS: KeyKind = quantity("N/m", within(1e-30, 1e30));
+const DRIVE_STIFFNESS: KeyKind = number(above(0.0, 1e6), "that of the paper is 0.375 on each block");
 /// A speed of a program.
-pub(super) const PROGRAM_SPEED: Kind = number(within(-10.0, 10.0), "the paper's runs have 0.01 to 0.2");
+pub(super) const PROGRAM_SPEED: KeyKind = number(within(-10.0, 10.0), "the paper's runs have 0.01 to 0.2");
 /// The end of a segment of a program.
-pub(super) const UNTIL: Kind = number(POSITIVE_TIME, "it is a time t*");
+pub(super) const UNTIL: KeyKind = number(POSITIVE_TIME, "it is a time t*");
 /// A property of a block over that of the whole slider.
-pub(super) const RELATIVE_PROPERTY: Kind = number(
+pub(super) const RELATIVE_PROPERTY: KeyKind = number(
     within(MIN_RELATIVE, MAX_RELATIVE),
     "it is relative, so that 1 changes nothing",
 );
-const GRADE: Kind = Kind::Special("`{ along = \"x\", from = 1, to = 0.1 }`; 1e-6 to 1e6");
+const GRADE: KeyKind = KeyKind::Special("`{ along = \"x\", from = 1, to = 0.1 }`; 1e-6 to 1e6");
 /// The sections that are tables.
 const TABLES: [Section; 6] = [
     section(false, "slider", SLIDER),
@@ -136,9 +136,9 @@ const SLIDER: &[Key] = &[
         .or("damping_rate").title("damping", "\u{3a9}*", ""),
     key("damping_rate", "", quantity("1/s", within(0.0, 1e24)), "damping with its unit")
         .or("omega_star").title("damping", "\u{3a9}", "1/s"),
-    key("edges", "\"free\"", Kind::Words(names_of::<Edges>), "what lies beyond the edges that bound x and those that bound y"),
-    key("outline", "\"rectangle\"", Kind::Words(names_of::<Outline>), "shape of the slider: blocks outside do not exist"),
-    key("outline_file", "", Kind::File(&["png", "npy"]), "the shape as a mask: dark pixels, or 1 in an array, are blocks"),
+    key("edges", "\"free\"", KeyKind::Words(names_of::<Edges>), "what lies beyond the edges that bound x and those that bound y"),
+    key("outline", "\"rectangle\"", KeyKind::Words(names_of::<Outline>), "shape of the slider: blocks outside do not exist"),
+    key("outline_file", "", KeyKind::File(&["png", "npy"]), "the shape as a mask: dark pixels, or 1 in an array, are blocks"),
     key("viscosity_time_star", "0", number(within(0.0, 1e3), "it is a time in t*, of the order of 0.1 where it matters"),
         "damping constant of a damper beside every spring between blocks over the spring's stiffness")
         .title("viscosity", "\u{3c4}\u{1d65}*", ""),
@@ -152,8 +152,8 @@ const SLIDER: &[Key] = &[
 const LOAD: &[Key] = &[
     key("pressure", "\"100 kPa\"", quantity("Pa", within(1e-9, 1e15)), "normal load over the whole area, textured or not")
         .title("pressure", "P", "Pa"),
-    key("redistribute", "true", Kind::Switch, "whether the blocks in contact carry the load of the textured ones"),
-    key("profile", "", Kind::Special("`{ along = \"x\", relative_slope = 0.5 }`; more than -1, less than 1"),
+    key("redistribute", "true", KeyKind::Switch, "whether the blocks in contact carry the load of the textured ones"),
+    key("profile", "", KeyKind::Special("`{ along = \"x\", relative_slope = 0.5 }`; more than -1, less than 1"),
         "a pressure that rises along x or y, with the mean `pressure`").or("pressure_field"),
     key("pressure_field", "", ARRAY, "local pressure over `pressure`, block by block").or("profile"),
 ];
@@ -164,15 +164,15 @@ const DRIVE: &[Key] = &[
         .or("speed").or("program").title("drive speed", "V*", ""),
     key("speed", "", quantity("m/s", within(1e-18, 1e6)), "speed of the drive with its unit")
         .or("v_star").or("program").title("drive speed", "V", "m/s"),
-    key("program", "", Kind::Special("`[{ v_star = 0.03, until_star = 200 }, { v_star = 0 }]`; -10 to 10, times rising"),
+    key("program", "", KeyKind::Special("`[{ v_star = 0.03, until_star = 200 }, { v_star = 0 }]`; -10 to 10, times rising"),
         "speeds that follow one another").or("v_star").or("speed"),
     key("direction", "0", DEGREES, "direction of the drive, degrees from x towards y")
         .title("direction of the drive", "\u{3b8}", "\u{b0}"),
-    key("motion", "\"translation\"", Kind::Words(names_of::<Motion>), "whether the drive pulls along the direction or turns"),
-    key("attach", "\"all\"", Kind::Words(names_of::<AttachedEdge>), "which blocks have a drive spring: all, or those of an edge")
+    key("motion", "\"translation\"", KeyKind::Words(names_of::<Motion>), "whether the drive pulls along the direction or turns"),
+    key("attach", "\"all\"", KeyKind::Words(names_of::<AttachedEdge>), "which blocks have a drive spring: all, or those of an edge")
         .or("attach_file"),
-    key("attach_file", "", Kind::File(&["png", "npy"]), "an image or array of the blocks that have a drive spring").or("attach"),
-    key("stiffness", "\"auto\"", Kind::Special("`\"auto\"`, or 1e-30 to 1e30 N/m"), "stiffness of each drive spring")
+    key("attach_file", "", KeyKind::File(&["png", "npy"]), "an image or array of the blocks that have a drive spring").or("attach"),
+    key("stiffness", "\"auto\"", KeyKind::Special("`\"auto\"`, or 1e-30 to 1e30 N/m"), "stiffness of each drive spring")
         .or("stiffness_star").or("total_stiffness").or("total_stiffness_star"),
     key("stiffness_star", "", DRIVE_STIFFNESS, "the same over E l").or("stiffness").or("total_stiffness").or("total_stiffness_star")
         .title("drive stiffness", "k\u{209b}*", ""),
@@ -190,7 +190,7 @@ const TIME: &[Key] = &[
         .or("duration_star").title("duration", "t", "s"),
     key("step", "\"auto\"", or_word(between(0.0, UNSTABLE_STEP), "beyond it the scheme is unstable; \"auto\" is 0.1",
         &["auto", "paper"]), "time step").title("time step", "\u{394}t*", ""),
-    key("stop", "\"end\"", Kind::Words(names_of::<StopReason>),
+    key("stop", "\"end\"", KeyKind::Words(names_of::<StopReason>),
         "end at the duration, or as soon as the fall that ends the first peak is seen"),
     key("kinetic_from_star", "\"auto\"", or_word((Included(0.0), Unbounded),
         "the average is taken from there to the end of the run", AUTO), "start of the window that mu_k* is averaged over"),
@@ -198,20 +198,20 @@ const TIME: &[Key] = &[
 
 #[rustfmt::skip]
 const OUTPUT: &[Key] = &[
-    key("snapshots", "\"auto\"", Kind::Special("`\"auto\"`, a list, or `{ every = 5.0 }`"), "when fields are written"),
+    key("snapshots", "\"auto\"", KeyKind::Special("`\"auto\"`, a list, or `{ every = 5.0 }`"), "when fields are written"),
     key("fields", "[\"contact_stress_star\", \"traction\", \"displacement_x\", \"displacement_y\", \"sliding\"]",
-        Kind::Words(names_of::<Field>), "what is written then"),
-    key("stride", "1", Kind::Whole { least: 1, most: MAX_BLOCKS, noun: "", remark: "; 1 writes every block" },
+        KeyKind::Words(names_of::<Field>), "what is written then"),
+    key("stride", "1", KeyKind::Whole { least: 1, most: MAX_BLOCKS, noun: "", remark: "; 1 writes every block" },
         "every n-th block in the fields file"),
     key("series", "\"auto\"", SPACING, "spacing of the rows of the series in t*"),
-    key("movie", "false", Kind::Switch, "whether a movie is drawn of the snapshots"),
+    key("movie", "false", KeyKind::Switch, "whether a movie is drawn of the snapshots"),
 ];
 
 /// A time between snapshots or rows.
-pub(super) const SPACING: Kind = or_word(POSITIVE_TIME, "it is a spacing in t*", AUTO);
+pub(super) const SPACING: KeyKind = or_word(POSITIVE_TIME, "it is a spacing in t*", AUTO);
 
 /// A time of a snapshot in a list of them.
-pub(super) const SNAPSHOT_TIME: Kind = number(within(0.0, MAX_TIME_STAR), "snapshots are times t*");
+pub(super) const SNAPSHOT_TIME: KeyKind = number(within(0.0, MAX_TIME_STAR), "snapshots are times t*");
 
 const fn section(is_shape: bool, name: &'static str, keys: &'static [Key]) -> Section {
     Section { name, is_shape, keys }
@@ -232,7 +232,7 @@ pub fn title_of(path: &str) -> Option<(Title, Option<usize>)> {
 pub fn names_a_file(key: &str) -> bool {
     let name = key.rsplit('.').next().unwrap_or(key);
     let mut keys = SECTIONS.iter().filter_map(|section| section.key(name));
-    keys.any(|key| matches!(key.kind, Kind::File(_)))
+    keys.any(|key| matches!(key.kind, KeyKind::File(_)))
 }
 
 /// The keys of a table or shape of texture.

@@ -36,7 +36,7 @@ pub use drive::{Attached, Drive, DriveSpeed, DriveStiffness, SpeedSegment};
 pub use error::{CaseError, Invalid, Place};
 pub use file::{CaseFile, FileUse, NamedFile, ParsedCase};
 pub use friction::*;
-pub use key::{Bounds, Key, Kind, Title};
+pub use key::{Bounds, Key, KeyKind, Title};
 pub(crate) use key_table::{MAX_BLOCKS, MAX_RELATIVE, MIN_RELATIVE};
 pub use key_table::{SECTIONS, Section, names_a_file, title_of};
 pub use keys::{
@@ -56,7 +56,7 @@ pub use slider::{Damping, Grade, Slider};
 pub use source::Source;
 pub use tables::Tables;
 pub use texture::Texture;
-pub use time::{RunTime, Step, Time};
+pub use time::{RunTime, Time, TimeStep};
 pub use values::AutoOr;
 pub use words::{Arrangement, AttachedEdge, Motion, Outline};
 

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::check::Check;
 use super::error::CaseError;
-use super::key::{Key, Kind, SIZE, key, whole};
+use super::key::{Key, KeyKind, SIZE, key, whole};
 use super::probe::names_of;
 use super::values::{Pair, length, word};
 use super::words::Arrangement;
@@ -13,19 +13,19 @@ use crate::quantity::Length;
 /// Most columns, and most rows, of all arrays of a texture together.
 pub(crate) const MAX_COUNT: u64 = 1000;
 /// Columns and rows.
-const COUNT: Kind = whole(1, MAX_COUNT);
+const COUNT: KeyKind = whole(1, MAX_COUNT);
 
 /// The keys of a pattern, which all shapes have.
 #[rustfmt::skip]
 pub(super) const KEYS: &[Key] = &[
-    key("pitch", "", Kind::Special("a length, or a pair; more than 0, at most 1e9 m"),
+    key("pitch", "", KeyKind::Special("a length, or a pair; more than 0, at most 1e9 m"),
         "distance between neighbouring copies").title("pitch", "", "m"),
-    key("array", "\"auto\"", Kind::Special("`\"auto\"`, or a pair from 1 to 1000"),
+    key("array", "\"auto\"", KeyKind::Special("`\"auto\"`, or a pair from 1 to 1000"),
         "columns and rows of copies"),
-    key("lattice", "\"square\"", Kind::Words(names_of::<Arrangement>), "how the copies are arranged"),
-    key("repeat", "", Kind::Special("`{ array = [3, 3], pitch = \"20 um\", lattice = \"square\" }`"),
+    key("lattice", "\"square\"", KeyKind::Words(names_of::<Arrangement>), "how the copies are arranged"),
+    key("repeat", "", KeyKind::Special("`{ array = [3, 3], pitch = \"20 um\", lattice = \"square\" }`"),
         "a pattern of such patterns"),
-    key("invert", "false", Kind::Switch, "whether all but the inside is textured"),
+    key("invert", "false", KeyKind::Switch, "whether all but the inside is textured"),
 ];
 
 /// The pattern in which the shape of a texture is repeated.

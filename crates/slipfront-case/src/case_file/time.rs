@@ -22,7 +22,7 @@ pub struct Time {
     /// How long the run is: `duration_star` or `duration`.
     pub duration: RunTime,
     /// The time step.
-    pub step: Step,
+    pub step: TimeStep,
     /// What ends the run: its duration, or the fall after the first peak of mu* if that comes first.
     pub stop: StopReason,
     /// Start of the window that the kinetic friction is averaged over, in t*; `auto` is 2.5/V* after the onset.
@@ -41,7 +41,7 @@ pub enum RunTime {
 /// The time step.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "WordOrNumber", into = "WordOrNumber")]
-pub enum Step {
+pub enum TimeStep {
     /// `"auto"`: dt* = 0.1.
     Auto,
     /// `"paper"`: dt* = (2/3) V* (Eq. 13).
@@ -55,8 +55,8 @@ impl Time {
     pub(super) fn check(&self, check: &Check, speed: &DriveSpeed) -> Result<(), CaseError> {
         self.duration.check(check)?;
         match (self.step, speed) {
-            (Step::Number(dt_star), _) => check.value("step", &dt_star)?,
-            (Step::Paper, DriveSpeed::VStar(v_star)) if v_star * 2.0 / 3.0 >= UNSTABLE_STEP => {
+            (TimeStep::Number(dt_star), _) => check.value("step", &dt_star)?,
+            (TimeStep::Paper, DriveSpeed::VStar(v_star)) if v_star * 2.0 / 3.0 >= UNSTABLE_STEP => {
                 let step = v_star * 2.0 / 3.0;
                 return check.refuse("step", |key| {
                     format!(
@@ -86,14 +86,14 @@ keys_with_choice! {
             duration: Duration => Duration,
             _ => "the run needs a length: `duration_star` or `duration`"
         }),
-        step: Step,
+        step: TimeStep,
         #[serde(deserialize_with = "word")]
         stop: StopReason,
         kinetic_from_star: AutoOr,
     }
 }
 
-impl TryFrom<WordOrNumber> for Step {
+impl TryFrom<WordOrNumber> for TimeStep {
     type Error = &'static str;
 
     fn try_from(value: WordOrNumber) -> Result<Self, Self::Error> {
@@ -106,12 +106,12 @@ impl TryFrom<WordOrNumber> for Step {
     }
 }
 
-impl From<Step> for WordOrNumber {
-    fn from(step: Step) -> Self {
+impl From<TimeStep> for WordOrNumber {
+    fn from(step: TimeStep) -> Self {
         match step {
-            Step::Auto => Self::Word("auto".to_owned()),
-            Step::Paper => Self::Word("paper".to_owned()),
-            Step::Number(dt_star) => Self::Number(dt_star),
+            TimeStep::Auto => Self::Word("auto".to_owned()),
+            TimeStep::Paper => Self::Word("paper".to_owned()),
+            TimeStep::Number(dt_star) => Self::Number(dt_star),
         }
     }
 }

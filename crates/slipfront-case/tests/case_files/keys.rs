@@ -1,6 +1,6 @@
 use std::collections::BTreeSet;
 
-use slipfront_case::case_file::{CaseFile, Kind, SECTIONS, Section};
+use slipfront_case::case_file::{CaseFile, KeyKind, SECTIONS, Section};
 
 /// A case that has a texture of the shape, and how its keys are reached.
 fn base(section: &Section) -> (String, String) {
@@ -41,14 +41,16 @@ fn every_bound_of_the_table_is_checked() {
     for section in &SECTIONS {
         for key in section.keys {
             let absurd = match key.kind {
-                Kind::Number { bounds, .. } if bounds.1 == std::ops::Bound::Unbounded => "-1e300".to_owned(),
-                Kind::Number { .. } => "1e300".to_owned(),
-                Kind::Quantity { unit, .. } => format!("1e300 {unit}"),
-                Kind::Whole { most, .. } if most > u64::from(u32::MAX) => continue,
-                Kind::Whole { most, .. } if key.default.starts_with('[') => format!("[1, {}]", most + 1),
-                Kind::Whole { most, .. } => (most + 1).to_string(),
-                Kind::File(_) => "mask.unknown".to_owned(),
-                Kind::Words(_) | Kind::Switch | Kind::Special(_) => "unknown".to_owned(),
+                KeyKind::Number { bounds, .. } if bounds.1 == std::ops::Bound::Unbounded => {
+                    "-1e300".to_owned()
+                }
+                KeyKind::Number { .. } => "1e300".to_owned(),
+                KeyKind::Quantity { unit, .. } => format!("1e300 {unit}"),
+                KeyKind::Whole { most, .. } if most > u64::from(u32::MAX) => continue,
+                KeyKind::Whole { most, .. } if key.default.starts_with('[') => format!("[1, {}]", most + 1),
+                KeyKind::Whole { most, .. } => (most + 1).to_string(),
+                KeyKind::File(_) => "mask.unknown".to_owned(),
+                KeyKind::Words(_) | KeyKind::Switch | KeyKind::Special(_) => "unknown".to_owned(),
             };
             let said = with(section, key.name, &absurd).expect_err(key.name);
             assert!(said.contains(&format!(".{}`", key.name)), "{said}");

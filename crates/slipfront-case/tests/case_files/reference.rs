@@ -2,7 +2,7 @@ use std::fs;
 use std::ops::Bound::{Excluded, Included, Unbounded};
 use std::path::Path;
 
-use slipfront_case::case_file::{Bounds, CaseFile, Kind, SECTIONS};
+use slipfront_case::case_file::{Bounds, CaseFile, KeyKind, SECTIONS};
 use slipfront_case::number_format::exact;
 
 /// The TOML blocks of the reference are cases that can be read, and every key of the default is explained there.
@@ -79,7 +79,7 @@ fn the_reference_tells_every_key_as_it_is() {
 }
 
 /// What the cell of the bounds must hold.
-fn bounds(kind: &Kind) -> Vec<String> {
+fn bounds(kind: &KeyKind) -> Vec<String> {
     let quoted = |words: &[&str]| {
         words
             .iter()
@@ -87,17 +87,17 @@ fn bounds(kind: &Kind) -> Vec<String> {
             .collect::<Vec<_>>()
     };
     match kind {
-        Kind::Number { bounds, words, .. } => [quoted(words), vec![range(bounds)]].concat(),
-        Kind::Quantity { unit, bounds } => vec![range(bounds), (*unit).to_owned()],
-        Kind::Whole { most, .. } if *most == i64::MAX as u64 => vec!["0 to 2^63 - 1".to_owned()],
-        Kind::Whole {
+        KeyKind::Number { bounds, words, .. } => [quoted(words), vec![range(bounds)]].concat(),
+        KeyKind::Quantity { unit, bounds } => vec![range(bounds), (*unit).to_owned()],
+        KeyKind::Whole { most, .. } if *most == i64::MAX as u64 => vec!["0 to 2^63 - 1".to_owned()],
+        KeyKind::Whole {
             least, most: 100_000, ..
         } => vec![format!("{least} to 100 000")],
-        Kind::Whole { least, most, .. } => vec![format!("{least} to {most}")],
-        Kind::Words(words) => quoted(words()),
-        Kind::Switch => Vec::new(),
-        Kind::File(formats) => formats.iter().map(|format| format!("`.{format}`")).collect(),
-        Kind::Special(words) => vec![(*words).to_owned()],
+        KeyKind::Whole { least, most, .. } => vec![format!("{least} to {most}")],
+        KeyKind::Words(words) => quoted(words()),
+        KeyKind::Switch => Vec::new(),
+        KeyKind::File(formats) => formats.iter().map(|format| format!("`.{format}`")).collect(),
+        KeyKind::Special(words) => vec![(*words).to_owned()],
     }
 }
 

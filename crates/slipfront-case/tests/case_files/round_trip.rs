@@ -6,10 +6,10 @@ use slipfront::surface::Orientation;
 use slipfront::{Edges, StopReason};
 use slipfront_case::case_file::{
     Ageing, AgeingLaw, Along, Arrangement, Array, Attached, AttachedEdge, AutoOr, Bearing, CaseFile, Cavity,
-    CavitySize, Center, Contact, Count, Damping, Drive, DriveSpeed, DriveStiffness, Friction, Grade, Groove,
-    GrooveSize, HeightMap, KineticFriction, Law, Load, Mask, Motion, Outline, Output, Pattern, Pitch,
-    Polygon, Profile, RunTime, Shape, Slider, Snapshots, Source, SpeedSegment, Step, Texture, Time, Velocity,
-    VelocityLaw,
+    CavitySize, Center, ContactModel, Count, Damping, Drive, DriveSpeed, DriveStiffness, Friction, Grade,
+    Groove, GrooveSize, HeightMap, KineticFriction, Law, Load, Mask, Motion, Outline, Output, Pattern, Pitch,
+    Polygon, Profile, RunTime, Shape, Slider, Snapshots, Source, SpeedSegment, Texture, Time, TimeStep,
+    Velocity, VelocityLaw,
 };
 use slipfront_case::quantity::{Kind, Length, Quantity};
 
@@ -258,7 +258,7 @@ fn of_coefficients() -> impl Strategy<Value = Friction> {
 fn springs() -> impl Strategy<Value = Friction> {
     let base = CaseFile::default().friction;
     (1e-6..1e3, any::<bool>()).prop_map(move |(stiffness, redraw)| Friction {
-        contact: Contact::Springs,
+        contact: ContactModel::Springs,
         contact_stiffness_star: Some(stiffness),
         redraw,
         ..base.clone()
@@ -412,9 +412,9 @@ fn time() -> impl Strategy<Value = Time> {
         quantity(-24, 12, &["ns", "s"]).prop_map(RunTime::Duration)
     ];
     let step = prop_oneof![
-        Just(Step::Auto),
-        Just(Step::Paper),
-        (1e-9..0.9057).prop_map(Step::Number)
+        Just(TimeStep::Auto),
+        Just(TimeStep::Paper),
+        (1e-9..0.9057).prop_map(TimeStep::Number)
     ];
     (
         duration,

@@ -6,7 +6,7 @@ use crate::case_args::CaseArgs;
 use crate::estimate_cost::seconds_per_step;
 use crate::failure::Failure;
 use crate::print::print;
-use crate::ranks::Ranks;
+use crate::ranks::CommandRanks;
 use crate::report;
 use crate::signals::Signals;
 use crate::threads::set_threads;
@@ -16,16 +16,16 @@ use crate::threads::set_threads;
 #[command(after_help = "Examples:
   slipfront check cases/circle.toml
   slipfront check cases/circle.toml --set texture.0.coverage=25")]
-pub(crate) struct Check {
+pub(crate) struct CheckCommand {
     #[command(flatten)]
     case: CaseArgs,
 }
 
-impl Check {
+impl CheckCommand {
     pub(crate) fn execute(self) -> Result<(), Failure> {
         set_threads(None)?;
         let signals = Signals::catch().map_err(Failure::running)?;
-        let case = self.case.load(&Ranks::alone(), &signals, false)?;
+        let case = self.case.load(&CommandRanks::alone(), &signals, false)?;
         print(&report::physics(&case))?;
         let seconds = seconds_per_step(&case) * case.time_plan.last_step as f64;
         print(&report::cost(&case, seconds))

@@ -10,12 +10,12 @@ use crate::print::print;
 #[derive(Args)]
 #[command(after_help = "Example:
   slipfront completions bash > ~/.local/share/bash-completion/completions/slipfront")]
-pub(crate) struct Completions {
+pub(crate) struct CompletionsCommand {
     /// The shell
     shell: Shell,
 }
 
-impl Completions {
+impl CompletionsCommand {
     /// `command` is the description of the whole command line.
     pub(crate) fn execute(self, mut command: Command) -> Result<(), Failure> {
         let mut script = Vec::new();

@@ -18,7 +18,7 @@ use crate::threads::{count_from_one, set_worker_threads};
   slipfront family --docs docs/validation   the page of the documentation, with pictures
 
 Exit status 0 says that every answer is within its tolerance, 1 that one is not.")]
-pub(crate) struct Family {
+pub(crate) struct FamilyCommand {
     /// Write family.md and its pictures to this folder
     #[arg(long, value_name = "DIR")]
     docs: Option<PathBuf>,
@@ -27,7 +27,7 @@ pub(crate) struct Family {
     threads: Option<u16>,
 }
 
-impl Family {
+impl FamilyCommand {
     pub(crate) fn execute(self) -> Result<(), Failure> {
         set_worker_threads(self.threads, 1)?;
         if let Some(path) = self.docs.as_deref().and_then(family::foreign_docs) {

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use clap::Args;
-use slipfront_lab::{Laboratory, Options, Start};
+use slipfront_lab::{Laboratory, ServerOptions, Start};
 
 use crate::browser;
 use crate::failure::Failure;
@@ -25,7 +25,7 @@ use crate::wrap::for_stderr;
                                                          the case of a link that was copied there
 
 The page answers on this machine alone, and needs no network. Ctrl-C ends it.")]
-pub(crate) struct Lab {
+pub(crate) struct LabCommand {
     /// Case file, run folder, or a link of the page
     #[arg(value_name = "CASE")]
     case: Option<String>,
@@ -50,7 +50,7 @@ pub(crate) struct Lab {
 /// What stands before the case in a link.
 const LINK: &str = "#case=";
 
-impl Lab {
+impl LabCommand {
     pub(crate) fn execute(self) -> Result<(), Failure> {
         // First, since a large case is made on these threads.
         let cores = std::thread::available_parallelism().map_or(1, usize::from);
@@ -68,7 +68,7 @@ impl Lab {
         };
         refuse_readable_output()?;
         let signals = Signals::catch().map_err(Failure::running)?;
-        let laboratory = Laboratory::bind(Options {
+        let laboratory = Laboratory::bind(ServerOptions {
             start,
             results: self.results,
             allow_files: self.allow_files,

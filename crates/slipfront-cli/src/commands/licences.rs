@@ -12,9 +12,9 @@ const NOTICES: &str = include_str!("../../THIRD-PARTY-NOTICES.txt");
 #[derive(Args)]
 #[command(after_help = "Example:
   slipfront licences | less")]
-pub(crate) struct Licences {}
+pub(crate) struct LicencesCommand {}
 
-impl Licences {
+impl LicencesCommand {
     pub(crate) fn execute(self) -> Result<(), Failure> {
         print(NOTICES)
     }

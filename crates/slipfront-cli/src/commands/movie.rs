@@ -30,7 +30,7 @@ use crate::threads::set_threads;
   slipfront run cases/circle.toml -o results/circle --set output.snapshots={every=1.5}
   slipfront movie results/circle
   slipfront movie results/circle --field displacement_x -o circle.mp4    where ffmpeg is installed")]
-pub(crate) struct Movie {
+pub(crate) struct MovieCommand {
     /// Run folder
     #[arg(value_name = "DIR")]
     folder: PathBuf,
@@ -53,7 +53,7 @@ fn known_field(name: &str) -> Result<Field, String> {
     field_named(name).ok_or_else(|| format!("the fields are {}", names()))
 }
 
-impl Movie {
+impl MovieCommand {
     pub(crate) fn execute(self) -> Result<(), Failure> {
         set_threads(None)?;
         let folder = &self.folder;
@@ -100,7 +100,7 @@ impl Movie {
     }
 }
 
-impl Movie {
+impl MovieCommand {
     /// That the run has no snapshots of the field, and of which it has.
     fn no_snapshots(&self, case: Option<&CaseFile>) -> String {
         let field = self

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use slipfront_case::disk::{is_empty, make_folders};
 use slipfront_case::number_format::are;
-use slipfront_paper::Options;
+use slipfront_paper::PaperOptions;
 use slipfront_study::{Records, is_study};
 
 use crate::failure::Failure;
@@ -22,7 +22,7 @@ use crate::threads::{count_from_one, set_worker_threads};
   slipfront paper --docs docs/validation   the claims table of the documentation, too
 
 Exit status 0 says that every verdict is the expected one, 1 that one is not.")]
-pub(crate) struct Paper {
+pub(crate) struct PaperCommand {
     /// Figures: fig1 ... fig18, table1, sensitivity, or all; those finished in the folder are reported in any case
     #[arg(value_name = "FIGURE")]
     figures: Vec<String>,
@@ -43,7 +43,7 @@ pub(crate) struct Paper {
     reduced: bool,
 }
 
-impl Paper {
+impl PaperCommand {
     pub(crate) fn execute(self) -> Result<(), Failure> {
         let threads = set_worker_threads(self.threads, 1)?;
         let figures = slipfront_paper::figures(&self.figures).map_err(Failure::input)?;
@@ -52,7 +52,7 @@ impl Paper {
         }
         let records = open(&self.out)?;
         let signals = Signals::catch().map_err(Failure::running)?;
-        let options = Options {
+        let options = PaperOptions {
             threads,
             stop: &signals.stop,
             reduced: self.reduced,

@@ -11,10 +11,12 @@ use slipfront_case::field_info::{FIELDS, field_info, field_named};
 use slipfront_case::machine::available_of;
 use slipfront_case::number_format::{byte_size, four_digits, with_si_prefix};
 use slipfront_plot::Picture;
-use slipfront_run::measured::{Column, Measure, MeasuredError, Record};
+use slipfront_run::measured::{Column, Measure, MeasuredError, MeasuredRecord};
 use slipfront_run::names::MANIFEST;
 use slipfront_run::pictures;
-use slipfront_run::pictures::friction::{Against, Fit, Measured, Overlay, Units, overlay, overlay_measured};
+use slipfront_run::pictures::friction::{
+    Against, AxisUnits, Fit, OverlaidRecord, Overlay, overlay, overlay_measured,
+};
 use slipfront_run::run_folder::inspection::Inspection;
 use slipfront_run::verify::{expect_as_written, inspect};
 use slipfront_study::verify::has_records;
@@ -32,7 +34,7 @@ use crate::threads::set_threads;
   slipfront plot results/circle --units si --against displacement -o results/newtons
   slipfront plot results/circle --data force.csv --x time_s --y force_n
   slipfront plot results/circle --field traction -o results/traction")]
-pub(crate) struct Plot {
+pub(crate) struct PlotCommand {
     /// Run folders
     #[arg(required = true, value_name = "DIR")]
     folders: Vec<PathBuf>,
@@ -107,7 +109,7 @@ enum AgainstName {
     Displacement,
 }
 
-impl Plot {
+impl PlotCommand {
     pub(crate) fn execute(self) -> Result<(), Failure> {
         set_threads(None)?;
         self.out.as_deref().map_or(Ok(()), expect_a_folder)?;
@@ -187,7 +189,7 @@ impl Plot {
     }
 }
 
-impl Plot {
+impl PlotCommand {
     fn against(&self) -> Option<Against> {
         self.against.map(|name| match name {
             AgainstName::Time => Against::Time,
@@ -206,8 +208,8 @@ impl Plot {
                 let measured = self.measured(path).map_err(Failure::input)?;
                 overlay_measured(folders, self.against().unwrap_or_default(), &measured)
             }
-            (Some(UnitsName::Si), None) => overlay(folders, Units::Si, self.against()),
-            (_, None) => overlay(folders, Units::Star, self.against()),
+            (Some(UnitsName::Si), None) => overlay(folders, AxisUnits::Si, self.against()),
+            (_, None) => overlay(folders, AxisUnits::Star, self.against()),
         };
         drawn.map_err(Failure::input)
     }
@@ -224,18 +226,18 @@ impl Plot {
         [x, y]
     }
 
-    fn measured(&self, path: &Path) -> Result<Measured, MeasuredError> {
+    fn measured(&self, path: &Path) -> Result<OverlaidRecord, MeasuredError> {
         let column = |name: &Option<String>, unit: &Option<String>| Column {
             name: name.clone().unwrap_or_default(),
             unit: unit.clone(),
         };
         let (x, y) = (column(&self.x, &self.x_unit), column(&self.y, &self.y_unit));
-        let mut record = Record::read(path, [&x, &y], self.measures())?;
+        let mut record = MeasuredRecord::read(path, [&x, &y], self.measures())?;
         for y in &mut record.y {
             *y = self.y_factor * *y + self.y_offset;
         }
         let [_, measure] = self.measures();
-        Ok(Measured {
+        Ok(OverlaidRecord {
             label: path.display().to_string(),
             record,
             measure,

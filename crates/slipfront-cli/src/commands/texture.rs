@@ -9,7 +9,7 @@ use slipfront_run::pictures::texture_file;
 use crate::case_args::CaseArgs;
 use crate::failure::Failure;
 use crate::print::print_message;
-use crate::ranks::Ranks;
+use crate::ranks::CommandRanks;
 use crate::report;
 use crate::signals::Signals;
 use crate::threads::set_threads;
@@ -21,7 +21,7 @@ use crate::threads::set_threads;
   slipfront texture cases/circle.toml -o mask.png            a mask that a case can read
   slipfront texture cases/circle.toml -o large.png --scale 16      a picture to look at
   slipfront texture cases/hexagonal_dimples.toml -o dimples.dxf    for a laser, in millimetres")]
-pub(crate) struct Texture {
+pub(crate) struct TextureCommand {
     #[command(flatten)]
     case: CaseArgs,
     /// The file to write: .svg, .dxf, .png, or .gsf, a Gwyddion simple field
@@ -35,11 +35,11 @@ pub(crate) struct Texture {
     force: bool,
 }
 
-impl Texture {
+impl TextureCommand {
     pub(crate) fn execute(self) -> Result<(), Failure> {
         set_threads(None)?;
         let signals = Signals::catch().map_err(Failure::running)?;
-        let case = self.case.load(&Ranks::alone(), &signals, false)?;
+        let case = self.case.load(&CommandRanks::alone(), &signals, false)?;
         let input = case
             .inputs
             .iter()

@@ -24,7 +24,7 @@ use crate::make_case::make_case;
 use crate::print::print;
 use crate::print_stderr::print_stderr;
 use crate::progress::run::RunProgress;
-use crate::ranks::Ranks;
+use crate::ranks::CommandRanks;
 use crate::signals::Signals;
 use crate::threads::{count_from_one, set_threads};
 use crate::wrap;
@@ -37,7 +37,7 @@ use crate::wrap;
   slipfront verify --rerun results/baseline   runs its case again and compares every file
 
 Exit status 0 says that all is well, 1 that something differs, 2 that a folder is not one of a run or a study.")]
-pub(crate) struct Verify {
+pub(crate) struct VerifyCommand {
     /// Folders of runs or studies
     #[arg(required = true, value_name = "DIR")]
     folders: Vec<PathBuf>,
@@ -53,7 +53,7 @@ pub(crate) struct Verify {
     quiet: bool,
 }
 
-impl Verify {
+impl VerifyCommand {
     pub(crate) fn execute(self) -> Result<(), Failure> {
         set_threads(self.threads)?;
         // A signal ends the repeated run and not the process, so that nothing of it is left behind.
@@ -119,12 +119,17 @@ impl Verify {
             );
             return Err(Failure::input(anyhow::anyhow!(sentence)));
         }
-        let case = make_case(&Ranks::alone(), signals, self.quiet, |watch, _| match &run.case {
-            Ok(file) => Case::to_run(file.clone(), "case", folder, watch),
-            Err(CaseDefect::NotResolved(file)) => Case::to_run(*file.clone(), "case", folder, watch),
-            // It says why there is none.
-            Err(CaseDefect::Unreadable(_) | CaseDefect::Invalid(_)) => Case::load(&case, &[], watch),
-        });
+        let case = make_case(
+            &CommandRanks::alone(),
+            signals,
+            self.quiet,
+            |watch, _| match &run.case {
+                Ok(file) => Case::to_run(file.clone(), "case", folder, watch),
+                Err(CaseDefect::NotResolved(file)) => Case::to_run(*file.clone(), "case", folder, watch),
+                // It says why there is none.
+                Err(CaseDefect::Unreadable(_) | CaseDefect::Invalid(_)) => Case::load(&case, &[], watch),
+            },
+        );
         let case = Arc::new(case?);
         let again =
             TemporaryFolder::new(folder).map_err(|error| Failure::running(VerifyError::Temporary(error)))?;

@@ -20,12 +20,12 @@ use crate::failure::Failure;
 /// What one rank finds out alone is agreed on before anything is done in which the ranks need each other, so that no rank
 /// waits for one that has given up. Functions that end with [`RankFailure`] end so on every rank.
 #[derive(Clone)]
-pub(crate) struct Ranks {
+pub(crate) struct CommandRanks {
     program: &'static str,
     communicator: Arc<Traffic>,
 }
 
-impl Ranks {
+impl CommandRanks {
     /// The one rank of `slipfront`.
     pub(crate) fn alone() -> Self {
         Self::new("slipfront", Arc::new(Alone))
@@ -112,7 +112,7 @@ mod tests {
     #[test]
     fn threads_are_on_one_machine() {
         for size in 1..4 {
-            let of_rank = |rank: &Threads| Ranks::new("slipfront-mpi", Arc::new(rank.clone()));
+            let of_rank = |rank: &Threads| CommandRanks::new("slipfront-mpi", Arc::new(rank.clone()));
             let found = Threads::run(size, |rank| of_rank(rank).on_node());
             assert_eq!(found, vec![size; size]);
         }

@@ -10,19 +10,19 @@ use slipfront_case::number_format::byte_size;
 pub(super) struct Traffic {
     inner: Arc<dyn Communicator>,
     /// To the neighbours.
-    messages: Count,
+    messages: TrafficCount,
     /// Maxima and sums over all ranks.
-    reductions: Count,
+    reductions: TrafficCount,
 }
 
 /// How many, and how much in all.
 #[derive(Default)]
-struct Count {
+struct TrafficCount {
     number: AtomicU64,
     bytes: AtomicU64,
 }
 
-impl Count {
+impl TrafficCount {
     fn add<T>(&self, values: &[T]) {
         self.number.fetch_add(1, Ordering::Relaxed);
         self.bytes
@@ -41,8 +41,8 @@ impl Traffic {
     pub(super) fn count(inner: Arc<dyn Communicator>) -> Self {
         Self {
             inner,
-            messages: Count::default(),
-            reductions: Count::default(),
+            messages: TrafficCount::default(),
+            reductions: TrafficCount::default(),
         }
     }
 

@@ -8,9 +8,9 @@ const PLUS_MINUS: &str = " \u{b1} ";
 pub(crate) fn table(header: &[&str], rows: &[Vec<String>]) -> String {
     let columns = header.iter().enumerate().map(|(column, name)| {
         let cells: Vec<&str> = rows.iter().map(|row| row[column].as_str()).collect();
-        Column::of(name, &cells)
+        TableColumn::of(name, &cells)
     });
-    let columns: Vec<Column> = columns.collect();
+    let columns: Vec<TableColumn> = columns.collect();
     let line = |row: usize| {
         let remarks = row
             .checked_sub(1)
@@ -23,11 +23,11 @@ pub(crate) fn table(header: &[&str], rows: &[Vec<String>]) -> String {
 }
 
 /// A column, its name first, with every cell filled up to its width.
-struct Column {
+struct TableColumn {
     cells: Vec<String>,
 }
 
-impl Column {
+impl TableColumn {
     fn of(name: &str, cells: &[&str]) -> Self {
         let aligned = aligned(cells);
         let is_number = |cell: &str| cell.starts_with(|c: char| c.is_ascii_digit() || "-(<".contains(c));

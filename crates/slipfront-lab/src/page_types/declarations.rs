@@ -37,7 +37,7 @@ impl Type {
 
 /// A key of an interface.
 #[derive(Clone, Debug)]
-pub(super) struct Key {
+pub(super) struct DeclaredKey {
     pub(super) optional: bool,
     pub(super) holds: Type,
 }
@@ -45,7 +45,7 @@ pub(super) struct Key {
 /// An interface.
 #[derive(Debug, Default)]
 pub(super) struct Interface {
-    pub(super) keys: BTreeMap<String, Key>,
+    pub(super) keys: BTreeMap<String, DeclaredKey>,
     /// Whether there may be other keys.
     open: bool,
 }
@@ -124,23 +124,26 @@ impl Declarations {
         let interface = self.interface(name);
         let is_declared = |key: &String| interface.open || interface.keys.contains_key(key);
         object.keys().all(is_declared)
-            && interface.keys.iter().all(|(key, Key { optional, holds })| {
-                let found = object.get(key).map(|value| {
-                    let mut all = self.alternatives(holds).into_iter();
-                    all.find(|one| self.check(value, one, seen))
-                });
-                let is_right = match &found {
-                    Some(alternative) => alternative.is_some(),
-                    None => *optional,
-                };
-                seen.insert((name.to_owned(), key.clone(), found.flatten()));
-                is_right
-            })
+            && interface
+                .keys
+                .iter()
+                .all(|(key, DeclaredKey { optional, holds })| {
+                    let found = object.get(key).map(|value| {
+                        let mut all = self.alternatives(holds).into_iter();
+                        all.find(|one| self.check(value, one, seen))
+                    });
+                    let is_right = match &found {
+                        Some(alternative) => alternative.is_some(),
+                        None => *optional,
+                    };
+                    seen.insert((name.to_owned(), key.clone(), found.flatten()));
+                    is_right
+                })
     }
 
     /// What `check` finds if examples show all that an interface and those within it, `except` one, may hold.
     pub(super) fn all_of(&self, interface: &str, except: &str, all: &mut Seen) {
-        for (key, Key { optional, holds }) in &self.interface(interface).keys {
+        for (key, DeclaredKey { optional, holds }) in &self.interface(interface).keys {
             if *optional {
                 all.insert((interface.to_owned(), key.clone(), None));
             }
@@ -194,7 +197,7 @@ impl Declarations {
         let required = keys.iter().filter(|(_, key)| !key.optional);
         let least = required.map(|(name, key)| (name.clone(), self.first_sample(&key.holds).unwrap()));
         let least: Map<String, Value> = least.collect();
-        let with = |(name, key): (&String, &Key)| {
+        let with = |(name, key): (&String, &DeclaredKey)| {
             let object = |value| {
                 let mut object = least.clone();
                 object.insert(name.clone(), value);
@@ -264,7 +267,12 @@ impl Tokens {
             self.expect(":");
             let holds = self.union();
             self.expect(";");
-            assert!(interface.keys.insert(name, Key { optional, holds }).is_none());
+            assert!(
+                interface
+                    .keys
+                    .insert(name, DeclaredKey { optional, holds })
+                    .is_none()
+            );
         }
         interface
     }

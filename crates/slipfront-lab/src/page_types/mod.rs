@@ -6,7 +6,7 @@ mod declarations;
 use std::collections::{BTreeMap, BTreeSet};
 
 use serde_json::{Value, json};
-use slipfront_case::case_file::{Kind, SECTIONS};
+use slipfront_case::case_file::{KeyKind, SECTIONS};
 use slipfront_run::summary::{Summary, summary_json};
 
 use self::declarations::{Declarations, Seen, Type};
@@ -303,10 +303,10 @@ fn textures_have_the_keys_of_the_case_file() {
     for key in shapes.clone().flat_map(|section| section.keys) {
         known.insert(key.name.to_owned());
         let holds = match key.kind {
-            Kind::Number { .. } | Kind::Whole { .. } => Type::Number,
-            Kind::Quantity { .. } | Kind::Words(_) | Kind::File(_) => Type::Text,
-            Kind::Switch => Type::Boolean,
-            Kind::Special(_) => continue,
+            KeyKind::Number { .. } | KeyKind::Whole { .. } => Type::Number,
+            KeyKind::Quantity { .. } | KeyKind::Words(_) | KeyKind::File(_) => Type::Text,
+            KeyKind::Switch => Type::Boolean,
+            KeyKind::Special(_) => continue,
         };
         assert_eq!(keys[key.name].holds, holds, "{}", key.name);
     }

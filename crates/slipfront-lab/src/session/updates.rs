@@ -7,8 +7,8 @@ use slipfront_run::summary::summary_json;
 
 use super::clock::is_due;
 use super::state::{PendingUpdates, Session};
-use crate::live::Points;
-use crate::picture::{self, Frame};
+use crate::live::CurvePoints;
+use crate::picture::{self, PictureFrame};
 use crate::protocol::{CaseReply, CurveReply, NumbersReply, ProbeReply, Reply, Units};
 use crate::{controls, shapes};
 
@@ -71,7 +71,7 @@ impl Session {
         let Some(live) = &mut self.live else { return };
         let ended_now = ends != self.pending.ends_sent;
         let points = live.take_unsent_points();
-        let twin = self.twin.as_mut().map_or_else(Points::default, |twin| {
+        let twin = self.twin.as_mut().map_or_else(CurvePoints::default, |twin| {
             if self.pending.twin_reset {
                 twin.live.resend_points();
             }
@@ -127,7 +127,7 @@ impl Session {
         });
         let picture = match snapshot {
             Some((snapshots, frame, values)) => {
-                let frame = Frame {
+                let frame = PictureFrame {
                     step: frame.step,
                     time_star: frame.time_star,
                     mu_star: f64::NAN,

@@ -7,7 +7,7 @@ use std::sync::Mutex;
 use std::thread::JoinHandle;
 use std::time::Duration;
 
-use slipfront_lab::{Laboratory, Options, Start};
+use slipfront_lab::{Laboratory, ServerOptions, Start};
 use tempfile::TempDir;
 use tokio::sync::oneshot;
 
@@ -35,7 +35,7 @@ impl Served {
 
     pub(crate) fn with(start: Start) -> Self {
         let folder = tempfile::tempdir().unwrap();
-        let laboratory = Laboratory::bind(Options {
+        let laboratory = Laboratory::bind(ServerOptions {
             start,
             results: folder.path().join("results"),
             allow_files: Vec::new(),

@@ -4,10 +4,10 @@ use slipfront::exact_solutions::{Facing, groove_edge_factor};
 use slipfront::scales;
 
 use super::answer::{Answer, Chapter};
-use super::runs::Run;
+use super::runs::AnswerRun;
 use crate::drawing::{Drawing, formula, measured};
 use crate::error::PaperError;
-use crate::number::Number;
+use crate::number::MeasuredNumber;
 use slipfront_plot::Responses;
 
 /// Adhesion over the pressure times mu_s.
@@ -22,8 +22,8 @@ pub(super) fn chapter() -> Result<Chapter, PaperError> {
              time.step = 0.01",
             100.0 * adhesion
         );
-        let found = Run::of_case("adhesion", &text)?.peak();
-        smooth.push(Number::exact(found));
+        let found = AnswerRun::of_case("adhesion", &text)?.peak();
+        smooth.push(MeasuredNumber::exact(found));
         answers.push(Answer::new(
             format!("μ_s* without texture, τ_a/(P μ̄_s) = {adhesion}"),
             [1.0 + adhesion, found],
@@ -41,7 +41,7 @@ pub(super) fn chapter() -> Result<Chapter, PaperError> {
              time.step = 0.5\ntime.duration_star = 5000\n[[texture]]\nshape = \"groove\"\norientation = \"across\"\nwidth = \"5 um\"",
             100.0 * adhesion
         );
-        let run = Run::of_case("adhesion on a groove", &text)?;
+        let run = AnswerRun::of_case("adhesion on a groove", &text)?;
         let exact = (20.0 / 15.0 + adhesion) / groove_edge_factor(Facing::Across, 5);
         answers.push(Answer::new(
             format!("pull k_s V t* at the first slip beside a groove, τ_a/(P μ̄_s) = {adhesion}"),

@@ -5,10 +5,10 @@ use slipfront::exact_solutions::ageing_slip_time;
 use slipfront_plot::Responses;
 
 use super::answer::{Answer, Chapter};
-use super::runs::Run;
+use super::runs::AnswerRun;
 use crate::drawing::{Drawing, formula, measured};
 use crate::error::PaperError;
-use crate::number::Number;
+use crate::number::MeasuredNumber;
 
 const LAW: Ageing = Ageing { beta: 0.1, time: 1.0 };
 const V_STAR: f64 = 0.05;
@@ -27,13 +27,13 @@ pub(super) fn chapter() -> Result<Chapter, PaperError> {
             LAW.time,
             hold + 150.0
         );
-        let run = Run::of_case("ageing", &text)?;
+        let run = AnswerRun::of_case("ageing", &text)?;
         answers.push(Answer::new(
             format!("t* at which blocks break that were held until {hold}"),
             [ageing_slip_time(&LAW, 0.0, hold, 0.375, V_STAR), run.first_slip()],
             (DT_STAR * (1.0 + 1e-9), "it is seen at the next step"),
         ));
-        found.push(Number::exact(run.largest()));
+        found.push(MeasuredNumber::exact(run.largest()));
     }
     let fine: Vec<f64> = (0..=60).map(|k| libm::exp10(0.8 + 0.05 * f64::from(k))).collect();
     let peak = |hold: f64| 0.375 * V_STAR * (ageing_slip_time(&LAW, 0.0, hold, 0.375, V_STAR) - hold);

@@ -6,7 +6,7 @@ use slipfront::exact_solutions::{lagged_decay_rate, pair_modes, viscous_decay_ra
 use slipfront::{Drive, FrictionLaw, Lattice, Model, Slider, State, Surface};
 
 use super::answer::{Answer, Chapter};
-use super::runs::{Experiment, Run, growth};
+use super::runs::{AnswerRun, Experiment, growth};
 use crate::error::PaperError;
 
 const EQUAL: &str = "friction.sigma_static_star = 0\nfriction.sigma_kinetic_star = 0\n";
@@ -21,7 +21,7 @@ pub(super) fn chapter() -> Result<Chapter, PaperError> {
         "first slip of a slider graded from E to E/10, at its stiff edge: t*",
         [
             1.0 / (0.375 * 0.03 * stiffest),
-            Run::of_case("graded", &text)?.first_slip(),
+            AnswerRun::of_case("graded", &text)?.first_slip(),
         ],
         (0.01 * (1.0 + 1e-9), "it is seen at the next step"),
     ));
@@ -30,7 +30,7 @@ pub(super) fn chapter() -> Result<Chapter, PaperError> {
     );
     answers.push(Answer::new(
         "μ_s* of a disc of equal blocks",
-        [1.0, Run::of_case("disc", &text)?.peak()],
+        [1.0, AnswerRun::of_case("disc", &text)?.peak()],
         (
             0.375 * (0.03 * 0.01 + 0.03 * 0.03),
             "the pull of one step, and of what springs stretch until the slider is as fast as the drive",

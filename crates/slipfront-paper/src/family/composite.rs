@@ -12,7 +12,7 @@ use super::answer::{Answer, Chapter};
 use super::runs::Experiment;
 use crate::drawing::{Drawing, formula, measured};
 use crate::error::PaperError;
-use crate::number::Number;
+use crate::number::MeasuredNumber;
 
 const V_STAR: f64 = 0.005;
 const OMEGA_STAR: f64 = 1.5;
@@ -72,7 +72,7 @@ pub(super) fn chapter() -> Result<Chapter, PaperError> {
             tolerance,
         ));
         shares.push(share);
-        found.push(Number::exact(peak));
+        found.push(MeasuredNumber::exact(peak));
     }
     let fine: Vec<f64> = (0..=100).map(|k| 0.01 * f64::from(k)).collect();
     Ok(Chapter {

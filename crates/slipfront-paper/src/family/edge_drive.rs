@@ -11,7 +11,7 @@ use super::answer::{Answer, Chapter};
 use super::runs::Experiment;
 use crate::drawing::{Drawing, formula, measured};
 use crate::error::PaperError;
-use crate::number::Number;
+use crate::number::MeasuredNumber;
 
 const STATIC: f64 = 0.7;
 const KINETIC: f64 = 0.45;
@@ -190,7 +190,10 @@ pub(super) fn chapter() -> Result<Chapter, PaperError> {
             |length| precursor_load(length, KINETIC, slope),
         ));
         let x: Vec<f64> = events.iter().map(|event| event.length).collect();
-        let loads: Vec<Number> = events.iter().map(|event| Number::exact(event.load)).collect();
+        let loads: Vec<MeasuredNumber> = events
+            .iter()
+            .map(|event| MeasuredNumber::exact(event.load))
+            .collect();
         curves.push(measured(&format!("\u{3b8} = {slope}"), &x, &loads));
     }
     Ok(Chapter {

@@ -11,7 +11,7 @@ use super::answer::{Answer, Chapter};
 use super::runs::Experiment;
 use crate::drawing::{Drawing, formula, measured};
 use crate::error::PaperError;
-use crate::number::Number;
+use crate::number::MeasuredNumber;
 
 const BLOCKS: usize = 200;
 const KINETIC: f64 = 0.5;
@@ -57,7 +57,7 @@ pub(super) fn chapter() -> Result<Chapter, PaperError> {
     ] {
         let mut found = Vec::new();
         for prestress in PRESTRESSES {
-            found.push(Number::exact(speed(kappa, prestress)?));
+            found.push(MeasuredNumber::exact(speed(kappa, prestress)?));
         }
         if kappa == 0.0 {
             for (prestress, found) in PRESTRESSES.into_iter().zip(&found) {

@@ -3,7 +3,7 @@
 use slipfront::scales;
 
 use super::answer::{Answer, Chapter};
-use super::runs::{ROUNDING, Run, rounding};
+use super::runs::{AnswerRun, ROUNDING, rounding};
 use crate::error::PaperError;
 
 const V_STAR: f64 = 0.03;
@@ -16,7 +16,7 @@ pub(super) fn chapter() -> Result<Chapter, PaperError> {
              profile = {{ along = \"{along}\", relative_slope = {slope} }}\n[drive]\nv_star = {V_STAR}\n\
              [time]\nduration_star = 100\nstep = 0.01"
         );
-        let run = Run::of_case("load", &text)?;
+        let run = AnswerRun::of_case("load", &text)?;
         // The least pressure is that of the outermost blocks, half a block from the edge.
         let least: f64 = 1.0 - f64::abs(slope) * (1.0 - 1.0 / 25.0);
         answers.push(Answer::new(
@@ -33,7 +33,7 @@ pub(super) fn chapter() -> Result<Chapter, PaperError> {
             format!("level of steady sliding at V* = 0.2, slope {slope} along {along}"),
             [
                 0.5 + scales::damping(1.0) * 0.2,
-                Run::of_case("whole load", &text)?.mu_star_at(200.0),
+                AnswerRun::of_case("whole load", &text)?.mu_star_at(200.0),
             ],
             (rounding(200.0 * 0.2), ROUNDING),
         ));

@@ -3,7 +3,7 @@
 use slipfront::scales;
 
 use super::answer::{Answer, Chapter};
-use super::runs::{ROUNDING, Run, rounding};
+use super::runs::{AnswerRun, ROUNDING, rounding};
 use crate::error::PaperError;
 
 pub(super) fn chapter() -> Result<Chapter, PaperError> {
@@ -43,7 +43,7 @@ pub(super) fn chapter() -> Result<Chapter, PaperError> {
              friction.sigma_static_star = 0\nfriction.sigma_kinetic_star = 0\ndrive.v_star = 0.2\n\
              time.duration_star = 200\ntime.step = 0.1\n{textures}"
         );
-        let run = Run::of_case("grooves of three widths", &text)?;
+        let run = AnswerRun::of_case("grooves of three widths", &text)?;
         let damping = scales::damping(1.0) * 0.2;
         answers.push(Answer::new(
             format!("load {what}, by the level of steady sliding"),

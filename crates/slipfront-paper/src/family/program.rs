@@ -3,7 +3,7 @@
 use slipfront::observe::CurveRow;
 
 use super::answer::{Answer, Chapter};
-use super::runs::{ROUNDING, Run, rounding};
+use super::runs::{AnswerRun, ROUNDING, rounding};
 use crate::error::PaperError;
 
 pub(super) fn chapter() -> Result<Chapter, PaperError> {
@@ -13,7 +13,7 @@ pub(super) fn chapter() -> Result<Chapter, PaperError> {
         "{equal}slider.omega_star = 1\ntime.duration_star = 700\ntime.step = 0.1\n[drive]\n\
          program = [{{ v_star = 0.05, until_star = 300 }}, {{ v_star = 0.2, until_star = 450 }}, {{ v_star = 0.05 }}]"
     );
-    let run = Run::of_case("speeds", &text)?;
+    let run = AnswerRun::of_case("speeds", &text)?;
     for (time, v_star, path) in [(299.0, 0.05, 15.0), (449.0, 0.2, 45.0), (699.0, 0.05, 57.5)] {
         answers.push(Answer::new(
             format!("level of steady sliding at V* = {v_star}, t* = {time}"),
@@ -25,7 +25,7 @@ pub(super) fn chapter() -> Result<Chapter, PaperError> {
         "{equal}time.duration_star = 200\ntime.step = 0.01\n[drive]\n\
          program = [{{ v_star = 0.05, until_star = 20 }}, {{ v_star = 0, until_star = 70 }}, {{ v_star = 0.1 }}]"
     );
-    let run = Run::of_case("hold", &text)?;
+    let run = AnswerRun::of_case("hold", &text)?;
     answers.push(Answer::new(
         "first slip after a hold of 50 at V* = 0.05, 0, 0.1: t*",
         [70.0 + (1.0 / 0.375 - 1.0) / 0.1, run.first_slip()],

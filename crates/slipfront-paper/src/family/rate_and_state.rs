@@ -10,7 +10,7 @@ use super::answer::{Answer, Chapter};
 use super::runs::{Experiment, growth_of_disturbance};
 use crate::drawing::{Drawing, formula, measured};
 use crate::error::PaperError;
-use crate::number::Number;
+use crate::number::MeasuredNumber;
 
 const LAW: RateAndState = RateAndState {
     a: 0.01,
@@ -153,7 +153,7 @@ pub(super) fn chapter() -> Result<Chapter, PaperError> {
                 y_title: "growth rate".to_owned(),
                 curves: vec![
                     formula("exact", &fine, exact),
-                    measured("computed", &RATIOS, &found.map(Number::exact)),
+                    measured("computed", &RATIOS, &found.map(MeasuredNumber::exact)),
                 ],
                 ..Responses::default()
             }),

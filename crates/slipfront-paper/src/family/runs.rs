@@ -11,7 +11,7 @@ use slipfront_case::case::Case;
 use crate::error::PaperError;
 
 /// A run that has ended.
-pub(super) struct Run {
+pub(super) struct AnswerRun {
     /// As it stands at the end.
     pub(super) simulation: Simulation,
     /// Every step.
@@ -27,7 +27,7 @@ pub(super) struct Experiment {
     pub(super) state: Option<State>,
 }
 
-impl Run {
+impl AnswerRun {
     /// Of a case: what a user would write.
     pub(super) fn of_case(name: &str, text: &str) -> Result<Self, PaperError> {
         Self::watched(name, text, &mut [])
@@ -91,7 +91,7 @@ impl Experiment {
         name: &str,
         last_step: u64,
         others: &mut [&mut dyn Observer],
-    ) -> Result<Run, PaperError> {
+    ) -> Result<AnswerRun, PaperError> {
         let mut simulation = self.begin();
         let mut curve = Curve::every(1);
         let mut observers = vec![Scheduled::always(&mut curve)];
@@ -101,7 +101,7 @@ impl Experiment {
             name: name.to_owned(),
             source,
         })?;
-        Ok(Run {
+        Ok(AnswerRun {
             simulation,
             rows: curve.rows,
             model: self.model,

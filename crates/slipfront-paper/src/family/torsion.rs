@@ -11,10 +11,10 @@ use slipfront::{Drive, FrictionLaw, Lattice, Model, Outline, Rotation, Slider, S
 use slipfront_plot::Responses;
 
 use super::answer::{Answer, Chapter};
-use super::runs::{Experiment, Run};
+use super::runs::{AnswerRun, Experiment};
 use crate::drawing::{Drawing, formula, measured};
 use crate::error::PaperError;
-use crate::number::Number;
+use crate::number::MeasuredNumber;
 
 /// Distances of the blocks that exist from the middle.
 fn radii(model: &Model) -> Vec<f64> {
@@ -82,7 +82,7 @@ pub(super) fn chapter() -> Result<Chapter, PaperError> {
     let text = "friction.sigma_static_star = 0\nfriction.sigma_kinetic_star = 0\n\
                 [slider]\nblocks = [20, 20]\noutline = \"disc\"\n[drive]\nmotion = \"rotation\"\n\
                 [time]\nstep = 0.02\nstop = \"after_onset\"";
-    let run = Run::of_case("torsion", text)?;
+    let run = AnswerRun::of_case("torsion", text)?;
     let exact = torsion_first_slip(&radii(&run.model));
     let rise = exact * 0.375 * 0.03 * 0.02;
     answers.push(Answer::new(
@@ -114,7 +114,7 @@ pub(super) fn chapter() -> Result<Chapter, PaperError> {
         curves.push(formula(&format!("R* = {r_star}, exact"), &shares, |stuck| {
             torsion_of_decoupled_disc(stuck, r_star)
         }));
-        let found: Vec<Number> = found.into_iter().map(Number::exact).collect();
+        let found: Vec<MeasuredNumber> = found.into_iter().map(MeasuredNumber::exact).collect();
         curves.push(measured(&format!("R* = {r_star}"), &STUCK, &found));
     }
     Ok(Chapter {

@@ -9,7 +9,7 @@ use super::answer::{Answer, Chapter};
 use super::runs::growth_of_disturbance;
 use crate::drawing::{Drawing, formula, measured};
 use crate::error::PaperError;
-use crate::number::Number;
+use crate::number::MeasuredNumber;
 
 const LAW: Weakening = Weakening {
     critical_speed: 0.1,
@@ -58,7 +58,7 @@ pub(super) fn chapter() -> Result<Chapter, PaperError> {
                 y_title: "growth rate".to_owned(),
                 curves: vec![
                     formula("exact", &fine, exact),
-                    measured("computed", &DAMPINGS, &found.map(Number::exact)),
+                    measured("computed", &DAMPINGS, &found.map(MeasuredNumber::exact)),
                 ],
                 ..Responses::default()
             }),

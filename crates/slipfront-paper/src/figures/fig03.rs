@@ -3,7 +3,7 @@
 use crate::drawing::Drawing;
 use crate::error::PaperError;
 use crate::figure_data::FigureData;
-use crate::run::{Run, mu_star, sliding_percent};
+use crate::run::{FigureRun, mu_star, sliding_percent};
 use crate::runner::FigureRunner;
 use crate::statistics::range;
 
@@ -94,7 +94,7 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
         .iter()
         .filter_map(|run| run.record.summary.kinetic_friction_star);
     data.value("kinetic_mean_spread", range(&means.collect::<Vec<_>>()));
-    let curves = |runs: &[Run]| {
+    let curves = |runs: &[FigureRun]| {
         let label = |index: usize| format!("case {}", index + 1);
         let curves = runs.iter().enumerate().map(|(index, run)| match index {
             7 => run.lettered_curve(&label(index)),
@@ -117,7 +117,7 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
 }
 
 /// Case 8 on seven other surfaces than that of all eight cases.
-fn other_surfaces(runner: &FigureRunner, main: &Run, data: &mut FigureData) -> Result<(), PaperError> {
+fn other_surfaces(runner: &FigureRunner, main: &FigureRun, data: &mut FigureData) -> Result<(), PaperError> {
     let until = main.instant('E')?.time_star;
     let cases = (2..=8).map(|seed| runner.case("table1/case8", &[&format!("friction.seed={seed}")]));
     let runs = runner.run(cases.collect::<Result<_, _>>()?)?;
@@ -139,7 +139,7 @@ fn other_surfaces(runner: &FigureRunner, main: &Run, data: &mut FigureData) -> R
     Ok(())
 }
 
-fn runs(runner: &FigureRunner, corrected: bool) -> Result<Vec<Run>, PaperError> {
+fn runs(runner: &FigureRunner, corrected: bool) -> Result<Vec<FigureRun>, PaperError> {
     let cases = files(corrected).map(|file| runner.case(&file, &[]));
     runner.run(cases.collect::<Result<_, _>>()?)
 }

@@ -5,7 +5,7 @@ use slipfront::observe::{Field, Frame};
 use crate::drawing::stress_maps;
 use crate::error::PaperError;
 use crate::figure_data::FigureData;
-use crate::run::{Run, on_each, seen_at};
+use crate::run::{FigureRun, on_each, seen_at};
 use crate::runner::FigureRunner;
 use crate::statistics::{largest, smallest};
 
@@ -51,7 +51,7 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
             Ok(smallest(run.friction_between(from, until)) - run.instant('E')?.point.mu_star)
         })?,
     );
-    let sliding = |run: &Run| run.record.summary.sliding_percent_kinetic;
+    let sliding = |run: &FigureRun| run.record.summary.sliding_percent_kinetic;
     data.values(
         "kinetic_sliding_percent",
         &runs.iter().filter_map(sliding).collect::<Vec<_>>(),
@@ -60,7 +60,7 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
 }
 
 /// Until the first slip: is the stress the same everywhere, does it grow as k_s V* t*, does nothing move?
-fn before_slip(runner: &FigureRunner, main: &Run, data: &mut FigureData) -> Result<(), PaperError> {
+fn before_slip(runner: &FigureRunner, main: &FigureRun, data: &mut FigureData) -> Result<(), PaperError> {
     let first = main.first_slip()?;
     let times: Vec<f64> = (1..=8).map(|k| first * f64::from(k) / 9.0).collect();
     let run = runner.run_one(seen_at(runner.case(CASE, &[])?, &times))?;
@@ -84,7 +84,7 @@ fn before_slip(runner: &FigureRunner, main: &Run, data: &mut FigureData) -> Resu
 }
 
 /// The block that slips first: its place among all, ordered by mu_si from the lowest.
-fn first_slip_rank(run: &Run) -> Result<f64, PaperError> {
+fn first_slip_rank(run: &FigureRun) -> Result<f64, PaperError> {
     let first = run.first_block()?;
     let mu_static = &run.case.model.surface.mu_static;
     Ok(1.0 + mu_static.iter().filter(|&&mu| mu < mu_static[first]).count() as f64)
@@ -92,7 +92,7 @@ fn first_slip_rank(run: &Run) -> Result<f64, PaperError> {
 
 /// How far the contact stress of the first block to slip falls in the 2 t* after its slip, over its rise in the 2 t* before.
 /// A wave goes over two blocks in that time: what falls is the block's own stress, not that of the slider.
-fn fall_over_rise(runner: &FigureRunner, run: &Run) -> Result<f64, PaperError> {
+fn fall_over_rise(runner: &FigureRunner, run: &FigureRun) -> Result<f64, PaperError> {
     let (first, block) = (run.first_slip()?, run.first_block()?);
     // The last step at which the block still holds.
     let held = first - run.case.time_plan.dt_star;
@@ -112,7 +112,7 @@ fn fall_over_rise(runner: &FigureRunner, run: &Run) -> Result<f64, PaperError> {
 }
 
 /// Blocks that have slipped by the time of the peak, %.
-fn slipped_at_peak(run: &Run) -> Result<f64, PaperError> {
+fn slipped_at_peak(run: &FigureRun) -> Result<f64, PaperError> {
     let onset = run.record.summary.onset_time_star;
     let times = run.slip_times();
     let slipped = times.iter().filter(|&&time| time <= onset).count();
@@ -120,13 +120,13 @@ fn slipped_at_peak(run: &Run) -> Result<f64, PaperError> {
 }
 
 /// How long after the peak the last block slips for the first time, % of t_s*.
-fn rest_slips_within(run: &Run) -> Result<f64, PaperError> {
+fn rest_slips_within(run: &FigureRun) -> Result<f64, PaperError> {
     let onset = run.record.summary.onset_time_star;
     Ok(100.0 * (run.time_of_share(1.0)? - onset) / onset)
 }
 
 /// Blocks whose contact stress is lower at E than at an earlier instant, %.
-fn falls_until_e(run: &Run, letter: char) -> Result<f64, PaperError> {
+fn falls_until_e(run: &FigureRun, letter: char) -> Result<f64, PaperError> {
     let stress = |letter| run.field(run.instant(letter)?, Field::ContactStress);
     let (before, after) = (stress(letter)?, stress('E')?);
     let lower = before.iter().zip(after).filter(|(before, after)| after < before);

@@ -3,7 +3,7 @@
 use crate::drawing::stress_maps;
 use crate::error::PaperError;
 use crate::figure_data::FigureData;
-use crate::run::{Run, curves, mu_star, sliding_percent};
+use crate::run::{FigureRun, curves, mu_star, sliding_percent};
 use crate::runner::FigureRunner;
 use crate::statistics::mean;
 
@@ -48,16 +48,16 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
 
 /// How far the curves of the smaller sizes are from the mean curve of the largest. Of each surface there is a run in the three
 /// sizes.
-fn whole_curves(runs: &[Run], data: &mut FigureData) {
+fn whole_curves(runs: &[FigureRun], data: &mut FigureData) {
     let [small, middle, large] =
-        [0, 1, 2].map(|size| runs.iter().skip(size).step_by(3).collect::<Vec<&Run>>());
+        [0, 1, 2].map(|size| runs.iter().skip(size).step_by(3).collect::<Vec<&FigureRun>>());
     for (name, value) in [
         ("curve_error", mu_star as fn(&_) -> f64),
         ("sliding_curve_error", sliding_percent),
     ] {
         let mean_curve = |time: f64| mean(&large.iter().map(|run| run.at(time, value)).collect::<Vec<_>>());
-        let errors = |runs: &[&Run]| -> Vec<f64> {
-            let error = |run: &&Run| {
+        let errors = |runs: &[&FigureRun]| -> Vec<f64> {
+            let error = |run: &&FigureRun| {
                 let rows = run.record.rows.iter();
                 let squares = rows.map(|row| (value(&row.point) - mean_curve(row.time_star)).powi(2));
                 mean(&squares.collect::<Vec<_>>()).sqrt()

@@ -3,10 +3,10 @@
 use crate::drawing::{Drawing, formula, measured};
 use crate::error::PaperError;
 use crate::figure_data::FigureData;
-use crate::number::Number;
+use crate::number::MeasuredNumber;
 use crate::runner::FigureRunner;
 use crate::statistics::{largest, mean, ratios, smallest};
-use crate::sweep::Sweep;
+use crate::sweep::ParameterSweep;
 use slipfront_plot::Responses;
 
 pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Result<(), PaperError> {
@@ -14,10 +14,10 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
     let speeds = sweep.axis(0);
     let onsets = sweep.numbers(&[], "onset_time_star");
     // Steps up to the onset, in the paper's step.
-    let steps: Vec<Number> = (0..speeds.len())
+    let steps: Vec<MeasuredNumber> = (0..speeds.len())
         .map(|k| {
             let [times, steps] = ["onset_time_star", "dt_star"].map(|quantity| sweep.values(&[k], quantity));
-            Number::of(&ratios(&times, &steps))
+            MeasuredNumber::of(&ratios(&times, &steps))
         })
         .collect();
     data.panel(
@@ -37,7 +37,7 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
             ..Responses::default()
         }),
     );
-    let errors = |numbers: &[Number], fit: fn(f64) -> f64| {
+    let errors = |numbers: &[MeasuredNumber], fit: fn(f64) -> f64| {
         let pairs = numbers.iter().zip(&speeds);
         largest(pairs.map(|(number, &v)| 100.0 * (number.value / fit(v) - 1.0).abs()))
     };
@@ -51,7 +51,7 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
 }
 
 /// Exponent of a power law through the means, by least squares of logarithms.
-fn slope(x: &[f64], y: &[Number]) -> f64 {
+fn slope(x: &[f64], y: &[MeasuredNumber]) -> f64 {
     let (x, y): (Vec<f64>, Vec<f64>) = x.iter().zip(y).map(|(x, y)| (x.ln(), y.value.ln())).unzip();
     let (center_x, center_y) = (mean(&x), mean(&y));
     let products = x.iter().zip(&y).map(|(x, y)| (x - center_x) * (y - center_y));
@@ -59,15 +59,15 @@ fn slope(x: &[f64], y: &[Number]) -> f64 {
 }
 
 /// The effect of each quantity of the material on the onset time.
-fn material(sweep: &Sweep, data: &mut FigureData) {
+fn material(sweep: &ParameterSweep, data: &mut FigureData) {
     let names = sweep.names(0);
     let factor_of = |quantity: &str, k: usize| {
         let [changed, unchanged] = [k, 0].map(|k| sweep.values(&[k], quantity));
-        Number::of(&ratios(&changed, &unchanged))
+        MeasuredNumber::of(&ratios(&changed, &unchanged))
     };
     let factor = |quantity: &str, name: &str| {
         let place = names.iter().position(|other| other == name);
-        place.map_or(Number::exact(f64::NAN), |k| factor_of(quantity, k))
+        place.map_or(MeasuredNumber::exact(f64::NAN), |k| factor_of(quantity, k))
     };
     let named = |name: &str| factor("onset_time_s", name);
     data.number("factor_of_young_modulus", named("E x 4"));

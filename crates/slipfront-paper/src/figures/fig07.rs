@@ -3,10 +3,10 @@
 use crate::drawing::Drawing;
 use crate::error::PaperError;
 use crate::figure_data::FigureData;
-use crate::run::{Run, mu_star, on_each};
+use crate::run::{FigureRun, mu_star, on_each};
 use crate::runner::FigureRunner;
 use crate::statistics::{largest, range, smallest};
-use crate::sweep::Sweep;
+use crate::sweep::ParameterSweep;
 
 /// Difference of static friction that no longer counts: a tenth of the scatter from surface to surface, 0.015 (Fig. 12).
 const SAME: f64 = 0.0015;
@@ -24,7 +24,7 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
             finest.curve(&format!("\u{394}t* = {}", finest.case.time_plan.dt_star)),
         ]),
     );
-    let amplitudes = on_each(&runs, Run::kinetic_fluctuation)?;
+    let amplitudes = on_each(&runs, FigureRun::kinetic_fluctuation)?;
     let amplitude = amplitudes[amplitudes.len() - 1];
     let least = smallest(amplitudes.iter().copied());
     let slow = runner.run_one(runner.case("table1/case8", &[])?)?;
@@ -46,7 +46,7 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
 }
 
 /// Static friction in steps from coarse to fine, the paper's among them (Eq. 13), at several speeds (D11).
-fn steps(sweep: &Sweep, data: &mut FigureData) {
+fn steps(sweep: &ParameterSweep, data: &mut FigureData) {
     // At a speed: the steps and static friction in each, of which the first step is the paper's and the last the finest.
     let [slow, fast] = [0.01, 0.2].map(|v| sweep.level(v));
     let over_steps = |speed: usize, quantity: &str| -> Vec<f64> {
@@ -75,7 +75,7 @@ fn steps(sweep: &Sweep, data: &mut FigureData) {
 }
 
 /// Eq. 4 as printed: the step in which kinetic friction is as the paper has it, about R*, at several speeds (D11).
-fn literal(sweep: &Sweep, data: &mut FigureData) {
+fn literal(sweep: &ParameterSweep, data: &mut FigureData) {
     let (speeds, steps) = (sweep.axis(0), sweep.axis(1));
     let best: Vec<f64> = (0..speeds.len())
         .map(|speed| {

@@ -4,10 +4,10 @@ use crate::drawing::Drawing;
 use crate::error::PaperError;
 use crate::figure_data::FigureData;
 use crate::number::values;
-use crate::run::{Run, mu_star, on_each};
+use crate::run::{FigureRun, mu_star, on_each};
 use crate::runner::FigureRunner;
 use crate::statistics::{largest, range, rises, smallest};
-use crate::sweep::Sweep;
+use crate::sweep::ParameterSweep;
 
 /// The dampings that are drawn.
 const DRAWN: [f64; 6] = [0.0, 0.03, 0.1, 0.3, 1.0, 3.0];
@@ -23,7 +23,7 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
         "Friction and sliding blocks for six dampings.",
         Drawing::Curves(drawn.into()),
     );
-    let first_slip = smallest(on_each(&runs, Run::first_slip)?);
+    let first_slip = smallest(on_each(&runs, FigureRun::first_slip)?);
     // One step short of it: friction may differ from where the first block moves.
     let before = [0.0, first_slip - runs[0].case.time_plan.dt_star];
     let difference = |window| runs[0].largest_difference_of(&runs, window, mu_star);
@@ -35,7 +35,7 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
 }
 
 /// The effect of damping on static and kinetic friction, on the number of sliding blocks and on the fluctuation of friction.
-fn friction(sweep: &Sweep, runs: &[Run], data: &mut FigureData) -> Result<(), PaperError> {
+fn friction(sweep: &ParameterSweep, runs: &[FigureRun], data: &mut FigureData) -> Result<(), PaperError> {
     let dampings = sweep.axis(0);
     let [statics, kinetics, sliding] = [
         "static_friction_star",
@@ -67,7 +67,7 @@ fn friction(sweep: &Sweep, runs: &[Run], data: &mut FigureData) -> Result<(), Pa
     data.value("least_rise_without_jump", smallest(without_jump));
     let sliding = (first_strong..dampings.len()).flat_map(|k| sweep.values(&[k], "sliding_percent_kinetic"));
     data.value("least_sliding_of_strong_percent", smallest(sliding));
-    let fluctuations = on_each(&runs[first_strong..], Run::kinetic_fluctuation)?;
+    let fluctuations = on_each(&runs[first_strong..], FigureRun::kinetic_fluctuation)?;
     data.value(
         "fluctuation_of_strong_percent",
         100.0 * largest(fluctuations) / runs[sweep.level(0.1)].kinetic_fluctuation()?,

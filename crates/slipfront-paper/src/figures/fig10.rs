@@ -2,8 +2,8 @@
 
 use crate::error::PaperError;
 use crate::figure_data::FigureData;
-use crate::number::Number;
-use crate::run::{Run, curves, on_each};
+use crate::number::MeasuredNumber;
+use crate::run::{FigureRun, curves, on_each};
 use crate::runner::FigureRunner;
 use crate::statistics::{largest, mean, rises};
 
@@ -24,7 +24,7 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
         let [peaks, levels] =
             ["static_friction_star", "kinetic_friction_star"].map(|quantity| sweep.values(&[k], quantity));
         let falls: Vec<f64> = peaks.iter().zip(&levels).map(|(a, b)| a - b).collect();
-        Number::of(&falls)
+        MeasuredNumber::of(&falls)
     };
     let falls: Vec<f64> = (0..ratios.len()).map(|k| fall(k).value).collect();
     data.value("largest_rise_of_fall", largest(rises(&falls)));
@@ -41,7 +41,7 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
 /// Kinetic friction above R* at the lowest R*, by the window over which it is averaged.
 fn excess_of_lowest(runner: &mut FigureRunner, data: &mut FigureData) -> Result<(), PaperError> {
     let runs = runner.run(runner.plan("fig10_windows")?.cases(&[])?)?;
-    let excess_in = |window: &dyn Fn(&Run) -> Result<[f64; 2], PaperError>| {
+    let excess_in = |window: &dyn Fn(&FigureRun) -> Result<[f64; 2], PaperError>| {
         on_each(&runs, |run| {
             let [from, until] = window(run)?;
             Ok(mean(&run.friction_between(from, until)) - run.case.groups.r_star)
@@ -52,7 +52,7 @@ fn excess_of_lowest(runner: &mut FigureRunner, data: &mut FigureData) -> Result<
         let excess = excess_in(&|run| Ok([run.instant('E')?.time_star, end]))?;
         windows.push((format!("from E to t* = {end}"), excess));
     }
-    let excess = excess_in(&Run::kinetic_window)?;
+    let excess = excess_in(&FigureRun::kinetic_window)?;
     windows.push((
         "from t_s* + 2.5/V* to 8/V*: as everywhere else here".to_owned(),
         excess,
@@ -63,7 +63,7 @@ fn excess_of_lowest(runner: &mut FigureRunner, data: &mut FigureData) -> Result<
     let rows = windows.iter().map(|(window, excess)| {
         let below = excess.iter().filter(|&&excess| excess < 0.0).count();
         let below = format!("{below} of {}", excess.len());
-        [window.clone(), Number::of(excess).shown(3), below]
+        [window.clone(), MeasuredNumber::of(excess).shown(3), below]
     });
     data.table(
         "fig10_windows",

@@ -5,7 +5,7 @@ use slipfront::Lattice;
 use crate::drawing::{coefficient_maps, stress_maps};
 use crate::error::PaperError;
 use crate::figure_data::FigureData;
-use crate::run::{Run, blank_map, on_each};
+use crate::run::{FigureRun, blank_map, on_each};
 use crate::runner::FigureRunner;
 use crate::statistics::{largest, rises};
 use slipfront_plot::FieldMap;
@@ -21,7 +21,7 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
     draw(runner, main, data)?;
     let shares: Vec<f64> = runs.iter().map(nucleations_at_minima).collect();
     data.values("nucleations_at_minima_percent", &shares);
-    let places = on_each(&runs, Run::first_block)?;
+    let places = on_each(&runs, FigureRun::first_block)?;
     let repeated = (0..places.len()).filter(|&k| places[..k].contains(&places[k]));
     data.value("repeated_first_places", repeated.count() as f64);
     // The same random numbers with another spread: the first slip is expected at the same block, at another time.
@@ -37,7 +37,7 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
     Ok(())
 }
 
-fn draw(runner: &FigureRunner, main: &Run, data: &mut FigureData) -> Result<(), PaperError> {
+fn draw(runner: &FigureRunner, main: &FigureRun, data: &mut FigureData) -> Result<(), PaperError> {
     let (lattice, surface) = (&main.case.model.lattice, &main.case.model.surface);
     let mut minima = minima(lattice, &surface.mu_static);
     minima.truncate(MARKED);
@@ -92,7 +92,7 @@ pub(super) fn neighbours(lattice: &Lattice, block: usize) -> impl Iterator<Item 
 }
 
 /// The blocks where slip begins: they slip before the peak, ahead of all blocks around them.
-pub(super) fn starts(run: &Run) -> Vec<usize> {
+pub(super) fn starts(run: &FigureRun) -> Vec<usize> {
     let lattice = &run.case.model.lattice;
     let times = &run.record.first_slip_time_star;
     let before_all = |block: usize| {
@@ -104,7 +104,7 @@ pub(super) fn starts(run: &Run) -> Vec<usize> {
 }
 
 /// Of the places where slip begins, the share that are local minima of mu_si, %.
-fn nucleations_at_minima(run: &Run) -> f64 {
+fn nucleations_at_minima(run: &FigureRun) -> f64 {
     let minima = minima(&run.case.model.lattice, &run.case.model.surface.mu_static);
     let starts = starts(run);
     let at_minima = starts.iter().filter(|block| minima.contains(block)).count();

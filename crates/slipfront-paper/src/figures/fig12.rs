@@ -3,11 +3,11 @@
 use crate::drawing::{Drawing, measured};
 use crate::error::PaperError;
 use crate::figure_data::FigureData;
-use crate::number::{Number, values};
-use crate::run::{Run, on_each};
+use crate::number::{MeasuredNumber, values};
+use crate::run::{FigureRun, on_each};
 use crate::runner::FigureRunner;
 use crate::statistics::{deviation, distances, farthest, largest, mean, range, ratios, rises, smallest};
-use crate::sweep::Sweep;
+use crate::sweep::ParameterSweep;
 use slipfront_plot::Responses;
 
 /// Surfaces from which the paper takes each mean.
@@ -54,7 +54,7 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
 fn surfaces(runner: &mut FigureRunner, data: &mut FigureData) -> Result<(), PaperError> {
     let sweep = runner.study("fig12_surfaces")?;
     let farthest_of = |five: &[f64]| farthest(five, mean(five));
-    let readings: [(&str, &str, Measure); 2] = [
+    let readings: [(&str, &str, Scatter); 2] = [
         ("fives_within", "the largest deviation", &farthest_of),
         (
             "fives_within_as_standard",
@@ -84,7 +84,7 @@ fn surfaces(runner: &mut FigureRunner, data: &mut FigureData) -> Result<(), Pape
 }
 
 /// A measure of how far five values scatter.
-type Measure<'a> = &'a dyn Fn(&[f64]) -> f64;
+type Scatter<'a> = &'a dyn Fn(&[f64]) -> f64;
 
 /// The standard deviation of a sample, with n - 1 in the denominator.
 fn standard_deviation(sample: &[f64]) -> f64 {
@@ -94,7 +94,7 @@ fn standard_deviation(sample: &[f64]) -> f64 {
 
 /// The share of fives whose scatter is below 0.015 at all points from this speed on, %. Fives are surfaces at equal distances
 /// in the list, which closes to a ring.
-fn fives_within_percent(sweep: &Sweep, first_speed: usize, scatter: Measure) -> f64 {
+fn fives_within_percent(sweep: &ParameterSweep, first_speed: usize, scatter: Scatter) -> f64 {
     let points = (0..sweep.axis(0).len())
         .flat_map(|spread| (first_speed..sweep.axis(1).len()).map(move |speed| [spread, speed]));
     let points = points.map(|point| sweep.values(&point, "static_friction_star"));
@@ -141,11 +141,14 @@ fn fluctuations(runner: &mut FigureRunner, data: &mut FigureData) -> Result<(), 
     for (k, name) in names.into_iter().enumerate() {
         let mut fluctuations = Vec::new();
         for (l, kinetic) in kinetic_spreads.iter().enumerate() {
-            let values = on_each(&runner.run(sweep.cases(&[k, l])?)?, Run::kinetic_fluctuation)?;
+            let values = on_each(
+                &runner.run(sweep.cases(&[k, l])?)?,
+                FigureRun::kinetic_fluctuation,
+            )?;
             rows.push([
                 spreads[k].to_string(),
                 kinetic.to_string(),
-                Number::of(&values).shown(3),
+                MeasuredNumber::of(&values).shown(3),
             ]);
             fluctuations.push(values);
         }

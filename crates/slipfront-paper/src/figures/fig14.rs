@@ -4,7 +4,7 @@ use crate::drawing::stress_maps;
 use crate::error::PaperError;
 use crate::figure_data::FigureData;
 use crate::figures::fig11::{minima, neighbours};
-use crate::run::Run;
+use crate::run::FigureRun;
 use crate::runner::FigureRunner;
 use crate::statistics::{mean, range};
 
@@ -45,7 +45,7 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
 }
 
 /// Distance of a block from the middle of the slider, along the drive and across it.
-fn place(run: &Run, block: usize) -> [f64; 2] {
+fn place(run: &FigureRun, block: usize) -> [f64; 2] {
     let (lattice, [dx, dy]) = (&run.case.model.lattice, run.case.model.drive.direction);
     let (i, j) = lattice.column_row(block);
     let x = i as f64 + 0.5 - 0.5 * lattice.nx as f64;
@@ -54,14 +54,14 @@ fn place(run: &Run, block: usize) -> [f64; 2] {
 }
 
 /// Blocks in contact that slip before this share has slipped.
-fn slipped(run: &Run, share: f64) -> Result<Vec<usize>, PaperError> {
+fn slipped(run: &FigureRun, share: f64) -> Result<Vec<usize>, PaperError> {
     let until = run.time_of_share(share)?;
     let times = &run.record.first_slip_time_star;
     Ok((0..times.len()).filter(|&block| times[block] <= until).collect())
 }
 
 /// Mean distance from the rim of the cavity of the first blocks to slip, over that of all blocks in contact.
-fn nearness(run: &Run, share: f64) -> f64 {
+fn nearness(run: &FigureRun, share: f64) -> f64 {
     let textured = &run.case.model.surface.textured;
     let cavity = textured.iter().filter(|&&textured| textured).count();
     let radius = (cavity as f64 / std::f64::consts::PI).sqrt();
@@ -76,7 +76,7 @@ fn nearness(run: &Run, share: f64) -> f64 {
 
 /// Of the local minima of mu_si, the share that slip for the first time before the mean of their neighbours do, %. Where fronts
 /// do not heed them it is one half.
-fn early_minima(run: &Run) -> f64 {
+fn early_minima(run: &FigureRun) -> f64 {
     let model = &run.case.model;
     let times = &run.record.first_slip_time_star;
     let minima = minima(&model.lattice, &model.surface.mu_static);
@@ -90,7 +90,7 @@ fn early_minima(run: &Run) -> f64 {
 }
 
 /// Of the blocks that slip at the very first, the share that touch the cavity, %.
-fn first_at_rim(run: &Run) -> f64 {
+fn first_at_rim(run: &FigureRun) -> f64 {
     let (lattice, textured) = (&run.case.model.lattice, &run.case.model.surface.textured);
     let times = &run.record.first_slip_time_star;
     let earliest = run.record.summary.first_slip_time_star;
@@ -101,7 +101,7 @@ fn first_at_rim(run: &Run) -> f64 {
 }
 
 /// How far the times of first slip differ from those of the mirror image across the drive, over their range, %.
-fn asymmetry(run: &Run) -> f64 {
+fn asymmetry(run: &FigureRun) -> f64 {
     let lattice = &run.case.model.lattice;
     let times = &run.record.first_slip_time_star;
     let mirrored = |block: usize| {
@@ -116,7 +116,7 @@ fn asymmetry(run: &Run) -> f64 {
 }
 
 /// Extent of the slipped area along the drive over that across it, as root mean squares about the cavity.
-fn elongation(run: &Run, share: f64) -> Result<f64, PaperError> {
+fn elongation(run: &FigureRun, share: f64) -> Result<f64, PaperError> {
     let (mut along, mut across) = (0.0, 0.0);
     for block in slipped(run, share)? {
         let [x, y] = place(run, block);

@@ -4,7 +4,7 @@ use crate::drawing::{Drawing, measured};
 use crate::error::PaperError;
 use crate::figure_data::FigureData;
 use crate::figures::fig11::starts;
-use crate::number::{Number, values};
+use crate::number::{MeasuredNumber, values};
 use crate::runner::FigureRunner;
 use crate::statistics::{largest, mean, rises, smallest};
 use slipfront_plot::Responses;
@@ -13,7 +13,7 @@ use slipfront_study::REDUCTION;
 pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Result<(), PaperError> {
     let sweep = runner.study("fig15")?;
     let (areas, spreads) = (sweep.axis(0), sweep.axis(1));
-    let numbers: Vec<Vec<Number>> = (0..spreads.len())
+    let numbers: Vec<Vec<MeasuredNumber>> = (0..spreads.len())
         .map(|spread| sweep.numbers(&[spread], REDUCTION))
         .collect();
     // What the blocks cover (Eq. 15), which is nearly what is asked.
@@ -68,7 +68,7 @@ fn starting_points(runner: &FigureRunner, data: &mut FigureData) -> Result<(), P
     for (k, spread) in sweep.axis(0).iter().enumerate() {
         let runs = runner.run(sweep.cases(&[k])?)?;
         let counts: Vec<f64> = runs.iter().map(|run| starts(run).len() as f64).collect();
-        rows.push([spread.to_string(), Number::of(&counts).shown(0)]);
+        rows.push([spread.to_string(), MeasuredNumber::of(&counts).shown(0)]);
         means.push(mean(&counts));
     }
     data.value("least_rise_of_starts", smallest(rises(&means)));

@@ -6,7 +6,7 @@ use crate::figure_data::FigureData;
 use crate::number::values;
 use crate::runner::FigureRunner;
 use crate::statistics::{farthest, largest, mean, rises, smallest};
-use crate::sweep::Sweep;
+use crate::sweep::ParameterSweep;
 use slipfront_plot::Responses;
 use slipfront_study::REDUCTION;
 
@@ -57,7 +57,7 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
 }
 
 /// How the reduction by a circular cavity depends on the size and the speed of the slider.
-fn generality(sweep: &Sweep, data: &mut FigureData) {
+fn generality(sweep: &ParameterSweep, data: &mut FigureData) {
     let reductions = sweep.numbers(&[], REDUCTION);
     let moved = farthest(&values(&reductions), reductions[0].value);
     data.value("circle_moved_by_size_and_speed", moved);

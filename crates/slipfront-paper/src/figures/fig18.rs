@@ -3,7 +3,7 @@
 use crate::drawing::{Drawing, stress_maps};
 use crate::error::PaperError;
 use crate::figure_data::FigureData;
-use crate::number::{Number, values};
+use crate::number::{MeasuredNumber, values};
 use crate::run::peak_maps;
 use crate::runner::FigureRunner;
 use crate::statistics::{farthest, largest, range};
@@ -14,7 +14,7 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
     let sweep = runner.study("fig18")?;
     let names = sweep.names(0);
     let reductions = sweep.numbers(&[], REDUCTION);
-    let bar = |(name, number): (&String, &Number)| {
+    let bar = |(name, number): (&String, &MeasuredNumber)| {
         let [mean, low, high] = number.ends();
         let label = name.clone();
         Bar {

@@ -2,7 +2,7 @@
 
 use crate::error::PaperError;
 use crate::figure_data::FigureData;
-use crate::number::Number;
+use crate::number::MeasuredNumber;
 use crate::runner::FigureRunner;
 use crate::statistics::{distances, largest};
 use slipfront_study::REDUCTION;
@@ -15,8 +15,9 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
     let mut variants = names.clone();
     variants.extend(textured.iter().filter(|name| !names.contains(name)).cloned());
     for variant in variants {
-        let cell =
-            |number: Option<Number>, digits| number.map_or(String::new(), |number| number.shown(digits));
+        let cell = |number: Option<MeasuredNumber>, digits| {
+            number.map_or(String::new(), |number| number.shown(digits))
+        };
         let of_baseline = |quantity: &str| {
             let place = names.iter().position(|name| *name == variant)?;
             let number = baseline.number(&[place], quantity);

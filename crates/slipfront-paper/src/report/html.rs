@@ -5,7 +5,7 @@ use base64::prelude::BASE64_STANDARD as BASE64;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use super::symbols::greek;
-use crate::claims::{ClaimResult, NUMBERING, REVISED, Verdict};
+use crate::claims::{ClaimResult, ClaimVerdict, NUMBERING, REVISED};
 use crate::figure_data::{FigureData, Panel, Table};
 use crate::figures::Figure;
 use crate::paper::Paper;
@@ -131,13 +131,13 @@ fn text(text: &str) -> Markup {
     }
 }
 
-fn class(verdict: Verdict) -> &'static str {
+fn class(verdict: ClaimVerdict) -> &'static str {
     match verdict {
-        Verdict::Holds => "verdict holds",
-        Verdict::HoldsWithCondition => "verdict conditioned",
-        Verdict::NotAsStated => "verdict restated",
-        Verdict::Misprint => "verdict misprint",
-        Verdict::DoesNotHold => "verdict fails",
+        ClaimVerdict::Holds => "verdict holds",
+        ClaimVerdict::HoldsWithCondition => "verdict conditioned",
+        ClaimVerdict::NotAsStated => "verdict restated",
+        ClaimVerdict::Misprint => "verdict misprint",
+        ClaimVerdict::DoesNotHold => "verdict fails",
     }
 }
 

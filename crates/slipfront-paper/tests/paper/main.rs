@@ -4,11 +4,11 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
-use slipfront_paper::{FIGURES, Options, Paper, Verdict};
+use slipfront_paper::{ClaimVerdict, FIGURES, Paper, PaperOptions};
 use slipfront_study::{Records, StudyError};
 
-fn options<'a>(folder: &'a Path, stop: &'a AtomicBool) -> Options<'a> {
-    Options {
+fn options<'a>(folder: &'a Path, stop: &'a AtomicBool) -> PaperOptions<'a> {
+    PaperOptions {
         threads: std::thread::available_parallelism().map_or(1, usize::from),
         stop,
         reduced: true,
@@ -93,7 +93,7 @@ fn the_documentation_counts_the_claims() {
     let claims = slipfront_paper::claims().unwrap();
     let all = claims.len();
     let of = |verdict| claims.iter().filter(|claim| claim.expected == verdict).count();
-    let counted = Verdict::ALL.map(|verdict| verdict.counted(of(verdict)));
+    let counted = ClaimVerdict::ALL.map(|verdict| verdict.counted(of(verdict)));
     let pages = [
         (
             include_str!("../../../../docs/validation/paper.md"),
@@ -129,7 +129,7 @@ fn the_cavity_as_printed_is_too_large_by_the_number_of_blocks() {
         "{}",
         printed.measured()
     );
-    assert_eq!(printed.verdict, Verdict::Misprint);
+    assert_eq!(printed.verdict, ClaimVerdict::Misprint);
 }
 
 /// The rows of the claims table, each by its number.

@@ -12,9 +12,9 @@ mod runs;
 use std::path::Path;
 
 use slipfront_plot::{
-    Bar, BarChart, BarGroup, FieldMap, FieldMaps, FrictionAxes, FrictionCurve, HeatAxis, HeatMap, Kinetic,
-    Picture, PictureError, Polar, Response, Responses, Shape, Sketch, Stroke, StrokeStyle, bars, field_maps,
-    friction, front, heat_map, polar, response, shapes, sketch, stress,
+    Bar, BarChart, BarGroup, FieldMap, FieldMaps, FrictionAxes, FrictionCurve, HeatAxis, HeatMap,
+    KineticLine, Picture, PictureError, Polar, Response, Responses, Shape, Sketch, Stroke, StrokeStyle, bars,
+    field_maps, friction, front, heat_map, polar, response, shapes, sketch, stress,
 };
 
 use page::Page;
@@ -45,7 +45,7 @@ fn star(curves: &[FrictionCurve]) -> Result<Picture, PictureError> {
 #[test]
 fn a_run() {
     let with_uncertainty = |mut curve: FrictionCurve| {
-        curve.kinetic = curve.kinetic.map(|window| Kinetic {
+        curve.kinetic = curve.kinetic.map(|window| KineticLine {
             uncertainty: Some(0.0042),
             ..window
         });
@@ -58,13 +58,13 @@ fn a_run() {
         for (instant, x) in curve.instants.iter_mut().zip([0.0, 0.5, 79.0, 79.2, 0.2, 130.0]) {
             (instant.x, instant.friction) = (x, if x > 70.0 { 0.876 } else { 0.0 });
         }
-        curve.kinetic = curve.kinetic.map(|window| Kinetic { from: 2.0, ..window });
+        curve.kinetic = curve.kinetic.map(|window| KineticLine { from: 2.0, ..window });
         curve
     };
     let late = {
         let mut curve = with_uncertainty(baseline());
         curve.first_slip = Some(255.0);
-        curve.kinetic = curve.kinetic.map(|window| Kinetic {
+        curve.kinetic = curve.kinetic.map(|window| KineticLine {
             from: 250.0,
             ..window
         });

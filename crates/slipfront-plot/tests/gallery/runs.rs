@@ -1,7 +1,7 @@
 //! Curves and fields that look like those of runs.
 
 use slipfront_plot::{
-    CellMeans, FrictionCurve, FrontMap, Instant, Kinetic, SpaceTime, StressMap, StressMaps,
+    CellMeans, FrictionCurve, FrontMap, Instant, KineticLine, SpaceTime, StressMap, StressMaps,
 };
 
 /// A smooth curve through points, as rows of t*, mu*, N*.
@@ -50,7 +50,7 @@ pub(crate) fn run(
         label: "run".to_owned(),
         first_slip: Some(first_slip),
         peak: Some(peak),
-        kinetic: Some(Kinetic {
+        kinetic: Some(KineticLine {
             from,
             to: x[x.len() - 1],
             mean: sum / count,

@@ -39,7 +39,7 @@ pub(super) struct Header {
 
 /// Of a first line whatever version wrote it.
 #[derive(Deserialize)]
-struct Layout {
+struct FormatVersion {
     slipfront_checkpoint: u32,
 }
 
@@ -186,7 +186,7 @@ pub(super) fn read(
         named.into()
     })?;
     let unknown = || damaged("its first line is not that of a checkpoint");
-    let Layout { slipfront_checkpoint } = serde_json::from_str(&line).map_err(|_| unknown())?;
+    let FormatVersion { slipfront_checkpoint } = serde_json::from_str(&line).map_err(|_| unknown())?;
     if slipfront_checkpoint != LAYOUT {
         let (path, found) = (owned(), slipfront_checkpoint);
         return Err(CheckpointError::Layout { path, found });

@@ -4,7 +4,7 @@ use slipfront::observe::Field;
 use slipfront_case::field_info::field_info;
 
 use super::frame::*;
-use super::netcdf3::Kind;
+use super::netcdf3::ExternalType;
 use super::netcdf3_header::{Attribute, Definition, Variable};
 
 /// The dimensions, in the order of the header.
@@ -54,17 +54,17 @@ fn statics() -> Vec<Variable> {
         Attribute::text("flag_meanings", "contact cavity"),
     ];
     let blanks = [Attribute::text("comment", "NaN where a block never slips")];
-    let coefficient = |name, long_name| variable(name, &[Y, X], Kind::Double, long_name, "1", []);
+    let coefficient = |name, long_name| variable(name, &[Y, X], ExternalType::Double, long_name, "1", []);
     vec![
-        variable(Y, &[Y], Kind::Double, "y of the block centre", "m", []),
-        variable(X, &[X], Kind::Double, "x of the block centre", "m", []),
-        variable(TEXTURED, &[Y, X], Kind::Short, "texture", "1", flags),
+        variable(Y, &[Y], ExternalType::Double, "y of the block centre", "m", []),
+        variable(X, &[X], ExternalType::Double, "x of the block centre", "m", []),
+        variable(TEXTURED, &[Y, X], ExternalType::Short, "texture", "1", flags),
         coefficient(MU_STATIC, "static friction coefficient"),
         coefficient(MU_KINETIC, "kinetic friction coefficient"),
         variable(
             FIRST_SLIP,
             &[Y, X],
-            Kind::Double,
+            ExternalType::Double,
             "time t* of the first slip",
             "1",
             blanks,
@@ -75,12 +75,12 @@ fn statics() -> Vec<Variable> {
 /// What every record holds: of the instant itself, then these fields.
 fn of_time(names: &[Field]) -> Vec<Variable> {
     let axis = [Attribute::text("axis", "T")];
-    let of_instant = |name, long_name| variable(name, &[TIME], Kind::Double, long_name, "1", []);
+    let of_instant = |name, long_name| variable(name, &[TIME], ExternalType::Double, long_name, "1", []);
     let mut variables = vec![
         variable(
             TIME,
             &[TIME],
-            Kind::Double,
+            ExternalType::Double,
             "time since the start of the drive",
             "s",
             axis,
@@ -90,7 +90,7 @@ fn of_time(names: &[Field]) -> Vec<Variable> {
         Variable {
             name: LABEL,
             dimensions: indices(&[TIME, LABEL_LENGTH]),
-            kind: Kind::Char,
+            kind: ExternalType::Char,
             attributes: vec![Attribute::text("long_name", "name of the instant")],
         },
     ];
@@ -108,7 +108,7 @@ fn of_time(names: &[Field]) -> Vec<Variable> {
         variable(
             info.name,
             &[TIME, Y, X],
-            Kind::Float,
+            ExternalType::Float,
             info.long_name,
             info.unit,
             attributes,
@@ -120,7 +120,7 @@ fn of_time(names: &[Field]) -> Vec<Variable> {
 fn variable(
     name: &'static str,
     dimensions: &[&str],
-    kind: Kind,
+    kind: ExternalType,
     long_name: &str,
     units: &str,
     attributes: impl IntoIterator<Item = Attribute>,

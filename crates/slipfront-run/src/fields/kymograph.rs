@@ -7,7 +7,7 @@ use slipfront::observe::Kymograph;
 use slipfront_case::case::Case;
 
 use super::frame::{BLOCK_SIZE, FieldsError, TIME, TIME_STAR, TIME_UNIT};
-use super::netcdf3::{Kind, Number};
+use super::netcdf3::{ExternalType, StoredNumber};
 use super::netcdf3_header::{Attribute, Definition, Variable};
 use super::netcdf3_reader::{NetCdf3Reader, NetCdfError, broken};
 use super::read::in_words;
@@ -53,11 +53,23 @@ pub fn kymograph_bytes(kymograph: &Kymograph, case: &Case) -> Vec<u8> {
             Attribute::numbers(TIME_UNIT, &[scales.time()]),
         ],
         variables: vec![
-            variable(TIME, &[0], Kind::Double, "time since the start of the drive", "s"),
-            variable(TIME_STAR, &[0], Kind::Double, "dimensionless time t*", "1"),
-            variable(PLACE, &[1], Kind::Double, place, "m"),
-            variable(IN_CONTACT, &[1], Kind::Double, "blocks in contact", "1"),
-            variable(SLIDING, &[0, 1], Kind::Float, share, "1"),
+            variable(
+                TIME,
+                &[0],
+                ExternalType::Double,
+                "time since the start of the drive",
+                "s",
+            ),
+            variable(
+                TIME_STAR,
+                &[0],
+                ExternalType::Double,
+                "dimensionless time t*",
+                "1",
+            ),
+            variable(PLACE, &[1], ExternalType::Double, place, "m"),
+            variable(IN_CONTACT, &[1], ExternalType::Double, "blocks in contact", "1"),
+            variable(SLIDING, &[0, 1], ExternalType::Float, share, "1"),
         ],
     };
     let mut bytes = definition.header().bytes;
@@ -78,7 +90,7 @@ pub fn kymograph_bytes(kymograph: &Kymograph, case: &Case) -> Vec<u8> {
     bytes
 }
 
-fn append<T: Number>(bytes: &mut Vec<u8>, values: impl Iterator<Item = T>) {
+fn append<T: StoredNumber>(bytes: &mut Vec<u8>, values: impl Iterator<Item = T>) {
     values.for_each(|value| bytes.extend(value.encode().as_ref()));
 }
 

@@ -2,27 +2,27 @@
 
 /// The form of a file.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Form {
+pub(super) enum CdfVersion {
     /// CDF-2: 64-bit offsets, all other numbers of the header with 32 bits.
     Offset64,
     /// CDF-5: 64-bit data, lengths and counts with 64 bits too.
     Data64,
 }
 
-impl Form {
+impl CdfVersion {
     /// The first bytes of a file.
     pub(super) fn magic(self) -> &'static [u8; 4] {
         match self {
-            Form::Offset64 => b"CDF\x02",
-            Form::Data64 => b"CDF\x05",
+            CdfVersion::Offset64 => b"CDF\x02",
+            CdfVersion::Data64 => b"CDF\x05",
         }
     }
 
     /// Bytes of a length or a count; tags and types always have 4.
     pub(super) fn count_bytes(self) -> usize {
         match self {
-            Form::Offset64 => 4,
-            Form::Data64 => 8,
+            CdfVersion::Offset64 => 4,
+            CdfVersion::Data64 => 8,
         }
     }
 }
@@ -34,7 +34,7 @@ pub(super) const ATTRIBUTES: u32 = 0x0c;
 
 /// How a number is stored, big-endian, with the code that it has in a header.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Kind {
+pub(super) enum ExternalType {
     Byte = 1,
     Char = 2,
     Short = 3,
@@ -43,35 +43,37 @@ pub(super) enum Kind {
     Double = 6,
 }
 
-impl Kind {
-    pub(super) fn of(code: u32) -> Option<Kind> {
+impl ExternalType {
+    pub(super) fn of(code: u32) -> Option<ExternalType> {
         let all = [
-            Kind::Byte,
-            Kind::Char,
-            Kind::Short,
-            Kind::Int,
-            Kind::Float,
-            Kind::Double,
+            ExternalType::Byte,
+            ExternalType::Char,
+            ExternalType::Short,
+            ExternalType::Int,
+            ExternalType::Float,
+            ExternalType::Double,
         ];
         all.into_iter().find(|kind| *kind as u32 == code)
     }
 
     pub(super) fn bytes(self) -> usize {
         match self {
-            Kind::Byte | Kind::Char => 1,
-            Kind::Short => 2,
-            Kind::Int | Kind::Float => 4,
-            Kind::Double => 8,
+            ExternalType::Byte | ExternalType::Char => 1,
+            ExternalType::Short => 2,
+            ExternalType::Int | ExternalType::Float => 4,
+            ExternalType::Double => 8,
         }
     }
 
     pub(super) fn decode(self, bytes: &[u8]) -> impl Iterator<Item = f64> {
         let number = move |bytes: &[u8]| match (self, bytes) {
-            (Kind::Byte, [a]) => f64::from(i8::from_be_bytes([*a])),
-            (Kind::Short, [a, b]) => f64::from(i16::from_be_bytes([*a, *b])),
-            (Kind::Int, [a, b, c, d]) => f64::from(i32::from_be_bytes([*a, *b, *c, *d])),
-            (Kind::Float, [a, b, c, d]) => f64::from(f32::from_be_bytes([*a, *b, *c, *d])),
-            (Kind::Double, [a, b, c, d, e, f, g, h]) => f64::from_be_bytes([*a, *b, *c, *d, *e, *f, *g, *h]),
+            (ExternalType::Byte, [a]) => f64::from(i8::from_be_bytes([*a])),
+            (ExternalType::Short, [a, b]) => f64::from(i16::from_be_bytes([*a, *b])),
+            (ExternalType::Int, [a, b, c, d]) => f64::from(i32::from_be_bytes([*a, *b, *c, *d])),
+            (ExternalType::Float, [a, b, c, d]) => f64::from(f32::from_be_bytes([*a, *b, *c, *d])),
+            (ExternalType::Double, [a, b, c, d, e, f, g, h]) => {
+                f64::from_be_bytes([*a, *b, *c, *d, *e, *f, *g, *h])
+            }
             (_, bytes) => bytes.first().copied().map_or(0.0, f64::from),
         };
         bytes.chunks_exact(self.bytes()).map(number)
@@ -79,8 +81,8 @@ impl Kind {
 }
 
 /// A number that can be stored.
-pub(super) trait Number: Copy {
-    const KIND: Kind;
+pub(super) trait StoredNumber: Copy {
+    const KIND: ExternalType;
     type Bytes: AsRef<[u8]>;
 
     fn encode(self) -> Self::Bytes;
@@ -88,8 +90,8 @@ pub(super) trait Number: Copy {
 
 macro_rules! stored_as {
     ($($number:ty: $kind:ident),*) => {$(
-        impl Number for $number {
-            const KIND: Kind = Kind::$kind;
+        impl StoredNumber for $number {
+            const KIND: ExternalType = ExternalType::$kind;
             type Bytes = [u8; size_of::<$number>()];
 
             fn encode(self) -> Self::Bytes {

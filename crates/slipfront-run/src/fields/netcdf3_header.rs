@@ -1,6 +1,6 @@
 //! The header of a NetCDF-3 file, as it is written, and where the values stand behind it.
 
-use super::netcdf3::{ATTRIBUTES, DIMENSIONS, Form, Kind, Number, VARIABLES};
+use super::netcdf3::{ATTRIBUTES, CdfVersion, DIMENSIONS, ExternalType, StoredNumber, VARIABLES};
 
 /// Most bytes of a variable, or of one record of it, in a file with 64-bit offsets. The format has room for twice as many,
 /// but not every reader: some keep the number with a sign.
@@ -19,13 +19,13 @@ pub(super) struct Definition {
 /// A name with some numbers, or a text.
 pub(super) struct Attribute {
     name: &'static str,
-    kind: Kind,
+    kind: ExternalType,
     count: usize,
     bytes: Vec<u8>,
 }
 
 impl Attribute {
-    pub(super) fn numbers<T: Number>(name: &'static str, values: &[T]) -> Self {
+    pub(super) fn numbers<T: StoredNumber>(name: &'static str, values: &[T]) -> Self {
         let bytes = values.iter().flat_map(|value| value.encode().as_ref().to_vec());
         Self {
             name,
@@ -44,19 +44,19 @@ pub(super) struct Variable {
     pub(super) name: &'static str,
     /// Indices into the dimensions.
     pub(super) dimensions: Vec<usize>,
-    pub(super) kind: Kind,
+    pub(super) kind: ExternalType,
     pub(super) attributes: Vec<Attribute>,
 }
 
 /// The bytes of a header, and the places of what it defines.
-pub(super) struct Header {
+pub(super) struct HeaderBytes {
     pub(super) bytes: Vec<u8>,
     /// In the order of the file: first the variables without records, then record after record.
-    pub(super) places: Vec<Place>,
+    pub(super) places: Vec<ValuePlace>,
 }
 
 /// Where the values of a variable stand, or those of one record of it.
-pub(super) struct Place {
+pub(super) struct ValuePlace {
     pub(super) variable: &'static str,
     /// Number of the record; 0 for a variable without records.
     pub(super) record: usize,
@@ -67,11 +67,11 @@ pub(super) struct Place {
 
 impl Definition {
     /// Lays the file out.
-    pub(super) fn header(&self) -> Header {
+    pub(super) fn header(&self) -> HeaderBytes {
         let sizes = self.variables.iter().map(|variable| self.bytes_at_once(variable));
         let form = match sizes.max() {
-            Some(bytes) if bytes > OFFSET64_MAX_BYTES => Form::Data64,
-            _ => Form::Offset64,
+            Some(bytes) if bytes > OFFSET64_MAX_BYTES => CdfVersion::Data64,
+            _ => CdfVersion::Offset64,
         };
         // The offsets do not change how long the header is.
         let length = self.encode(form, |_| 0).len() as u64;
@@ -82,7 +82,7 @@ impl Definition {
             let stored = self.variables.iter();
             for variable in stored.filter(|variable| self.has_records(variable) == has_records) {
                 let (bytes, padded) = (self.bytes_at_once(variable), self.padded_bytes(variable));
-                places.push(Place {
+                places.push(ValuePlace {
                     variable: variable.name,
                     record,
                     offset,
@@ -96,7 +96,7 @@ impl Definition {
             let place = places.find(|place| place.variable == variable.name);
             place.map_or(offset, |place| place.offset)
         };
-        Header {
+        HeaderBytes {
             bytes: self.encode(form, first),
             places,
         }
@@ -120,7 +120,7 @@ impl Definition {
         self.bytes_at_once(variable).next_multiple_of(4)
     }
 
-    fn encode(&self, form: Form, offset: impl Fn(&Variable) -> u64) -> Vec<u8> {
+    fn encode(&self, form: CdfVersion, offset: impl Fn(&Variable) -> u64) -> Vec<u8> {
         let mut bytes = Encoder {
             form,
             bytes: form.magic().to_vec(),
@@ -148,7 +148,7 @@ impl Definition {
 
 /// The bytes of a header that are there.
 struct Encoder {
-    form: Form,
+    form: CdfVersion,
     bytes: Vec<u8>,
 }
 

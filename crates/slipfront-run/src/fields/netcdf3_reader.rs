@@ -9,7 +9,7 @@ use std::path::Path;
 
 use slipfront_case::disk::open_regular;
 
-use super::netcdf3::{ATTRIBUTES, DIMENSIONS, Form, Kind, VARIABLES};
+use super::netcdf3::{ATTRIBUTES, CdfVersion, DIMENSIONS, ExternalType, VARIABLES};
 
 /// Values that are read at once.
 const PIECE: usize = 1 << 14;
@@ -37,23 +37,23 @@ pub(super) struct NetCdf3Reader {
     /// Number of records, that is of instants.
     pub(super) records: usize,
     record_bytes: u64,
-    dimensions: Vec<Dimension>,
+    dimensions: Vec<StoredDimension>,
     /// Text counts as numbers too, one per byte.
     attributes: Vec<(String, Vec<f64>)>,
-    variables: Vec<Variable>,
+    variables: Vec<StoredVariable>,
 }
 
 /// A length of 0 marks the record dimension.
-struct Dimension {
+struct StoredDimension {
     name: String,
     length: usize,
 }
 
-struct Variable {
+struct StoredVariable {
     name: String,
     /// Indices into the dimensions.
     dimensions: Vec<usize>,
-    kind: Kind,
+    kind: ExternalType,
     offset: u64,
 }
 
@@ -64,15 +64,15 @@ impl NetCdf3Reader {
         let file_bytes = file.metadata()?.len();
         let mut bytes = Vec::new();
         file.by_ref().take(HEADER_MAX_BYTES).read_to_end(&mut bytes)?;
-        let mut header = Header::begin(&bytes)?;
+        let mut header = HeaderReader::begin(&bytes)?;
         let records = header.count()?;
         let dimensions = header.list(DIMENSIONS, 8, |header| {
-            Ok(Dimension {
+            Ok(StoredDimension {
                 name: header.name()?,
                 length: header.count()?,
             })
         })?;
-        let attributes = header.list(ATTRIBUTES, 12, Header::attribute)?;
+        let attributes = header.list(ATTRIBUTES, 12, HeaderReader::attribute)?;
         let variables = header.list(VARIABLES, 28, |header| header.variable(dimensions.len()))?;
         each_once(dimensions.iter().map(|dimension| &dimension.name))?;
         each_once(variables.iter().map(|variable| &variable.name))?;
@@ -85,7 +85,7 @@ impl NetCdf3Reader {
             attributes,
             variables,
         };
-        let has_records = |variable: &&Variable| reader.has_records(variable);
+        let has_records = |variable: &&StoredVariable| reader.has_records(variable);
         let mut with_records = reader.variables.iter().filter(has_records);
         let record_bytes = with_records.try_fold(0, |total: u64, variable| {
             total.checked_add(reader.bytes_at_once(variable)?.checked_next_multiple_of(4)?)
@@ -103,7 +103,7 @@ impl NetCdf3Reader {
 
     /// The names of the variables that have exactly these dimensions.
     pub(super) fn variables_over<'a>(&'a self, dimensions: &'a [&str]) -> impl Iterator<Item = &'a str> {
-        let is_over = |variable: &&Variable| self.is_over(variable, dimensions);
+        let is_over = |variable: &&StoredVariable| self.is_over(variable, dimensions);
         let over = self.variables.iter().filter(is_over);
         over.map(|variable| variable.name.as_str())
     }
@@ -147,7 +147,8 @@ impl NetCdf3Reader {
         part: Range<u64>,
         mut take: impl FnMut(&[f64]),
     ) -> Result<(), NetCdfError> {
-        let is_meant = |variable: &&Variable| variable.name == name && self.is_over(variable, dimensions);
+        let is_meant =
+            |variable: &&StoredVariable| variable.name == name && self.is_over(variable, dimensions);
         let Some(variable) = self.variables.iter().find(is_meant) else {
             return broken(format!("it has no variable `{name}({})`", dimensions.join(", ")));
         };
@@ -181,19 +182,19 @@ impl NetCdf3Reader {
         Ok(())
     }
 
-    fn is_over(&self, variable: &Variable, dimensions: &[&str]) -> bool {
+    fn is_over(&self, variable: &StoredVariable, dimensions: &[&str]) -> bool {
         let ids = variable.dimensions.iter();
         let names = ids.map(|id| self.dimensions[*id].name.as_str());
         names.eq(dimensions.iter().copied())
     }
 
-    fn has_records(&self, variable: &Variable) -> bool {
+    fn has_records(&self, variable: &StoredVariable) -> bool {
         let first = variable.dimensions.first();
         first.is_some_and(|id| self.dimensions[*id].length == 0)
     }
 
     /// The bytes of a whole variable or of one record of it, without padding.
-    fn bytes_at_once(&self, variable: &Variable) -> Option<u64> {
+    fn bytes_at_once(&self, variable: &StoredVariable) -> Option<u64> {
         let skipped = usize::from(self.has_records(variable));
         let dimensions = variable.dimensions.iter().skip(skipped);
         let mut lengths = dimensions.map(|id| self.dimensions[*id].length as u64);
@@ -215,15 +216,18 @@ fn absurd(variable: &str) -> NetCdfError {
 }
 
 /// The bytes of a header that are still to be read.
-struct Header<'a> {
-    form: Form,
+struct HeaderReader<'a> {
+    form: CdfVersion,
     rest: &'a [u8],
 }
 
-impl<'a> Header<'a> {
+impl<'a> HeaderReader<'a> {
     fn begin(bytes: &'a [u8]) -> Result<Self, NetCdfError> {
-        let of_form = |form: Form| Some((form, bytes.strip_prefix(form.magic())?));
-        match [Form::Offset64, Form::Data64].into_iter().find_map(of_form) {
+        let of_form = |form: CdfVersion| Some((form, bytes.strip_prefix(form.magic())?));
+        match [CdfVersion::Offset64, CdfVersion::Data64]
+            .into_iter()
+            .find_map(of_form)
+        {
             Some((form, rest)) => Ok(Self { form, rest }),
             None => broken("it does not begin like NetCDF-3 with 64-bit offsets or data"),
         }
@@ -281,9 +285,9 @@ impl<'a> Header<'a> {
         (0..count).map(|_| element(self)).collect()
     }
 
-    fn kind(&mut self) -> Result<Kind, NetCdfError> {
+    fn kind(&mut self) -> Result<ExternalType, NetCdfError> {
         let code = self.code()?;
-        match Kind::of(code) {
+        match ExternalType::of(code) {
             Some(kind) => Ok(kind),
             None => broken(format!("its header names the unknown type {code}")),
         }
@@ -297,7 +301,7 @@ impl<'a> Header<'a> {
         Ok((name, values.collect()))
     }
 
-    fn variable(&mut self, dimensions_known: usize) -> Result<Variable, NetCdfError> {
+    fn variable(&mut self, dimensions_known: usize) -> Result<StoredVariable, NetCdfError> {
         let name = self.name()?;
         let count = self.count()?;
         if count > dimensions_known {
@@ -313,12 +317,12 @@ impl<'a> Header<'a> {
             }
             dimensions.push(id);
         }
-        self.list(ATTRIBUTES, 12, Header::attribute)?;
+        self.list(ATTRIBUTES, 12, HeaderReader::attribute)?;
         let kind = self.kind()?;
         // The size stands here too; it follows from the dimensions.
         self.count()?;
         let offset = self.number(8)?;
-        Ok(Variable {
+        Ok(StoredVariable {
             name,
             dimensions,
             kind,

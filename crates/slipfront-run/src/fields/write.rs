@@ -13,8 +13,8 @@ use tempfile::TempPath;
 
 use super::definition::define;
 use super::frame::*;
-use super::netcdf3::Number;
-use super::netcdf3_header::{Header, Place};
+use super::netcdf3::StoredNumber;
+use super::netcdf3_header::{HeaderBytes, ValuePlace};
 use crate::agree::agree_on_io;
 
 /// Bytes that are collected before they are written.
@@ -73,7 +73,7 @@ pub fn write_fields(
 /// together: one of them [creates](Self::create) it, and each [writes its rows](Self::write_rows) into it.
 pub struct FieldsWriter<'a> {
     file: &'a FieldsFile<'a>,
-    header: Header,
+    header: HeaderBytes,
 }
 
 impl<'a> FieldsWriter<'a> {
@@ -158,9 +158,9 @@ impl<'a> FieldsWriter<'a> {
 }
 
 /// Writes values of a variable, from the one behind `before` others on.
-fn write_at<T: Number>(
+fn write_at<T: StoredNumber>(
     output: &mut (impl Write + Seek),
-    place: &Place,
+    place: &ValuePlace,
     before: usize,
     values: impl IntoIterator<Item = T>,
 ) -> io::Result<()> {

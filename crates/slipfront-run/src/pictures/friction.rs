@@ -4,10 +4,10 @@ use std::path::{Path, PathBuf};
 
 use slipfront_case::case_file::Motion;
 use slipfront_case::number_format::si_prefix;
-use slipfront_plot::{self as plot, FrictionAxes, FrictionCurve, Instant, Kinetic, Picture};
+use slipfront_plot::{self as plot, FrictionAxes, FrictionCurve, Instant, KineticLine, Picture};
 
 use super::error::RunPictureError;
-use crate::measured::{Measure, Record};
+use crate::measured::{Measure, MeasuredRecord};
 use crate::names::SERIES;
 use crate::series::{self, SeriesRow};
 use crate::summary::{SiSummary, Summary, read_summary};
@@ -17,7 +17,7 @@ pub(super) const ROW_BYTES: f64 = (3 + 2 + 3) as f64 * size_of::<f64>() as f64;
 
 /// What the axes count in.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Units {
+pub enum AxisUnits {
     /// Dimensionless quantities.
     #[default]
     Star,
@@ -37,11 +37,11 @@ pub enum Against {
 
 /// A measured record that is laid over curves in SI units.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Measured {
+pub struct OverlaidRecord {
     /// What the legend calls it.
     pub label: String,
     /// Times or displacements, with forces or coefficients.
-    pub record: Record,
+    pub record: MeasuredRecord,
     /// Which of the latter.
     pub measure: Measure,
     /// What is added to its times or displacements, in SI units; none for what makes it fit the first run best.
@@ -68,7 +68,7 @@ pub struct Overlay {
 }
 
 /// A run and its curve: t*, path of the drive in units of displacement, mu*, N*.
-struct Run {
+struct DrawnRun {
     folder: PathBuf,
     summary: Summary,
     rows: Vec<[f64; 4]>,
@@ -85,7 +85,7 @@ struct Scale {
 }
 
 impl Scale {
-    fn curves(&self, runs: &[Run]) -> Vec<FrictionCurve> {
+    fn curves(&self, runs: &[DrawnRun]) -> Vec<FrictionCurve> {
         let curves = runs.iter().zip(&self.factors);
         curves
             .map(|(run, factors)| run.curve(self.against, *factors))
@@ -102,13 +102,13 @@ impl Scale {
 /// When a folder cannot be read, or its run has not what is asked for.
 pub fn overlay(
     folders: &[PathBuf],
-    units: Units,
+    units: AxisUnits,
     against: Option<Against>,
 ) -> Result<Overlay, RunPictureError> {
-    let runs = Run::read_all(folders)?;
+    let runs = DrawnRun::read_all(folders)?;
     let (scale, note) = match units {
-        Units::Si => (in_si(&runs, against.unwrap_or_default(), Measure::Force)?, None),
-        Units::Star => dimensionless(&runs, against)?,
+        AxisUnits::Si => (in_si(&runs, against.unwrap_or_default(), Measure::Force)?, None),
+        AxisUnits::Star => dimensionless(&runs, against)?,
     };
     let (picture, fit) = (draw(&scale, &scale.curves(&runs))?, None);
     Ok(Overlay { fit, picture, note })
@@ -121,13 +121,13 @@ pub fn overlay(
 pub fn overlay_measured(
     folders: &[PathBuf],
     against: Against,
-    measured: &Measured,
+    measured: &OverlaidRecord,
 ) -> Result<Overlay, RunPictureError> {
-    let runs = Run::read_all(folders)?;
+    let runs = DrawnRun::read_all(folders)?;
     let scale = in_si(&runs, against, measured.measure)?;
     let mut curves = scale.curves(&runs);
     let [along, up] = scale.prefixes;
-    let Record { x, y } = &measured.record;
+    let MeasuredRecord { x, y } = &measured.record;
     let first = (&curves[0].x[..], &curves[0].friction[..]);
     let scaled = (
         x.iter().map(|x| x / along).collect::<Vec<_>>(),
@@ -229,7 +229,7 @@ fn best_shift(record: (&[f64], &[f64]), curve: (&[f64], &[f64])) -> f64 {
 
 /// Draws the friction curve of a run folder against t*.
 pub(super) fn of_run(folder: &Path) -> Result<Picture, RunPictureError> {
-    overlay(&[folder.to_owned()], Units::Star, Some(Against::Time)).map(|overlay| overlay.picture)
+    overlay(&[folder.to_owned()], AxisUnits::Star, Some(Against::Time)).map(|overlay| overlay.picture)
 }
 
 /// All that a summary knows of a curve of mu* against t*, without its points.
@@ -245,7 +245,7 @@ pub fn marked_curve(label: String, summary: &Summary) -> FrictionCurve {
         label,
         first_slip: summary.first_slip_time_star,
         peak: summary.transition.then_some(peak),
-        kinetic: kinetic.map(|([from, to], mean)| Kinetic {
+        kinetic: kinetic.map(|([from, to], mean)| KineticLine {
             from,
             to,
             mean,
@@ -256,7 +256,7 @@ pub fn marked_curve(label: String, summary: &Summary) -> FrictionCurve {
     }
 }
 
-impl Run {
+impl DrawnRun {
     fn read_all(folders: &[PathBuf]) -> Result<Vec<Self>, RunPictureError> {
         folders.iter().map(|folder| Self::read(folder)).collect()
     }
@@ -328,7 +328,10 @@ impl Run {
 }
 
 /// Axes without units, and why they are not mu* against t*.
-fn dimensionless(runs: &[Run], asked: Option<Against>) -> Result<(Scale, Option<String>), RunPictureError> {
+fn dimensionless(
+    runs: &[DrawnRun],
+    asked: Option<Against>,
+) -> Result<(Scale, Option<String>), RunPictureError> {
     let units: Vec<Option<&SiSummary>> = runs.iter().map(|run| run.summary.si.as_ref()).collect();
     let differs = |unit: fn(&SiSummary) -> f64| {
         let mut known = units.iter().flatten().map(|si| unit(si));
@@ -348,7 +351,7 @@ fn dimensionless(runs: &[Run], asked: Option<Against>) -> Result<(Scale, Option<
         runs.iter().try_for_each(|run| run.si().map(|_| ()))?;
     }
     let mut axes = FrictionAxes::default();
-    if runs.iter().all(Run::is_rotation) {
+    if runs.iter().all(DrawnRun::is_rotation) {
         axes.friction = "torque \u{3bc}*".to_owned();
     }
     if other_friction {
@@ -387,8 +390,8 @@ pub(super) fn in_print(prefix: &'static str) -> &'static str {
 }
 
 /// Axes of newtons, or of coefficients, and of seconds or metres, with the prefixes that suit the largest numbers.
-fn in_si(runs: &[Run], against: Against, measure: Measure) -> Result<Scale, RunPictureError> {
-    let turns = runs.iter().all(Run::is_rotation);
+fn in_si(runs: &[DrawnRun], against: Against, measure: Measure) -> Result<Scale, RunPictureError> {
+    let turns = runs.iter().all(DrawnRun::is_rotation);
     if let Some(run) = runs.iter().find(|run| run.is_rotation() != turns) {
         return Err(RunPictureError::NotComparable(run.folder.clone()));
     }

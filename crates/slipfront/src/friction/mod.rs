@@ -1,7 +1,7 @@
 //! The laws of friction: what the force and motion of a block become where it touches the substrate.
 //!
 //! Each law is a file, which holds its parameters, says what it [`Needs`], and computes it in the general kernel, with what it remembers
-//! of every block. [`Friction`] and [`Contact`] here have a row for each.
+//! of every block. [`Friction`] and [`BandContact`] here have a row for each.
 
 mod contact_springs;
 mod coulomb;
@@ -145,7 +145,7 @@ pub struct ContactTotals {
 }
 
 impl ContactTotals {
-    /// Totals from the sums that [`Contact::add_up`] makes.
+    /// Totals from the sums that [`BandContact::add_up`] makes.
     pub(crate) fn of([spring_energy, broken_energy, state]: [f64; 3], surface: &Surface) -> Self {
         Self {
             spring_energy,
@@ -157,18 +157,18 @@ impl ContactTotals {
 
 /// A law of friction with what it remembers of the blocks of a band of the general kernel.
 #[derive(Debug)]
-pub(crate) enum Contact {
-    Coulomb(Thresholds),
+pub(crate) enum BandContact {
+    Coulomb(CoulombContact),
     RateAndState(StateContact),
     Springs(SpringContact),
 }
 
-impl Contact {
+impl BandContact {
     /// The memory of a law at the start. `first_block`: number of the first block of the band in the whole lattice.
     pub(crate) fn new(friction: &Friction, surface: &Surface, first_block: usize) -> Self {
         let n = surface.n_blocks();
         match friction {
-            Friction::Coulomb(law) => Self::Coulomb(Thresholds::new(law, surface.adhesion(), n)),
+            Friction::Coulomb(law) => Self::Coulomb(CoulombContact::new(law, surface.adhesion(), n)),
             Friction::RateAndState(law) => Self::RateAndState(StateContact::new(*law, surface)),
             Friction::ContactSprings(law) => Self::Springs(SpringContact::new(*law, n, first_block)),
         }
@@ -265,11 +265,5 @@ impl Contact {
                 springs.add_energies(surface, blocks, u, slides, [held, broken], room);
             }
         }
-    }
-
-    /// Whether the power of friction is lost at once, and not stored until contacts break.
-    #[inline(always)]
-    pub(crate) fn dissipates(&self) -> bool {
-        !matches!(self, Self::Springs(_))
     }
 }

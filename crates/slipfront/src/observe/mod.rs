@@ -23,7 +23,7 @@ pub use curve::{Curve, CurveRow};
 pub use cycles::{Cycle, Cycles};
 pub use energy::{Energies, Ledger};
 pub use frames::{Frame, Frames};
-pub use front::{Distribution, Front};
+pub use front::{Front, Quantiles};
 pub use instants::Instants;
 pub use kymograph::Kymograph;
 pub use observer::{Observer, Schedule, Scheduled};

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use png::{BitDepth, ColorType, Encoder};
 use slipfront_case::arrays;
-use slipfront_case::arrays::{ArrayError, Room, Slab, Units, mask_npy, write_mask_png};
+use slipfront_case::arrays::{ArrayError, HeightMapUnits, Room, Slab, mask_npy, write_mask_png};
 
 use crate::checks::readable;
 use crate::{Memory, Target, scratch};
@@ -264,7 +264,7 @@ fn height_map(input: &[u8]) {
     for ending in ["csv", "gsf", "npy", "png", "tif", "x3p"] {
         let path = format!("map.{ending}");
         // A file that says nothing of its units is asked about them, and then answered.
-        for units in [Units::default(), UNITS] {
+        for units in [HeightMapUnits::default(), UNITS] {
             let mut source = Cursor::new(input);
             match arrays::height_map(Path::new(&path), &mut source, &units, &room, &mut |_| Ok(())) {
                 Err(error) => readable(&error),
@@ -281,7 +281,7 @@ fn height_map(input: &[u8]) {
 }
 
 /// Units for a file without.
-const UNITS: Units = Units {
+const UNITS: HeightMapUnits = HeightMapUnits {
     height: Some(1e-6),
     pixel: Some([1e-6; 2]),
 };

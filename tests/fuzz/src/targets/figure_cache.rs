@@ -2,7 +2,7 @@
 
 use std::cell::OnceCell;
 
-use slipfront_paper::{Drawing, FigureCache, FigureData, Number, Panel, StepRule, Table};
+use slipfront_paper::{Drawing, FigureCache, FigureData, MeasuredNumber, Panel, StepRule, Table};
 use slipfront_plot::{FieldMap, FieldMaps, FrictionCurve, Shape};
 
 use crate::{Memory, Target, scratch};
@@ -27,9 +27,9 @@ pub(crate) const FIGURE_CACHE: Target = Target {
 fn generated() -> Vec<Vec<u8>> {
     let mut data = FigureData::default();
     data.numbers
-        .insert("fig99.one".to_owned(), Number::of(&[1.0, 2.0]));
+        .insert("fig99.one".to_owned(), MeasuredNumber::of(&[1.0, 2.0]));
     data.numbers
-        .insert("fig99.two".to_owned(), Number::exact(f64::INFINITY));
+        .insert("fig99.two".to_owned(), MeasuredNumber::exact(f64::INFINITY));
     let small = postcard::to_stdvec(&data).unwrap();
     data.tables.push(Table {
         name: "table".to_owned(),

@@ -1,6 +1,6 @@
 //! Records of finished runs, one line each with a checksum.
 
-use slipfront_study::{Outcome, Record, Records};
+use slipfront_study::{FinishedRun, Outcome, Records};
 
 use super::json::summary;
 use crate::checks::readable;
@@ -22,8 +22,8 @@ pub(crate) const RECORDS: Target = Target {
     repetitions: 40,
 };
 
-fn record(id: &str, outcome: Outcome) -> Record {
-    Record {
+fn record(id: &str, outcome: Outcome) -> FinishedRun {
+    FinishedRun {
         id: id.to_owned(),
         wall_time_s: 0.25,
         outcome,
@@ -34,7 +34,7 @@ fn generated() -> Vec<Vec<u8>> {
     let done = record("0123456789abcdef", Outcome::Done(Box::new(summary())));
     let plain = record("a", Outcome::Done(Box::default()));
     let failed = record("b", Outcome::Failed("the run diverged at step 12".to_owned()));
-    let line = |record: &Record| with_checksum(serde_json::to_string(record).unwrap().as_bytes());
+    let line = |record: &FinishedRun| with_checksum(serde_json::to_string(record).unwrap().as_bytes());
     vec![
         line(&done),
         line(&failed),
@@ -65,14 +65,14 @@ fn records(input: &[u8]) {
     let Some(records) = open(&file) else { return };
     let mut whole = 0;
     for json in &lines {
-        let Ok(record) = serde_json::from_slice::<Record>(json) else {
+        let Ok(record) = serde_json::from_slice::<FinishedRun>(json) else {
             continue;
         };
         whole += 1;
         assert!(records.get(&record.id).is_some(), "{}", record.id);
         // A record is written as it was read.
         let printed = serde_json::to_string(&record).unwrap();
-        let again: Record = serde_json::from_str(&printed).unwrap();
+        let again: FinishedRun = serde_json::from_str(&printed).unwrap();
         assert_eq!(again, record);
         assert_eq!(serde_json::to_string(&again).unwrap(), printed);
     }

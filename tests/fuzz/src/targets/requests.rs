@@ -8,7 +8,7 @@ use std::thread;
 use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD;
 use serde_json::{Map, Value, json};
-use slipfront_case::case_file::{Kind, SECTIONS};
+use slipfront_case::case_file::{KeyKind, SECTIONS};
 use slipfront_lab::OfflineSession;
 
 use crate::checks::readable;
@@ -306,8 +306,8 @@ fn number(choices: &mut Choices) -> Value {
 fn word(choices: &mut Choices) -> String {
     let section = &SECTIONS[choices.below(SECTIONS.len())];
     let words = match section.keys[choices.below(section.keys.len())].kind {
-        Kind::Words(words) => words(),
-        Kind::Number { words, .. } => words,
+        KeyKind::Words(words) => words(),
+        KeyKind::Number { words, .. } => words,
         _ => &[],
     };
     match choices.below(10) {

@@ -20,7 +20,7 @@ pub(super) type Take<'a> = dyn FnMut(&Line) -> Result<(), ArrayError> + 'a;
 
 /// What a file says of its points.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Grid {
+pub(super) struct HeightGrid {
     /// Points along x and along y.
     pub(super) points: [usize; 2],
     /// Whether the first row is that of the largest y.

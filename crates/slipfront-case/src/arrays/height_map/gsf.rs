@@ -3,7 +3,7 @@
 use std::io::{BufRead, Seek, SeekFrom};
 use std::path::Path;
 
-use super::grid::{Grid, Line, Take, points};
+use super::grid::{HeightGrid, Line, Take, points};
 use crate::arrays::error::{ArrayError, broken, contents_error};
 use crate::arrays::head::length_and_head;
 use crate::quantity::Length;
@@ -17,7 +17,7 @@ pub(super) fn read(
     path: &Path,
     source: &mut (impl BufRead + Seek),
     take: &mut Take,
-) -> Result<Grid, ArrayError> {
+) -> Result<HeightGrid, ArrayError> {
     let read_error = ArrayError::read(path);
     let refuse = |detail: &str| broken(path, ".gsf", detail);
     let (length, head) = length_and_head(path, source, HEADER_MAX_BYTES)?;
@@ -28,7 +28,7 @@ pub(super) fn read(
         return Err(refuse("no zero byte ends its header"));
     };
     let text = String::from_utf8_lossy(&lines[..end]);
-    let grid = Header { path, text: &text }.grid()?;
+    let grid = GsfHeader { path, text: &text }.grid()?;
 
     // From one to four zeros follow the text.
     let start = ((MAGIC.len() + end) / 4 * 4 + 4) as u64;
@@ -56,13 +56,13 @@ pub(super) fn read(
 }
 
 /// The header of a file: lines of `name = value`.
-struct Header<'a> {
+struct GsfHeader<'a> {
     path: &'a Path,
     text: &'a str,
 }
 
-impl<'a> Header<'a> {
-    fn grid(&self) -> Result<Grid, ArrayError> {
+impl<'a> GsfHeader<'a> {
+    fn grid(&self) -> Result<HeightGrid, ArrayError> {
         let points = points(self.path, ".gsf", self.size("XRes")?, self.size("YRes")?)?;
         let lateral = self.in_metres("XYUnits")?;
         let pixel = match (self.real("XReal")?, self.real("YReal")?, lateral) {
@@ -71,7 +71,7 @@ impl<'a> Header<'a> {
             }
             _ => None,
         };
-        Ok(Grid {
+        Ok(HeightGrid {
             points,
             top_first: true,
             pixel,

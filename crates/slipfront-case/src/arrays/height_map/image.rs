@@ -5,7 +5,7 @@ use std::path::Path;
 
 use png::{BitDepth, ColorType, Transformations};
 
-use super::grid::{Grid, Line, Take, points};
+use super::grid::{HeightGrid, Line, Take, points};
 use crate::arrays::error::{ArrayError, contents_error};
 use crate::arrays::mask::{decoding_error, png_reader};
 
@@ -13,7 +13,7 @@ pub(super) fn read(
     path: &Path,
     source: &mut (impl BufRead + Seek),
     take: &mut Take,
-) -> Result<Grid, ArrayError> {
+) -> Result<HeightGrid, ArrayError> {
     let mut reader = png_reader(path, source, Transformations::IDENTITY)?;
     let info = reader.info();
     match info.color_type {
@@ -42,7 +42,7 @@ pub(super) fn read(
         })?;
         row += 1;
     }
-    Ok(Grid {
+    Ok(HeightGrid {
         points,
         top_first: true,
         pixel: None,

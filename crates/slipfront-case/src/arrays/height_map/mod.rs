@@ -17,7 +17,7 @@ use std::path::Path;
 pub use roughness::Roughness;
 
 use self::averages::Averages;
-use self::grid::{Grid, Line, Take, points};
+use self::grid::{HeightGrid, Line, Take, points};
 use self::quantum::Quantum;
 use self::roughness::{Mean, Moments};
 use super::error::{ArrayError, contents_error, extension, unknown_extension};
@@ -26,7 +26,7 @@ use crate::number_format::{four_digits, with_si_prefix};
 
 /// What the case says of the units of a height map, m; a file that has them itself is not contradicted.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Units {
+pub struct HeightMapUnits {
     /// The height that a value of 1 in the file means.
     pub height: Option<f64>,
     /// Distance of neighbouring points along x and along y.
@@ -66,7 +66,7 @@ pub struct HeightMap {
 pub fn height_map(
     path: &Path,
     source: &mut (impl BufRead + Seek),
-    units: &Units,
+    units: &HeightMapUnits,
     room: &Room,
     watch: &mut dyn FnMut(f64) -> Result<(), ArrayError>,
 ) -> Result<HeightMap, ArrayError> {
@@ -133,7 +133,7 @@ pub fn height_map(
 }
 
 /// Reads all points of a file.
-fn read(path: &Path, source: &mut (impl BufRead + Seek), take: &mut Take) -> Result<Grid, ArrayError> {
+fn read(path: &Path, source: &mut (impl BufRead + Seek), take: &mut Take) -> Result<HeightGrid, ArrayError> {
     source.rewind().map_err(ArrayError::read(path))?;
     let take_line = |[row, column]: [usize; 2], heights: &[f64]| take(&Line { row, column, heights });
     let [nx, ny] = match extension(path).as_str() {
@@ -148,7 +148,7 @@ fn read(path: &Path, source: &mut (impl BufRead + Seek), take: &mut Take) -> Res
             return Err(unknown_extension(path, other, known));
         }
     };
-    Ok(Grid {
+    Ok(HeightGrid {
         points: points(path, "array", nx, ny)?,
         top_first: false,
         pixel: None,
@@ -168,7 +168,7 @@ fn not_measured(path: &Path, line: &Line, gap: usize) -> ArrayError {
 }
 
 /// The distance of neighbouring points, m, from the file or from the case.
-fn pixel(path: &Path, grid: &Grid, units: &Units) -> Result<[f64; 2], ArrayError> {
+fn pixel(path: &Path, grid: &HeightGrid, units: &HeightMapUnits) -> Result<[f64; 2], ArrayError> {
     match (grid.pixel, units.pixel) {
         (Some(pixel), None) | (None, Some(pixel)) => Ok(pixel),
         (Some([x, y]), Some(_)) => {
@@ -185,7 +185,7 @@ fn pixel(path: &Path, grid: &Grid, units: &Units) -> Result<[f64; 2], ArrayError
 }
 
 /// What a height of 1 in the file is, m, from the file or from the case.
-fn height_unit(path: &Path, grid: &Grid, units: &Units) -> Result<f64, ArrayError> {
+fn height_unit(path: &Path, grid: &HeightGrid, units: &HeightMapUnits) -> Result<f64, ArrayError> {
     match (grid.height_unit, units.height) {
         (Some(unit), None) | (None, Some(unit)) => Ok(unit),
         (Some(unit), Some(_)) => {

@@ -8,7 +8,7 @@ use tiff::decoder::{Decoder, DecodingResult, Limits};
 use tiff::tags::Tag;
 use tiff::{ColorType, TiffError};
 
-use super::grid::{Grid, Line, Take, points};
+use super::grid::{HeightGrid, Line, Take, points};
 use super::image::{beside_grey, in_colours, too_coarse};
 use crate::arrays::error::{ArrayError, broken, contents_error};
 
@@ -23,7 +23,7 @@ pub(super) fn read(
     path: &Path,
     source: &mut (impl BufRead + Seek),
     take: &mut Take,
-) -> Result<Grid, ArrayError> {
+) -> Result<HeightGrid, ArrayError> {
     let unreadable = |error: TiffError| match error {
         TiffError::IoError(source) if source.kind() != std::io::ErrorKind::UnexpectedEof => {
             ArrayError::read(path)(source)
@@ -89,7 +89,7 @@ pub(super) fn read(
             })?;
         }
     }
-    Ok(Grid {
+    Ok(HeightGrid {
         points,
         top_first: true,
         pixel: None,

@@ -11,7 +11,7 @@ use flate2::read::DeflateDecoder;
 use rawzip::{CompressionMethod, RECOMMENDED_BUFFER_SIZE, ZipArchive};
 use roxmltree::{Document, Node};
 
-use super::grid::{Grid, Line, Take, points};
+use super::grid::{HeightGrid, Line, Take, points};
 use crate::arrays::error::{ArrayError, broken, contents_error};
 use crate::text::truncated;
 
@@ -22,7 +22,7 @@ pub(super) fn read(
     path: &Path,
     source: &mut (impl BufRead + Seek),
     take: &mut Take,
-) -> Result<Grid, ArrayError> {
+) -> Result<HeightGrid, ArrayError> {
     let refuse = |detail: &str| broken(path, ".x3p", detail);
     let mut buffer = vec![0; RECOMMENDED_BUFFER_SIZE];
     let archive = ZipArchive::from_seekable(source, &mut buffer);
@@ -89,7 +89,7 @@ pub(super) fn read(
         }
         Ok(())
     })?;
-    Ok(Grid {
+    Ok(HeightGrid {
         points: description.points,
         top_first: true,
         pixel: Some(description.pixel),
@@ -121,14 +121,14 @@ fn all_valid(path: &Path, stored: &mut dyn Read, n_points: usize) -> Result<(), 
 
 /// How a height is stored.
 #[derive(Clone, Copy)]
-enum Number {
+enum HeightType {
     Int16,
     Int32,
     Float32,
     Float64,
 }
 
-impl Number {
+impl HeightType {
     fn size(self) -> usize {
         match self {
             Self::Int16 => 2,
@@ -154,7 +154,7 @@ impl Number {
 struct Description {
     points: [usize; 2],
     pixel: [f64; 2],
-    number: Number,
+    number: HeightType,
     /// A height is the stored number times this, plus `offset`, m.
     increment: f64,
     offset: f64,
@@ -217,10 +217,10 @@ impl Description {
             points: points(path, ".x3p", size("X")?, size("Y")?)?,
             pixel: [increment("CX")?, increment("CY")?],
             number: match wanted("Record1/Axes/CZ/DataType")? {
-                "I" => Number::Int16,
-                "L" => Number::Int32,
-                "F" => Number::Float32,
-                "D" => Number::Float64,
+                "I" => HeightType::Int16,
+                "L" => HeightType::Int32,
+                "F" => HeightType::Float32,
+                "D" => HeightType::Float64,
                 other => {
                     return Err(refuse(&format!(
                         "its heights are of unknown type {}",

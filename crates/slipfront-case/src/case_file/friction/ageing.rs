@@ -5,18 +5,18 @@ use slipfront::Ageing as Law;
 
 use crate::case_file::check::Check;
 use crate::case_file::error::CaseError;
-use crate::case_file::key::{Key, Kind, TIME_STAR, key, number, within};
+use crate::case_file::key::{Key, KeyKind, TIME_STAR, key, number, within};
 use crate::case_file::values::word;
 use crate::number_format::four_digits;
 
 #[rustfmt::skip]
 pub(super) const KEYS: &[Key] = &[
-    key("ageing", "", Kind::Special("`{ law = \"logarithmic\", beta = 0.02, time_star = 1 }`; beta 0 to 10; time_star more than 0, at most 1e9"),
+    key("ageing", "", KeyKind::Special("`{ law = \"logarithmic\", beta = 0.02, time_star = 1 }`; beta 0 to 10; time_star more than 0, at most 1e9"),
         "static friction that grows while a block is stuck"),
 ];
 
 /// Growth with age.
-const BETA: Kind = number(
+const BETA: KeyKind = number(
     within(0.0, 10.0),
     "it is the growth per unit of the logarithm of the age",
 );

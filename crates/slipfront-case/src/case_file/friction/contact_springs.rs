@@ -2,14 +2,14 @@
 
 use slipfront::ContactSprings;
 
-use crate::case_file::key::{Key, Kind, above, key, number};
+use crate::case_file::key::{Key, KeyKind, above, key, number};
 use crate::number_format::four_digits;
 
 #[rustfmt::skip]
 pub(super) const KEYS: &[Key] = &[
     key("contact_stiffness_star", "", number(above(0.0, 1e3), "it is over E l, and a spring between blocks has 0.75"),
         "stiffness of the spring in the contact of a block").title("contact stiffness", "k\u{209c}*", ""),
-    key("redraw", "false", Kind::Switch, "whether a spring that forms again has another threshold"),
+    key("redraw", "false", KeyKind::Switch, "whether a spring that forms again has another threshold"),
 ];
 
 pub(super) const SYNONYMS: &[(&str, &str)] = &[

@@ -18,17 +18,17 @@ pub use self::weakening::{Velocity, VelocityLaw};
 use super::check::Check;
 use super::choice::keys_with_choice;
 use super::error::CaseError;
-use super::key::{ARRAY, Key, Kind, above, count, joined, key, number, quantity, whole, within};
+use super::key::{ARRAY, Key, KeyKind, above, count, joined, key, number, quantity, whole, within};
 use super::probe::names_of;
 use super::values::word;
 use crate::number_format::four_digits;
 use crate::quantity::Pressure;
 
-const SIGMA: Kind = number(
+const SIGMA: KeyKind = number(
     within(0.0, 1.0),
     "it is relative to the mean coefficient, so that 0.05 is 5 percent",
 );
-const SHEAR_STRENGTH: Kind = quantity("Pa", within(0.0, 1e15));
+const SHEAR_STRENGTH: KeyKind = quantity("Pa", within(0.0, 1e15));
 /// TOML's largest integer.
 const MAX_SEED: u64 = i64::MAX.unsigned_abs();
 /// Largest mean kinetic over mean static coefficient.
@@ -36,12 +36,12 @@ const MAX_R_STAR: f64 = 10.0;
 
 #[rustfmt::skip]
 const COEFFICIENTS: &[Key] = &[
-    key("law", "\"projection\"", Kind::Words(names_of::<Law>), "the reading of Eq. 4, or rate and state in its place"),
+    key("law", "\"projection\"", KeyKind::Words(names_of::<Law>), "the reading of Eq. 4, or rate and state in its place"),
     key("mu_static", "1.0", number(above(0.0, 100.0), "it is the scale of all forces"), "mean static coefficient")
         .title("mean static coefficient", "\u{3bc}\u{209b}", ""),
     key("r_star", "0.5", number(within(0.0, MAX_R_STAR), "it is the kinetic over the static coefficient"),
         "mean kinetic over mean static coefficient").or("mu_kinetic").title("friction ratio", "R*", ""),
-    key("mu_kinetic", "", Kind::Special("0 to 10 times `mu_static`"), "mean kinetic coefficient")
+    key("mu_kinetic", "", KeyKind::Special("0 to 10 times `mu_static`"), "mean kinetic coefficient")
         .or("r_star").title("mean kinetic coefficient", "\u{3bc}\u{2096}", ""),
     key("sigma_static_star", "0.05", SIGMA, "standard deviation of the static coefficients over their mean")
         .title("spread of static coefficients", "\u{3c3}\u{209b}*", ""),
@@ -58,7 +58,7 @@ const COEFFICIENTS: &[Key] = &[
 
 #[rustfmt::skip]
 const CONTACT: &[Key] = &[
-    key("contact", "\"rigid\"", Kind::Words(names_of::<Contact>), "what holds a block until its threshold"),
+    key("contact", "\"rigid\"", KeyKind::Words(names_of::<ContactModel>), "what holds a block until its threshold"),
 ];
 
 /// The keys of the coefficients and of every law, in the order of the documentation.
@@ -97,7 +97,7 @@ pub enum Law {
 /// What holds a block until its threshold.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Contact {
+pub enum ContactModel {
     /// It does not move.
     Rigid,
     /// A spring, which breaks.
@@ -133,7 +133,7 @@ pub struct Friction {
     /// Static friction that grows while a block is stuck.
     pub ageing: Option<Ageing>,
     /// What holds a block until its threshold.
-    pub contact: Contact,
+    pub contact: ContactModel,
     /// Stiffness of the spring in the contact of a block over `young_modulus` times `block_size`, of contacts that are springs.
     pub contact_stiffness_star: Option<f64>,
     /// Whether a spring that forms again has another threshold.
@@ -199,7 +199,7 @@ impl Friction {
 
     /// Whether friction has a kinetic coefficient, too.
     pub fn has_kinetic_coefficient(&self) -> bool {
-        self.has_static_coefficient() && self.contact == Contact::Rigid
+        self.has_static_coefficient() && self.contact == ContactModel::Rigid
     }
 
     /// R*, the mean kinetic over the mean static coefficient; 0 where there is no kinetic one.
@@ -299,9 +299,9 @@ impl Friction {
             ("redraw", self.redraw),
         ];
         match (self.contact, self.contact_stiffness_star) {
-            (Contact::Rigid, _) => refuse_set(check, &springs, contact_springs::ELSEWHERE),
-            (Contact::Springs, None) => check.refuse("contact", contact_springs::without_stiffness),
-            (Contact::Springs, Some(_)) => {
+            (ContactModel::Rigid, _) => refuse_set(check, &springs, contact_springs::ELSEWHERE),
+            (ContactModel::Springs, None) => check.refuse("contact", contact_springs::without_stiffness),
+            (ContactModel::Springs, Some(_)) => {
                 refuse_set(check, &self.options(), contact_springs::ALONE)?;
                 refuse_set(check, &self.of_kinetic(), contact_springs::ALONE)
             }
@@ -310,7 +310,7 @@ impl Friction {
 
     /// Refuses keys that have no meaning under the law.
     fn check_law(&self, check: &Check) -> Result<(), CaseError> {
-        let springs = ("contact", self.contact == Contact::Springs);
+        let springs = ("contact", self.contact == ContactModel::Springs);
         let values = rate_and_state::KEYS.iter().zip(self.rate_and_state());
         let mut of_state = values.map(|(key, value)| (key.name, value.is_some()));
         match self.law {
@@ -414,7 +414,7 @@ keys_with_choice! {
         #[serde(skip_serializing_if = "Option::is_none")]
         ageing: Option<Ageing>,
         #[serde(deserialize_with = "word")]
-        contact: Contact,
+        contact: ContactModel,
         #[serde(skip_serializing_if = "Option::is_none")]
         contact_stiffness_star: Option<f64>,
         redraw: bool,

@@ -5,18 +5,18 @@ use slipfront::Weakening;
 
 use crate::case_file::check::Check;
 use crate::case_file::error::CaseError;
-use crate::case_file::key::{Key, Kind, SPEED_STAR, key, number, within};
+use crate::case_file::key::{Key, KeyKind, SPEED_STAR, key, number, within};
 use crate::case_file::values::word;
 use crate::number_format::four_digits;
 
 #[rustfmt::skip]
 pub(super) const KEYS: &[Key] = &[
-    key("velocity", "", Kind::Special("`{ law = \"weakening\", v_c_star = 0.1, ratio = 0.5 }`; v_c_star more than 0, at most 10; ratio 0 to 1"),
+    key("velocity", "", KeyKind::Special("`{ law = \"weakening\", v_c_star = 0.1, ratio = 0.5 }`; v_c_star more than 0, at most 10; ratio 0 to 1"),
         "kinetic friction that falls with speed"),
 ];
 
 /// A share of kinetic friction.
-const RATIO: Kind = number(
+const RATIO: KeyKind = number(
     within(0.0, 1.0),
     "it is kinetic friction at high speed over that at rest",
 );

@@ -9,22 +9,22 @@ use super::outlined::{Blocks, Outlined};
 use crate::case_file::check::Check;
 use crate::case_file::choice::keys_with_choice;
 use crate::case_file::error::CaseError;
-use crate::case_file::key::{COORDINATE, COVERAGE, DEGREES, Key, Kind, SIZE, key};
+use crate::case_file::key::{COORDINATE, COVERAGE, DEGREES, Key, KeyKind, SIZE, key};
 use crate::case_file::values::{Pair, length};
 use crate::quantity::Length;
 
 #[rustfmt::skip]
 pub(super) const KEYS: &[Key] = &[
-    key("s", "1", Kind::Whole { least: 1, most: 64, noun: "a whole number ", remark: "" },
+    key("s", "1", KeyKind::Whole { least: 1, most: 64, noun: "a whole number ", remark: "" },
         "kind of outline: an ellipse for 1, else a polygon of s + 1 curved edges").title("cavity shape", "s", ""),
-    key("w", "0", Kind::Special("-1 < w < 1 for s = 1, else -1/s to 1/s"), "how far the outline is from a circle")
+    key("w", "0", KeyKind::Special("-1 < w < 1 for s = 1, else -1/s to 1/s"), "how far the outline is from a circle")
         .title("cavity shape", "w", ""),
     key("coverage", "", COVERAGE, "size: percent of the whole area")
         .or("lambda").title("texture coverage", "A*", "%"),
     key("lambda", "", SIZE, "size: the length of Eq. 17, a circle's radius")
         .or("coverage").title("cavity size", "\u{3bb}", "m"),
-    key("across", "false", Kind::Switch, "the paper's swap of x and y"),
-    key("center", "\"middle\"", Kind::Special("`\"middle\"`, or a pair within 1e9 m"), "centre of the cavity, or of its pattern"),
+    key("across", "false", KeyKind::Switch, "the paper's swap of x and y"),
+    key("center", "\"middle\"", KeyKind::Special("`\"middle\"`, or a pair within 1e9 m"), "centre of the cavity, or of its pattern"),
     key("rotate", "0", DEGREES, "rotation, degrees from x towards y").title("rotation of the texture", "", "\u{b0}"),
 ];
 

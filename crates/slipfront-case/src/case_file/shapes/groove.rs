@@ -7,14 +7,14 @@ use super::outlined::{Blocks, Outlined};
 use crate::case_file::check::Check;
 use crate::case_file::choice::keys_with_choice;
 use crate::case_file::error::CaseError;
-use crate::case_file::key::{COORDINATE, COVERAGE, Key, Kind, SIZE, key};
+use crate::case_file::key::{COORDINATE, COVERAGE, Key, KeyKind, SIZE, key};
 use crate::case_file::probe::names_of;
 use crate::case_file::values::word;
 use crate::quantity::Length;
 
 #[rustfmt::skip]
 pub(super) const KEYS: &[Key] = &[
-    key("orientation", "\"across\"", Kind::Words(names_of::<Orientation>),
+    key("orientation", "\"across\"", KeyKind::Words(names_of::<Orientation>),
         "whether the groove runs along y (across the x axis) or along x"),
     key("coverage", "", COVERAGE, "size: percent of the whole area").or("width").title("texture coverage", "A*", "%"),
     key("width", "", SIZE, "size: the width").or("coverage").title("groove width", "", "m"),

@@ -5,19 +5,19 @@ use serde::{Deserialize, Serialize};
 use crate::case_file::check::Check;
 use crate::case_file::choice::keys_with_choice;
 use crate::case_file::error::CaseError;
-use crate::case_file::key::{COORDINATE, COVERAGE, Key, Kind, SIZE, key};
+use crate::case_file::key::{COORDINATE, COVERAGE, Key, KeyKind, SIZE, key};
 use crate::case_file::pattern::Pitch;
 use crate::quantity::Length;
 
 #[rustfmt::skip]
 pub(super) const KEYS: &[Key] = &[
-    key("file", "", Kind::File(&["npy", "csv", "gsf", "x3p", "png", "tif", "tiff"]), "measured heights, stretched over the slider"),
+    key("file", "", KeyKind::File(&["npy", "csv", "gsf", "x3p", "png", "tif", "tiff"]), "measured heights, stretched over the slider"),
     key("bearing_percent", "", COVERAGE, "the share of the area that touches, the highest parts first")
         .or("depth").title("bearing area", "", "%"),
     key("depth", "", SIZE, "how far below the reference a block still touches").or("bearing_percent").title("depth of contact", "", "m"),
     key("reference", "", COORDINATE, "height from which `depth` is counted; that of the highest block if left out"),
     key("height_unit", "", SIZE, "the height that a value of 1 in the file means, if the file has no unit"),
-    key("pixel_size", "", Kind::Special("a length, or a pair; more than 0, at most 1e9 m"),
+    key("pixel_size", "", KeyKind::Special("a length, or a pair; more than 0, at most 1e9 m"),
         "distance of neighbouring points, if the file does not have it"),
 ];
 

@@ -4,11 +4,11 @@ use serde::{Deserialize, Serialize};
 
 use crate::case_file::check::Check;
 use crate::case_file::error::CaseError;
-use crate::case_file::key::{Key, Kind, between, key, number};
+use crate::case_file::key::{Key, KeyKind, between, key, number};
 
 #[rustfmt::skip]
 pub(super) const KEYS: &[Key] = &[
-    key("file", "", Kind::File(&["png", "npy"]), "an image, stretched over the slider"),
+    key("file", "", KeyKind::File(&["png", "npy"]), "an image, stretched over the slider"),
     key("threshold", "0.5", number(between(0.0, 1.0), "it is a share of white"),
         "a pixel of an image is dark below this share of white"),
 ];

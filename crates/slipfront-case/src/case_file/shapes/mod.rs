@@ -65,7 +65,7 @@ pub enum Shape {
 }
 
 /// Where the inside of a shape comes from.
-pub(crate) enum Form<'a> {
+pub(crate) enum Inside<'a> {
     /// An outline.
     Outline(&'a dyn Outlined),
     /// A file of blocks that are inside.
@@ -87,21 +87,21 @@ impl Shape {
     }
 
     /// Where its inside comes from.
-    pub(crate) fn form(&self) -> Form<'_> {
+    pub(crate) fn form(&self) -> Inside<'_> {
         match self {
-            Self::Cavity(cavity) => Form::Outline(cavity),
-            Self::Groove(groove) => Form::Outline(groove),
-            Self::Polygon(polygon) => Form::Outline(polygon),
-            Self::Mask(mask) => Form::Mask(mask),
-            Self::HeightMap(map) => Form::HeightMap(map),
+            Self::Cavity(cavity) => Inside::Outline(cavity),
+            Self::Groove(groove) => Inside::Outline(groove),
+            Self::Polygon(polygon) => Inside::Outline(polygon),
+            Self::Mask(mask) => Inside::Mask(mask),
+            Self::HeightMap(map) => Inside::HeightMap(map),
         }
     }
 
     /// Its outline, if that is known before any file is read.
     pub(crate) fn outline(&self) -> Option<&dyn Outlined> {
         match self.form() {
-            Form::Outline(outline) => Some(outline),
-            Form::Mask(_) | Form::HeightMap(_) => None,
+            Inside::Outline(outline) => Some(outline),
+            Inside::Mask(_) | Inside::HeightMap(_) => None,
         }
     }
 
@@ -113,11 +113,11 @@ impl Shape {
     /// Why it covers no block, and what to look at.
     pub(crate) fn why_empty(&self) -> &'static str {
         match self.form() {
-            Form::Outline(_) => {
+            Inside::Outline(_) => {
                 "it lies off the slider, or between the centres of blocks; look at its size and place"
             }
-            Form::Mask(_) => Mask::EMPTY,
-            Form::HeightMap(map) => map.why_empty(),
+            Inside::Mask(_) => Mask::EMPTY,
+            Inside::HeightMap(map) => map.why_empty(),
         }
     }
 

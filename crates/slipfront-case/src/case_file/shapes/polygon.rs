@@ -6,14 +6,14 @@ use slipfront::surface;
 use super::outlined::{Blocks, Outlined};
 use crate::case_file::check::Check;
 use crate::case_file::error::CaseError;
-use crate::case_file::key::{COORDINATE, Key, Kind, key};
+use crate::case_file::key::{COORDINATE, Key, KeyKind, key};
 use crate::case_file::values::Pair;
 use crate::number_format::count;
 use crate::quantity::Length;
 
 #[rustfmt::skip]
 pub(super) const KEYS: &[Key] = &[
-    key("points", "", Kind::Special("at least 3 pairs within 1e9 m"), "the corners"),
+    key("points", "", KeyKind::Special("at least 3 pairs within 1e9 m"), "the corners"),
 ];
 
 pub(super) const SYNONYMS: &[(&str, &str)] = &[(

@@ -26,7 +26,7 @@ use crate::case_args::CaseArgs;
 use crate::checkpoint_timer::Interval;
 use crate::failure::Failure;
 use crate::print::print_message;
-use crate::ranks::Ranks;
+use crate::ranks::CommandRanks;
 use crate::report;
 use crate::signals::Signals;
 use crate::threads::{count_from_one, set_threads};
@@ -38,7 +38,7 @@ and resumed, however often, writes the same bytes as one that was not.";
 
 /// Run a case: print its physics, show progress, write results and pictures
 #[derive(Args)]
-pub(crate) struct Run {
+pub(crate) struct RunCommand {
     #[command(flatten)]
     case: CaseArgs,
     /// Folder for the results [default: results/ and the name of the case]
@@ -67,9 +67,9 @@ pub(crate) struct Run {
     json: bool,
 }
 
-impl Run {
+impl RunCommand {
     /// Runs it, with all ranks that there are.
-    pub(crate) fn execute(self, ranks: &Ranks) -> Result<(), RankFailure> {
+    pub(crate) fn execute(self, ranks: &CommandRanks) -> Result<(), RankFailure> {
         let started = clock::now();
         ranks.expect_same(|| self.shared_options())?;
         let options = ranks.agree(self.options(ranks))?;
@@ -110,7 +110,7 @@ impl Run {
         options.map(|(name, value)| (name.to_owned(), value)).into()
     }
 
-    fn options(&self, ranks: &Ranks) -> Result<RunOptions, Failure> {
+    fn options(&self, ranks: &CommandRanks) -> Result<RunOptions, Failure> {
         // Who starts several ranks on a machine has them share its cores.
         let default = (ranks.size() > 1).then_some(1);
         Ok(RunOptions {

@@ -1,12 +1,12 @@
 //! How a run is executed and shown.
 
 use crate::checkpoint_timer::Interval;
-use crate::ranks::Ranks;
+use crate::ranks::CommandRanks;
 use crate::signals::Signals;
 
 /// How a run is executed and shown.
 pub(super) struct RunOptions {
-    pub(super) ranks: Ranks,
+    pub(super) ranks: CommandRanks,
     pub(super) threads: usize,
     pub(super) interval: Interval,
     pub(super) signals: Signals,

@@ -22,7 +22,7 @@ use super::options::RunOptions;
 use crate::failure::Failure;
 use crate::make_case::make_case;
 use crate::print::{print, print_message};
-use crate::ranks::Ranks;
+use crate::ranks::CommandRanks;
 use crate::report;
 
 pub(super) fn resume(path: &Path, previous: bool, options: RunOptions) -> Result<(), RankFailure> {
@@ -73,7 +73,7 @@ fn begin(
     loaded: Option<LoadedCheckpoint>,
     previous: bool,
     threads: usize,
-    ranks: &Ranks,
+    ranks: &CommandRanks,
 ) -> Result<(Running, Checkpoints, String), Failure> {
     let communicator = ranks.communicator();
     Ok(match loaded {
@@ -164,7 +164,7 @@ fn load(
     path: &Path,
     case: &Case,
     previous: bool,
-    ranks: &Ranks,
+    ranks: &CommandRanks,
 ) -> Result<Option<LoadedCheckpoint>, Failure> {
     match Checkpoints::load(path, case, previous, &*ranks.communicator()) {
         Ok(None) if previous => {
@@ -177,7 +177,13 @@ fn load(
 }
 
 /// A checkpoint that cannot be used, with the remedy. All ranks refuse it; the first one, which says so, looks for the remedy.
-fn refused(ranks: &Ranks, error: &CheckpointError, path: &Path, case: &Case, previous: bool) -> Failure {
+fn refused(
+    ranks: &CommandRanks,
+    error: &CheckpointError,
+    path: &Path,
+    case: &Case,
+    previous: bool,
+) -> Failure {
     let remedy = if ranks.is_first() {
         remedy(error, path, case, previous)
     } else {

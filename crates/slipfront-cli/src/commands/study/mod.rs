@@ -19,7 +19,7 @@ use crate::failure::Failure;
   slipfront study slurm cases/studies/coverage.toml --tasks 4 > coverage.sbatch
 
 Stopped in any way, the same command goes on where it was: finished runs are never repeated.")]
-pub(crate) struct Study {
+pub(crate) struct StudyCommand {
     #[command(subcommand)]
     other: Option<Other>,
     #[command(flatten)]
@@ -32,7 +32,7 @@ enum Other {
     Slurm(slurm::Slurm),
 }
 
-impl Study {
+impl StudyCommand {
     pub(crate) fn execute(self) -> Result<(), Failure> {
         match self.other {
             None => self.run.execute(),

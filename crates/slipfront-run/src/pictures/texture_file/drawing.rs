@@ -13,7 +13,7 @@ const CAVITY_CORNERS: usize = 4096;
 
 /// The outlines of a texture, or of all.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Drawing {
+pub struct OutlineDrawing {
     /// Width and height of the slider, in blocks.
     pub size: [usize; 2],
     /// Edge of a block, mm.
@@ -44,7 +44,7 @@ pub enum Fill {
     EvenOdd,
 }
 
-impl Drawing {
+impl OutlineDrawing {
     /// The outlines of a case's textures.
     pub(super) fn of(case: &Case) -> Result<Self, TextureFileError> {
         let lattice = &case.model.lattice;

@@ -5,7 +5,7 @@ use std::fmt::Display;
 
 use slipfront::surface::{Contour, Ellipse, Piece};
 
-use super::drawing::Drawing;
+use super::drawing::OutlineDrawing;
 
 /// Handles of what every drawing has; entities and layers have those from [`FIRST_FREE`] on.
 const MODEL_SPACE: u64 = 0x1f;
@@ -15,7 +15,7 @@ const FIRST_FREE: u64 = 0x100;
 const SPACES: [(&str, u64); 2] = [("*Model_Space", MODEL_SPACE), ("*Paper_Space", PAPER_SPACE)];
 
 /// The drawing as a file.
-pub(super) fn text(drawing: &Drawing) -> String {
+pub(super) fn text(drawing: &OutlineDrawing) -> String {
     let layers: Vec<&str> = drawing.layers.iter().map(|layer| layer.name.as_str()).collect();
     let mut entities = File::new();
     let [x, y] = drawing.size.map(|blocks| blocks as f64 * drawing.block);
@@ -73,9 +73,9 @@ pub(super) fn text(drawing: &Drawing) -> String {
 }
 
 /// A code, and its value.
-type Pair<'a> = (u16, &'a dyn Display);
+type GroupPair<'a> = (u16, &'a dyn Display);
 /// The class of a record, its name, and what follows.
-type Record<'a> = (&'a str, &'a str, &'a [Pair<'a>]);
+type TableRecord<'a> = (&'a str, &'a str, &'a [GroupPair<'a>]);
 
 fn hex(handle: u64) -> String {
     format!("{handle:X}")
@@ -96,7 +96,7 @@ impl File {
     }
 
     /// Lines of a code and of its value.
-    fn pairs(&mut self, pairs: &[Pair]) {
+    fn pairs(&mut self, pairs: &[GroupPair]) {
         for (code, value) in pairs {
             self.text += &format!("{code}\n{value}\n");
         }
@@ -199,17 +199,17 @@ impl File {
         self.section("TABLES");
         self.table("VPORT", "8", &[]);
         let line_types = ["ByBlock", "ByLayer", "Continuous"];
-        let solid: &[Pair] = &[(70, &0), (3, &""), (72, &65), (73, &0), (40, &0)];
+        let solid: &[GroupPair] = &[(70, &0), (3, &""), (72, &65), (73, &0), (40, &0)];
         self.table(
             "LTYPE",
             "5",
             &line_types.map(|name| ("AcDbLinetypeTableRecord", name, solid)),
         );
-        let layer: &[Pair] = &[(70, &0), (62, &7), (6, &"Continuous")];
+        let layer: &[GroupPair] = &[(70, &0), (62, &7), (6, &"Continuous")];
         let names = ["0", "SLIDER"].into_iter().chain(layers.iter().copied());
-        let records: Vec<Record> = names.map(|name| ("AcDbLayerTableRecord", name, layer)).collect();
+        let records: Vec<TableRecord> = names.map(|name| ("AcDbLayerTableRecord", name, layer)).collect();
         self.table("LAYER", "2", &records);
-        let style: &[Pair] = &[
+        let style: &[GroupPair] = &[
             (70, &0),
             (40, &0),
             (41, &1),
@@ -283,7 +283,7 @@ impl File {
     }
 
     /// A table of records, each a class, a name and what follows.
-    fn table(&mut self, name: &str, handle: &str, records: &[Record]) {
+    fn table(&mut self, name: &str, handle: &str, records: &[TableRecord]) {
         self.pairs(&[
             (0, &"TABLE"),
             (2, &name),

@@ -6,7 +6,7 @@ mod dxf;
 mod gsf;
 mod svg;
 
-pub use self::drawing::{Drawing, Fill, Layer};
+pub use self::drawing::{Fill, Layer, OutlineDrawing};
 
 use std::path::Path;
 
@@ -96,7 +96,7 @@ pub fn write(case: &Case, path: &Path, scale: Option<usize>) -> Result<Vec<Strin
         }
         "gsf" => (gsf::field(case), Vec::new()),
         "svg" | "dxf" => {
-            let drawing = Drawing::of(case)?;
+            let drawing = OutlineDrawing::of(case)?;
             let text = if ending == "svg" {
                 svg::text(&drawing)
             } else {

@@ -4,10 +4,10 @@ use std::fmt::Write;
 
 use slipfront::surface::{Contour, Ellipse, Piece};
 
-use super::drawing::{Drawing, Fill, Layer};
+use super::drawing::{Fill, Layer, OutlineDrawing};
 
 /// The drawing as a page of the slider's size.
-pub(super) fn text(drawing: &Drawing) -> String {
+pub(super) fn text(drawing: &OutlineDrawing) -> String {
     let [width, height] = drawing.size.map(|blocks| blocks as f64 * drawing.block);
     let mut svg = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}mm\" height=\"{height}mm\" viewBox=\"0 0 {width} {height}\">\n"
@@ -21,8 +21,8 @@ pub(super) fn text(drawing: &Drawing) -> String {
     svg + "</svg>\n"
 }
 
-fn elements(drawing: &Drawing, layer: &Layer) -> String {
-    let page = Page(drawing);
+fn elements(drawing: &OutlineDrawing, layer: &Layer) -> String {
+    let page = SvgPage(drawing);
     match layer.fill {
         // Holes need one path for all.
         Fill::EvenOdd => {
@@ -39,11 +39,11 @@ fn elements(drawing: &Drawing, layer: &Layer) -> String {
 }
 
 /// The page that a drawing is laid on.
-struct Page<'a>(&'a Drawing);
+struct SvgPage<'a>(&'a OutlineDrawing);
 
-impl Page<'_> {
+impl SvgPage<'_> {
     fn point(&self, [x, y]: [f64; 2]) -> [f64; 2] {
-        let Drawing { block, size, .. } = *self.0;
+        let OutlineDrawing { block, size, .. } = *self.0;
         [x * block, (size[1] as f64 - y) * block]
     }
 

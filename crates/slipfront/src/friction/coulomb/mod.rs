@@ -71,13 +71,13 @@ impl Coulomb {
 
 /// Coulomb's law of the blocks of a band, with thresholds at the present step where they are not those of the surface.
 #[derive(Debug)]
-pub(crate) struct Thresholds {
+pub(crate) struct CoulombContact {
     law: FrictionLaw,
     weakened: Option<Weakened>,
     aged: Option<Aged>,
 }
 
-impl Thresholds {
+impl CoulombContact {
     pub(super) fn new(coulomb: &Coulomb, adhesion: Adhesion, n_blocks: usize) -> Self {
         Self {
             law: coulomb.law,

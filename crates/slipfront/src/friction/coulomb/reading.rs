@@ -43,7 +43,7 @@ pub(crate) struct Update {
 }
 
 /// One reading of Eq. 4.
-pub(crate) trait Law {
+pub(crate) trait LawReading {
     /// The update that starts at t_n.
     fn update(&self, block: &BlockState, integrator: &Integrator) -> Update;
 }
@@ -63,7 +63,7 @@ fn friction_against(motion: [f64; 2], kinetic_force: f64) -> [f64; 2] {
 /// `q = mu_k F_n dt/(m c+)`, and to zero at most.
 pub(crate) struct Projection;
 
-impl Law for Projection {
+impl LawReading for Projection {
     /// Without branches, so that the loop over blocks is vectorised.
     #[inline(always)]
     fn update(&self, block: &BlockState, integrator: &Integrator) -> Update {
@@ -100,7 +100,7 @@ fn select(first: bool, one: [f64; 2], other: [f64; 2]) -> [f64; 2] {
 /// Explicit kinetic friction against the old velocity; against the force for a block that starts to slide.
 pub(crate) struct Reversal;
 
-impl Law for Reversal {
+impl LawReading for Reversal {
     /// Without branches, as that of [`Projection`].
     #[inline(always)]
     fn update(&self, block: &BlockState, integrator: &Integrator) -> Update {
@@ -122,7 +122,7 @@ impl Law for Reversal {
 /// Eq. 4 to the letter: below the threshold friction balances the forces on a block even while it moves.
 pub(crate) struct Literal;
 
-impl Law for Literal {
+impl LawReading for Literal {
     /// Without branches, as that of [`Projection`].
     #[inline(always)]
     fn update(&self, block: &BlockState, integrator: &Integrator) -> Update {

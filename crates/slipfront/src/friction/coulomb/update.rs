@@ -2,14 +2,14 @@
 
 use std::ops::Range;
 
-use super::reading::{BlockState, Law};
+use super::reading::{BlockState, LawReading};
 use crate::forces::{Forces, part, part_mut};
 use crate::friction::integrator::Integrator;
 use crate::state::State;
 
 /// Applies the friction law to some blocks: finds friction, velocities and which slide from thresholds, velocities and forces.
 #[inline(always)]
-pub(super) fn friction_forces<L: Law>(
+pub(super) fn friction_forces<L: LawReading>(
     law: &L,
     integrator: impl Fn(usize) -> Integrator,
     blocks: &Range<usize>,
@@ -32,7 +32,7 @@ pub(super) fn friction_forces<L: Law>(
 /// Applies the friction law to blocks that are given as separate slices.
 #[inline(always)]
 #[allow(clippy::too_many_arguments)] // Separate slices are known not to overlap, so that the loop is vectorised.
-fn apply_friction<L: Law>(
+fn apply_friction<L: LawReading>(
     law: &L,
     integrator: impl Fn(usize) -> Integrator,
     thresholds: [&[f64]; 2],

@@ -28,7 +28,7 @@ use crate::state::State;
 
 /// A tile after its latest sweep.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Tile {
+pub(super) struct TileState {
     pub(super) sums: Sums<i64, f64>,
     /// Whether an element of it moves, ghosts included.
     pub(super) moving: bool,
@@ -73,13 +73,13 @@ pub(super) struct Band {
     pub(super) first: usize,
     /// Number of elements, in whole vectors.
     pub(super) len: usize,
-    pub(super) tiles: Vec<Tile>,
+    pub(super) tiles: Vec<TileState>,
     pub(super) tasks: Vec<TileTask>,
     /// Sums over its tiles after the latest sweep.
     pub(super) sums: Sums<i128, f64, u64>,
     /// The first step at which a block of it may slip if nothing around it moves; 0 if unknown or something moves.
     pub(super) next_active_step: u64,
-    /// Largest [`Tile::extent`] and [`Tile::difference`] of its tiles at the latest measurement.
+    /// Largest [`TileState::extent`] and [`TileState::difference`] of its tiles at the latest measurement.
     pub(super) extent: [f64; 4],
     pub(super) difference: [f64; 2],
     /// See [`halo`].
@@ -120,7 +120,7 @@ pub(super) struct Band {
 pub(super) const BYTES_PER_ELEMENT: f64 = {
     let element = 2 * size_of::<[f64; 2]>() + 2 * size_of::<f64>() + size_of::<u32>();
     let vector = (4 + 4) * size_of::<u8>() + size_of::<u64>() + size_of::<i64>();
-    let tile = size_of::<Tile>() + size_of::<TileTask>();
+    let tile = size_of::<TileState>() + size_of::<TileTask>();
     element as f64 + vector as f64 / LANES as f64 + tile as f64 / TILE as f64
 };
 
@@ -194,7 +194,7 @@ impl Band {
             first_tile: tiles.start,
             first,
             len,
-            tiles: vec![Tile::default(); tiles.len()],
+            tiles: vec![TileState::default(); tiles.len()],
             tasks: vec![TileTask::default(); tiles.len()],
             sums: Sums::default(),
             next_active_step: 0,

@@ -46,12 +46,12 @@ use self::blocks::Sums;
 use self::layout::{Layout, TILE};
 use self::neighbours::Neighbours;
 use self::quanta::Quanta;
-use self::schedule::Schedule;
+use self::schedule::SweepConditions;
 #[cfg(target_arch = "x86_64")]
 use self::springs::Chosen;
 use self::springs::{Differing, Series, SquareRoot};
 use self::step::Step;
-use self::variations::{Largest, blocks_differ};
+use self::variations::{LargestFactors, blocks_differ};
 use self::vector::LANES;
 use crate::checkpoint::{BlockColumn, Checkpoint, MotionBounds};
 use crate::communicator::Communicator;
@@ -115,7 +115,7 @@ pub(crate) struct Fused {
     stress_square_max: f64,
     /// The rows beside those of this rank.
     neighbours: Neighbours,
-    largest: Largest,
+    largest: LargestFactors,
     /// Sum of the relative stiffness of all drive springs: the number of blocks where all are alike.
     drive_springs: f64,
     blocks_differ: bool,
@@ -140,7 +140,7 @@ impl Fused {
             &model.rows,
             &*neighbours.communicator,
         );
-        let largest = Largest::of(model, &*neighbours.communicator);
+        let largest = LargestFactors::of(model, &*neighbours.communicator);
         let differ = blocks_differ(model, &largest);
         let band = |tiles| Band::new(&layout, model, &moduli, differ, state, dt_star, tiles);
         let bands: Vec<Band> = match threads {
@@ -252,13 +252,13 @@ impl Fused {
     }
 
     /// The sweep to a step. Bands that need nothing of other ranks are swept while the rows beside this rank's are on their way.
-    fn sweep(&mut self, model: &Model, step: Step, springs: Springs, anew: bool, energies: bool) {
-        let schedule = Schedule {
+    fn sweep(&mut self, model: &Model, step: Step, springs: Springs, renews_sums: bool, energies: bool) {
+        let schedule = SweepConditions {
             number: step.number,
             skips: self.skips,
-            anew,
-            begins: self.swept_step.is_none(),
-            follows: self.swept_step.is_some_and(|swept| swept + 1 == step.number),
+            renews_sums,
+            is_first: self.swept_step.is_none(),
+            is_next: self.swept_step.is_some_and(|swept| swept + 1 == step.number),
         };
         let (level, quanta) = (self.level, Quanta::new(&step, &self.motion_bounds, &self.largest));
         let (threads, layout, differ) = (self.threads, self.layout, self.blocks_differ);

@@ -2,7 +2,7 @@
 //! displacements and the highest speed, which every rank and thread knows.
 
 use super::step::Step;
-use super::variations::Largest;
+use super::variations::LargestFactors;
 use crate::checkpoint::MotionBounds;
 use crate::fixed_point::{FixedPoint, Window};
 use crate::lattice::{K_DIAGONAL, K_STRAIGHT};
@@ -30,11 +30,11 @@ pub(super) struct Quanta {
 const MARGIN: f64 = 1.0 + 1e-6;
 
 impl Quanta {
-    pub(super) fn new(step: &Step, bounds: &MotionBounds, largest: &Largest) -> Self {
+    pub(super) fn new(step: &Step, bounds: &MotionBounds, largest: &LargestFactors) -> Self {
         let [x, y] = bounds.windows.map(|window| window.differences().limit());
         let spring_force = K_STRAIGHT * bounds.spring_range.limit();
         let speed = highest_speed(step, bounds, largest);
-        let &Largest {
+        let &LargestFactors {
             modulus,
             drive_spring,
             mass,
@@ -60,7 +60,7 @@ impl Quanta {
 }
 
 /// A bound on all speeds half a step after `step`: they change at most as without friction.
-fn highest_speed(step: &Step, bounds: &MotionBounds, largest: &Largest) -> f64 {
+fn highest_speed(step: &Step, bounds: &MotionBounds, largest: &LargestFactors) -> f64 {
     let mut force = 0.0;
     for axis in 0..2 {
         let [low, high] = bounds.range(axis);

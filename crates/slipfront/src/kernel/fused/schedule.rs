@@ -17,17 +17,17 @@ const MAX_MARKED_VECTORS: usize = 10;
 
 /// What is common to all tiles in a sweep.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Schedule {
+pub(super) struct SweepConditions {
     /// The step.
     pub(super) number: u64,
     /// Whether tiles at rest are skipped.
     pub(super) skips: bool,
     /// Whether the sums that skipped tiles keep are of no more use.
-    pub(super) anew: bool,
+    pub(super) renews_sums: bool,
     /// Whether there was no sweep before.
-    pub(super) begins: bool,
+    pub(super) is_first: bool,
     /// Whether the sweep before was that of the step before.
-    pub(super) follows: bool,
+    pub(super) is_next: bool,
 }
 
 impl Band {
@@ -54,7 +54,7 @@ impl Band {
     }
 
     /// Decides what is done with every tile, and takes back the marks.
-    pub(super) fn schedule(&mut self, schedule: &Schedule, touched: &[AtomicU32]) {
+    pub(super) fn schedule(&mut self, sweep: &SweepConditions, touched: &[AtomicU32]) {
         for t in 0..self.tiles.len() {
             let all = u32::MAX >> (VECTORS - self.vectors(t).len());
             let (tile, before) = (self.tiles[t], self.tasks[t].active);
@@ -66,18 +66,18 @@ impl Band {
             if task.touched != 0 {
                 self.tiles[t].displacements_are_old = true;
             }
-            if schedule.skips && !schedule.anew && tile.settled {
+            if sweep.skips && !sweep.renews_sums && tile.settled {
                 task.active = task.touched;
-                if tile.active_from_step <= schedule.number {
-                    task.active |= self.vectors_that_may_slip(t, schedule.number);
+                if tile.active_from_step <= sweep.number {
+                    task.active |= self.vectors_that_may_slip(t, sweep.number);
                 }
                 task.sparse = task.active.count_ones() <= MAX_SPARSE_VECTORS;
             }
             if !task.sparse {
                 task.active = all;
-                task.settles = schedule.skips && task.touched.count_ones() <= MAX_SETTLING_VECTORS;
+                task.settles = sweep.skips && task.touched.count_ones() <= MAX_SETTLING_VECTORS;
             }
-            task.was_skipped = match (schedule.begins, schedule.follows) {
+            task.was_skipped = match (sweep.is_first, sweep.is_next) {
                 (true, _) => 0,
                 (_, true) => task.active & !before,
                 _ => task.active,

@@ -60,7 +60,7 @@ impl<'a> Variation<'a> {
 }
 
 /// Whether the blocks of a model need [`Variations`].
-pub(super) fn blocks_differ(model: &Model, largest: &Largest) -> bool {
+pub(super) fn blocks_differ(model: &Model, largest: &LargestFactors) -> bool {
     let slider = &model.slider;
     // Drive springs of 1 on every block that exists are those of a plain slider.
     let drive_springs_differ = slider
@@ -75,7 +75,7 @@ pub(super) fn blocks_differ(model: &Model, largest: &Largest) -> bool {
 
 /// Largest factors of any block of the lattice.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Largest {
+pub(super) struct LargestFactors {
     /// Young's modulus, and so the factor of a spring between blocks.
     pub(super) modulus: f64,
     pub(super) drive_spring: f64,
@@ -83,7 +83,7 @@ pub(super) struct Largest {
     pub(super) inverse_mass: f64,
 }
 
-impl Largest {
+impl LargestFactors {
     /// Of all blocks of this rank and of the others, which call this together.
     pub(super) fn of(model: &Model, communicator: &dyn Communicator) -> Self {
         let slider = &model.slider;

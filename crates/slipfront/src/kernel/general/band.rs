@@ -5,10 +5,10 @@ use std::ops::Range;
 use super::drive::DrivenBlocks;
 use super::rows::Rows;
 use super::springs::{damper_forces, lattice_forces, row_energies};
-use super::weighted::{Scratch, add_weighted, dot_products};
+use super::weighted::{WeightedScratch, add_weighted, dot_products};
 use crate::fixed_point::RunningSum;
 use crate::forces::{Forces, part, part_mut};
-use crate::friction::{Contact, Integrator};
+use crate::friction::{BandContact, Integrator};
 use crate::kernel::block::Block;
 use crate::lattice::Bond;
 use crate::model::Model;
@@ -34,11 +34,11 @@ fn parts(model: &Model) -> impl Iterator<Item = Range<usize>> + use<> {
     (0..n).step_by(len).map(move |first| first..n.min(first + len))
 }
 
-/// Sums over blocks that every step finds, as [`Found`] names them.
-pub(super) type Sums = [RunningSum; 12];
+/// Sums over blocks that every step finds, as [`Summed`] names them.
+pub(super) type BandSums = [RunningSum; 12];
 
-/// What belongs to each of the [`Sums`]. The first three are of the drive springs.
-pub(super) struct Found<T> {
+/// What belongs to each of the [`BandSums`]. The first three are of the drive springs.
+pub(super) struct Summed<T> {
     pub(super) displacement: [T; 2],
     pub(super) velocity: [T; 2],
     pub(super) velocity_after: [T; 2],
@@ -47,11 +47,11 @@ pub(super) struct Found<T> {
     pub(super) friction_power: T,
     /// `F_v . v`.
     pub(super) viscous_power: T,
-    /// What the law of friction adds up, see [`Contact::add_up`].
+    /// What the law of friction adds up, see [`BandContact::add_up`].
     pub(super) contact: [T; 3],
 }
 
-impl<T> From<[T; 12]> for Found<T> {
+impl<T> From<[T; 12]> for Summed<T> {
     fn from(
         [
             ux,
@@ -100,18 +100,18 @@ pub(super) struct Band {
     /// `mu_k F_n`.
     kinetic_force: Vec<f64>,
     driven: DrivenBlocks,
-    pub(super) contact: Contact,
+    pub(super) contact: BandContact,
     /// Relative stiffness of the spring of every block of the rows along each bond, if they are not all alike.
     relative_springs: Option<[Vec<f64>; 4]>,
     dampers: Option<Dampers>,
-    pub(super) sums: Sums,
+    pub(super) sums: BandSums,
     /// Those of energies: kinetic half a step before and after, and of the drive springs.
     pub(super) energy_sums: [RunningSum; 3],
     /// Energies of the springs between blocks along each bond, one number per row.
     pub(super) row_energies: [Vec<f64>; 4],
     /// Blocks that slide, and those of them in contact.
     pub(super) counts: [i64; 2],
-    scratch: Scratch,
+    scratch: WeightedScratch,
     pub(super) first_slip: Vec<f64>,
     pub(super) stress_square_max: f64,
 }
@@ -165,17 +165,17 @@ impl Band {
             static_limit: (0..n).map(|b| model.surface.static_limit(b)).collect(),
             kinetic_force: (0..n).map(|b| model.surface.kinetic_force(b)).collect(),
             driven: DrivenBlocks::of(model),
-            contact: Contact::new(&model.friction, &model.surface, first_block),
+            contact: BandContact::new(&model.friction, &model.surface, first_block),
             relative_springs: (!slider.has_equal_springs()).then(relative),
             dampers: slider.is_viscous().then(|| Dampers {
                 force: zeros(),
                 bonds: bonds(),
             }),
-            sums: Sums::default(),
+            sums: BandSums::default(),
             energy_sums: Default::default(),
             row_energies: Default::default(),
             counts: [0; 2],
-            scratch: Scratch::new(part_len(model).min(n)),
+            scratch: WeightedScratch::new(part_len(model).min(n)),
             first_slip: vec![f64::NAN; n],
             stress_square_max: 0.0,
             rows,
@@ -200,7 +200,7 @@ impl Band {
 
     /// Finds the forces on the blocks and their next velocities, unless these are known, and adds up the `sums` over them.
     #[inline(always)]
-    pub(super) fn evaluate(&mut self, model: &Model, time_star: f64, is_known: bool, sums: Sums) {
+    pub(super) fn evaluate(&mut self, model: &Model, time_star: f64, is_known: bool, sums: BandSums) {
         self.sums = sums;
         if !is_known {
             self.counts = [0; 2];
@@ -343,7 +343,7 @@ impl Band {
             vy[k] = 0.5 * (by[k] + ay[k]);
         }
         let now = [&*vx, &*vy];
-        let sums = Found::from(self.sums.each_mut());
+        let sums = Summed::from(self.sums.each_mut());
         let (driven, displacement) = (&self.driven, &self.state.displacement);
         driven.add(
             model,
@@ -367,7 +367,8 @@ impl Band {
         self.contact
             .add_up(surface, blocks, &self.state, slides, sums.contact, room);
         let terms = &mut scratch.terms[..n];
-        if self.contact.dissipates() {
+        // What contacts store is lost when they break.
+        if !model.friction.needs().stores_energy {
             dot_products(part(&self.forces.friction, blocks), now, terms);
             sums.friction_power.add(terms);
         }

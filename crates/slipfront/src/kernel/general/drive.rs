@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::weighted::{Scratch, add_weighted, dot_products};
+use super::weighted::{WeightedScratch, add_weighted, dot_products};
 use crate::fixed_point::RunningSum;
 use crate::forces::{part, part_mut};
 use crate::model::Model;
@@ -84,7 +84,7 @@ impl DrivenBlocks {
         u: &VectorField,
         time_star: f64,
         sum: &mut RunningSum,
-        scratch: &mut Scratch,
+        scratch: &mut WeightedScratch,
     ) {
         let ([ux, uy], n) = (part(u, blocks), blocks.len());
         let (ux, uy, squares) = (&ux[..n], &uy[..n], &mut scratch.terms[..n]);
@@ -118,7 +118,7 @@ impl DrivenBlocks {
         blocks: &Range<usize>,
         [x, y]: [&[f64]; 2],
         [along, across]: [&mut RunningSum; 2],
-        scratch: &mut Scratch,
+        scratch: &mut WeightedScratch,
     ) {
         let (n, relative) = (blocks.len(), relative(model, blocks));
         match &self.direction {

@@ -19,9 +19,9 @@ use std::sync::Arc;
 
 use fearless_simd::{Level, dispatch};
 
-use self::band::{Band, Found, Sums};
+use self::band::{Band, BandSums, Summed};
 use self::rows::Rows;
-use self::weighted::Scratch;
+use self::weighted::WeightedScratch;
 use super::bands::for_each_band;
 use super::block::{Block, Field};
 use super::engine::Engine;
@@ -56,7 +56,7 @@ pub(crate) struct General {
     ends: Vec<[Vec<f64>; 2]>,
     /// How the rows below and above this rank move.
     beside: [Vec<f64>; 2],
-    sums: Sums,
+    sums: BandSums,
     energy_sums: [RunningSum; 3],
     /// Power that the dampers take.
     viscous_power: f64,
@@ -136,7 +136,7 @@ impl General {
             ends: vec![Default::default(); bands.len()],
             beside: Default::default(),
             bands,
-            sums: Sums::default(),
+            sums: BandSums::default(),
             energy_sums: Default::default(),
             viscous_power: 0.0,
             contact_totals: ContactTotals::default(),
@@ -289,7 +289,7 @@ impl Engine for General {
         });
         self.exchange();
         let mut is_known = false;
-        let found = Found::from(loop {
+        let found = Summed::from(loop {
             let sums = self.sums;
             for_each_band(threads, &mut self.bands, &|one| {
                 let (model, band) = one.with_model(model);
@@ -439,7 +439,7 @@ pub(crate) fn bytes_per_block_of_bands(options: &ModelOptions) -> f64 {
     let motion = Rows::bytes_per_block(options.slider.has_dampers);
     // Their motion is passed on from the ends of each band, too.
     let row_beside = 2 * motion + band::bytes_per_block_of_bonds(&options.slider);
-    let swept = Scratch::BYTES_PER_BLOCK as f64 / MIN_BAND_ROWS as f64;
+    let swept = WeightedScratch::BYTES_PER_BLOCK as f64 / MIN_BAND_ROWS as f64;
     (model + motion) as f64 + beside * row_beside as f64 + swept
 }
 

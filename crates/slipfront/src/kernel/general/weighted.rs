@@ -5,14 +5,14 @@ use crate::vector_field::VectorField;
 
 /// Room for numbers of the blocks of a part.
 #[derive(Debug)]
-pub(super) struct Scratch {
+pub(super) struct WeightedScratch {
     /// Velocities at t_n.
     pub(super) velocity: VectorField,
     pub(super) terms: Vec<f64>,
     pub(super) products: Vec<f64>,
 }
 
-impl Scratch {
+impl WeightedScratch {
     /// Bytes for each block of a part: a velocity, a term and a product.
     pub(super) const BYTES_PER_BLOCK: usize = (2 + 2) * size_of::<f64>();
 

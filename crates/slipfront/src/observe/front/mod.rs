@@ -24,7 +24,7 @@ pub struct Front {
     pub nucleations: Vec<usize>,
     /// Speed of the front, in blocks per unit of time; none where a front passes through less than half of the windows, as if all
     /// blocks slip at once or each by itself.
-    pub speed: Option<Distribution>,
+    pub speed: Option<Quantiles>,
     /// Share of the windows through which a front passes; none if there is no window.
     pub share: Option<f64>,
     /// Time from the first 5 % of the first slips to 95 % of them.
@@ -34,7 +34,7 @@ pub struct Front {
 /// Quantiles of some numbers, interpolated linearly between neighbours: of n numbers in rising order the share q lies at the place
 /// q (n - 1), counted from 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Distribution {
+pub struct Quantiles {
     /// 5 % are smaller.
     pub low: f64,
     /// Half are smaller.
@@ -83,7 +83,7 @@ impl Front {
     pub fn of(lattice: &Lattice, times: &[f64], n_contact: usize) -> Option<Self> {
         assert_eq!(times.len(), lattice.n_blocks(), "one time per block");
         let slipped = times.iter().copied().filter(|time| !time.is_nan()).collect();
-        let first_slips = Distribution::of(slipped)?;
+        let first_slips = Quantiles::of(slipped)?;
         let least = n_contact
             .div_ceil(SITE_MIN_SHARE)
             .max(SITE_MIN_BLOCKS)
@@ -94,7 +94,7 @@ impl Front {
             (passages.n_windows > 0).then(|| passages.speeds.len() as f64 / passages.n_windows as f64);
         let is_front = share.is_some_and(|share| share >= LEAST_SHARE);
         Some(Self {
-            speed: Distribution::of(passages.speeds).filter(|_| is_front),
+            speed: Quantiles::of(passages.speeds).filter(|_| is_front),
             share,
             nucleations,
             duration: first_slips.high - first_slips.low,
@@ -102,7 +102,7 @@ impl Front {
     }
 }
 
-impl Distribution {
+impl Quantiles {
     fn of(mut values: Vec<f64>) -> Option<Self> {
         let last = values.len().checked_sub(1)?;
         let mut at = |share: f64| {

@@ -24,7 +24,7 @@ pub(super) struct Passages {
 
 /// The windows of all blocks through which a front passes.
 pub(super) fn passages(lattice: &Lattice, times: &[f64], nucleations: &[usize]) -> Passages {
-    let axes = [0, 1].map(|axis| Axis::of(lattice, axis));
+    let axes = [0, 1].map(|axis| WindowAxis::of(lattice, axis));
     let mut is_left_out = vec![false; times.len()];
     for &block in nucleations {
         let (i, j) = lattice.column_row(block);
@@ -40,7 +40,7 @@ pub(super) fn passages(lattice: &Lattice, times: &[f64], nucleations: &[usize]) 
     let mut slopes = vec![[f64::NAN; 2]; times.len()];
     let mut is_plane = vec![false; times.len()];
     for block in (0..times.len()).filter(|&b| !times[b].is_nan() && !is_left_out[b]) {
-        let sums = Sums::around(lattice, &axes, times, block);
+        let sums = WindowSums::around(lattice, &axes, times, block);
         if sums.n as usize >= least {
             n_windows += 1;
             slopes[block] = sums.slope();
@@ -56,7 +56,7 @@ pub(super) fn passages(lattice: &Lattice, times: &[f64], nucleations: &[usize]) 
 }
 
 /// Whether the front has another direction in one of the windows that lie as far from that of a block, along either axis, as its edge.
-fn turns(lattice: &Lattice, axes: &[Axis; 2], slopes: &[[f64; 2]], block: usize) -> bool {
+fn turns(lattice: &Lattice, axes: &[WindowAxis; 2], slopes: &[[f64; 2]], block: usize) -> bool {
     let (i, j) = lattice.column_row(block);
     let [along, across] = axes.each_ref().map(|axis| axis.reach as isize);
     let offsets = [[-along, 0], [along, 0], [0, -across], [0, across]];
@@ -72,14 +72,14 @@ fn turns(lattice: &Lattice, axes: &[Axis; 2], slopes: &[[f64; 2]], block: usize)
 }
 
 /// One axis of the lattice.
-struct Axis {
+struct WindowAxis {
     count: usize,
     is_periodic: bool,
     /// Blocks from the middle of a window to its edge, fewer on a short axis: of a periodic one none stands in a window twice.
     reach: usize,
 }
 
-impl Axis {
+impl WindowAxis {
     fn of(lattice: &Lattice, axis: usize) -> Self {
         let count = [lattice.nx, lattice.ny][axis];
         Self {
@@ -117,7 +117,7 @@ impl Axis {
 
 /// Sums over the blocks of a window at (x, y) from its middle, with the time t after that of the middle.
 #[derive(Default)]
-struct Sums {
+struct WindowSums {
     n: i32,
     x: i32,
     y: i32,
@@ -130,9 +130,9 @@ struct Sums {
     tt: f64,
 }
 
-impl Sums {
+impl WindowSums {
     /// Over the blocks around one that have slipped.
-    fn around(lattice: &Lattice, axes: &[Axis; 2], times: &[f64], block: usize) -> Self {
+    fn around(lattice: &Lattice, axes: &[WindowAxis; 2], times: &[f64], block: usize) -> Self {
         let (i, j) = lattice.column_row(block);
         let mut sums = Self::default();
         for (y, row) in axes[1].around(j) {

@@ -25,7 +25,7 @@ fn uniform(state: &mut u64) -> f64 {
 
 #[test]
 fn quantiles_are_interpolated() {
-    let of = |values: &[f64]| Distribution::of(values.to_vec());
+    let of = |values: &[f64]| Quantiles::of(values.to_vec());
     assert_eq!(of(&[]), None);
     let one = of(&[3.0]).unwrap();
     assert_eq!([one.low, one.median, one.high], [3.0; 3]);
@@ -116,7 +116,7 @@ fn noise_does_not_hide_the_speed() {
         1.0 / (gx * gx + gy * gy).sqrt()
     };
     let inner = (0..lattice.n_blocks() - 60).filter(|b| b % 60 < 59);
-    let of_neighbours = Distribution::of(inner.map(difference).collect()).unwrap();
+    let of_neighbours = Quantiles::of(inner.map(difference).collect()).unwrap();
     assert!((of_neighbours.median - 1.0).abs() > 0.05, "{of_neighbours:?}");
     assert!(of_neighbours.high > 2.0, "{of_neighbours:?}");
 }
