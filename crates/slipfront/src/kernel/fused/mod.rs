@@ -37,7 +37,7 @@ use std::ops::Range;
 use std::sync::Arc;
 use std::sync::atomic::AtomicU32;
 
-use fearless_simd::{Level, Simd, dispatch};
+use fearless_simd::{Level, dispatch};
 use rayon::prelude::*;
 
 use self::aligned::Vectors;
@@ -47,8 +47,6 @@ use self::layout::{Layout, TILE};
 use self::neighbours::Neighbours;
 use self::quanta::Quanta;
 use self::schedule::SweepConditions;
-#[cfg(target_arch = "x86_64")]
-use self::springs::Chosen;
 use self::springs::{Differing, Series, SquareRoot};
 use self::step::Step;
 use self::variations::{LargestFactors, blocks_differ};
@@ -649,26 +647,6 @@ fn fill_from_neighbours(bands: &mut [Band], layout: &Layout, neighbours: &Neighb
     }
 }
 
-/// `$op` with vectors as wide as `$level` says. Those of SSE2 are left out: [`sweep_narrow`] is compiled for them.
-#[cfg(target_arch = "x86_64")]
-macro_rules! dispatch_wide {
-    ($level:expr, $simd:ident => $op:expr) => {
-        match ($level.as_avx512(), $level.as_avx2()) {
-            (Some($simd), _) => $simd.vectorize(
-                #[inline(always)]
-                || $op,
-            ),
-            (None, Some($simd)) => $simd.vectorize(
-                #[inline(always)]
-                || $op,
-            ),
-            (None, None) => unreachable!("narrow vectors have a sweep of their own"),
-        }
-    };
-}
-#[cfg(not(target_arch = "x86_64"))]
-use fearless_simd::dispatch as dispatch_wide;
-
 /// Takes a band through a step with the vector instructions of `level`.
 fn sweep(
     level: Level,
@@ -678,17 +656,6 @@ fn sweep(
     quanta: &Quanta,
     energies: bool,
 ) {
-    #[cfg(target_arch = "x86_64")]
-    if level.as_avx2().is_none() {
-        return sweep_narrow(
-            level,
-            band,
-            (springs, epsilon, blocks_differ),
-            step,
-            quanta,
-            energies,
-        );
-    }
     let (short, long, root) = (
         Series::<3> { epsilon },
         Series::<7> { epsilon },
@@ -696,43 +663,20 @@ fn sweep(
     );
     match (springs, blocks_differ) {
         (Springs::ShortSeries, false) => {
-            dispatch_wide!(level, simd => band.sweep(simd, short, step, quanta, energies));
+            dispatch!(level, simd => band.sweep(simd, short, step, quanta, energies));
         }
         (Springs::LongSeries, false) => {
-            dispatch_wide!(level, simd => band.sweep(simd, long, step, quanta, energies));
+            dispatch!(level, simd => band.sweep(simd, long, step, quanta, energies));
         }
         (Springs::SquareRoot, false) => {
-            dispatch_wide!(level, simd => band.sweep(simd, root, step, quanta, energies));
+            dispatch!(level, simd => band.sweep(simd, root, step, quanta, energies));
         }
         (Springs::ShortSeries, true) => {
-            dispatch_wide!(level, simd => band.sweep(simd, Differing(short), step, quanta, energies));
+            dispatch!(level, simd => band.sweep(simd, Differing(short), step, quanta, energies));
         }
         // One sweep less to compile counts for more than what the longer series would save at larger strains.
         (Springs::LongSeries | Springs::SquareRoot, true) => {
-            dispatch_wide!(level, simd => band.sweep(simd, Differing(root), step, quanta, energies));
+            dispatch!(level, simd => band.sweep(simd, Differing(root), step, quanta, energies));
         }
-    }
-}
-
-/// Takes a band through a step with the vectors of SSE2, by the formula that [`sweep`] would take.
-#[cfg(target_arch = "x86_64")]
-fn sweep_narrow(
-    level: Level,
-    band: &mut Band,
-    (springs, epsilon, blocks_differ): (Springs, f64, bool),
-    step: Step,
-    quanta: &Quanta,
-    energies: bool,
-) {
-    let geometry = match (springs, blocks_differ) {
-        (Springs::ShortSeries, _) => Chosen::ShortSeries(Series { epsilon }),
-        (Springs::LongSeries, false) => Chosen::LongSeries(Series { epsilon }),
-        (Springs::LongSeries, true) | (Springs::SquareRoot, _) => Chosen::SquareRoot(SquareRoot { epsilon }),
-    };
-    let simd = level.as_sse2().expect("every processor of x86-64 has SSE2");
-    if blocks_differ {
-        band.sweep(simd, Differing(geometry), step, quanta, energies);
-    } else {
-        band.sweep(simd, geometry, step, quanta, energies);
     }
 }

@@ -126,28 +126,6 @@ impl<const DEGREE: usize> Geometry for Series<DEGREE> {
     }
 }
 
-/// By the formula chosen when the program runs. One sweep in place of three is enough for vectors so narrow that few processors have
-/// no wider ones.
-#[cfg(target_arch = "x86_64")]
-#[derive(Clone, Copy)]
-pub(super) enum Chosen {
-    ShortSeries(Series<3>),
-    LongSeries(Series<7>),
-    SquareRoot(SquareRoot),
-}
-
-#[cfg(target_arch = "x86_64")]
-impl Geometry for Chosen {
-    #[inline(always)]
-    fn force<S: Simd>(self, simd: S, bond: &Bond, e: Vec2x8<S>) -> Vec2x8<S> {
-        match self {
-            Self::ShortSeries(series) => series.force(simd, bond, e),
-            Self::LongSeries(series) => series.force(simd, bond, e),
-            Self::SquareRoot(root) => root.force(simd, bond, e),
-        }
-    }
-}
-
 /// `tension d + correction` for a component d of the rest vector, which is 0, 1 or -1.
 #[inline(always)]
 fn along_axis<S: Simd>(rest: isize, tension: f64x8<S>, correction: f64x8<S>) -> f64x8<S> {
