@@ -71,8 +71,7 @@ impl Record {
             results::write_case(case, &mut run).map_err(folder_error)?;
             // Writing takes the fields out of what it is given.
             let mut record = self.record.clone();
-            results::write(case, &mut record, &mut run).map_err(folder_error)?;
-            pictures::complete(case, run, started, threads).map_err(folder_error)?;
+            pictures::write_run(case, &mut record, run, started, threads).map_err(folder_error)?;
             Ok(())
         })?
     }

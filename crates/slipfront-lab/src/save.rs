@@ -105,8 +105,7 @@ pub(crate) fn save(
         }
     };
     let mut record = running.record(reason);
-    results::write(&case, &mut record, &mut folder).map_err(sentence)?;
-    pictures::complete(&case, folder, started, threads).map_err(sentence)?;
+    pictures::write_run(&case, &mut record, folder, started, threads).map_err(sentence)?;
     Ok(true)
 }
 

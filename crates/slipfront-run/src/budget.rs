@@ -26,17 +26,17 @@ const FILE_BYTES: f64 = 2e6;
 /// Bytes that the pictures of a run take.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct PictureBytes {
-    /// Of the cells of the lattice while maps are read.
+    /// Bytes of the cells of the lattice while maps are read.
     pub(crate) cells: f64,
-    /// Of the maps, or of the pictures of the movie, as values.
+    /// Bytes of the values of all maps, or of all pictures of the movie.
     pub(crate) snapshots: f64,
-    /// Of each row of the series.
+    /// Bytes for each row of the series.
     pub(crate) row: f64,
-    /// Of the two pictures that are drawn at once.
+    /// Bytes of the two pictures that are drawn at once.
     pub(crate) two: f64,
-    /// Of the pictures of the movie that are drawn at once.
+    /// Bytes of the pictures of the movie that are drawn at once.
     pub(crate) batch: f64,
-    /// Of the files of maps and movie.
+    /// Bytes of the files of maps and movie.
     pub(crate) files: f64,
 }
 
@@ -88,8 +88,9 @@ enum Phase {
 }
 
 impl RunBudget {
-    /// The budget of a run of a case, for the rows that this process holds, without pictures.
-    pub fn of(case: &Case) -> Self {
+    /// The budget of a run of a case without its pictures, for the rows that this process holds. The budget with them is
+    /// `pictures::run_budget`.
+    pub fn without_pictures(case: &Case) -> Self {
         let (model, output, last_step) = (&case.model, &case.output, case.time_plan.last_step);
         let lattice = &model.lattice;
         let kept = |indices: Range<usize>| frames::kept(indices, output.stride).len() as f64;
@@ -379,7 +380,7 @@ mod tests {
         };
         RunBudget {
             pictures,
-            ..RunBudget::of(case)
+            ..RunBudget::without_pictures(case)
         }
     }
 

@@ -8,7 +8,6 @@ use thiserror::Error;
 
 use crate::fields::FieldsError;
 use crate::run_folder::error::FolderError;
-use crate::series::SeriesError;
 
 /// What can go wrong with results.
 #[derive(Debug, Error)]
@@ -20,8 +19,6 @@ pub enum ResultsError {
     Case(#[from] CaseError),
     #[error(transparent)]
     Fields(#[from] FieldsError),
-    #[error(transparent)]
-    Series(#[from] SeriesError),
     #[error("cannot write series.csv: {0}")]
     Csv(#[from] csv::Error),
     #[error("{path} is not the summary of a slipfront run: {}", text::single_line(&source.to_string()))]

@@ -161,8 +161,7 @@ fn write_folder(
     let mut folder = RunFolder::prepare(path, true, &case.inputs)?;
     results::write_case(case, &mut folder)?;
     if let Some(record) = record {
-        results::write(case, record, &mut folder)?;
-        pictures::complete(case, folder, started, 1)?;
+        pictures::write_run(case, record, folder, started, 1)?;
     }
     Ok(())
 }

@@ -150,8 +150,7 @@ impl VerifyCommand {
         let made = again.path().join("run");
         let mut made = RunFolder::prepare(&made, false, &case.inputs).map_err(Failure::running)?;
         results::write_case(&case, &mut made).map_err(Failure::running)?;
-        results::write(&case, &mut record, &mut made).map_err(Failure::running)?;
-        let now = pictures::complete(&case, made, started, 1).map_err(Failure::running)?;
+        let now = pictures::write_run(&case, &mut record, made, started, 1).map_err(Failure::running)?;
         verdict
             .differences
             .extend(differences(&now.files, folder, "are written now"));

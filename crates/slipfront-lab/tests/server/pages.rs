@@ -108,8 +108,7 @@ fn slipfront_run_of(case: &std::path::Path, out: &std::path::Path) -> bool {
     let mut folder = RunFolder::prepare(out, false, &case.inputs).unwrap();
     results::write_case(&case, &mut folder).unwrap();
     let mut record = running::run(&case, 1).unwrap();
-    results::write(&case, &mut record, &mut folder).unwrap();
-    pictures::complete(&case, folder, slipfront_run::clock::now(), 1).is_ok()
+    pictures::write_run(&case, &mut record, folder, slipfront_run::clock::now(), 1).is_ok()
 }
 
 /// Names and contents of all files below a folder.

@@ -22,7 +22,7 @@ const WITH_MAPS_BYTES: f64 = (FRICTION_BYTES + STRESS_BYTES) as f64;
 /// The budget of a run of a case, for the rows that this process holds, with its pictures.
 pub fn run_budget(case: &Case) -> RunBudget {
     let (lattice, output) = (&case.model.lattice, &case.output);
-    let mut budget = RunBudget::of(case);
+    let mut budget = RunBudget::without_pictures(case);
     let cells = budget.all_cells.min(CellMeans::MAX_CELLS as f64);
     let maps = if output.fields.contains(&mapped_field(&case.file)) {
         budget.frames.min(MAX_MAPS as f64)

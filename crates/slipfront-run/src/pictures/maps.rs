@@ -91,7 +91,7 @@ pub(super) fn field_of_maps(case: Option<&CaseFile>) -> Field {
 pub(super) struct MapScale {
     /// What a colour bar says of it.
     title: String,
-    /// The same in short.
+    /// The symbol and the unit of the field, where there is no room for the title.
     pub(super) symbol: String,
     /// The unit in which its values are drawn.
     pub(super) unit: f32,
@@ -100,7 +100,7 @@ pub(super) struct MapScale {
 }
 
 impl MapScale {
-    /// Of these values of a field, in the unit of its file.
+    /// The scale of maps of a field that have these values, in the unit of its file.
     pub(super) fn of(field: Field, case: Option<&CaseFile>, values: impl Iterator<Item = f32>) -> Self {
         let symbol = match (field, case) {
             (Field::ContactStress, _) => "\u{3c4}_c*",
@@ -140,7 +140,7 @@ impl MapScale {
         }
     }
 
-    /// Of values from 0 to 1.
+    /// The scale of values from 0 to 1.
     fn of_share(title: String, symbol: &str) -> Self {
         Self {
             title,
@@ -148,6 +148,12 @@ impl MapScale {
             unit: 1.0,
             range: [0.0, 1.0],
         }
+    }
+
+    /// The values of a snapshot of one field in the unit in which they are drawn.
+    pub(super) fn values_of(&self, frame: FieldFrame) -> Vec<f32> {
+        let values = frame.values.into_iter().next().unwrap_or_default();
+        values.into_iter().map(|value| value / self.unit).collect()
     }
 }
 
@@ -178,21 +184,21 @@ fn draw_maps(
     let Summary { instants, motion, .. } = read_summary(folder)?;
     let mu_star = MuStar::of(&instants, rows.into_iter());
     let (nx, ny) = (fields.columns(), fields.rows());
-    let maps = fields.frames.into_iter().map(|frame| StressMap {
-        mu_star: mu_star.at(&frame),
-        label: separated(&frame.label),
-        time_star: frame.time_star,
-        values: {
-            let values = frame.values.into_iter().next().unwrap_or_default();
-            values.into_iter().map(|value| value / scale.unit).collect()
-        },
-    });
+    let frames = fields.frames.into_iter();
+    let maps: Vec<_> = frames
+        .map(|frame| StressMap {
+            mu_star: mu_star.at(&frame),
+            label: separated(&frame.label),
+            time_star: frame.time_star,
+            values: scale.values_of(frame),
+        })
+        .collect();
     let maps = StressMaps {
         nx,
         ny,
         block_size: fields.block_size * fields.stride as f64,
         textured: fields.textured,
-        maps: maps.collect(),
+        maps,
         value_title: scale.title,
         range: scale.range,
         is_torque: motion == Some(Motion::Rotation),

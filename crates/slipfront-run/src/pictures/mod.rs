@@ -1,6 +1,7 @@
 //! The pictures of a run, drawn from its files, so that those of a run and those of `slipfront plot` are equal.
 //!
-//! Nothing else in this crate knows how a picture is drawn: who writes a run calls [`complete`] here after the results.
+//! Nothing else in this crate knows how a picture is drawn: who writes a run calls [`write_run`] here, or [`complete`] after
+//! the results of several ranks.
 
 mod budget;
 pub mod error;
@@ -24,7 +25,23 @@ pub use self::files::DRAWN_FROM;
 pub use self::maps::draw_field;
 use crate::manifest::Manifest;
 use crate::names::{MOVIE, RunPicture};
+use crate::results;
 use crate::run_folder::RunFolder;
+use crate::running::Record;
+
+/// Writes the results of a run on one rank to its folder, where the case stands already, then the pictures and the manifest, which
+/// completes it. The fields are moved out of the record, which frees their memory before the pictures are drawn. After an error the
+/// folder is left without a manifest.
+pub fn write_run(
+    case: &Case,
+    record: &mut Record,
+    mut folder: RunFolder,
+    started: jiff::Timestamp,
+    threads: usize,
+) -> Result<Manifest, RunPictureError> {
+    results::write(case, record, &mut folder)?;
+    complete(case, folder, started, threads)
+}
 
 /// Draws the pictures of a run from its [results](crate::results::write), and writes the manifest, which completes its folder. After an
 /// error the folder is left without a manifest.

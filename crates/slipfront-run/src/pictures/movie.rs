@@ -82,15 +82,15 @@ pub fn of_run(folder: &Path, field: Option<Field>) -> Result<Option<Movie>, RunP
     let values = fields.frames.iter().flat_map(|frame| &frame.values).flatten();
     let scale = MapScale::of(field, case.as_ref(), values.copied());
     let (nx, ny) = (fields.columns(), fields.rows());
-    let frames = fields.frames.into_iter().map(|frame| MovieFrame {
-        mu_star: mu_star.at(&frame),
-        label: separated(&frame.label),
-        time_star: frame.time_star,
-        values: {
-            let values = frame.values.into_iter().next().unwrap_or_default();
-            values.into_iter().map(|value| value / scale.unit).collect()
-        },
-    });
+    let frames = fields.frames.into_iter();
+    let frames: Vec<_> = frames
+        .map(|frame| MovieFrame {
+            mu_star: mu_star.at(&frame),
+            label: separated(&frame.label),
+            time_star: frame.time_star,
+            values: scale.values_of(frame),
+        })
+        .collect();
     Ok(Some(Movie {
         nx,
         ny,
@@ -99,7 +99,7 @@ pub fn of_run(folder: &Path, field: Option<Field>) -> Result<Option<Movie>, RunP
         range: scale.range,
         curve,
         axes,
-        frames: frames.collect(),
+        frames,
     }))
 }
 

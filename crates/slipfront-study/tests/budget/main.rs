@@ -173,8 +173,7 @@ fn what_is_said_is_what_is_taken() {
             let mut record = running::run(&case, 2).unwrap();
             let mut out = RunFolder::prepare(&out, false, &case.inputs).unwrap();
             results::write_case(&case, &mut out).unwrap();
-            results::write(&case, &mut record, &mut out).unwrap();
-            pictures::complete(&case, out, jiff::Timestamp::now(), 1).unwrap();
+            pictures::write_run(&case, &mut record, out, jiff::Timestamp::now(), 1).unwrap();
             let budget = pictures::run_budget(&case);
             (budget.memory(), budget.disk())
         };
@@ -311,9 +310,8 @@ fn pictures_of_a_large_lattice(folder: &Path) {
     let case = Arc::new(Case::new(file, "case", folder, &mut |_| true, Ranks::ALONE).unwrap());
     let mut record = running::run(&case, 1).unwrap();
     let out = folder.join("out");
-    let mut prepared = RunFolder::prepare(&out, false, &case.inputs).unwrap();
-    results::write(&case, &mut record, &mut prepared).unwrap();
-    pictures::complete(&case, prepared, jiff::Timestamp::now(), 1).unwrap();
+    let prepared = RunFolder::prepare(&out, false, &case.inputs).unwrap();
+    pictures::write_run(&case, &mut record, prepared, jiff::Timestamp::now(), 1).unwrap();
     drop((case, record));
     assert_honest_drawing("pictures of a large lattice", || {
         let before = LIVE.load(Ordering::Relaxed) as f64;

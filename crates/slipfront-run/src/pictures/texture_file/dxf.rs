@@ -111,13 +111,13 @@ impl File {
         hex(self.next_handle - 1)
     }
 
-    /// The beginning of an entity of this kind and class.
-    fn entity(&mut self, kind: &str, class: &str, layer: &str) {
+    /// The beginning of an entity of this kind and class, which belongs to the space `owner`.
+    fn entity(&mut self, kind: &str, class: &str, owner: u64, layer: &str) {
         let handle = self.handle();
         self.pairs(&[
             (0, &kind),
             (5, &handle),
-            (330, &hex(MODEL_SPACE)),
+            (330, &hex(owner)),
             (100, &"AcDbEntity"),
             (8, &layer),
             (100, &class),
@@ -141,7 +141,7 @@ impl File {
                         }
                         Piece::Line(ends) => {
                             let [[x_0, y_0], [x, y]] = ends.map(|end| end.map(|length| length * block));
-                            self.entity("LINE", "AcDbLine", layer);
+                            self.entity("LINE", "AcDbLine", MODEL_SPACE, layer);
                             self.pairs(&[(10, &x_0), (20, &y_0), (30, &0), (11, &x), (21, &y), (31, &0)]);
                         }
                     }
@@ -151,7 +151,7 @@ impl File {
     }
 
     fn polygon(&mut self, layer: &str, corners: impl ExactSizeIterator<Item = [f64; 2]>) {
-        self.entity("LWPOLYLINE", "AcDbPolyline", layer);
+        self.entity("LWPOLYLINE", "AcDbPolyline", MODEL_SPACE, layer);
         // Closed.
         self.pairs(&[(90, &corners.len()), (70, &1)]);
         for [x, y] in corners {
@@ -165,7 +165,7 @@ impl File {
         let [a, b] = ellipse.semi_axes.map(|length| length * block);
         let [c, s] = ellipse.axis;
         if a != b {
-            self.entity("ELLIPSE", "AcDbEllipse", layer);
+            self.entity("ELLIPSE", "AcDbEllipse", MODEL_SPACE, layer);
             // The first axis of a file is the longer one.
             let (major, ratio, later) = if a > b {
                 ([a * c, a * s], b / a, 0.0)
@@ -186,7 +186,7 @@ impl File {
             return;
         }
         let kind = if parameters.is_some() { "ARC" } else { "CIRCLE" };
-        self.entity(kind, "AcDbCircle", layer);
+        self.entity(kind, "AcDbCircle", MODEL_SPACE, layer);
         self.pairs(&[(10, &x), (20, &y), (30, &0), (40, &a)]);
         if let Some(ends) = parameters {
             let [from, to] = ends.map(|end| (end + libm::atan2(s, c)).to_degrees().rem_euclid(360.0));
@@ -257,15 +257,7 @@ impl File {
         self.section("BLOCKS");
         for (name, owner) in SPACES {
             for (kind, class) in [("BLOCK", "AcDbBlockBegin"), ("ENDBLK", "AcDbBlockEnd")] {
-                let handle = self.handle();
-                self.pairs(&[
-                    (0, &kind),
-                    (5, &handle),
-                    (330, &hex(owner)),
-                    (100, &"AcDbEntity"),
-                    (8, &0),
-                    (100, &class),
-                ]);
+                self.entity(kind, class, owner, "0");
                 if kind == "BLOCK" {
                     self.pairs(&[
                         (2, &name),

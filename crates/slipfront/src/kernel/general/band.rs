@@ -367,7 +367,7 @@ impl Band {
         self.contact
             .add_up(surface, blocks, &self.state, slides, sums.contact, room);
         let terms = &mut scratch.terms[..n];
-        // What contacts store is lost when they break.
+        // Contacts that store energy lose it when they break.
         if !model.friction.needs().stores_energy {
             dot_products(part(&self.forces.friction, blocks), now, terms);
             sums.friction_power.add(terms);
