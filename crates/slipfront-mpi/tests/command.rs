@@ -16,8 +16,10 @@ use tempfile::TempDir;
 use crate::support::results::{Files, assert_same, results};
 use crate::support::{mpirun, output, printed, run_plain, run_plain_command};
 
-/// Some seconds: long enough to be stopped.
-const SLOW: &str = "[slider]\nblocks = [120, 100]\nedges = ['periodic', 'free']\n[drive]\nv_star = 0.002\n";
+/// Long enough to be stopped: `mpirun` waits a second before it passes a signal on to the ranks, and a
+/// fast machine needs less than half of the nine seconds measured here.
+const SLOW: &str = "[slider]\nblocks = [120, 100]\nedges = ['periodic', 'free']\n[drive]\nv_star = 0.002\n\
+    [time]\nduration_star = 12_000\n";
 
 /// The command on so many ranks, in a folder.
 fn on_ranks(ranks: usize, folder: &TempDir, line: &str) -> Command {
