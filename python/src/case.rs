@@ -8,7 +8,7 @@ use numpy::{Element, PyArray2};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 use slipfront::Surface;
-use slipfront_case::case::Case as SlipfrontCase;
+use slipfront_case::case::{Case as SlipfrontCase, Ranks};
 use slipfront_case::case_file::{CaseError as Error, CaseFile};
 use slipfront_run::pictures;
 
@@ -63,7 +63,9 @@ impl Case {
     /// The case of a file, with overrides of the form KEY=VALUE.
     #[staticmethod]
     fn load(py: Python<'_>, path: PathBuf, overrides: Vec<String>) -> PyResult<Self> {
-        make(py, |watch| SlipfrontCase::load(&path, &overrides, watch))
+        make(py, |watch| {
+            SlipfrontCase::load(&path, &overrides, watch, Ranks::ALONE)
+        })
     }
 
     /// The case of a text that is called `name`; the files it names stand relative to a folder.
@@ -77,7 +79,7 @@ impl Case {
     ) -> PyResult<Self> {
         make(py, |watch| {
             let file = CaseFile::parse(text, name, &overrides)?;
-            SlipfrontCase::to_run(file, name, &folder, watch)
+            SlipfrontCase::to_run(file, name, &folder, watch, Ranks::ALONE)
         })
     }
 

@@ -5,8 +5,9 @@ use std::sync::Arc;
 
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use slipfront::Execution;
 use slipfront::communicator::Alone;
-use slipfront_case::case::Case as SlipfrontCase;
+use slipfront_case::case::{Case as SlipfrontCase, Ranks};
 use slipfront_case::case_file::CaseFile;
 use slipfront_case::unfinished::TemporaryFolder;
 use slipfront_run::checkpoint::Checkpoints;
@@ -85,7 +86,9 @@ fn case_of(py: Python<'_>, folder: &Path, file: CaseFile) -> PyResult<Case> {
         .unwrap_or_default()
         .to_string_lossy()
         .into_owned();
-    make(py, |watch| SlipfrontCase::to_run(file, &name, folder, watch))
+    make(py, |watch| {
+        SlipfrontCase::to_run(file, &name, folder, watch, Ranks::ALONE)
+    })
 }
 
 /// A complete run as it stands in its folder: its case, and what `Record` gives of a run of this process.
@@ -120,14 +123,13 @@ pub(crate) fn interrupted(py: Python<'_>, folder: PathBuf, threads: usize) -> Py
     let run = inspect(&folder).map_err(folder_error)?;
     let file = run.case_to_resume().map_err(folder_error)?.clone();
     let case = case_of(py, &folder, file)?;
+    let execution = Execution::on_threads(threads);
     let running = detached(py, || {
         let loaded = Checkpoints::load(&folder, &case.0, false, &Alone).map_err(folder_error)?;
         let Some(loaded) = loaded else {
-            return Ok(Running::start(&case.0, threads));
+            return Ok(Running::start(&case.0, None, execution));
         };
-        let resumed = loaded
-            .resume(&case.0, threads, Arc::new(Alone))
-            .map_err(folder_error)?;
+        let resumed = loaded.resume(&case.0, execution).map_err(folder_error)?;
         let foreign = || folder_error("its checkpoint is not one of a run of its case");
         resumed.ok_or_else(foreign)
     })??;

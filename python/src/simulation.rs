@@ -7,9 +7,8 @@ use numpy::{PyArray2, PyArray3};
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
-use slipfront::communicator::Alone;
 use slipfront::observe::frames::Selection;
-use slipfront::{State, StopReason, VectorField};
+use slipfront::{Execution, State, StopReason, VectorField};
 use slipfront_case::case::Case as SlipfrontCase;
 use slipfront_case::field_info::field_named;
 use slipfront_run::checkpoint::hash_of;
@@ -81,7 +80,9 @@ impl Simulation {
     /// Begins a run of a case at rest.
     #[new]
     fn new(py: Python<'_>, case: &Case, threads: usize) -> PyResult<Self> {
-        Self::of(detached(py, || Running::start(&case.0, threads))?)
+        Self::of(detached(py, || {
+            Running::start(&case.0, None, Execution::on_threads(threads))
+        })?)
     }
 
     /// The run that goes on under another case, the steps of this one and how long they have taken in s, and where the drive stands
@@ -233,7 +234,7 @@ impl Simulation {
             Ok::<(), ()>(())
         };
         let running = detached(py, || {
-            Running::resume(&case.0, threads, state, Arc::new(Alone), read)
+            Running::resume(&case.0, state, Execution::on_threads(threads), read)
         })?;
         let running = running.ok().flatten().ok_or_else(refused)?;
         Self::of(running)

@@ -450,7 +450,7 @@ fn case(texture: &str) -> Result<Case, String> {
     let text = format!(
         "slider = {{ blocks = [15, 10], block_size = '1 um' }}\n[[texture]]\nshape = 'height_map'\nfile = 'map.x3p'\n{texture}"
     );
-    Case::parse_in(&text, "case", &folder(), &[]).map_err(|error| error.to_string())
+    Case::parse(&text, "case", folder(), &[]).map_err(|error| error.to_string())
 }
 
 fn heights() -> Vec<f64> {
@@ -501,7 +501,7 @@ fn the_highest_blocks_touch() {
 fn maps_fill_every_place_of_a_pattern() {
     let text = "slider = { blocks = [30, 10], block_size = '1 um' }\n[[texture]]\nshape = 'height_map'\nfile = 'map.gsf'\n\
                 bearing_percent = 40\narray = [2, 1]";
-    let two = Case::parse_in(text, "case", &folder(), &[]).unwrap();
+    let two = Case::parse(text, "case", folder(), &[]).unwrap();
     let one = case("bearing_percent = 40").unwrap();
     for (b, textured) in two.model.surface.textured.iter().enumerate() {
         assert_eq!(
@@ -511,7 +511,7 @@ fn maps_fill_every_place_of_a_pattern() {
         );
     }
     assert_eq!(two.texture.asked_percent, Some(60.0));
-    let three = Case::parse_in(&text.replace("[2, 1]", "[3, 1]"), "case", &folder(), &[]);
+    let three = Case::parse(&text.replace("[2, 1]", "[3, 1]"), "case", folder(), &[]);
     let said = three.unwrap_err().to_string();
     let sentence = "and the 10 x 10 blocks in every place of the pattern are 1 times as wide as high: cut the map, or take 15 x 10 blocks there";
     assert!(said.contains(sentence), "{said}");
@@ -539,7 +539,7 @@ fn on_a_disc(texture: &str, ranks: usize) -> Vec<Case> {
             on_node: ranks,
         };
         let file = CaseFile::parse(&text, "case", &[]).unwrap();
-        Case::to_run_on_ranks(file, "case", folder.path(), &mut |_| true, ranks).unwrap()
+        Case::to_run(file, "case", folder.path(), &mut |_| true, ranks).unwrap()
     })
 }
 
@@ -614,7 +614,7 @@ fn a_map_of_another_size_is_told() {
 
 fn warnings_of(text: &str, texture: &str) -> String {
     let text = format!("{text}\n[[texture]]\nshape = 'height_map'\nfile = 'map.x3p'\n{texture}");
-    let case = Case::parse_in(&text, "case", &folder(), &[]).unwrap();
+    let case = Case::parse(&text, "case", folder(), &[]).unwrap();
     case.warnings().join("\n")
 }
 
@@ -632,7 +632,7 @@ fn a_texture_that_is_not_as_asked_is_told_in_words_of_heights() {
             "slider.blocks = [2, 4]\n[[texture]]\nshape = 'height_map'\nfile = 'map.csv'\nheight_unit = '1 um'\npixel_size = '1 um'\n\
              {bearing}"
         );
-        let case = Case::parse_in(&text, "case", folder.path(), &[]).unwrap();
+        let case = Case::parse(&text, "case", folder.path(), &[]).unwrap();
         case.warnings().join("\n")
     };
     for (lowest, bearing, sentence) in [
@@ -672,7 +672,7 @@ fn a_map_is_an_input_like_any_other() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::create_dir(folder.path().join("inputs")).unwrap();
     std::fs::copy(&input.original, folder.path().join(&input.name)).unwrap();
-    let again = Case::parse_in(&case.file.to_toml().unwrap(), "case", folder.path(), &[]).unwrap();
+    let again = Case::parse(&case.file.to_toml().unwrap(), "case", folder.path(), &[]).unwrap();
     assert_eq!(again.file, case.file);
     assert_eq!(again.model.surface.textured, case.model.surface.textured);
     assert_eq!(again.inputs[0].hash, input.hash);
@@ -686,11 +686,11 @@ fn a_height_map_may_be_finer_than_blocks() {
     std::fs::write(folder.path().join("map.csv"), format!("{row}\n").repeat(30)).unwrap();
     let text = "slider.blocks = [100, 1]\n[[texture]]\nshape = 'height_map'\nfile = 'map.csv'\ndepth = '1 nm'\nheight_unit = '1 um'\n\
                 pixel_size = '1 um'";
-    let case = Case::parse_in(text, "case", folder.path(), &[]).unwrap();
+    let case = Case::parse(text, "case", folder.path(), &[]).unwrap();
     assert_eq!(case.texture.topographies[0].roughness.sq, 0.0);
     assert_eq!(case.texture.topographies[0].roughness.ssk, None);
     let field = "slider.blocks = [100, 1]\nfriction.mu_static_field = 'map.csv'";
-    let said = Case::parse_in(field, "case", folder.path(), &[])
+    let said = Case::parse(field, "case", folder.path(), &[])
         .unwrap_err()
         .to_string();
     assert!(
@@ -699,7 +699,7 @@ fn a_height_map_may_be_finer_than_blocks() {
     );
     write_mask_png(&folder.path().join("mask.png"), 2, 2, &[true; 4]).unwrap();
     let mask = text.replace("map.csv", "mask.png");
-    let said = Case::parse_in(&mask, "case", folder.path(), &[])
+    let said = Case::parse(&mask, "case", folder.path(), &[])
         .unwrap_err()
         .to_string();
     assert!(said.contains("grey levels of 1 bits"), "{said}");

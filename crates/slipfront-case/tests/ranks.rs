@@ -67,7 +67,7 @@ fn make(
 ) -> Result<Case, CaseError> {
     let text = format!("slider.blocks = [{NX}, {NY}]\n{text}");
     let file = CaseFile::parse(&text, "case.toml", &[])?;
-    Case::to_run_on_ranks(file, "case", folder, watch, ranks)
+    Case::to_run(file, "case", folder, watch, ranks)
 }
 
 /// What so many ranks make.
@@ -192,7 +192,7 @@ fn a_case_file_is_loaded_by_all_ranks() {
                 communicator,
                 on_node: 1,
             };
-            let loaded = Case::load_on_ranks(&path, &["friction.seed=3".to_owned()], &mut |_| true, ranks);
+            let loaded = Case::load(&path, &["friction.seed=3".to_owned()], &mut |_| true, ranks);
             loaded
                 .map(|case| (case.name.clone(), case.model.rows.clone()))
                 .map_err(|error| error.to_string())

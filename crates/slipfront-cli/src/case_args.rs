@@ -36,11 +36,11 @@ impl CaseArgs {
         let mut overrides = self.overrides;
         overrides.extend(self.seed.map(|seed| format!("friction.seed={seed}")));
         make_case(ranks, signals, quiet, |watch, ranks| match self.case {
-            Some(path) => Case::load_on_ranks(&path, &overrides, watch, ranks),
+            Some(path) => Case::load(&path, &overrides, watch, ranks),
             None => {
                 let (text, name) = (include_str!("baseline.toml"), "baseline");
                 let file = ranks.agree(CaseFile::parse(text, name, &overrides))?;
-                Case::to_run_on_ranks(file, name, Path::new(""), watch, ranks)
+                Case::to_run(file, name, Path::new(""), watch, ranks)
             }
         })
     }

@@ -15,8 +15,7 @@ pub(crate) fn seconds_per_step(case: &Case) -> f64 {
         skips: false,
         ..Execution::default()
     };
-    let mut simulation =
-        Simulation::with_execution(case.model.clone(), case.time_plan.dt_star, None, execution);
+    let mut simulation = Simulation::new(case.model.clone(), case.time_plan.dt_star, None, execution);
     let (began, mut steps) = (Instant::now(), 0);
     while began.elapsed() < ESTIMATE {
         simulation.step();

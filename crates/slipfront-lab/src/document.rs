@@ -5,7 +5,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use slipfront_case::case::Case;
+use slipfront_case::case::{Case, Ranks};
 use slipfront_case::case_file::{CaseError, CaseFile, partners_of, parts_of};
 use slipfront_case::text::truncated;
 use toml::{Table, Value};
@@ -242,7 +242,7 @@ impl Document {
             );
             return Err(file.source.error("slider.blocks", sentence));
         }
-        Case::to_run(file, &self.name, &temporary(), &mut |_| true)
+        Case::to_run(file, &self.name, &temporary(), &mut |_| true, Ranks::ALONE)
     }
 
     /// Names the files where they are kept; refuses one that does not belong to the case, wherever that may be: keys may come

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use slipfront::StopReason;
+use slipfront::{Execution, StopReason};
 use slipfront_case::case::Case;
 use slipfront_run::running::Running;
 use slipfront_run::summary::Summary;
@@ -44,7 +44,7 @@ impl LiveRun {
     /// A run of a case that begins at rest.
     pub(crate) fn from_rest(case: &Arc<Case>, threads: usize) -> Self {
         Self {
-            running: Running::start(case, threads),
+            running: Running::start(case, None, Execution::on_threads(threads)),
             leg: 0,
             before: Elapsed::default(),
             origin: None,

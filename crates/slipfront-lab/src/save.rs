@@ -6,6 +6,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
+use slipfront::Execution;
 use slipfront_case::disk::make_folders;
 use slipfront_case::text::{display_path, truncated};
 use slipfront_run::clock;
@@ -84,7 +85,7 @@ pub(crate) fn save(
         discard_folder(folder);
         return Err(sentence(error));
     }
-    let mut running = Running::start(&case, threads);
+    let mut running = Running::start(&case, None, Execution::on_threads(threads));
     let mut last_report = Instant::now();
     let reason = loop {
         match running.advance(case.steps_per_poll()) {

@@ -16,6 +16,7 @@ use std::process::Output;
 use std::sync::{Arc, LazyLock};
 
 use rstest::rstest;
+use slipfront::Execution;
 use slipfront::communicator::Alone;
 use slipfront_case::case::Case;
 use slipfront_run::checkpoint::Checkpoints;
@@ -52,10 +53,10 @@ static UNDISTURBED: LazyLock<Files> = LazyLock::new(|| {
 fn stopped_run() -> TempDir {
     let folder = TempDir::new().unwrap();
     let path = folder.path().join("run");
-    let case = Arc::new(Case::parse(CASE, "run", &[]).unwrap());
+    let case = Arc::new(Case::parse(CASE, "run", "", &[]).unwrap());
     let mut run = RunFolder::prepare(&path, false, &case.inputs).unwrap();
     run_results::write_case(&case, &mut run).unwrap();
-    let mut running = Running::start(&case, 1);
+    let mut running = Running::start(&case, None, Execution::default());
     running.advance(case.time_plan.last_step / 2).unwrap();
     let mut checkpoints = Checkpoints::new(&path, &case, clock::now());
     checkpoints.save(&running, &Alone).unwrap();

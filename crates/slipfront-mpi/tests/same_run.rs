@@ -11,8 +11,9 @@ use std::process::{Command, Output};
 use std::sync::Arc;
 
 use rstest::rstest;
+use slipfront::Execution;
 use slipfront::communicator::Alone;
-use slipfront_case::case::Case;
+use slipfront_case::case::{Case, Ranks};
 use slipfront_run::checkpoint::Checkpoints;
 use slipfront_run::run_folder::RunFolder;
 use slipfront_run::running::Running;
@@ -232,12 +233,12 @@ fn results_are_not_replaced_by_a_run_that_is_refused() {
 
 /// A run of [`CASE`] that was stopped after two checkpoints, the first of this step.
 fn stopped_run(place: &Path, overrides: &[String], first: u64) {
-    let case = Case::load(&place.join("m.toml"), overrides, &mut |_| true).unwrap();
+    let case = Case::load(&place.join("m.toml"), overrides, &mut |_| true, Ranks::ALONE).unwrap();
     let case = Arc::new(case);
     let path = place.join("k");
     let mut run = RunFolder::prepare(&path, false, &case.inputs).unwrap();
     run_results::write_case(&case, &mut run).unwrap();
-    let mut running = Running::start(&case, 1);
+    let mut running = Running::start(&case, None, Execution::default());
     let mut checkpoints = Checkpoints::new(&path, &case, clock::now());
     for steps in [first, 20] {
         running.advance(steps).unwrap();

@@ -38,7 +38,7 @@ impl FigureRunner<'_> {
     pub(super) fn case(&self, file: &str, overrides: &[&str]) -> Result<Case, PaperError> {
         let text = with_step(text_of(file)?, self.step)?;
         let overrides: Vec<String> = overrides.iter().map(|&key| key.to_owned()).collect();
-        Ok(Case::parse(&text, file, &overrides)?)
+        Ok(Case::parse(&text, file, "", &overrides)?)
     }
 
     /// A case on each of the random surfaces: five, or two in the reduced version.

@@ -13,6 +13,7 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
 
+use slipfront::Execution;
 use slipfront_case::case::Case;
 use slipfront_run::running::Running;
 
@@ -29,7 +30,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     let folder = tempfile::tempdir()?;
     paint(folder.path(), size, 0)?;
-    let mut running = Running::start_without_end(&case(folder.path(), size, 0)?, threads);
+    let mut running = Running::start(
+        &case(folder.path(), size, 0)?,
+        None,
+        Execution::on_threads(threads),
+    );
     running.advance(1500)?;
     let mut times = [(); 3].map(|()| Vec::new());
     for change in 1..=CHANGES {
@@ -71,5 +76,5 @@ fn paint(folder: &Path, size: usize, change: usize) -> Result<(), Box<dyn Error>
 fn case(folder: &Path, size: usize, change: usize) -> Result<Arc<Case>, Box<dyn Error>> {
     let text =
         format!("slider.blocks = [{size}, {size}]\n[[texture]]\nshape = 'mask'\nfile = 'mask{change}.png'\n");
-    Ok(Arc::new(Case::parse_in(&text, "painted", folder, &[])?))
+    Ok(Arc::new(Case::parse(&text, "painted", folder, &[])?))
 }

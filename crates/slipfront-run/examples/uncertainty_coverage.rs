@@ -13,7 +13,7 @@ use std::error::Error;
 
 use rayon::prelude::*;
 use slipfront::observe::{KineticHistory, KineticStart, Scheduled};
-use slipfront::{Simulation, Stop};
+use slipfront::{Execution, Simulation, Stop};
 use slipfront_case::case::Case;
 
 /// V* and Omega*.
@@ -27,9 +27,9 @@ fn deviations([v_star, omega_star]: [f64; 2], seed: u64) -> Result<Vec<Option<f6
     let text = format!(
         "slider.blocks = [25, 25]\nslider.omega_star = {omega_star}\ndrive.v_star = {v_star}\nfriction.seed = {seed}\n"
     );
-    let case = Case::parse(&text, "case", &[]).map_err(|error| error.to_string())?;
+    let case = Case::parse(&text, "case", "", &[]).map_err(|error| error.to_string())?;
     let dt = case.time_plan.dt_star;
-    let mut simulation = Simulation::at_rest(case.model, dt);
+    let mut simulation = Simulation::new(case.model, dt, None, Execution::default());
     // The window begins 2.5/V* after the peak, which comes before 2.7/V*.
     let ends = WINDOWS.map(|window| ((5.3 + window) / v_star / dt) as u64);
     let mut histories = ends.map(KineticHistory::new);

@@ -365,7 +365,7 @@ mod tests {
 
     fn case(sets: &[&str]) -> Case {
         let overrides: Vec<String> = sets.iter().map(|&set| set.to_owned()).collect();
-        Case::parse("", "case", &overrides).unwrap()
+        Case::parse("", "case", "", &overrides).unwrap()
     }
 
     /// The budget of a run whose pictures take some bytes.
@@ -430,7 +430,7 @@ mod tests {
                 on_node,
             };
             let file = CaseFile::parse("", "case", &overrides).unwrap();
-            Case::to_run_on_ranks(file, "case", Path::new(""), &mut |_| true, ranks).unwrap()
+            Case::to_run(file, "case", Path::new(""), &mut |_| true, ranks).unwrap()
         };
         let alone = budget_of(&case(&[
             "slider.blocks=[2000,2000]",

@@ -158,6 +158,7 @@ fn gather(
 mod tests {
     use std::sync::Arc;
 
+    use slipfront::Execution;
     use slipfront::communicator::{Alone, Threads};
     use slipfront_case::case::Ranks;
     use slipfront_case::case_file::CaseFile;
@@ -171,7 +172,7 @@ mod tests {
     /// The summary has the same bits, though no rank holds all blocks.
     #[test]
     fn ranks_find_the_front_that_one_finds() {
-        let case = Arc::new(Case::parse(CASE, "case", &[]).unwrap());
+        let case = Arc::new(Case::parse(CASE, "case", "", &[]).unwrap());
         let alone = running::run(&case, 1).unwrap().summary;
         assert!(alone.transition && alone.nucleation_sites > Some(0) && alone.front_speed_c_s.is_some());
         let summaries = Threads::run(3, |communicator| {
@@ -180,9 +181,15 @@ mod tests {
                 on_node: 3,
             };
             let file = CaseFile::parse(CASE, "case", &[]).unwrap();
-            let case = Case::to_run_on_ranks(file, "case", std::path::Path::new(""), &mut |_| true, ranks);
-            let mut running =
-                Running::start_on_ranks(&Arc::new(case.unwrap()), 1, Arc::new(communicator.clone()));
+            let case = Case::to_run(file, "case", std::path::Path::new(""), &mut |_| true, ranks);
+            let mut running = Running::start(
+                &Arc::new(case.unwrap()),
+                None,
+                Execution {
+                    communicator: Arc::new(communicator.clone()),
+                    ..Execution::on_threads(1)
+                },
+            );
             let reason = loop {
                 if let Some(reason) = running.advance(u64::MAX).unwrap() {
                     break reason;
@@ -207,7 +214,7 @@ mod tests {
                  time.step = 0.2\ntime.duration_star = {}",
                 6000.0 / v_star
             );
-            let case = Arc::new(Case::parse(&text, "case", &[]).unwrap());
+            let case = Arc::new(Case::parse(&text, "case", "", &[]).unwrap());
             let summary = running::run(&case, 1).unwrap().summary;
             let precursors = summary.precursors.unwrap();
             assert!(precursors.precursor_count > 3 && precursors.crossing_mu_star.is_some());
@@ -219,7 +226,7 @@ mod tests {
     /// A straight front over more blocks than are looked at.
     #[test]
     fn a_large_lattice_is_thinned() {
-        let case = Case::parse("slider.blocks = [61, 40]", "case", &[]).unwrap();
+        let case = Case::parse("slider.blocks = [61, 40]", "case", "", &[]).unwrap();
         let times: Vec<f64> = (0..61 * 40).map(|b| f64::from(b % 61) / 0.7).collect();
         let whole = of_ranks(&case, &times, 0.0..=f64::INFINITY, &Alone).unwrap();
         for most in [61 * 40, 61 * 40 - 1, 300] {

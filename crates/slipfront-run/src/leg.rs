@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use slipfront::{State, VectorField};
+use slipfront::{Execution, State, VectorField};
 use slipfront_case::case::Case;
 use thiserror::Error;
 
@@ -130,7 +130,7 @@ impl Running {
             return Err(ChangeError::NotFinite);
         }
         Ok(Leg {
-            running: Self::start_from(case, threads, state),
+            running: Self::start(case, Some(state), Execution::on_threads(threads)),
             steps,
             time_s: time_star * before.scales.time(),
             drive_m: drive,
@@ -146,11 +146,11 @@ mod tests {
 
     fn case_of(overrides: &[&str]) -> Arc<Case> {
         let overrides: Vec<String> = overrides.iter().map(|&text| text.to_owned()).collect();
-        Arc::new(Case::parse(SMALL, "case", &overrides).unwrap())
+        Arc::new(Case::parse(SMALL, "case", "", &overrides).unwrap())
     }
 
     fn started(case: &Arc<Case>, steps: u64) -> Running {
-        let mut running = Running::start_without_end(case, 1);
+        let mut running = Running::start(case, None, Execution::default());
         running.advance(steps).unwrap();
         running
     }
@@ -303,7 +303,7 @@ mod tests {
         let (case, unloaded) = (case_of(&[]), case_of(&["load.pressure = '100 Pa'"]));
         let mut state = State::at_rest(400);
         state.displacement.x[210] = 1e306;
-        let mut running = Running::start_from(&case, 1, state);
+        let mut running = Running::start(&case, Some(state), Execution::default());
         assert!(running.advance(10).is_err());
         assert_eq!(running.change(&unloaded, 1).err(), Some(ChangeError::NotFinite));
     }

@@ -154,7 +154,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let text = "slider.blocks = [6, 6]\nslider.outline = 'disc'\ntime.duration_star = 5\noutput.snapshots = [5]\n\
                     [[texture]]\nshape = 'cavity'\ncoverage = 12.5";
-        let case = Case::parse(text, "case", &[]).unwrap();
+        let case = Case::parse(text, "case", "", &[]).unwrap();
         let case = std::sync::Arc::new(case);
         let mut record = crate::running::run(&case, 1).unwrap();
         let in_memory = fields_of(&case, &record);

@@ -4,12 +4,12 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
-use slipfront::communicator::{Alone, Communicator};
+use slipfront::communicator::Communicator;
 use slipfront::observe::frames::{Selection, kept};
 use slipfront::observe::{
     CurveRow, Frame, Frames, Instants, Kinetic, Kymograph, Precursors, Schedule, Scheduled,
 };
-use slipfront::{Checkpoint, Execution, Kernel, RunError, Simulation, Snapshot, State, Stop, StopReason};
+use slipfront::{Checkpoint, Execution, Kernel, RunError, Simulation, Snapshot, State, StopReason};
 
 use crate::columns::Columns;
 use crate::fields::FieldFrame;
@@ -46,7 +46,7 @@ fn blocks_per_thread(kernel: Kernel) -> usize {
 
 /// Runs a case to its end, on at most `threads` threads, unless the run diverges.
 pub fn run(case: &Arc<Case>, threads: usize) -> Result<Record, RunError> {
-    let mut running = Running::start(case, threads);
+    let mut running = Running::start(case, None, Execution::on_threads(threads));
     loop {
         if let Some(reason) = running.advance(u64::MAX)? {
             return Ok(running.record(reason));
@@ -57,8 +57,6 @@ pub fn run(case: &Arc<Case>, threads: usize) -> Result<Record, RunError> {
 /// A run in progress, with all that its files need of it.
 pub struct Running {
     case: Arc<Case>,
-    /// When it ends.
-    stop: Stop,
     simulation: Simulation,
     observers: Observers,
     communicator: Arc<dyn Communicator>,
@@ -95,11 +93,11 @@ impl RunState {
     }
 }
 
-fn execution(case: &Case, threads: usize) -> Execution {
-    let execution = Execution::default();
+/// On no more threads than have blocks enough.
+fn on_useful_threads(case: &Case, execution: Execution) -> Execution {
     let per_thread = blocks_per_thread(execution.kernel.for_model(&case.model));
     Execution {
-        threads: (case.model.surface.n_blocks() / per_thread).clamp(1, threads),
+        threads: (case.model.surface.n_blocks() / per_thread).clamp(1, execution.threads),
         ..execution
     }
 }
@@ -113,8 +111,8 @@ fn selection(output: &Output) -> Selection {
 }
 
 impl Observers {
-    /// Those of a run of at most `last_step` steps, [`u64::MAX`] for a run without an end.
-    fn new(case: &Case, last_step: u64) -> Self {
+    /// Those of a run that begins.
+    fn new(case: &Case) -> Self {
         let (time_plan, output) = (&case.time_plan, &case.output);
         let selection = selection(output);
         let instants = || Instants::new(selection.clone(), time_plan.kinetic, time_plan.end_star());
@@ -128,7 +126,7 @@ impl Observers {
             frames: has_times.then(|| Frames::new(selection.clone())),
         };
         Self {
-            summary: SummaryObservers::new(case, last_step),
+            summary: SummaryObservers::new(case),
             kymograph: Kymograph::default(),
             fields,
         }
@@ -136,7 +134,7 @@ impl Observers {
 
     /// Whether they can be those of a run of this case after `step` steps.
     fn belong_to(&self, case: &Case, step: u64) -> bool {
-        let new = Self::new(case, case.time_plan.last_step);
+        let new = Self::new(case);
         let instants = match (&self.fields.instants, &new.fields.instants) {
             (Some(old), Some(new)) => old.is_consistent_with(new, step),
             (old, new) => old.is_none() && new.is_none(),
@@ -219,57 +217,20 @@ fn own_rows_of_fields(case: &Case) -> Range<usize> {
 const PART: usize = 1 << 17;
 
 impl Running {
-    /// Begins a run on at most `threads` threads.
-    pub fn start(case: &Arc<Case>, threads: usize) -> Self {
-        Self::start_on_ranks(case, threads, Arc::new(Alone))
-    }
-
-    /// The same on each of several ranks, which share the lattice and then call the same functions. `threads` are those of one.
-    pub fn start_on_ranks(case: &Arc<Case>, threads: usize, communicator: Arc<dyn Communicator>) -> Self {
-        let plan = &case.time_plan;
-        Self::begin(case, threads, plan.stop, plan.last_step, communicator, None)
-    }
-
-    /// Begins a run in this state, in which blocks may be displaced and slide.
+    /// Begins a run in this state, in which blocks may be displaced and slide, or at rest. It is computed as `execution` says, on no
+    /// more threads than have blocks enough; ranks that share the lattice call this and then the same functions.
     ///
     /// # Panics
     /// If a number of the state is not finite, or it is that of another number of blocks.
-    pub fn start_from(case: &Arc<Case>, threads: usize, state: State) -> Self {
-        let plan = &case.time_plan;
-        Self::begin(
-            case,
-            threads,
-            plan.stop,
-            plan.last_step,
-            Arc::new(Alone),
-            Some(state),
-        )
-    }
-
-    /// Begins a run that goes on as long as it is advanced, whatever its case says. Its [state](Self::state) cannot be
-    /// resumed.
-    pub fn start_without_end(case: &Arc<Case>, threads: usize) -> Self {
-        let stop = Stop::at_step(u64::MAX);
-        Self::begin(case, threads, stop, u64::MAX, Arc::new(Alone), None)
-    }
-
-    fn begin(
-        case: &Arc<Case>,
-        threads: usize,
-        stop: Stop,
-        last_step: u64,
-        communicator: Arc<dyn Communicator>,
-        state: Option<State>,
-    ) -> Self {
+    pub fn start(case: &Arc<Case>, state: Option<State>, execution: Execution) -> Self {
         let (model, dt_star) = (Arc::clone(&case.model), case.time_plan.dt_star);
-        let execution = execution(case, threads);
+        let execution = on_useful_threads(case, execution);
         Self {
             case: Arc::clone(case),
-            stop,
-            simulation: Simulation::on_ranks(model, dt_star, state, execution, Arc::clone(&communicator)),
-            observers: Observers::new(case, last_step),
-            communicator,
+            communicator: Arc::clone(&execution.communicator),
             threads: execution.threads,
+            simulation: Simulation::new(model, dt_star, state, execution),
+            observers: Observers::new(case),
         }
     }
 
@@ -280,9 +241,8 @@ impl Running {
     /// Those of `read`.
     pub fn resume<E>(
         case: &Arc<Case>,
-        threads: usize,
         state: RunState,
-        communicator: Arc<dyn Communicator>,
+        execution: Execution,
         mut read: impl FnMut(u64, &mut [u8]) -> Result<(), E>,
     ) -> Result<Option<Self>, E> {
         let (checkpoint, mut observers) = (state.simulation, state.observers);
@@ -293,22 +253,17 @@ impl Running {
         let mut bytes = Vec::new();
         let first_row = own_rows(case).start;
         let (model, dt_star) = (Arc::clone(&case.model), case.time_plan.dt_star);
-        let execution = execution(case, threads);
-        let simulation = Simulation::resume_on_ranks(
-            model,
-            dt_star,
-            &checkpoint,
-            execution,
-            Arc::clone(&communicator),
-            |column, first, values| {
+        let execution = on_useful_threads(case, execution);
+        let (threads, communicator) = (execution.threads, Arc::clone(&execution.communicator));
+        let simulation =
+            Simulation::resume(model, dt_star, &checkpoint, execution, |column, first, values| {
                 bytes.resize(size_of_val(values), 0);
                 read(blocks.offset(column, first_row, first), &mut bytes)?;
                 for (value, bytes) in values.iter_mut().zip(bytes.as_chunks().0) {
                     *value = f64::from_le_bytes(*bytes);
                 }
                 Ok(())
-            },
-        )?;
+            })?;
         let Some(simulation) = simulation else {
             return Ok(None);
         };
@@ -333,18 +288,18 @@ impl Running {
         }
         Ok(Some(Self {
             case: Arc::clone(case),
-            stop: case.time_plan.stop,
             simulation,
             observers,
             communicator,
-            threads: execution.threads,
+            threads,
         }))
     }
 
     /// At most `steps` steps; why the run ended, if it did. An error says that it diverges. All ranks must call this together.
     pub fn advance(&mut self, steps: u64) -> Result<Option<StopReason>, RunError> {
         let mut observers = self.observers.scheduled(&self.case.output.snapshots);
-        self.simulation.advance(self.stop, steps, &mut observers)
+        self.simulation
+            .advance(self.case.time_plan.stop, steps, &mut observers)
     }
 
     /// The present instant.
@@ -521,7 +476,7 @@ fn add_front(
 
 /// Runs a case on one thread as long as `ends` does not say otherwise; none if it was given up.
 pub fn run_unless(case: &Arc<Case>, ends: &dyn Fn() -> bool) -> Option<Result<Record, RunError>> {
-    let mut running = Running::start(case, 1);
+    let mut running = Running::start(case, None, Execution::default());
     while !ends() {
         match running.advance(case.steps_per_poll()) {
             Ok(None) => {}
@@ -560,8 +515,8 @@ mod tests {
     #[test]
     fn a_run_can_be_looked_at_on_its_way() {
         let text = "slider.blocks = [20, 20]\n[[texture]]\nshape = 'cavity'\ncoverage = 10\n";
-        let case = Arc::new(Case::parse(text, "case", &[]).unwrap());
-        let mut running = Running::start(&case, 1);
+        let case = Arc::new(Case::parse(text, "case", "", &[]).unwrap());
+        let mut running = Running::start(&case, None, Execution::default());
         let letters = |running: &Running| running.instants().map(|(letter, _)| letter).collect::<String>();
         // Of a texture, blocks in contact do not slip before t* = 30.
         running.advance((30.0 / case.time_plan.dt_star) as u64).unwrap();
@@ -588,15 +543,15 @@ mod tests {
     }
 
     #[test]
-    fn a_run_without_an_end_goes_on_and_shows_its_fields_in_si_units() {
-        let text = "slider.blocks = [4, 3]\ntime.duration_star = 20\ndrive.v_star = 0.2\n\
+    fn a_run_shows_its_fields_in_si_units() {
+        let text = "slider.blocks = [4, 3]\ntime.duration_star = 40\ndrive.v_star = 0.2\n\
                     output.fields = ['contact_stress_star', 'displacement_x']\n";
-        let case = Arc::new(Case::parse(text, "case", &[]).unwrap());
-        let last_step = case.time_plan.last_step;
-        let mut running = Running::start_without_end(&case, 1);
-        assert_eq!(running.advance(last_step + 100).unwrap(), None);
+        let case = Arc::new(Case::parse(text, "case", "", &[]).unwrap());
+        let steps = case.time_plan.last_step / 2 + 100;
+        let mut running = Running::start(&case, None, Execution::default());
+        assert_eq!(running.advance(steps).unwrap(), None);
         let fields = running.fields();
-        assert_eq!(fields.step, last_step + 100);
+        assert_eq!(fields.step, steps);
         let place = |name| {
             case.output
                 .fields

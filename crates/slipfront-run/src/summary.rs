@@ -296,10 +296,10 @@ pub(crate) struct SummaryObservers {
 
 impl SummaryObservers {
     /// Those of a run of at most `last_step` steps, [`u64::MAX`] for a run without an end.
-    pub(crate) fn new(case: &Case, last_step: u64) -> Self {
+    pub(crate) fn new(case: &Case) -> Self {
         Self {
             curve: Curve::every(case.output.series_stride),
-            history: KineticHistory::new(last_step),
+            history: KineticHistory::new(case.time_plan.last_step),
             precursors: case.file.drive.edge().map(Precursors::new),
             cycles: case.model.drive.program.is_some().then(Cycles::default),
         }

@@ -12,7 +12,7 @@ use slipfront_run::running;
 fn the_summary_has_what_is_across_the_drive() {
     let text = "slider.blocks = [12, 9]\ndrive = { v_star = 0.1, direction = 30 }\noutput.series = 0.1\n\
                 texture = [{ shape = 'groove', coverage = 25 }]";
-    let case = Arc::new(Case::parse(text, "case", &[]).unwrap());
+    let case = Arc::new(Case::parse(text, "case", "", &[]).unwrap());
     let record = running::run(&case, 1).unwrap();
     let (summary, rows) = (record.summary, record.rows);
     assert_eq!(rows.len() as u64, summary.steps + 1, "a row for every step");

@@ -332,7 +332,7 @@ fn outlines_fill_the_blocks_of_the_mask() {
         sliders.extend(shapes.iter().map(|shape| format!("[slider]\n{slider}\n{shape}")));
     }
     for text in &sliders {
-        let case = Case::parse_in(text, "case", folder.path(), &[]).unwrap();
+        let case = Case::parse(text, "case", folder.path(), &[]).unwrap();
         let (nx, ny) = (case.model.lattice.nx, case.model.lattice.ny);
         let textured = textured_blocks(&case);
         assert_eq!(textured.contains(&true), !text.is_empty());
@@ -361,7 +361,7 @@ fn circles_and_ellipses_are_written_as_such_and_cavities_as_4096_corners() {
     let folder = tempfile::tempdir().unwrap();
     let written = |shape: &str, name: &str| {
         let text = format!("slider.blocks = [40, 30]\n[[texture]]\nshape = 'cavity'\n{shape}");
-        let case = Case::parse(&text, "case", &[]).unwrap();
+        let case = Case::parse(&text, "case", "", &[]).unwrap();
         write(&case, &folder.path().join(name), None).unwrap();
         fs::read_to_string(folder.path().join(name)).unwrap()
     };
@@ -384,12 +384,12 @@ fn pictures_and_fields_read_back_as_the_same_texture() {
     let folder = tempfile::tempdir().unwrap();
     let path = |name: &str| folder.path().join(name);
     let text = "slider.blocks = [37, 22]\n[[texture]]\nshape = 'cavity'\ncoverage = 20\nw = 0.3\nrotate = 20\ncenter = ['12 um', '7 um']";
-    let case = Case::parse(text, "case", &[]).unwrap();
+    let case = Case::parse(text, "case", "", &[]).unwrap();
     let textured = textured_blocks(&case);
     for (scale, size) in [(None, [37, 22]), (Some(3), [111, 66])] {
         write(&case, &path("mask.png"), scale).unwrap();
         let text = "slider.blocks = [37, 22]\n[[texture]]\nshape = 'mask'\nfile = 'mask.png'";
-        let read = Case::parse_in(text, "case", folder.path(), &[]).unwrap();
+        let read = Case::parse(text, "case", folder.path(), &[]).unwrap();
         assert_eq!(textured_blocks(&read), textured);
         let file = fs::File::open(path("mask.png")).unwrap();
         let info = png::Decoder::new(std::io::BufReader::new(file))
@@ -458,6 +458,7 @@ fn the_smallest_lengths_are_told_of_every_shape() {
         let case = Case::parse(
             &format!("slider.blocks = [40, 40]\n[[texture]]\n{texture}"),
             "case",
+            "",
             &[],
         )
         .unwrap();

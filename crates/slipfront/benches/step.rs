@@ -38,7 +38,7 @@ fn sliding(n: usize, kernel: Kernel) -> Simulation {
         skips: false,
         ..Execution::default()
     };
-    let mut simulation = Simulation::with_execution(model, 0.1, None, execution);
+    let mut simulation = Simulation::new(model, 0.1, None, execution);
     while simulation.time_star() < first + 60.0 {
         simulation.step();
     }

@@ -51,7 +51,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         skips: false,
         ..Execution::default()
     };
-    let mut simulation = Simulation::with_execution(model, 0.1, None, execution);
+    let mut simulation = Simulation::new(model, 0.1, None, execution);
     let mut arrays: [Vec<f64>; 6] = std::array::from_fn(|k| vec![k as f64; n]);
 
     let (mut step, mut stream) = (f64::INFINITY, f64::INFINITY);

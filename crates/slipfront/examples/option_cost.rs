@@ -216,11 +216,11 @@ fn print_costs(size: usize, threads: usize) -> Result<(), Box<dyn Error + Send +
             } else {
                 Kernel::Fused
             },
-            threads,
             skips: false,
+            ..Execution::on_threads(threads)
         };
         let state = Some(steady_state(&model));
-        let mut simulation = Simulation::with_execution(model, DT_STAR, state, execution);
+        let mut simulation = Simulation::new(model, DT_STAR, state, execution);
         (0..WARM_UP).for_each(|_| simulation.step());
         simulations.push(simulation);
     }

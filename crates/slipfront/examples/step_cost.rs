@@ -41,7 +41,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         1e-6,
         FrictionLaw::Projection,
     );
-    let mut simulation = Simulation::with_execution(model, 0.1, None, execution);
+    let mut simulation = Simulation::new(model, 0.1, None, execution);
 
     let began = Instant::now();
     for _ in 0..steps {

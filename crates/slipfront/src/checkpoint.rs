@@ -222,7 +222,7 @@ mod tests {
                 redraw: None,
             });
         }
-        let mut plain = Simulation::with_execution(model.clone(), 0.1, None, execution);
+        let mut plain = Simulation::new(model.clone(), 0.1, None, execution.clone());
         let mut slips = 0;
         while slips < 100 {
             plain.step();
@@ -258,7 +258,7 @@ mod tests {
                 kernel,
                 ..Execution::default()
             };
-            let simulation = Simulation::with_execution(model.clone(), 0.1, None, execution);
+            let simulation = Simulation::new(model.clone(), 0.1, None, execution.clone());
             let mut calls = 0;
             let resumed = Simulation::resume(
                 model.clone(),

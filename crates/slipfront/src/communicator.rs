@@ -3,12 +3,13 @@
 //! Each process, a *rank*, holds consecutive rows of the lattice: rank 0 the lowest. Everything that ranks agree on is a
 //! maximum or a sum of integers, so that it does not depend on how many they are.
 
+use std::fmt::Debug;
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
 
 /// The connection of a rank with the others.
-pub trait Communicator: Send + Sync {
+pub trait Communicator: Debug + Send + Sync {
     /// Number of this rank, from 0.
     fn rank(&self) -> usize;
 
@@ -81,7 +82,7 @@ impl Communicator for Alone {
 }
 
 /// One of several ranks that are threads of this process: what a lattice of many machines does can be tried on one.
-#[derive(Clone)]
+#[derive(Clone, Debug)]
 pub struct Threads {
     rank: usize,
     /// To each rank, this one included.

@@ -11,12 +11,12 @@
 //! all conversions are in [`scales`].
 //!
 //! ```
-//! use slipfront::{Drive, FrictionLaw, Lattice, Model, Simulation, Stop, Surface};
+//! use slipfront::{Drive, Execution, FrictionLaw, Lattice, Model, Simulation, Stop, Surface};
 //!
 //! let lattice = Lattice::free(5, 5);
 //! let surface = Surface::uniform(&lattice, 1.0, 0.5);
 //! let model = Model::new(lattice, surface, Drive::along_x(0.03), 0.1 * 0.75_f64.sqrt(), 1e-6, FrictionLaw::Projection);
-//! let mut simulation = Simulation::at_rest(model, 0.1);
+//! let mut simulation = Simulation::new(model, 0.1, None, Execution::default());
 //! simulation.run(Stop::at_step(1000), &mut []).unwrap();
 //! // A uniform lattice slips as one block, when the force of its drive springs reaches the threshold: t* = (8/3)/V*.
 //! assert!((simulation.peak().time_star - 8.0 / 3.0 / 0.03).abs() < 0.2);

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::checkpoint::{BlockColumn, Checkpoint};
-use crate::communicator::{Alone, Communicator, lowest_rank};
+use crate::communicator::{Communicator, lowest_rank};
 use crate::error::RunError;
 use crate::friction::ContactTotals;
 use crate::kernel::engine::Engine;
@@ -32,42 +32,25 @@ pub struct Simulation {
 }
 
 impl Simulation {
-    /// A slider at rest at t = 0. `dt_star` must stay below [`crate::lattice::dt_star_limit`].
-    pub fn at_rest(model: impl Into<Arc<Model>>, dt_star: f64) -> Self {
-        Self::with_execution(model, dt_star, None, Execution::default())
-    }
-
-    /// A slider in a given state, or at rest, computed as `execution` says.
+    /// A slider at t = 0 in a given state, or at rest, computed as `execution` says. `dt_star` must stay below
+    /// [`crate::lattice::dt_star_limit`]. Ranks that share a lattice call this and then the same functions, each with a model of its
+    /// own rows and the state of their blocks.
     ///
     /// # Panics
     /// If a displacement or velocity of the state is not finite.
-    pub fn with_execution(
+    pub fn new(
         model: impl Into<Arc<Model>>,
         dt_star: f64,
         state: Option<State>,
         execution: Execution,
-    ) -> Self {
-        Self::on_ranks(model, dt_star, state, execution, Arc::new(Alone))
-    }
-
-    /// The same of a lattice that several ranks share, which all call this and then the same functions. Each has a model of its
-    /// own rows, the state of their blocks and its connection with the others.
-    ///
-    /// # Panics
-    /// If a displacement or velocity of the state is not finite.
-    pub fn on_ranks(
-        model: impl Into<Arc<Model>>,
-        dt_star: f64,
-        state: Option<State>,
-        execution: Execution,
-        communicator: Arc<dyn Communicator>,
     ) -> Self {
         let model = model.into();
         assert!(
             state.as_ref().is_none_or(State::is_finite),
             "a displacement or velocity of the state to begin with is not finite"
         );
-        let mut engine = execution.begin(&model, dt_star, state, Arc::clone(&communicator));
+        let communicator = Arc::clone(&execution.communicator);
+        let mut engine = execution.begin(&model, dt_star, state);
         let totals = engine.step(&model, 0, true);
         let mut simulation = Self {
             peak: Peak::new(model.steady_level(&*communicator), model.longest_fall()),
@@ -86,11 +69,11 @@ impl Simulation {
     }
 
     /// A run that continues from a checkpoint with the same bits as if it had not been stopped, computed as `execution`
-    /// says. `read` is given the number of a column, a block and room for the values of the blocks from there on. None if the
-    /// checkpoint is that of another kernel.
+    /// says. `read` is given the number of a column, a block and room for the values of the blocks from there on. None if another
+    /// kernel wrote the checkpoint. Ranks that share a lattice all call this together, each for the blocks of its rows.
     ///
     /// # Errors
-    /// Those of `read`.
+    /// Whatever `read` fails with.
     pub fn resume<E>(
         model: impl Into<Arc<Model>>,
         dt_star: f64,
@@ -98,24 +81,10 @@ impl Simulation {
         execution: Execution,
         read: impl FnMut(usize, usize, &mut [f64]) -> Result<(), E>,
     ) -> Result<Option<Self>, E> {
-        Self::resume_on_ranks(model, dt_star, checkpoint, execution, Arc::new(Alone), read)
-    }
-
-    /// The same on each of several ranks, which all call this together, for the blocks of its rows.
-    ///
-    /// # Errors
-    /// Those of `read`.
-    pub fn resume_on_ranks<E>(
-        model: impl Into<Arc<Model>>,
-        dt_star: f64,
-        checkpoint: &Checkpoint,
-        execution: Execution,
-        communicator: Arc<dyn Communicator>,
-        read: impl FnMut(usize, usize, &mut [f64]) -> Result<(), E>,
-    ) -> Result<Option<Self>, E> {
         let model = model.into();
         let (step, totals, peak) = (checkpoint.step, checkpoint.totals, checkpoint.peak);
-        let engine = execution.resume(&model, dt_star, checkpoint, Arc::clone(&communicator), read)?;
+        let communicator = Arc::clone(&execution.communicator);
+        let engine = execution.resume(&model, dt_star, checkpoint, read)?;
         Ok(engine.map(|engine| Self {
             point: CurvePoint::measure(&model, &totals, step as f64 * dt_star),
             model,

@@ -95,7 +95,7 @@ fn a_step_allocates_nothing() {
                 kernel,
                 ..Execution::default()
             };
-            let mut simulation = Simulation::with_execution(model.clone(), 0.1, None, execution);
+            let mut simulation = Simulation::new(model.clone(), 0.1, None, execution);
             let calls = allocations(|| (0..1000).for_each(|_| simulation.step()));
             assert_eq!(calls, 0, "{law:?} {kernel:?}");
             // 1000 steps go through onset, which comes at t* = 82 here.
@@ -110,7 +110,7 @@ fn a_step_allocates_nothing() {
 fn watching_allocates_only_what_is_kept() {
     let model = model(FrictionLaw::Projection);
     let steps = 2670;
-    let mut simulation = Simulation::at_rest(model.clone(), 0.1);
+    let mut simulation = Simulation::new(model.clone(), 0.1, None, Execution::default());
     let fields = vec![Field::ContactStress, Field::Traction, Field::Sliding];
     let n_fields = fields.len() as u64;
     let selection = Selection { fields, stride: 1 };
@@ -124,7 +124,7 @@ fn watching_allocates_only_what_is_kept() {
     });
     assert_eq!(none, 0);
 
-    let mut simulation = Simulation::at_rest(model.clone(), 0.1);
+    let mut simulation = Simulation::new(model.clone(), 0.1, None, Execution::default());
     let mut observers = [
         Scheduled::always(&mut every_step),
         Scheduled::new(Schedule::Every(10), &mut sparse),
@@ -134,7 +134,7 @@ fn watching_allocates_only_what_is_kept() {
     });
     assert!(curves <= 2 * 16, "{curves} allocations for two curves");
 
-    let mut simulation = Simulation::at_rest(model.clone(), 0.1);
+    let mut simulation = Simulation::new(model.clone(), 0.1, None, Execution::default());
     let mut observers = [Scheduled::always(&mut instants)];
     let captures = allocations(|| {
         simulation.run(Stop::at_step(steps), &mut observers).unwrap();

@@ -46,7 +46,7 @@ mod tests {
             "drive.motion='rotation'",
             "load.profile={along='x',relative_slope=0.5}",
         ] {
-            let case = Case::parse("", "case", &[set.to_owned()]).unwrap();
+            let case = Case::parse("", "case", "", &[set.to_owned()]).unwrap();
             let friction = case.file.friction.in_model(case.groups.v_star);
             let (options, model) = (options(&case.file, friction), &case.model);
             assert_eq!(options.friction, model.friction, "{set}");

@@ -93,13 +93,9 @@ pub struct TextureReport {
 
 impl Case {
     /// Loads a case file and the files it names, which stand relative to it. A case whose model needs more memory to be stepped than
-    /// there is gets refused before any array is allocated. `watch` is shown how its texture is laid over the blocks.
-    pub fn load(path: &Path, overrides: &[String], watch: &mut Watch) -> Result<Self, CaseError> {
-        Self::load_on_ranks(path, overrides, watch, Ranks::ALONE)
-    }
-
-    /// [`load`](Self::load) on all `ranks` at once, as [`to_run_on_ranks`](Self::to_run_on_ranks) does.
-    pub fn load_on_ranks(
+    /// there is gets refused before any array is allocated. `watch` is shown how its texture is laid over the blocks. It is made on all
+    /// `ranks` at once, as [`to_run`](Self::to_run) does.
+    pub fn load(
         path: &Path,
         overrides: &[String],
         watch: &mut Watch,
@@ -110,29 +106,24 @@ impl Case {
             .file_stem()
             .map_or_else(|| "case".to_owned(), |stem| stem.to_string_lossy().into_owned());
         let folder = path.parent().unwrap_or(Path::new(""));
-        Self::to_run_on_ranks(file, &name, folder, watch, ranks)
+        Self::to_run(file, &name, folder, watch, ranks)
     }
 
-    /// Makes a case of text, as [`load`](Self::load) does; the files it names stand in the working directory.
-    pub fn parse(text: &str, name: &str, overrides: &[String]) -> Result<Self, CaseError> {
-        Self::parse_in(text, name, Path::new(""), overrides)
+    /// Makes a case of text alone, as [`load`](Self::load) does; the files it names stand relative to `folder`.
+    pub fn parse(
+        text: &str,
+        name: &str,
+        folder: impl AsRef<Path>,
+        overrides: &[String],
+    ) -> Result<Self, CaseError> {
+        let file = CaseFile::parse(text, name, overrides)?;
+        Self::to_run(file, name, folder.as_ref(), &mut |_| true, Ranks::ALONE)
     }
 
-    /// Makes a case of text, as [`load`](Self::load) does; the files it names stand relative to `folder`.
-    pub fn parse_in(text: &str, name: &str, folder: &Path, overrides: &[String]) -> Result<Self, CaseError> {
-        Self::to_run(CaseFile::parse(text, name, overrides)?, name, folder, &mut |_| {
-            true
-        })
-    }
-
-    /// Makes a case of a case file that was read already, to be run; the files it names stand relative to `folder`.
-    pub fn to_run(file: CaseFile, name: &str, folder: &Path, watch: &mut Watch) -> Result<Self, CaseError> {
-        Self::to_run_on_ranks(file, name, folder, watch, Ranks::ALONE)
-    }
-
-    /// [`to_run`](Self::to_run) on all `ranks` at once: each makes the surface of its own rows, and knows the rest of the case. If
-    /// one fails, or was given another case or other files, all give the same error.
-    pub fn to_run_on_ranks(
+    /// Makes a case of a case file that was read already, to be run; the files it names stand relative to `folder`. It is made on all
+    /// `ranks` at once: each makes the surface of its own rows, and knows the rest of the case. If one fails, or was given another case
+    /// or other files, all give the same error.
+    pub fn to_run(
         file: CaseFile,
         name: &str,
         folder: &Path,

@@ -128,7 +128,7 @@ mod tests {
 
     fn share(changes: &[&str]) -> Option<f64> {
         let changes: Vec<String> = changes.iter().map(ToString::to_string).collect();
-        let case = Case::parse("", "case", &changes).unwrap();
+        let case = Case::parse("", "case", "", &changes).unwrap();
         let whole = case.whole_slider()?;
         assert!((whole.for_given * whole.mu_static - case.scales.mu_static_mean.powi(2)).abs() < 1e-12);
         Some(whole.mu_static / case.scales.mu_static_mean)

@@ -3,7 +3,7 @@
 use slipfront_case::case::Case;
 
 fn case(text: &str, overrides: &[String]) -> Case {
-    Case::parse(text, "case", overrides).unwrap_or_else(|error| panic!("{text}\n{overrides:?}\n{error}"))
+    Case::parse(text, "case", "", overrides).unwrap_or_else(|error| panic!("{text}\n{overrides:?}\n{error}"))
 }
 
 /// What the sentence says to set, as a user copies it for `--set`.
@@ -187,7 +187,7 @@ fn what_is_fine_enough_or_not_known_is_not_noted() {
     let mask: Vec<bool> = (0..40 * 40).map(|block| block % 3 == 0).collect();
     slipfront_case::arrays::write_mask_png(&folder.path().join("mask.png"), 40, 40, &mask).unwrap();
     let text = "slider.blocks = [40, 40]\n[[texture]]\nshape = 'mask'\nfile = 'mask.png'";
-    let masked = Case::parse_in(text, "case", folder.path(), &[]).unwrap();
+    let masked = Case::parse(text, "case", folder.path(), &[]).unwrap();
     assert_eq!(masked.too_coarse(), None);
 }
 

@@ -158,7 +158,7 @@ fn steps_and_durations_follow_the_blocks() {
     let case = |modulus: f64| {
         let grade = format!("{{ along = 'x', from = {modulus}, to = {modulus} }}");
         let text = format!("slider.blocks = [4, 4]\nslider.stiffness_grade = {grade}");
-        Case::parse(&text, "case", &[]).unwrap()
+        Case::parse(&text, "case", "", &[]).unwrap()
     };
     for (modulus, step_limit) in [(0.5, 0.9058), (1.0, 0.9058), (80.0, 0.1013), (1000.0, 0.02864)] {
         let found = case(modulus);
@@ -180,7 +180,7 @@ fn a_total_stiffness_is_the_sum_of_all_drive_springs() {
                 "slider.blocks = [10, 7]\nslider.stiffness_grade = {{ along = 'x', from = {from:?}, to = {to:?} }}\n\
                  drive.attach = '{attach}'\ndrive.total_stiffness_star = 0.5"
             );
-            let case = Case::parse(&text, "case", &[]).unwrap();
+            let case = Case::parse(&text, "case", "", &[]).unwrap();
             let (slider, k_drive) = (case.model.slider(), case.model.drive.k_drive);
             let sum: f64 = (0..70).map(|b| k_drive * slider.drive_spring(b)).sum();
             // 70 terms are rounded.
@@ -196,7 +196,7 @@ fn a_total_stiffness_is_the_sum_of_all_drive_springs() {
 fn fast_loading_is_told_in_the_speed_that_equal_blocks_would_have() {
     let fast = |keys: &str| {
         let text = format!("slider.blocks = [50, 50]\n{keys}");
-        let warnings = Case::parse(&text, "case", &[]).unwrap().warnings();
+        let warnings = Case::parse(&text, "case", "", &[]).unwrap().warnings();
         let fast = warnings.into_iter().find(|warning| warning.contains("above 0.2"));
         fast.map(|warning| warning.split(" above 0.2").next().unwrap().to_owned())
     };
@@ -234,7 +234,7 @@ fn runs_last_longer_where_few_blocks_touch() {
     let end = |texture: &str, changes: &[&str]| {
         let text = format!("[slider]\nblocks = [50, 50]\n{texture}");
         let changes: Vec<String> = changes.iter().map(ToString::to_string).collect();
-        let case = Case::parse(&text, "case", &changes).unwrap();
+        let case = Case::parse(&text, "case", "", &changes).unwrap();
         (case.time_plan.end_star(), case.expected.onset_star)
     };
     let groove = |percent: u32| format!("[[texture]]\nshape = 'groove'\nwidth = '{} um'", percent / 2);
@@ -276,7 +276,7 @@ fn times_are_held_against_the_end_of_the_run_itself() {
         )
         .unwrap();
         let text = "slider.blocks = [2, 2]\nslider.stiffness_field = \"moduli.csv\"\ndrive.v_star = 0.1";
-        Case::parse_in(text, "case", folder.path(), &[key.to_owned()])
+        Case::parse(text, "case", folder.path(), &[key.to_owned()])
     };
     // 8/V* is 80.
     for key in ["time.kinetic_from_star=120", "output.snapshots=[120]"] {
@@ -296,7 +296,7 @@ fn patterns_can_be_said_in_several_ways() {
         let text = format!(
             "slider = {{ blocks = [48, 24], edges = 'periodic' }}\n[[texture]]\nshape = 'cavity'\nlambda = '2 um'\n{pattern}"
         );
-        let case = Case::parse(&text, "case", &[]).unwrap();
+        let case = Case::parse(&text, "case", "", &[]).unwrap();
         let warnings = case.warnings();
         (case.model.surface.textured.clone(), case.texture, warnings)
     };
@@ -362,7 +362,7 @@ fn copies_share_the_coverage() {
         ),
     ] {
         let text = format!("slider.blocks = [50, 50]\n[[texture]]\n{texture}");
-        let case = Case::parse(&text, "case", &[]).unwrap();
+        let case = Case::parse(&text, "case", "", &[]).unwrap();
         let found = case.model.surface.textured.iter().filter(|&&t| t).count();
         assert_eq!(found, blocks, "{texture}");
         if let Some(asked) = case.texture.asked_percent {
@@ -380,7 +380,7 @@ fn masks_fill_every_cell() {
     let case = |pattern: &str| {
         let text =
             format!("slider.blocks = [32, 24]\n[[texture]]\nshape = 'mask'\nfile = 'cell.png'\n{pattern}");
-        Case::parse_in(&text, "case", folder.path(), &[])
+        Case::parse(&text, "case", folder.path(), &[])
     };
     let said = case("pitch = '40 um'").unwrap_err().to_string();
     assert!(

@@ -4,7 +4,7 @@ use slipfront::{Ageing, ContactSprings, Coulomb, Friction, FrictionLaw, Kernel, 
 use slipfront_case::case::Case;
 
 fn case(text: &str) -> Case {
-    Case::parse(text, "case", &[]).unwrap_or_else(|error| panic!("{error}"))
+    Case::parse(text, "case", "", &[]).unwrap_or_else(|error| panic!("{error}"))
 }
 
 const RATE_AND_STATE: &str = "friction = { law = 'rate_and_state', mu_static = 0.5, a = 0.01, b = 0.02, d_c_star = 0.5, v_0_star = 0.02 }";
@@ -77,7 +77,10 @@ fn sliding_that_takes_as_much_force_as_its_start_is_told() {
     let warnings = |changes: &[&str]| {
         let changes: Vec<String> = changes.iter().map(ToString::to_string).collect();
         let text = "slider.omega_star = 0.2\nfriction = { sigma_static_star = 0, sigma_kinetic_star = 0 }";
-        Case::parse(text, "case", &changes).unwrap().warnings().join("\n")
+        Case::parse(text, "case", "", &changes)
+            .unwrap()
+            .warnings()
+            .join("\n")
     };
     let speed = |drag: f64| format!("drive.v_star={:?}", drag / (0.75_f64.sqrt() * 0.2));
     let soft = "drive.stiffness_star=1e-3";

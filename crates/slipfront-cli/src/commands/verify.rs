@@ -4,7 +4,8 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use clap::Args;
-use slipfront_case::case::Case;
+use slipfront::Execution;
+use slipfront_case::case::{Case, Ranks};
 use slipfront_case::number_format::count;
 use slipfront_case::text::truncated;
 use slipfront_case::unfinished::TemporaryFolder;
@@ -124,10 +125,14 @@ impl VerifyCommand {
             signals,
             self.quiet,
             |watch, _| match &run.case {
-                Ok(file) => Case::to_run(file.clone(), "case", folder, watch),
-                Err(CaseDefect::NotResolved(file)) => Case::to_run(*file.clone(), "case", folder, watch),
+                Ok(file) => Case::to_run(file.clone(), "case", folder, watch, Ranks::ALONE),
+                Err(CaseDefect::NotResolved(file)) => {
+                    Case::to_run(*file.clone(), "case", folder, watch, Ranks::ALONE)
+                }
                 // It says why there is none.
-                Err(CaseDefect::Unreadable(_) | CaseDefect::Invalid(_)) => Case::load(&case, &[], watch),
+                Err(CaseDefect::Unreadable(_) | CaseDefect::Invalid(_)) => {
+                    Case::load(&case, &[], watch, Ranks::ALONE)
+                }
             },
         );
         let case = Arc::new(case?);
@@ -136,7 +141,7 @@ impl VerifyCommand {
         pictures::run_budget(&case)
             .check_disk(&case.file, again.path(), 0, false)
             .map_err(Failure::input)?;
-        let mut running = Running::start(&case, rayon::current_num_threads());
+        let mut running = Running::start(&case, None, Execution::on_threads(rayon::current_num_threads()));
         let mut progress = RunProgress::new(&running, self.quiet);
         let reason = loop {
             if let Some(reason) = running.advance(case.steps_per_poll()).map_err(Failure::running)? {

@@ -7,6 +7,7 @@ use slipfront::Communicator;
 use slipfront_case::number_format::byte_size;
 
 /// A connection with other ranks that counts what goes through it.
+#[derive(Debug)]
 pub(super) struct Traffic {
     inner: Arc<dyn Communicator>,
     /// To the neighbours.
@@ -16,7 +17,7 @@ pub(super) struct Traffic {
 }
 
 /// How many, and how much in all.
-#[derive(Default)]
+#[derive(Debug, Default)]
 struct TrafficCount {
     number: AtomicU64,
     bytes: AtomicU64,

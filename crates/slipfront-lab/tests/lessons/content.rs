@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
 use serde_json::{Map, Value};
-use slipfront_case::case::Case;
+use slipfront_case::case::{Case, Ranks};
 use slipfront_case::case_file::{CaseFile, Override};
 
 /// Keys of a case and their values.
@@ -197,6 +197,6 @@ pub(crate) fn case(name: &str, keys: &Keys) -> Case {
         .map(|(key, json)| Override::new(key, &value(json)).to_string())
         .collect();
     CaseFile::parse(&text, name, &overrides)
-        .and_then(|file| Case::to_run(file, name, &web(), &mut |_| true))
+        .and_then(|file| Case::to_run(file, name, &web(), &mut |_| true, Ranks::ALONE))
         .unwrap_or_else(|error| panic!("{error}"))
 }

@@ -32,7 +32,7 @@ fn the_numbers_are_those_of_a_run() {
     let mut page = Page::with_case(&lab, CIRCLE);
     let end = ended(&mut page);
     let summary = |text: &str| {
-        let case = slipfront_case::case::Case::parse(text, "case", &[]).unwrap();
+        let case = slipfront_case::case::Case::parse(text, "case", "", &[]).unwrap();
         slipfront_run::running::run(&std::sync::Arc::new(case), 1)
             .unwrap()
             .summary
@@ -103,8 +103,9 @@ fn a_saved_run_has_the_bytes_of_the_command() {
 
 /// A run of the case into a folder, by the functions of `slipfront run`.
 fn slipfront_run_of(case: &std::path::Path, out: &std::path::Path) -> bool {
+    use slipfront_case::case::{Case, Ranks};
     use slipfront_run::{pictures, results, run_folder::RunFolder, running};
-    let case = std::sync::Arc::new(slipfront_case::case::Case::load(case, &[], &mut |_| true).unwrap());
+    let case = std::sync::Arc::new(Case::load(case, &[], &mut |_| true, Ranks::ALONE).unwrap());
     let mut folder = RunFolder::prepare(out, false, &case.inputs).unwrap();
     results::write_case(&case, &mut folder).unwrap();
     let mut record = running::run(&case, 1).unwrap();
@@ -270,7 +271,7 @@ fn the_uncertainty_is_that_of_several_seeds() {
         (1..=3)
             .map(|seed| {
                 let case =
-                    slipfront_case::case::Case::parse(text, "case", &[format!("friction.seed={seed}")])
+                    slipfront_case::case::Case::parse(text, "case", "", &[format!("friction.seed={seed}")])
                         .unwrap();
                 let record = slipfront_run::running::run(&std::sync::Arc::new(case), 1).unwrap();
                 record.summary.static_friction_star

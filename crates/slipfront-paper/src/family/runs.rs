@@ -76,7 +76,7 @@ impl AnswerRun {
 impl Experiment {
     /// What a case describes, and its last step.
     pub(super) fn of_case(name: &str, text: &str) -> Result<(Self, u64), PaperError> {
-        let case = Case::parse(text, name, &[])?;
+        let case = Case::parse(text, name, "", &[])?;
         let experiment = Self {
             model: Arc::clone(&case.model),
             dt_star: case.time_plan.dt_star,
@@ -111,7 +111,7 @@ impl Experiment {
     /// Its simulation at the first instant.
     pub(super) fn begin(&self) -> Simulation {
         let execution = Execution::default();
-        Simulation::with_execution(
+        Simulation::new(
             Arc::clone(&self.model),
             self.dt_star,
             self.state.clone(),

@@ -26,7 +26,7 @@ fn forces(model: &Arc<Model>, [stretch_x, stretch_y]: [f64; 2]) -> Vec<[f64; 2]>
         state.displacement.y[block] = stretch_y * j as f64;
     }
     // At step 0 nothing has moved yet: any time step will do.
-    let simulation = Simulation::with_execution(model.clone(), 0.1, Some(state), Execution::default());
+    let simulation = Simulation::new(model.clone(), 0.1, Some(state), Execution::default());
     let snapshot = simulation.snapshot();
     (0..lattice.n_blocks())
         .map(|block| snapshot.block(block).force_lattice)

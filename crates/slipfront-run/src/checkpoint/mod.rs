@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use jiff::Timestamp;
-use slipfront::Communicator;
+use slipfront::{Communicator, Execution};
 use slipfront_case::case::Case;
 use slipfront_case::disk::{found_at, remove_if_there, sync_folder};
 use slipfront_case::same::expect_same;
@@ -42,22 +42,14 @@ impl LoadedCheckpoint {
     ///
     /// # Errors
     /// [`CheckpointError::Unreadable`].
-    #[expect(
-        clippy::needless_pass_by_value,
-        reason = "the run keeps a share of the connection"
-    )]
-    pub fn resume(
-        self,
-        case: &Arc<Case>,
-        threads: usize,
-        communicator: Arc<dyn Communicator>,
-    ) -> Result<Option<Running>, CheckpointError> {
+    pub fn resume(self, case: &Arc<Case>, execution: Execution) -> Result<Option<Running>, CheckpointError> {
         // Nothing is allocated for columns that the file does not hold.
         if self.file.state.columns(case) != self.file.header.columns {
             return Ok(None);
         }
         let (state, read) = self.file.into_parts();
-        let resumed = Running::resume(case, threads, state, Arc::clone(&communicator), read);
+        let communicator = Arc::clone(&execution.communicator);
+        let resumed = Running::resume(case, state, execution, read);
         agree_on_io(&*communicator, resumed).map_err(|source| {
             let path = self.path;
             CheckpointError::Unreadable { path, source }
@@ -197,12 +189,12 @@ mod tests {
     fn case() -> Arc<Case> {
         let text = "slider.blocks = [60, 50]\ntime.duration_star = 20\ndrive.v_star = 0.2\n\
                     output.snapshots = { every = 1.0 }\noutput.stride = 3\n";
-        Arc::new(Case::parse(text, "case", &[]).unwrap())
+        Arc::new(Case::parse(text, "case", "", &[]).unwrap())
     }
 
     /// A run that has recorded some frames.
     fn advanced(case: &Arc<Case>) -> Running {
-        let mut running = Running::start(case, 1);
+        let mut running = Running::start(case, None, Execution::default());
         running.advance(case.time_plan.last_step / 2).unwrap();
         running
     }
@@ -231,10 +223,11 @@ mod tests {
                     checkpoints.save(&running, communicator).unwrap();
                 }
                 let loaded = Checkpoints::load(folder.path(), &case, false, communicator);
-                let resumed = loaded
-                    .unwrap()
-                    .unwrap()
-                    .resume(&case, 1, Arc::new(communicator.clone()));
+                let execution = Execution {
+                    communicator: Arc::new(communicator.clone()),
+                    ..Execution::default()
+                };
+                let resumed = loaded.unwrap().unwrap().resume(&case, execution);
                 resumed.unwrap().unwrap().snapshot().step
             });
             assert_eq!(steps, vec![running.snapshot().step; ranks]);
@@ -251,9 +244,14 @@ mod tests {
         ] {
             let parsed = || CaseFile::parse(text, "case", &[]).unwrap();
             let alone = tempfile::tempdir().unwrap();
-            let case = Arc::new(Case::to_run(parsed(), "case", Path::new(""), &mut |_| true).unwrap());
+            let case =
+                Arc::new(Case::to_run(parsed(), "case", Path::new(""), &mut |_| true, Ranks::ALONE).unwrap());
             let saved = |case: &Arc<Case>, folder: &Path, communicator: Arc<dyn Communicator>| {
-                let mut running = Running::start_on_ranks(case, 1, Arc::clone(&communicator));
+                let execution = Execution {
+                    communicator: Arc::clone(&communicator),
+                    ..Execution::default()
+                };
+                let mut running = Running::start(case, None, execution);
                 // Clocks differ.
                 let started = Timestamp::from_nanosecond(communicator.rank() as i128).unwrap();
                 let mut checkpoints = Checkpoints::new(folder, case, started);
@@ -275,7 +273,7 @@ mod tests {
                         communicator: rank,
                         on_node: size,
                     };
-                    let case = Case::to_run_on_ranks(parsed(), "case", Path::new(""), &mut |_| true, ranks);
+                    let case = Case::to_run(parsed(), "case", Path::new(""), &mut |_| true, ranks);
                     let found = saved(&Arc::new(case.unwrap()), folder.path(), Arc::new(rank.clone()));
                     for (k, (found, expected)) in found.iter().zip(&expected).enumerate() {
                         assert!(found == expected, "{size} ranks, checkpoint {k}");
@@ -293,7 +291,7 @@ mod tests {
             .save(&advanced(&case), &Alone)
             .unwrap();
         let before = latest(folder.path());
-        let begun = Running::start(&case, 1);
+        let begun = Running::start(&case, None, Execution::default());
         for failing in 0..3 {
             // One of them has lost the disk.
             let seen = |rank: usize| {
@@ -333,7 +331,7 @@ mod tests {
             .save(&advanced(&case), &Alone)
             .unwrap();
         checkpoints(other.path(), &case)
-            .save(&Running::start(&case, 1), &Alone)
+            .save(&Running::start(&case, None, Execution::default()), &Alone)
             .unwrap();
         let earlier = latest(other.path());
         let longer = [latest(folder.path()), vec![0; 10 << 20]].concat();
@@ -422,7 +420,7 @@ mod tests {
                         Err(CheckpointError::Damaged { .. }) => false,
                         loaded => {
                             let loaded = loaded.unwrap().unwrap();
-                            loaded.resume(&case, 1, Arc::new(Alone)).unwrap().is_some()
+                            loaded.resume(&case, Execution::default()).unwrap().is_some()
                         }
                     };
                     assert!(!went_on, "{key} {wrong}");

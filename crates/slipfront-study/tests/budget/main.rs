@@ -8,6 +8,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use png::{BitDepth, ColorType, Encoder};
+use slipfront::Execution;
 use slipfront::communicator::{Alone, Threads};
 use slipfront_case::case::{Case, Ranks};
 use slipfront_case::case_file::CaseFile;
@@ -277,7 +278,7 @@ fn checkpoints(folder: &Path) {
             checkpoints.save(running, &Alone).unwrap();
         };
         let case = made();
-        let mut running = Running::start(&case, 1);
+        let mut running = Running::start(&case, None, Execution::default());
         running.advance(case.time_plan.last_step - 1).unwrap();
         save(&case, &running);
         drop((case, running));
@@ -286,7 +287,7 @@ fn checkpoints(folder: &Path) {
         let (taken, said) = peak(|| {
             let case = made();
             let loaded = Checkpoints::load(&out, &case, false, &Alone).unwrap().unwrap();
-            let running = loaded.resume(&case, 1, Arc::new(Alone)).unwrap().unwrap();
+            let running = loaded.resume(&case, Execution::default()).unwrap().unwrap();
             save(&case, &running);
             pictures::run_budget(&case).memory()
         });

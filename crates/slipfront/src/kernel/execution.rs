@@ -1,4 +1,4 @@
-//! Which kernel computes a run, and on how many threads.
+//! Which kernel computes a run, on how many threads, and with which other ranks.
 
 use std::sync::Arc;
 
@@ -8,7 +8,7 @@ use super::engine::Engine;
 use super::fused::{self, Fused};
 use super::general::{self, General};
 use crate::checkpoint::{BlockColumn, Checkpoint};
-use crate::communicator::Communicator;
+use crate::communicator::{Alone, Communicator};
 use crate::friction::Friction;
 use crate::model::Model;
 use crate::options::ModelOptions;
@@ -25,9 +25,19 @@ pub enum Kernel {
     Fused,
 }
 
-/// How a run is computed. Results have the same bits for any `threads` and `skips`. The two kernels agree to rounding up
-/// to the first slip; afterwards a difference in rounding can change which block slips first.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// How a run is computed. Results have the same bits for any `threads`, `skips` and number of ranks. The two kernels agree to
+/// rounding up to the first slip; afterwards a difference in rounding can change which block slips first.
+///
+/// ```
+/// use slipfront::{Execution, Kernel};
+///
+/// let execution = Execution {
+///     kernel: Kernel::General,
+///     ..Execution::on_threads(2)
+/// };
+/// assert_eq!((execution.threads, execution.communicator.size()), (2, 1));
+/// ```
+#[derive(Clone, Debug)]
 pub struct Execution {
     /// What computes the steps.
     pub kernel: Kernel,
@@ -37,6 +47,8 @@ pub struct Execution {
     pub threads: usize,
     /// Whether blocks at rest are skipped until they can slip.
     pub skips: bool,
+    /// The connection with the ranks that share the lattice; [`Alone`] unless it is given. Each has a model of its own rows.
+    pub communicator: Arc<dyn Communicator>,
 }
 
 impl Kernel {
@@ -83,21 +95,25 @@ impl Kernel {
 }
 
 impl Execution {
+    /// The default kernel on so many threads, alone.
+    pub fn on_threads(threads: usize) -> Self {
+        Self {
+            kernel: Kernel::default(),
+            threads,
+            skips: true,
+            communicator: Arc::new(Alone),
+        }
+    }
+
     /// A kernel that begins in a given state, or at rest.
-    pub(crate) fn begin(
-        self,
-        model: &Model,
-        dt_star: f64,
-        state: Option<State>,
-        communicator: Arc<dyn Communicator>,
-    ) -> Box<dyn Engine> {
+    pub(crate) fn begin(self, model: &Model, dt_star: f64, state: Option<State>) -> Box<dyn Engine> {
+        let (threads, skips, communicator) = (self.threads, self.skips, self.communicator);
         match self.kernel.for_model(model) {
             Kernel::Fused => {
-                let (threads, skips) = (self.threads, self.skips);
                 let kernel = Fused::new(model, dt_star, state.as_ref(), threads, skips, communicator);
                 Box::new(kernel)
             }
-            Kernel::General => Box::new(General::new(model, dt_star, state, self.threads, communicator)),
+            Kernel::General => Box::new(General::new(model, dt_star, state, threads, communicator)),
         }
     }
 
@@ -107,19 +123,18 @@ impl Execution {
         model: &Model,
         dt_star: f64,
         checkpoint: &Checkpoint,
-        communicator: Arc<dyn Communicator>,
         mut read: impl FnMut(usize, usize, &mut [f64]) -> Result<(), E>,
     ) -> Result<Option<Box<dyn Engine>>, E> {
+        let (threads, skips, communicator) = (self.threads, self.skips, self.communicator);
         match (self.kernel.for_model(model), checkpoint.motion_bounds) {
             (Kernel::Fused, Some(_)) => {
-                let (threads, skips) = (self.threads, self.skips);
                 let read =
                     |column: BlockColumn, first, values: &mut [f64]| read(column as usize, first, values);
                 let kernel = Fused::resume(model, dt_star, checkpoint, threads, skips, communicator, read)?;
                 Ok(Some(Box::new(kernel)))
             }
             (Kernel::General, None) => {
-                let kernel = General::resume(model, dt_star, checkpoint, self.threads, communicator, read)?;
+                let kernel = General::resume(model, dt_star, checkpoint, threads, communicator, read)?;
                 Ok(Some(Box::new(kernel)))
             }
             _ => Ok(None),
@@ -129,11 +144,7 @@ impl Execution {
 
 impl Default for Execution {
     fn default() -> Self {
-        Self {
-            kernel: Kernel::default(),
-            threads: 1,
-            skips: true,
-        }
+        Self::on_threads(1)
     }
 }
 

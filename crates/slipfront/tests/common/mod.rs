@@ -31,7 +31,7 @@ fn executed(model: &Model, dt_star: f64, state: Option<State>) -> Simulation {
         kernel: crate::KERNEL,
         ..Execution::default()
     };
-    Simulation::with_execution(model.clone(), dt_star, state, execution)
+    Simulation::new(model.clone(), dt_star, state, execution)
 }
 
 /// A run described by the groups of Eq. 11. The default is the baseline of Fig. 3.

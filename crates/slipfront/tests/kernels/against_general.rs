@@ -7,7 +7,7 @@ use slipfront::{Drive, Edges, FrictionLaw, Lattice, Model, Simulation, State, Su
 
 use crate::common::{self, Slider, cavity, groove};
 use crate::fields::assert_fields_match_blocks;
-use crate::{FUSED, GENERAL, bits, go, has_room};
+use crate::{bits, fused, general, go, has_room};
 
 /// Rounding errors differ by 1e-16 per spring and step, and a slip amplifies them somewhat: to about 1e-14 up to the end of the
 /// first peak, in displacements and velocities of the order of 1.
@@ -83,8 +83,8 @@ fn assert_alike(fused: &Simulation, general: &Simulation) {
 
 /// Both kernels through up to `steps` steps, or until the first peak has ended; energies are measured at some of the steps.
 pub(crate) fn assert_same(model: &Model, dt_star: f64, state: Option<&State>, steps: u64) {
-    let run = |execution| Simulation::with_execution(model.clone(), dt_star, state.cloned(), execution);
-    let (mut fused, mut general) = (run(FUSED), run(GENERAL));
+    let run = |execution| Simulation::new(model.clone(), dt_star, state.cloned(), execution);
+    let (mut fused, mut general) = (run(fused()), run(general()));
     assert_alike(&fused, &general);
     for step in 1..=steps {
         let energies = step % 3 == 0;
@@ -245,8 +245,8 @@ fn whole_runs(
         ..Slider::default()
     };
     let model = slider.model();
-    let run = |execution| Simulation::with_execution(model.clone(), slider.dt_star, None, execution);
-    let (mut fused, mut general) = (run(FUSED), run(GENERAL));
+    let run = |execution| Simulation::new(model.clone(), slider.dt_star, None, execution);
+    let (mut fused, mut general) = (run(fused()), run(general()));
     for step in 1..=slider.steps(16.0) {
         go(&mut fused, false);
         go(&mut general, false);

@@ -15,7 +15,7 @@ use slipfront::{
 };
 
 use crate::common::{Slider, cavity, varied};
-use crate::{FUSED, GENERAL, bits, columns, resumed, stopped_and_resumed};
+use crate::{bits, columns, fused, general, resumed, stopped_and_resumed};
 
 fn slider(law: FrictionLaw) -> Slider {
     Slider {
@@ -77,11 +77,11 @@ fn sliders_of_unequal_blocks(#[values(1, 7)] every: u64, #[values(false, true)] 
 
 fn goes_on_from_checkpoints(slider: &Slider, every: u64) {
     let (model, dt_star) = (slider.model(), slider.dt_star);
-    let start = || Simulation::with_execution(model.clone(), dt_star, None, GENERAL);
+    let start = || Simulation::new(model.clone(), dt_star, None, general());
     let (mut plain, mut stopped) = (start(), start());
     for step in 0..slider.steps(4.0) {
         if step.is_multiple_of(every) {
-            stopped = stopped_and_resumed(&stopped, &model, dt_star, GENERAL);
+            stopped = stopped_and_resumed(&stopped, &model, dt_star, general());
             assert_eq!(everything(&stopped), everything(&plain), "resumed at step {step}");
         }
         plain.step();
@@ -113,11 +113,11 @@ fn what_a_law_remembers(#[case] friction: Friction, #[values(1, 7)] every: u64) 
     let slider = slider(FrictionLaw::Projection);
     let (mut model, dt_star) = (slider.model(), slider.dt_star);
     model.friction = friction;
-    let start = || Simulation::with_execution(model.clone(), dt_star, None, GENERAL);
+    let start = || Simulation::new(model.clone(), dt_star, None, general());
     let (mut plain, mut stopped) = (start(), start());
     for step in 0..slider.steps(6.0) {
         if step.is_multiple_of(every) {
-            stopped = stopped_and_resumed(&stopped, &model, dt_star, GENERAL);
+            stopped = stopped_and_resumed(&stopped, &model, dt_star, general());
             assert_eq!(everything(&stopped), everything(&plain), "resumed at step {step}");
             assert_eq!(stopped.checkpoint(), plain.checkpoint());
             let saved = |simulation: &Simulation| columns(simulation).concat();
@@ -140,7 +140,7 @@ fn what_a_law_remembers(#[case] friction: Friction, #[values(1, 7)] every: u64) 
 /// seen every instant exactly once.
 #[rstest]
 fn observers_see_every_instant_once(
-    #[values(GENERAL, FUSED)] execution: Execution,
+    #[values(general(), fused())] execution: Execution,
     #[values(1, 13, 250)] piece: u64,
     #[values(slipfront::Slider::default(), unequal(false))] body: slipfront::Slider,
 ) {
@@ -163,7 +163,7 @@ fn observers_see_every_instant_once(
             Instants::new(selection, KineticStart::Auto, end_star),
         )
     };
-    let start = || Simulation::with_execution(model.clone(), dt_star, None, execution);
+    let start = || Simulation::new(model.clone(), dt_star, None, execution.clone());
     let (mut curve, mut history, mut instants) = fresh();
     let mut whole = start();
     whole
@@ -190,7 +190,7 @@ fn observers_see_every_instant_once(
             break;
         }
         pieces += 1;
-        simulation = stopped_and_resumed(&simulation, &model, dt_star, execution);
+        simulation = stopped_and_resumed(&simulation, &model, dt_star, execution.clone());
         let values: Vec<_> = observers.2.frames().map(|frame| frame.values.clone()).collect();
         observers = postcard::from_bytes(&postcard::to_stdvec(&observers).unwrap()).unwrap();
         for (frame, values) in observers.2.frames_mut().zip(values) {
@@ -210,9 +210,9 @@ fn observers_see_every_instant_once(
 fn a_checkpoint_of_another_kernel_does_not_fit() {
     let slider = slider(FrictionLaw::Projection);
     let (model, dt_star) = (slider.model(), slider.dt_star);
-    let simulation = Simulation::with_execution(model.clone(), dt_star, None, FUSED);
-    assert!(resumed(&simulation, &model, dt_star, FUSED).is_some());
-    assert!(resumed(&simulation, &model, dt_star, GENERAL).is_none());
+    let simulation = Simulation::new(model.clone(), dt_star, None, fused());
+    assert!(resumed(&simulation, &model, dt_star, fused()).is_some());
+    assert!(resumed(&simulation, &model, dt_star, general()).is_none());
 }
 
 /// Drives at an edge, by a program and in rotation, and what is observed of them, go on as if they had not been stopped.
@@ -234,7 +234,7 @@ fn other_drives_and_their_observers(#[values(false, true)] turns: bool, #[values
         model.drive.rotation = Some(rotation);
     }
     let observers = || (Precursors::new(Edge::Left), Cycles::default(), Curve::every(7));
-    let start = || Simulation::with_execution(model.clone(), 0.1, None, GENERAL);
+    let start = || Simulation::new(model.clone(), 0.1, None, general());
     let (mut plain, mut whole) = (start(), observers());
     let stop = Stop::at_step(600);
     let (precursors, cycles, curve) = &mut whole;
@@ -255,7 +255,7 @@ fn other_drives_and_their_observers(#[values(false, true)] turns: bool, #[values
         if stopped.advance(stop, every, seen).unwrap().is_some() {
             break;
         }
-        stopped = stopped_and_resumed(&stopped, &model, 0.1, GENERAL);
+        stopped = stopped_and_resumed(&stopped, &model, 0.1, general());
         parts = postcard::from_bytes(&postcard::to_stdvec(&parts).unwrap()).unwrap();
         let now = stopped.time_star();
         assert!(parts.0.is_consistent_with(&Precursors::new(Edge::Left), now));

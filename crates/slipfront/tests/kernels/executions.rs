@@ -5,7 +5,7 @@ use slipfront::surface::{Orientation, Texture};
 use slipfront::{Drive, Edges, Execution, FrictionLaw, Lattice, Model, Simulation, State, Surface};
 
 use crate::common::{cavity, groove};
-use crate::{FUSED, bits, go, has_room, sliders, stopped_and_resumed};
+use crate::{bits, fused, go, has_room, sliders, stopped_and_resumed};
 
 /// Everything that can be read of a run at one instant except for its state.
 pub(crate) fn shown(simulation: &Simulation) -> Vec<u64> {
@@ -50,7 +50,7 @@ pub(crate) fn assert_same_bits(model: &Model, dt_star: f64, from: Option<&State>
         [false, true].map(|skips| Execution {
             threads,
             skips,
-            ..FUSED
+            ..fused()
         })
     };
     let unstopped = [1, 2, 3, 7]
@@ -62,13 +62,16 @@ pub(crate) fn assert_same_bits(model: &Model, dt_star: f64, from: Option<&State>
     let stopped = of(1).into_iter().chain(of(3)).zip([1, 5, 16, 61]);
     let skipping = of(1).into_iter().skip(1).map(|execution| (execution, 16));
     let executions: Vec<_> = unstopped.chain(stopped).chain(skipping).collect();
-    let run = |execution| Simulation::with_execution(model.clone(), dt_star, from.cloned(), execution);
-    let mut plain = run(FUSED);
-    let mut others: Vec<_> = executions.iter().map(|&(execution, _)| run(execution)).collect();
+    let run = |execution| Simulation::new(model.clone(), dt_star, from.cloned(), execution);
+    let mut plain = run(fused());
+    let mut others: Vec<_> = executions
+        .iter()
+        .map(|(execution, _)| run(execution.clone()))
+        .collect();
     for step in 1..=steps {
-        for (other, &(execution, every)) in others.iter_mut().zip(&executions) {
-            if (step - 1).is_multiple_of(every) {
-                *other = stopped_and_resumed(other, model, dt_star, execution);
+        for (other, (execution, every)) in others.iter_mut().zip(&executions) {
+            if (step - 1).is_multiple_of(*every) {
+                *other = stopped_and_resumed(other, model, dt_star, execution.clone());
             }
         }
         let energies = step % 5 == 0 || step % 7 == 0;
@@ -174,7 +177,7 @@ fn the_largest_stress_may_be_that_of_the_last_step_at_rest() {
     let firm = model(surface.clone());
     // Thresholds that the pushing block reaches after 50 steps and the pushed one after 80, if nothing pushes it.
     for (b, steps) in [(pushing, 50.0), (stored, 80.0)] {
-        let block = Simulation::with_execution(firm.clone(), dt_star, Some(from.clone()), FUSED)
+        let block = Simulation::new(firm.clone(), dt_star, Some(from.clone()), fused())
             .snapshot()
             .block(b);
         let [x, y] = [0, 1].map(|axis| block.force_drive[axis] + block.force_lattice[axis]);

@@ -7,7 +7,7 @@ use slipfront::surface::{Orientation, Texture};
 use slipfront::{Edges, Execution, FrictionLaw, Simulation, Stop};
 
 use crate::common::{Slider, cavity, groove, thrown};
-use crate::{FUSED, GENERAL, has_room, stopped_and_resumed};
+use crate::{fused, general, has_room, stopped_and_resumed};
 
 fn bits(values: &[f32]) -> Vec<u32> {
     values.iter().map(|value| value.to_bits()).collect()
@@ -54,7 +54,7 @@ fn all_blocks_have_the_same_bits_as_single_ones(
     )]
     (epsilon, texture): (f64, Option<Texture>),
     #[values(
-        FUSED, Execution { threads: 3, ..FUSED }, Execution { skips: true, ..FUSED }, GENERAL
+        fused(), Execution { threads: 3, ..fused() }, Execution { skips: true, ..fused() }, general()
     )]
     execution: Execution,
 ) {
@@ -73,14 +73,14 @@ fn all_blocks_have_the_same_bits_as_single_ones(
     }
     let model = slider.model();
     let state = thrown(slider.lattice().n_blocks(), 0.3, 5);
-    let mut simulation = Simulation::with_execution(model.clone(), 0.1, Some(state), execution);
+    let mut simulation = Simulation::new(model.clone(), 0.1, Some(state), execution.clone());
     assert_fields_match_blocks(&simulation);
     for _ in 0..3 {
         for _ in 0..40 {
             simulation.step();
         }
         assert_fields_match_blocks(&simulation);
-        simulation = stopped_and_resumed(&simulation, &model, 0.1, execution);
+        simulation = stopped_and_resumed(&simulation, &model, 0.1, execution.clone());
         assert_fields_match_blocks(&simulation);
     }
 }
@@ -93,7 +93,7 @@ fn every_friction_law(#[values(FrictionLaw::Reversal, FrictionLaw::Literal)] law
         v_star: 0.1,
         ..Slider::default()
     };
-    let mut simulation = Simulation::with_execution(slider.model(), 0.1, None, GENERAL);
+    let mut simulation = Simulation::new(slider.model(), 0.1, None, general());
     for _ in 0..slider.steps(4.0) {
         simulation.step();
     }
@@ -112,7 +112,7 @@ fn frames_keep_every_nth_block(
         ..Slider::default()
     };
     let state = thrown(slider.lattice().n_blocks(), 0.3, 5);
-    let mut simulation = Simulation::with_execution(slider.model(), 0.1, Some(state), FUSED);
+    let mut simulation = Simulation::new(slider.model(), 0.1, Some(state), fused());
     let mut frames = Frames::new(Selection {
         fields: Field::ALL.to_vec(),
         stride,

@@ -8,7 +8,7 @@ use slipfront::observe::{Field, Kymograph, Observer, Schedule, Scheduled};
 use slipfront::{Edges, Execution, PositionBins, RunError, Simulation, Snapshot, Stop};
 
 use crate::common::{Slider, cavity, varied};
-use crate::{FUSED, GENERAL};
+use crate::{fused, general};
 
 /// The share of the blocks in contact that slide, read from the field.
 #[derive(Default)]
@@ -69,7 +69,7 @@ fn what_slides_is_counted(#[values(0, 1, 2, 3)] which: usize) {
     let mut from_field = FromField::default();
     let mut alone = Kymograph::default();
     let schedule = Schedule::Every(Kymograph::INTERVAL);
-    let mut simulation = Simulation::with_execution(slider.model(), slider.dt_star, None, FUSED);
+    let mut simulation = Simulation::new(slider.model(), slider.dt_star, None, fused());
     let mut observers = [Scheduled::new(schedule, &mut from_field), alone.scheduled()];
     simulation.run(Stop::at_step(steps), &mut observers).unwrap();
 
@@ -98,27 +98,29 @@ fn what_slides_is_counted(#[values(0, 1, 2, 3)] which: usize) {
         let execution = Execution {
             threads,
             skips: true,
-            ..FUSED
+            ..fused()
         };
-        let simulation = Simulation::with_execution(slider.model(), slider.dt_star, None, execution);
+        let simulation = Simulation::new(slider.model(), slider.dt_star, None, execution);
         assert_eq!(record(simulation), alone);
     }
     if which != 1 {
         let ranks = Threads::run(3, |rank| {
             let (model, communicator) = (slider.model_of(rank), Arc::new(rank.clone()));
-            record(Simulation::on_ranks(
+            record(Simulation::new(
                 model,
                 slider.dt_star,
                 None,
-                FUSED,
-                communicator,
+                Execution {
+                    communicator,
+                    ..fused()
+                },
             ))
         });
         assert!(ranks.iter().all(|rank| *rank == alone));
     }
     // The trajectory of the general is another to rounding, and its first slips are the same.
+    let mut simulation = Simulation::new(slider.model(), slider.dt_star, None, general());
     let mut general = Kymograph::default();
-    let mut simulation = Simulation::with_execution(slider.model(), slider.dt_star, None, GENERAL);
     let until_half = Stop::at_step(steps / 2);
     simulation.run(until_half, &mut [general.scheduled()]).unwrap();
     let both = general.rows().zip(alone.rows()).take(from_field.rows.len() / 2);
@@ -139,7 +141,7 @@ fn memory_does_not_grow_with_the_run() {
     let model = slider.model();
     let interval = Kymograph::INTERVAL;
     let run = |until: &[u64]| {
-        let mut simulation = Simulation::with_execution(slider.model(), slider.dt_star, None, FUSED);
+        let mut simulation = Simulation::new(slider.model(), slider.dt_star, None, fused());
         let mut kymograph = Kymograph::default();
         for &step in until {
             simulation

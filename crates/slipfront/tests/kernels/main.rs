@@ -14,16 +14,21 @@ use slipfront::{Edges, Execution, Kernel, Lattice, Model, Simulation, Stop};
 const KERNEL: Kernel = Kernel::Fused;
 
 /// The fused kernel on one thread without skipping.
-const FUSED: Execution = Execution {
-    kernel: Kernel::Fused,
-    threads: 1,
-    skips: false,
-};
+fn fused() -> Execution {
+    Execution {
+        kernel: Kernel::Fused,
+        skips: false,
+        ..Execution::on_threads(1)
+    }
+}
 
-const GENERAL: Execution = Execution {
-    kernel: Kernel::General,
-    ..FUSED
-};
+/// The general kernel on one thread.
+fn general() -> Execution {
+    Execution {
+        kernel: Kernel::General,
+        ..fused()
+    }
+}
 
 /// One step, after which the stored energies are known if `energies` is set.
 fn go(simulation: &mut Simulation, energies: bool) {

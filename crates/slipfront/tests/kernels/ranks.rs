@@ -15,7 +15,7 @@ use slipfront::{Communicator, Edges, Execution, Model, RunError, Simulation, Sta
 
 use crate::common::{Slider, cavity, groove};
 use crate::executions::{shown, state};
-use crate::{FUSED, bits, columns, go, has_room, sliders};
+use crate::{bits, columns, fused, go, has_room, sliders};
 
 /// What a rank has shown: at every step what all know, its own state at some of them, and at the end its first slips and fields.
 struct Shown {
@@ -81,7 +81,7 @@ pub(crate) fn assert_same(slider: &Slider, from: Option<&State>, steps: u64) {
 pub(crate) fn assert_same_with(slider: &Slider, change: &Change, from: Option<&State>, steps: u64) {
     let dt_star = slider.dt_star;
     let model = with(slider.model(), change, &Alone);
-    let mut alone = Simulation::with_execution(model, dt_star, from.cloned(), FUSED);
+    let mut alone = Simulation::new(model, dt_star, from.cloned(), fused());
     let alone = watch(&mut alone, 1..steps + 1, None);
     assert!(
         alone.first_slip.iter().any(|&t| !f64::from_bits(t).is_nan()),
@@ -101,12 +101,20 @@ pub(crate) fn assert_same_with(slider: &Slider, change: &Change, from: Option<&S
         let execution = Execution {
             threads,
             skips,
-            ..FUSED
+            ..fused()
         };
         let ranks = Threads::run(size, |rank| {
             let model = with(slider.model_of(rank), change, rank);
             let own = from.map(|from| part(from, model.lattice.blocks_of(&model.rows)));
-            let mut simulation = Simulation::on_ranks(model, dt_star, own, execution, Arc::new(rank.clone()));
+            let mut simulation = Simulation::new(
+                model,
+                dt_star,
+                own,
+                Execution {
+                    communicator: Arc::new(rank.clone()),
+                    ..execution
+                },
+            );
             watch(&mut simulation, 1..steps + 1, None)
         });
         assert_joined(&ranks, &alone, &format!("{size} ranks, {execution:?}"));
@@ -213,7 +221,7 @@ fn a_run_that_diverges_says_the_same(#[case] slider: Slider) {
     };
     let dt_star = slider.dt_star;
     let diverge = |mut simulation: Simulation| simulation.run(Stop::at_step(100_000), &mut []).unwrap_err();
-    let alone = diverge(Simulation::with_execution(slider.model(), dt_star, None, FUSED));
+    let alone = diverge(Simulation::new(slider.model(), dt_star, None, fused()));
     let RunError::NotFinite { i, j, .. } = alone else {
         panic!("{alone}")
     };
@@ -221,12 +229,14 @@ fn a_run_that_diverges_says_the_same(#[case] slider: Slider) {
     for size in [2, 3, 9] {
         let ranks = Threads::run(size, |rank| {
             let communicator = Arc::new(rank.clone());
-            diverge(Simulation::on_ranks(
+            diverge(Simulation::new(
                 slider.model_of(rank),
                 dt_star,
                 None,
-                FUSED,
-                communicator,
+                Execution {
+                    communicator,
+                    ..fused()
+                },
             ))
         });
         assert_eq!(ranks, vec![alone.clone(); size]);
@@ -240,9 +250,17 @@ fn one_of_several_ranks_reads_no_single_block() {
     Threads::run(2, |rank| {
         let communicator = Arc::new(rank.clone());
         let model = slider.model_of(rank);
-        Simulation::on_ranks(model, slider.dt_star, None, FUSED, communicator)
-            .snapshot()
-            .block(0)
+        Simulation::new(
+            model,
+            slider.dt_star,
+            None,
+            Execution {
+                communicator,
+                ..fused()
+            },
+        )
+        .snapshot()
+        .block(0)
     });
 }
 
@@ -270,7 +288,7 @@ fn checkpoints_go_on_on_any_number_of_ranks(#[values(0.1, 0.01)] v_star: f64) {
 pub(crate) fn assert_goes_on(slider: &Slider, change: &Change) {
     let steps = slider.steps(4.0);
     let model = with(slider.model(), change, &Alone);
-    let mut simulation = Simulation::with_execution(model, slider.dt_star, None, FUSED);
+    let mut simulation = Simulation::new(model, slider.dt_star, None, fused());
     let alone = watch(&mut simulation, 1..steps + 1, None);
     let sizes = [1, 3, 2, 7, 1, 4];
     let length = steps / sizes.len() as u64 + 1;
@@ -282,20 +300,33 @@ pub(crate) fn assert_goes_on(slider: &Slider, change: &Change) {
             let blocks = model.lattice.blocks_of(&model.rows);
             let communicator = Arc::new(rank.clone());
             let mut simulation = match &saved {
-                None => Simulation::on_ranks(model, slider.dt_star, None, FUSED, communicator),
+                None => Simulation::new(
+                    model,
+                    slider.dt_star,
+                    None,
+                    Execution {
+                        communicator,
+                        ..fused()
+                    },
+                ),
                 Some((checkpoint, columns)) => {
                     let read = |column: usize, first: usize, values: &mut [f64]| {
                         let first = blocks.start + first;
                         values.copy_from_slice(&columns[column][first..][..values.len()]);
                         Ok::<(), Infallible>(())
                     };
-                    let execution = Execution { skips: true, ..FUSED };
-                    let Ok(resumed) = Simulation::resume_on_ranks(
+                    let execution = Execution {
+                        skips: true,
+                        ..fused()
+                    };
+                    let Ok(resumed) = Simulation::resume(
                         model,
                         slider.dt_star,
                         checkpoint,
-                        execution,
-                        communicator,
+                        Execution {
+                            communicator,
+                            ..execution
+                        },
                         read,
                     );
                     resumed.unwrap()

@@ -362,7 +362,7 @@ fn compare(setting: &Setting, kernel: Kernel, seen: &mut Seen) -> TestCaseResult
         ..Execution::default()
     };
     let begin = Some(setting.state.clone());
-    let mut simulation = Simulation::with_execution(setting.model.clone(), setting.dt, begin, execution);
+    let mut simulation = Simulation::new(setting.model.clone(), setting.dt, begin, execution);
     let mut reference = Reference::new(&setting.model, &setting.contact, setting.dt, &setting.state);
     let mut curve = Curve::every(1);
     // Work and losses keep the errors of all steps so far.

@@ -331,7 +331,7 @@ proptest! {
         let (model, n) = (slider.model(), lattice.n_blocks());
         let run = |kernel, threads, skips| {
             let state = moves.then(|| thrown(n, 0.2, 5));
-            Simulation::with_execution(model.clone(), dt_star, state, Execution { kernel, threads, skips })
+            Simulation::new(model.clone(), dt_star, state, Execution { kernel, skips, ..Execution::on_threads(threads) })
         };
         let mut plain = run(Kernel::Fused, 1, false);
         let mut other = run(Kernel::Fused, threads, skips);

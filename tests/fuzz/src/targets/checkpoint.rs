@@ -6,8 +6,8 @@ use std::sync::{Arc, LazyLock};
 
 use jiff::Timestamp;
 use serde_json::Value;
-use slipfront::StopReason;
 use slipfront::communicator::Alone;
+use slipfront::{Execution, StopReason};
 use slipfront_case::case::{Case, Ranks};
 use slipfront_case::case_file::CaseFile;
 use slipfront_run::checkpoint::Checkpoints;
@@ -56,7 +56,7 @@ const STEPS: u64 = 20;
 
 fn generated() -> Vec<Vec<u8>> {
     let saved = |number: usize, steps: u64| {
-        let mut running = Running::start(&CASES[number], 1);
+        let mut running = Running::start(&CASES[number], None, Execution::default());
         running.advance(steps).unwrap();
         [vec![number as u8], save(&scratch::folder("made"), &running)].concat()
     };
@@ -93,7 +93,7 @@ fn checkpoint(input: &[u8]) {
     resume(case, &with_checksum(without_checksum));
     // Columns and state under the right header, with its own numbers of columns, if it has any.
     let folder = scratch::folder("checkpoint");
-    let whole = save(&folder, &Running::start(case, 1));
+    let whole = save(&folder, &Running::start(case, None, Execution::default()));
     let length = |bytes: &[u8]| bytes.iter().position(|&byte| byte == b'\n').map(|at| at + 1);
     let mut header: Value = serde_json::from_slice(&whole[..length(&whole).unwrap()]).unwrap();
     let begin = length(file).unwrap_or(0);
@@ -122,7 +122,7 @@ fn resume(case: &Arc<Case>, file: &[u8]) {
         Ok(loaded) => loaded.unwrap(),
         Err(error) => return readable(&error),
     };
-    let Some(mut running) = loaded.resume(case, 1, Arc::new(Alone)).unwrap() else {
+    let Some(mut running) = loaded.resume(case, Execution::default()).unwrap() else {
         return;
     };
     match running.advance(STEPS) {
@@ -132,7 +132,11 @@ fn resume(case: &Arc<Case>, file: &[u8]) {
             if ended.is_none() {
                 let bytes = save(&folder, &running);
                 let again = Checkpoints::load(&folder, case, false, &Alone).unwrap();
-                let resumed = again.unwrap().resume(case, 1, Arc::new(Alone)).unwrap().unwrap();
+                let resumed = again
+                    .unwrap()
+                    .resume(case, Execution::default())
+                    .unwrap()
+                    .unwrap();
                 assert_eq!(save(&folder, &resumed), bytes);
             }
             let record = running.record(ended.unwrap_or(StopReason::End));

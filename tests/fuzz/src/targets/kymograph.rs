@@ -36,7 +36,7 @@ pub(crate) const KYMOGRAPH: Target = Target {
 
 /// The bytes of the file of a run.
 fn file(case: &str) -> Vec<u8> {
-    let case = Arc::new(Case::parse(case, "case", &[]).unwrap());
+    let case = Arc::new(Case::parse(case, "case", "", &[]).unwrap());
     let record = running::run(&case, 1).unwrap();
     kymograph_bytes(&record.kymograph, &case)
 }

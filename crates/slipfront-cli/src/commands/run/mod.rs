@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use clap::Args;
+use slipfront::Execution;
 use slipfront_case::case::Case;
 use slipfront_case::same::Given;
 use slipfront_case::text::{display_path, shell_quoted};
@@ -92,7 +93,11 @@ impl RunCommand {
             print_message(&report::physics(&case));
         }
         let checkpoints = Checkpoints::new(&out, &case, started);
-        let running = Running::start_on_ranks(&case, options.threads, ranks.communicator());
+        let execution = Execution {
+            communicator: ranks.communicator(),
+            ..Execution::on_threads(options.threads)
+        };
+        let running = Running::start(&case, None, execution);
         complete(running, &out, folder, checkpoints, options)
     }
 

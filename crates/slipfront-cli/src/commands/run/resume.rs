@@ -3,6 +3,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
+use slipfront::Execution;
 use slipfront::communicator::Alone;
 use slipfront_case::case::Case;
 use slipfront_case::case_file::{CaseError, CaseFile};
@@ -75,17 +76,20 @@ fn begin(
     threads: usize,
     ranks: &CommandRanks,
 ) -> Result<(Running, Checkpoints, String), Failure> {
-    let communicator = ranks.communicator();
+    let execution = Execution {
+        communicator: ranks.communicator(),
+        ..Execution::on_threads(threads)
+    };
     Ok(match loaded {
         None => {
             let checkpoints = Checkpoints::new(path, case, clock::now());
-            let running = Running::start_on_ranks(case, threads, communicator);
+            let running = Running::start(case, None, execution);
             (running, checkpoints, "the start: it has no checkpoint".to_owned())
         }
         Some(loaded) => {
             let checkpoints = Checkpoints::after(path, case, &loaded);
             let from = format!("step {} of {}", loaded.step(), case.time_plan.last_step);
-            let resumed = loaded.resume(case, threads, communicator);
+            let resumed = loaded.resume(case, execution);
             let resumed = resumed.map_err(|error| refused(ranks, &error, path, case, previous))?;
             let running = resumed.ok_or_else(|| {
                 let sentence = "is not one of a run of its case";
@@ -107,7 +111,7 @@ fn case_to_resume(path: &Path, file: CaseFile, options: &RunOptions) -> Result<C
     let folder = path.canonicalize().unwrap_or_else(|_| path.to_owned());
     let name = folder.file_name().unwrap_or_default().to_string_lossy();
     let made = make_case(&options.ranks, &options.signals, options.quiet, |watch, ranks| {
-        Case::to_run_on_ranks(file, &name, path, watch, ranks)
+        Case::to_run(file, &name, path, watch, ranks)
     });
     let case = made.map_err(|failure| match failure {
         // What differs between ranks is no trace of a stop.
