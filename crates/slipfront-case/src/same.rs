@@ -30,7 +30,7 @@ pub type Given = Vec<(String, String)>;
 ///
 /// ```
 /// use slipfront::Communicator;
-/// use slipfront::communicator::Threads;
+/// use slipfront::testing::Threads;
 /// use slipfront_case::same::expect_same;
 ///
 /// let said = Threads::run(3, |rank| {

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 
 use rstest::rstest;
 use serde_json::Value;
-use slipfront::communicator::Threads;
+use slipfront::testing::Threads;
 use slipfront_case::arrays::{
     ArrayError, HeightMap, HeightMapUnits, Room, height_map, open_height_map, write_mask_png,
 };

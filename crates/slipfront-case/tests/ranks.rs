@@ -7,7 +7,8 @@ use std::io::Write;
 use std::path::Path;
 
 use rstest::rstest;
-use slipfront::communicator::{Communicator, Threads};
+use slipfront::communicator::Communicator;
+use slipfront::testing::Threads;
 use slipfront_case::arrays::write_mask_png;
 use slipfront_case::case::{Case, Ranks};
 use slipfront_case::case_file::{CaseError, CaseFile};

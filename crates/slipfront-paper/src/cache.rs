@@ -12,9 +12,9 @@ use crate::step_rule::StepRule;
 use slipfront_case::disk::{make_folders, read_limited, write_atomic};
 use slipfront_case::unfinished::clear_unfinished;
 use slipfront_run::checksum;
+use slipfront_run::folder_error::FolderError;
 use slipfront_run::names::FIGURE_CACHE;
 use slipfront_run::program;
-use slipfront_run::run_folder::error::FolderError;
 
 /// Most bytes of a file; the data of a figure take some megabytes.
 const MAX_BYTES: u64 = 1 << 28;

@@ -5,7 +5,7 @@ use thiserror::Error;
 
 use slipfront_case::case_file::CaseError;
 use slipfront_plot::PictureError;
-use slipfront_run::run_folder::error::FolderError;
+use slipfront_run::folder_error::FolderError;
 use slipfront_study::StudyError;
 
 /// Why the figures could not be run or the report not be written.

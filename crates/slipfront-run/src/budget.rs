@@ -358,7 +358,7 @@ impl RunBudget {
 
 #[cfg(test)]
 mod tests {
-    use slipfront::communicator::Threads;
+    use slipfront::testing::Threads;
     use slipfront_case::case::Ranks;
 
     use super::*;

@@ -83,7 +83,8 @@ fn hash(context: &[u8], contents: &[u8]) -> Hash {
 mod tests {
     use std::io::Cursor;
 
-    use slipfront::communicator::{Alone, Threads};
+    use slipfront::communicator::Alone;
+    use slipfront::testing::Threads;
 
     use super::*;
 

@@ -7,7 +7,7 @@ use slipfront_case::text;
 use thiserror::Error;
 
 use crate::fields::FieldsError;
-use crate::run_folder::error::FolderError;
+use crate::folder_error::FolderError;
 
 /// What can go wrong with results.
 #[derive(Debug, Error)]

@@ -159,7 +159,8 @@ mod tests {
     use std::sync::Arc;
 
     use slipfront::Execution;
-    use slipfront::communicator::{Alone, Threads};
+    use slipfront::communicator::Alone;
+    use slipfront::testing::Threads;
     use slipfront_case::case::Ranks;
     use slipfront_case::case_file::CaseFile;
 

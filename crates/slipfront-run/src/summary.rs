@@ -12,11 +12,11 @@ use slipfront::observe::{
 use slipfront::{Scales, Simulation, StopReason};
 
 use crate::error::ResultsError;
+use crate::folder_error::FolderError;
 use crate::friction_unit::FrictionUnit;
 use crate::front::LatticeFront;
 use crate::names::SUMMARY;
 use crate::program::VERSION;
-use crate::run_folder::error::FolderError;
 use slipfront_case::case::{Case, Topography};
 use slipfront_case::case_file::Motion;
 use slipfront_case::disk::{TEXT_MAX_BYTES, json, read_limited};

@@ -6,9 +6,9 @@ use std::path::{Component, Path, PathBuf};
 
 use thiserror::Error;
 
+use crate::folder_error::FolderError;
 use crate::manifest::{ManifestError, ManifestFile};
 use crate::names::{CASE, MANIFEST, UNFINISHED};
-use crate::run_folder::error::FolderError;
 use crate::run_folder::inspection::{CaseDefect, Inspection};
 use crate::run_folder::unfinished::Unfinished;
 use slipfront_case::number_format::count;

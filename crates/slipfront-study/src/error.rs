@@ -8,9 +8,9 @@ use slipfront_case::case_file::CaseError;
 use slipfront_case::number_format::{are, count};
 use slipfront_case::text::display_path;
 use slipfront_plot::PictureError;
+use slipfront_run::folder_error::FolderError;
 use slipfront_run::pictures::error::RunPictureError;
 use slipfront_run::program;
-use slipfront_run::run_folder::error::FolderError;
 
 /// A study that cannot be used, or had to stop.
 #[derive(Debug, Error)]

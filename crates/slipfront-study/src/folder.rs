@@ -20,10 +20,10 @@ use slipfront_case::disk::{
 };
 use slipfront_case::machine::free_disk;
 use slipfront_case::number_format::byte_size;
+use slipfront_run::folder_error::FolderError;
 use slipfront_run::manifest::Manifest;
 use slipfront_run::names::{CASE, FIGURE_CACHE, RECORDS, RUNS, TABLES};
 use slipfront_run::run_folder::copy::copy_run;
-use slipfront_run::run_folder::error::FolderError;
 
 /// The study file in the folder, with the base case as a table in it: `slipfront study DIR/study.toml` repeats the study.
 const STUDY: &str = "study.toml";

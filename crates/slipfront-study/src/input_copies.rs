@@ -8,7 +8,7 @@ use toml::{Table, Value};
 
 use slipfront_case::case::name_of_copy;
 use slipfront_case::case_file::names_a_file;
-use slipfront_run::run_folder::error::FolderError;
+use slipfront_run::folder_error::FolderError;
 
 /// Folder of the copies.
 const FOLDER: &str = "inputs";

@@ -7,9 +7,9 @@ use std::path::{Path, PathBuf};
 
 use slipfront_case::number_format::{are, count};
 use slipfront_case::unfinished::{TemporaryFolder, is_unfinished};
+use slipfront_run::folder_error::FolderError;
 use slipfront_run::manifest::ManifestFile;
 use slipfront_run::names::RUNS;
-use slipfront_run::run_folder::error::FolderError;
 use slipfront_run::verify::{
     Verdict, VerifyError, differences, first_line, inspect, unlisted_files, verify_run,
 };

@@ -9,9 +9,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::fixed_point::{FixedPoint, Window};
 use crate::friction::ContactTotals;
-use crate::kernel::totals::Totals;
 use crate::measure::Peak;
 use crate::model::Model;
+use crate::totals::Totals;
 
 /// A run between two steps, without the numbers of its blocks: these are its columns.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

@@ -31,6 +31,8 @@ pub mod observe;
 pub mod scales;
 pub mod stability;
 pub mod surface;
+#[cfg(any(test, feature = "testing"))]
+pub mod testing;
 
 mod drive;
 mod elementary;
@@ -49,6 +51,7 @@ mod slider;
 mod snapshot;
 mod state;
 mod stop;
+mod totals;
 mod vector_field;
 
 pub use checkpoint::Checkpoint;
@@ -68,6 +71,7 @@ pub use snapshot::Snapshot;
 pub use state::State;
 pub use stop::{Stop, StopReason};
 pub use surface::Surface;
+pub use totals::{StoredEnergy, Totals};
 pub use vector_field::VectorField;
 
 /// BLAKE3 hash of the sources of this crate, by which programs that give the same bits are told.

@@ -3,8 +3,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::kernel::totals::Totals;
 use crate::model::Model;
+use crate::totals::Totals;
 use crate::vector_field::dot;
 
 /// The whole slider at one instant.

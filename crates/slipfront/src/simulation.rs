@@ -8,13 +8,13 @@ use crate::error::RunError;
 use crate::friction::ContactTotals;
 use crate::kernel::engine::Engine;
 use crate::kernel::execution::Execution;
-use crate::kernel::totals::Totals;
 use crate::measure::{CurvePoint, Peak};
 use crate::model::Model;
 use crate::observe::observer::Scheduled;
 use crate::snapshot::Snapshot;
 use crate::state::State;
 use crate::stop::{Stop, StopReason};
+use crate::totals::Totals;
 
 /// A run in progress.
 pub struct Simulation {

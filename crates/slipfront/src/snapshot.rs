@@ -5,9 +5,9 @@ use crate::communicator::Communicator;
 use crate::friction::ContactTotals;
 use crate::kernel::block::{Block, Field};
 use crate::kernel::engine::Engine;
-use crate::kernel::totals::{StoredEnergy, Totals};
 use crate::measure::{CurvePoint, Peak};
 use crate::model::Model;
+use crate::totals::{StoredEnergy, Totals};
 
 /// A run at one instant t_n. Forces, friction and contact are those of the update that starts at t_n.
 pub struct Snapshot<'a> {

@@ -59,7 +59,7 @@ impl Ranks<'_> {
 
 #[cfg(test)]
 mod tests {
-    use slipfront::communicator::Threads;
+    use slipfront::testing::Threads;
 
     use super::*;
 

@@ -107,7 +107,7 @@ impl CommandRanks {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use slipfront::communicator::Threads;
+    use slipfront::testing::Threads;
 
     #[test]
     fn threads_are_on_one_machine() {

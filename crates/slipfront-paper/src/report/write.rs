@@ -12,7 +12,7 @@ use crate::figure_data::{FigureData, Panel};
 use crate::paper::Paper;
 use slipfront_case::disk::{begins_with, make_folders, write_atomic};
 use slipfront_plot::Picture;
-use slipfront_run::run_folder::error::FolderError;
+use slipfront_run::folder_error::FolderError;
 
 /// Writes pictures, tables and the report to a folder.
 ///

@@ -180,7 +180,8 @@ pub fn hash_of(case: &Case) -> String {
 
 #[cfg(test)]
 mod tests {
-    use slipfront::communicator::{Alone, Threads};
+    use slipfront::communicator::Alone;
+    use slipfront::testing::Threads;
     use slipfront_case::case::Ranks;
     use slipfront_case::case_file::CaseFile;
 

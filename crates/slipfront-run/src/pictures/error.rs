@@ -8,7 +8,7 @@ use thiserror::Error;
 
 use crate::error::ResultsError;
 use crate::fields::FieldsError;
-use crate::run_folder::error::FolderError;
+use crate::folder_error::FolderError;
 use crate::series::SeriesError;
 
 /// What can go wrong with pictures, and with the results that they are drawn from.

@@ -7,8 +7,8 @@ use slipfront_case::case_file::CaseFile;
 use slipfront_case::disk::found_behind;
 
 use super::error::RunPictureError;
+use crate::folder_error::FolderError;
 use crate::names::{CASE, FIELDS, KYMOGRAPH, PRECURSORS, SERIES, SUMMARY};
-use crate::run_folder::error::FolderError;
 
 /// The files that pictures are drawn from.
 pub const DRAWN_FROM: [&str; 6] = [CASE, SUMMARY, SERIES, PRECURSORS, KYMOGRAPH, FIELDS];

@@ -4,8 +4,8 @@ use std::path::{Component, Path, PathBuf};
 
 use slipfront_case::disk::{found_at, is_folder, remove_if_there};
 
-use super::error::FolderError;
 use super::unfinished::Unfinished;
+use crate::folder_error::FolderError;
 use crate::manifest::ManifestFile;
 use crate::names::{CASE, FIELDS, KYMOGRAPH, MANIFEST, MOVIE, PRECURSORS, RunPicture, SERIES, SUMMARY};
 

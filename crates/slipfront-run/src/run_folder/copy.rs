@@ -5,7 +5,7 @@ use std::path::Path;
 use slipfront_case::disk::{open_regular, write_temp};
 
 use super::RunFolder;
-use super::error::FolderError;
+use crate::folder_error::FolderError;
 use crate::names::{CASE, MANIFEST, UNFINISHED};
 
 /// Copies the files of a run folder. Its case and its manifest come last: without them, the copy is not taken for whole.

@@ -7,8 +7,8 @@ use slipfront_case::case_file::{CaseError, CaseFile, read_text};
 use slipfront_case::disk::{TEXT_MAX_BYTES, open_limited};
 
 use super::contents::{is_as_listed, managed_bytes};
-use super::error::FolderError;
 use super::unfinished::Unfinished;
+use crate::folder_error::FolderError;
 use crate::manifest::{Manifest, ManifestError, ManifestFile};
 use crate::names::{CASE, MANIFEST, UNFINISHED};
 

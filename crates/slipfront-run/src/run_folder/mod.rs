@@ -5,7 +5,6 @@
 
 mod contents;
 pub mod copy;
-pub mod error;
 pub mod inspection;
 mod journal;
 pub mod unfinished;
@@ -23,11 +22,11 @@ use slipfront_case::unfinished::clear_unfinished;
 use tempfile::TempPath;
 
 use self::contents::{managed_files, refuse_unmanaged, remove_files, result_files};
-use self::error::FolderError;
 use self::inspection::{Contents, Inspection};
 use self::journal::Journal;
 use self::unfinished::Unfinished;
 use crate::agree::{RankFailure, agree};
+use crate::folder_error::FolderError;
 use crate::manifest::{Manifest, ManifestFile};
 use crate::names::{CASE, CHECKPOINT, JOURNAL, MANIFEST, PREVIOUS, UNFINISHED};
 

@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 
 use slipfront_case::disk::{found_at, is_empty, is_folder, remove_if_there, sync_folder};
 
-use super::error::FolderError;
 use super::journal::{self, Journal};
+use crate::folder_error::FolderError;
 use crate::manifest::ManifestFile;
 use crate::names::{CHECKPOINT, JOURNAL, PREVIOUS, TEMPORARY, UNFINISHED};
 

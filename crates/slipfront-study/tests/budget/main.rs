@@ -9,7 +9,8 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use png::{BitDepth, ColorType, Encoder};
 use slipfront::Execution;
-use slipfront::communicator::{Alone, Threads};
+use slipfront::communicator::Alone;
+use slipfront::testing::Threads;
 use slipfront_case::case::{Case, Ranks};
 use slipfront_case::case_file::CaseFile;
 use slipfront_run::checkpoint::Checkpoints;

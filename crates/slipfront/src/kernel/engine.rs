@@ -1,12 +1,12 @@
 //! What every kernel does.
 
 use super::block::{Block, Field};
-use super::totals::Totals;
 use crate::checkpoint::{BlockColumn, MotionBounds};
 use crate::friction::ContactTotals;
 use crate::model::Model;
 use crate::position_bins::PositionBins;
 use crate::state::State;
+use crate::totals::Totals;
 
 /// A kernel with the state of all blocks. `number` is that of the present step, unless a function advances to it.
 pub(crate) trait Engine: Send + Sync {

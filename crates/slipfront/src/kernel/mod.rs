@@ -9,8 +9,6 @@ pub(crate) mod engine;
 pub(crate) mod execution;
 mod fused;
 mod general;
-pub(crate) mod totals;
 
 pub use block::Block;
 pub use execution::{Execution, Kernel, simd_width};
-pub use totals::{StoredEnergy, Totals};

@@ -4,8 +4,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::kernel::totals::StoredEnergy;
 use crate::snapshot::Snapshot;
+use crate::totals::StoredEnergy;
 use crate::vector_field::dot;
 
 /// Energies stored at an instant, and supplied and lost since the start.

@@ -1,7 +1,7 @@
 //! The fused kernel against the general: the same to rounding.
 
 use rstest::rstest;
-use slipfront::kernel::Totals;
+use slipfront::Totals;
 use slipfront::surface::{Orientation, Texture};
 use slipfront::{Drive, Edges, FrictionLaw, Lattice, Model, Simulation, State, Surface, VectorField};
 

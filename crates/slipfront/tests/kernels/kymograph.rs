@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use rstest::rstest;
-use slipfront::communicator::Threads;
 use slipfront::observe::{Field, Kymograph, Observer, Schedule, Scheduled};
+use slipfront::testing::Threads;
 use slipfront::{Edges, Execution, PositionBins, RunError, Simulation, Snapshot, Stop};
 
 use crate::common::{Slider, cavity, varied};

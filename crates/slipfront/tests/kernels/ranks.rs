@@ -7,10 +7,11 @@ use std::sync::Arc;
 
 use rstest::rstest;
 use slipfront::checkpoint::Checkpoint;
-use slipfront::communicator::{Alone, Threads};
+use slipfront::communicator::Alone;
 use slipfront::observe::frames::Selection;
 use slipfront::observe::{Field, Frame};
 use slipfront::surface::{Orientation, Texture};
+use slipfront::testing::Threads;
 use slipfront::{Communicator, Edges, Execution, Model, RunError, Simulation, State, Stop, VectorField};
 
 use crate::common::{Slider, cavity, groove};

@@ -2,8 +2,9 @@
 
 use proptest::prelude::*;
 use slipfront::Surface;
-use slipfront::communicator::{Communicator, Threads};
+use slipfront::communicator::Communicator;
 use slipfront::surface::{Meshed, mesh, mesh_watched};
+use slipfront::testing::Threads;
 
 use crate::common::Slider;
 use crate::{has_contact, slider};

@@ -1,8 +1,8 @@
 //! The JSON files of a run folder: the summary, the manifest with its checksum, and the journal of a run that is not complete.
 
+use slipfront_run::folder_error::FolderError;
 use slipfront_run::manifest::{Manifest, ManifestFile, Random};
 use slipfront_run::run_folder::RunFolder;
-use slipfront_run::run_folder::error::FolderError;
 use slipfront_run::run_folder::inspection::Inspection;
 use slipfront_run::summary::{InstantSummary, Summary, read_summary, summary_json};
 use slipfront_study::verify::verify;

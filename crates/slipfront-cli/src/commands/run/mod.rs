@@ -15,9 +15,9 @@ use slipfront_case::text::{display_path, shell_quoted};
 use slipfront_run::agree::RankFailure;
 use slipfront_run::checkpoint::Checkpoints;
 use slipfront_run::clock;
+use slipfront_run::folder_error::FolderError;
 use slipfront_run::pictures;
 use slipfront_run::results;
-use slipfront_run::run_folder::error::FolderError;
 use slipfront_run::run_folder::{ClaimedFolder, OpenedFolder, RunFolder, expect_shared};
 use slipfront_run::running::Running;
 

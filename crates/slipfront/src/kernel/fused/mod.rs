@@ -58,13 +58,13 @@ use crate::friction::Integrator;
 use crate::kernel::bands::for_each_band;
 use crate::kernel::block::{Block, Field};
 use crate::kernel::engine::Engine;
-use crate::kernel::totals::{StoredEnergy, Totals};
 use crate::lattice::K_STRAIGHT;
 use crate::model::Model;
 use crate::moduli::Moduli;
 use crate::options::ModelOptions;
 use crate::position_bins::PositionBins;
 use crate::state::State;
+use crate::totals::{StoredEnergy, Totals};
 
 /// Steps between two measurements of displacements and their differences; in between they are bounded.
 const MEASUREMENT_INTERVAL: u64 = 16;

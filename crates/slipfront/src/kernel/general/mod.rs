@@ -25,7 +25,6 @@ use self::weighted::WeightedScratch;
 use super::bands::for_each_band;
 use super::block::{Block, Field};
 use super::engine::Engine;
-use super::totals::{StoredEnergy, Totals};
 use crate::checkpoint::{BlockColumn, Checkpoint, MotionBounds};
 use crate::communicator::Communicator;
 use crate::fixed_point::RunningSum;
@@ -36,6 +35,7 @@ use crate::options::ModelOptions;
 use crate::position_bins::PositionBins;
 use crate::state::State;
 use crate::surface::Surface;
+use crate::totals::{StoredEnergy, Totals};
 use crate::vector_field::VectorField;
 
 /// Least number of blocks in a band of several: some tens of microseconds of work.
