@@ -1,9 +1,10 @@
 //! What never changes in a run: lattice, slider, surface, drive, damping and friction law.
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use crate::communicator::Communicator;
-use crate::drive::Drive;
+use crate::drive::{Drive, Program};
 use crate::fixed_point::sum_over;
 use crate::friction::Friction;
 use crate::lattice::{K_DRIVE, Lattice, springs_on_a_lone_block};
@@ -84,6 +85,12 @@ impl Model {
     pub fn with_slider(self, slider: Slider) -> Self {
         slider.assert_fits(self.surface.n_blocks());
         Self { slider, ..self }
+    }
+
+    /// This model with a program of speeds for its drive, if there is one.
+    pub fn with_program(mut self, program: Option<Arc<Program>>) -> Self {
+        self.drive.program = program;
+        self
     }
 
     /// The model of some rows of the lattice, of those that this process holds.

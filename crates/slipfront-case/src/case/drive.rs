@@ -118,18 +118,6 @@ fn each(file: &CaseFile, scales: &Scales) -> f64 {
     }
 }
 
-/// `sum k_s/(k_2 N)` of equal blocks, by which a drive loads the slider faster or more slowly than the paper's, if a file that attaches
-/// blocks attached all.
-pub(super) fn loading_share(file: &CaseFile, scales: &Scales, lattice: &Lattice) -> f64 {
-    let n_blocks = lattice.n_blocks() as f64;
-    let n_attached = file
-        .drive
-        .edge()
-        .map_or(n_blocks, |edge| edge.n_blocks(lattice) as f64);
-    let sum = total(file, scales).unwrap_or_else(|| n_attached * each(file, scales));
-    sum / (n_blocks * K_DRIVE)
-}
-
 /// The program of the case, if it has one, with speeds that change where steps begin.
 pub(super) fn program(file: &CaseFile, dt_star: f64) -> Result<Option<Arc<Program>>, CaseError> {
     let DriveSpeed::Program(segments) = &file.drive.speed else {

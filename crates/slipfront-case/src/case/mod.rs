@@ -3,9 +3,11 @@
 mod budget;
 mod coarse;
 mod coefficients;
+mod derived;
 mod drive;
 mod groups;
 mod inputs;
+mod model;
 mod options;
 mod output;
 mod ranks;

@@ -1,25 +1,21 @@
 //! A case that can be run.
 
-use std::ops::Range;
 use std::path::Path;
 use std::sync::Arc;
 
-use slipfront::scales::damping;
 use slipfront::surface::Texture;
-use slipfront::{Communicator, Friction, Lattice, Model, Scales, Surface};
+use slipfront::{Communicator, Lattice, Model, Scales};
 
 use super::budget::Budget;
-use super::coefficients::{coefficients, contact};
-use super::drive::{attach, attached, drive, program, refuse_large_angles};
+use super::derived::Derived;
+use super::drive::{program, refuse_large_angles};
 use super::groups::Groups;
-use super::inputs::Watch;
-use super::inputs::{Input, Inputs, NamedFiles};
-use super::options::options;
+use super::inputs::{Input, Inputs, NamedFiles, Watch};
+use super::model;
 use super::output::Output;
 use super::ranks::Ranks;
-use super::slider::GivenBlocks;
 use super::textures;
-use super::time_plan::{Dynamics, TimePlan, load_factor};
+use super::time_plan::{TimePlan, load_factor};
 use super::topography::Topography;
 use crate::arrays::Slab;
 use crate::case_file::{CaseError, CaseFile};
@@ -145,6 +141,7 @@ impl Case {
         Self::make(file, name, folder, false, watch, ranks)
     }
 
+    /// The file, what follows from it alone, what it reads, the model, the steps.
     fn make(
         mut file: CaseFile,
         name: &str,
@@ -158,16 +155,9 @@ impl Case {
         let lattice = Lattice::with_edges(nx, ny, file.slider.edges);
         let rows = lattice.rows_of(ranks.communicator);
         // Nothing is allocated before all ranks have looked at the memory that they share.
-        let planned = Derived::of(&file, &lattice, &rows, &ranks, to_run)
+        let derived = Derived::of(&file, &lattice, &rows, &ranks, to_run)
             .and_then(|derived| Ok((derived, NamedFiles::find(&mut file, folder)?)));
-        let (derived, named) = ranks.agree(planned)?;
-        let Derived {
-            scales,
-            groups,
-            mut budget,
-            friction,
-            plan,
-        } = derived;
+        let (mut derived, named) = ranks.agree(derived)?;
         let inputs = Inputs {
             files: named.read(&mut file, &lattice, &ranks)?,
             slab: Slab {
@@ -176,71 +166,33 @@ impl Case {
                 rows: rows.clone(),
             },
         };
+        derived.budget.inputs = inputs.files.iter().map(|input| input.length as f64).sum();
 
-        let blocks = ranks.agree_on_rows(GivenBlocks::read(&file, &lattice, &inputs, watch))?;
-        let mut slider = blocks.slider(&file, ranks.communicator)?;
-        let n_blocks = slider.n_blocks(&lattice);
-        let made = textures::mesh(&file, &scales, &lattice, n_blocks, &inputs, watch).and_then(|meshed| {
-            let coefficients = coefficients(&file, &groups, &lattice, &inputs)?;
-            let contact = contact(&file, &scales, &lattice, &inputs)?;
-            Ok((meshed, coefficients, contact, attached(&file, &inputs, watch)?))
-        });
-        let ((meshed, in_blocks), coefficients, contact, attached) = ranks.agree_on_rows(made)?;
-        ranks.agree(named.expect_unchanged(&file))?;
-        attach(&mut slider, &file, &lattice, &rows, attached, ranks.communicator)?;
-        let surface = Surface::of_ranks(
-            coefficients,
-            meshed.textured,
-            contact,
-            &slider,
-            ranks.communicator,
-        )
-        .map_err(|error| file.source.error("texture", error.to_string()))?;
-        let texture = TextureReport {
-            asked_percent: in_blocks.asked_percent,
-            topographies: in_blocks.topographies,
-            meshed_percent: surface.texture_percent(),
-            clipped: meshed.clipped,
-            empty: empty_on_all(&meshed.empty, file.texture.len(), ranks.communicator),
-        };
-        let drive = drive(
-            &file,
-            &scales,
-            &groups,
-            (&lattice, &rows),
-            &slider,
-            ranks.communicator,
-        )?;
-        let mut model = Model::of_rows(
-            lattice,
-            rows,
-            surface,
-            drive,
-            damping(groups.omega_star),
-            groups.epsilon,
-            friction,
-        )
-        .with_slider(slider);
-        let plan = ranks.agree(plan.of_model(&file, &model, &scales, &groups, &ranks))?;
-        let Plan {
-            time_plan, output, ..
-        } = plan;
-        model.drive.program = program(&file, time_plan.dt_star)?;
+        let (model, texture) =
+            model::make(&file, &derived, (lattice, rows), (&named, &inputs), watch, &ranks)?;
+        let Derived {
+            scales,
+            groups,
+            budget,
+            ..
+        } = derived;
+        let planned = TimePlan::of(&file, &scales, &groups, &model, ranks.communicator)
+            .and_then(|plan| Ok((plan, Output::of(&file, &plan)?)));
+        let (time_plan, output) = ranks.agree(planned)?;
+        let model = model.with_program(program(&file, time_plan.dt_star)?);
         refuse_large_angles(&file, &model.drive, groups.epsilon, time_plan.end_star())?;
-        let expected = Expected::of(&file, &model, ranks.communicator);
-        budget.inputs = inputs.files.iter().map(|input| input.length as f64).sum();
         Ok(Self {
             name: name.to_owned(),
-            file,
             budget,
             inputs: inputs.files,
             scales,
             groups,
+            expected: Expected::of(&file, &model, ranks.communicator),
             model: Arc::new(model),
-            expected,
             texture,
             time_plan,
             output,
+            file,
         })
     }
 
@@ -283,104 +235,4 @@ pub fn scales(file: &CaseFile) -> Scales {
         pressure: file.load.pressure.si(),
         mu_static_mean: file.friction.mu_static,
     }
-}
-
-/// What follows from a case file without the files that it names.
-struct Derived {
-    scales: Scales,
-    groups: Groups,
-    budget: Budget,
-    friction: Friction,
-    plan: Plan,
-}
-
-/// Steps and results.
-struct Plan {
-    dynamics: Dynamics,
-    time_plan: TimePlan,
-    output: Output,
-}
-
-impl Plan {
-    /// This plan, or another one if blocks that differ need it.
-    fn of_model(
-        self,
-        file: &CaseFile,
-        model: &Model,
-        scales: &Scales,
-        groups: &Groups,
-        ranks: &Ranks,
-    ) -> Result<Self, CaseError> {
-        let dynamics = Dynamics::of(file, model, ranks.communicator);
-        let plan = if dynamics == self.dynamics {
-            self
-        } else {
-            Self::new(file, dynamics, TimePlan::of(file, scales, groups, dynamics)?)?
-        };
-        plan.time_plan.check_end(file)?;
-        Ok(plan)
-    }
-
-    fn new(file: &CaseFile, dynamics: Dynamics, time_plan: TimePlan) -> Result<Self, CaseError> {
-        Ok(Self {
-            dynamics,
-            output: Output::of(file, &time_plan)?,
-            time_plan,
-        })
-    }
-}
-
-impl Derived {
-    /// Refuses numbers out of the range of the model, and what there is no memory for.
-    fn of(
-        file: &CaseFile,
-        lattice: &Lattice,
-        rows: &Range<usize>,
-        ranks: &Ranks,
-        to_run: bool,
-    ) -> Result<Self, CaseError> {
-        let scales = scales(file);
-        let groups = Groups::of(file, &scales)?;
-        let n_ranks = ranks.communicator.size();
-        if n_ranks > lattice.ny {
-            let sentence = format!(
-                "there are more ranks ({n_ranks}) than rows of blocks ({}), of which each takes at least one: take fewer ranks, \
-                 or more blocks along y",
-                lattice.ny
-            );
-            return Err(file.source.error("slider.blocks", sentence));
-        }
-        if let Some((key, why)) = file.friction.takes_one_rank().filter(|_| n_ranks > 1) {
-            return Err(file.source.error(key, why));
-        }
-        let dynamics = Dynamics::of_file(file, &scales, &groups, lattice);
-        let time_plan = TimePlan::of(file, &scales, &groups, dynamics)?;
-        let plan = Plan::new(file, dynamics, time_plan)?;
-        let friction = file.friction.in_model(groups.v_star);
-        let budget = Budget::new(lattice, rows, ranks, file, &options(file, friction));
-        if to_run {
-            budget.check_running(file)?;
-        } else {
-            budget.check_making(file)?;
-        }
-        Ok(Self {
-            scales,
-            groups,
-            budget,
-            friction,
-            plan,
-        })
-    }
-}
-
-/// The textures out of `n_textures` that cover no block of any rank, of those that cover none of this one.
-fn empty_on_all(empty: &[usize], n_textures: usize, communicator: &dyn Communicator) -> Vec<usize> {
-    let mut covers = vec![1.0; n_textures];
-    for &texture in empty {
-        covers[texture] = 0.0;
-    }
-    communicator.largest(&mut covers);
-    (0..n_textures)
-        .filter(|&texture| covers[texture] == 0.0)
-        .collect()
 }

@@ -1,11 +1,10 @@
 //! Duration and time step of a case.
 
 use slipfront::communicator::Communicator;
-use slipfront::lattice::{K_DRIVE, dt_star_limit};
+use slipfront::lattice::K_DRIVE;
 use slipfront::observe::KineticStart;
-use slipfront::{Lattice, Model, ONSET_PATH, Scales, Stop, StopReason};
+use slipfront::{Model, ONSET_PATH, Scales, Stop, StopReason};
 
-use super::drive::loading_share;
 use super::groups::Groups;
 use crate::case_file::{
     Attached, AttachedEdge, AutoOr, CaseError, CaseFile, DriveSpeed, RunTime, Snapshots, TimeStep,
@@ -27,37 +26,6 @@ pub struct TimePlan {
     pub kinetic: KineticStart,
 }
 
-/// What a time plan must know of the model, which is made after the memory that the plan takes is known.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Dynamics {
-    /// The step must be less.
-    step_limit: f64,
-    /// Speed in which waiting times are counted.
-    loading_speed: f64,
-    /// Load of a block in contact over what it would be if every block touched, as far as that delays the onset.
-    load_factor: f64,
-}
-
-impl Dynamics {
-    /// Of equal blocks, as far as the file tells.
-    pub(super) fn of_file(file: &CaseFile, scales: &Scales, groups: &Groups, lattice: &Lattice) -> Self {
-        Self {
-            step_limit: dt_star_limit(),
-            loading_speed: groups.v_star * loading_share(file, scales, lattice),
-            load_factor: 1.0,
-        }
-    }
-
-    /// Of all blocks; all ranks must call this together.
-    pub(super) fn of(file: &CaseFile, model: &Model, ranks: &dyn Communicator) -> Self {
-        Self {
-            step_limit: model.stable_step_limit(ranks),
-            loading_speed: model.loading_speed(),
-            load_factor: load_factor(file, model),
-        }
-    }
-}
-
 /// Load of a block in contact over what it would be if every block touched, by which the onset comes later: 1 unless every block has a drive
 /// spring, and can bear its load by that alone.
 pub(super) fn load_factor(file: &CaseFile, model: &Model) -> f64 {
@@ -74,15 +42,17 @@ const AUTO_STEP: f64 = 0.1;
 const MAX_STEPS: f64 = 4e9;
 
 impl TimePlan {
-    /// The time plan of a case file, refused when the step is unstable or the run too long.
+    /// The time plan of a case, refused when the step is unstable, the run too long, or its kinetic window or a snapshot after its end. All
+    /// ranks must call this together.
     pub(super) fn of(
         file: &CaseFile,
         scales: &Scales,
         groups: &Groups,
-        dynamics: Dynamics,
+        model: &Model,
+        ranks: &dyn Communicator,
     ) -> Result<Self, CaseError> {
         let time = &file.time;
-        let limit = dynamics.step_limit;
+        let limit = model.stable_step_limit(ranks);
         let auto = if AUTO_STEP < limit { AUTO_STEP } else { 0.5 * limit };
         let dt_star = match time.step {
             TimeStep::Auto => auto,
@@ -97,7 +67,7 @@ impl TimePlan {
             return Err(file.source.error("time.step", sentence));
         }
         let (key, end_star) = match &time.duration {
-            RunTime::Star(AutoOr::Auto) => ("time.duration_star", auto_duration(file, scales, dynamics)),
+            RunTime::Star(AutoOr::Auto) => ("time.duration_star", auto_duration(file, scales, model)),
             RunTime::Star(AutoOr::Number(duration)) => ("time.duration_star", *duration),
             RunTime::Duration(duration) => ("time.duration", duration.si() / scales.time()),
         };
@@ -119,17 +89,19 @@ impl TimePlan {
             StopReason::End => Stop::at_step(last_step),
             StopReason::Onset => Stop::after_onset(last_step),
         };
-        Ok(TimePlan {
+        let plan = TimePlan {
             dt_star,
             step_limit: limit,
             last_step,
             stop,
             kinetic,
-        })
+        };
+        plan.check_end(file)?;
+        Ok(plan)
     }
 
-    /// Refuses a kinetic window and snapshots after the end of the run, which is known only of a plan that follows from the model.
-    pub(super) fn check_end(&self, file: &CaseFile) -> Result<(), CaseError> {
+    /// Refuses a kinetic window and snapshots after the end of the run.
+    fn check_end(&self, file: &CaseFile) -> Result<(), CaseError> {
         let end_star = self.end_star();
         if let KineticStart::At(from) = self.kinetic
             && from >= end_star
@@ -158,7 +130,7 @@ impl TimePlan {
 /// own drive springs bear it all, at f/(k_s V*); after that time there must be room for the 2.5/V* that pass before the kinetic
 /// window begins, which takes longer than 8/V* where less than 48 % of the blocks touch. A drive that loads more slowly and adhesion delay the
 /// onset; under a program of speeds it is counted from the last of them.
-fn auto_duration(file: &CaseFile, scales: &Scales, dynamics: Dynamics) -> f64 {
+fn auto_duration(file: &CaseFile, scales: &Scales, model: &Model) -> f64 {
     let delay = 1.0 + file.friction.adhesion.si() / scales.stress();
     let last = match &file.drive.speed {
         DriveSpeed::Program(segments) => segments
@@ -167,6 +139,6 @@ fn auto_duration(file: &CaseFile, scales: &Scales, dynamics: Dynamics) -> f64 {
             .next_back(),
         DriveSpeed::VStar(_) | DriveSpeed::Speed(_) => None,
     };
-    let path = f64::max(8.0, dynamics.load_factor / K_DRIVE + ONSET_PATH);
-    last.unwrap_or(0.0) + path / dynamics.loading_speed * delay
+    let path = f64::max(8.0, load_factor(file, model) / K_DRIVE + ONSET_PATH);
+    last.unwrap_or(0.0) + path / model.loading_speed() * delay
 }

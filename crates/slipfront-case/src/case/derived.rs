@@ -1,0 +1,59 @@
+//! What follows from a case file without the files that it names.
+
+use std::ops::Range;
+
+use slipfront::{Friction, Lattice, Scales};
+
+use super::budget::Budget;
+use super::groups::Groups;
+use super::options::options;
+use super::ranks::Ranks;
+use super::runnable::scales;
+use crate::case_file::{CaseError, CaseFile};
+
+/// What follows from a case file without the files that it names.
+pub(super) struct Derived {
+    pub(super) scales: Scales,
+    pub(super) groups: Groups,
+    pub(super) budget: Budget,
+    pub(super) friction: Friction,
+}
+
+impl Derived {
+    /// Refuses numbers out of the range of the model, and what there is no memory for.
+    pub(super) fn of(
+        file: &CaseFile,
+        lattice: &Lattice,
+        rows: &Range<usize>,
+        ranks: &Ranks,
+        to_run: bool,
+    ) -> Result<Self, CaseError> {
+        let scales = scales(file);
+        let groups = Groups::of(file, &scales)?;
+        let n_ranks = ranks.communicator.size();
+        if n_ranks > lattice.ny {
+            let sentence = format!(
+                "there are more ranks ({n_ranks}) than rows of blocks ({}), of which each takes at least one: take fewer ranks, \
+                 or more blocks along y",
+                lattice.ny
+            );
+            return Err(file.source.error("slider.blocks", sentence));
+        }
+        if let Some((key, why)) = file.friction.takes_one_rank().filter(|_| n_ranks > 1) {
+            return Err(file.source.error(key, why));
+        }
+        let friction = file.friction.in_model(groups.v_star);
+        let budget = Budget::new(lattice, rows, ranks, file, &options(file, friction));
+        if to_run {
+            budget.check_running(file)?;
+        } else {
+            budget.check_making(file)?;
+        }
+        Ok(Self {
+            scales,
+            groups,
+            budget,
+            friction,
+        })
+    }
+}

@@ -1,0 +1,78 @@
+//! The model of a case: its blocks, surface, slider and drive, in the order in which they need each other.
+
+use std::ops::Range;
+
+use slipfront::scales::damping;
+use slipfront::{Communicator, Lattice, Model, Surface};
+
+use super::coefficients::{coefficients, contact};
+use super::derived::Derived;
+use super::drive::{attach, attached, drive};
+use super::inputs::{Inputs, NamedFiles, Watch};
+use super::ranks::Ranks;
+use super::runnable::TextureReport;
+use super::slider::GivenBlocks;
+use super::textures;
+use crate::case_file::{CaseError, CaseFile};
+
+/// The model of some rows of the lattice, without the program of its drive, whose speeds change where steps begin. Files are refused that
+/// have changed while they were read.
+pub(super) fn make(
+    file: &CaseFile,
+    derived: &Derived,
+    (lattice, rows): (Lattice, Range<usize>),
+    (named, inputs): (&NamedFiles, &Inputs),
+    watch: &mut Watch,
+    ranks: &Ranks,
+) -> Result<(Model, TextureReport), CaseError> {
+    let (scales, groups) = (&derived.scales, &derived.groups);
+    let blocks = ranks.agree_on_rows(GivenBlocks::read(file, &lattice, inputs, watch))?;
+    let mut slider = blocks.slider(file, ranks.communicator)?;
+    let n_blocks = slider.n_blocks(&lattice);
+    let made = textures::mesh(file, scales, &lattice, n_blocks, inputs, watch).and_then(|meshed| {
+        let coefficients = coefficients(file, groups, &lattice, inputs)?;
+        let contact = contact(file, scales, &lattice, inputs)?;
+        Ok((meshed, coefficients, contact, attached(file, inputs, watch)?))
+    });
+    let ((meshed, in_blocks), coefficients, contact, attached) = ranks.agree_on_rows(made)?;
+    ranks.agree(named.expect_unchanged(file))?;
+    attach(&mut slider, file, &lattice, &rows, attached, ranks.communicator)?;
+    let surface = Surface::of_ranks(
+        coefficients,
+        meshed.textured,
+        contact,
+        &slider,
+        ranks.communicator,
+    )
+    .map_err(|error| file.source.error("texture", error.to_string()))?;
+    let texture = TextureReport {
+        asked_percent: in_blocks.asked_percent,
+        topographies: in_blocks.topographies,
+        meshed_percent: surface.texture_percent(),
+        clipped: meshed.clipped,
+        empty: empty_on_all(&meshed.empty, file.texture.len(), ranks.communicator),
+    };
+    let drive = drive(
+        file,
+        scales,
+        groups,
+        (&lattice, &rows),
+        &slider,
+        ranks.communicator,
+    )?;
+    let (damping, friction) = (damping(groups.omega_star), derived.friction);
+    let model = Model::of_rows(lattice, rows, surface, drive, damping, groups.epsilon, friction);
+    Ok((model.with_slider(slider), texture))
+}
+
+/// The textures out of `n_textures` that cover no block of any rank, of those that cover none of this one.
+fn empty_on_all(empty: &[usize], n_textures: usize, communicator: &dyn Communicator) -> Vec<usize> {
+    let mut covers = vec![1.0; n_textures];
+    for &texture in empty {
+        covers[texture] = 0.0;
+    }
+    communicator.largest(&mut covers);
+    (0..n_textures)
+        .filter(|&texture| covers[texture] == 0.0)
+        .collect()
+}
