@@ -21,7 +21,7 @@ CRATES_IO = "https://github.com/rust-lang/crates.io-index"
 DEFAULTS = {
     "graph": {"all-features": False},
     "licenses": {"allow": [], "exceptions": []},
-    "bans": {"wildcards": "allow", "multiple-versions": "warn", "deny": []},
+    "bans": {"wildcards": "allow", "multiple-versions": "warn", "allow-wildcard-paths": False, "deny": []},
     "sources": {
         "unknown-registry": "warn",
         "unknown-git": "warn",
@@ -73,7 +73,15 @@ def wrong_bans(package, rule):
         f"is banned: {entry.get('reason', 'no reason is given')}" for entry in rule["deny"] if entry["crate"] == package["name"]
     ]
     if rule["wildcards"] == "deny":
-        wrong += [f"asks for any version of {needed['name']}" for needed in package["dependencies"] if needed["req"] == "*"]
+        # What the tests of a crate need of a folder is left out where the crate is packed.
+        def is_excepted(needed):
+            return rule["allow-wildcard-paths"] and needed.get("kind") == "dev" and "path" in needed
+
+        wrong += [
+            f"asks for any version of {needed['name']}"
+            for needed in package["dependencies"]
+            if needed["req"] == "*" and not is_excepted(needed)
+        ]
     return wrong
 
 

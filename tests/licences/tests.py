@@ -64,6 +64,14 @@ class Rules(unittest.TestCase):
         self.assertEqual(judged(*found, licenses=licences, bans=bans), said)
         self.assertEqual(judged(*found, licenses=licences), [])
 
+    def test_any_version_of_a_folder_is_for_tests_alone(self):
+        bans = {"wildcards": "deny", "allow-wildcard-paths": True}
+        for kind, path, is_refused in [("dev", "/a", False), (None, "/a", True), ("build", "/a", True), ("dev", None, True)]:
+            needed = {"name": "other", "req": "*", "kind": kind} | ({"path": path} if path else {})
+            found = package() | {"dependencies": [needed]}
+            said = judged(found, licenses={"allow": ["MIT"]}, bans=bans)
+            self.assertEqual(said, ["made-up 1.0.0 asks for any version of other"] if is_refused else [], needed)
+
     def test_several_versions_are_refused_where_that_is_asked(self):
         found = [package(), package(version="2.0.0"), package(name="other")]
         bans = {"multiple-versions": "deny"}

@@ -8,7 +8,6 @@ use super::budget::Budget;
 use super::groups::Groups;
 use super::options::options;
 use super::ranks::Ranks;
-use super::runnable::scales;
 use crate::case_file::{CaseError, CaseFile};
 
 /// What follows from a case file without the files that it names.
@@ -55,5 +54,16 @@ impl Derived {
             budget,
             friction,
         })
+    }
+}
+
+/// Units of the dimensionless quantities of a case file.
+pub fn scales(file: &CaseFile) -> Scales {
+    Scales {
+        block_size: file.slider.block_size.si(),
+        young_modulus: file.slider.young_modulus.si(),
+        density: file.slider.density.si(),
+        pressure: file.load.pressure.si(),
+        mu_static_mean: file.friction.mu_static,
     }
 }

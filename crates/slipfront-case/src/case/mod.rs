@@ -20,11 +20,13 @@ mod warnings;
 mod whole_slider;
 
 pub use self::budget::{Budget, Cause, Demand, PROGRAM};
+pub use self::derived::scales;
 pub use self::groups::Groups;
 pub use self::inputs::{Input, Watch, name_of_copy};
+pub use self::model::TextureReport;
 pub use self::output::{MAX_MAPS, MAX_PICTURES, Output, Snapshots, mapped_field};
 pub use self::ranks::Ranks;
-pub use self::runnable::{Case, Expected, TextureReport, scales};
+pub use self::runnable::{Case, Expected};
 pub use self::time_plan::TimePlan;
 pub use self::topography::Topography;
 pub use self::whole_slider::WholeSlider;

@@ -10,10 +10,25 @@ use super::derived::Derived;
 use super::drive::{attach, attached, drive};
 use super::inputs::{Inputs, NamedFiles, Watch};
 use super::ranks::Ranks;
-use super::runnable::TextureReport;
 use super::slider::GivenBlocks;
 use super::textures;
+use super::topography::Topography;
 use crate::case_file::{CaseError, CaseFile};
+
+/// The texture as asked and as meshed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TextureReport {
+    /// A* as asked for, %; none if there is a mask, a polygon or the depth of a height map, whose area is known only after meshing.
+    pub asked_percent: Option<f64>,
+    /// A* as meshed, % (Eq. 15).
+    pub meshed_percent: f64,
+    /// The height maps.
+    pub topographies: Vec<Topography>,
+    /// Positions in the case file, from 0, of the textures that a free edge clips.
+    pub clipped: Vec<usize>,
+    /// Positions of those that cover no block.
+    pub empty: Vec<usize>,
+}
 
 /// The model of some rows of the lattice, without the program of its drive, whose speeds change where steps begin. Files are refused that
 /// have changed while they were read.

@@ -11,12 +11,11 @@ use super::derived::Derived;
 use super::drive::{program, refuse_large_angles};
 use super::groups::Groups;
 use super::inputs::{Input, Inputs, NamedFiles, Watch};
-use super::model;
+use super::model::{self, TextureReport};
 use super::output::Output;
 use super::ranks::Ranks;
 use super::textures;
 use super::time_plan::{TimePlan, load_factor};
-use super::topography::Topography;
 use crate::arrays::Slab;
 use crate::case_file::{CaseError, CaseFile};
 use crate::same::expect_same;
@@ -70,21 +69,6 @@ impl Expected {
             onset_star: model.onset_estimate(load_factor(file, model)),
         }
     }
-}
-
-/// The texture as asked and as meshed.
-#[derive(Clone, Debug, PartialEq)]
-pub struct TextureReport {
-    /// A* as asked for, %; none if there is a mask, a polygon or the depth of a height map, whose area is known only after meshing.
-    pub asked_percent: Option<f64>,
-    /// A* as meshed, % (Eq. 15).
-    pub meshed_percent: f64,
-    /// The height maps.
-    pub topographies: Vec<Topography>,
-    /// Positions in the case file, from 0, of the textures that a free edge clips.
-    pub clipped: Vec<usize>,
-    /// Positions of those that cover no block.
-    pub empty: Vec<usize>,
 }
 
 impl Case {
@@ -223,16 +207,5 @@ impl Case {
     pub fn steps_per_poll(&self) -> u64 {
         const BLOCK_STEPS: u64 = 200_000;
         (BLOCK_STEPS / self.model.lattice.n_blocks() as u64).max(1)
-    }
-}
-
-/// Units of the dimensionless quantities of a case file.
-pub fn scales(file: &CaseFile) -> Scales {
-    Scales {
-        block_size: file.slider.block_size.si(),
-        young_modulus: file.slider.young_modulus.si(),
-        density: file.slider.density.si(),
-        pressure: file.load.pressure.si(),
-        mu_static_mean: file.friction.mu_static,
     }
 }
