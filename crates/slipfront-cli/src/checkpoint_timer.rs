@@ -1,7 +1,6 @@
 //! When the checkpoints of a run are saved: by the clock, when asked for, and when the run is told to stop.
 
 use std::fmt;
-use std::path::{Path, PathBuf};
 use std::str::FromStr;
 use std::time::{Duration, Instant};
 
@@ -60,7 +59,6 @@ fn pause(every: Duration, cost: Duration) -> Duration {
 
 /// Saves the checkpoints of a run when they are due.
 pub(crate) struct CheckpointTimer {
-    folder: PathBuf,
     checkpoints: Checkpoints,
     interval: Interval,
     due: Option<Instant>,
@@ -71,7 +69,6 @@ pub(crate) struct CheckpointTimer {
 impl CheckpointTimer {
     /// The first checkpoint is due an interval from now.
     pub(crate) fn new(
-        folder: &Path,
         checkpoints: Checkpoints,
         interval: Interval,
         signals: Signals,
@@ -79,7 +76,6 @@ impl CheckpointTimer {
     ) -> Self {
         Self {
             ranks,
-            folder: folder.to_owned(),
             checkpoints,
             interval,
             due: interval.0.and_then(|every| Instant::now().checked_add(every)),
@@ -125,7 +121,7 @@ impl CheckpointTimer {
                     );
                     progress.note(&format!(
                         "warning: cannot save a checkpoint of step {step} in {}: {error}; the run goes on, and {kept}",
-                        self.folder.display()
+                        self.checkpoints.folder().display()
                     ));
                 }
             }
@@ -153,13 +149,13 @@ impl CheckpointTimer {
             Ok(()) => {
                 let sentence = format!(
                     "{stopped}, which is saved: `{}` goes on",
-                    self.ranks.resume_command(&self.folder)
+                    self.ranks.resume_command(self.checkpoints.folder())
                 );
                 Failure::Stopped(signal, anyhow::anyhow!(sentence))
             }
             // Not stopped as a signal should: a job script must not take it for one that has lost nothing.
             Err(error) => {
-                let (folder, remedy) = (self.folder.display(), self.remedy());
+                let (folder, remedy) = (self.checkpoints.folder().display(), self.remedy());
                 Failure::running(anyhow::anyhow!(
                     "{stopped}, which cannot be saved in {folder}: {error}; {remedy}"
                 ))
@@ -169,7 +165,7 @@ impl CheckpointTimer {
 
     /// The remedy when the disk has refused something.
     pub(crate) fn remedy(&self) -> String {
-        let command = self.ranks.resume_command(&self.folder);
+        let command = self.ranks.resume_command(self.checkpoints.folder());
         let from = self
             .checkpoints
             .saved_step()

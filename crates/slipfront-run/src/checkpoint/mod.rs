@@ -26,6 +26,8 @@ use crate::running::Running;
 /// A checkpoint as it was read.
 #[derive(Debug)]
 pub struct LoadedCheckpoint {
+    /// The run folder.
+    folder: PathBuf,
     path: PathBuf,
     file: VerifiedFile,
     /// Whether it is the latest, and not the one before.
@@ -60,7 +62,9 @@ impl LoadedCheckpoint {
 /// Saves the checkpoints of one run.
 #[derive(Debug)]
 pub struct Checkpoints {
-    folder: Unfinished,
+    /// The run folder.
+    folder: PathBuf,
+    unfinished: Unfinished,
     case_blake3: String,
     started: Timestamp,
     /// Whether the latest checkpoint there is known to be whole.
@@ -70,10 +74,11 @@ pub struct Checkpoints {
 }
 
 impl Checkpoints {
-    /// Those of a run of `case` in `folder` that begins at `started`.
+    /// The checkpoints of a run of `case` in `folder` that begins at `started`.
     pub fn new(folder: &Path, case: &Case, started: Timestamp) -> Self {
         Self {
-            folder: Unfinished::of(folder),
+            folder: folder.to_owned(),
+            unfinished: Unfinished::of(folder),
             case_blake3: hash_of(case),
             started,
             latest_is_whole: false,
@@ -81,13 +86,18 @@ impl Checkpoints {
         }
     }
 
-    /// Those of a run that goes on from a checkpoint.
-    pub fn after(folder: &Path, case: &Case, saved: &LoadedCheckpoint) -> Self {
+    /// The checkpoints of a run that goes on from a loaded one, in the folder that holds it.
+    pub fn after(case: &Case, loaded: &LoadedCheckpoint) -> Self {
         Self {
-            latest_is_whole: saved.latest,
-            saved_step: Some(saved.step()),
-            ..Self::new(folder, case, saved.file.header.started)
+            latest_is_whole: loaded.latest,
+            saved_step: Some(loaded.step()),
+            ..Self::new(&loaded.folder, case, loaded.file.header.started)
         }
+    }
+
+    /// The run folder.
+    pub fn folder(&self) -> &Path {
+        &self.folder
     }
 
     /// The step from which the run would go on, if any was saved.
@@ -107,7 +117,7 @@ impl Checkpoints {
         let is_first = communicator.rank() == 0;
         // Another name for every step: machines that share a disk may take a name for the file that had it before.
         let temporary = format!("{}-{CHECKPOINT}", header.step);
-        let temporary = self.folder.temporary().join(temporary);
+        let temporary = self.unfinished.temporary().join(temporary);
         let written = file::write(&temporary, &header, running, communicator);
         let placed = written.and_then(|()| {
             if is_first {
@@ -127,7 +137,7 @@ impl Checkpoints {
 
     /// Makes a whole checkpoint the latest.
     fn put_in_place(&mut self, whole: &Path) -> std::io::Result<()> {
-        let [latest, previous] = [CHECKPOINT, PREVIOUS].map(|name| self.folder.path().join(name));
+        let [latest, previous] = [CHECKPOINT, PREVIOUS].map(|name| self.unfinished.path().join(name));
         if std::mem::take(&mut self.latest_is_whole) {
             match std::fs::rename(&latest, &previous) {
                 Err(error) if error.kind() != ErrorKind::NotFound => return Err(error),
@@ -136,7 +146,7 @@ impl Checkpoints {
         }
         std::fs::rename(whole, &latest)?;
         self.latest_is_whole = true;
-        sync_folder(self.folder.path())
+        sync_folder(self.unfinished.path())
     }
 
     /// Reads the latest checkpoint of a run folder, or the one before it; none if there is none. Where a kill has left
@@ -160,7 +170,13 @@ impl Checkpoints {
             if is_there {
                 let file = file::read(&path, &hash_of(case), communicator)?;
                 let latest = name == CHECKPOINT;
-                return Ok(Some(LoadedCheckpoint { path, file, latest }));
+                let folder = folder.to_owned();
+                return Ok(Some(LoadedCheckpoint {
+                    folder,
+                    path,
+                    file,
+                    latest,
+                }));
             }
         }
         Ok(None)

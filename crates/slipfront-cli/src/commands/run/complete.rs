@@ -21,10 +21,9 @@ use crate::print::{print, print_message};
 use crate::progress::run::RunProgress;
 use crate::report;
 
-/// Takes a run to its end and writes its results to a folder, which the first rank holds.
+/// Takes a run to its end and writes its results to the folder of its checkpoints, which the first rank holds.
 pub(super) fn complete(
     mut running: Running,
-    out: &Path,
     folder: Option<RunFolder>,
     checkpoints: Checkpoints,
     options: RunOptions,
@@ -32,7 +31,8 @@ pub(super) fn complete(
     let (case, ranks) = (Arc::clone(running.case()), options.ranks.clone());
     let (threads, is_verbose) = (options.threads, options.is_verbose());
     let (started, first_step) = (checkpoints.started(), running.snapshot().step);
-    let mut timer = CheckpointTimer::new(out, checkpoints, options.interval, options.signals, options.ranks);
+    let out = checkpoints.folder().to_owned();
+    let mut timer = CheckpointTimer::new(checkpoints, options.interval, options.signals, options.ranks);
     let mut progress = RunProgress::new(&running, options.quiet);
     let reason = loop {
         match running.advance(case.steps_per_poll()) {
@@ -58,7 +58,7 @@ pub(super) fn complete(
         .as_mut()
         .map(|folder| results::write_tables(&case, &record, folder));
     ranks.agree(tables.transpose().map_err(|error| failed(error.into())))?;
-    let fields = results::write_fields(&case, &mut record, out, &*ranks.communicator());
+    let fields = results::write_fields(&case, &mut record, &out, &*ranks.communicator());
     let fields = ranks.agree(fields.map_err(|error| failed(error.into())))?;
     let finished = folder.zip(fields).map(|(mut folder, fields)| {
         folder.place(FIELDS, fields)?;
@@ -72,7 +72,7 @@ pub(super) fn complete(
         if let Some(traffic) = ranks.traffic(steps) {
             print_message(&format!("{:<18}{traffic}\n", "rank 0 sends"));
         }
-        print_message(&files(&case, out));
+        print_message(&files(&case, &out));
     }
     Ok(())
 }

@@ -98,7 +98,7 @@ impl RunCommand {
             ..Execution::on_threads(options.threads)
         };
         let running = Running::start(&case, None, execution);
-        complete(running, &out, folder, checkpoints, options)
+        complete(running, folder, checkpoints, options)
     }
 
     /// The options on which it depends what the ranks do together. Where the others are, threads and the folder, each rank may have

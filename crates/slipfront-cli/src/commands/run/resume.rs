@@ -6,7 +6,7 @@ use std::sync::Arc;
 use slipfront::Execution;
 use slipfront::communicator::Alone;
 use slipfront_case::case::Case;
-use slipfront_case::case_file::{CaseError, CaseFile};
+use slipfront_case::case_file::CaseError;
 use slipfront_run::agree::RankFailure;
 use slipfront_run::checkpoint::{CheckpointError, Checkpoints, LoadedCheckpoint};
 use slipfront_run::clock;
@@ -35,19 +35,18 @@ pub(super) fn resume(path: &Path, previous: bool, options: RunOptions) -> Result
     if ranks.any(ranks.is_first() && is_complete) {
         return ranks.first(|| report_complete(run, &options)).map(|_| ());
     }
-    let file = ranks.agree(run.case_to_resume().map_err(Failure::input))?.clone();
-    let case = Arc::new(ranks.agree(case_to_resume(path, file, &options))?);
-    let loaded = ranks.agree(load(path, &case, previous, &ranks))?;
+    let case = Arc::new(ranks.agree(case_to_resume(run, &options))?);
+    let loaded = ranks.agree(load(run, &case, previous, &ranks))?;
     ranks.first(|| check_disk(run, &case, &options))?;
     let (running, checkpoints, from) =
-        ranks.agree(begin(path, &case, loaded, previous, options.threads, &ranks))?;
+        ranks.agree(begin(run, &case, loaded, previous, options.threads, &ranks))?;
     let folder = ranks.first(|| folder.resume(&case).map_err(Failure::input))?;
-    expect_shared(path, &*ranks.communicator())?;
+    expect_shared(checkpoints.folder(), &*ranks.communicator())?;
     if options.is_verbose() {
         print_message(&report::physics(&case));
         print_message(&format!("goes on from {from}\n"));
     }
-    complete(running, path, folder, checkpoints, options)
+    complete(running, folder, checkpoints, options)
 }
 
 /// Locks and inspects the folder; the first rank locks it for all.
@@ -69,7 +68,7 @@ fn check_disk(run: &Inspection, case: &Case, options: &RunOptions) -> Result<(),
 
 /// Goes on from a checkpoint, if there is one; says from where.
 fn begin(
-    path: &Path,
+    run: &Inspection,
     case: &Arc<Case>,
     loaded: Option<LoadedCheckpoint>,
     previous: bool,
@@ -82,20 +81,20 @@ fn begin(
     };
     Ok(match loaded {
         None => {
-            let checkpoints = Checkpoints::new(path, case, clock::now());
+            let checkpoints = Checkpoints::new(&run.path, case, clock::now());
             let running = Running::start(case, None, execution);
             (running, checkpoints, "the start: it has no checkpoint".to_owned())
         }
         Some(loaded) => {
-            let checkpoints = Checkpoints::after(path, case, &loaded);
+            let checkpoints = Checkpoints::after(case, &loaded);
             let from = format!("step {} of {}", loaded.step(), case.time_plan.last_step);
             let resumed = loaded.resume(case, execution);
-            let resumed = resumed.map_err(|error| refused(ranks, &error, path, case, previous))?;
+            let resumed = resumed.map_err(|error| refused(ranks, &error, run, case, previous))?;
             let running = resumed.ok_or_else(|| {
                 let sentence = "is not one of a run of its case";
                 Failure::input(anyhow::anyhow!(
                     "the checkpoint in {} {sentence}; {ANEW}",
-                    path.display()
+                    run.path.display()
                 ))
             })?;
             (running, checkpoints, from)
@@ -106,9 +105,12 @@ fn begin(
 /// The remedy where no checkpoint can be used.
 const ANEW: &str = "remove the checkpoints, and --resume begins from the start";
 
-fn case_to_resume(path: &Path, file: CaseFile, options: &RunOptions) -> Result<Case, Failure> {
+/// The case that is written in the folder, made again.
+fn case_to_resume(run: &Inspection, options: &RunOptions) -> Result<Case, Failure> {
+    let path = &run.path;
+    let file = run.case_to_resume().map_err(Failure::input)?.clone();
     // Results are named after their folder, not after the file in it.
-    let folder = path.canonicalize().unwrap_or_else(|_| path.to_owned());
+    let folder = path.canonicalize().unwrap_or_else(|_| path.clone());
     let name = folder.file_name().unwrap_or_default().to_string_lossy();
     let made = make_case(&options.ranks, &options.signals, options.quiet, |watch, ranks| {
         Case::to_run(file, &name, path, watch, ranks)
@@ -165,18 +167,21 @@ fn report_complete(run: &Inspection, options: &RunOptions) -> Result<(), Failure
 
 /// The checkpoint to go on from, if the run has saved one.
 fn load(
-    path: &Path,
+    run: &Inspection,
     case: &Case,
     previous: bool,
     ranks: &CommandRanks,
 ) -> Result<Option<LoadedCheckpoint>, Failure> {
-    match Checkpoints::load(path, case, previous, &*ranks.communicator()) {
+    match Checkpoints::load(&run.path, case, previous, &*ranks.communicator()) {
         Ok(None) if previous => {
             let sentence = "holds no checkpoint before the latest one";
-            Err(Failure::input(anyhow::anyhow!("{} {sentence}", path.display())))
+            Err(Failure::input(anyhow::anyhow!(
+                "{} {sentence}",
+                run.path.display()
+            )))
         }
         Ok(loaded) => Ok(loaded),
-        Err(error) => Err(refused(ranks, &error, path, case, previous)),
+        Err(error) => Err(refused(ranks, &error, run, case, previous)),
     }
 }
 
@@ -184,12 +189,12 @@ fn load(
 fn refused(
     ranks: &CommandRanks,
     error: &CheckpointError,
-    path: &Path,
+    run: &Inspection,
     case: &Case,
     previous: bool,
 ) -> Failure {
     let remedy = if ranks.is_first() {
-        remedy(error, path, case, previous)
+        remedy(error, run, case, previous)
     } else {
         String::new()
     };
@@ -197,10 +202,10 @@ fn refused(
 }
 
 /// The remedy when a checkpoint is refused.
-fn remedy(error: &CheckpointError, path: &Path, case: &Case, previous: bool) -> String {
+fn remedy(error: &CheckpointError, run: &Inspection, case: &Case, previous: bool) -> String {
     match error {
         CheckpointError::Damaged { .. } | CheckpointError::Unreadable { .. } if !previous => {
-            match Checkpoints::load(path, case, true, &Alone) {
+            match Checkpoints::load(&run.path, case, true, &Alone) {
                 Ok(Some(loaded)) => format!(
                     "the one before it, of step {}, is whole: add --previous to go on from there",
                     loaded.step()
