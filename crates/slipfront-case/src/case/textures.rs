@@ -298,15 +298,9 @@ impl<'a> Masks<'a> {
 const REACH: f64 = 100.0;
 
 fn within_reach(shape: &surface::Shape, arrays: &[surface::Array], lattice: &Lattice) -> Result<(), String> {
-    let farthest = |lengths: &[f64]| lengths.iter().copied().map(f64::abs).fold(0.0, f64::max);
-    let reach = match shape {
-        surface::Shape::Cavity(cavity) => farthest(&cavity.center) + 2.0 * cavity.lambda,
-        surface::Shape::Groove(groove) => groove.offset.abs() + groove.width,
-        surface::Shape::Polygon(points) => farthest(points.as_flattened()),
-        surface::Shape::Tile(_) => 0.0,
-    };
-    let sides = |array: &surface::Array| [0, 1].map(|axis| array.count[axis] as f64 * array.spacing[axis]);
-    let reach = reach + 0.5 * arrays.iter().map(|array| farthest(&sides(array))).sum::<f64>();
+    let side = |array: &surface::Array, axis: usize| (array.count[axis] as f64 * array.spacing[axis]).abs();
+    let sides = arrays.iter().map(|array| side(array, 0).max(side(array, 1)));
+    let reach = shape.reach() + 0.5 * sides.sum::<f64>();
     let slider = lattice.nx.max(lattice.ny) as f64;
     if reach <= REACH * slider {
         return Ok(());

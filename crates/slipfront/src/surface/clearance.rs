@@ -188,9 +188,7 @@ fn form(lattice: &Lattice, texture: &Texture, all: bool) -> Option<(Form, Vec<[f
         },
         Shape::Polygon(points) => Form::Polygon(points.clone()),
         Shape::Groove(groove) => {
-            let [mut low, mut high] = groove.bounds(lattice, 0.0);
-            let along = 1 - groove.axis();
-            (low[along], high[along]) = (0.0, [lattice.nx, lattice.ny][along] as f64);
+            let [low, high] = groove.rectangle(lattice, 0.0);
             let across = |shift| {
                 let mut place = [0.0; 2];
                 place[groove.axis()] = shift;

@@ -93,14 +93,10 @@ pub fn contours(lattice: &Lattice, texture: &Texture) -> Option<Vec<Contour>> {
         Shape::Polygon(points) => Outlines::polygon(points, &grids),
         Shape::Groove(groove) => {
             let strips = groove.shifts(&grids).into_iter();
-            let size = [lattice.nx as f64, lattice.ny as f64];
             let rectangles = strips.flat_map(|shift| {
-                let [low, high] = groove.bounds(lattice, shift);
+                let [low, high] = groove.rectangle(lattice, shift);
                 let corners =
                     |low: [f64; 2], high: [f64; 2]| vec![low, [high[0], low[1]], high, [low[0], high[1]]];
-                let along = 1 - groove.axis();
-                let (mut low, mut high) = (low, high);
-                (low[along], high[along]) = (0.0, size[along]);
                 placed(lattice, [[low[0], high[0]], [low[1], high[1]]])
                     .into_iter()
                     .map(move |[x, y]| corners([low[0] + x, low[1] + y], [high[0] + x, high[1] + y]))

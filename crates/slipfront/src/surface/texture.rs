@@ -53,6 +53,27 @@ impl Shape {
             _ => n_copies(arrays),
         }
     }
+
+    /// How far the shape reaches from the origin, in blocks, or somewhat farther; 0 of a mask, which lies in the slider.
+    pub fn reach(&self) -> f64 {
+        let farthest = |lengths: &[f64]| lengths.iter().copied().map(f64::abs).fold(0.0, f64::max);
+        match self {
+            Self::Cavity(cavity) => farthest(&cavity.center) + 2.0 * cavity.lambda,
+            Self::Groove(groove) => groove.offset.abs() + groove.width,
+            Self::Polygon(points) => farthest(points.as_flattened()),
+            Self::Tile(_) => 0.0,
+        }
+    }
+
+    /// Most corners of the outline of a copy; none of a mask.
+    pub fn n_corners(&self) -> usize {
+        match self {
+            Self::Cavity(cavity) if cavity.s > 1 && cavity.w != 0.0 => OUTLINE_VERTICES,
+            Self::Polygon(points) => points.len(),
+            Self::Cavity(_) | Self::Groove(_) => 4,
+            Self::Tile(_) => 0,
+        }
+    }
 }
 
 /// A mask, block by block.
@@ -175,6 +196,14 @@ impl Groove {
         } else {
             [[from, f64::NEG_INFINITY], [to, f64::INFINITY]]
         }
+    }
+
+    /// Smallest and largest (x, y) of the rectangle that the copy covers, as long as the slider.
+    pub(super) fn rectangle(&self, lattice: &Lattice, shift: f64) -> [[f64; 2]; 2] {
+        let [mut low, mut high] = self.bounds(lattice, shift);
+        let along = 1 - self.axis();
+        (low[along], high[along]) = (0.0, [lattice.nx, lattice.ny][along] as f64);
+        [low, high]
     }
 }
 

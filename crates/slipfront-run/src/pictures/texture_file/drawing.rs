@@ -1,6 +1,6 @@
 //! The outlines of the textures of a case, layer by layer.
 
-use slipfront::surface::{Contour, Shape, Texture, contours, copies_overlap, mesh};
+use slipfront::surface::{Contour, Texture, contours, copies_overlap, mesh};
 use slipfront_case::case::Case;
 use slipfront_plot::mask_outline;
 
@@ -8,8 +8,6 @@ use super::{TextureFileError, textured_blocks};
 
 /// Most corners of all outlines: a file of about a gigabyte.
 const MAX_CORNERS: usize = 1 << 24;
-/// Corners of a cavity that is no ellipse.
-const CAVITY_CORNERS: usize = 4096;
 
 /// The outlines of a texture, or of all.
 #[derive(Clone, Debug, PartialEq)]
@@ -104,13 +102,8 @@ impl OutlineDrawing {
 
 /// Corners of all copies of a texture's shape.
 fn corners(texture: &Texture) -> usize {
-    let each = match &texture.shape {
-        Shape::Cavity(cavity) if cavity.s > 1 && cavity.w != 0.0 => CAVITY_CORNERS,
-        Shape::Polygon(points) => points.len(),
-        Shape::Cavity(_) | Shape::Groove(_) => 4,
-        Shape::Tile(_) => 0,
-    };
-    texture.shape.n_copies(&texture.arrays).saturating_mul(each)
+    let copies = texture.shape.n_copies(&texture.arrays);
+    copies.saturating_mul(texture.shape.n_corners())
 }
 
 /// The lines around blocks that are textured, holes among them.
