@@ -3,12 +3,12 @@
 use std::ops::Range;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use fearless_simd::{Simd, SimdBase, i64x8};
+use fearless_simd::{Simd, SimdBase};
 
 use super::aligned::{Aligned, Vectors};
 use super::blocks::{
-    FrictionLoop, LatticeLoop, Sums, friction_of_tile, lattice_forces, or_else, spring, times_factor,
-    upward_springs, zero_missing,
+    FrictionLoop, LatticeLoop, Sums, friction, lattice_forces, or_else, spring, times_factor, upward_springs,
+    vector_energy, zero_missing,
 };
 use super::layout::{Layout, TILE};
 use super::quanta::Quanta;
@@ -18,7 +18,6 @@ use super::step::Step;
 use super::variations::{Variation, Variations, present};
 use super::vector::{Chunks, ChunksMut, LANES, Vec2x8, lane_max, load, load_vec2, splat, subtract};
 use crate::checkpoint::BlockColumn;
-use crate::fixed_point::FixedPoint;
 use crate::friction::Integrator;
 use crate::lattice::Bond;
 use crate::model::Model;
@@ -429,7 +428,7 @@ impl Band {
         let n_tiles = self.tiles.len();
         let ahead = self.tiles_ahead().min(n_tiles);
         for t in 0..ahead {
-            self.advance::<S, G>(simd, step, quanta, t);
+            self.advance_tile(simd, &step, quanta, t);
         }
         let mut scratch = std::mem::take(self.scratch());
         if self.tasks[..ahead].iter().any(|task| task.needs_springs) {
@@ -437,7 +436,7 @@ impl Band {
         }
         for t in 0..n_tiles {
             if t + ahead < n_tiles {
-                self.advance::<S, G>(simd, step, quanta, t + ahead);
+                self.advance_tile(simd, &step, quanta, t + ahead);
             }
             let (task, elements) = (self.tasks[t], self.elements(t));
             if task.needs_springs {
@@ -448,14 +447,19 @@ impl Band {
                 continue;
             }
             if task.sparse {
-                self.sparse_tile(simd, geometry, step, quanta, t, &mut scratch);
-            } else if energies || task.settles {
-                self.tile::<S, G, true>(simd, geometry, step, quanta, t, &mut scratch);
+                self.sparse_tile(simd, geometry, (&step, quanta), t, &mut scratch);
             } else {
-                self.tile::<S, G, false>(simd, geometry, step, quanta, t, &mut scratch);
+                self.tile(
+                    simd,
+                    geometry,
+                    (&step, quanta),
+                    energies || task.settles,
+                    t,
+                    &mut scratch,
+                );
             }
             if task.settles {
-                self.settle(simd, geometry, step, quanta, t, &scratch);
+                self.settle(simd, &step, t, &scratch);
             }
             if task.was_skipped != 0 {
                 // The step of largest stress was the last that was skipped, or the first, which the sweep before has measured: at
@@ -491,14 +495,22 @@ impl Band {
         (self.stride + MIRROR).div_ceil(TILE)
     }
 
-    /// Eq. 8: `u += dt v` in a tile that moves.
+    /// Eq. 8: `u += dt v` in a tile that moves. A function of its own, compiled once for all formulas of springs.
+    #[inline(never)]
+    fn advance_tile<S: Simd>(&mut self, simd: S, step: &Step, quanta: &Quanta, t: usize) {
+        simd.vectorize(
+            #[inline(always)]
+            || self.advance(simd, *step, quanta, t),
+        );
+    }
+
     #[inline(always)]
-    fn advance<S: Simd, G: Geometry>(&mut self, simd: S, step: Step, quanta: &Quanta, t: usize) {
+    fn advance<S: Simd>(&mut self, simd: S, step: Step, quanta: &Quanta, t: usize) {
         if !self.tiles[t].moving {
             return;
         }
         if self.tasks[t].sparse {
-            self.advance_vectors::<S, G>(simd, step, quanta, t);
+            self.advance_vectors(simd, step, quanta, t);
             return;
         }
         let elements = self.elements(t);
@@ -514,9 +526,25 @@ impl Band {
         }
     }
 
-    /// Springs of the elements `from..to` to the next row, into the ring buffer.
-    #[inline(always)]
+    /// Springs of the elements `from..to` to the next row, into the ring buffer. A function of its own, compiled once for all that
+    /// call it.
+    #[inline(never)]
     pub(super) fn upward<S: Simd, G: Geometry>(
+        &self,
+        simd: S,
+        geometry: G,
+        scratch: &mut Scratch,
+        from: usize,
+        to: usize,
+    ) {
+        simd.vectorize(
+            #[inline(always)]
+            || self.upward_here(simd, geometry, scratch, from, to),
+        );
+    }
+
+    #[inline(always)]
+    fn upward_here<S: Simd, G: Geometry>(
         &self,
         simd: S,
         geometry: G,
@@ -557,46 +585,83 @@ impl Band {
         }
     }
 
-    /// Forces and velocities of a tile. Its springs to the next row and those of the row below are in the ring buffer.
+    /// Forces and velocities of a tile, and its energies if they are needed. Its springs to the next row and those of the row below
+    /// are in the ring buffer.
     #[inline(always)]
-    fn tile<S: Simd, G: Geometry, const ENERGY: bool>(
+    fn tile<S: Simd, G: Geometry>(
         &mut self,
         simd: S,
         geometry: G,
-        step: Step,
+        (step, quanta): (&Step, &Quanta),
+        energies: bool,
+        t: usize,
+        scratch: &mut Scratch,
+    ) {
+        self.lattice_forces(simd, geometry, t, scratch);
+        let mut lattice_energy = 0;
+        if energies {
+            lattice_energy = self.lattice_energies(simd, geometry, quanta, t, scratch);
+        }
+        match (G::BLOCKS_DIFFER, energies) {
+            // With all energies: compiled once more without them, it would save little.
+            (true, _) => self.friction_of_tile::<S, true, true>(simd, step, quanta, t, scratch),
+            (false, true) => self.friction_of_tile::<S, true, false>(simd, step, quanta, t, scratch),
+            (false, false) => self.friction_of_tile::<S, false, false>(simd, step, quanta, t, scratch),
+        }
+        self.tiles[t].sums.lattice_energy = lattice_energy;
+    }
+
+    /// Eqs. 2 and 4-7 in a tile whose lattice forces are known. A function of its own, compiled once for all formulas of springs.
+    #[inline(never)]
+    fn friction_of_tile<S: Simd, const ENERGY: bool, const DIFFER: bool>(
+        &mut self,
+        simd: S,
+        step: &Step,
         quanta: &Quanta,
         t: usize,
         scratch: &mut Scratch,
     ) {
-        let mut sums = Sums::zero(simd);
-        let energy = (quanta.lattice_energy, &mut sums.lattice_energy);
-        self.lattice_forces::<S, G, ENERGY>(simd, geometry, t, scratch, energy);
-        let ahead = self.tiles_ahead();
-        let next = [t, t + ahead].map(|t| TILE * self.next_whole_tile(t).unwrap_or(t + 1));
-        let arrays = self.friction_loop::<S, G>(simd, step, (self.elements(t), next), scratch);
-        if G::BLOCKS_DIFFER {
-            // With all energies: compiled once more without them, it would save little.
-            friction_of_tile::<S, true, true>(simd, &step, quanta, arrays, &mut sums);
-        } else {
-            friction_of_tile::<S, ENERGY, false>(simd, &step, quanta, arrays, &mut sums);
-        }
-        let vectors = self.vectors(t).len();
-        let tile = &mut self.tiles[t];
-        tile.sums = sums.totals::<ENERGY>(quanta, vectors);
-        tile.moving = tile.sums.sliding > 0;
-        tile.settled = false;
-        tile.active_from_step = 0;
+        simd.vectorize(
+            #[inline(always)]
+            || {
+                let ahead = self.tiles_ahead();
+                let next = [t, t + ahead].map(|t| TILE * self.next_whole_tile(t).unwrap_or(t + 1));
+                let elements = self.elements(t);
+                let arrays = self.friction_loop::<S, DIFFER>(simd, *step, (elements, next), scratch, 0);
+                let mut sums = Sums::zero(simd);
+                friction::<S, ENERGY, DIFFER>(simd, *step, quanta, arrays, &mut sums);
+                let vectors = self.vectors(t).len();
+                let tile = &mut self.tiles[t];
+                tile.sums = sums.totals::<ENERGY>(quanta, vectors);
+                tile.moving = tile.sums.sliding > 0;
+                tile.settled = false;
+                tile.active_from_step = 0;
+            },
+        );
     }
 
-    /// Eq. 3 in a tile.
-    #[inline(always)]
-    pub(super) fn lattice_forces<S: Simd, G: Geometry, const ENERGY: bool>(
+    /// Eq. 3 in a tile. A function of its own, compiled once for all that call it.
+    #[inline(never)]
+    pub(super) fn lattice_forces<S: Simd, G: Geometry>(
         &self,
         simd: S,
         geometry: G,
         t: usize,
         scratch: &mut Scratch,
-        (quantum, energy): (FixedPoint, &mut i64x8<S>),
+    ) {
+        simd.vectorize(
+            #[inline(always)]
+            || self.lattice_forces_here(simd, geometry, t, scratch),
+        );
+    }
+
+    #[inline(always)]
+    fn lattice_forces_here<S: Simd, G: Geometry>(
+        &self,
+        simd: S,
+        geometry: G,
+        t: usize,
+        scratch: &mut Scratch,
     ) {
         let elements = self.elements(t);
         let start = self.halo + elements.start;
@@ -604,14 +669,11 @@ impl Band {
         for (first, end, own, behind) in scratch.ring_segments(self.stride, start, self.halo + elements.end) {
             let n = end - first;
             let [north, north_east, north_west] = &scratch.upward;
-            let vectors = first / LANES..end / LANES;
-            let halo = self.halo / LANES;
             let arrays = LatticeLoop {
                 here: chunks(&self.displacement, first, n),
                 east: chunks(&self.displacement, first + 1, n),
-                has_east: &self.masks[0][vectors.clone()],
-                factors: [0, 1, 2, 3].map(|bond| self.spring_factors::<G>(bond, first, n)),
-                blocks: &self.blocks[vectors.start - halo..vectors.end - halo],
+                has_east: &self.masks[0][first / LANES..end / LANES],
+                to_east: self.spring_factors::<G>(0, first, n),
                 own: [
                     chunks(north, own, n),
                     chunks(north_east, own, n),
@@ -624,19 +686,45 @@ impl Band {
                 ],
                 force: chunks_mut(&mut scratch.lattice, first - start, n),
             };
-            lattice_forces::<S, G, ENERGY>(simd, geometry, arrays, &mut west, quantum, energy);
+            lattice_forces(simd, geometry, arrays, &mut west);
         }
     }
 
-    /// What Eqs. 2 and 4-7 of some elements of a tile need, whose lattice forces are at the beginning of the scratch array. `next`
+    /// Energies of the springs of each vector of a tile, as in [`Sums`], and their sum.
+    #[inline(always)]
+    fn lattice_energies<S: Simd, G: Geometry>(
+        &mut self,
+        simd: S,
+        geometry: G,
+        quanta: &Quanta,
+        t: usize,
+        scratch: &Scratch,
+    ) -> i64 {
+        let mut sum = 0;
+        for v in self.vectors(t) {
+            let here = self.halo + v * LANES;
+            let own = here % scratch.ring();
+            let upward = |k: usize| load_vec2(simd, chunks(&scratch.upward[k], own, LANES), 0);
+            let east = self.east_springs(simd, geometry, here);
+            let springs = [east, upward(0), upward(1), upward(2)];
+            let factors = self.factors_of::<G>(v);
+            let energy = vector_energy::<S, G>(simd, springs, self.blocks[v], factors, quanta.lattice_energy);
+            self.lattice_energy[v] = energy;
+            sum += energy;
+        }
+        sum
+    }
+
+    /// What Eqs. 2 and 4-7 of some elements of a tile need, whose lattice forces are at `place` in the scratch array. `next`
     /// are the first of those that need friction next, and of those that move next.
     #[inline(always)]
-    pub(super) fn friction_loop<'a, S: Simd, G: Geometry>(
+    pub(super) fn friction_loop<'a, S: Simd, const DIFFER: bool>(
         &'a mut self,
         simd: S,
         step: Step,
         (elements, [next, moving_next]): (Range<usize>, [usize; 2]),
         scratch: &'a mut Scratch,
+        place: usize,
     ) -> FrictionLoop<'a> {
         let (start, n) = (self.halo + elements.start, elements.len());
         let prefetched = [
@@ -650,7 +738,7 @@ impl Band {
         let vectors = elements.start / LANES..elements.end / LANES;
         let mut kinetic_impulses: Chunks = self.kinetic_impulses[elements.clone()].as_chunks().0;
         let mut variation = Variation::default();
-        if let Some(variations) = self.variations.as_mut().filter(|_| G::BLOCKS_DIFFER) {
+        if let Some(variations) = self.variations.as_mut().filter(|_| DIFFER) {
             let velocity = chunks(&self.velocity, elements.start, n);
             let inverse_mass = variations.inverse_mass[elements.clone()].as_chunks().0;
             let at_rest = (kinetic_impulses, inverse_mass);
@@ -669,7 +757,7 @@ impl Band {
         }
         FrictionLoop {
             displacement: chunks(&self.displacement, start, n),
-            lattice: chunks(&scratch.lattice, 0, n),
+            lattice: chunks(&scratch.lattice, place, n),
             static_limit_squares: self.static_limit_squares[elements.clone()].as_chunks().0,
             kinetic_impulses,
             blocks: &self.blocks[vectors.clone()],
@@ -695,7 +783,7 @@ impl Band {
         changed.unwrap_or(at_rest)
     }
 
-    /// Springs to the east of the eight elements from `first` on.
+    /// Springs to the east of the eight elements from `first` on, counted from the front halo.
     #[inline(always)]
     fn east_springs<S: Simd, G: Geometry>(&self, simd: S, geometry: G, first: usize) -> Vec2x8<S> {
         let here = load_vec2(simd, chunks(&self.displacement, first, LANES), 0);

@@ -25,10 +25,8 @@ pub(super) struct LatticeLoop<'a> {
     pub(super) here: [Chunks<'a>; 2],
     pub(super) east: [Chunks<'a>; 2],
     pub(super) has_east: &'a [u8],
-    /// Factors of the springs to the east, north, north-east and north-west, where they differ.
-    pub(super) factors: [Chunks<'a>; 4],
-    /// Which elements are blocks.
-    pub(super) blocks: &'a [u8],
+    /// Factors of the springs to the east, where they differ.
+    pub(super) to_east: Chunks<'a>,
     /// Upward springs of these blocks.
     pub(super) own: Upward<Chunks<'a>>,
     /// Upward springs of the blocks to the south, south-west and south-east.
@@ -129,16 +127,13 @@ pub(super) fn upward_springs<S: Simd, G: Geometry>(
 /// Eq. 3: the sum of all eight springs of every block. Opposite neighbours are paired, straight ones before diagonal ones,
 /// so that the trajectory of a rotated or mirrored problem is the rotated or mirrored trajectory, with the same bits.
 ///
-/// `west`: springs to the east of the eight elements before these; becomes that of the last eight. If `ENERGY`, the energy of
-/// the springs is added to `energy`.
+/// `west`: springs to the east of the eight elements before these; becomes that of the last eight.
 #[inline(always)]
-pub(super) fn lattice_forces<S: Simd, G: Geometry, const ENERGY: bool>(
+pub(super) fn lattice_forces<S: Simd, G: Geometry>(
     simd: S,
     geometry: G,
     arrays: LatticeLoop,
     west: &mut Vec2x8<S>,
-    quantum: FixedPoint,
-    energy: &mut i64x8<S>,
 ) {
     let [fx, fy] = arrays.force;
     let n = fx.len();
@@ -148,11 +143,8 @@ pub(super) fn lattice_forces<S: Simd, G: Geometry, const ENERGY: bool>(
     let (north, north_east, north_west) = (first_n(north, n), first_n(north_east, n), first_n(north_west, n));
     let [south, south_west, south_east] = arrays.behind;
     let (south, south_west, south_east) = (first_n(south, n), first_n(south_west, n), first_n(south_east, n));
-    let (has_east, blocks) = (&arrays.has_east[..n], &arrays.blocks[..n]);
-    let factors_end = if G::BLOCKS_DIFFER { n } else { 0 };
-    let [to_east, to_north, to_north_east, to_north_west] = arrays.factors;
-    let (to_east, to_north) = (&to_east[..factors_end], &to_north[..factors_end]);
-    let (to_north_east, to_north_west) = (&to_north_east[..factors_end], &to_north_west[..factors_end]);
+    let has_east = &arrays.has_east[..n];
+    let to_east = &arrays.to_east[..if G::BLOCKS_DIFFER { n } else { 0 }];
     let mut before = *west;
     for c in 0..n {
         let u = load_vec2(simd, here, c);
@@ -173,16 +165,6 @@ pub(super) fn lattice_forces<S: Simd, G: Geometry, const ENERGY: bool>(
         );
         x.store_array(&mut fx[c]);
         y.store_array(&mut fy[c]);
-        if ENERGY {
-            let springs = [east, north, north_east, north_west];
-            let squares = squares_over_factors::<S, G>(
-                simd,
-                springs,
-                [to_east, to_north, to_north_east, to_north_west],
-                c,
-            );
-            *energy += spring_energies(simd, squares, blocks[c], quantum);
-        }
     }
     *west = before;
 }
@@ -228,7 +210,7 @@ fn spring_energies<S: Simd>(
     integers(energies, splat(simd, quantum.shift()))
 }
 
-/// Sum of [`spring_energies`] over a vector.
+/// Sum of the energies of a vector's springs to the east, north, north-east and north-west, in quanta of [`Sums`].
 #[inline(always)]
 pub(super) fn vector_energy<S: Simd, G: Geometry>(
     simd: S,
@@ -243,7 +225,7 @@ pub(super) fn vector_energy<S: Simd, G: Geometry>(
 
 /// What eight blocks add to the sums of `w (u - c)` and `w (u - c)^2`.
 #[inline(always)]
-pub(super) fn displacement_sums<S: Simd, G: Geometry>(
+pub(super) fn displacement_sums<S: Simd, const DIFFER: bool>(
     simd: S,
     u: Vec2x8<S>,
     blocks: u8,
@@ -255,7 +237,7 @@ pub(super) fn displacement_sums<S: Simd, G: Geometry>(
     let u = or_else(simd, blocks, u, centres);
     let differences = subtract(u, centres);
     let mut squares = square(differences);
-    let lanes = if G::BLOCKS_DIFFER {
+    let lanes = if DIFFER {
         let w = load(simd, &drive_springs[0]);
         squares = w * squares;
         let [x, y] = quanta.weighted_displacement;
@@ -324,7 +306,7 @@ pub(super) struct Sums<I, M, N = u32> {
     pub(super) motion_square: I,
     /// `sum -F_f . (v(t - dt/2) + v(t + dt/2))`.
     pub(super) friction_work: I,
-    /// Energy of the springs times `2 k_1`, at steps at which energies are needed.
+    /// Energy of the springs times `2 k_1`, at steps at which energies are needed. It is found vector by vector, not in lanes.
     pub(super) lattice_energy: I,
     /// `sum m (v(t - dt/2)^2 + v(t + dt/2)^2)`, at steps at which energies are needed.
     pub(super) velocity_squares: I,
@@ -414,7 +396,7 @@ impl<S: Simd> Sums<i64x8<S>, f64x8<S>> {
         }
     }
 
-    /// Of all lanes, after so many vectors.
+    /// Sums over all lanes after so many vectors.
     #[inline(always)]
     pub(super) fn totals<const ENERGY: bool>(&self, quanta: &Quanta, vectors: usize) -> Sums<i64, f64> {
         let [x, y] = quanta.weighted_displacement;
@@ -438,7 +420,6 @@ impl<S: Simd> Sums<i64x8<S>, f64x8<S>> {
             slipping: self.slipping,
         };
         if ENERGY {
-            sums.lattice_energy = integer_sum(self.lattice_energy, quanta.lattice_energy, vectors);
             sums.velocity_squares = integer_sum(self.velocity_squares, quanta.motion_square, vectors);
             sums.displacement_square =
                 integer_sum(self.displacement_square, quanta.displacement_square, vectors);
@@ -554,21 +535,6 @@ fn free_motion<S: Simd, const DIFFER: bool>(simd: S, step: Step, arrays: &mut Fr
         free[1].store_array(&mut fy[c]);
         removed.store_array(&mut removed_fraction[c]);
     }
-}
-
-/// [`friction`] as a function of its own, which sweeps by other formulas for springs share: it takes most of the time to compile.
-#[inline(never)]
-pub(super) fn friction_of_tile<S: Simd, const ENERGY: bool, const DIFFER: bool>(
-    simd: S,
-    step: &Step,
-    quanta: &Quanta,
-    arrays: FrictionLoop,
-    sums: &mut Sums<i64x8<S>, f64x8<S>>,
-) {
-    simd.vectorize(
-        #[inline(always)]
-        || friction::<S, ENERGY, DIFFER>(simd, *step, quanta, arrays, sums),
-    );
 }
 
 /// Eqs. 2 and 4-7 by Moreau's time-stepping: the operations of [`crate::friction::Projection`], eight blocks at a time, and all

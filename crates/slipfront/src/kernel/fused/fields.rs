@@ -1,7 +1,7 @@
 //! What a sweep does not keep, found again from displacements and velocities, by the exact spring law whatever formula the sweep
 //! used: the forces on one block, and one field of all blocks, tile after tile, with the same bits.
 
-use fearless_simd::{Simd, SimdBase, SimdFloat, i64x8};
+use fearless_simd::{Simd, SimdBase, SimdFloat};
 
 use super::band::{Band, Scratch, chunks};
 use super::blocks::pull;
@@ -9,7 +9,6 @@ use super::layout::{Layout, TILE};
 use super::springs::Geometry;
 use super::step::Step;
 use super::vector::{LANES, add, bits, is_zero, load, load_vec2, scale, select, square};
-use crate::fixed_point::FixedPoint;
 use crate::kernel::block::{Block, Field};
 use crate::lattice::{Bond, harmonic_mean};
 use crate::model::Model;
@@ -98,8 +97,7 @@ pub(super) fn read_rows<S: Simd, G: Geometry>(
                     let from = band.below(displaced.start).max(springs_end);
                     springs_end = displaced.end;
                     band.upward(simd, geometry, &mut scratch, from, springs_end);
-                    let energy = (FixedPoint::new(0.0), &mut i64x8::splat(simd, 0));
-                    band.lattice_forces::<S, G, false>(simd, geometry, t, &mut scratch, energy);
+                    band.lattice_forces(simd, geometry, t, &mut scratch);
                     let mut forces = [[0.0; LANES]; TILE / LANES];
                     if band.tiles[t].moving {
                         for (j, i, blocks) in rows() {

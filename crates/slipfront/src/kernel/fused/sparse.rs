@@ -6,9 +6,7 @@
 use fearless_simd::{Simd, SimdBase};
 
 use super::band::{Band, Scratch, chunks, chunks_mut};
-use super::blocks::{
-    Sums, displacement_sums, friction, friction_of_tile, spring, times_factor, vector_energy,
-};
+use super::blocks::{Sums, displacement_sums, friction, spring, times_factor, vector_energy};
 use super::layout::{TILE, VECTORS};
 use super::quanta::Quanta;
 use super::springs::Geometry;
@@ -33,13 +31,7 @@ impl Band {
 
     /// Eq. 8 in the moving vectors of a tile.
     #[inline(always)]
-    pub(super) fn advance_vectors<S: Simd, G: Geometry>(
-        &mut self,
-        simd: S,
-        step: Step,
-        quanta: &Quanta,
-        t: usize,
-    ) {
+    pub(super) fn advance_vectors<S: Simd>(&mut self, simd: S, step: Step, quanta: &Quanta, t: usize) {
         let dt = splat(simd, step.move_dt);
         for v in self.vectors(t) {
             if self.moving[v] == 0 {
@@ -53,12 +45,17 @@ impl Band {
             after[0].store_array(&mut x[0]);
             after[1].store_array(&mut y[0]);
             let blocks = self.blocks[v];
-            let springs = match &self.variations {
-                Some(variations) if G::BLOCKS_DIFFER => variations.drive_springs[k..k + LANES].as_chunks().0,
-                _ => &[],
+            let [(old, old_square), (new, new_square)] = match &self.variations {
+                Some(variations) => {
+                    let springs = variations.drive_springs[k..k + LANES].as_chunks().0;
+                    let sums = |u| displacement_sums::<S, true>(simd, u, blocks, springs, quanta);
+                    [sums(before), sums(after)]
+                }
+                None => {
+                    let sums = |u| displacement_sums::<S, false>(simd, u, blocks, &[], quanta);
+                    [sums(before), sums(after)]
+                }
             };
-            let (old, old_square) = displacement_sums::<S, G>(simd, before, blocks, springs, quanta);
-            let (new, new_square) = displacement_sums::<S, G>(simd, after, blocks, springs, quanta);
             let sums = &mut self.tiles[t].sums;
             for axis in 0..2 {
                 sums.displacement[axis] += new[axis] - old[axis];
@@ -73,72 +70,88 @@ impl Band {
         &mut self,
         simd: S,
         geometry: G,
-        step: Step,
+        (step, quanta): (&Step, &Quanta),
+        t: usize,
+        scratch: &mut Scratch,
+    ) {
+        let mut lattice_energy = self.tiles[t].sums.lattice_energy;
+        for (place, v) in self.active_vectors(t).enumerate() {
+            let energy = self.vector_forces(simd, geometry, quanta, v, (scratch, place * LANES));
+            lattice_energy += energy - std::mem::replace(&mut self.lattice_energy[v], energy);
+        }
+        if G::BLOCKS_DIFFER {
+            self.friction_of_vectors::<S, true>(simd, step, quanta, t, scratch);
+        } else {
+            self.friction_of_vectors::<S, false>(simd, step, quanta, t, scratch);
+        }
+        self.tiles[t].sums.lattice_energy = lattice_energy;
+    }
+
+    /// The vectors of a tile that are swept one by one.
+    fn active_vectors(&self, t: usize) -> impl Iterator<Item = usize> + use<> {
+        let mut active = self.tasks[t].active;
+        std::iter::from_fn(move || {
+            let first = active.trailing_zeros();
+            active &= active.wrapping_sub(1);
+            (first < u32::BITS).then_some(t * VECTORS + first as usize)
+        })
+    }
+
+    /// Eqs. 2 and 4-7 in the active vectors of a settled tile, whose lattice forces follow each other in the scratch array. A function
+    /// of its own, compiled once for all formulas of springs.
+    #[inline(never)]
+    fn friction_of_vectors<S: Simd, const DIFFER: bool>(
+        &mut self,
+        simd: S,
+        step: &Step,
         quanta: &Quanta,
         t: usize,
         scratch: &mut Scratch,
     ) {
-        let task = self.tasks[t];
-        let mut sums = Sums::zero(simd);
-        let mut lattice_energy = self.tiles[t].sums.lattice_energy;
-        let mut active = task.active;
-        while active != 0 {
-            let bit = active & active.wrapping_neg();
-            let v = t * VECTORS + active.trailing_zeros() as usize;
-            active ^= bit;
-            let energy = self.vector_forces(simd, geometry, quanta, v, scratch);
-            lattice_energy += energy - std::mem::replace(&mut self.lattice_energy[v], energy);
-            let elements = v * LANES..(v + 1) * LANES;
-            let next = [1, 1 + self.tiles_ahead()].map(|tiles| elements.start + tiles * TILE);
-            let arrays = self.friction_loop::<S, G>(simd, step, (elements, next), scratch);
-            if G::BLOCKS_DIFFER {
-                friction_of_tile::<S, true, true>(simd, &step, quanta, arrays, &mut sums);
-            } else {
-                // For a single vector the call would cost more than it saves.
-                friction::<S, true, false>(simd, step, quanta, arrays, &mut sums);
-            }
-            let rests = task.touched & bit == 0 && self.moving[v] == 0;
-            self.active_from_step[v] = self.first_active_step(simd, step, v, scratch, 0, rests);
-        }
-        let soonest = self.soonest_active_step(t);
-        let tile = &mut self.tiles[t];
-        let kept = tile.sums;
-        tile.sums = Sums {
-            displacement: kept.displacement,
-            displacement_square: kept.displacement_square,
-            lattice_energy,
-            ..sums.totals::<true>(quanta, task.active.count_ones() as usize)
-        };
-        tile.moving = tile.sums.sliding > 0;
-        tile.active_from_step = soonest;
+        simd.vectorize(
+            #[inline(always)]
+            || {
+                let task = self.tasks[t];
+                let mut sums = Sums::zero(simd);
+                for (number, v) in self.active_vectors(t).enumerate() {
+                    let (elements, place) = (v * LANES..(v + 1) * LANES, number * LANES);
+                    let next = [1, 1 + self.tiles_ahead()].map(|tiles| elements.start + tiles * TILE);
+                    let arrays =
+                        self.friction_loop::<S, DIFFER>(simd, *step, (elements, next), scratch, place);
+                    friction::<S, true, DIFFER>(simd, *step, quanta, arrays, &mut sums);
+                    let rests = task.touched >> (v % VECTORS) & 1 == 0 && self.moving[v] == 0;
+                    self.active_from_step[v] = self.first_active_step(simd, step, v, scratch, place, rests);
+                }
+                let soonest = self.soonest_active_step(t);
+                let tile = &mut self.tiles[t];
+                tile.sums = Sums {
+                    displacement: tile.sums.displacement,
+                    displacement_square: tile.sums.displacement_square,
+                    ..sums.totals::<true>(quanta, task.active.count_ones() as usize)
+                };
+                tile.moving = tile.sums.sliding > 0;
+                tile.active_from_step = soonest;
+            },
+        );
     }
 
-    /// Finds what is needed to sweep vectors of a tile alone, after a sweep of all of it.
-    #[inline(always)]
-    pub(super) fn settle<S: Simd, G: Geometry>(
-        &mut self,
-        simd: S,
-        geometry: G,
-        step: Step,
-        quanta: &Quanta,
-        t: usize,
-        scratch: &Scratch,
-    ) {
-        let touched = self.tasks[t].touched;
-        for (place, v) in self.vectors(t).enumerate() {
-            let rests = touched >> place & 1 == 0 && self.moving[v] == 0;
-            self.active_from_step[v] = self.first_active_step(simd, step, v, scratch, place * LANES, rests);
-            let springs = self.own_springs(simd, geometry, v);
-            self.lattice_energy[v] = vector_energy::<S, G>(
-                simd,
-                springs,
-                self.blocks[v],
-                self.factors_of::<G>(v),
-                quanta.lattice_energy,
-            );
-        }
-        self.tiles[t].active_from_step = self.soonest_active_step(t);
-        self.tiles[t].settled = true;
+    /// Finds what is needed to sweep vectors of a tile alone, after a sweep of all of it with its energies. A function of its own,
+    /// compiled once for all formulas of springs.
+    #[inline(never)]
+    pub(super) fn settle<S: Simd>(&mut self, simd: S, step: &Step, t: usize, scratch: &Scratch) {
+        simd.vectorize(
+            #[inline(always)]
+            || {
+                let touched = self.tasks[t].touched;
+                for (number, v) in self.vectors(t).enumerate() {
+                    let rests = touched >> number & 1 == 0 && self.moving[v] == 0;
+                    self.active_from_step[v] =
+                        self.first_active_step(simd, step, v, scratch, number * LANES, rests);
+                }
+                self.tiles[t].active_from_step = self.soonest_active_step(t);
+                self.tiles[t].settled = true;
+            },
+        );
     }
 
     /// The first step after this one at which a block of vector `v` may slip, or 0 unless it rests.
@@ -146,7 +159,7 @@ impl Band {
     fn first_active_step<S: Simd>(
         &self,
         simd: S,
-        step: Step,
+        step: &Step,
         v: usize,
         scratch: &Scratch,
         place: usize,
@@ -155,7 +168,7 @@ impl Band {
         if !rests {
             return 0;
         }
-        let steps = self.steps_until_slip(simd, step, v, scratch, place);
+        let steps = self.steps_until_slip(simd, *step, v, scratch, place);
         // Beyond a change of speed nothing is known.
         step.number.saturating_add(steps.max(1)).min(step.next_change)
     }
@@ -191,7 +204,7 @@ impl Band {
 
     /// Factors of the springs of vector `v` to the east, north, north-east and north-west.
     #[inline(always)]
-    fn factors_of<G: Geometry>(&self, v: usize) -> [Chunks<'_>; 4] {
+    pub(super) fn factors_of<G: Geometry>(&self, v: usize) -> [Chunks<'_>; 4] {
         [0, 1, 2, 3].map(|bond| self.spring_factors::<G>(bond, self.halo + v * LANES, LANES))
     }
 
@@ -208,7 +221,7 @@ impl Band {
         ]
     }
 
-    /// Eq. 3 for eight blocks, to the beginning of the scratch array; gives the energy of their springs.
+    /// Eq. 3 for eight blocks, to a place in the scratch array; gives the energy of their springs.
     #[inline(always)]
     fn vector_forces<S: Simd, G: Geometry>(
         &self,
@@ -216,7 +229,7 @@ impl Band {
         geometry: G,
         quanta: &Quanta,
         v: usize,
-        scratch: &mut Scratch,
+        (scratch, place): (&mut Scratch, usize),
     ) -> i64 {
         let own = self.own_springs(simd, geometry, v);
         let here = self.halo + v * LANES;
@@ -233,7 +246,7 @@ impl Band {
             add(subtract(east, west), subtract(north, south)),
             add(subtract(north_east, south_west), subtract(north_west, south_east)),
         );
-        let [fx, fy] = chunks_mut(&mut scratch.lattice, 0, LANES);
+        let [fx, fy] = chunks_mut(&mut scratch.lattice, place, LANES);
         x.store_array(&mut fx[0]);
         y.store_array(&mut fy[0]);
         vector_energy::<S, G>(
