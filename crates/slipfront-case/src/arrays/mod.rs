@@ -12,6 +12,7 @@ mod head;
 mod height_map;
 mod mask;
 mod npy;
+mod npy_header;
 mod pixels;
 mod slab;
 mod table;

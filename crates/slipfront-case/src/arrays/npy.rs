@@ -1,22 +1,17 @@
-//! The `.npy` files of numpy: the header through `npyz`, the numbers here.
+//! The `.npy` files of numpy.
 
 use std::io::{BufRead, Seek, SeekFrom};
 use std::path::Path;
 
-use npyz::{DType, Endianness, NpyHeader, Order, TypeChar};
-
 use super::error::{ArrayError, broken, contents_error, value_error};
 use super::head::length_and_head;
+use super::npy_header::NpyHeader;
 use super::pixels::{SIDE_MAX, limit_pixels};
 use super::slab::Slab;
 use crate::text::truncated;
 
 /// Numpy itself refuses longer headers.
 pub(super) const HEADER_MAX_BYTES: u64 = 10_000;
-/// Deepest nesting of brackets in a header: a dict of a list of tuples with a shape. numpy nests no deeper for numbers.
-const HEADER_MAX_NESTING: usize = 4;
-/// All numbers of a header together: their product then fits into 64 bits, whatever the radix they are written in.
-const HEADER_MAX_DIGITS: usize = 18;
 
 /// A mask for some rows of a `.npy` file called `path`, of shape (ny, nx): 1 or true = textured, 0 or false = not.
 ///
@@ -53,16 +48,15 @@ pub(super) fn values(
         }
     })?;
     let mut values = vec![0.0; slab.n_blocks()];
-    match array.order {
-        Order::C => array.read(rows.start * nx, &mut values)?,
-        Order::Fortran => {
-            let mut of_column = vec![0.0; rows.len()];
-            for column in 0..nx {
-                array.read(column * ny + rows.start, &mut of_column)?;
-                let places = values.iter_mut().skip(column).step_by(nx);
-                places.zip(&of_column).for_each(|(place, value)| *place = *value);
-            }
+    if array.fortran_order {
+        let mut of_column = vec![0.0; rows.len()];
+        for column in 0..nx {
+            array.read(column * ny + rows.start, &mut of_column)?;
+            let places = values.iter_mut().skip(column).step_by(nx);
+            places.zip(&of_column).for_each(|(place, value)| *place = *value);
         }
+    } else {
+        array.read(rows.start * nx, &mut values)?;
     }
     if let Some(at) = values.iter().position(|value| is_wrong(*value)) {
         let place = [rows.start + at / nx, at % nx];
@@ -93,28 +87,22 @@ pub(super) fn rows(
     })?;
     let [ny, nx] = array.shape;
     // Rows, or columns of an array that has them one after the other.
-    let (count, length) = match array.order {
-        Order::C => (ny, nx),
-        Order::Fortran => (nx, ny),
-    };
+    let (count, length) = if array.fortran_order { (nx, ny) } else { (ny, nx) };
     let at_once = BAND / length.max(1);
     let mut numbers = Vec::new();
     let mut of_row = Vec::new();
     for first in (0..count).step_by(at_once) {
         numbers.resize(at_once.min(count - first) * length, 0.0);
         array.read(first * length, &mut numbers)?;
-        match array.order {
-            Order::C => {
-                for (row, numbers) in (first..).zip(numbers.chunks_exact(length.max(1))) {
-                    take([row, 0], numbers)?;
-                }
+        if array.fortran_order {
+            for row in 0..ny {
+                of_row.clear();
+                of_row.extend(numbers.iter().skip(row).step_by(ny));
+                take([row, first], &of_row)?;
             }
-            Order::Fortran => {
-                for row in 0..ny {
-                    of_row.clear();
-                    of_row.extend(numbers.iter().skip(row).step_by(ny));
-                    take([row, first], &of_row)?;
-                }
+        } else {
+            for (row, numbers) in (first..).zip(numbers.chunks_exact(length.max(1))) {
+                take([row, 0], numbers)?;
             }
         }
     }
@@ -126,7 +114,8 @@ struct NpyArray<'a, S> {
     path: &'a Path,
     source: &'a mut S,
     number: NumberType,
-    order: Order,
+    /// Whether the numbers of a column stand one after the other, and not those of a row.
+    fortran_order: bool,
     /// Rows and columns.
     shape: [usize; 2],
     /// The number that the source has come to.
@@ -142,15 +131,15 @@ impl<'a, S: BufRead + Seek> NpyArray<'a, S> {
     ) -> Result<Self, ArrayError> {
         let (length, head) = length_and_head(path, source, HEADER_MAX_BYTES)?;
         let (header, data_start) = read_header(&head, path)?;
-        let number = NumberType::of(&header.dtype()).ok_or_else(|| {
+        let number = header.plain_type().and_then(NumberType::of).ok_or_else(|| {
             let problem = format!(
                 "holds values of type {} where real numbers, integers or booleans are wanted; convert the array with \
                  `.astype(float)` before saving it",
-                truncated(&header.dtype().descr())
+                truncated(header.descr)
             );
             contents_error(path, problem)
         })?;
-        let shape = shape(header.shape())?;
+        let shape = shape(&header.shape)?;
         let wanted = data_start as u64 + number.size as u64 * shape[0] as u64 * shape[1] as u64;
         if length != wanted {
             let detail = format!("it has {length} bytes where its header asks for {wanted}");
@@ -162,7 +151,7 @@ impl<'a, S: BufRead + Seek> NpyArray<'a, S> {
             path,
             source,
             number,
-            order: header.order(),
+            fortran_order: header.fortran_order,
             shape,
             at: 0,
         })
@@ -191,10 +180,7 @@ impl<'a, S: BufRead + Seek> NpyArray<'a, S> {
 }
 
 /// Reads the header from the first bytes of a file; returns it with the number of bytes before the data.
-///
-/// `npyz` reserves what the header asks for, recurses without bound and overflows on the product of an absurd
-/// shape, hence the checks on the bytes before it sees them.
-fn read_header(head: &[u8], path: &Path) -> Result<(NpyHeader, usize), ArrayError> {
+fn read_header<'a>(head: &'a [u8], path: &Path) -> Result<(NpyHeader<'a>, usize), ArrayError> {
     let refuse = |detail: &str| broken(path, ".npy", detail);
     if !head.starts_with(b"\x93NUMPY") {
         return Err(refuse("it does not begin with the signature of numpy"));
@@ -214,46 +200,9 @@ fn read_header(head: &[u8], path: &Path) -> Result<(NpyHeader, usize), ArrayErro
             format!("its header of {data_start} bytes is cut short or longer than {HEADER_MAX_BYTES} bytes");
         return Err(refuse(&detail));
     };
-    if nesting(text) > HEADER_MAX_NESTING || digits(text) > HEADER_MAX_DIGITS {
-        return Err(refuse("its header does not describe a plain array of numbers"));
-    }
-    let header = NpyHeader::from_reader(&head[..data_start]).map_err(|source| {
-        let detail = format!("its header is corrupt ({})", one_line(&source.to_string()));
-        refuse(&detail)
-    })?;
+    let header = NpyHeader::parse(text)
+        .ok_or_else(|| refuse("its header is corrupt or does not describe a plain array of numbers"))?;
     Ok((header, data_start))
-}
-
-/// The depth of brackets of any kind.
-fn nesting(text: &[u8]) -> usize {
-    let mut depth: usize = 0;
-    let mut deepest = 0;
-    for byte in text {
-        match byte {
-            b'(' | b'[' | b'{' => depth += 1,
-            b')' | b']' | b'}' => depth = depth.saturating_sub(1),
-            _ => {}
-        }
-        deepest = deepest.max(depth);
-    }
-    deepest
-}
-
-/// The total length of the words that begin with a digit, which covers every way to write a number.
-fn digits(text: &[u8]) -> usize {
-    text.split(|byte| !(byte.is_ascii_alphanumeric() || *byte == b'_'))
-        .filter(|word| word.first().is_some_and(u8::is_ascii_digit))
-        .map(<[u8]>::len)
-        .sum()
-}
-
-/// The first line of a message of the header's parser, which adds an excerpt below it.
-fn one_line(message: &str) -> &str {
-    message
-        .lines()
-        .next()
-        .unwrap_or_default()
-        .trim_end_matches(|last: char| !last.is_alphanumeric())
 }
 
 fn wrong_shape(path: &Path, found: &[u64], nx: usize, ny: usize) -> ArrayError {
@@ -271,26 +220,47 @@ fn wrong_shape(path: &Path, found: &[u64], nx: usize, ny: usize) -> ArrayError {
 
 /// How one number is stored.
 struct NumberType {
-    kind: TypeChar,
+    kind: Kind,
     /// 1, 2, 4 or 8 bytes.
     size: usize,
     big_endian: bool,
 }
 
+#[derive(Clone, Copy)]
+enum Kind {
+    /// Boolean values are 0 and 1.
+    Unsigned,
+    Signed,
+    Float,
+}
+
 impl NumberType {
-    /// `None` for anything but booleans, integers and real numbers of at most 64 bits.
-    fn of(dtype: &DType) -> Option<NumberType> {
-        let DType::Plain(text) = dtype else { return None };
-        let kind = text.type_char();
-        let size = match (kind, text.size_field()) {
-            (TypeChar::Bool | TypeChar::Int | TypeChar::Uint, 1) => 1,
-            (TypeChar::Int | TypeChar::Uint | TypeChar::Float, size @ (2 | 4 | 8)) => size as usize,
+    /// The type of this name, such as `<f8`; `None` for anything but booleans, integers and real numbers of at most 64 bits.
+    fn of(name: &str) -> Option<NumberType> {
+        let mut letters = name.chars();
+        let big_endian = match letters.next()? {
+            '<' | '|' | '=' => false,
+            '>' => true,
+            _ => return None,
+        };
+        let kind = letters.next()?;
+        let (kind, size) = match (kind, letters.as_str()) {
+            ('b' | 'u', "1") => (Kind::Unsigned, 1),
+            ('i', "1") => (Kind::Signed, 1),
+            ('u' | 'i' | 'f', size @ ("2" | "4" | "8")) => {
+                let kind = match kind {
+                    'u' => Kind::Unsigned,
+                    'i' => Kind::Signed,
+                    _ => Kind::Float,
+                };
+                (kind, size.parse().ok()?)
+            }
             _ => return None,
         };
         Some(NumberType {
             kind,
             size,
-            big_endian: text.endianness() == Endianness::Big,
+            big_endian,
         })
     }
 
@@ -304,11 +274,11 @@ impl NumberType {
         let bits = u64::from_le_bytes(little);
         let unused = 64 - 8 * self.size as u32;
         match (self.kind, self.size) {
-            (TypeChar::Float, 2) => half(bits as u16),
-            (TypeChar::Float, 4) => f64::from(f32::from_bits(bits as u32)),
-            (TypeChar::Float, _) => f64::from_bits(bits),
+            (Kind::Float, 2) => half(bits as u16),
+            (Kind::Float, 4) => f64::from(f32::from_bits(bits as u32)),
+            (Kind::Float, _) => f64::from_bits(bits),
             // Shifting up and back down carries the sign into the unused bytes.
-            (TypeChar::Int, _) => ((bits << unused) as i64 >> unused) as f64,
+            (Kind::Signed, _) => ((bits << unused) as i64 >> unused) as f64,
             _ => bits as f64,
         }
     }

@@ -183,7 +183,7 @@ fn npy_in_fortran_order_and_later_versions() {
 #[case("'<f16'", "(2, 3)", "values of type '<f16'")]
 #[case("'<U3'", "(2, 3)", "values of type '<U3'")]
 #[case("'|O'", "(2, 3)", "values of type '|O'")]
-#[case("[('a', '<f8')]", "(2, 3)", "values of type [('a', '<f8'), ]")]
+#[case("[('a', '<f8')]", "(2, 3)", "values of type [('a', '<f8')]")]
 fn npy_of_another_kind(#[case] descr: &str, #[case] shape: &str, #[case] wanted: &str) {
     let (_folder, path) = file("mu.npy", &npy_bytes(descr, "False", shape, &f64_bytes(&FIELD)));
     let text = message(read_field(&path, 3, 2));

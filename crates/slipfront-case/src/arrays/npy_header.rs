@@ -1,0 +1,136 @@
+//! The header of a `.npy` file: a Python dictionary of `descr`, `fortran_order` and `shape`.
+
+/// What the header tells of the numbers behind it.
+#[derive(Debug, PartialEq)]
+pub(super) struct NpyHeader<'a> {
+    /// The type of the numbers as it is written: `'<f8'`, or a list where a number has parts.
+    pub(super) descr: &'a str,
+    /// Whether the first axis runs fastest.
+    pub(super) fortran_order: bool,
+    /// Numbers along every axis.
+    pub(super) shape: Vec<u64>,
+}
+
+impl<'a> NpyHeader<'a> {
+    /// Reads the text of a header; nothing if it is not that of an array of numbers whose count fits into 64 bits.
+    pub(super) fn parse(text: &'a [u8]) -> Option<Self> {
+        let text = std::str::from_utf8(text).ok()?.trim();
+        let entries = text.strip_prefix('{')?.strip_suffix('}')?;
+        let (mut descr, mut fortran_order, mut shape) = (None, None, None);
+        for entry in split(entries, ',')? {
+            let [key, value] = split(entry, ':')?.try_into().ok()?;
+            let is_new = match quoted(key)? {
+                "descr" => descr.replace(value).is_none(),
+                "fortran_order" => fortran_order.replace(truth(value)?).is_none(),
+                "shape" => shape.replace(sizes(value)?).is_none(),
+                _ => false,
+            };
+            if !is_new {
+                return None;
+            }
+        }
+        let (descr, fortran_order, shape) = (descr?, fortran_order?, shape?);
+        Some(Self {
+            descr,
+            fortran_order,
+            shape,
+        })
+    }
+
+    /// The type of plain numbers, without its quotes.
+    pub(super) fn plain_type(&self) -> Option<&'a str> {
+        quoted(self.descr)
+    }
+}
+
+/// The parts of a text between separators that stand in no quotes and brackets, without blanks around them. A last part may be
+/// empty, and is left out. Nothing if quotes or brackets do not close.
+fn split(text: &str, separator: char) -> Option<Vec<&str>> {
+    let (mut parts, mut start) = (Vec::new(), 0);
+    let (mut depth, mut quote) = (0_usize, None);
+    for (at, letter) in text.char_indices() {
+        match (quote, letter) {
+            (Some(open), _) if letter == open => quote = None,
+            (Some(_), _) => {}
+            (None, '\'' | '"') => quote = Some(letter),
+            (None, '(' | '[' | '{') => depth += 1,
+            (None, ')' | ']' | '}') => depth = depth.checked_sub(1)?,
+            (None, _) if letter == separator && depth == 0 => {
+                parts.push(text[start..at].trim());
+                start = at + letter.len_utf8();
+            }
+            (None, _) => {}
+        }
+    }
+    let last = text[start..].trim();
+    if !last.is_empty() {
+        parts.push(last);
+    }
+    (depth == 0 && quote.is_none()).then_some(parts)
+}
+
+/// What stands between quotes.
+fn quoted(text: &str) -> Option<&str> {
+    let inner = |quote| text.strip_prefix(quote)?.strip_suffix(quote);
+    inner('\'').or_else(|| inner('"'))
+}
+
+fn truth(text: &str) -> Option<bool> {
+    match text {
+        "True" => Some(true),
+        "False" => Some(false),
+        _ => None,
+    }
+}
+
+/// The numbers of a tuple, if their product fits into 64 bits.
+fn sizes(text: &str) -> Option<Vec<u64>> {
+    let inner = text.strip_prefix('(')?.strip_suffix(')')?;
+    let sizes: Option<Vec<u64>> = split(inner, ',')?.iter().map(|size| size.parse().ok()).collect();
+    let sizes = sizes?;
+    sizes.iter().try_fold(1_u64, |all, size| all.checked_mul(*size))?;
+    Some(sizes)
+}
+
+#[cfg(test)]
+mod tests {
+    use rstest::rstest;
+
+    use super::*;
+
+    #[rstest]
+    #[case("{'descr': '<f8', 'fortran_order': False, 'shape': (3, 4), }   \n", "'<f8'", false, &[3, 4])]
+    #[case("{\"shape\":(),\"fortran_order\":True,\"descr\":\"|b1\"}", "\"|b1\"", true, &[])]
+    #[case("{'descr': [('a, b}', '<f8', (2,))], 'fortran_order': False, 'shape': (7,)}", "[('a, b}', '<f8', (2,))]", false, &[7])]
+    fn headers_of_numpy_are_read(
+        #[case] text: &str,
+        #[case] descr: &str,
+        #[case] fortran_order: bool,
+        #[case] shape: &[u64],
+    ) {
+        let shape = shape.to_vec();
+        let expected = NpyHeader {
+            descr,
+            fortran_order,
+            shape,
+        };
+        assert_eq!(NpyHeader::parse(text.as_bytes()), Some(expected));
+    }
+
+    #[rstest]
+    #[case::nothing("")]
+    #[case::an_empty_one("{}")]
+    #[case::no_shape("{'descr': '<f8', 'fortran_order': False}")]
+    #[case::a_key_twice("{'descr': '<f8', 'descr': '<f8', 'fortran_order': False, 'shape': (1,)}")]
+    #[case::another_key("{'descr': '<f8', 'fortran_order': False, 'shape': (1,), 'more': 1}")]
+    #[case::an_open_quote("{'descr': '<f8, 'fortran_order': False, 'shape': (1,)}")]
+    #[case::an_open_bracket("{'descr': '<f8', 'fortran_order': False, 'shape': (1, }")]
+    #[case::a_closed_one("{'descr': '<f8'), 'fortran_order': False, 'shape': (1,)}")]
+    #[case::no_number("{'descr': '<f8', 'fortran_order': False, 'shape': (1, two)}")]
+    #[case::a_gap("{'descr': '<f8', 'fortran_order': False, 'shape': (1,, 2)}")]
+    #[case::no_truth("{'descr': '<f8', 'fortran_order': 0, 'shape': (1,)}")]
+    #[case::too_many("{'descr': '<f8', 'fortran_order': False, 'shape': (4294967296, 4294967296)}")]
+    fn other_texts_are_refused(#[case] text: &str) {
+        assert_eq!(NpyHeader::parse(text.as_bytes()), None);
+    }
+}
