@@ -334,7 +334,7 @@ fn value(choices: &mut Choices, depth: usize) -> Value {
         8 | 9 if depth < 6 => Value::Object(keys_of(choices, depth)),
         10 => nested(choices),
         11 => json!([number(choices), number(choices)]),
-        12 => json!([shape(choices), shape(choices)]),
+        12 if depth < 6 => json!([shape(choices), shape(choices)]),
         _ => number(choices),
     }
 }
