@@ -211,6 +211,8 @@ quantities! {
     Duration: Dimension::new(0, 0, 1), "a time", "84 ns", "s";
     /// A stiffness, read into N/m.
     Stiffness: Dimension::new(1, 0, -2), "a stiffness", "2 N/m", "N/m";
+    /// A stiffness per area, read into N/m^3.
+    StiffnessPerArea: Dimension::new(1, -2, -2), "a stiffness per area", "10 N/um/mm^2", "N/m^3";
     /// A force, read into N.
     Force: Dimension::new(1, 1, -2), "a force", "0.3 N", "N";
     /// A rate, read into 1/s.

@@ -60,8 +60,8 @@ impl Running {
     /// displacements count from there:
     ///
     /// ```text
-    /// u' = (u + dt v - X) U/U'    with U = P mu_s l/E
-    /// v' = v W/W'                 with W = P mu_s/sqrt(E rho)
+    /// u' = (u + dt v - X) U/U'    with U = P mu_s l^2/(E h)
+    /// v' = v W/W'                 with W = P mu_s l/(h sqrt(E rho))
     /// ```
     ///
     /// where X is the displacement of the driven end over each block, and a prime marks the new case. Scales, load and what is stuck

@@ -542,6 +542,45 @@ mod tests {
         assert_eq!(record.kymograph, kymograph);
     }
 
+    /// A sheet on a mount without texture moves as a whole: forces, paths and displacements in SI units are the same on blocks of half
+    /// the size, at steps that are equally long.
+    #[test]
+    fn a_sheet_is_one_slider_on_any_blocks() {
+        let run = |blocks: usize, size: f64, step: f64| {
+            let text = format!(
+                "slider = {{ blocks = [{blocks}, {blocks}], block_size = '{size} um', thickness = '500 um', damping_rate = '1e5 1/s' }}\n\
+                 friction = {{ sigma_static_star = 0, sigma_kinetic_star = 0 }}\n\
+                 drive = {{ speed = '1 mm/s', stiffness_per_area = '0.1 N/um/mm^2' }}\n\
+                 time = {{ duration = '3 ms', step = {step} }}\noutput = {{ series = {}, snapshots = [] }}\n",
+                200.0 * step
+            );
+            let case = Arc::new(Case::parse(&text, "sheet", "", &[]).unwrap());
+            let record = super::run(&case, 1).unwrap();
+            let area = (blocks as f64 * size).powi(2);
+            let force = case.scales.force() / (size * size) * area;
+            let rows = record.rows.iter().map(|row| {
+                let seconds = row.time_star * case.scales.time();
+                (
+                    seconds,
+                    row.point.mu_star * force,
+                    record.summary.onset_time_star * case.scales.time(),
+                )
+            });
+            rows.collect::<Vec<_>>()
+        };
+        let (coarse, fine) = (run(6, 40.0, 0.1), run(12, 20.0, 0.2));
+        assert_eq!(coarse.len(), fine.len());
+        assert!(coarse.len() > 100);
+        // Sums and differences of numbers of order 1, some thousand steps long.
+        let is_near = |one: f64, other: f64| (one - other).abs() <= 1e-9 * one.abs().max(other.abs());
+        for (one, other) in coarse.iter().zip(&fine) {
+            assert!(
+                is_near(one.0, other.0) && is_near(one.1, other.1) && is_near(one.2, other.2),
+                "{one:?} {other:?}"
+            );
+        }
+    }
+
     #[test]
     fn a_run_shows_its_fields_in_si_units() {
         let text = "slider.blocks = [4, 3]\ntime.duration_star = 40\ndrive.v_star = 0.2\n\

@@ -64,6 +64,9 @@ pub struct SeriesRow {
     /// Lost with such springs that broke since the start, J.
     #[serde(default, deserialize_with = "number", skip_serializing_if = "Option::is_none")]
     pub broken_spring_loss_j: Option<f64>,
+    /// The part of the loss to friction that slip weakening has taken since the start, J; none without slip weakening.
+    #[serde(default, deserialize_with = "number", skip_serializing_if = "Option::is_none")]
+    pub weakening_loss_j: Option<f64>,
     /// Mean state of the contacts, t*; none of contacts without a state.
     #[serde(default, deserialize_with = "number", skip_serializing_if = "Option::is_none")]
     pub mean_state_star: Option<f64>,
@@ -116,6 +119,9 @@ impl SeriesRow {
             broken_spring_loss_j: law
                 .stores_energy
                 .then_some(row.energies.broken_springs_loss * energy),
+            weakening_loss_j: law
+                .weakens_with_slip
+                .then_some(row.energies.weakening_loss * energy),
             mean_state_star: law.has_state.then_some(row.mean_state),
         }
     }
@@ -134,7 +140,7 @@ pub fn columns(rows: &[SeriesRow]) -> Vec<(&'static str, Vec<f64>)> {
     let all = columns_of! { SeriesRow:
         time_star time_s drive_displacement_m mu_star friction_coefficient mu_lateral_star friction_force_n lateral_force_n
         torque_n_m sliding_percent work_j kinetic_energy_j lattice_energy_j drive_spring_energy_j friction_loss_j damping_loss_j
-        viscous_loss_j contact_spring_energy_j broken_spring_loss_j mean_state_star
+        viscous_loss_j contact_spring_energy_j broken_spring_loss_j weakening_loss_j mean_state_star
     };
     let all = all.into_iter();
     all.filter_map(|(name, value)| Some((name, rows.iter().map(value).collect::<Option<_>>()?)))
@@ -318,6 +324,7 @@ mod tests {
             viscous_loss_j: Some(0.0),
             contact_spring_energy_j: Some(0.0),
             broken_spring_loss_j: Some(0.0),
+            weakening_loss_j: Some(0.0),
             ..row
         };
         let names: Vec<&str> = super::columns(&[whole]).iter().map(|(name, _)| *name).collect();

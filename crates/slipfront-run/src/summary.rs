@@ -105,7 +105,7 @@ pub struct Summary {
     pub sigma_static_star: f64,
     /// sigma_k*.
     pub sigma_kinetic_star: f64,
-    /// eps = P mu_s/E.
+    /// eps = P mu_s l/(E h).
     pub epsilon: f64,
     /// N.
     pub n_blocks: usize,
@@ -147,6 +147,9 @@ pub struct Summary {
     /// Lost with contacts that broke, J; none of contacts that store no energy.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub broken_spring_loss_j: Option<f64>,
+    /// The part of the loss to friction that slip weakening has taken, J; none without slip weakening.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub weakening_loss_j: Option<f64>,
     /// Mean state of the contacts at the end, t*; none of contacts without a state.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub mean_state_star: Option<f64>,
@@ -464,6 +467,7 @@ impl SummaryObservers {
                 .is_viscous()
                 .then_some(energies.viscous_loss * energy),
             broken_spring_loss_j: law.stores_energy.then_some(energies.broken_springs_loss * energy),
+            weakening_loss_j: law.weakens_with_slip.then_some(energies.weakening_loss * energy),
             mean_state_star: last.filter(|_| law.has_state).map(|row| row.mean_state),
             warnings: [case.warnings(), after_run].concat(),
             version: VERSION.to_owned(),

@@ -17,8 +17,8 @@ use slipfront::communicator::Alone;
 use slipfront::surface::{Adhesion, Coefficients, Contact, Distribution, Load, pressure_along};
 use slipfront::{
     Ageing, ContactSprings, Coulomb, Drive, Edge, Execution, Friction, FrictionLaw, Kernel, Lattice, Model,
-    Outline, Program, RateAndState, Rotation, Simulation, Slider, State, Surface, VectorField, Weakening,
-    scales,
+    Outline, Program, RateAndState, Rotation, Simulation, Slider, SlipWeakening, State, Surface, VectorField,
+    Weakening, scales,
 };
 
 const V_STAR: f64 = 0.03;
@@ -43,6 +43,8 @@ pub(crate) enum Choice {
     Disc,
     Viscosity,
     Weakening,
+    SlipWeakening,
+    Healing,
     Ageing,
     Reversal,
     Literal,
@@ -53,13 +55,18 @@ pub(crate) enum Choice {
 use Choice::{Disc, Grading, LoadProfile, Viscosity};
 
 /// The options that are measured, with their names.
-pub(crate) const MEASURED: [(&str, &[Choice]); 19] = [
+pub(crate) const MEASURED: [(&str, &[Choice]); 21] = [
     ("plain", &[]),
     ("edge drive", &[Choice::EdgeDrive]),
     ("load profile", &[LoadProfile]),
     ("program", &[Choice::Program]),
     ("adhesion", &[Choice::Adhesion]),
     ("weakening", &[Choice::Weakening]),
+    ("slip weakening", &[Choice::SlipWeakening]),
+    (
+        "slip weakening, healing",
+        &[Choice::SlipWeakening, Choice::Healing],
+    ),
     ("grading", &[Grading]),
     ("disc", &[Disc]),
     ("graded disc, weakening", &[Grading, Disc, Choice::Weakening]),
@@ -128,6 +135,10 @@ pub(crate) fn model(size: usize, choices: &[Choice]) -> Result<Model, Box<dyn Er
         ageing: has(Choice::Ageing).then_some(Ageing {
             beta: 0.02,
             time: 1.0,
+        }),
+        slip_weakening: has(Choice::SlipWeakening).then_some(SlipWeakening {
+            length: 1.0,
+            healing_time: has(Choice::Healing).then_some(10.0),
         }),
     };
     let d_c = 0.5;

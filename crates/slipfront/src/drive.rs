@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use crate::communicator::Communicator;
 use crate::fixed_point::sum_over;
-use crate::lattice::{K_DRIVE, Lattice};
+use crate::lattice::{K_DIAGONAL, K_DRIVE, Lattice};
 use crate::slider::Slider;
 use crate::vector_field::{length, unit_vector};
 
@@ -16,7 +16,7 @@ pub struct Drive {
     pub v_star: f64,
     /// Unit vector of the sliding direction.
     pub direction: [f64; 2],
-    /// Stiffness `k_s` of the spring on every block, in units of `E l`; see [`Slider::drive_springs`](crate::Slider::drive_springs).
+    /// Stiffness `k_s` of the spring on every block, in units of `E h`; see [`Slider::drive_springs`](crate::Slider::drive_springs).
     pub k_drive: f64,
     /// A constant force on every block in addition to the drive spring's, in units of `P mu_s l^2`; zero in the paper. A block with
     /// another drive spring has as much more or less of it. Its components are x and y, of a rotation those along the
@@ -56,6 +56,25 @@ pub struct Rotation {
     pub sum_radii: f64,
     /// `sum w_i (r_i/radius)^2`, with the relative stiffness `w` of the drive springs.
     pub sum_squares: f64,
+}
+
+impl Drive {
+    /// Lengths in blocks over which the mount, a drive spring on every block, screens what happens at a place: the pull on blocks farther
+    /// away has not changed. Along the drive and across it, with the stiffness of the lattice against a strain along the drive, 3/4 of a
+    /// chain:
+    ///
+    /// ```text
+    /// lambda = sqrt(K_el/k_s),   K_el = 9/8 along and 3/8 across
+    /// ```
+    ///
+    /// ```
+    /// // The paper's springs are as stiff as diagonal ones, k_s = 3/8.
+    /// let [along, across] = slipfront::Drive::along_x(0.03).screening_lengths(&slipfront::Lattice::free(25, 25));
+    /// assert!((along - 3_f64.sqrt()).abs() < 1e-15 && across == 1.0);
+    /// ```
+    pub fn screening_lengths(&self, lattice: &Lattice) -> [f64; 2] {
+        [lattice.stiffness_along(), K_DIAGONAL].map(|stiffness| (stiffness / self.k_drive).sqrt())
+    }
 }
 
 impl Rotation {

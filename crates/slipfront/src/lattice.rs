@@ -10,11 +10,11 @@ use serde::{Deserialize, Serialize};
 
 use crate::communicator::Communicator;
 
-/// Stiffness of a spring to a straight neighbour, `k_1 = (3/4) E l`, in units of `E l`.
+/// Stiffness of a spring to a straight neighbour, `k_1 = (3/4) E h`, in units of `E h` with the thickness `h` of a block.
 pub const K_STRAIGHT: f64 = 0.75;
-/// Stiffness of a spring to a diagonal neighbour, `k_2 = k_1/2`, in units of `E l`.
+/// Stiffness of a spring to a diagonal neighbour, `k_2 = k_1/2`, in units of `E h`.
 pub const K_DIAGONAL: f64 = 0.375;
-/// Stiffness of the spring that drives a block, `k_s = k_2`, in units of `E l`.
+/// Stiffness of the spring that drives a block, `k_s = k_2`, in units of `E h`.
 pub const K_DRIVE: f64 = 0.375;
 /// Poisson's ratio of this lattice, which follows from the springs.
 pub const POISSON_RATIO: f64 = 1.0 / 3.0;
@@ -146,6 +146,16 @@ impl Lattice {
     /// Fewest blocks along a periodic axis.
     pub const MIN_PERIODIC: usize = 3;
 
+    /// Stiffness against a strain along an axis that is the same across it, in units of `E h`: `k_1 + k_2 = 9/8` of a sheet, `k_1` of a
+    /// chain.
+    pub(crate) fn stiffness_along(&self) -> f64 {
+        if self.nx == 1 || self.ny == 1 {
+            K_STRAIGHT
+        } else {
+            K_STRAIGHT + K_DIAGONAL
+        }
+    }
+
     /// Number of blocks, `N = nx ny`.
     pub fn n_blocks(&self) -> usize {
         self.nx * self.ny
@@ -213,7 +223,7 @@ pub(crate) fn harmonic_mean(a: f64, b: f64) -> f64 {
 pub struct Bond {
     /// Columns and rows from the block to its neighbour.
     pub offset: [isize; 2],
-    /// Stiffness in units of `E l`.
+    /// Stiffness in units of `E h`.
     pub stiffness: f64,
     /// Rest vector **d** from the block to its neighbour, in units of the block size.
     pub rest: [f64; 2],
@@ -249,8 +259,8 @@ impl Bond {
     /// F = k (r - d)/eps  r/|r|,   r = d + eps e,   (r - d)/eps = (2 d.e + eps e^2)/(r + d)
     /// ```
     ///
-    /// `e`: displacement of the neighbour less that of the block, in units of `P mu_s l/E`; `epsilon`: the
-    /// strain `P mu_s/E` that ties this unit to the block size. No two nearly equal lengths are subtracted, so
+    /// `e`: displacement of the neighbour less that of the block, in units of `P mu_s l^2/(E h)`; `epsilon`: the
+    /// strain `P mu_s l/(E h)` that ties this unit to the block size. No two nearly equal lengths are subtracted, so
     /// that small displacements lose no digits.
     ///
     /// ```

@@ -7,7 +7,7 @@
 //! numbered deviations D1... that the project's book explains.
 //!
 //! This crate is the physics alone: no files, no terminal, no clock. Everything is dimensionless: lengths in
-//! blocks, masses in blocks, time in `l sqrt(rho/E)`, displacements in `P mu_s l/E`, forces in `P mu_s l^2`;
+//! blocks, masses in blocks, time in `l sqrt(rho/E)`, displacements in `P mu_s l^2/(E h)`, forces in `P mu_s l^2`;
 //! all conversions are in [`scales`].
 //!
 //! ```

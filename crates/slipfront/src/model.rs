@@ -1,5 +1,6 @@
 //! What never changes in a run: lattice, slider, surface, drive, damping and friction law.
 
+use std::f64::consts::PI;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -30,7 +31,7 @@ pub struct Model {
     pub drive: Drive,
     /// Damping `Omega` per unit of dimensionless time (see [`crate::scales::damping`]).
     pub damping: f64,
-    /// The load's strain `eps = P mu_s/E`; 0 makes the springs linear.
+    /// The load's strain `eps = P mu_s l/(E h)`; 0 makes the springs linear.
     pub epsilon: f64,
     /// The law of friction.
     pub friction: Friction,
@@ -117,6 +118,25 @@ impl Model {
     /// Number of blocks of the whole lattice that exist.
     pub fn n_blocks(&self) -> usize {
         self.slider.n_blocks(&self.lattice)
+    }
+
+    /// Size along the drive, in blocks, from which a patch at its threshold runs away under slip weakening: that of a long strip across
+    /// the drive whose blocks have the mean strength of those in contact. Infinite where the mount is stiff enough for slip of any size to be
+    /// stable; none under other laws.
+    ///
+    /// ```text
+    /// L_c = pi sqrt(K_el/(W - k_s)),   W = (S - K)/D_c,   K_el = 9/8, 3/4 of a chain
+    /// ```
+    pub fn critical_size(&self) -> Option<f64> {
+        let law = self.friction.coulomb()?.slip_weakening?;
+        let share_in_contact = self.surface.n_contact() as f64 / self.n_blocks() as f64;
+        let drop = (self.surface.mean_static_force() - self.surface.mean_kinetic_force()) / share_in_contact;
+        let unstable = drop / law.length - self.drive.k_drive;
+        Some(if unstable > 0.0 {
+            PI * (self.lattice.stiffness_along() / unstable).sqrt()
+        } else {
+            f64::INFINITY
+        })
     }
 
     /// What the sum of the forces of the drive springs is divided by in mu*: the number of blocks that exist; of a rotation

@@ -1,16 +1,18 @@
 //! Conversion between dimensional and dimensionless quantities (Eq. 11), in this file alone.
 //!
-//! Lengths count in blocks, masses in block masses, times in `l sqrt(rho/E)` (D4: the paper prints no `l`),
-//! displacements in `P mu_s l/E`, forces in `P mu_s l^2`. The case parser builds a [`Scales`]; writers of
-//! results ask it for units.
+//! A block is `l` by `l` and as thick as the sheet, `h`; the paper's blocks are cubes, `h = l`. Lengths count in blocks, masses in
+//! block masses, times in `l sqrt(rho/E)` (D4: the paper prints no `l`), displacements in `P mu_s l^2/(E h)`, forces in
+//! `P mu_s l^2`. The case parser builds a [`Scales`]; writers of results ask it for units.
 
 use crate::lattice::K_STRAIGHT;
 
-/// The five dimensional quantities that set every unit of the model, in SI.
+/// The six dimensional quantities that set every unit of the model, in SI.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scales {
-    /// Edge of a block, `l`, m.
+    /// Edge of a block in the plane, `l`, m.
     pub block_size: f64,
+    /// Thickness of the sheet, `h`, m.
+    pub thickness: f64,
     /// Young's modulus `E`, Pa.
     pub young_modulus: f64,
     /// Density `rho`, kg/m^3.
@@ -27,23 +29,23 @@ impl Scales {
         self.block_size * (self.density / self.young_modulus).sqrt()
     }
 
-    /// One unit of displacement, `P mu_s l/E`, m.
+    /// One unit of displacement, `P mu_s l^2/(E h)`, m.
     pub fn displacement(&self) -> f64 {
         self.epsilon() * self.block_size
     }
 
-    /// One unit of speed, `P mu_s/sqrt(E rho)`, m/s: `V* = V` in this unit (Eq. 11a).
+    /// One unit of speed, `P mu_s l/(h sqrt(E rho))`, m/s: `V* = V` in this unit (Eq. 11a).
     ///
     /// ```
     /// // Case 8 of Table 1: 0.0949 mm/s is V* = 0.03.
     /// let case8 = slipfront::Scales {
-    ///     block_size: 1e-6, young_modulus: 100e9, density: 10e3, pressure: 100e3, mu_static_mean: 1.0,
+    ///     block_size: 1e-6, thickness: 1e-6, young_modulus: 100e9, density: 10e3, pressure: 100e3, mu_static_mean: 1.0,
     /// };
     /// // 0.0949 is printed to half a unit of its last digit.
     /// assert!((0.0949e-3 / case8.speed() - 0.03).abs() < 0.00005e-3 / case8.speed());
     /// ```
     pub fn speed(&self) -> f64 {
-        self.pressure * self.mu_static_mean / (self.young_modulus * self.density).sqrt()
+        self.pressure * self.mu_static_mean / (self.young_modulus * self.density).sqrt() * self.slenderness()
     }
 
     /// One unit of stress, `P mu_s`, Pa.
@@ -56,19 +58,36 @@ impl Scales {
         self.stress() * self.block_size * self.block_size
     }
 
-    /// One unit of energy, `P mu_s l^2` times `P mu_s l/E`, J.
+    /// One unit of energy, `P mu_s l^2` times `P mu_s l^2/(E h)`, J.
     pub fn energy(&self) -> f64 {
         self.force() * self.displacement()
     }
 
-    /// One unit of stiffness, `E l`, N/m.
+    /// One unit of stiffness, `E h`, N/m.
     pub fn stiffness(&self) -> f64 {
-        self.young_modulus * self.block_size
+        self.young_modulus * self.thickness
     }
 
-    /// The load's strain, `eps = P mu_s/E`, which measures how nonlinear the springs are.
+    /// Stiffness of a spring on one block, in units of `E h`, of springs that have this stiffness per area, in N/m^3: `K l^2/(E h)`.
+    ///
+    /// ```
+    /// let scales = slipfront::Scales {
+    ///     block_size: 1e-6, thickness: 2e-6, young_modulus: 100e9, density: 10e3, pressure: 100e3, mu_static_mean: 1.0,
+    /// };
+    /// assert!((scales.stiffness_of_area(0.4e17) - 0.2).abs() < 1e-15);
+    /// ```
+    pub fn stiffness_of_area(&self, per_area: f64) -> f64 {
+        per_area * (self.block_size * self.block_size) / self.stiffness()
+    }
+
+    /// The load's strain, `eps = P mu_s l/(E h)`, which measures how nonlinear the springs are.
     pub fn epsilon(&self) -> f64 {
-        self.pressure * self.mu_static_mean / self.young_modulus
+        self.pressure * self.mu_static_mean / self.young_modulus * self.slenderness()
+    }
+
+    /// Edge of a block over its thickness; exactly 1 of the paper's cubes.
+    fn slenderness(&self) -> f64 {
+        self.block_size / self.thickness
     }
 
     /// A length in m, counted in blocks, to a billionth of a block: "2.5 um" over "1 um" is 2.5, not the
@@ -76,7 +95,7 @@ impl Scales {
     ///
     /// ```
     /// let scales = slipfront::Scales {
-    ///     block_size: 1e-6, young_modulus: 100e9, density: 10e3, pressure: 100e3, mu_static_mean: 1.0,
+    ///     block_size: 1e-6, thickness: 1e-6, young_modulus: 100e9, density: 10e3, pressure: 100e3, mu_static_mean: 1.0,
     /// };
     /// assert_eq!(scales.in_blocks(22.5e-6), 22.5);
     /// ```

@@ -130,7 +130,7 @@ impl Simulation {
         })?;
         (0..self.model.friction.n_columns()).try_for_each(|column| {
             BlockColumn::for_each_part_of_one(self.model.surface.n_blocks(), |first, values| {
-                engine.read_memory(column, first, values);
+                engine.read_memory(self.step, column, first, values);
                 write(BlockColumn::ALL.len() + column, first, values)
             })
         })

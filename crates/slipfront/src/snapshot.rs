@@ -2,6 +2,7 @@
 
 use crate::checkpoint::BlockColumn;
 use crate::communicator::Communicator;
+use crate::fixed_point::sum_over;
 use crate::friction::ContactTotals;
 use crate::kernel::block::{Block, Field};
 use crate::kernel::engine::Engine;
@@ -103,6 +104,31 @@ impl Snapshot<'_> {
         self.totals
             .stored_energy
             .expect("an observer needs the energies of this step")
+    }
+
+    /// Energy that slip weakening has taken since the start, a part of what friction takes, block by block the integral of `f - K` over its
+    /// slip; 0 under other laws. All ranks must call this together.
+    pub fn weakening_energy(&self) -> f64 {
+        let Some(law) = self
+            .model
+            .friction
+            .coulomb()
+            .and_then(|coulomb| coulomb.slip_weakening)
+        else {
+            return 0.0;
+        };
+        let surface = &self.model.surface;
+        let column = |column: usize| {
+            let mut values = vec![0.0; surface.n_blocks()];
+            self.engine.read_memory(self.step, column, 0, &mut values);
+            values
+        };
+        let slip = column(0);
+        let lost_before = law.healing_time.map(|_| column(2));
+        sum_over(self.communicator, surface.n_blocks(), |b| {
+            let drop = (surface.static_limit(b) - surface.kinetic_force(b)).max(0.0);
+            law.energy(drop, slip[b], lost_before.as_ref().map_or(0.0, |lost| lost[b]))
+        })
     }
 
     /// When each block of this rank first slid while in contact, t*; NaN where none has.

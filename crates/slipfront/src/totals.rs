@@ -24,7 +24,7 @@ pub struct Totals {
     pub stored_energy: Option<StoredEnergy>,
 }
 
-/// Energies stored at t_n, in units of `P mu_s l^2` times `P mu_s l/E`.
+/// Energies stored at t_n, in units of `P mu_s l^2` times `P mu_s l^2/(E h)`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct StoredEnergy {
     /// Kinetic energy, the mean of the half steps before and after.

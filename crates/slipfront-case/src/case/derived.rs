@@ -9,6 +9,7 @@ use super::groups::Groups;
 use super::options::options;
 use super::ranks::Ranks;
 use crate::case_file::{CaseError, CaseFile};
+use crate::quantity::Length;
 
 /// What follows from a case file without the files that it names.
 pub(super) struct Derived {
@@ -41,7 +42,7 @@ impl Derived {
         if let Some((key, why)) = file.friction.takes_one_rank().filter(|_| n_ranks > 1) {
             return Err(file.source.error(key, why));
         }
-        let friction = file.friction.in_model(groups.v_star);
+        let friction = file.friction.in_model(groups.v_star, &scales);
         let budget = Budget::new(lattice, rows, ranks, file, &options(file, friction));
         if to_run {
             budget.check_running(file)?;
@@ -59,8 +60,10 @@ impl Derived {
 
 /// Units of the dimensionless quantities of a case file.
 pub fn scales(file: &CaseFile) -> Scales {
+    let block_size = file.slider.block_size.si();
     Scales {
-        block_size: file.slider.block_size.si(),
+        block_size,
+        thickness: file.slider.thickness.as_ref().map_or(block_size, Length::si),
         young_modulus: file.slider.young_modulus.si(),
         density: file.slider.density.si(),
         pressure: file.load.pressure.si(),

@@ -71,6 +71,7 @@ pub(super) fn drive(
     let key = match file.drive.stiffness {
         DriveStiffness::Auto | DriveStiffness::Each(_) => "drive.stiffness",
         DriveStiffness::EachStar(_) => "drive.stiffness_star",
+        DriveStiffness::PerArea(_) => "drive.stiffness_per_area",
         DriveStiffness::Total(_) => "drive.total_stiffness",
         DriveStiffness::TotalStar(_) => "drive.total_stiffness_star",
     };
@@ -81,7 +82,7 @@ pub(super) fn drive(
     within(
         file,
         key,
-        "the stiffness of a drive spring over E l",
+        "the stiffness of a drive spring over E h",
         k_drive,
         1e-12..=1e6,
     )?;
@@ -114,6 +115,7 @@ fn each(file: &CaseFile, scales: &Scales) -> f64 {
     match &file.drive.stiffness {
         DriveStiffness::Each(each) => each.si() / scales.stiffness(),
         DriveStiffness::EachStar(each) => *each,
+        DriveStiffness::PerArea(per_area) => scales.stiffness_of_area(per_area.si()),
         _ => K_DRIVE,
     }
 }

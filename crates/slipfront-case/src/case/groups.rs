@@ -20,7 +20,7 @@ pub struct Groups {
     pub sigma_static_star: f64,
     /// sigma_k*, the spread of the kinetic coefficients.
     pub sigma_kinetic_star: f64,
-    /// eps = P mu_s/E, the strain of the load.
+    /// eps = P mu_s l/(E h), the strain of the load.
     pub epsilon: f64,
 }
 
@@ -39,7 +39,7 @@ impl Groups {
         let epsilon = scales.epsilon();
         if epsilon > MAX_EPSILON {
             let sentence = format!(
-                "the load strains the slider by P mu_s/E = {epsilon:.3}, more than {MAX_EPSILON}: lower `pressure` or raise \
+                "the load strains the slider by P mu_s l/(E h) = {epsilon:.3}, more than {MAX_EPSILON}: lower `pressure` or raise \
                  `young_modulus`"
             );
             return Err(file.source.error("load.pressure", sentence));
@@ -82,8 +82,8 @@ impl Groups {
 /// Refuses units of results that are lost to the smallest numbers there are.
 fn refuse_small_units(file: &CaseFile, scales: &Scales) -> Result<(), CaseError> {
     let units = [
-        ("displacement, P mu_s l/E,", scales.displacement(), "m"),
-        ("speed, P mu_s/sqrt(E rho),", scales.speed(), "m/s"),
+        ("displacement, P mu_s l^2/(E h),", scales.displacement(), "m"),
+        ("speed, P mu_s l/(h sqrt(E rho)),", scales.speed(), "m/s"),
         ("stress, P mu_s,", scales.stress(), "Pa"),
     ];
     let Some((what, size, unit)) = units.into_iter().find(|(_, size, _)| *size < MIN_UNIT) else {
@@ -93,6 +93,7 @@ fn refuse_small_units(file: &CaseFile, scales: &Scales) -> Result<(), CaseError>
         "friction.mu_static",
         "load.pressure",
         "slider.block_size",
+        "slider.thickness",
         "slider.young_modulus",
         "slider.density",
     ];

@@ -47,7 +47,7 @@ mod tests {
             "load.profile={along='x',relative_slope=0.5}",
         ] {
             let case = Case::parse("", "case", "", &[set.to_owned()]).unwrap();
-            let friction = case.file.friction.in_model(case.groups.v_star);
+            let friction = case.file.friction.in_model(case.groups.v_star, &case.scales);
             let (options, model) = (options(&case.file, friction), &case.model);
             assert_eq!(options.friction, model.friction, "{set}");
             let kernel = Kernel::Fused.for_model(model);

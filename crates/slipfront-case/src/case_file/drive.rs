@@ -9,7 +9,7 @@ use super::key_table::{PROGRAM_SPEED, STIFFNESS, UNTIL};
 use super::slider::Slider;
 use super::values::word;
 use super::words::{AttachedEdge, Motion, Outline};
-use crate::quantity::{QuantityError, Speed, Stiffness};
+use crate::quantity::{QuantityError, Speed, Stiffness, StiffnessPerArea};
 
 /// `[drive]`: how the slider is pulled.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -23,7 +23,7 @@ pub struct Drive {
     pub motion: Motion,
     /// Which blocks have a drive spring: `attach` or `attach_file`.
     pub attached: Attached,
-    /// Stiffness of the drive springs: `stiffness`, `stiffness_star`, `total_stiffness` or `total_stiffness_star`.
+    /// Stiffness of the drive springs: `stiffness`, `stiffness_star`, `stiffness_per_area`, `total_stiffness` or `total_stiffness_star`.
     pub stiffness: DriveStiffness,
 }
 
@@ -65,11 +65,13 @@ pub enum DriveStiffness {
     Auto,
     /// `stiffness`: of each, N/m.
     Each(Stiffness),
-    /// `stiffness_star`: of each over E l, more than 0.
+    /// `stiffness_star`: of each over E h, more than 0.
     EachStar(f64),
+    /// `stiffness_per_area`: of each over the area of a block, N/m^3.
+    PerArea(StiffnessPerArea),
     /// `total_stiffness`: of all together, N/m.
     Total(Stiffness),
-    /// `total_stiffness_star`: of all together over E l, more than 0.
+    /// `total_stiffness_star`: of all together over E h, more than 0.
     TotalStar(f64),
 }
 
@@ -122,6 +124,7 @@ impl Drive {
             DriveStiffness::Auto => {}
             DriveStiffness::Each(stiffness) => check.value_of(&STIFFNESS, "stiffness", stiffness)?,
             DriveStiffness::EachStar(stiffness) => check.value("stiffness_star", stiffness)?,
+            DriveStiffness::PerArea(stiffness) => check.value("stiffness_per_area", stiffness)?,
             DriveStiffness::Total(stiffness) => check.value("total_stiffness", stiffness)?,
             DriveStiffness::TotalStar(stiffness) => check.value("total_stiffness_star", stiffness)?,
         }
@@ -193,6 +196,7 @@ struct DriveKeys {
     attach_file: Option<String>,
     stiffness: Option<AutoOrStiffness>,
     stiffness_star: Option<f64>,
+    stiffness_per_area: Option<StiffnessPerArea>,
     total_stiffness: Option<Stiffness>,
     total_stiffness_star: Option<f64>,
 }
@@ -251,12 +255,14 @@ impl TryFrom<DriveKeys> for Drive {
             (None, None) => return Err("the drive needs `attach` or `attach_file`"),
         };
         let stars = (keys.stiffness_star, keys.total_stiffness_star);
-        let stiffness = match (keys.stiffness, keys.total_stiffness, stars) {
-            (Some(AutoOrStiffness::Auto), ..) => DriveStiffness::Auto,
-            (Some(AutoOrStiffness::Stiffness(each)), ..) => DriveStiffness::Each(each),
-            (_, Some(total), _) => DriveStiffness::Total(total),
-            (.., (Some(each), _)) => DriveStiffness::EachStar(each),
-            (.., (_, Some(total))) => DriveStiffness::TotalStar(total),
+        let with_units = (keys.stiffness, keys.stiffness_per_area, keys.total_stiffness);
+        let stiffness = match (with_units, stars) {
+            ((Some(AutoOrStiffness::Auto), ..), _) => DriveStiffness::Auto,
+            ((Some(AutoOrStiffness::Stiffness(each)), ..), _) => DriveStiffness::Each(each),
+            ((_, Some(per_area), _), _) => DriveStiffness::PerArea(per_area),
+            ((.., Some(total)), _) => DriveStiffness::Total(total),
+            (_, (Some(each), _)) => DriveStiffness::EachStar(each),
+            (_, (_, Some(total))) => DriveStiffness::TotalStar(total),
             _ => return Err("the drive needs a `stiffness`"),
         };
         Ok(Self {
@@ -281,6 +287,7 @@ impl From<Drive> for DriveKeys {
             attach_file: None,
             stiffness: None,
             stiffness_star: None,
+            stiffness_per_area: None,
             total_stiffness: None,
             total_stiffness_star: None,
         };
@@ -297,6 +304,7 @@ impl From<Drive> for DriveKeys {
             DriveStiffness::Auto => keys.stiffness = Some(AutoOrStiffness::Auto),
             DriveStiffness::Each(each) => keys.stiffness = Some(AutoOrStiffness::Stiffness(each)),
             DriveStiffness::EachStar(each) => keys.stiffness_star = Some(each),
+            DriveStiffness::PerArea(per_area) => keys.stiffness_per_area = Some(per_area),
             DriveStiffness::Total(total) => keys.total_stiffness = Some(total),
             DriveStiffness::TotalStar(total) => keys.total_stiffness_star = Some(total),
         }

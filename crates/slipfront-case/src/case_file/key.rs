@@ -61,7 +61,7 @@ pub struct Key {
     /// Its default as TOML; empty if it has none.
     pub default: &'static str,
     /// The keys that set the same thing: a table has one of them.
-    partners: [Option<&'static str>; 3],
+    partners: [Option<&'static str>; 4],
     /// Its title; none for keys that no picture has along an axis.
     pub title: Option<Title>,
     /// What it means, in one line.
@@ -99,7 +99,7 @@ pub(super) const fn key(name: &'static str, default: &'static str, kind: KeyKind
         name,
         kind,
         default,
-        partners: [None; 3],
+        partners: [None; 4],
         title: None,
         doc,
     }
@@ -145,6 +145,8 @@ pub(super) const fn between(low: f64, high: f64) -> Bounds {
     (Excluded(low), Excluded(high))
 }
 
+/// A stiffness per area with its unit.
+pub(super) const STIFFNESS_PER_AREA: KeyKind = quantity("N/m^3", within(1e-30, 1e40));
 /// The longest time, in t*.
 pub(super) const MAX_TIME_STAR: f64 = 1e9;
 /// Bounds of a time that has passed.

@@ -13,8 +13,8 @@ use slipfront::{Edges, StopReason};
 
 use super::friction;
 use super::key::{
-    ARRAY, AUTO, DEGREES, Key, KeyKind, MAX_TIME_STAR, POSITIVE_TIME, Title, above, between, key, number,
-    or_word, quantity, whole, within,
+    ARRAY, AUTO, DEGREES, Key, KeyKind, MAX_TIME_STAR, POSITIVE_TIME, STIFFNESS_PER_AREA, Title, above,
+    between, key, number, or_word, quantity, whole, within,
 };
 use super::probe::names_of;
 use super::shapes;
@@ -128,6 +128,8 @@ pub const SECTIONS: [Section; TABLES.len() + shapes::ALL.len()] = {
 const SLIDER: &[Key] = &[
     key("blocks", "[25, 25]", whole(1, MAX_BLOCKS), "blocks along x and along y").title("blocks along a side", "", ""),
     key("block_size", "\"1 um\"", quantity("m", within(1e-12, 1e3)), "edge of a block").title("block size", "l", "m"),
+    key("thickness", "", quantity("m", within(1e-12, 1e3)), "thickness of the sheet that the slider is; `block_size` if not given")
+        .title("thickness", "h", "m"),
     key("young_modulus", "\"100 GPa\"", quantity("Pa", within(1e-3, 1e15)), "Young's modulus")
         .title("Young's modulus", "E", "Pa"),
     key("density", "\"10 g/cm^3\"", quantity("kg/m^3", within(1e-6, 1e9)), "density")
@@ -173,13 +175,19 @@ const DRIVE: &[Key] = &[
         .or("attach_file"),
     key("attach_file", "", KeyKind::File(&["png", "npy"]), "an image or array of the blocks that have a drive spring").or("attach"),
     key("stiffness", "\"auto\"", KeyKind::Special("`\"auto\"`, or 1e-30 to 1e30 N/m"), "stiffness of each drive spring")
-        .or("stiffness_star").or("total_stiffness").or("total_stiffness_star"),
-    key("stiffness_star", "", DRIVE_STIFFNESS, "the same over E l").or("stiffness").or("total_stiffness").or("total_stiffness_star")
+        .or("stiffness_star").or("stiffness_per_area").or("total_stiffness").or("total_stiffness_star"),
+    key("stiffness_star", "", DRIVE_STIFFNESS, "stiffness of each drive spring over E h, with the thickness h")
+        .or("stiffness").or("stiffness_per_area").or("total_stiffness").or("total_stiffness_star")
         .title("drive stiffness", "k\u{209b}*", ""),
+    key("stiffness_per_area", "", STIFFNESS_PER_AREA, "stiffness of the mount, which the drive springs are, per area: that of a slider on any blocks")
+        .or("stiffness").or("stiffness_star").or("total_stiffness").or("total_stiffness_star")
+        .title("stiffness of the mount", "K", "N/m\u{b3}"),
     key("total_stiffness", "", STIFFNESS, "stiffness of all drive springs together, shared in proportion to the modulus of each block")
-        .or("stiffness").or("stiffness_star").or("total_stiffness_star").title("total drive stiffness", "K\u{209b}", "N/m"),
-    key("total_stiffness_star", "", DRIVE_STIFFNESS, "the same over E l")
-        .or("stiffness").or("stiffness_star").or("total_stiffness").title("total drive stiffness", "K\u{209b}*", ""),
+        .or("stiffness").or("stiffness_star").or("stiffness_per_area").or("total_stiffness_star")
+        .title("total drive stiffness", "K\u{209b}", "N/m"),
+    key("total_stiffness_star", "", DRIVE_STIFFNESS, "stiffness of all drive springs together over E h, with the thickness h")
+        .or("stiffness").or("stiffness_star").or("stiffness_per_area").or("total_stiffness")
+        .title("total drive stiffness", "K\u{209b}*", ""),
 ];
 
 #[rustfmt::skip]

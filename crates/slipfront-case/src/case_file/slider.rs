@@ -21,6 +21,8 @@ pub struct Slider {
     pub blocks: [u32; 2],
     /// Edge of a block (l), m.
     pub block_size: Length,
+    /// Thickness of the sheet that the slider is (h), m; `block_size` if not given.
+    pub thickness: Option<Length>,
     /// Young's modulus (E), Pa.
     pub young_modulus: Pressure,
     /// Density (rho), kg/m^3.
@@ -97,6 +99,7 @@ impl Slider {
             }
         }
         check.value("block_size", &self.block_size)?;
+        check.value("thickness", &self.thickness)?;
         check.value("young_modulus", &self.young_modulus)?;
         check.value("density", &self.density)?;
         self.damping.check(check)?;
@@ -156,6 +159,8 @@ keys_with_choice! {
         #[serde(deserialize_with = "pair")]
         blocks: [u32; 2],
         block_size: Length,
+        #[serde(skip_serializing_if = "Option::is_none")]
+        thickness: Option<Length>,
         young_modulus: Pressure,
         density: Density,
         (damping: Damping {

@@ -25,8 +25,24 @@ fn keys_become_the_law_in_units_of_the_model() {
             beta: 0.02,
             time: 3.0,
         }),
+        slip_weakening: None,
     };
     assert_eq!(varying.model.friction, Friction::Coulomb(coulomb));
+
+    // The unit of displacement is 1 pm, and 40 times that on a sheet of 10 um under blocks of 20 um.
+    let slips = |slider: &str| {
+        let text = "friction = { slip_weakening = { length = '20 pm' }, healing_time_star = 7 }";
+        match case(&format!("{slider}{text}")).model.friction {
+            Friction::Coulomb(coulomb) => coulomb.slip_weakening.unwrap(),
+            other => panic!("{other:?}"),
+        }
+    };
+    let sheet = "slider = { block_size = '20 um', thickness = '10 um' }\n";
+    for (slider, length) in [("", 20.0), (sheet, 0.5)] {
+        let law = slips(slider);
+        assert!((law.length / length - 1.0).abs() < 1e-14, "{}", law.length);
+        assert_eq!(law.healing_time, Some(7.0));
+    }
 
     let springs =
         case("friction = { contact = 'springs', contact_stiffness_star = 0.2, redraw = true, seed = 7 }");

@@ -8,8 +8,8 @@ use slipfront_case::case_file::{
     Ageing, AgeingLaw, Along, Arrangement, Array, Attached, AttachedEdge, AutoOr, Bearing, CaseFile, Cavity,
     CavitySize, Center, ContactModel, Count, Damping, Drive, DriveSpeed, DriveStiffness, Friction, Grade,
     Groove, GrooveSize, HeightMap, KineticFriction, Law, Load, Mask, Motion, Outline, Output, Pattern, Pitch,
-    Polygon, Profile, RunTime, Shape, Slider, Snapshots, Source, SpeedSegment, Texture, Time, TimeStep,
-    Velocity, VelocityLaw,
+    Polygon, Profile, RunTime, Shape, Slider, SlipWeakeningLength, Snapshots, Source, SpeedSegment, Texture,
+    Time, TimeStep, Velocity, VelocityLaw,
 };
 use slipfront_case::quantity::{Kind, Length, Quantity};
 
@@ -58,7 +58,7 @@ fn slider() -> impl Strategy<Value = Slider> {
     let property = || prop_oneof![grade(), field()];
     (
         (3..60_000_u32, 3..60_000_u32),
-        length(),
+        (length(), prop::option::of(length())),
         quantity(-3, 14, &["GPa", "bar", "N/mm^2"]),
         quantity(-6, 8, &["g/cm^3", "kg m^-3"]),
         damping,
@@ -70,7 +70,7 @@ fn slider() -> impl Strategy<Value = Slider> {
         .prop_map(
             |(
                 (nx, ny),
-                block_size,
+                (block_size, thickness),
                 young_modulus,
                 density,
                 damping,
@@ -85,6 +85,7 @@ fn slider() -> impl Strategy<Value = Slider> {
                     [nx, ny]
                 },
                 block_size,
+                thickness,
                 young_modulus,
                 density,
                 damping,
@@ -159,6 +160,7 @@ fn drive() -> impl Strategy<Value = Drive> {
         Just(DriveStiffness::Auto),
         newtons().prop_map(DriveStiffness::Each),
         newtons().prop_map(DriveStiffness::Total),
+        quantity(-20, 20, &["N/m^3", "kN/mm^3"]).prop_map(DriveStiffness::PerArea),
         (1e-9..1e6).prop_map(DriveStiffness::EachStar),
         (1e-9..1e6).prop_map(DriveStiffness::TotalStar)
     ];
@@ -215,6 +217,8 @@ fn friction() -> impl Strategy<Value = Friction> {
             law: law.law,
             velocity: law.velocity,
             ageing: law.ageing,
+            slip_weakening: law.slip_weakening,
+            healing_time_star: law.healing_time_star,
             ..plain
         }),
         (plain, springs()).prop_map(|(plain, law)| Friction {
@@ -224,6 +228,7 @@ fn friction() -> impl Strategy<Value = Friction> {
             adhesion_kinetic: law.adhesion_kinetic,
             contact: law.contact,
             contact_stiffness_star: law.contact_stiffness_star,
+            contact_stiffness_per_area: law.contact_stiffness_per_area.clone(),
             redraw: law.redraw,
             ..plain
         }),
@@ -244,22 +249,38 @@ fn of_coefficients() -> impl Strategy<Value = Friction> {
         beta,
         time_star,
     });
+    let of_slip = prop_oneof![
+        length().prop_map(|length| (Some(length), None)),
+        (1e-6..1e9).prop_map(|star| (None, Some(star)))
+    ];
+    let of_slip = of_slip.prop_map(|(length, length_star)| SlipWeakeningLength { length, length_star });
     let varying = (prop::option::of(velocity), prop::option::of(ageing));
-    let varying = varying.prop_map(|(velocity, ageing)| (Law::Projection, velocity, ageing));
-    let other = select(vec![Law::Reversal, Law::Literal]).prop_map(|law| (law, None, None));
-    prop_oneof![varying, other].prop_map(move |(law, velocity, ageing)| Friction {
-        law,
-        velocity,
-        ageing,
-        ..base.clone()
-    })
+    let varying = varying.prop_map(|(velocity, ageing)| (Law::Projection, (velocity, ageing, None, None)));
+    let slips = (of_slip, prop::option::of(1e-6..1e9));
+    let slips = slips.prop_map(|(law, healing)| (Law::Projection, (None, None, Some(law), healing)));
+    let other = select(vec![Law::Reversal, Law::Literal]).prop_map(|law| (law, (None, None, None, None)));
+    prop_oneof![varying, slips, other].prop_map(
+        move |(law, (velocity, ageing, slip_weakening, healing_time_star))| Friction {
+            law,
+            velocity,
+            ageing,
+            slip_weakening,
+            healing_time_star,
+            ..base.clone()
+        },
+    )
 }
 
 fn springs() -> impl Strategy<Value = Friction> {
     let base = CaseFile::default().friction;
-    (1e-6..1e3, any::<bool>()).prop_map(move |(stiffness, redraw)| Friction {
+    let stiffness = prop_oneof![
+        (1e-6..1e3).prop_map(|star| (Some(star), None)),
+        quantity(-20, 20, &["N/m^3"]).prop_map(|per_area| (None, Some(per_area)))
+    ];
+    (stiffness, any::<bool>()).prop_map(move |((star, per_area), redraw)| Friction {
         contact: ContactModel::Springs,
-        contact_stiffness_star: Some(stiffness),
+        contact_stiffness_star: star,
+        contact_stiffness_per_area: per_area,
         redraw,
         ..base.clone()
     })

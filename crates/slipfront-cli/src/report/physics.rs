@@ -18,6 +18,9 @@ pub fn physics(case: &Case) -> String {
         ("texture", texture(case)),
         ("time", time(case)),
     ];
+    let lengths = lengths(case).map(|lengths| ("lengths", lengths));
+    let branches = branches.into_iter().chain(lengths);
+    let branches: Vec<(&str, String)> = branches.collect();
     let mut text = format!("{}\n", case.name);
     for (number, (name, value)) in branches.iter().enumerate() {
         let branch = if number + 1 < branches.len() {
@@ -48,7 +51,10 @@ fn slider(case: &Case) -> String {
         (Outline::Mask, Some(name)) => within(name),
         (Outline::Disc | Outline::Mask, _) => within("a disc"),
     };
-    format!("{outline}{nx} x {ny} {blocks} of {size}, {edges} edges")
+    let thickness = file.thickness.as_ref().map_or(String::new(), |thickness| {
+        format!(", {} thick", with_si_prefix(thickness.si(), "m"))
+    });
+    format!("{outline}{nx} x {ny} {blocks} of {size}{thickness}, {edges} edges")
 }
 
 /// What follows a property of the material that is not the same everywhere.
@@ -117,6 +123,31 @@ fn drive(case: &Case) -> String {
         ),
     };
     format!("{speed} {motion}{at}{stiffness}")
+}
+
+/// The lengths over which the mount screens what happens at a place, where every block has a drive spring, and the size from which slip
+/// runs away.
+fn lengths(case: &Case) -> Option<String> {
+    let (keys, model) = (&case.file.drive, &case.model);
+    let is_on_all = matches!(keys.attached, Attached::At(AttachedEdge::All));
+    if !is_on_all || keys.motion == Motion::Rotation || model.n_blocks() == 1 {
+        return None;
+    }
+    let told = |blocks: f64| {
+        let metres = with_si_prefix(blocks * case.scales.block_size, "m");
+        format!("{} blocks ({metres})", four_digits(blocks))
+    };
+    let [along, across] = model.drive.screening_lengths(&model.lattice).map(told);
+    let critical = model.critical_size().map_or(String::new(), |size| {
+        if size.is_finite() {
+            format!("; slip runs away from {} on", told(size))
+        } else {
+            "; slip of any size is stable on this mount".to_owned()
+        }
+    });
+    Some(format!(
+        "the mount screens stress over {along} along the drive, {across} across{critical}"
+    ))
 }
 
 /// The share of the blocks that is textured, the share asked for, and the roughness of height maps.

@@ -323,8 +323,8 @@ fn a_checkpoint_that_is_not_whole_or_not_its_own_is_refused() {
         "was written by slipfront 7.",
     );
     refused(
-        &text("\"slipfront_checkpoint\":3", "\"slipfront_checkpoint\":1"),
-        "has layout 1, and this version reads layout 3",
+        &text("\"slipfront_checkpoint\":4", "\"slipfront_checkpoint\":1"),
+        "has layout 1, and this version reads layout 4",
     );
     for (from, to) in [
         ("\"rows\":50", "\"rows\":51"),

@@ -17,6 +17,7 @@ mod patterns;
 mod program;
 mod rate_and_state;
 mod runs;
+mod slip_weakening;
 mod torsion;
 mod weakening;
 
@@ -40,6 +41,7 @@ const CHAPTERS: &[Compute] = &[
     composite::chapter,
     patterns::chapter,
     weakening::chapter,
+    slip_weakening::chapter,
     ageing::chapter,
     rate_and_state::chapter,
     adhesion::chapter,

@@ -6,7 +6,7 @@ use slipfront_case::same::Difference;
 use thiserror::Error;
 
 /// How the file is laid out. A program reads no other layout.
-pub(super) const LAYOUT: u32 = 3;
+pub(super) const LAYOUT: u32 = 4;
 
 /// Why a run cannot go on from a checkpoint.
 #[derive(Debug, Error)]

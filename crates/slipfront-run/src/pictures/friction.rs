@@ -359,7 +359,7 @@ fn dimensionless(
         (axes.peak, axes.kinetic) = ("\u{3bc}_s".to_owned(), "\u{3bc}_k".to_owned());
     }
     if against == Against::Displacement {
-        axes.x = "drive displacement in units of P\u{27e8}\u{3bc}_s\u{27e9}l/E".to_owned();
+        axes.x = "drive displacement in units of P\u{27e8}\u{3bc}_s\u{27e9}l\u{b2}/(E h)".to_owned();
     }
     let up = |si: &Option<&SiSummary>| si.filter(|_| other_friction).map_or(1.0, mean_static);
     let factors = units.iter().map(|si| [1.0, up(si)]).collect();
@@ -369,10 +369,10 @@ fn dimensionless(
             Some("the mean static coefficients of the runs differ: friction is drawn as mu, not as mu*")
         }
         [false, true] => Some(
-            "the units of time of the runs differ: friction is drawn against the displacement of the drive in units of P mu_s l/E",
+            "the units of time of the runs differ: friction is drawn against the displacement of the drive in units of P mu_s l^2/(E h)",
         ),
         [true, true] => Some(
-            "the runs have different materials: friction is drawn as mu against the displacement of the drive in units of P mu_s l/E",
+            "the runs have different materials: friction is drawn as mu against the displacement of the drive in units of P mu_s l^2/(E h)",
         ),
     };
     let scale = Scale {

@@ -17,7 +17,7 @@ use crate::vector_field::{VectorField, dot};
 /// `F_f = -k_t (u - a)`, where the anchor `a` becomes `u` when `k_t |u - a|` exceeds the threshold.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactSprings {
-    /// Stiffness `k_t` per block, in units of `E l`.
+    /// Stiffness `k_t` per block, in units of `E h`.
     pub stiffness: f64,
     /// Seed by which a spring that forms again takes another coefficient; none if it keeps its own.
     pub redraw: Option<u64>,

@@ -68,7 +68,7 @@ impl Friction {
         matches!(self, Self::ContactSprings(law) if law.redraw.is_some())
     }
 
-    /// Stiffness of what holds a block to the substrate until it slips, in units of `E l`; 0 of contacts that do not yield.
+    /// Stiffness of what holds a block to the substrate until it slips, in units of `E h`; 0 of contacts that do not yield.
     pub(crate) fn contact_stiffness(&self) -> f64 {
         match self {
             Self::Coulomb(_) | Self::RateAndState(_) => 0.0,
@@ -215,7 +215,7 @@ impl BandContact {
         dt_star: f64,
     ) {
         match self {
-            Self::Coulomb(_) => {}
+            Self::Coulomb(thresholds) => thresholds.add_slip(blocks, &state.velocity, dt_star),
             Self::RateAndState(contact) => contact.evolve(blocks, &state.velocity, dt_star),
             Self::Springs(springs) => {
                 let breaks = &forces.slides;

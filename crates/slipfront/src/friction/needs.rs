@@ -9,12 +9,16 @@ pub struct Needs {
     pub varies: bool,
     /// Bytes per block that it adds to the general kernel.
     pub bytes: usize,
+    /// Bytes per block that it adds to the fused kernel.
+    pub fused_bytes: usize,
     /// Numbers per block that it remembers beside the velocity: columns of a checkpoint.
     pub columns: usize,
     /// Whether contacts store energy, which is lost when they break.
     pub stores_energy: bool,
     /// Whether contacts have a state, whose mean is a result.
     pub has_state: bool,
+    /// Whether strength falls with slip, so that a part of what friction takes is that of weakening.
+    pub weakens_with_slip: bool,
 }
 
 impl Needs {
@@ -23,9 +27,11 @@ impl Needs {
         is_fused: true,
         varies: false,
         bytes: 0,
+        fused_bytes: 0,
         columns: 0,
         stores_energy: false,
         has_state: false,
+        weakens_with_slip: false,
     };
 
     /// What a law and an option of it need together.
@@ -34,9 +40,11 @@ impl Needs {
             is_fused: self.is_fused && more.is_fused,
             varies: self.varies || more.varies,
             bytes: self.bytes + more.bytes,
+            fused_bytes: self.fused_bytes + more.fused_bytes,
             columns: self.columns + more.columns,
             stores_energy: self.stores_energy || more.stores_energy,
             has_state: self.has_state || more.has_state,
+            weakens_with_slip: self.weakens_with_slip || more.weakens_with_slip,
         })
     }
 }

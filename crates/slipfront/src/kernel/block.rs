@@ -7,7 +7,7 @@ use crate::vector_field::{add, length};
 /// One block at t_n. Friction and contact are those of the update that starts there.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Block {
-    /// **u**, in units of `P mu_s l/E`.
+    /// **u**, in units of `P mu_s l^2/(E h)`.
     pub displacement: [f64; 2],
     /// Velocity at `t_n + dt/2`.
     pub velocity: [f64; 2],

@@ -59,6 +59,6 @@ pub(crate) trait Engine: Send + Sync {
     }
 
     /// What the law of friction remembers of the blocks from `first` on: one of its
-    /// [`Friction::n_columns`](crate::friction::Friction::n_columns), of a kernel that computes such laws.
-    fn read_memory(&self, _column: usize, _first: usize, _values: &mut [f64]) {}
+    /// [`Friction::n_columns`](crate::friction::Friction::n_columns), at the present step.
+    fn read_memory(&self, number: u64, column: usize, first: usize, values: &mut [f64]);
 }

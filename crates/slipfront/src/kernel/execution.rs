@@ -7,7 +7,7 @@ use fearless_simd::Level;
 use super::engine::Engine;
 use super::fused::{self, Fused};
 use super::general::{self, General};
-use crate::checkpoint::{BlockColumn, Checkpoint};
+use crate::checkpoint::Checkpoint;
 use crate::communicator::{Alone, Communicator};
 use crate::friction::Friction;
 use crate::model::Model;
@@ -123,13 +123,11 @@ impl Execution {
         model: &Model,
         dt_star: f64,
         checkpoint: &Checkpoint,
-        mut read: impl FnMut(usize, usize, &mut [f64]) -> Result<(), E>,
+        read: impl FnMut(usize, usize, &mut [f64]) -> Result<(), E>,
     ) -> Result<Option<Box<dyn Engine>>, E> {
         let (threads, skips, communicator) = (self.threads, self.skips, self.communicator);
         match (self.kernel.for_model(model), checkpoint.motion_bounds) {
             (Kernel::Fused, Some(_)) => {
-                let read =
-                    |column: BlockColumn, first, values: &mut [f64]| read(column as usize, first, values);
                 let kernel = Fused::resume(model, dt_star, checkpoint, threads, skips, communicator, read)?;
                 Ok(Some(Box::new(kernel)))
             }

@@ -61,7 +61,7 @@ impl Observer for Curve {
                 step: now.step,
                 time_star: now.time_star,
                 point: now.point,
-                energies: self.ledger.energies(now.stored_energy()),
+                energies: self.ledger.energies(now),
                 mean_state: now.contact.mean_state,
             });
         }

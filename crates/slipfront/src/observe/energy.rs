@@ -1,6 +1,6 @@
 //! The energy balance: the work of the drive is stored in blocks and springs or lost to friction and damping.
 //!
-//! All energies are in units of `P mu_s l^2` times `P mu_s l/E`.
+//! All energies are in units of `P mu_s l^2` times `P mu_s l^2/(E h)`.
 
 use serde::{Deserialize, Serialize};
 
@@ -25,6 +25,9 @@ pub struct Energies {
     pub contact_springs: f64,
     /// Lost with such springs that broke since the start.
     pub broken_springs_loss: f64,
+    /// The part of the loss to friction that slip weakening has taken since the start, see
+    /// [`Snapshot::weakening_energy`](crate::Snapshot::weakening_energy).
+    pub weakening_loss: f64,
     /// Energy stored at the start.
     pub stored_at_start: f64,
 }
@@ -112,10 +115,11 @@ impl Ledger {
         self.before = Some(powers);
     }
 
-    /// The balance at an instant with these stored energies.
-    pub(crate) fn energies(&self, stored: StoredEnergy) -> Energies {
+    /// The balance at an instant at which energies are known.
+    pub(crate) fn energies(&self, now: &Snapshot) -> Energies {
         Energies {
-            stored,
+            stored: now.stored_energy(),
+            weakening_loss: now.weakening_energy(),
             ..self.totals
         }
     }

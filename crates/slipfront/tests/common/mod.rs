@@ -13,7 +13,7 @@ use slipfront::surface::{
 };
 use slipfront::{
     Communicator, Coulomb, Drive, DriveSprings, Edges, Execution, Friction, FrictionLaw, Lattice, Model,
-    Outline, Program, Simulation, State, Stop, Surface, VectorField, Weakening, scales,
+    Outline, Program, Simulation, SlipWeakening, State, Stop, Surface, VectorField, Weakening, scales,
 };
 
 /// A slider at rest, stepped by the kernel that this binary tests.
@@ -43,6 +43,7 @@ pub(crate) struct Slider {
     /// What differs from block to block, of the whole lattice.
     pub(crate) body: slipfront::Slider,
     pub(crate) weakening: Option<Weakening>,
+    pub(crate) slip_weakening: Option<SlipWeakening>,
     pub(crate) program: Option<Arc<Program>>,
     pub(crate) load: Load,
     /// Axis and relative slope of a pressure that rises along it.
@@ -68,6 +69,7 @@ impl Default for Slider {
             textures: Vec::new(),
             body: slipfront::Slider::default(),
             weakening: None,
+            slip_weakening: None,
             program: None,
             load: Load::Redistributed,
             pressure: None,
@@ -171,6 +173,7 @@ impl Slider {
         };
         let friction = Friction::Coulomb(Coulomb {
             weakening: self.weakening,
+            slip_weakening: self.slip_weakening,
             ..self.law.into()
         });
         let damping = scales::damping(self.omega_star);

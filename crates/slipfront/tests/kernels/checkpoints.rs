@@ -11,7 +11,7 @@ use slipfront::observe::{
 };
 use slipfront::{
     Ageing, ContactSprings, Coulomb, Edge, Execution, Friction, FrictionLaw, Program, RateAndState, Rotation,
-    Simulation, Stop, Weakening,
+    Simulation, SlipWeakening, Stop, Weakening,
 };
 
 use crate::common::{Slider, cavity, varied};
@@ -103,6 +103,10 @@ fn goes_on_from_checkpoints(slider: &Slider, every: u64) {
 #[case(Friction::Coulomb(Coulomb {
     weakening: Some(Weakening { critical_speed: 0.1, ratio: 0.4 }),
     ageing: Some(Ageing { beta: 0.1, time: 1.0 }),
+    ..FrictionLaw::Projection.into()
+}))]
+#[case(Friction::Coulomb(Coulomb {
+    slip_weakening: Some(SlipWeakening { length: 0.4, healing_time: Some(2.0) }),
     ..FrictionLaw::Projection.into()
 }))]
 #[case(Friction::ContactSprings(ContactSprings { stiffness: 0.5, redraw: Some(3) }))]

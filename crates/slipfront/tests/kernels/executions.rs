@@ -26,6 +26,7 @@ pub(crate) fn shown(simulation: &Simulation) -> Vec<u64> {
         contact.spring_energy,
         contact.broken_energy,
         contact.mean_state,
+        now.weakening_energy(),
     ];
     for pair in [totals.displacement, totals.velocity, totals.velocity_after] {
         numbers.extend(pair);

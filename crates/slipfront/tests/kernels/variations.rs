@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use rstest::rstest;
 use slipfront::communicator::Alone;
-use slipfront::{DriveSprings, Edges, Outline, Program, Weakening};
+use slipfront::{DriveSprings, Edges, Outline, Program, SlipWeakening, Weakening};
 
 use crate::common::{Slider, cavity, varied};
 use crate::{against_general, executions, ranks, sliders};
@@ -20,6 +20,10 @@ enum Variety {
     /// One block in nine does not exist.
     Outline,
     Weakening,
+    /// Strength falls with slip, and comes back at rest or not.
+    SlipWeakening {
+        heals: bool,
+    },
     /// A stop, and a way back.
     Program,
 }
@@ -47,6 +51,12 @@ fn with(slider: Slider, options: &[Variety]) -> Slider {
                 slider.weakening = Some(Weakening {
                     critical_speed: 0.2,
                     ratio: 0.4,
+                });
+            }
+            Variety::SlipWeakening { heals } => {
+                slider.slip_weakening = Some(SlipWeakening {
+                    length: 0.4,
+                    healing_time: heals.then_some(3.0),
                 });
             }
             Variety::Program => {
@@ -77,11 +87,14 @@ fn base(epsilon: f64, edges: Edges) -> Slider {
 
 use Variety::{EdgeDrive, Grading, Outline as Cut, Program as Changes, Weakening as Weakens};
 
+const SLIPS: Variety = Variety::SlipWeakening { heals: false };
+const HEALS: Variety = Variety::SlipWeakening { heals: true };
+
 #[rstest]
 fn the_general_kernel_agrees(
     #[values(
         &[EdgeDrive], &[Grading], &[Cut], &[Weakens], &[Changes], &[Grading, Cut], &[EdgeDrive, Cut, Weakens],
-        &[Grading, Cut, Weakens, Changes]
+        &[Grading, Cut, Weakens, Changes], &[SLIPS], &[HEALS], &[Grading, Cut, SLIPS]
     )]
     options: &[Variety],
     #[values(0.0, 1e-6, 1e-2)] epsilon: f64,
@@ -95,7 +108,7 @@ fn the_general_kernel_agrees(
 fn the_same_bits_however_executed(
     #[values(
         &[EdgeDrive], &[Grading], &[Cut], &[Weakens], &[Changes], &[EdgeDrive, Cut, Weakens],
-        &[Grading, Cut, Weakens, Changes]
+        &[Grading, Cut, Weakens, Changes], &[SLIPS], &[HEALS], &[Grading, Cut, HEALS]
     )]
     options: &[Variety],
     #[values(1e-6, 2e-3)] epsilon: f64,
@@ -108,7 +121,7 @@ fn the_same_bits_however_executed(
 /// Between slips most of a slow slider is skipped.
 #[rstest]
 fn slow_sliders_have_the_same_bits(
-    #[values(&[EdgeDrive], &[Grading, Cut, Weakens], &[Changes])] options: &[Variety],
+    #[values(&[EdgeDrive], &[Grading, Cut, Weakens], &[Changes], &[SLIPS], &[HEALS])] options: &[Variety],
 ) {
     let slider = with(sliders::slow(BLOCKS, Edges::Free, 0.0, 1e-6), options);
     executions::assert_same_bits(&slider.model(), slider.dt_star, None, slider.steps(4.0));
@@ -117,7 +130,7 @@ fn slow_sliders_have_the_same_bits(
 #[rstest]
 fn the_same_bits_over_ranks(
     #[values(
-        &[EdgeDrive], &[Grading], &[Cut], &[Weakens, Changes], &[Grading, Cut, Weakens, Changes]
+        &[EdgeDrive], &[Grading], &[Cut], &[Weakens, Changes], &[Grading, Cut, Weakens, Changes], &[SLIPS], &[HEALS]
     )]
     options: &[Variety],
     #[values(Edges::Free, Edges::Periodic)] edges: Edges,

@@ -11,6 +11,7 @@ const SLIDERS: [Scales; 4] = [
     // Cases 8 and 1 of Table 1, and two of other materials, block sizes and coefficients.
     Scales {
         block_size: 1e-6,
+        thickness: 1e-6,
         young_modulus: 100e9,
         density: 10e3,
         pressure: 100e3,
@@ -18,6 +19,7 @@ const SLIDERS: [Scales; 4] = [
     },
     Scales {
         block_size: 1e-6,
+        thickness: 1e-6,
         young_modulus: 100e6,
         density: 1e3,
         pressure: 1e3,
@@ -25,6 +27,7 @@ const SLIDERS: [Scales; 4] = [
     },
     Scales {
         block_size: 3e-3,
+        thickness: 3e-3,
         young_modulus: 2.1e11,
         density: 7.8e3,
         pressure: 1e6,
@@ -32,12 +35,35 @@ const SLIDERS: [Scales; 4] = [
     },
     Scales {
         block_size: 0.2,
+        thickness: 0.2,
         young_modulus: 1e7,
         density: 950.0,
         pressure: 100.0,
         mu_static_mean: 0.9,
     },
 ];
+
+/// A rigid slider of thickness `h` on a mount of stiffness `K` per area swings with `sqrt(K/(rho h))`, whatever the size of its blocks.
+#[test]
+fn a_mount_sets_a_frequency_that_no_block_does() {
+    let (thickness, per_area) = (2e-3, 1e13);
+    for block_size in [1e-6, 2e-5, 1e-3] {
+        for scales in SLIDERS {
+            let scales = Scales {
+                block_size,
+                thickness,
+                ..scales
+            };
+            let frequency = scales.stiffness_of_area(per_area).sqrt() / scales.time();
+            let exact = (per_area / (scales.density * thickness)).sqrt();
+            // Some roundings.
+            assert!(
+                (frequency / exact - 1.0).abs() < 1e-14,
+                "{frequency}, exact {exact}"
+            );
+        }
+    }
+}
 
 /// A slider of 16 x 16 blocks given in SI: speed and damping rate chosen so that V* = 0.03 and Omega* = 0.1.
 fn model(scales: &Scales, epsilon: f64) -> Model {

@@ -11,8 +11,8 @@ use slipfront::observe::{Curve, CurveRow, Scheduled};
 use slipfront::surface::{Contact, Load, mesh};
 use slipfront::{
     Ageing, ContactSprings, Coulomb, Drive, Edge, Edges, Execution, Friction, FrictionLaw, Kernel, Model,
-    Outline, Program, RateAndState, Rotation, Simulation, Snapshot, State, Stop, Surface, VectorField,
-    Weakening, scales,
+    Outline, Program, RateAndState, Rotation, Simulation, SlipWeakening, Snapshot, State, Stop, Surface,
+    VectorField, Weakening, scales,
 };
 
 use crate::common::Slider;
@@ -50,6 +50,13 @@ fn friction() -> impl Strategy<Value = Friction> {
             law,
             weakening,
             ageing,
+            slip_weakening: None,
+        })
+    };
+    let of_slip = |(length, healing_time)| {
+        Friction::Coulomb(Coulomb {
+            slip_weakening: Some(SlipWeakening { length, healing_time }),
+            ..FrictionLaw::Projection.into()
         })
     };
     let weakening = || {
@@ -68,6 +75,7 @@ fn friction() -> impl Strategy<Value = Friction> {
         2 => weakening().prop_map(move |law| coulomb(projection, Some(law), None)),
         1 => ageing().prop_map(move |law| coulomb(projection, None, Some(law))),
         1 => (weakening(), ageing()).prop_map(move |(falls, grows)| coulomb(projection, Some(falls), Some(grows))),
+        2 => (0.05..3.0, prop::option::of(0.05..2.0)).prop_map(of_slip),
         2 => rate_and_state().prop_map(Friction::RateAndState),
         2 => (0.05..2.0, prop::option::of(any::<u64>()))
             .prop_map(|(stiffness, redraw)| Friction::ContactSprings(ContactSprings { stiffness, redraw })),
@@ -187,12 +195,14 @@ impl Setting {
     }
 
     /// All options, and whether this setting uses them.
-    fn options(&self) -> [(&'static str, bool); 31] {
+    fn options(&self) -> [(&'static str, bool); 33] {
         let (model, body) = (&self.model, self.model.slider());
         let coulomb = match model.friction {
             Friction::Coulomb(coulomb) => Some(coulomb),
             Friction::RateAndState(_) | Friction::ContactSprings(_) => None,
         };
+        let of_slip = coulomb.and_then(|coulomb| coulomb.slip_weakening);
+        let slips = |heals: bool| of_slip.is_some_and(|law| law.healing_time.is_some() == heals);
         let reads = |law| coulomb.is_some_and(|coulomb| coulomb.law == law);
         let springs = |redraws: bool| matches!(model.friction, Friction::ContactSprings(ContactSprings { redraw, .. }) if redraw.is_some() == redraws);
         let [of_static, of_kinetic] = [self.contact.adhesion.of_static, self.contact.adhesion.of_kinetic];
@@ -205,6 +215,8 @@ impl Setting {
                 coulomb.is_some_and(|coulomb| coulomb.weakening.is_some()),
             ),
             ("ageing", coulomb.is_some_and(|coulomb| coulomb.ageing.is_some())),
+            ("slip weakening", slips(false)),
+            ("slip weakening that heals", slips(true)),
             (
                 "rate and state",
                 matches!(model.friction, Friction::RateAndState(_)),
@@ -250,7 +262,9 @@ impl Setting {
     fn takes_single_steps(&self) -> bool {
         let keeps_errors_small = match self.model.friction {
             Friction::Coulomb(coulomb) => {
-                coulomb.law == FrictionLaw::Projection && coulomb.weakening.is_none()
+                coulomb.law == FrictionLaw::Projection
+                    && coulomb.weakening.is_none()
+                    && coulomb.slip_weakening.is_none()
             }
             Friction::ContactSprings(_) => true,
             Friction::RateAndState(_) => false,

@@ -133,6 +133,7 @@ prop_compose! {
             textures,
             body: slipfront::Slider::default(),
             weakening: None,
+            slip_weakening: None,
             program: None,
             load: if kept { Load::Kept } else { Load::Redistributed },
             pressure,

@@ -1,6 +1,6 @@
-//! Static and kinetic friction with memory (Eq. 4), in its three readings; weakening with speed, and ageing.
+//! Static and kinetic friction with memory (Eq. 4), in its three readings; weakening with speed and with slip, and ageing.
 
-use slipfront::{Ageing, FrictionLaw, Weakening};
+use slipfront::{Ageing, FrictionLaw, SlipWeakening, Weakening};
 
 use super::step::{Motion, Update};
 use super::vector::{Vector, dot, length, sum, times, unit};
@@ -15,6 +15,20 @@ pub(crate) fn weakened(law: Option<Weakening>, speed: f64) -> f64 {
 /// Static friction after `age` over that of age 0: `1 + beta ln(1 + t_stuck/tau)`.
 pub(crate) fn aged(law: Option<Ageing>, age: f64) -> f64 {
     law.map_or(1.0, |law| 1.0 + law.beta * (1.0 + age / law.time).ln())
+}
+
+/// What a block bears while it is stuck and while it slides after a slip `s`: `f = K + (S - K) max(0, 1 - s/D_c)` both, unless `K >= S`.
+pub(crate) fn after_slip(law: Option<SlipWeakening>, [holds, slows]: [f64; 2], slip: f64) -> [f64; 2] {
+    match law {
+        Some(law) if holds > slows => [slows + (holds - slows) * (1.0 - slip / law.length).max(0.0); 2],
+        _ => [holds, slows],
+    }
+}
+
+/// Whether a block is whole again that has been stuck for so long.
+pub(crate) fn is_whole_again(law: Option<SlipWeakening>, stuck_for: f64) -> bool {
+    law.and_then(|law| law.healing_time)
+        .is_some_and(|time| stuck_for >= time)
 }
 
 /// The update of a block on which `force` acts beside friction, which bears `holds` while it is stuck and `slows` while it slides.

@@ -45,6 +45,10 @@ struct Block {
 struct Memory {
     /// When it has stopped.
     stopped_at: f64,
+    /// How far it has slipped since it was whole.
+    slip: f64,
+    /// When it has moved last.
+    moved_at: f64,
     /// State of its contact.
     theta: f64,
     /// Where the spring of its contact has no force.
@@ -111,6 +115,8 @@ impl<'a> Reference<'a> {
         };
         let memory = Memory {
             stopped_at: 0.0,
+            slip: 0.0,
+            moved_at: 0.0,
             theta,
             anchor: [0.0, 0.0],
             breaks: 0,
@@ -161,6 +167,7 @@ impl<'a> Reference<'a> {
         for b in 0..self.blocks.len() {
             let moved = times(self.dt, self.velocity[b]);
             self.displacement[b] = sum(self.displacement[b], moved);
+            self.memory[b].slip += self.dt * length(self.velocity[b]);
             if let Friction::RateAndState(law) = &self.model.friction {
                 let speed = length(self.velocity[b]);
                 self.memory[b].theta = rate_and_state::evolved(law, self.memory[b].theta, speed, self.dt);
@@ -229,6 +236,13 @@ impl<'a> Reference<'a> {
                 let slows = block
                     .kinetic
                     .scaled(coulomb::weakened(law.weakening, length(motion.velocity)));
+                if !motion.is_at_rest() {
+                    self.memory[b].moved_at = now;
+                } else if coulomb::is_whole_again(law.slip_weakening, now - memory.moved_at) {
+                    self.memory[b].slip = 0.0;
+                }
+                let slip = self.memory[b].slip;
+                let [holds, slows] = coulomb::after_slip(law.slip_weakening, [holds, slows], slip);
                 let update = coulomb::update(law.law, &motion, force, holds, slows);
                 self.slides[b] = update.velocity != [0.0, 0.0];
                 if !motion.is_at_rest() && !self.slides[b] {

@@ -43,6 +43,7 @@ pub(crate) fn events_csv(count: u32) -> Vec<u8> {
     let events: Vec<SlipEvent> = (0..count).map(event).collect();
     let scales = Scales {
         block_size: 1e-6,
+        thickness: 1e-6,
         young_modulus: 1e11,
         density: 1e4,
         pressure: 1e5,
@@ -102,6 +103,7 @@ pub(crate) fn csv(rows: u64) -> Vec<u8> {
             viscous_loss_j: (rows == 3).then_some(1e-9),
             contact_spring_energy_j: None,
             broken_spring_loss_j: None,
+            weakening_loss_j: None,
             mean_state_star: Some(16.0),
         }
     };

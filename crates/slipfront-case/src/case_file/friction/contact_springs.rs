@@ -2,25 +2,28 @@
 
 use slipfront::ContactSprings;
 
-use crate::case_file::key::{Key, KeyKind, above, key, number};
+use crate::case_file::key::{Key, KeyKind, STIFFNESS_PER_AREA, above, key, number};
 use crate::number_format::four_digits;
 
 #[rustfmt::skip]
 pub(super) const KEYS: &[Key] = &[
-    key("contact_stiffness_star", "", number(above(0.0, 1e3), "it is over E l, and a spring between blocks has 0.75"),
-        "stiffness of the spring in the contact of a block").title("contact stiffness", "k\u{209c}*", ""),
+    key("contact_stiffness_star", "", number(above(0.0, 1e3), "it is over E h, with the thickness h, and a spring between blocks has 0.75"),
+        "stiffness of the spring in the contact of a block").or("contact_stiffness_per_area").title("contact stiffness", "k\u{209c}*", ""),
+    key("contact_stiffness_per_area", "", STIFFNESS_PER_AREA, "stiffness of the springs in contact per area").or("contact_stiffness_star")
+        .title("contact stiffness", "K\u{209c}", "N/m\u{b3}"),
     key("redraw", "false", KeyKind::Switch, "whether a spring that forms again has another threshold"),
 ];
 
 pub(super) const SYNONYMS: &[(&str, &str)] = &[
     ("contact_stiffness", ADVICE),
+    ("tangential_stiffness", ADVICE),
     ("k_t", ADVICE),
     ("contact_springs", ADVICE),
     ("asperities", ADVICE),
     ("junctions", ADVICE),
 ];
-const ADVICE: &str =
-    "springs in contact are `friction.contact` = \"springs\", of stiffness `friction.contact_stiffness_star`";
+const ADVICE: &str = "springs in contact are `friction.contact` = \"springs\", of stiffness `friction.contact_stiffness_star`, or \
+     `friction.contact_stiffness_per_area` with its unit";
 
 /// Why other keys have no meaning beside springs.
 pub(super) const ALONE: &str = "with `contact` = \"springs\" a block is held by its spring at any speed, and there is no kinetic \
@@ -31,7 +34,9 @@ pub(super) const ELSEWHERE: &str = "it belongs to `contact` = \"springs\"; set t
 
 /// What is wrong with springs of which no stiffness is given, at the key of this path.
 pub(super) fn without_stiffness(path: &str) -> String {
-    format!("`{path}` = \"springs\" needs their stiffness, `contact_stiffness_star`")
+    format!(
+        "`{path}` = \"springs\" needs their stiffness, `contact_stiffness_star` or `contact_stiffness_per_area`"
+    )
 }
 
 /// Why springs that are drawn anew take one rank.
@@ -46,5 +51,5 @@ pub(super) fn in_words(law: &ContactSprings) -> String {
         ""
     };
     let stiffness = four_digits(law.stiffness);
-    format!(", springs of {stiffness} E l that break{again}")
+    format!(", springs of {stiffness} E h that break{again}")
 }

@@ -6,14 +6,16 @@
 mod ageing;
 mod contact_springs;
 mod rate_and_state;
+mod slip_weakening;
 mod weakening;
 
 use std::ops::Bound::Included;
 
 use serde::{Deserialize, Serialize};
-use slipfront::{ContactSprings, Coulomb, FrictionLaw, Model};
+use slipfront::{ContactSprings, Coulomb, FrictionLaw, Model, Scales};
 
 pub use self::ageing::{Ageing, AgeingLaw};
+pub use self::slip_weakening::SlipWeakeningLength;
 pub use self::weakening::{Velocity, VelocityLaw};
 use super::check::Check;
 use super::choice::keys_with_choice;
@@ -22,7 +24,7 @@ use super::key::{ARRAY, Key, KeyKind, above, count, joined, key, number, quantit
 use super::probe::names_of;
 use super::values::word;
 use crate::number_format::four_digits;
-use crate::quantity::Pressure;
+use crate::quantity::{Pressure, StiffnessPerArea};
 
 const SIGMA: KeyKind = number(
     within(0.0, 1.0),
@@ -66,6 +68,7 @@ const LISTS: &[&[Key]] = &[
     COEFFICIENTS,
     weakening::KEYS,
     ageing::KEYS,
+    slip_weakening::KEYS,
     CONTACT,
     contact_springs::KEYS,
     rate_and_state::KEYS,
@@ -76,6 +79,7 @@ pub(super) const KEYS: &[Key] = &joined::<{ count(LISTS) }>(LISTS);
 pub(super) const SYNONYMS: &[&[(&str, &str)]] = &[
     weakening::SYNONYMS,
     ageing::SYNONYMS,
+    slip_weakening::SYNONYMS,
     contact_springs::SYNONYMS,
     rate_and_state::SYNONYMS,
 ];
@@ -132,17 +136,23 @@ pub struct Friction {
     pub velocity: Option<Velocity>,
     /// Static friction that grows while a block is stuck.
     pub ageing: Option<Ageing>,
+    /// Strength that falls with slip.
+    pub slip_weakening: Option<SlipWeakeningLength>,
+    /// Time for which a block must be stuck to be whole again, t*; never if not given.
+    pub healing_time_star: Option<f64>,
     /// What holds a block until its threshold.
     pub contact: ContactModel,
-    /// Stiffness of the spring in the contact of a block over `young_modulus` times `block_size`, of contacts that are springs.
+    /// Stiffness of the spring in the contact of a block over `young_modulus` times the thickness, of contacts that are springs.
     pub contact_stiffness_star: Option<f64>,
+    /// Stiffness of the springs in the contact per area, of contacts that are springs, N/m^3.
+    pub contact_stiffness_per_area: Option<StiffnessPerArea>,
     /// Whether a spring that forms again has another threshold.
     pub redraw: bool,
     /// Direct effect of rate and state.
     pub a: Option<f64>,
     /// Its evolution effect.
     pub b: Option<f64>,
-    /// Slip over which its state follows, in units of P mu_s l/E.
+    /// Slip over which its state follows, in units of P mu_s l^2/(E h).
     pub d_c_star: Option<f64>,
     /// Its reference speed, in the unit of V*.
     pub v_0_star: Option<f64>,
@@ -185,7 +195,12 @@ impl Friction {
         if let Some(ageing) = &self.ageing {
             ageing.check(check)?;
         }
+        if let Some(slip_weakening) = &self.slip_weakening {
+            slip_weakening.check(check)?;
+        }
+        check.value("healing_time_star", &self.healing_time_star)?;
         check.value("contact_stiffness_star", &self.contact_stiffness_star)?;
+        check.value("contact_stiffness_per_area", &self.contact_stiffness_per_area)?;
         for (key, value) in rate_and_state::KEYS.iter().zip(self.rate_and_state()) {
             check.value(key.name, &value)?;
         }
@@ -212,8 +227,10 @@ impl Friction {
     }
 
     /// The law that the keys, which fit each other, ask for at this V*.
-    pub fn in_model(&self, v_star: f64) -> slipfront::Friction {
-        if let Some(stiffness) = self.contact_stiffness_star {
+    pub fn in_model(&self, v_star: f64, scales: &Scales) -> slipfront::Friction {
+        let per_area = self.contact_stiffness_per_area.as_ref();
+        let of_area = per_area.map(|per_area| scales.stiffness_of_area(per_area.si()));
+        if let Some(stiffness) = self.contact_stiffness_star.or(of_area) {
             return slipfront::Friction::ContactSprings(ContactSprings {
                 stiffness,
                 redraw: self.redraw.then_some(self.seed),
@@ -232,6 +249,10 @@ impl Friction {
             law: reading,
             weakening: self.velocity.map(Velocity::law),
             ageing: self.ageing.map(Ageing::law),
+            slip_weakening: self
+                .slip_weakening
+                .as_ref()
+                .map(|law| law.law(scales, self.healing_time_star)),
         })
     }
 
@@ -257,7 +278,11 @@ impl Friction {
                 let ageing = coulomb.ageing.as_ref().map(ageing::in_words);
                 let ratio = four_digits(self.mean_ratio());
                 let of_kinetic = spread(&self.mu_kinetic_field, self.sigma_kinetic_star);
-                let options: String = [weakening, ageing].into_iter().flatten().collect();
+                let slip_weakening = coulomb.slip_weakening.as_ref().map(slip_weakening::in_words);
+                let options: String = [weakening, ageing, slip_weakening]
+                    .into_iter()
+                    .flatten()
+                    .collect();
                 format!(
                     "{}, R* = {ratio} ({of_kinetic}), seed {}{reading}{options}",
                     coefficients(),
@@ -294,14 +319,25 @@ impl Friction {
     /// Refuses keys that have no meaning beside each other.
     fn check_together(&self, check: &Check) -> Result<(), CaseError> {
         self.check_law(check)?;
+        let [varying @ .., slip_weakening, healing] = self.options();
+        match (slip_weakening.1, healing.1) {
+            (true, _) => refuse_set(check, &varying, slip_weakening::ALONE)?,
+            (false, true) => refuse_set(check, &[healing], slip_weakening::ELSEWHERE)?,
+            (false, false) => {}
+        }
         let springs = [
             ("contact_stiffness_star", self.contact_stiffness_star.is_some()),
+            (
+                "contact_stiffness_per_area",
+                self.contact_stiffness_per_area.is_some(),
+            ),
             ("redraw", self.redraw),
         ];
-        match (self.contact, self.contact_stiffness_star) {
+        let has_stiffness = springs[..2].iter().any(|(_, is_set)| *is_set);
+        match (self.contact, has_stiffness) {
             (ContactModel::Rigid, _) => refuse_set(check, &springs, contact_springs::ELSEWHERE),
-            (ContactModel::Springs, None) => check.refuse("contact", contact_springs::without_stiffness),
-            (ContactModel::Springs, Some(_)) => {
+            (ContactModel::Springs, false) => check.refuse("contact", contact_springs::without_stiffness),
+            (ContactModel::Springs, true) => {
                 refuse_set(check, &self.options(), contact_springs::ALONE)?;
                 refuse_set(check, &self.of_kinetic(), contact_springs::ALONE)
             }
@@ -342,10 +378,12 @@ impl Friction {
     }
 
     /// What thresholds follow, and whether it is set.
-    fn options(&self) -> [(&'static str, bool); 2] {
+    fn options(&self) -> [(&'static str, bool); 4] {
         [
             ("velocity", self.velocity.is_some()),
             ("ageing", self.ageing.is_some()),
+            ("slip_weakening", self.slip_weakening.is_some()),
+            ("healing_time_star", self.healing_time_star.is_some()),
         ]
     }
 
@@ -371,7 +409,8 @@ impl Friction {
 pub(crate) fn friction_warning(model: &Model) -> Option<String> {
     match &model.friction {
         slipfront::Friction::RateAndState(law) => rate_and_state::warning(law, model),
-        slipfront::Friction::Coulomb(_) | slipfront::Friction::ContactSprings(_) => None,
+        slipfront::Friction::Coulomb(_) => slip_weakening::warning(model),
+        slipfront::Friction::ContactSprings(_) => None,
     }
 }
 
@@ -413,10 +452,16 @@ keys_with_choice! {
         velocity: Option<Velocity>,
         #[serde(skip_serializing_if = "Option::is_none")]
         ageing: Option<Ageing>,
+        #[serde(skip_serializing_if = "Option::is_none")]
+        slip_weakening: Option<SlipWeakeningLength>,
+        #[serde(skip_serializing_if = "Option::is_none")]
+        healing_time_star: Option<f64>,
         #[serde(deserialize_with = "word")]
         contact: ContactModel,
         #[serde(skip_serializing_if = "Option::is_none")]
         contact_stiffness_star: Option<f64>,
+        #[serde(skip_serializing_if = "Option::is_none")]
+        contact_stiffness_per_area: Option<StiffnessPerArea>,
         redraw: bool,
         #[serde(skip_serializing_if = "Option::is_none")]
         a: Option<f64>,

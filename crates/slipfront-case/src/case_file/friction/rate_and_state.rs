@@ -11,7 +11,7 @@ pub(super) const KEYS: &[Key] = &[
         .title("direct effect", "a", ""),
     key("b", "", number(within(0.0, 10.0), "it is a coefficient, of the order of 0.01"), "evolution effect of rate and state")
         .title("evolution effect", "b", ""),
-    key("d_c_star", "", number(above(0.0, 1e9), "it is in units of P mu_s l/E"), "slip over which the state follows a change of speed")
+    key("d_c_star", "", number(above(0.0, 1e9), "it is in units of P mu_s l^2/(E h)"), "slip over which the state follows a change of speed")
         .title("slip of the state", "D*", ""),
     key("v_0_star", "", SPEED_STAR, "reference speed of rate and state").title("reference speed", "V\u{2080}*", ""),
     key("mu_0", "", number(within(0.0, 100.0), "it is a coefficient"), "coefficient of steady sliding at `v_0_star`")
@@ -92,7 +92,7 @@ pub(super) fn warning(law: &RateAndState, model: &Model) -> Option<String> {
     let critical = law.critical_stiffness(model.surface.mean_normal_force(), model.damping, v_star);
     (k_drive < critical).then(|| {
         format!(
-            "the drive, of stiffness {k_drive} E l per block, is softer than {}, below which steady sliding at V* = {v_star} is \
+            "the drive, of stiffness {k_drive} E h per block, is softer than {}, below which steady sliding at V* = {v_star} is \
              unstable: stick-slip is to be expected",
             four_digits(critical)
         )

@@ -2,6 +2,7 @@
 
 mod ageing;
 mod reading;
+mod slip_weakening;
 mod update;
 mod weakening;
 
@@ -9,10 +10,12 @@ use std::ops::Range;
 
 pub use self::ageing::Ageing;
 pub use self::reading::FrictionLaw;
+pub use self::slip_weakening::SlipWeakening;
 pub use self::weakening::Weakening;
 
 use self::ageing::Aged;
 use self::reading::{Literal, Projection, Reversal};
+use self::slip_weakening::Slipped;
 use self::update::friction_forces;
 use self::weakening::Weakened;
 use super::integrator::Integrator;
@@ -20,6 +23,7 @@ use super::needs::Needs;
 use crate::forces::Forces;
 use crate::state::State;
 use crate::surface::{Adhesion, Surface};
+use crate::vector_field::VectorField;
 
 /// Eq. 4, and what its thresholds may depend on.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,6 +34,8 @@ pub struct Coulomb {
     pub weakening: Option<Weakening>,
     /// Static friction that grows while a block is stuck.
     pub ageing: Option<Ageing>,
+    /// Strength that falls with slip; alone.
+    pub slip_weakening: Option<SlipWeakening>,
 }
 
 impl From<FrictionLaw> for Coulomb {
@@ -38,6 +44,7 @@ impl From<FrictionLaw> for Coulomb {
             law,
             weakening: None,
             ageing: None,
+            slip_weakening: None,
         }
     }
 }
@@ -52,6 +59,7 @@ impl Coulomb {
         reading
             .and(self.weakening.map(|_| Weakening::NEEDS))
             .and(self.ageing.map(|_| Ageing::NEEDS))
+            .and(self.slip_weakening.map(|law| law.needs()))
     }
 
     /// Kinetic friction in steady sliding at a speed, from that at rest, of which a part is `adhesion`.
@@ -75,6 +83,7 @@ pub(crate) struct CoulombContact {
     law: FrictionLaw,
     weakened: Option<Weakened>,
     aged: Option<Aged>,
+    slipped: Option<Slipped>,
 }
 
 impl CoulombContact {
@@ -85,18 +94,31 @@ impl CoulombContact {
                 .weakening
                 .map(|law| Weakened::new(law, adhesion, n_blocks)),
             aged: coulomb.ageing.map(|law| Aged::new(law, adhesion, n_blocks)),
+            slipped: coulomb.slip_weakening.map(|law| Slipped::new(law, n_blocks)),
         }
     }
 
     /// The columns that a checkpoint keeps.
     pub(super) fn columns(&self) -> Vec<&[f64]> {
-        self.aged.iter().map(|aged| &aged.stopped_at[..]).collect()
+        let of_age = self.aged.iter().map(|aged| &aged.stopped_at[..]);
+        of_age
+            .chain(self.slipped.iter().flat_map(Slipped::columns))
+            .collect()
     }
 
     /// The columns that a checkpoint keeps, to be filled.
     pub(super) fn columns_mut(&mut self) -> Vec<&mut [f64]> {
-        let aged = self.aged.iter_mut();
-        aged.map(|aged| &mut aged.stopped_at[..]).collect()
+        let of_age = self.aged.iter_mut().map(|aged| &mut aged.stopped_at[..]);
+        let of_slip = self.slipped.iter_mut().flat_map(Slipped::columns_mut);
+        of_age.chain(of_slip).collect()
+    }
+
+    /// Remembers how far some blocks have slipped in the step that ends now.
+    #[inline(always)]
+    pub(super) fn add_slip(&mut self, blocks: &Range<usize>, velocity: &VectorField, dt_star: f64) {
+        if let Some(slipped) = &mut self.slipped {
+            slipped.add_slip(blocks, velocity, dt_star);
+        }
     }
 
     /// Finds friction, the next velocities and which blocks slide, of some blocks. `limits`: static thresholds of age 0 and kinetic ones
@@ -118,12 +140,18 @@ impl CoulombContact {
             let pull = [&forces.drive, &forces.lattice];
             aged.update(blocks, young, &state.velocity, pull, time_star);
         }
-        let now = [
-            self.aged.as_ref().map_or(young, |aged| &aged.static_limit),
-            self.weakened
-                .as_ref()
-                .map_or(at_rest, |weakened| &weakened.kinetic_force),
-        ];
+        if let Some(slipped) = &mut self.slipped {
+            slipped.update(blocks, [young, at_rest], &state.velocity, time_star);
+        }
+        let now = match &self.slipped {
+            Some(slipped) => [&slipped.static_limit[..], &slipped.kinetic_force],
+            None => [
+                self.aged.as_ref().map_or(young, |aged| &aged.static_limit),
+                self.weakened
+                    .as_ref()
+                    .map_or(at_rest, |weakened| &weakened.kinetic_force),
+            ],
+        };
         match self.law {
             FrictionLaw::Projection => friction_forces(&Projection, integrator, blocks, now, state, forces),
             FrictionLaw::Reversal => friction_forces(&Reversal, integrator, blocks, now, state, forces),

@@ -21,6 +21,7 @@ impl Weakening {
     pub(super) const NEEDS: Needs = Needs {
         varies: true,
         bytes: size_of::<f64>(),
+        fused_bytes: size_of::<f64>(),
         ..Needs::NONE
     };
 

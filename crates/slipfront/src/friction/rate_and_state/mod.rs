@@ -26,7 +26,7 @@ pub struct RateAndState {
     pub a: f64,
     /// Evolution effect.
     pub b: f64,
-    /// Slip over which the state follows a change of speed, in units of `P mu_s l/E`.
+    /// Slip over which the state follows a change of speed, in units of `P mu_s l^2/(E h)`.
     pub d_c: f64,
     /// Reference speed, in units of `P mu_s/sqrt(E rho)`.
     pub v_0: f64,
@@ -158,7 +158,7 @@ impl RateAndState {
     }
 
     /// Stiffness per block below which steady sliding of a block at `speed` under the normal force `sigma` is unstable (Rice and
-    /// Ruina 1983, with inertia and damping), in units of `E l`, for blocks of mass `m` = 1:
+    /// Ruina 1983, with inertia and damping), in units of `E h`, for blocks of mass `m` = 1:
     ///
     /// ```text
     /// k_c = max(0, [(b - a) sigma - m Omega V]/D_c [1 + m V^2/((sigma a + m Omega V) D_c)])

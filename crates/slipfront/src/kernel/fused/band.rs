@@ -15,6 +15,7 @@ use super::quanta::Quanta;
 use super::rest::{RestingVector, steps_until_slip};
 use super::springs::Geometry;
 use super::step::Step;
+use super::thresholds::Thresholds;
 use super::variations::{Variation, Variations, present};
 use super::vector::{Chunks, ChunksMut, LANES, Vec2x8, lane_max, load, load_vec2, splat, subtract};
 use crate::checkpoint::BlockColumn;
@@ -109,6 +110,8 @@ pub(super) struct Band {
     pub(super) lattice_energy: Vec<i64>,
     /// Of a slider whose blocks differ.
     pub(super) variations: Option<Variations>,
+    /// Of a law of friction whose thresholds change.
+    thresholds: Option<Thresholds>,
     /// Locked while fields are read; a sweep, which nothing runs beside, takes it without.
     scratch: Mutex<Scratch>,
     /// Elements from a row to the next.
@@ -215,6 +218,7 @@ impl Band {
             lattice_energy: vec![0; len / LANES],
             variations: blocks_differ
                 .then(|| Variations::new(layout, model, moduli, halo, first..first + len)),
+            thresholds: Thresholds::of(model, len),
             scratch: Mutex::new(Scratch {
                 upward: [(); 3].map(|()| Vectors::zeros(ring)),
                 lattice: Vectors::zeros(TILE),
@@ -233,6 +237,14 @@ impl Band {
             band.static_limit_squares[k] = static_limit * static_limit;
             band.kinetic_impulses[k] =
                 force_to_velocity * model.surface.kinetic_force(b) / model.slider.mass(b);
+            if let Some(thresholds) = &mut band.thresholds {
+                let drop = (static_limit - model.surface.kinetic_force(b)).max(0.0);
+                thresholds.set_drop(k, force_to_velocity * drop / model.slider.mass(b));
+                if drop > 0.0 && thresholds.follow_slip() {
+                    // Strength at the present slip is the only threshold.
+                    band.static_limit_squares[k] = 0.0;
+                }
+            }
             let bit = 1 << (k % LANES);
             band.blocks[k / LANES] |= bit;
             if !model.surface.textured[b] {
@@ -248,7 +260,15 @@ impl Band {
                 *speed_square = speed_square.max(v[0] * v[0] + v[1] * v[1]);
             }
         }
+        band.begin_thresholds();
         band
+    }
+
+    /// Finds thresholds that change before the first sweep.
+    fn begin_thresholds(&mut self) {
+        if let Some(thresholds) = &mut self.thresholds {
+            thresholds.begin(&self.kinetic_impulses);
+        }
     }
 
     /// Memory for what is found while fields are read.
@@ -317,6 +337,39 @@ impl Band {
         }
     }
 
+    /// Takes over what the law of friction remembers, a column of a checkpoint from block `first` on, as far as these blocks are its own.
+    pub(super) fn set_memory(&mut self, layout: &Layout, column: usize, first: usize, values: &[f64]) {
+        for [of_values, own] in self.common(layout, first, values.len()) {
+            let memory = self
+                .thresholds
+                .as_mut()
+                .and_then(|thresholds| thresholds.column_mut(column));
+            if let Some(memory) = memory {
+                memory[own].copy_from_slice(&values[of_values]);
+            }
+        }
+    }
+
+    /// Gives what the law of friction remembers at t*, from block `first` on, as far as these blocks are its own.
+    pub(super) fn read_memory(
+        &self,
+        layout: &Layout,
+        time_star: f64,
+        column: usize,
+        first: usize,
+        values: &mut [f64],
+    ) {
+        let Some(thresholds) = &self.thresholds else {
+            return;
+        };
+        for [of_values, own] in self.common(layout, first, values.len()) {
+            for (value, k) in values[of_values].iter_mut().zip(own) {
+                let is_moving = self.velocity.at(k) != [0.0, 0.0];
+                *value = thresholds.memory(column, k, is_moving, time_star);
+            }
+        }
+    }
+
     /// Which of `count` blocks from `first` on are its own, and which of its elements they are, row after row.
     fn common(
         &self,
@@ -348,6 +401,7 @@ impl Band {
             *speed_square = speed_square.max(v[0] * v[0] + v[1] * v[1]);
             self.slipped[k / LANES] |= u8::from(self.first_slip[k] != NEVER) << (k % LANES);
         }
+        self.begin_thresholds();
     }
 
     /// The elements before the band and after it of which it keeps the displacements. Its last vector may extend beyond the last
@@ -738,22 +792,14 @@ impl Band {
         let vectors = elements.start / LANES..elements.end / LANES;
         let mut kinetic_impulses: Chunks = self.kinetic_impulses[elements.clone()].as_chunks().0;
         let mut variation = Variation::default();
-        if let Some(variations) = self.variations.as_mut().filter(|_| DIFFER) {
-            let velocity = chunks(&self.velocity, elements.start, n);
-            let inverse_mass = variations.inverse_mass[elements.clone()].as_chunks().0;
-            let at_rest = (kinetic_impulses, inverse_mass);
-            let thresholds = &mut variations.thresholds;
-            thresholds.update(
-                simd,
-                &elements,
-                velocity,
-                at_rest,
-                step.integrator.force_to_velocity,
-            );
-            kinetic_impulses = variations
-                .thresholds
-                .kinetic_impulses(elements.clone(), kinetic_impulses);
+        if let Some(variations) = self.variations.as_ref().filter(|_| DIFFER) {
             variation = variations.of(elements.clone());
+        }
+        if let Some(thresholds) = &mut self.thresholds {
+            let velocity = chunks(&self.velocity, elements.start, n);
+            let at_rest = (kinetic_impulses, variation.inverse_mass);
+            thresholds.update(simd, &step, &elements, velocity, at_rest);
+            kinetic_impulses = thresholds.kinetic_impulses(elements.clone());
         }
         FrictionLoop {
             displacement: chunks(&self.displacement, start, n),
@@ -776,11 +822,14 @@ impl Band {
 
     /// Kinetic friction of an element at the latest sweep, from that of slow sliding.
     pub(super) fn kinetic_force(&self, k: usize, at_rest: f64, velocity_to_force: f64) -> f64 {
-        let changed = self.variations.as_ref().and_then(|variations| {
-            let impulse = variations.thresholds.changed_impulse(k)?;
-            Some(impulse * variations.mass[k] * velocity_to_force)
-        });
-        changed.unwrap_or(at_rest)
+        let Some(thresholds) = &self.thresholds else {
+            return at_rest;
+        };
+        let mass = self
+            .variations
+            .as_ref()
+            .map_or(1.0, |variations| variations.mass[k]);
+        thresholds.kinetic_impulse(k) * mass * velocity_to_force
     }
 
     /// Springs to the east of the eight elements from `first` on, counted from the front halo.
@@ -815,11 +864,19 @@ impl Band {
         place: usize,
     ) -> u64 {
         let k = v * LANES;
+        let strengths = self
+            .thresholds
+            .as_ref()
+            .filter(|thresholds| thresholds.follow_slip());
+        let impulses = match strengths {
+            Some(thresholds) => thresholds.kinetic_impulses(k..k + LANES),
+            None => self.kinetic_impulses[k..k + LANES].as_chunks().0,
+        };
         let blocks = RestingVector {
             displacement: load_vec2(simd, chunks(&self.displacement, self.halo + k, LANES), 0),
             lattice: load_vec2(simd, chunks(&scratch.lattice, place, LANES), 0),
             static_limit_square: load(simd, &self.static_limit_squares[k..].as_chunks().0[0]),
-            kinetic_impulse: load(simd, &self.kinetic_impulses[k..].as_chunks().0[0]),
+            kinetic_impulse: load(simd, &impulses[0]),
             variation: self.variations.as_ref().map(|variations| {
                 let [drive_spring, mass] = [&variations.drive_springs, &variations.mass];
                 [drive_spring, mass].map(|values| load(simd, &values[k..].as_chunks().0[0]))

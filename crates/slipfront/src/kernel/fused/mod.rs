@@ -190,16 +190,25 @@ impl Fused {
         threads: usize,
         skips: bool,
         communicator: Arc<dyn Communicator>,
-        mut read: impl FnMut(BlockColumn, usize, &mut [f64]) -> Result<(), E>,
+        mut read: impl FnMut(usize, usize, &mut [f64]) -> Result<(), E>,
     ) -> Result<Self, E> {
         let mut kernel = Self::new(model, dt_star, None, threads, skips, communicator);
         BlockColumn::for_each_part(model.surface.n_blocks(), |column, first, values| {
-            read(column, first, values)?;
+            read(column as usize, first, values)?;
             for band in &mut kernel.bands {
                 band.set_column(&kernel.layout, dt_star, column, first, values);
             }
             Ok(())
         })?;
+        for column in 0..model.friction.n_columns() {
+            BlockColumn::for_each_part_of_one(model.surface.n_blocks(), |first, values| {
+                read(BlockColumn::ALL.len() + column, first, values)?;
+                for band in &mut kernel.bands {
+                    band.set_memory(&kernel.layout, column, first, values);
+                }
+                Ok(())
+            })?;
+        }
         for band in &mut kernel.bands {
             band.resume();
         }
@@ -592,6 +601,13 @@ impl Engine for Fused {
     fn motion_bounds(&self) -> Option<MotionBounds> {
         Some(self.motion_bounds)
     }
+
+    fn read_memory(&self, number: u64, column: usize, first: usize, values: &mut [f64]) {
+        let time_star = number as f64 * self.dt_star;
+        for band in &self.bands {
+            band.read_memory(&self.layout, time_star, column, first, values);
+        }
+    }
 }
 
 /// Bytes per block without what is kept of the rows beside a band, which a row of blocks takes.
@@ -601,7 +617,8 @@ pub(crate) fn bytes_per_block(options: &ModelOptions) -> f64 {
     } else {
         0
     };
-    band::BYTES_PER_ELEMENT + varied as f64 + size_of::<AtomicU32>() as f64 / TILE as f64
+    let kept = varied + options.friction.needs().fused_bytes;
+    band::BYTES_PER_ELEMENT + kept as f64 + size_of::<AtomicU32>() as f64 / TILE as f64
 }
 
 /// Least number of tiles in a band of several: more bands than threads share out the work more evenly, but each finds springs

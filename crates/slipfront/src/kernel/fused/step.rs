@@ -48,6 +48,11 @@ impl Step {
         }
     }
 
+    /// `t*_n`.
+    pub(super) fn time_star(&self) -> f64 {
+        self.number as f64 * self.dt_star
+    }
+
     /// The step before this one, of which there must be one.
     pub(super) fn before(&self) -> Self {
         Self {

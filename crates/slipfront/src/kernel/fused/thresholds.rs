@@ -2,61 +2,200 @@
 
 use std::ops::Range;
 
-use fearless_simd::{Simd, SimdBase, SimdFloat};
+use fearless_simd::{Select, Simd, SimdBase, SimdFloat};
 
 use super::aligned::Aligned;
-use super::vector::{Chunks, ChunksMut, load, load_vec2, splat, square};
-use crate::friction::Weakening;
+use super::step::Step;
+use super::vector::{Chunks, ChunksMut, LANES, is_zero, load, load_vec2, splat, square};
+use crate::friction::{SlipWeakening, Weakening};
 use crate::model::Model;
 
 /// Thresholds of the elements of a band at the latest sweep, where they change.
 #[derive(Debug)]
 pub(super) struct Thresholds {
-    /// Kinetic impulses: those of slow sliding, weakened by speed.
+    /// Kinetic impulses at the present speed or slip.
     kinetic_impulses: Aligned,
-    weakening: Option<Weakening>,
-    /// Kinetic adhesion, which does not weaken.
-    adhesion: f64,
+    law: ChangingLaw,
+}
+
+/// What thresholds follow.
+#[derive(Debug)]
+enum ChangingLaw {
+    /// Kinetic friction falls with speed; adhesion does not.
+    Speed { weakening: Weakening, adhesion: f64 },
+    /// Strength falls with slip.
+    Slip(Slipped),
+}
+
+/// What elements remember of their slip.
+#[derive(Debug)]
+struct Slipped {
+    law: SlipWeakening,
+    /// Kinetic impulses of the strength that slip takes.
+    drops: Aligned,
+    slip: Aligned,
+    /// t* at which an element has moved last, and the shares that it has lost before it healed; nothing without healing.
+    healing: Option<[Aligned; 2]>,
 }
 
 impl Thresholds {
-    pub(super) fn new(model: &Model, n_elements: usize) -> Self {
-        Self {
+    /// None of a model whose thresholds stay as they are.
+    pub(super) fn of(model: &Model, n_elements: usize) -> Option<Self> {
+        let coulomb = model.friction.coulomb()?;
+        let zeros = || Aligned::filled(n_elements, 0.0);
+        let law = match (coulomb.weakening, coulomb.slip_weakening) {
+            (Some(weakening), _) => ChangingLaw::Speed {
+                weakening,
+                adhesion: model.surface.adhesion().of_kinetic,
+            },
+            (None, Some(law)) => ChangingLaw::Slip(Slipped {
+                law,
+                drops: zeros(),
+                slip: zeros(),
+                healing: law.healing_time.map(|_| [zeros(), zeros()]),
+            }),
+            (None, None) => return None,
+        };
+        Some(Self {
             kinetic_impulses: Aligned::filled(n_elements, f64::INFINITY),
-            weakening: model.friction.coulomb().and_then(|law| law.weakening),
-            adhesion: model.surface.adhesion().of_kinetic,
+            law,
+        })
+    }
+
+    /// Whether a block is held by its strength at its present slip, which is both its thresholds, if friction falls at all.
+    pub(super) fn follow_slip(&self) -> bool {
+        matches!(self.law, ChangingLaw::Slip(_))
+    }
+
+    /// Notes by how much friction of an element can fall from that at which it slips first.
+    pub(super) fn set_drop(&mut self, k: usize, impulse: f64) {
+        if let ChangingLaw::Slip(slipped) = &mut self.law {
+            slipped.drops[k] = impulse;
         }
     }
 
-    /// Finds the kinetic impulses of some elements at these velocities, from those of slow sliding on blocks with these inverse masses.
+    /// Finds the kinetic impulses of all elements at their slip, from those at rest, before the first sweep.
+    pub(super) fn begin(&mut self, at_rest: &[f64]) {
+        if let ChangingLaw::Slip(Slipped { law, drops, slip, .. }) = &self.law {
+            for (k, impulse) in self.kinetic_impulses.iter_mut().enumerate() {
+                *impulse = at_rest[k] + drops[k] * law.share_left(slip[k]);
+            }
+        }
+    }
+
+    /// Finds the kinetic impulses of some elements, which have moved at these velocities in the step that ends now, from those of slow
+    /// sliding without slip; where friction follows speed, on blocks with these inverse masses.
     #[inline(always)]
     pub(super) fn update<S: Simd>(
         &mut self,
         simd: S,
+        step: &Step,
         elements: &Range<usize>,
         velocity: [Chunks; 2],
         (at_rest, inverse_mass): (Chunks, Chunks),
-        force_to_velocity: f64,
     ) {
-        if let Some(weakening) = &self.weakening {
-            let weakened = self.kinetic_impulses[elements.clone()].as_chunks_mut().0;
-            let at_rest = (at_rest, inverse_mass, force_to_velocity * self.adhesion);
-            weaken(simd, weakening, velocity, at_rest, weakened);
+        let impulses = self.kinetic_impulses[elements.clone()].as_chunks_mut().0;
+        match &mut self.law {
+            ChangingLaw::Speed { weakening, adhesion } => {
+                let adhesive = step.integrator.force_to_velocity * *adhesion;
+                let at_rest = (at_rest, inverse_mass, adhesive);
+                weaken(simd, weakening, velocity, at_rest, impulses);
+            }
+            ChangingLaw::Slip(slipped) => slipped.weaken(simd, step, elements, velocity, at_rest, impulses),
         }
     }
 
-    /// Kinetic impulses of some elements at the latest sweep, from those of slow sliding.
+    /// Kinetic impulses of some elements at the latest sweep.
     #[inline(always)]
-    pub(super) fn kinetic_impulses<'a>(&'a self, elements: Range<usize>, at_rest: Chunks<'a>) -> Chunks<'a> {
-        match self.weakening {
-            Some(_) => self.kinetic_impulses[elements].as_chunks().0,
-            None => at_rest,
+    pub(super) fn kinetic_impulses(&self, elements: Range<usize>) -> Chunks<'_> {
+        self.kinetic_impulses[elements].as_chunks().0
+    }
+
+    /// Kinetic impulse of an element at the latest sweep.
+    pub(super) fn kinetic_impulse(&self, k: usize) -> f64 {
+        self.kinetic_impulses[k]
+    }
+
+    /// A column of a checkpoint, to be filled.
+    pub(super) fn column_mut(&mut self, column: usize) -> Option<&mut [f64]> {
+        let ChangingLaw::Slip(Slipped { slip, healing, .. }) = &mut self.law else {
+            return None;
+        };
+        match (column, healing) {
+            (0, _) => Some(&mut slip[..]),
+            (column, Some(healing)) => Some(&mut healing[column - 1][..]),
+            (_, None) => None,
         }
     }
 
-    /// Kinetic impulse of an element at the latest sweep, if it is not that of slow sliding.
-    pub(super) fn changed_impulse(&self, k: usize) -> Option<f64> {
-        self.weakening.is_some().then(|| self.kinetic_impulses[k])
+    /// A number of a column of a checkpoint at t*, of an element that moves or is stuck. One that has healed since it was swept last has
+    /// the numbers that its next sweep finds.
+    pub(super) fn memory(&self, column: usize, k: usize, is_moving: bool, time_star: f64) -> f64 {
+        let ChangingLaw::Slip(Slipped {
+            law, slip, healing, ..
+        }) = &self.law
+        else {
+            return f64::NAN;
+        };
+        let slip = slip[k];
+        let Some([moved_at, lost_before]) = healing else {
+            return slip;
+        };
+        let heals = !is_moving && law.heals(moved_at[k], time_star);
+        match column {
+            0 if heals => 0.0,
+            0 => slip,
+            1 => moved_at[k],
+            _ if heals => lost_before[k] + law.share_lost(slip),
+            _ => lost_before[k],
+        }
+    }
+}
+
+impl Slipped {
+    /// Kinetic impulses at the slip of some elements: the operations of [`SlipWeakening::share_left`], eight elements at a time.
+    #[inline(always)]
+    fn weaken<S: Simd>(
+        &mut self,
+        simd: S,
+        step: &Step,
+        elements: &Range<usize>,
+        [vx, vy]: [Chunks; 2],
+        at_rest: Chunks,
+        weakened: ChunksMut,
+    ) {
+        let n = weakened.len();
+        let (vx, vy, at_rest) = (&vx[..n], &vy[..n], &at_rest[..n]);
+        let drops = &self.drops[elements.clone()].as_chunks::<LANES>().0[..n];
+        let slip = &mut self.slip[elements.clone()].as_chunks_mut::<LANES>().0[..n];
+        let dt = splat(simd, step.move_dt);
+        for (c, slip) in slip.iter_mut().enumerate() {
+            let speed = square(load_vec2(simd, [vx, vy], c)).sqrt();
+            (load(simd, slip) + dt * speed).store_array(slip);
+        }
+        let [one, zero] = [1.0, 0.0].map(|number| splat(simd, number));
+        let per_length = splat(simd, 1.0 / self.law.length);
+        if let (Some([moved_at, lost_before]), Some(healing_time)) =
+            (&mut self.healing, self.law.healing_time)
+        {
+            let moved_at = &mut moved_at[elements.clone()].as_chunks_mut::<LANES>().0[..n];
+            let lost_before = &mut lost_before[elements.clone()].as_chunks_mut::<LANES>().0[..n];
+            let [now, healing_time] = [step.time_star(), healing_time].map(|time| splat(simd, time));
+            for c in 0..n {
+                let is_stuck = is_zero(simd, load_vec2(simd, [vx, vy], c));
+                let moved = is_stuck.select(load(simd, &moved_at[c]), now);
+                moved.store_array(&mut moved_at[c]);
+                let heals = is_stuck & (now - moved).simd_ge(healing_time);
+                let left = (one - load(simd, &slip[c]) * per_length).max(zero);
+                let lost = heals.select(one - left * left, zero);
+                (load(simd, &lost_before[c]) + lost).store_array(&mut lost_before[c]);
+                heals.select(zero, load(simd, &slip[c])).store_array(&mut slip[c]);
+            }
+        }
+        for c in 0..n {
+            let left = (one - load(simd, &slip[c]) * per_length).max(zero);
+            (load(simd, &at_rest[c]) + load(simd, &drops[c]) * left).store_array(&mut weakened[c]);
+        }
     }
 }
 

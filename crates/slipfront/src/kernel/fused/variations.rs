@@ -1,4 +1,4 @@
-//! What differs from block to block beside the thresholds: springs, drive springs, masses, and what changes thresholds.
+//! What differs from block to block beside the thresholds: springs, drive springs and masses.
 //!
 //! Where all blocks are alike none of it is stored or computed: the sweep is compiled for both kinds of slider ([`Geometry`]).
 //! An outline needs nothing of it, either: blocks outside are elements that are no blocks, and their springs are masked.
@@ -9,7 +9,6 @@ use std::ops::Range;
 
 use super::aligned::Aligned;
 use super::layout::Layout;
-use super::thresholds::Thresholds;
 use super::vector::Chunks;
 use crate::communicator::Communicator;
 use crate::lattice::Bond;
@@ -26,11 +25,10 @@ pub(super) struct Variations {
     pub(super) drive_springs: Aligned,
     pub(super) mass: Aligned,
     pub(super) inverse_mass: Aligned,
-    pub(super) thresholds: Thresholds,
 }
 
-/// Bytes of [`Variations`] per element: four springs, the drive spring, mass and its inverse, and a kinetic impulse.
-pub(super) const BYTES_PER_ELEMENT: usize = (4 + 4) * size_of::<f64>();
+/// Bytes of [`Variations`] per element: four springs, the drive spring, mass and its inverse.
+pub(super) const BYTES_PER_ELEMENT: usize = (4 + 3) * size_of::<f64>();
 
 /// Whether blocks of a model with these options need [`Variations`], as far as can be told before it is made.
 pub(super) fn options_differ(options: &ModelOptions) -> bool {
@@ -127,7 +125,6 @@ impl Variations {
             drive_springs: ones(),
             mass: ones(),
             inverse_mass: ones(),
-            thresholds: Thresholds::new(model, len),
         };
         let before = elements.start as isize - halo as isize;
         for k in 0..halo + len {

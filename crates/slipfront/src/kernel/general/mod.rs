@@ -420,7 +420,7 @@ impl Engine for General {
         self.contact_totals
     }
 
-    fn read_memory(&self, column: usize, first: usize, values: &mut [f64]) {
+    fn read_memory(&self, _: u64, column: usize, first: usize, values: &mut [f64]) {
         self.read(first, values, |band| band.contact.columns()[column]);
     }
 }

@@ -1,0 +1,101 @@
+//! `slip_weakening`: strength that falls with slip.
+
+use serde::{Deserialize, Serialize};
+use slipfront::{Model, Scales, SlipWeakening};
+
+use crate::case_file::check::Check;
+use crate::case_file::error::CaseError;
+use crate::case_file::key::{Key, KeyKind, MAX_TIME_STAR, above, key, number, quantity, within};
+use crate::number_format::four_digits;
+use crate::quantity::Length;
+
+#[rustfmt::skip]
+pub(super) const KEYS: &[Key] = &[
+    key("slip_weakening", "", KeyKind::Special("`{ length = \"0.5 um\" }`, 1e-18 to 1000 m, or `{ length_star = 0.5 }`, more than 0, at most 1e9"),
+        "slip over which strength falls from the static to the kinetic threshold"),
+    key("healing_time_star", "", number(above(0.0, MAX_TIME_STAR), "it is a time t*"),
+        "time for which a block must be stuck to be whole again; without it none is before the run ends").title("healing time", "t\u{2095}*", ""),
+];
+
+const LENGTH: KeyKind = quantity("m", within(1e-18, 1e3));
+const LENGTH_STAR: KeyKind = number(above(0.0, 1e9), "it is in units of P mu_s l^2/(E h)");
+
+pub(super) const SYNONYMS: &[(&str, &str)] = &[
+    ("slip_weakening_length", ADVICE),
+    ("weakening_length", ADVICE),
+    ("fracture_energy", ADVICE),
+    (
+        "healing_time",
+        "the time of healing is `friction.healing_time_star`, in t*",
+    ),
+];
+const ADVICE: &str = "strength that falls with slip is `friction.slip_weakening` = { length = \"0.5 um\" }, with the fracture energy (S - K) length/2 of a block";
+
+/// Why other laws have no meaning beside it.
+pub(super) const ALONE: &str = "beside `slip_weakening` it is not derived; leave one of them out";
+
+/// Why healing has no meaning without it.
+pub(super) const ELSEWHERE: &str = "it belongs to `slip_weakening`; set that, or leave it out";
+
+/// `slip_weakening`: the slip over which strength falls from the static to the kinetic threshold.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SlipWeakeningLength {
+    /// Slip D_c, m.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub length: Option<Length>,
+    /// Slip D_c in units of P mu_s l^2/(E h).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub length_star: Option<f64>,
+}
+
+impl SlipWeakeningLength {
+    pub(super) fn check(&self, check: &Check) -> Result<(), CaseError> {
+        if self.length.is_some() == self.length_star.is_some() {
+            return check.refuse("slip_weakening", |key| {
+                format!("`{key}` needs one length: `length` with its unit, or `length_star`")
+            });
+        }
+        check.value_of(&LENGTH, "slip_weakening.length", &self.length)?;
+        check.value_of(&LENGTH_STAR, "slip_weakening.length_star", &self.length_star)
+    }
+
+    /// The law of the model.
+    pub(super) fn law(&self, scales: &Scales, healing_time: Option<f64>) -> SlipWeakening {
+        let in_units = self
+            .length
+            .as_ref()
+            .map(|length| length.si() / scales.displacement());
+        SlipWeakening {
+            // One of both is given.
+            length: in_units.or(self.length_star).unwrap_or(f64::INFINITY),
+            healing_time,
+        }
+    }
+}
+
+/// Blocks of a critical size with which mu_s* is within 2 % of that on half the blocks, see the guide.
+const BLOCKS_OF_CRITICAL_SIZE: f64 = 5.0;
+
+/// What there is to say about slip weakening on these blocks.
+pub(super) fn warning(model: &Model) -> Option<String> {
+    let size = model.critical_size()?;
+    (size < BLOCKS_OF_CRITICAL_SIZE).then(|| {
+        format!(
+            "a patch runs away from {} blocks on, and the onset is resolved from {BLOCKS_OF_CRITICAL_SIZE} on: mu_s* still belongs to the size of \
+             a block; take smaller blocks, or a longer `friction.slip_weakening`",
+            four_digits(size)
+        )
+    })
+}
+
+/// The law in words, behind those of static and kinetic friction.
+pub(super) fn in_words(law: &SlipWeakening) -> String {
+    let healing = law.healing_time.map_or(String::new(), |time| {
+        format!(", whole again after t* = {} at rest", four_digits(time))
+    });
+    format!(
+        ", strength falling over a slip of D_c* = {}{healing}",
+        four_digits(law.length)
+    )
+}

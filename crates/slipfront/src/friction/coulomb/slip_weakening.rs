@@ -1,0 +1,160 @@
+//! Strength that falls with slip, from the static threshold to kinetic friction.
+
+use std::ops::Range;
+
+use crate::forces::part;
+use crate::friction::needs::Needs;
+use crate::vector_field::{VectorField, length};
+
+/// Linear slip weakening: after a slip `s` since it was last whole, a block bears
+///
+/// ```text
+/// f(s) = K + (S - K) max(0, 1 - s/D_c)
+/// ```
+///
+/// sliding or about to, with its whole static and kinetic thresholds `S` and `K`. Where `K >= S` nothing falls.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SlipWeakening {
+    /// Slip `D_c` over which strength falls, in units of `P mu_s l^2/(E h)`.
+    pub length: f64,
+    /// Time after which a block that is stuck is whole again, t*; never if there is none.
+    pub healing_time: Option<f64>,
+}
+
+impl SlipWeakening {
+    /// Slip, and with healing when a block has moved last and what it has lost before it healed; both thresholds at present. The fused
+    /// kernel has the fall of strength in place of the static one.
+    pub(super) fn needs(&self) -> Needs {
+        let columns = if self.healing_time.is_some() { 3 } else { 1 };
+        Needs {
+            bytes: (columns + 2) * size_of::<f64>(),
+            fused_bytes: (columns + 2) * size_of::<f64>(),
+            columns,
+            weakens_with_slip: true,
+            ..Needs::NONE
+        }
+    }
+
+    /// Share of the fall of strength that a slip has left, `max(0, 1 - s/D_c)`.
+    ///
+    /// ```
+    /// let law = slipfront::SlipWeakening { length: 0.5, healing_time: None };
+    /// assert_eq!([0.0, 0.25, 0.5, 2.0].map(|slip| law.share_left(slip)), [1.0, 0.5, 0.0, 0.0]);
+    /// ```
+    #[inline(always)]
+    pub fn share_left(&self, slip: f64) -> f64 {
+        (1.0 - slip * (1.0 / self.length)).max(0.0)
+    }
+
+    /// Share that a slip has taken of the most that weakening can take, `(S - K) D_c/2`:
+    ///
+    /// ```text
+    /// 1 - max(0, 1 - s/D_c)^2
+    /// ```
+    ///
+    /// ```
+    /// let law = slipfront::SlipWeakening { length: 0.5, healing_time: None };
+    /// assert_eq!([0.0, 0.25, 0.5, 2.0].map(|slip| law.share_lost(slip)), [0.0, 0.75, 1.0, 1.0]);
+    /// ```
+    #[inline(always)]
+    pub fn share_lost(&self, slip: f64) -> f64 {
+        let left = self.share_left(slip);
+        1.0 - left * left
+    }
+
+    /// Energy that weakening has taken of a block whose strength can fall by `drop = max(S - K, 0)`, the integral of `f - K` over its slip:
+    ///
+    /// ```text
+    /// Phi = (S - K) D_c/2 (share lost by the present slip + shares lost before it healed)
+    /// ```
+    pub(crate) fn energy(&self, drop: f64, slip: f64, lost_before: f64) -> f64 {
+        0.5 * drop * self.length * (lost_before + self.share_lost(slip))
+    }
+
+    /// Whether a block that is stuck and has moved last at `moved_at` is whole again.
+    #[inline(always)]
+    pub(crate) fn heals(&self, moved_at: f64, time_star: f64) -> bool {
+        self.healing_time
+            .is_some_and(|healing_time| time_star - moved_at >= healing_time)
+    }
+}
+
+/// Thresholds of the blocks of a band at their present slip, and what they remember of it.
+#[derive(Debug)]
+pub(super) struct Slipped {
+    law: SlipWeakening,
+    pub(super) static_limit: Vec<f64>,
+    pub(super) kinetic_force: Vec<f64>,
+    slip: Vec<f64>,
+    /// When a block has moved last, t*, and the shares that it has lost before it healed; nothing without healing.
+    healing: Option<[Vec<f64>; 2]>,
+}
+
+impl Slipped {
+    pub(super) fn new(law: SlipWeakening, n_blocks: usize) -> Self {
+        let zeros = || vec![0.0; n_blocks];
+        Self {
+            law,
+            static_limit: zeros(),
+            kinetic_force: zeros(),
+            slip: zeros(),
+            healing: law.healing_time.map(|_| [zeros(), zeros()]),
+        }
+    }
+
+    /// The columns that a checkpoint keeps.
+    pub(super) fn columns(&self) -> impl Iterator<Item = &[f64]> {
+        [&self.slip]
+            .into_iter()
+            .chain(self.healing.iter().flatten())
+            .map(Vec::as_slice)
+    }
+
+    /// The columns that a checkpoint keeps, to be filled.
+    pub(super) fn columns_mut(&mut self) -> impl Iterator<Item = &mut [f64]> {
+        let healing = self.healing.iter_mut().flatten();
+        [&mut self.slip].into_iter().chain(healing).map(Vec::as_mut_slice)
+    }
+
+    /// Adds what some blocks have slipped in the step that ends now, at these velocities.
+    #[inline(always)]
+    pub(super) fn add_slip(&mut self, blocks: &Range<usize>, velocity: &VectorField, dt_star: f64) {
+        let (n, [vx, vy]) = (blocks.len(), part(velocity, blocks));
+        let (vx, vy, slip) = (&vx[..n], &vy[..n], &mut self.slip[blocks.clone()][..n]);
+        for k in 0..n {
+            slip[k] += dt_star * length([vx[k], vy[k]]);
+        }
+    }
+
+    /// Thresholds at the present slip, from the whole ones. A step that is evaluated again finds the same.
+    #[inline(always)]
+    pub(super) fn update(
+        &mut self,
+        blocks: &Range<usize>,
+        [whole, kinetic]: [&[f64]; 2],
+        velocity: &VectorField,
+        time_star: f64,
+    ) {
+        if let Some([moved_at, lost_before]) = &mut self.healing {
+            for b in blocks.clone() {
+                let is_moving = velocity.at(b) != [0.0, 0.0];
+                if is_moving {
+                    moved_at[b] = time_star;
+                } else if self.law.heals(moved_at[b], time_star) {
+                    lost_before[b] += self.law.share_lost(self.slip[b]);
+                    self.slip[b] = 0.0;
+                }
+            }
+        }
+        let n = blocks.len();
+        let (whole, kinetic) = (&whole[blocks.clone()][..n], &kinetic[blocks.clone()][..n]);
+        let slip = &self.slip[blocks.clone()][..n];
+        let static_limit = &mut self.static_limit[blocks.clone()][..n];
+        let kinetic_force = &mut self.kinetic_force[blocks.clone()][..n];
+        for k in 0..n {
+            let drop = (whole[k] - kinetic[k]).max(0.0);
+            kinetic_force[k] = kinetic[k] + drop * self.law.share_left(slip[k]);
+            static_limit[k] = if drop > 0.0 { kinetic_force[k] } else { whole[k] };
+        }
+    }
+}
