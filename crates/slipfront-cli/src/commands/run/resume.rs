@@ -6,7 +6,7 @@ use std::sync::Arc;
 use slipfront::Execution;
 use slipfront::communicator::Alone;
 use slipfront_case::case::Case;
-use slipfront_case::case_file::CaseError;
+use slipfront_case::case_file::{CaseError, CaseFile};
 use slipfront_run::agree::RankFailure;
 use slipfront_run::checkpoint::{CheckpointError, Checkpoints, LoadedCheckpoint};
 use slipfront_run::clock;
@@ -35,7 +35,9 @@ pub(super) fn resume(path: &Path, previous: bool, options: RunOptions) -> Result
     if ranks.any(ranks.is_first() && is_complete) {
         return ranks.first(|| report_complete(run, &options)).map(|_| ());
     }
-    let case = Arc::new(ranks.agree(case_to_resume(run, &options))?);
+    // Agreed on first: a rank without a case would leave the others waiting for it.
+    let file = ranks.agree(run.case_to_resume().map_err(Failure::input))?.clone();
+    let case = Arc::new(ranks.agree(case_to_resume(run, file, &options))?);
     let loaded = ranks.agree(load(run, &case, previous, &ranks))?;
     ranks.first(|| check_disk(run, &case, &options))?;
     let (running, checkpoints, from) =
@@ -105,10 +107,9 @@ fn begin(
 /// The remedy where no checkpoint can be used.
 const ANEW: &str = "remove the checkpoints, and --resume begins from the start";
 
-/// The case that is written in the folder, made again.
-fn case_to_resume(run: &Inspection, options: &RunOptions) -> Result<Case, Failure> {
+/// The case of the folder, made by all ranks together.
+fn case_to_resume(run: &Inspection, file: CaseFile, options: &RunOptions) -> Result<Case, Failure> {
     let path = &run.path;
-    let file = run.case_to_resume().map_err(Failure::input)?.clone();
     // Results are named after their folder, not after the file in it.
     let folder = path.canonicalize().unwrap_or_else(|_| path.clone());
     let name = folder.file_name().unwrap_or_default().to_string_lossy();
