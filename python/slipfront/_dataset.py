@@ -30,7 +30,7 @@ _LONG_NAMES = {
     "viscous_loss_j": "lost to the dampers between blocks since the start",
     "contact_spring_energy_j": "energy of the springs in contact",
     "broken_spring_loss_j": "lost with springs that broke since the start",
-    "weakening_loss_j": "lost to friction by slip weakening since the start",
+    "weakening_loss_j": "lost to friction as strength falls with slip since the start",
     "mean_state_star": "mean state of the contacts",
 }
 _UNITS = {"_n_m": "N m", "_percent": "%", "_m": "m", "_s": "s", "_n": "N", "_j": "J"}

@@ -64,7 +64,7 @@ pub struct SeriesRow {
     /// Lost with such springs that broke since the start, J.
     #[serde(default, deserialize_with = "number", skip_serializing_if = "Option::is_none")]
     pub broken_spring_loss_j: Option<f64>,
-    /// The part of the loss to friction that slip weakening has taken since the start, J; none without slip weakening.
+    /// The part of the loss to friction that strength which falls with slip has taken since the start, J; none where it does not fall.
     #[serde(default, deserialize_with = "number", skip_serializing_if = "Option::is_none")]
     pub weakening_loss_j: Option<f64>,
     /// Mean state of the contacts, t*; none of contacts without a state.

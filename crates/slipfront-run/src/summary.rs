@@ -147,7 +147,7 @@ pub struct Summary {
     /// Lost with contacts that broke, J; none of contacts that store no energy.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub broken_spring_loss_j: Option<f64>,
-    /// The part of the loss to friction that slip weakening has taken, J; none without slip weakening.
+    /// The part of the loss to friction that strength which falls with slip has taken, J; none where it does not fall.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub weakening_loss_j: Option<f64>,
     /// Mean state of the contacts at the end, t*; none of contacts without a state.

@@ -120,7 +120,7 @@ impl Model {
         self.slider.n_blocks(&self.lattice)
     }
 
-    /// Size along the drive, in blocks, from which a patch at its threshold runs away under slip weakening: that of a long strip across
+    /// Size along the drive, in blocks, from which a patch at its threshold runs away where strength falls with slip: that of a long strip across
     /// the drive whose blocks have the mean strength of those in contact. Infinite where the mount is stiff enough for slip of any size to be
     /// stable; none under other laws.
     ///
@@ -128,7 +128,7 @@ impl Model {
     /// L_c = pi sqrt(K_el/(W - k_s)),   W = (S - K)/D_c,   K_el = 9/8, 3/4 of a chain
     /// ```
     pub fn critical_size(&self) -> Option<f64> {
-        let law = self.friction.coulomb()?.slip_weakening?;
+        let law = self.friction.strength_over_slip()?;
         let share_in_contact = self.surface.n_contact() as f64 / self.n_blocks() as f64;
         let drop = (self.surface.mean_static_force() - self.surface.mean_kinetic_force()) / share_in_contact;
         let unstable = drop / law.length - self.drive.k_drive;

@@ -106,15 +106,10 @@ impl Snapshot<'_> {
             .expect("an observer needs the energies of this step")
     }
 
-    /// Energy that slip weakening has taken since the start, a part of what friction takes, block by block the integral of `f - K` over its
-    /// slip; 0 under other laws. All ranks must call this together.
+    /// Energy that the fall of strength with slip has taken since the start, a part of what friction takes, block by block the integral of
+    /// `f - K` over its slip; 0 where strength does not fall. All ranks must call this together.
     pub fn weakening_energy(&self) -> f64 {
-        let Some(law) = self
-            .model
-            .friction
-            .coulomb()
-            .and_then(|coulomb| coulomb.slip_weakening)
-        else {
+        let Some(law) = self.model.friction.strength_over_slip() else {
             return 0.0;
         };
         let surface = &self.model.surface;

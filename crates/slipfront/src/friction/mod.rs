@@ -84,6 +84,11 @@ impl Friction {
         }
     }
 
+    /// How strength falls with slip, if it does.
+    pub(crate) fn strength_over_slip(&self) -> Option<SlipWeakening> {
+        self.coulomb()?.slip_weakening
+    }
+
     /// Mean friction of all blocks in steady sliding at a speed, in units of `P mu_s l^2`; of springs in contact, which are torn off at
     /// all extensions alike, half the mean of their thresholds.
     pub(crate) fn steady_force(&self, surface: &Surface, speed: f64) -> f64 {

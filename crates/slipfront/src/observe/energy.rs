@@ -25,7 +25,7 @@ pub struct Energies {
     pub contact_springs: f64,
     /// Lost with such springs that broke since the start.
     pub broken_springs_loss: f64,
-    /// The part of the loss to friction that slip weakening has taken since the start, see
+    /// The part of the loss to friction that strength which falls with slip has taken since the start, see
     /// [`Snapshot::weakening_energy`](crate::Snapshot::weakening_energy).
     pub weakening_loss: f64,
     /// Energy stored at the start.
