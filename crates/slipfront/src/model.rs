@@ -121,7 +121,7 @@ impl Model {
     }
 
     /// Size along the drive, in blocks, from which a patch at its threshold runs away where strength falls with slip: that of a long strip across
-    /// the drive whose blocks have the mean strength of those in contact. Infinite where the mount is stiff enough for slip of any size to be
+    /// the drive whose blocks have the mean strength of those in contact, on the mean of all drive springs. Infinite where the mount is stiff enough for slip of any size to be
     /// stable; none under other laws.
     ///
     /// ```text
@@ -131,7 +131,10 @@ impl Model {
         let law = self.friction.strength_over_slip()?;
         let share_in_contact = self.surface.n_contact() as f64 / self.n_blocks() as f64;
         let drop = (self.surface.mean_static_force() - self.surface.mean_kinetic_force()) / share_in_contact;
-        let unstable = drop / law.length - self.drive.k_drive;
+        // Of a drive at an edge most blocks have no spring.
+        let mount =
+            self.drive.k_drive * self.slider.sum_of_drive_springs(&self.lattice) / self.n_blocks() as f64;
+        let unstable = drop / law.length - mount;
         Some(if unstable > 0.0 {
             PI * (self.lattice.stiffness_along() / unstable).sqrt()
         } else {
