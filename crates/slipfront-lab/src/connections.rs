@@ -17,21 +17,18 @@ use tokio::time::sleep;
 /// Most connections at once; a browser opens six for a page.
 const MAX_CONNECTIONS: usize = 64;
 
-/// How long a connection may take to send the next header.
-const HEADER_TIMEOUT: Duration = Duration::from_secs(5);
-
 /// Most bytes of a header; those of browsers have one or two thousand.
 const MAX_HEADER_BYTES: usize = 16 << 10;
 
 /// Time to the next attempt when the system refuses a connection, for lack of files or memory.
 const RETRY_INTERVAL: Duration = Duration::from_millis(100);
 
-/// Serves whoever connects, for ever. When there are too many, the oldest goes: whoever holds connections open without a use keeps no
+/// Serves whoever connects, for ever; a connection may take `header_timeout` to send the next header. When there are too many, the oldest goes: whoever holds connections open without a use keeps no
 /// page out, which needs its own for some milliseconds.
-pub(crate) async fn serve(listener: TcpListener, router: Router) -> Infallible {
+pub(crate) async fn serve(listener: TcpListener, router: Router, header_timeout: Duration) -> Infallible {
     let mut http = http1::Builder::new();
     http.timer(TokioTimer::new())
-        .header_read_timeout(HEADER_TIMEOUT)
+        .header_read_timeout(header_timeout)
         .max_buf_size(MAX_HEADER_BYTES);
     let service = TowerToHyperService::new(router);
     let mut open = VecDeque::new();

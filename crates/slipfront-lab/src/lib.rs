@@ -39,5 +39,5 @@ mod view;
 mod zip;
 
 pub use opening::{OpeningError, Start};
-pub use server::{Laboratory, ServerOptions};
+pub use server::{Laboratory, Patience, ServerOptions};
 pub use session::OfflineSession;

@@ -22,9 +22,6 @@ use crate::start_page::StartPage;
 use crate::token::Token;
 use crate::{assets, connections, guard, presets, socket};
 
-/// How long pages are waited for that are told that the server ends.
-const PAGES_TIMEOUT: Duration = Duration::from_secs(5);
-
 /// How long runs that are being saved have to take their unfinished folders away when the server ends.
 const WORK_TIMEOUT: Duration = Duration::from_secs(10);
 
@@ -42,6 +39,29 @@ pub struct ServerOptions {
     pub port: u16,
     /// Threads of a run.
     pub threads: usize,
+    /// How long those are waited for who say or read nothing.
+    pub patience: Patience,
+}
+
+/// How long the server waits for those who say or read nothing.
+#[derive(Clone, Copy, Debug)]
+pub struct Patience {
+    /// For the next header of a connection.
+    pub header: Duration,
+    /// For a page that is to receive a message.
+    pub message: Duration,
+    /// For all pages together, once they are told that the server ends.
+    pub end: Duration,
+}
+
+impl Default for Patience {
+    fn default() -> Self {
+        Self {
+            header: Duration::from_secs(5),
+            message: Duration::from_secs(10),
+            end: Duration::from_secs(5),
+        }
+    }
 }
 
 /// A laboratory that can be reached, and is not served yet.
@@ -51,6 +71,7 @@ pub struct Laboratory {
     token: Token,
     start_page: StartPage,
     setting: Arc<Setting>,
+    patience: Patience,
 }
 
 impl Laboratory {
@@ -74,6 +95,7 @@ impl Laboratory {
                 threads: options.threads,
                 presets: presets::entries(),
             }),
+            patience: options.patience,
         })
     }
 
@@ -126,6 +148,7 @@ impl Laboratory {
             pages: Arc::clone(&pages),
             ends,
             working,
+            message_timeout: self.patience.message,
         };
         let router = Router::new()
             .route("/ws", get(socket::connect))
@@ -140,12 +163,12 @@ impl Laboratory {
             let listener = tokio::net::TcpListener::from_std(self.listener)?;
             tokio::select! {
                 () = stop => {}
-                never = connections::serve(listener, router) => match never {},
+                never = connections::serve(listener, router, self.patience.header) => match never {},
             }
             start_page.close();
             let _ = end.send(true);
             // When all places are free, all pages are gone.
-            let _ = timeout(PAGES_TIMEOUT, pages.acquire_many(MAX_PAGES as u32)).await;
+            let _ = timeout(self.patience.end, pages.acquire_many(MAX_PAGES as u32)).await;
             Ok(())
         })
     }

@@ -25,9 +25,6 @@ pub(crate) const MAX_PAGES: usize = 4;
 /// Requests that wait for the session.
 const MAX_WAITING_REQUESTS: usize = 64;
 
-/// How long a page may take to receive a message.
-const SEND_TIMEOUT: Duration = Duration::from_secs(10);
-
 /// Time between two attempts to hand a request to a session that is busy.
 const RETRY_INTERVAL: Duration = Duration::from_millis(5);
 
@@ -42,6 +39,8 @@ pub(crate) struct Shared {
     pub(crate) ends: watch::Receiver<bool>,
     /// Held by every thread as long as it works.
     pub(crate) working: Sender<()>,
+    /// How long a page may take to receive a message.
+    pub(crate) message_timeout: Duration,
 }
 
 /// Proves to a page that this is the server whose token it knows, before the page proves anything.
@@ -72,14 +71,19 @@ pub(crate) async fn connect(
         .protocols([PROTOCOL])
         .max_message_size(MAX_MESSAGE)
         .max_frame_size(MAX_MESSAGE)
-        .on_upgrade(async move |mut socket| {
+        .on_upgrade(async move |socket| {
+            let mut to_page = ToPage {
+                socket,
+                timeout: shared.message_timeout,
+            };
             // On this connection too, since another server may have taken the port meanwhile.
             let proof = json!({ "is": "proof", "proof": proof });
-            if send(&mut socket, Message::Text(proof.to_string().into()))
+            if to_page
+                .send(Message::Text(proof.to_string().into()))
                 .await
                 .is_some()
             {
-                serve(socket, &shared).await;
+                serve(to_page, &shared).await;
             }
             drop(page);
         })
@@ -95,7 +99,7 @@ fn proof_for(headers: &HeaderMap, token: &Token) -> Option<String> {
         .then(|| token.proof_of_server(caller))
 }
 
-async fn serve(mut socket: WebSocket, shared: &Shared) {
+async fn serve(mut to_page: ToPage, shared: &Shared) {
     let outbox = Arc::new(Outbox::default());
     let (requests, waiting) = sync_channel(MAX_WAITING_REQUESTS);
     let (setting, filled, working) = (
@@ -108,15 +112,15 @@ async fn serve(mut socket: WebSocket, shared: &Shared) {
     });
     if begun.is_err() {
         let sentence = "the system refuses a thread for the simulation";
-        return close(&mut socket, close_code::ERROR, sentence).await;
+        return to_page.close(close_code::ERROR, sentence).await;
     }
-    forward(&mut socket, &outbox, &requests, shared.ends.clone()).await;
+    forward(&mut to_page, &outbox, &requests, shared.ends.clone()).await;
     outbox.close();
 }
 
 /// Passes on what page and session have for each other, until one of them is gone or the server ends.
 async fn forward(
-    socket: &mut WebSocket,
+    to_page: &mut ToPage,
     outbox: &Outbox,
     requests: &SyncSender<Request>,
     mut ends: watch::Receiver<bool>,
@@ -137,43 +141,51 @@ async fn forward(
                     Outgoing::Reply(text) => Message::Text(text.into()),
                     Outgoing::Picture(bytes) => Message::Binary(bytes),
                 };
-                if send(socket, message).await.is_none() {
+                if to_page.send(message).await.is_none() {
                     return;
                 }
             }
-            message = socket.recv(), if kept.is_none() => match message {
+            message = to_page.socket.recv(), if kept.is_none() => match message {
                 Some(Ok(Message::Text(text))) => match serde_json::from_str(&text) {
                     Ok(request) => kept = Some(request),
                     Err(error) => {
                         let sentence = format!("not a request: {error}");
-                        return close(socket, close_code::POLICY, &sentence).await;
+                        return to_page.close(close_code::POLICY, &sentence).await;
                     }
                 },
                 Some(Ok(Message::Binary(_))) => {
-                    return close(socket, close_code::POLICY, "requests are texts").await;
+                    return to_page.close(close_code::POLICY, "requests are texts").await;
                 }
                 Some(Ok(Message::Ping(_) | Message::Pong(_))) => {}
                 Some(Ok(Message::Close(_)) | Err(_)) | None => return,
             },
             () = sleep(RETRY_INTERVAL), if kept.is_some() => {}
             _ = ends.changed() => {
-                return close(socket, close_code::AWAY, "the laboratory was stopped in its terminal").await;
+                return to_page.close(close_code::AWAY, "the laboratory was stopped in its terminal").await;
             }
         }
     }
 }
 
-/// Sends a message; none to a page that is gone, or does not read.
-async fn send(socket: &mut WebSocket, message: Message) -> Option<()> {
-    timeout(SEND_TIMEOUT, socket.send(message)).await.ok()?.ok()
+/// A page, and how long it may take to receive a message.
+struct ToPage {
+    socket: WebSocket,
+    timeout: Duration,
 }
 
-/// Closes the connection with a reason, for which there is room for 123 bytes.
-async fn close(socket: &mut WebSocket, code: u16, sentence: &str) {
-    let reason: String = sentence.chars().filter(char::is_ascii).take(120).collect();
-    let frame = CloseFrame {
-        code,
-        reason: Utf8Bytes::from(reason),
-    };
-    send(socket, Message::Close(Some(frame))).await;
+impl ToPage {
+    /// Sends a message; none to a page that is gone, or does not read.
+    async fn send(&mut self, message: Message) -> Option<()> {
+        timeout(self.timeout, self.socket.send(message)).await.ok()?.ok()
+    }
+
+    /// Closes the connection with a reason, for which there is room for 123 bytes.
+    async fn close(&mut self, code: u16, sentence: &str) {
+        let reason: String = sentence.chars().filter(char::is_ascii).take(120).collect();
+        let frame = CloseFrame {
+            code,
+            reason: Utf8Bytes::from(reason),
+        };
+        self.send(Message::Close(Some(frame))).await;
+    }
 }

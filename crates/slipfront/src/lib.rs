@@ -31,7 +31,7 @@ pub mod observe;
 pub mod scales;
 pub mod stability;
 pub mod surface;
-#[cfg(any(test, feature = "testing"))]
+#[cfg(feature = "testing")]
 pub mod testing;
 
 mod drive;

@@ -1,10 +1,12 @@
-//! What tests of slipfront and of crates that use it need beside the model.
+//! What tests of slipfront and of crates that use it need beside the model: ranks that are threads, and what is private to the fused
+//! kernel.
 
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
 
 use crate::communicator::Communicator;
+pub use crate::kernel::fused::for_tests::FusedKernel;
 
 /// One of several ranks that are threads of this process: what a lattice of many machines does can be tried on one.
 #[derive(Clone, Debug)]

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use clap::Args;
-use slipfront_lab::{Laboratory, ServerOptions, Start};
+use slipfront_lab::{Laboratory, Patience, ServerOptions, Start};
 
 use crate::browser;
 use crate::failure::Failure;
@@ -75,6 +75,7 @@ impl LabCommand {
             print: print_stderr,
             port: self.port,
             threads,
+            patience: Patience::default(),
         });
         let laboratory = laboratory.map_err(|error| {
             Failure::input(anyhow::anyhow!(

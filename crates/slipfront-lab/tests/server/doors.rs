@@ -32,7 +32,7 @@ fn end(mut lab: Served) -> Duration {
         done.send(began.elapsed()).unwrap();
         drop(lab);
     });
-    // The server gives pages 5 s and unfinished work 10 s.
+    // Pages have 5 s at most, and unfinished work 10 s.
     told.recv_timeout(2 * TIMEOUT).expect("the server has not ended")
 }
 
@@ -51,7 +51,7 @@ fn ask_for_much(page: &mut Page) {
 
 #[test]
 fn connections_that_say_nothing_keep_no_page_out() {
-    let lab = Served::new();
+    let lab = Served::impatient();
     let mut idle: Vec<TcpStream> = (0..MANY).map(|_| lab.connect()).collect();
     for stream in &mut idle {
         // Some are closed already, for those that came after them.
@@ -114,7 +114,7 @@ fn the_server_ends_whatever_is_open() {
 /// A page that does not read what it is sent is not waited for, and what it was to read is not kept.
 #[test]
 fn a_page_that_does_not_read_is_dropped() {
-    let lab = Served::new();
+    let lab = Served::impatient();
     let mut pages: Vec<Page> = (0..4).map(|_| Page::open(&lab)).collect();
     ask_for_much(&mut pages[0]);
     // Its place becomes free, for which no other page has to go.
@@ -131,7 +131,7 @@ fn a_page_that_does_not_read_is_dropped() {
 
 #[test]
 fn the_end_does_not_wait_for_a_page_that_does_not_read() {
-    let lab = Served::new();
+    let lab = Served::impatient();
     let mut page = Page::open(&lab);
     ask_for_much(&mut page);
     end(lab);

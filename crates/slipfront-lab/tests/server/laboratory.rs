@@ -7,7 +7,7 @@ use std::sync::Mutex;
 use std::thread::JoinHandle;
 use std::time::Duration;
 
-use slipfront_lab::{Laboratory, ServerOptions, Start};
+use slipfront_lab::{Laboratory, Patience, ServerOptions, Start};
 use tempfile::TempDir;
 use tokio::sync::oneshot;
 
@@ -34,6 +34,21 @@ impl Served {
     }
 
     pub(crate) fn with(start: Start) -> Self {
+        Self::patient(start, Patience::default())
+    }
+
+    /// A server that waits a second for those who say or read nothing.
+    pub(crate) fn impatient() -> Self {
+        let second = Duration::from_secs(1);
+        let patience = Patience {
+            header: second,
+            message: second,
+            end: second,
+        };
+        Self::patient(Start::default(), patience)
+    }
+
+    fn patient(start: Start, patience: Patience) -> Self {
         let folder = tempfile::tempdir().unwrap();
         let laboratory = Laboratory::bind(ServerOptions {
             start,
@@ -42,6 +57,7 @@ impl Served {
             print: |sentence| TOLD.lock().unwrap().push(sentence.to_owned()),
             port: 0,
             threads: 1,
+            patience,
         });
         let laboratory = laboratory.unwrap();
         let address = laboratory.address(None);

@@ -7,7 +7,7 @@ mod bands;
 pub(crate) mod block;
 pub(crate) mod engine;
 pub(crate) mod execution;
-mod fused;
+pub(crate) mod fused;
 mod general;
 
 pub use block::Block;

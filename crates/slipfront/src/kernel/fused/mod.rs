@@ -18,6 +18,8 @@ mod aligned;
 mod band;
 mod blocks;
 mod fields;
+#[cfg(feature = "testing")]
+pub(crate) mod for_tests;
 mod layout;
 mod neighbours;
 mod quanta;
@@ -29,9 +31,6 @@ mod step;
 mod thresholds;
 mod variations;
 mod vector;
-
-#[cfg(test)]
-mod tests;
 
 use std::ops::Range;
 use std::sync::Arc;

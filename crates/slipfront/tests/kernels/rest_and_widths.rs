@@ -1,16 +1,13 @@
-//! Tests of what is private to the kernel: vector widths, the bound on strains, and which tiles are skipped.
+//! The fused kernel by itself: vector widths, the bound on strains, and which vectors are skipped.
 
 use proptest::prelude::*;
+use slipfront::lattice::Bond;
+use slipfront::surface::{Coefficients, Distribution, Load};
+use slipfront::testing::FusedKernel;
+use slipfront::{Drive, Edges, FrictionLaw, Lattice, Model, State, Surface, VectorField, scales};
 
-use super::layout::VECTORS;
-use super::*;
-use crate::communicator::Alone;
-use crate::drive::Drive;
-use crate::friction::FrictionLaw;
-use crate::lattice::{Bond, Edges, Lattice};
-use crate::scales;
-use crate::surface::{Coefficients, Distribution, Load, Surface};
-use crate::vector_field::VectorField;
+/// Steps between two measurements of displacements and their differences; in between they are bounded.
+const MEASUREMENT_INTERVAL: u64 = 16;
 
 fn model(lattice: Lattice, v_star: f64, degrees: f64, epsilon: f64) -> Model {
     let n = lattice.n_blocks();
@@ -31,36 +28,13 @@ fn model(lattice: Lattice, v_star: f64, degrees: f64, epsilon: f64) -> Model {
     )
 }
 
-/// On one thread of one rank.
-fn alone(model: &Model, dt_star: f64, state: Option<&State>, skips: bool) -> Fused {
-    Fused::new(model, dt_star, state, 1, skips, Arc::new(Alone))
-}
-
-/// Every width that this processor has, narrow ones first.
-fn levels() -> Vec<Level> {
-    let widest = Level::new();
-    #[cfg(target_arch = "x86_64")]
-    {
-        let levels = [
-            widest.as_sse2().map(Level::Sse2),
-            widest.as_sse4_2().map(Level::Sse4_2),
-            widest.as_avx2().map(Level::Avx2),
-            widest.as_avx512().map(Level::Avx512),
-        ];
-        levels.into_iter().flatten().collect()
-    }
-    #[cfg(not(target_arch = "x86_64"))]
-    vec![widest]
-}
-
 /// The bits of all displacements, velocities and sums at every tenth step.
-fn history(model: &Model, level: Level, steps: u64) -> Vec<u64> {
-    let mut kernel = alone(model, 0.2, None, true);
-    kernel.level = level;
+fn history(model: &Model, width: usize, steps: u64) -> Vec<u64> {
+    let mut kernel = FusedKernel::new(model.clone(), 0.2, None, true, Some(width));
     let mut bits = Vec::new();
     for number in 0..=steps {
         let energies = number % 10 == 0;
-        let totals = kernel.step(model, number, energies);
+        let totals = kernel.step(energies);
         if !energies {
             continue;
         }
@@ -71,7 +45,7 @@ fn history(model: &Model, level: Level, steps: u64) -> Vec<u64> {
             stored.kinetic,
             stored.lattice,
             stored.drive_springs,
-            kernel.stress_square_max(model, number),
+            kernel.stress_square_max(),
         ];
         numbers.extend(
             [totals.displacement, totals.velocity, totals.velocity_after]
@@ -83,8 +57,7 @@ fn history(model: &Model, level: Level, steps: u64) -> Vec<u64> {
         }
         bits.extend(numbers.into_iter().map(f64::to_bits));
     }
-    let mut first_slips = vec![0.0; model.lattice.n_blocks()];
-    kernel.read_column(BlockColumn::FirstSlip, 0, &mut first_slips);
+    let first_slips = kernel.first_slip_times_star();
     assert!(first_slips.iter().any(|&time_star| time_star > 0.0));
     bits
 }
@@ -95,12 +68,12 @@ fn every_vector_width_gives_the_same_bits() {
     for epsilon in [1e-6, 2e-4, 1e-2] {
         for edges in [[Edges::Free; 2], [Edges::Periodic; 2]] {
             let model = model(Lattice::with_edges(21, 30, edges), 0.1, 20.0, epsilon);
-            let mut histories = levels()
-                .into_iter()
-                .map(|level| (level, history(&model, level, 250)));
-            let (_, first) = histories.next().expect("there is a baseline");
-            for (level, other) in histories {
-                assert!(other == first, "{level:?} at {epsilon}, {edges:?}");
+            let narrowest = history(&model, 0, 250);
+            for width in 1..FusedKernel::n_widths() {
+                assert!(
+                    history(&model, width, 250) == narrowest,
+                    "width {width} at {epsilon}, {edges:?}"
+                );
             }
         }
     }
@@ -115,9 +88,10 @@ fn displacements_are_bounded() {
     let mut apart = State::at_rest(900);
     (apart.velocity.x[0], apart.velocity.x[899]) = (-1.4, 1.4);
     for (from, skips) in [(None, false), (None, true), (Some(&apart), true)] {
-        let mut kernel = alone(&model, 0.2, from, skips);
-        for number in 0..400 {
-            kernel.step(&model, number, false);
+        let mut kernel = FusedKernel::new(model.clone(), 0.2, from, skips, None);
+        let mut n_sliding = 0;
+        for _ in 0..400 {
+            n_sliding = kernel.step(false).n_sliding;
             let (mut extent, mut difference) = ([f64::NEG_INFINITY; 4], [0.0_f64; 2]);
             for b in 0..model.lattice.n_blocks() {
                 let [[x, y], _] = kernel.motion(b);
@@ -136,13 +110,12 @@ fn displacements_are_bounded() {
                     *most = most.max(value);
                 }
             }
-            let bounds = kernel.motion_bounds;
             for axis in 0..2 {
-                let [low, high] = bounds.range(axis);
+                let [low, high] = kernel.displacement_bounds(axis);
                 for (exact, bound) in [
                     (extent[2 * axis], high),
                     (extent[2 * axis + 1], -low),
-                    (difference[axis], bounds.spring_difference(axis)),
+                    (difference[axis], kernel.difference_bound(axis)),
                 ] {
                     // Displacements of up to 20 round by 4e-15.
                     let over = bound - exact + 1e-13;
@@ -151,44 +124,34 @@ fn displacements_are_bounded() {
                 }
             }
         }
-        assert!(kernel.totals.n_sliding > 0);
+        assert!(n_sliding > 0);
     }
 }
 
-/// With a slow drive nearly all tiles are skipped until the first slip, and nearly half of them afterwards.
+/// With a slow drive nearly all vectors are skipped until the first slip, and nearly half of them afterwards.
 #[test]
 fn slow_drives_are_mostly_rest() {
     let model = model(Lattice::free(64, 64), 0.002, 0.0, 1e-6);
-    let mut kernel = alone(&model, 0.5, None, true);
-    // Number of swept tiles before and after the first slip, and number of steps after it.
+    let mut kernel = FusedKernel::new(model, 0.5, None, true, None);
+    // Number of swept vectors before and after the first slip, and number of steps after it.
     let (mut before, mut after, mut steps) = (0, 0, 0);
-    for number in 0..3000 {
-        let totals = kernel.step(&model, number, false);
-        let swept = kernel.swept_step == Some(number);
-        let tasks = kernel.bands.iter().flat_map(|band| &band.tasks);
-        let active = tasks
-            .map(|task| {
-                if swept {
-                    task.active.count_ones() as usize
-                } else {
-                    0
-                }
-            })
-            .sum::<usize>();
-        if totals.n_sliding > 0 || steps > 0 {
+    for _ in 0..3000 {
+        let n_sliding = kernel.step(false).n_sliding;
+        let active = kernel.n_swept_vectors();
+        if n_sliding > 0 || steps > 0 {
             steps += 1;
             after += active;
         } else {
             before += active;
         }
     }
-    let tiles = kernel.touched.len() * VECTORS;
+    let vectors = kernel.n_vectors();
     assert!(steps > 1000 && steps < 2000, "{steps} steps after the first slip");
     // Once at the start, and just before the first slip.
-    assert!(before <= 3 * tiles, "{before} of {tiles} tiles");
+    assert!(before <= 3 * vectors, "{before} of {vectors} vectors");
     assert!(
-        after * 5 < 3 * steps * tiles,
-        "{after} of {tiles} tiles in {steps} steps"
+        after * 5 < 3 * steps * vectors,
+        "{after} of {vectors} vectors in {steps} steps"
     );
 }
 
@@ -215,15 +178,15 @@ proptest! {
             displacement: VectorField { x: u.iter().map(|u| u[0]).collect(), y: u.iter().map(|u| u[1]).collect() },
             velocity: VectorField::zeros(9),
         };
-        let mut resting = alone(&model, dt_star, Some(&state), true);
-        let mut plain = alone(&model, dt_star, Some(&state), false);
-        resting.step(&model, 0, false);
-        let mut slips = |number| plain.step(&model, number, false).n_sliding > 0;
-        let first = (0..100_000).find(|&number| slips(number)).expect("a block slips");
-        prop_assert!(resting.active_from_step <= first, "active from step {}, first slip at {first}", resting.active_from_step);
         let along_an_axis = model.drive.direction.contains(&0.0);
+        let mut resting = FusedKernel::new(model.clone(), dt_star, Some(&state), true, None);
+        let mut plain = FusedKernel::new(model, dt_star, Some(&state), false, None);
+        resting.step(false);
+        let active_from = resting.active_from_step();
+        let first = (0..100_000).find(|_| plain.step(false).n_sliding > 0).expect("a block slips");
+        prop_assert!(active_from <= first, "active from step {active_from}, first slip at {first}");
         if along_an_axis && first > 0 {
-            prop_assert!(first - resting.active_from_step <= 5, "active from step {}, first slip at {first}", resting.active_from_step);
+            prop_assert!(first - active_from <= 5, "active from step {active_from}, first slip at {first}");
         }
     }
 }

@@ -1,0 +1,114 @@
+//! The fused kernel by itself, for tests of what no simulation shows.
+
+use super::layout::VECTORS;
+use super::*;
+use crate::communicator::Alone;
+
+/// The fused kernel by itself, on one thread of one rank: the width of its vectors can be chosen, and the bounds and the rest that it
+/// goes by can be read.
+#[derive(Debug)]
+pub struct FusedKernel {
+    model: Model,
+    kernel: Fused,
+    next_step: u64,
+}
+
+impl FusedKernel {
+    /// Number of vector widths that this processor has.
+    pub fn n_widths() -> usize {
+        levels().len()
+    }
+
+    /// Begins in a given state, or at rest. Vectors have the widest of all widths, counted from the narrowest on, unless `width`
+    /// tells another; tiles at rest are skipped if `skips` is set.
+    ///
+    /// # Panics
+    /// If there is no such width.
+    pub fn new(model: Model, dt_star: f64, state: Option<&State>, skips: bool, width: Option<usize>) -> Self {
+        let mut kernel = Fused::new(&model, dt_star, state, 1, skips, Arc::new(Alone));
+        if let Some(width) = width {
+            kernel.level = levels()[width];
+        }
+        let next_step = 0;
+        Self {
+            model,
+            kernel,
+            next_step,
+        }
+    }
+
+    /// The model that is stepped.
+    pub fn model(&self) -> &Model {
+        &self.model
+    }
+
+    /// Makes the next step, the first time that to step 0, and returns its sums over all blocks: with the stored energies if
+    /// `energies` is set.
+    pub fn step(&mut self, energies: bool) -> Totals {
+        self.next_step += 1;
+        self.kernel.step(&self.model, self.next_step - 1, energies)
+    }
+
+    /// Displacement and velocity of a block after the latest step.
+    pub fn motion(&self, block: usize) -> [[f64; 2]; 2] {
+        self.kernel.motion(block)
+    }
+
+    /// t* of the first slip of every block; NaN where there was none.
+    pub fn first_slip_times_star(&self) -> Vec<f64> {
+        let mut times = vec![0.0; self.model.lattice.n_blocks()];
+        self.kernel.read_column(BlockColumn::FirstSlip, 0, &mut times);
+        times
+    }
+
+    /// Largest square of a contact stress at the latest step.
+    pub fn stress_square_max(&self) -> f64 {
+        self.kernel.stress_square_max(&self.model, self.next_step - 1)
+    }
+
+    /// Bounds on the displacements of all blocks along an axis, the lower first.
+    pub fn displacement_bounds(&self, axis: usize) -> [f64; 2] {
+        self.kernel.motion_bounds.range(axis)
+    }
+
+    /// A bound on the differences of displacements, along an axis, of blocks that a spring joins.
+    pub fn difference_bound(&self, axis: usize) -> f64 {
+        self.kernel.motion_bounds.spring_difference(axis)
+    }
+
+    /// Number of vectors that a sweep over all blocks takes.
+    pub fn n_vectors(&self) -> usize {
+        self.kernel.touched.len() * VECTORS
+    }
+
+    /// Number of vectors that the latest step swept.
+    pub fn n_swept_vectors(&self) -> usize {
+        if self.kernel.swept_step != Some(self.next_step - 1) {
+            return 0;
+        }
+        let tasks = self.kernel.bands.iter().flat_map(|band| &band.tasks);
+        tasks.map(|task| task.active.count_ones() as usize).sum()
+    }
+
+    /// The first step at which a block may slip, if nothing moves.
+    pub fn active_from_step(&self) -> u64 {
+        self.kernel.active_from_step
+    }
+}
+
+/// Every vector width that this processor has, narrow ones first.
+fn levels() -> Vec<Level> {
+    let widest = Level::new();
+    #[cfg(target_arch = "x86_64")]
+    {
+        let levels = [
+            widest.as_sse2().map(Level::Sse2),
+            widest.as_sse4_2().map(Level::Sse4_2),
+            widest.as_avx2().map(Level::Avx2),
+            widest.as_avx512().map(Level::Avx512),
+        ];
+        levels.into_iter().flatten().collect()
+    }
+    #[cfg(not(target_arch = "x86_64"))]
+    vec![widest]
+}
