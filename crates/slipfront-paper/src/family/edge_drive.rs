@@ -30,7 +30,7 @@ const CHAINS: [Chain; 2] = [
     Chain {
         blocks: 100,
         v_star: 1.0,
-        steps: &[0.1, 0.05, 0.025],
+        steps: &[0.4, 0.2, 0.1],
     },
     Chain {
         blocks: 400,
