@@ -100,7 +100,7 @@ impl SeriesRow {
             step: row.step,
             time_star: row.time_star,
             time_s: row.time_star * scales.time(),
-            drive_displacement_m: Some(model.drive.path(row.time_star) * scales.displacement()),
+            drive_displacement_m: Some(model.drive.path(row.drive_time_star) * scales.displacement()),
             mu_star: row.point.mu_star,
             friction_coefficient: row.point.mu_star * scales.mu_static_mean,
             mu_lateral_star: row.point.mu_lateral_star,

@@ -9,7 +9,7 @@ use slipfront::observe::{
     Curve, Cycles, Energies, Frame, Kinetic, KineticHistory, NoUncertainty, Peak, Precursors, Quantiles,
     Scheduled, SlipEvent,
 };
-use slipfront::{Scales, Simulation, StopReason};
+use slipfront::{Checkpoint, Scales, Simulation, StopReason};
 
 use crate::error::ResultsError;
 use crate::folder_error::FolderError;
@@ -120,6 +120,9 @@ pub struct Summary {
     pub dt_star: f64,
     /// Steps done.
     pub steps: u64,
+    /// Those in which the drive moved, of a drive that is held; in the others it stood.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub drive_steps: Option<u64>,
     /// Seed of the random coefficients.
     pub seed: u64,
     /// Negative draws of the coefficients of blocks in contact that were set to 0.
@@ -308,20 +311,24 @@ impl SummaryObservers {
         }
     }
 
-    /// Whether they can be those that began as `new` after `step` steps, at `time_star`.
-    pub(crate) fn is_consistent_with(&self, new: &Self, step: u64, time_star: f64) -> bool {
+    /// Whether they can be those that began as `new` at a checkpoint of steps of `dt_star`.
+    pub(crate) fn is_consistent_with(&self, new: &Self, checkpoint: &Checkpoint, dt_star: f64) -> bool {
+        let [time_star, drive_time_star] =
+            [checkpoint.step, checkpoint.drive_steps].map(|steps| steps as f64 * dt_star);
         let precursors = match (&self.precursors, &new.precursors) {
             (Some(old), Some(new)) => old.is_consistent_with(new, time_star),
             (old, new) => old.is_none() && new.is_none(),
         };
         let cycles = match (&self.cycles, &new.cycles) {
-            (Some(old), Some(_)) => old.is_consistent_with(time_star),
+            (Some(old), Some(_)) => old.is_consistent_with(drive_time_star),
             (old, new) => old.is_none() && new.is_none(),
         };
         precursors
             && cycles
-            && self.curve.is_consistent_with(&new.curve, step)
-            && self.history.is_consistent_with(&new.history, step)
+            && self.curve.is_consistent_with(&new.curve, checkpoint.drive_steps)
+            && self
+                .history
+                .is_consistent_with(&new.history, checkpoint.drive_steps)
     }
 
     pub(crate) fn scheduled(&mut self) -> Vec<Scheduled<'_>> {
@@ -412,7 +419,8 @@ impl SummaryObservers {
             StopReason::Onset => None,
         };
         let last = self.curve.rows.last();
-        let (steps, energies) = last.map(|row| (row.step, row.energies)).unwrap_or_default();
+        let last_row = last.copied().unwrap_or_default();
+        let (steps, energies) = (last_row.step, last_row.energies);
         let law = case.model.friction.needs();
         let (mean, time) = (case.scales.mu_static_mean, case.scales.time());
         let energy = case.scales.energy();
@@ -452,6 +460,7 @@ impl SummaryObservers {
             topographies: topographies(case),
             dt_star: case.time_plan.dt_star,
             steps,
+            drive_steps: case.model.drive.is_held().then_some(last_row.drive_steps),
             seed: case.file.friction.seed,
             negative_draws: case.model.surface.negative_draws(),
             energy_error: energies.error(),

@@ -31,6 +31,15 @@ fn model(lattice: Lattice, v_star: f64, degrees: f64, epsilon: f64) -> Model {
     )
 }
 
+/// An instant of a drive that moves in every step.
+fn at_step(number: u64, dt_star: f64) -> Clock {
+    Clock {
+        step: number,
+        drive_steps: number,
+        ..Clock::start(dt_star)
+    }
+}
+
 /// On one thread of one rank.
 fn alone(model: &Model, dt_star: f64, state: Option<&State>, skips: bool) -> Fused {
     Fused::new(model, dt_star, state, 1, skips, Arc::new(Alone))
@@ -60,7 +69,7 @@ fn history(model: &Model, level: Level, steps: u64) -> Vec<u64> {
     let mut bits = Vec::new();
     for number in 0..=steps {
         let energies = number % 10 == 0;
-        let totals = kernel.step(model, number, energies);
+        let totals = kernel.step(model, &at_step(number, 0.2), energies);
         if !energies {
             continue;
         }
@@ -117,7 +126,7 @@ fn displacements_are_bounded() {
     for (from, skips) in [(None, false), (None, true), (Some(&apart), true)] {
         let mut kernel = alone(&model, 0.2, from, skips);
         for number in 0..400 {
-            kernel.step(&model, number, false);
+            kernel.step(&model, &at_step(number, 0.2), false);
             let (mut extent, mut difference) = ([f64::NEG_INFINITY; 4], [0.0_f64; 2]);
             for b in 0..model.lattice.n_blocks() {
                 let [[x, y], _] = kernel.motion(b);
@@ -163,7 +172,7 @@ fn slow_drives_are_mostly_rest() {
     // Number of swept tiles before and after the first slip, and number of steps after it.
     let (mut before, mut after, mut steps) = (0, 0, 0);
     for number in 0..3000 {
-        let totals = kernel.step(&model, number, false);
+        let totals = kernel.step(&model, &at_step(number, 0.5), false);
         let swept = kernel.swept_step == Some(number);
         let tasks = kernel.bands.iter().flat_map(|band| &band.tasks);
         let active = tasks
@@ -217,8 +226,8 @@ proptest! {
         };
         let mut resting = alone(&model, dt_star, Some(&state), true);
         let mut plain = alone(&model, dt_star, Some(&state), false);
-        resting.step(&model, 0, false);
-        let mut slips = |number| plain.step(&model, number, false).n_sliding > 0;
+        resting.step(&model, &at_step(0, dt_star), false);
+        let mut slips = |number| plain.step(&model, &at_step(number, dt_star), false).n_sliding > 0;
         let first = (0..100_000).find(|&number| slips(number)).expect("a block slips");
         prop_assert!(resting.active_from_step <= first, "active from step {}, first slip at {first}", resting.active_from_step);
         let along_an_axis = model.drive.direction.contains(&0.0);
