@@ -73,7 +73,7 @@ pub struct Largest {
     pub mu_star: f64,
     /// Friction across the drive at the time of the largest mu*.
     pub mu_lateral_star: f64,
-    /// Time of the largest mu*, the first of equal ones.
+    /// Time of the drive at the largest mu*, the first of equal ones.
     pub time_star: f64,
     until_path: f64,
     is_complete: bool,
@@ -92,7 +92,7 @@ impl Largest {
         }
     }
 
-    /// Takes the next step into account, at which the drive has gone `path`.
+    /// Takes the next step into account, at which the drive has gone `path` in the time `time_star`.
     pub fn update(&mut self, path: f64, time_star: f64, mu_star: f64, mu_lateral_star: f64) {
         self.is_complete |= path > self.until_path;
         if !self.is_complete && mu_star > self.mu_star {
@@ -215,7 +215,7 @@ impl Peak {
         let (mu_star, time_star) = (point.mu_star, clock.time_star());
         // The whole run counts, whatever the path: 0 is below infinity.
         self.largest
-            .update(0.0, time_star, mu_star, point.mu_lateral_star);
+            .update(0.0, clock.drive_time_star(), mu_star, point.mu_lateral_star);
         if self.is_final() {
             return;
         }

@@ -80,7 +80,7 @@ fn history(model: &Model, level: Level, steps: u64) -> Vec<u64> {
             stored.kinetic,
             stored.lattice,
             stored.drive_springs,
-            kernel.stress_square_max(model, number),
+            kernel.stress_square_max(model, &at_step(number, 0.2)),
         ];
         numbers.extend(
             [totals.displacement, totals.velocity, totals.velocity_after]
