@@ -139,7 +139,7 @@ impl CheckpointTimer {
 
     /// Saves a last checkpoint, and says how the run ends.
     fn stop(&mut self, signal: i32, running: &Running) -> Failure {
-        let (step, last_step) = (running.snapshot().step, running.case().time_plan.last_step);
+        let (step, last_step) = (running.snapshot().drive_steps, running.case().time_plan.last_step);
         let stopped = format!("stopped by a signal at step {step} of {last_step}");
         if !self.interval.saves() {
             let sentence = format!("{stopped}; nothing is saved, since --checkpoint is off");

@@ -102,7 +102,7 @@ pub(crate) fn save(
         }
         if last_report.elapsed() > REPORT_INTERVAL {
             last_report = Instant::now();
-            report_progress(running.snapshot().step as f64 / case.time_plan.last_step as f64);
+            report_progress(running.snapshot().drive_steps as f64 / case.time_plan.last_step as f64);
         }
     };
     let mut record = running.record(reason);

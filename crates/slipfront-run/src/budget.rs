@@ -93,6 +93,12 @@ impl RunBudget {
     pub fn without_pictures(case: &Case) -> Self {
         let (model, output, last_step) = (&case.model, &case.output, case.time_plan.last_step);
         let lattice = &model.lattice;
+        // How often a held drive stands is not known before.
+        let most_steps = if model.drive.is_held() {
+            u64::MAX
+        } else {
+            last_step
+        };
         let kept = |indices: Range<usize>| frames::kept(indices, output.stride).len() as f64;
         let n_frames = output.max_snapshots(last_step) as f64;
         Self {
@@ -109,7 +115,7 @@ impl RunBudget {
                 Some(_) => Precursors::expected_events(last_step) as f64,
                 None => 0.0,
             },
-            kymograph: Kymograph::max_counts(lattice, last_step) as f64,
+            kymograph: Kymograph::max_counts(lattice, most_steps) as f64,
             pictures: PictureBytes::default(),
             is_resumed: false,
         }

@@ -98,7 +98,7 @@ impl Running {
         let steps = self.snapshot().step + 1;
         let dt_star = before.time_plan.dt_star;
         let time_star = steps as f64 * dt_star;
-        let path = old.drive.path(time_star);
+        let path = self.snapshot().next_path();
         let unit = before.scales.displacement();
         let per_displacement = unit / case.scales.displacement();
         let per_speed = before.scales.speed() / case.scales.speed();

@@ -132,8 +132,9 @@ impl Observers {
         }
     }
 
-    /// Whether they can be those of a run of this case after `step` steps.
-    fn belong_to(&self, case: &Case, step: u64) -> bool {
+    /// Whether they can be those of a run of this case at a checkpoint.
+    fn belong_to(&self, case: &Case, checkpoint: &Checkpoint) -> bool {
+        let step = checkpoint.step;
         let new = Self::new(case);
         let instants = match (&self.fields.instants, &new.fields.instants) {
             (Some(old), Some(new)) => old.is_consistent_with(new, step),
@@ -143,11 +144,12 @@ impl Observers {
             (Some(old), Some(new)) => old.is_consistent_with(new, step),
             (old, new) => old.is_none() && new.is_none(),
         };
-        let time_star = step as f64 * case.time_plan.dt_star;
         instants
             && frames
             && self.kymograph.is_consistent_with(&case.model, step)
-            && self.summary.is_consistent_with(&new.summary, step, time_star)
+            && self
+                .summary
+                .is_consistent_with(&new.summary, checkpoint, case.time_plan.dt_star)
     }
 
     /// The numbers of blocks that a checkpoint keeps: those of the simulation, and those of every field of every frame.
@@ -246,7 +248,10 @@ impl Running {
         mut read: impl FnMut(u64, &mut [u8]) -> Result<(), E>,
     ) -> Result<Option<Self>, E> {
         let (checkpoint, mut observers) = (state.simulation, state.observers);
-        if checkpoint.step > case.time_plan.last_step || !observers.belong_to(case, checkpoint.step) {
+        let is_possible = checkpoint.is_consistent_with(&case.model)
+            && checkpoint.drive_steps <= case.time_plan.last_step
+            && observers.belong_to(case, &checkpoint);
+        if !is_possible {
             return Ok(None);
         }
         let [blocks, fields] = observers.columns(case);

@@ -23,6 +23,9 @@ pub struct SeriesRow {
     pub time_star: f64,
     /// Time, s.
     pub time_s: f64,
+    /// t* of the drive, of one that is held: its path over V* at a constant speed.
+    #[serde(default, deserialize_with = "number", skip_serializing_if = "Option::is_none")]
+    pub drive_time_star: Option<f64>,
     /// How far the drive has moved, m; of a rotation at its largest radius.
     #[serde(default, deserialize_with = "number", skip_serializing_if = "Option::is_none")]
     pub drive_displacement_m: Option<f64>,
@@ -100,7 +103,8 @@ impl SeriesRow {
             step: row.step,
             time_star: row.time_star,
             time_s: row.time_star * scales.time(),
-            drive_displacement_m: Some(model.drive.path(row.time_star) * scales.displacement()),
+            drive_time_star: model.drive.is_held().then_some(row.drive_time_star),
+            drive_displacement_m: Some(model.drive.path(row.drive_time_star) * scales.displacement()),
             mu_star: row.point.mu_star,
             friction_coefficient: row.point.mu_star * scales.mu_static_mean,
             mu_lateral_star: row.point.mu_lateral_star,
@@ -138,7 +142,7 @@ pub(crate) use columns_of;
 /// The columns of a series: their names and values, without those that it does not have, and without the numbers of the steps.
 pub fn columns(rows: &[SeriesRow]) -> Vec<(&'static str, Vec<f64>)> {
     let all = columns_of! { SeriesRow:
-        time_star time_s drive_displacement_m mu_star friction_coefficient mu_lateral_star friction_force_n lateral_force_n
+        time_star time_s drive_time_star drive_displacement_m mu_star friction_coefficient mu_lateral_star friction_force_n lateral_force_n
         torque_n_m sliding_percent work_j kinetic_energy_j lattice_energy_j drive_spring_energy_j friction_loss_j damping_loss_j
         viscous_loss_j contact_spring_energy_j broken_spring_loss_j weakening_loss_j mean_state_star
     };
@@ -318,6 +322,7 @@ mod tests {
         }
         let all = slipfront_case::case_file::names_of::<SeriesRow>();
         let whole = SeriesRow {
+            drive_time_star: Some(0.0),
             drive_displacement_m: Some(0.0),
             friction_force_n: Some(0.0),
             lateral_force_n: Some(0.0),

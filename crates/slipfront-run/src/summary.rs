@@ -9,7 +9,7 @@ use slipfront::observe::{
     Curve, Cycles, Energies, Frame, Kinetic, KineticHistory, NoUncertainty, Peak, Precursors, Quantiles,
     Scheduled, SlipEvent,
 };
-use slipfront::{Scales, Simulation, StopReason};
+use slipfront::{Checkpoint, Scales, Simulation, StopReason};
 
 use crate::error::ResultsError;
 use crate::folder_error::FolderError;
@@ -21,18 +21,19 @@ use slipfront_case::case::{Case, Topography};
 use slipfront_case::case_file::Motion;
 use slipfront_case::disk::{TEXT_MAX_BYTES, json, read_limited};
 
-/// The numbers of a run. Starred quantities are dimensionless (Eq. 11); times without a star are in s.
+/// The numbers of a run. Starred quantities are dimensionless (Eq. 11); times without a star are in s. A drive that is held has a time of its own,
+/// that for which it has moved.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Summary {
-    /// mu_s*, the first peak of mu* (or its largest value where there is no transition).
+    /// mu_s*, the first peak of mu*, of a drive that is held its largest value before the kinetic window (or its largest value where there is no transition).
     pub static_friction_star: f64,
     /// mu_s.
     pub static_friction: f64,
     /// The same across the drive at that instant, positive to the left of the drive.
     #[serde(default)]
     pub static_lateral_friction_star: f64,
-    /// t_s*.
+    /// t_s*, that of the drive.
     pub onset_time_star: f64,
     /// t_s, s.
     pub onset_time_s: f64,
@@ -49,7 +50,7 @@ pub struct Summary {
     /// Mean across the drive over the same window.
     #[serde(default)]
     pub kinetic_lateral_friction_star: Option<f64>,
-    /// [t1*, t2*] of that mean.
+    /// [t1*, t2*] of that mean, times of the drive.
     pub kinetic_window_star: Option<[f64; 2]>,
     /// Mean N* over the kinetic window, %.
     pub sliding_percent_kinetic: Option<f64>,
@@ -120,6 +121,9 @@ pub struct Summary {
     pub dt_star: f64,
     /// Steps done.
     pub steps: u64,
+    /// Those in which the drive moved, of a drive that is held; in the others it stood.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub drive_steps: Option<u64>,
     /// Seed of the random coefficients.
     pub seed: u64,
     /// Negative draws of the coefficients of blocks in contact that were set to 0.
@@ -224,6 +228,9 @@ pub struct InstantSummary {
     pub instant: char,
     /// t*.
     pub time_star: f64,
+    /// t* of the drive, of one that is held.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub drive_time_star: Option<f64>,
     /// mu*.
     pub mu_star: f64,
     /// N*, %.
@@ -231,10 +238,11 @@ pub struct InstantSummary {
 }
 
 impl InstantSummary {
-    fn of((letter, frame): &(char, Frame)) -> Self {
+    fn of((letter, frame): &(char, Frame), is_held: bool) -> Self {
         Self {
             instant: *letter,
             time_star: frame.time_star,
+            drive_time_star: is_held.then_some(frame.drive_time_star),
             mu_star: frame.point.mu_star,
             sliding_percent: frame.point.sliding_percent,
         }
@@ -308,20 +316,24 @@ impl SummaryObservers {
         }
     }
 
-    /// Whether they can be those that began as `new` after `step` steps, at `time_star`.
-    pub(crate) fn is_consistent_with(&self, new: &Self, step: u64, time_star: f64) -> bool {
+    /// Whether they can be those that began as `new` at a checkpoint of steps of `dt_star`.
+    pub(crate) fn is_consistent_with(&self, new: &Self, checkpoint: &Checkpoint, dt_star: f64) -> bool {
+        let [time_star, drive_time_star] =
+            [checkpoint.step, checkpoint.drive_steps].map(|steps| steps as f64 * dt_star);
         let precursors = match (&self.precursors, &new.precursors) {
             (Some(old), Some(new)) => old.is_consistent_with(new, time_star),
             (old, new) => old.is_none() && new.is_none(),
         };
         let cycles = match (&self.cycles, &new.cycles) {
-            (Some(old), Some(_)) => old.is_consistent_with(time_star),
+            (Some(old), Some(_)) => old.is_consistent_with(drive_time_star),
             (old, new) => old.is_none() && new.is_none(),
         };
         precursors
             && cycles
-            && self.curve.is_consistent_with(&new.curve, step)
-            && self.history.is_consistent_with(&new.history, step)
+            && self.curve.is_consistent_with(&new.curve, checkpoint.drive_steps)
+            && self
+                .history
+                .is_consistent_with(&new.history, checkpoint.drive_steps)
     }
 
     pub(crate) fn scheduled(&mut self) -> Vec<Scheduled<'_>> {
@@ -412,7 +424,9 @@ impl SummaryObservers {
             StopReason::Onset => None,
         };
         let last = self.curve.rows.last();
-        let (steps, energies) = last.map(|row| (row.step, row.energies)).unwrap_or_default();
+        let is_held = case.model.drive.is_held();
+        let last_row = last.copied().unwrap_or_default();
+        let (steps, energies) = (last_row.step, last_row.energies);
         let law = case.model.friction.needs();
         let (mean, time) = (case.scales.mu_static_mean, case.scales.time());
         let energy = case.scales.energy();
@@ -420,7 +434,14 @@ impl SummaryObservers {
         let transition = case.can_have_transition() && peak.ended && !is_kept_up(&peak, kinetic);
         let [static_star, lateral_star, onset_star] = static_friction(&peak, transition);
         let si = si(case, static_star, kinetic_star, simulation.contact_stress_max());
-        let after_run = after_run(reason, &peak, transition, first_slip, kinetic, &energies);
+        let after_run = after_run(
+            (reason, is_held),
+            &peak,
+            transition,
+            first_slip,
+            kinetic,
+            &energies,
+        );
         Summary {
             static_friction_star: static_star,
             static_friction: static_star * mean,
@@ -438,7 +459,10 @@ impl SummaryObservers {
             sliding_percent_max: self.history.sliding_percent_max(),
             mu_star_max: peak.largest.mu_star,
             transition,
-            instants: instants.iter().map(InstantSummary::of).collect(),
+            instants: instants
+                .iter()
+                .map(|found| InstantSummary::of(found, is_held))
+                .collect(),
             si: Some(si),
             v_star: case.groups.v_star,
             r_star: case.groups.r_star,
@@ -452,6 +476,7 @@ impl SummaryObservers {
             topographies: topographies(case),
             dt_star: case.time_plan.dt_star,
             steps,
+            drive_steps: is_held.then_some(last_row.drive_steps),
             seed: case.file.friction.seed,
             negative_draws: case.model.surface.negative_draws(),
             energy_error: energies.error(),
@@ -480,7 +505,7 @@ impl SummaryObservers {
 /// mu* along and across the drive and t* of static friction: at the first peak, or where mu* is largest if there is no transition.
 fn static_friction(peak: &Peak, transition: bool) -> [f64; 3] {
     if transition {
-        [peak.mu_star, peak.mu_lateral_star, peak.time_star]
+        [peak.mu_star, peak.mu_lateral_star, peak.drive_time_star]
     } else {
         let largest = &peak.largest;
         [largest.mu_star, largest.mu_lateral_star, largest.time_star]
@@ -582,7 +607,7 @@ const HIGHER_LATER: f64 = 0.01;
 
 /// What the run itself gives reason to warn of.
 fn after_run(
-    reason: StopReason,
+    (reason, is_held): (StopReason, bool),
     peak: &Peak,
     transition: bool,
     first_slip: Option<f64>,
@@ -597,7 +622,7 @@ fn after_run(
         ));
     }
     if !peak.ended {
-        let rises = kinetic.is_some_and(|kinetic| kinetic.window_star[0] <= peak.time_star);
+        let rises = kinetic.is_some_and(|kinetic| kinetic.window_star[0] <= peak.drive_time_star);
         warnings.push(format!(
             "mu* did not fall half-way to its steady level in the time of a transition: there was none, and static_friction_star is the \
              largest mu* of the run{}",
@@ -616,11 +641,23 @@ fn after_run(
         ));
     }
     if transition && peak.largest.mu_star > (1.0 + HIGHER_LATER) * peak.mu_star {
+        let (first, remedy) = if is_held {
+            (
+                "before the kinetic window",
+                "set time.kinetic_from_star after it to count it as static friction",
+            )
+        } else {
+            (
+                "at its first peak",
+                "slow loading by drive.loading = \"held\" takes the largest",
+            )
+        };
         warnings.push(format!(
-            "mu* is larger later than at its first peak: {:.4} at t* = {:.1}, {:.0} % above static_friction_star",
+            "mu* is larger later than {first}: {:.4} at t* = {:.1}, {:.0} % above static_friction_star = {:.4}; {remedy}",
             peak.largest.mu_star,
             peak.largest.time_star,
-            100.0 * (peak.largest.mu_star / peak.mu_star - 1.0)
+            100.0 * (peak.largest.mu_star / peak.mu_star - 1.0),
+            peak.mu_star
         ));
     }
     if first_slip.is_none() {

@@ -7,6 +7,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::clock::Clock;
 use crate::fixed_point::{FixedPoint, Window};
 use crate::friction::ContactTotals;
 use crate::measure::Peak;
@@ -18,6 +19,10 @@ use crate::totals::Totals;
 pub struct Checkpoint {
     /// Number of steps done.
     pub step: u64,
+    /// Those of them in which the drive moved.
+    pub drive_steps: u64,
+    /// The last of them, through which the drive has stood.
+    pub(crate) standing: u64,
     pub(crate) totals: Totals,
     pub(crate) contact: ContactTotals,
     pub(crate) peak: Peak,
@@ -25,6 +30,24 @@ pub struct Checkpoint {
     pub(crate) stress_square_max: f64,
     /// Of the fused kernel.
     pub(crate) motion_bounds: Option<MotionBounds>,
+}
+
+impl Checkpoint {
+    /// The instant that it belongs to, in steps of `dt_star`.
+    pub(crate) fn clock(&self, dt_star: f64) -> Clock {
+        Clock {
+            step: self.step,
+            drive_steps: self.drive_steps,
+            standing: self.standing,
+            dt_star,
+        }
+    }
+
+    /// Whether its counts of steps can be those of a run of this model.
+    pub fn is_consistent_with(&self, model: &Model) -> bool {
+        let stood = self.step.checked_sub(self.drive_steps);
+        stood.is_some_and(|stood| self.standing <= stood && (stood == 0 || model.drive.is_held()))
+    }
 }
 
 impl Model {

@@ -26,6 +26,22 @@ pub struct Drive {
     pub program: Option<Arc<Program>>,
     /// A rotation in place of the translation along `direction`.
     pub rotation: Option<Rotation>,
+    /// Whether the drive waits for slip to end.
+    pub loading: Loading,
+}
+
+/// When the far ends of the drive springs move.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Loading {
+    /// In every step: at the speed of the drive.
+    #[default]
+    Constant,
+    /// In a step before which no block in contact slid: slow loading, however large the speed. The drive's own time, which path, program
+    /// and windows count in, is then `dt*` times the number of steps in which it moved.
+    Held {
+        /// Steps of the drive up to which the largest mu* counts as static friction.
+        onset_steps: u64,
+    },
 }
 
 /// The speed of the drive, constant over each of several segments. The far ends move without a jump.
@@ -171,6 +187,7 @@ impl Drive {
             constant_force: [0.0, 0.0],
             program: None,
             rotation: None,
+            loading: Loading::Constant,
         }
     }
 
@@ -182,7 +199,17 @@ impl Drive {
         }
     }
 
-    /// Path of the driven ends at `time_star`, along the direction or of a rotation at its largest radius.
+    /// Whether it stands still while a block in contact slides.
+    pub fn is_held(&self) -> bool {
+        self.loading != Loading::Constant
+    }
+
+    /// Speed of steady sliding: V*, and 0 of a held drive, under which blocks slide while it stands.
+    pub(crate) fn steady_speed(&self) -> f64 {
+        if self.is_held() { 0.0 } else { self.v_star }
+    }
+
+    /// Path of the driven ends at `time_star` of the drive, along the direction or of a rotation at its largest radius.
     #[inline]
     pub fn path(&self, time_star: f64) -> f64 {
         match &self.program {

@@ -22,6 +22,32 @@ pub enum RunError {
         /// Its displacement along this axis, finite or not.
         value: f64,
     },
+    /// Under a drive that is held some block has slid for too long.
+    #[error(
+        "{n_slipping} blocks in contact still slide at step {step}, t* = {time_star:.1}, after the drive has stood still for {standing} steps: \
+         friction takes too little for the slider to come to rest; raise its kinetic friction or damping, or take constant loading"
+    )]
+    NoRest {
+        /// Step at which it was noticed.
+        step: u64,
+        /// Dimensionless time of that step.
+        time_star: f64,
+        /// Steps for which the drive has stood still.
+        standing: u64,
+        /// Blocks in contact that slide.
+        n_slipping: usize,
+    },
+    /// A run under a drive that is held has taken more steps than can be counted.
+    #[error(
+        "the run has taken {step} steps, the most that there may be, in {drive_steps} of which the held drive has moved: raise the speed of the \
+         drive or the time step, or shorten the run"
+    )]
+    TooManySteps {
+        /// Steps done.
+        step: u64,
+        /// Those in which the drive has moved.
+        drive_steps: u64,
+    },
     /// An observer failed.
     #[error("{0}")]
     Observer(String),

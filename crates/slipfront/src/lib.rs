@@ -34,6 +34,7 @@ pub mod surface;
 #[cfg(feature = "testing")]
 pub mod testing;
 
+mod clock;
 mod drive;
 mod elementary;
 mod error;
@@ -56,7 +57,7 @@ mod vector_field;
 
 pub use checkpoint::Checkpoint;
 pub use communicator::Communicator;
-pub use drive::{Drive, Program, Rotation, Segment};
+pub use drive::{Drive, Loading, Program, Rotation, Segment};
 pub use error::{RunError, SurfaceError};
 pub use friction::*;
 pub use kernel::{Execution, Kernel, simd_width};

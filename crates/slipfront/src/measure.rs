@@ -3,6 +3,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::clock::Clock;
+use crate::drive::Loading;
 use crate::model::Model;
 use crate::totals::Totals;
 use crate::vector_field::dot;
@@ -21,7 +23,7 @@ pub struct CurvePoint {
 }
 
 impl CurvePoint {
-    /// Eq. 9 over mu_s, from the mean displacement, with the relative stiffness w of the drive springs and N blocks that exist:
+    /// Eq. 9 over mu_s at a time t* of the drive, from the mean displacement, with the relative stiffness w of the drive springs and N blocks that exist:
     ///
     /// ```text
     /// mu* = (1/N) sum_i F_s,i . d = k_s (mean(w) V* t* - mean(w u . d))
@@ -33,13 +35,13 @@ impl CurvePoint {
     /// mu* = (k_s/N) (X sum_i w_i - sum_i w_i u_i . d)
     /// mu* = (k_s r_max/sum_i r_i) (X sum_i w_i g_i^2 - sum_i w_i u_i . g_i)
     /// ```
-    pub(crate) fn measure(model: &Model, totals: &Totals, time_star: f64) -> Self {
+    pub(crate) fn measure(model: &Model, totals: &Totals, drive_time_star: f64) -> Self {
         let (drive, divisor) = (&model.drive, model.mu_star_divisor());
         let mean = totals.displacement.map(|sum| sum / divisor);
         // The sums of a rotation are along and across its direction at each block.
         let (position, [dx, dy]) = match drive.rotation {
-            None => (drive.position(time_star), drive.direction),
-            Some(_) => ([drive.path(time_star), 0.0], [1.0, 0.0]),
+            None => (drive.position(drive_time_star), drive.direction),
+            Some(_) => ([drive.path(drive_time_star), 0.0], [1.0, 0.0]),
         };
         let share = model.driven_share();
         let pull = [0, 1].map(|axis| drive.k_drive * (position[axis] * share - mean[axis]));
@@ -71,7 +73,7 @@ pub struct Largest {
     pub mu_star: f64,
     /// Friction across the drive at the time of the largest mu*.
     pub mu_lateral_star: f64,
-    /// Time of the largest mu*, the first of equal ones.
+    /// Time of the drive at the largest mu*, the first of equal ones.
     pub time_star: f64,
     until_path: f64,
     is_complete: bool,
@@ -90,7 +92,7 @@ impl Largest {
         }
     }
 
-    /// Takes the next step into account, at which the drive has gone `path`.
+    /// Takes the next step into account, at which the drive has gone `path` in the time `time_star`.
     pub fn update(&mut self, path: f64, time_star: f64, mu_star: f64, mu_lateral_star: f64) {
         self.is_complete |= path > self.until_path;
         if !self.is_complete && mu_star > self.mu_star {
@@ -111,6 +113,9 @@ const LEAST_FALL: f64 = 0.05;
 /// The first peak of mu* that is followed by a fall of at least half-way to the steady level L and of at least (1 - L)/20, within the
 /// longest time that a transition takes. It is found while the run goes on: until such a fall is seen it is the largest mu* so far,
 /// and it stays that if the first fall comes too late, of a slider that creeps.
+///
+/// Under a held drive it is the largest mu* until the drive has moved in a stated number of steps, if such a fall follows it until then, on the
+/// time of the drive: a ripple just above L would pass for a first peak there.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Peak {
     /// mu* at the peak: mu_s* once `ended`.
@@ -121,35 +126,78 @@ pub struct Peak {
     pub step: u64,
     /// Time of the peak: t_s* once `ended`.
     pub time_star: f64,
-    /// Whether the fall has been seen.
+    /// Time of the drive then.
+    pub drive_time_star: f64,
+    /// Whether the fall has been seen; under a held drive not before the largest mu* is known.
     pub ended: bool,
     /// Largest mu* of the whole run so far.
     pub largest: Largest,
     steady_level: f64,
     longest_fall: f64,
-    /// Whether mu* fell that far too late to be a transition.
+    /// Whether mu* fell that far too late to be a transition; under a held drive, not at all.
     crept: bool,
+    /// Of a held drive.
+    held: Option<HeldPeak>,
+}
+
+/// What a peak under a held drive is known by.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+struct HeldPeak {
+    /// Steps of the drive after which it is final.
+    onset_steps: u64,
+    /// Whether the fall after the largest mu* so far has been seen.
+    has_fallen: bool,
 }
 
 impl Peak {
-    /// Before the first step; `steady_level` is L, see [`Model::steady_level`], and `longest_fall` that of [`Model::longest_fall`].
-    pub(crate) fn new(steady_level: f64, longest_fall: f64) -> Self {
+    /// Before the first step; `steady_level` is L, see [`Model::steady_level`].
+    pub(crate) fn new(model: &Model, steady_level: f64) -> Self {
+        let held = match model.drive.loading {
+            Loading::Constant => None,
+            Loading::Held { onset_steps } => Some(HeldPeak {
+                onset_steps,
+                has_fallen: false,
+            }),
+        };
+        Self {
+            held,
+            ..Self::within(model.longest_fall(), steady_level)
+        }
+    }
+
+    /// The peak under a drive at constant speed; `longest_fall` is that of [`Model::longest_fall`].
+    fn within(longest_fall: f64, steady_level: f64) -> Self {
         Self {
             mu_star: f64::NEG_INFINITY,
             mu_lateral_star: 0.0,
             step: 0,
             time_star: 0.0,
+            drive_time_star: 0.0,
             ended: false,
             largest: Largest::until(f64::INFINITY),
             steady_level,
             longest_fall,
             crept: false,
+            held: None,
         }
     }
 
-    /// Whether a fall to `mu_star` at this time would end the peak.
-    pub(crate) fn ends_at(&self, time_star: f64, mu_star: f64) -> bool {
-        !self.crept && self.is_fall_to(mu_star) && time_star - self.time_star <= self.longest_fall
+    /// Whether a run that stops after the onset would end at this instant with `mu_star`.
+    pub(crate) fn ends_at(&self, clock: &Clock, mu_star: f64) -> bool {
+        match &self.held {
+            None => !self.crept && self.is_transition_to(clock, mu_star),
+            Some(held) => clock.drive_steps >= held.onset_steps,
+        }
+    }
+
+    /// Whether a run that stops after the onset ends now: the fall has been seen, or under a held drive it is known that there was none.
+    pub(crate) fn is_final(&self) -> bool {
+        self.ended || (self.held.is_some() && self.crept)
+    }
+
+    /// Whether it is a fall as fast as a transition that leads to `mu_star` at this instant.
+    fn is_transition_to(&self, clock: &Clock, mu_star: f64) -> bool {
+        self.is_fall_to(mu_star) && clock.drive_time_star() - self.drive_time_star <= self.longest_fall
     }
 
     fn is_fall_to(&self, mu_star: f64) -> bool {
@@ -163,20 +211,33 @@ impl Peak {
     }
 
     /// Takes the next step into account.
-    pub(crate) fn update(&mut self, step: u64, time_star: f64, point: &CurvePoint) {
-        let mu_star = point.mu_star;
+    pub(crate) fn update(&mut self, clock: &Clock, point: &CurvePoint) {
+        let (mu_star, time_star) = (point.mu_star, clock.time_star());
         // The whole run counts, whatever the path: 0 is below infinity.
         self.largest
-            .update(0.0, time_star, mu_star, point.mu_lateral_star);
-        if self.ended {
+            .update(0.0, clock.drive_time_star(), mu_star, point.mu_lateral_star);
+        if self.is_final() {
             return;
         }
-        if mu_star > self.mu_star {
-            (self.mu_star, self.step, self.time_star) = (mu_star, step, time_star);
+        let is_higher = mu_star > self.mu_star;
+        if is_higher {
+            (self.mu_star, self.step, self.time_star) = (mu_star, clock.step, time_star);
             self.mu_lateral_star = point.mu_lateral_star;
-        } else {
-            self.ended = self.ends_at(time_star, mu_star);
-            self.crept |= !self.ended && self.is_fall_to(mu_star);
+            self.drive_time_star = clock.drive_time_star();
+        }
+        let falls = !is_higher && self.is_transition_to(clock, mu_star);
+        match &mut self.held {
+            None if is_higher => {}
+            None => {
+                self.ended = !self.crept && falls;
+                self.crept |= !self.ended && self.is_fall_to(mu_star);
+            }
+            Some(held) => {
+                held.has_fallen = !is_higher && (held.has_fallen || falls);
+                if clock.drive_steps >= held.onset_steps {
+                    (self.ended, self.crept) = (held.has_fallen, !held.has_fallen);
+                }
+            }
         }
     }
 }
@@ -191,14 +252,16 @@ mod tests {
     }
 
     fn peak_within(longest_fall: f64, level: f64, curve: &[f64]) -> Peak {
-        let mut peak = Peak::new(level, longest_fall);
-        for (n, &mu) in curve.iter().enumerate() {
+        let mut peak = Peak::within(longest_fall, level);
+        let mut clock = Clock::start(1.0);
+        for &mu in curve {
             let point = CurvePoint {
                 mu_star: mu,
                 mu_lateral_star: -mu,
                 ..CurvePoint::default()
             };
-            peak.update(n as u64, n as f64, &point);
+            peak.update(&clock, &point);
+            clock = clock.next(true);
         }
         peak
     }

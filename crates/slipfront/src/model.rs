@@ -1,11 +1,11 @@
 //! What never changes in a run: lattice, slider, surface, drive, damping and friction law.
 
-use std::f64::consts::PI;
+use std::f64::consts::{PI, TAU};
 use std::ops::Range;
 use std::sync::Arc;
 
 use crate::communicator::Communicator;
-use crate::drive::{Drive, Program};
+use crate::drive::{Drive, Loading, Program};
 use crate::fixed_point::sum_over;
 use crate::friction::Friction;
 use crate::lattice::{K_DRIVE, Lattice, springs_on_a_lone_block};
@@ -86,6 +86,12 @@ impl Model {
     pub fn with_slider(self, slider: Slider) -> Self {
         slider.assert_fits(self.surface.n_blocks());
         Self { slider, ..self }
+    }
+
+    /// This model under a drive that is loaded in this way.
+    pub fn with_loading(mut self, loading: Loading) -> Self {
+        self.drive.loading = loading;
+        self
     }
 
     /// This model with a program of speeds for its drive, if there is one.
@@ -197,15 +203,25 @@ impl Model {
     pub fn longest_fall(&self) -> f64 {
         let k_drive = self.drive.k_drive;
         let loading = ONSET_PATH / self.loading_speed() * self.friction.loading_delay(k_drive);
-        let front = self.lattice.nx.max(self.lattice.ny) as f64;
-        let swing = std::f64::consts::TAU / k_drive.sqrt();
-        loading.max(front).max(swing)
+        loading.max(self.response_time())
     }
 
-    /// Drag of the damping in steady sliding at V*, the part of [`steady_level`](Self::steady_level) that is no friction. All `ranks` of a
+    /// The longer of the times, in t*, of a slip front across the slider, a block per t*, and of a swing of the slider on its drive springs.
+    fn response_time(&self) -> f64 {
+        let front = self.lattice.nx.max(self.lattice.ny) as f64;
+        front.max(TAU / self.drive.k_drive.sqrt())
+    }
+
+    /// The longest time, in t*, for which a held drive stands still. Without damping, kinetic friction of R* of the static one stops a swing on the
+    /// drive springs after some (1 - R*)/(4 R*) periods, so that a slider that slides for 1000 of them has an R* of less than 3e-4.
+    pub(crate) fn longest_stop(&self) -> f64 {
+        1000.0 * self.response_time()
+    }
+
+    /// Drag of the damping in steady sliding at V*, none under a held drive: the part of [`steady_level`](Self::steady_level) that is no friction. All `ranks` of a
     /// lattice must call this together.
     pub fn steady_drag(&self, ranks: &dyn Communicator) -> f64 {
-        let drag = self.damping * self.drive.v_star;
+        let drag = self.damping * self.drive.steady_speed();
         let Some(rotation) = &self.drive.rotation else {
             return drag * self.slider.mean_mass;
         };
@@ -226,16 +242,18 @@ impl Model {
     /// L = [sum_i mu_ki F_n,i r_i/(P l^2 mu_s) + Omega V* sum_i m_i r_i^2/r_max]/sum_i r_i    of a rotation
     /// ```
     ///
-    /// with the coefficient at V* of a law in which it depends on the speed, and half the mean threshold of springs in contact. All `ranks` of a lattice
+    /// with 0 for V* where the drive is held, the coefficient at V* of a law in which it depends on the speed, and half the mean threshold of springs in contact. All `ranks` of a lattice
     /// must call this together.
     pub fn steady_level(&self, ranks: &dyn Communicator) -> f64 {
         let Some(rotation) = &self.drive.rotation else {
-            let kinetic = self.friction.steady_force(&self.surface, self.drive.v_star);
+            let kinetic = self
+                .friction
+                .steady_force(&self.surface, self.drive.steady_speed());
             return kinetic + self.steady_drag(ranks);
         };
         let force = |b: usize| {
             let relative = self.relative_radius(b);
-            let speed = self.drive.v_star * relative;
+            let speed = self.drive.steady_speed() * relative;
             let kinetic = self.friction.steady_force_of(&self.surface, b, speed);
             relative * (kinetic + self.damping * self.slider.mass(b) * speed)
         };

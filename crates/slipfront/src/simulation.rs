@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use crate::checkpoint::{BlockColumn, Checkpoint};
+use crate::clock::Clock;
 use crate::communicator::{Communicator, lowest_rank};
 use crate::error::RunError;
 use crate::friction::ContactTotals;
@@ -16,11 +17,13 @@ use crate::state::State;
 use crate::stop::{Stop, StopReason};
 use crate::totals::Totals;
 
+/// Most steps under a drive that is held, of which none can be told before: the fused kernel keeps their numbers in 32 bits.
+const MAX_HELD_STEPS: u64 = u32::MAX as u64 - 1;
+
 /// A run in progress.
 pub struct Simulation {
     model: Arc<Model>,
-    dt_star: f64,
-    step: u64,
+    clock: Clock,
     engine: Box<dyn Engine>,
     communicator: Arc<dyn Communicator>,
     totals: Totals,
@@ -51,12 +54,12 @@ impl Simulation {
         );
         let communicator = Arc::clone(&execution.communicator);
         let mut engine = execution.begin(&model, dt_star, state);
-        let totals = engine.step(&model, 0, true);
+        let clock = Clock::start(dt_star);
+        let totals = engine.step(&model, &clock, true);
         let mut simulation = Self {
-            peak: Peak::new(model.steady_level(&*communicator), model.longest_fall()),
+            peak: Peak::new(&model, model.steady_level(&*communicator)),
             model,
-            dt_star,
-            step: 0,
+            clock,
             engine,
             communicator,
             totals,
@@ -82,14 +85,13 @@ impl Simulation {
         read: impl FnMut(usize, usize, &mut [f64]) -> Result<(), E>,
     ) -> Result<Option<Self>, E> {
         let model = model.into();
-        let (step, totals, peak) = (checkpoint.step, checkpoint.totals, checkpoint.peak);
+        let (clock, totals, peak) = (checkpoint.clock(dt_star), checkpoint.totals, checkpoint.peak);
         let communicator = Arc::clone(&execution.communicator);
         let engine = execution.resume(&model, dt_star, checkpoint, read)?;
         Ok(engine.map(|engine| Self {
-            point: CurvePoint::measure(&model, &totals, step as f64 * dt_star),
+            point: CurvePoint::measure(&model, &totals, clock.drive_time_star()),
             model,
-            dt_star,
-            step,
+            clock,
             engine,
             communicator,
             totals,
@@ -104,11 +106,13 @@ impl Simulation {
     /// together.
     pub fn checkpoint(&self) -> Checkpoint {
         Checkpoint {
-            step: self.step,
+            step: self.clock.step,
+            drive_steps: self.clock.drive_steps,
+            standing: self.clock.standing,
             totals: self.totals,
             contact: self.contact,
             peak: self.peak,
-            stress_square_max: self.engine.stress_square_max(&self.model, self.step),
+            stress_square_max: self.engine.stress_square_max(&self.model, &self.clock),
             motion_bounds: self.engine.motion_bounds(),
         }
     }
@@ -130,7 +134,7 @@ impl Simulation {
         })?;
         (0..self.model.friction.n_columns()).try_for_each(|column| {
             BlockColumn::for_each_part_of_one(self.model.surface.n_blocks(), |first, values| {
-                engine.read_memory(self.step, column, first, values);
+                engine.read_memory(self.time_star(), column, first, values);
                 write(BlockColumn::ALL.len() + column, first, values)
             })
         })
@@ -160,14 +164,15 @@ impl Simulation {
         steps: u64,
         observers: &mut [Scheduled],
     ) -> Result<Option<StopReason>, RunError> {
-        let last_step = self.step.saturating_add(steps);
+        let last_step = self.clock.step.saturating_add(steps);
         loop {
             self.check_finite()?;
+            self.check_standing()?;
             let mut now = self.snapshot();
             let reason = stop.reached(&now);
             now.last = reason.is_some();
             if !self.observed {
-                for observer in observers.iter_mut().filter(|o| o.due(now.step)) {
+                for observer in observers.iter_mut().filter(|o| o.due(&now.clock)) {
                     observer.observe(&now)?;
                 }
             }
@@ -175,8 +180,8 @@ impl Simulation {
                 self.observed = true;
                 return Ok(reason);
             }
-            let next = now.step + 1;
-            let energies = stop.may_end(&now) || observers.iter().any(|o| o.needs_energies(next));
+            let next = now.next_clock();
+            let energies = stop.may_end(&now) || observers.iter().any(|o| o.needs_energies(&next));
             self.step_with(energies);
         }
     }
@@ -187,26 +192,28 @@ impl Simulation {
     }
 
     fn step_with(&mut self, energies: bool) {
-        self.step += 1;
+        self.clock = self.snapshot().next_clock();
         self.observed = false;
-        self.totals = self.engine.step(&self.model, self.step, energies);
+        self.totals = self.engine.step(&self.model, &self.clock, energies);
         self.measure();
     }
 
     fn measure(&mut self) {
-        let time_star = self.time_star();
         self.contact = self.engine.contact_totals(&self.model);
-        self.point = CurvePoint::measure(&self.model, &self.totals, time_star);
-        self.peak.update(self.step, time_star, &self.point);
+        self.point = CurvePoint::measure(&self.model, &self.totals, self.clock.drive_time_star());
+        self.peak.update(&self.clock, &self.point);
     }
 
     /// The present instant.
     pub fn snapshot(&self) -> Snapshot<'_> {
         Snapshot {
             model: &self.model,
-            step: self.step,
+            step: self.clock.step,
+            drive_steps: self.clock.drive_steps,
             time_star: self.time_star(),
-            dt_star: self.dt_star,
+            drive_time_star: self.clock.drive_time_star(),
+            dt_star: self.clock.dt_star,
+            clock: self.clock,
             totals: self.totals,
             contact: self.contact,
             point: self.point,
@@ -219,7 +226,7 @@ impl Simulation {
 
     /// Time of the present instant: step times time step, so that no rounding errors add up.
     pub fn time_star(&self) -> f64 {
-        self.step as f64 * self.dt_star
+        self.clock.time_star()
     }
 
     /// Displacements now, velocities half a step later.
@@ -235,7 +242,7 @@ impl Simulation {
     /// The largest contact stress (Eq. 10) over blocks in contact and all steps so far, in units of `P mu_s`: the scale of
     /// tau_c*. All ranks must call this together.
     pub fn contact_stress_max(&self) -> f64 {
-        self.engine.stress_square_max(&self.model, self.step).sqrt()
+        self.engine.stress_square_max(&self.model, &self.clock).sqrt()
     }
 
     /// When each block of this rank first slid while in contact, t*; NaN where none has. They take no memory beside that of
@@ -261,12 +268,37 @@ impl Simulation {
         let (block, value) = self.largest_displacement();
         let (i, j) = self.model.lattice.column_row(block);
         Err(RunError::NotFinite {
-            step: self.step,
+            step: self.clock.step,
             time_star: self.time_star(),
             i,
             j,
             value,
         })
+    }
+
+    /// A held drive would stand for ever over a slider that does not come to rest.
+    fn check_standing(&self) -> Result<(), RunError> {
+        let Clock {
+            step,
+            standing,
+            dt_star,
+            ..
+        } = self.clock;
+        if standing as f64 * dt_star > self.model.longest_stop() {
+            return Err(RunError::NoRest {
+                step,
+                time_star: self.time_star(),
+                standing,
+                n_slipping: self.totals.n_slipping,
+            });
+        }
+        if standing > 0 && step >= MAX_HELD_STEPS {
+            return Err(RunError::TooManySteps {
+                step,
+                drive_steps: self.clock.drive_steps,
+            });
+        }
+        Ok(())
     }
 
     /// The block of all ranks that is displaced farthest along an axis, the first of equal ones, and its displacement along this

@@ -1,6 +1,7 @@
 //! What observers see of a run.
 
 use crate::checkpoint::BlockColumn;
+use crate::clock::Clock;
 use crate::communicator::Communicator;
 use crate::fixed_point::sum_over;
 use crate::friction::ContactTotals;
@@ -16,8 +17,12 @@ pub struct Snapshot<'a> {
     pub model: &'a Model,
     /// Number of the step, n.
     pub step: u64,
+    /// Number of steps in which the drive has moved: n, unless it is held.
+    pub drive_steps: u64,
     /// `t* = n dt*`.
     pub time_star: f64,
+    /// Time of the drive, `drive_steps dt*`, on which its path depends.
+    pub drive_time_star: f64,
     /// Time step.
     pub dt_star: f64,
     /// Sums over all blocks.
@@ -30,6 +35,7 @@ pub struct Snapshot<'a> {
     pub peak: Peak,
     /// Whether the run ends here.
     pub last: bool,
+    pub(crate) clock: Clock,
     pub(crate) engine: &'a dyn Engine,
     pub(crate) communicator: &'a dyn Communicator,
 }
@@ -49,7 +55,7 @@ impl Snapshot<'_> {
             1,
             "a block is read where one rank holds the whole lattice"
         );
-        self.engine.block(self.model, self.step, b)
+        self.engine.block(self.model, &self.clock, b)
     }
 
     /// Writes `field` of every block, row by row from y = 0, into `values`: the same numbers as
@@ -72,7 +78,7 @@ impl Snapshot<'_> {
         let Some(outline) = &self.model.slider.outline else {
             return self
                 .engine
-                .read_rows(self.model, self.step, field, stride, &mut write);
+                .read_rows(self.model, &self.clock, field, stride, &mut write);
         };
         // Where there is no block there is no value.
         const WIDTH: usize = 128;
@@ -92,7 +98,7 @@ impl Snapshot<'_> {
             }
         };
         self.engine
-            .read_rows(self.model, self.step, field, stride, &mut leave_out);
+            .read_rows(self.model, &self.clock, field, stride, &mut leave_out);
     }
 
     /// Energies stored now.
@@ -115,7 +121,7 @@ impl Snapshot<'_> {
         let surface = &self.model.surface;
         let column = |column: usize| {
             let mut values = vec![0.0; surface.n_blocks()];
-            self.engine.read_memory(self.step, column, 0, &mut values);
+            self.engine.read_memory(self.time_star, column, 0, &mut values);
             values
         };
         let slip = column(0);
@@ -158,14 +164,25 @@ impl Snapshot<'_> {
         latest_negative[0].is_finite().then_some(-latest_negative[0])
     }
 
+    /// The next instant: whether a held drive moves until then is known now.
+    pub(crate) fn next_clock(&self) -> Clock {
+        let stands = self.model.drive.is_held() && self.totals.n_slipping > 0;
+        self.clock.next(!stands)
+    }
+
+    /// Path of the drive at the next step, along the direction or of a rotation at its largest radius.
+    pub fn next_path(&self) -> f64 {
+        self.model.drive.path(self.next_clock().drive_time_star())
+    }
+
     /// mu* at the next step, which the velocities of the blocks already determine up to rounding.
     pub(crate) fn mu_star_next(&self) -> f64 {
         let mut totals = self.totals;
         for axis in 0..2 {
             totals.displacement[axis] += self.dt_star * totals.velocity_after[axis];
         }
-        let time_star = (self.step + 1) as f64 * self.dt_star;
-        CurvePoint::measure(self.model, &totals, time_star).mu_star
+        let drive_time_star = self.next_clock().drive_time_star();
+        CurvePoint::measure(self.model, &totals, drive_time_star).mu_star
     }
 
     /// Whether mu* will be higher at the next step.

@@ -17,13 +17,13 @@ pub struct Stop {
 pub enum StopReason {
     /// The last step is done.
     End,
-    /// The fall that ends the first peak of mu* was seen.
+    /// The fall that ends the first peak of mu* was seen, or the drive that is held has gone the path up to which the largest mu* counts.
     #[serde(rename = "after_onset")]
     Onset,
 }
 
 impl Stop {
-    /// After `last_step` steps.
+    /// After `last_step` steps of the drive: all steps, unless it is held.
     pub fn at_step(last_step: u64) -> Self {
         Self {
             last_step,
@@ -31,7 +31,7 @@ impl Stop {
         }
     }
 
-    /// As soon as the fall that ends the first peak is seen, and after `last_step` steps at the latest.
+    /// As soon as the fall that ends the first peak is seen, under a held drive as soon as the largest mu* is known, and after `last_step` steps at the latest.
     pub fn after_onset(last_step: u64) -> Self {
         Self {
             last_step,
@@ -46,16 +46,16 @@ impl Stop {
 
     /// Whether the next step may be the last. A fall of mu* is known one step ahead.
     pub(crate) fn may_end(&self, now: &Snapshot) -> bool {
-        let next = (now.step + 1) as f64 * now.dt_star;
-        let onset_ends = || now.peak.ends_at(next, now.mu_star_next() - MU_STAR_ROUNDING);
-        now.step + 1 >= self.last_step || (self.after_onset && onset_ends())
+        let next = now.next_clock();
+        let onset_ends = || now.peak.ends_at(&next, now.mu_star_next() - MU_STAR_ROUNDING);
+        next.drive_steps >= self.last_step || (self.after_onset && onset_ends())
     }
 
     /// Why the run ends now, if it does.
     pub(crate) fn reached(&self, now: &Snapshot) -> Option<StopReason> {
-        if self.after_onset && now.peak.ended {
+        if self.after_onset && now.peak.is_final() {
             Some(StopReason::Onset)
-        } else if now.step >= self.last_step {
+        } else if now.drive_steps >= self.last_step {
             Some(StopReason::End)
         } else {
             None

@@ -4,7 +4,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use slipfront::lattice::K_DRIVE;
-use slipfront::{Communicator, Drive, Lattice, Program, Rotation, Scales, Slider};
+use slipfront::{Communicator, Drive, Lattice, Model, Program, Rotation, Scales, Slider};
 
 use super::groups::{Groups, within};
 use super::inputs::Inputs;
@@ -141,6 +141,30 @@ pub(super) fn program(file: &CaseFile, dt_star: f64) -> Result<Option<Arc<Progra
         parts.push((segment.v_star, until_star));
     }
     Ok(Some(Arc::new(Program::new(parts))))
+}
+
+/// Refuses a drive that is held over blocks which nothing stops, called by all ranks at once.
+pub(super) fn refuse_endless_slip(
+    file: &CaseFile,
+    model: &Model,
+    ranks: &dyn Communicator,
+) -> Result<(), CaseError> {
+    let surface = &model.surface;
+    let is_endless = |b: &usize| !surface.textured[*b] && surface.kinetic_force(*b) == 0.0;
+    let mut count = [0];
+    if model.drive.is_held() {
+        count[0] = (0..surface.n_blocks()).filter(is_endless).count() as i64;
+    }
+    ranks.sum(&mut count);
+    let [count] = count;
+    if count == 0 {
+        return Ok(());
+    }
+    let sentence = format!(
+        "{count} of the blocks in contact have no kinetic friction, so that they slide for ever once they do, and a held drive never moves again: \
+         raise `friction.r_star`, lower `friction.sigma_kinetic_star`, load every block, or take `loading` = \"constant\""
+    );
+    Err(file.source.error("drive.loading", sentence))
 }
 
 /// Refuses a rotation by an angle that is not small.

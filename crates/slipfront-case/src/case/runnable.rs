@@ -8,7 +8,7 @@ use slipfront::{Communicator, Lattice, Model, Scales};
 
 use super::budget::Budget;
 use super::derived::Derived;
-use super::drive::{program, refuse_large_angles};
+use super::drive::{program, refuse_endless_slip, refuse_large_angles};
 use super::groups::Groups;
 use super::inputs::{Input, Inputs, NamedFiles, Watch};
 use super::model::{self, TextureReport};
@@ -163,7 +163,10 @@ impl Case {
         let planned = TimePlan::of(&file, &scales, &groups, &model, ranks.communicator)
             .and_then(|plan| Ok((plan, Output::of(&file, &plan)?)));
         let (time_plan, output) = ranks.agree(planned)?;
-        let model = model.with_program(program(&file, time_plan.dt_star)?);
+        let model = model
+            .with_program(program(&file, time_plan.dt_star)?)
+            .with_loading(time_plan.loading);
+        ranks.agree(refuse_endless_slip(&file, &model, ranks.communicator))?;
         refuse_large_angles(&file, &model.drive, groups.epsilon, time_plan.end_star())?;
         Ok(Self {
             name: name.to_owned(),
@@ -198,7 +201,7 @@ impl Case {
         made.map(|in_blocks| in_blocks.textures)
     }
 
-    /// Steps times blocks, the measure of what the run costs.
+    /// Steps times blocks, those in which a held drive stands left out, the measure of what the run costs.
     pub fn block_steps(&self) -> f64 {
         self.time_plan.last_step as f64 * self.model.lattice.n_blocks() as f64
     }

@@ -3,11 +3,11 @@
 use slipfront::communicator::Communicator;
 use slipfront::lattice::K_DRIVE;
 use slipfront::observe::KineticStart;
-use slipfront::{Model, ONSET_PATH, Scales, Stop, StopReason};
+use slipfront::{Loading, Model, ONSET_PATH, Scales, Stop, StopReason};
 
 use super::groups::Groups;
 use crate::case_file::{
-    Attached, AttachedEdge, AutoOr, CaseError, CaseFile, DriveSpeed, RunTime, Snapshots, TimeStep,
+    self, Attached, AttachedEdge, AutoOr, CaseError, CaseFile, DriveSpeed, RunTime, Snapshots, TimeStep,
 };
 use crate::number_format::four_digits;
 
@@ -18,12 +18,14 @@ pub struct TimePlan {
     pub dt_star: f64,
     /// What it must be less than.
     pub step_limit: f64,
-    /// Number of steps.
+    /// Number of steps in which the drive moves: all, unless it is held.
     pub last_step: u64,
     /// The condition that ends the run.
     pub stop: Stop,
-    /// Start of the window that kinetic friction is averaged over.
+    /// Start of the window that kinetic friction is averaged over, on the time of the drive.
     pub kinetic: KineticStart,
+    /// Whether the drive is held, and up to which of its steps the largest mu* counts as static friction then.
+    pub loading: Loading,
 }
 
 /// Load of a block in contact over what it would be if every block touched, by which the onset comes later: 1 unless every block has a drive
@@ -80,11 +82,20 @@ impl TimePlan {
             );
             return Err(file.source.error(key, sentence));
         }
-        let kinetic = match time.kinetic_from_star {
-            AutoOr::Auto => KineticStart::Auto,
-            AutoOr::Number(from) => KineticStart::At(from),
-        };
         let last_step = steps as u64;
+        let (kinetic, loading) = match (file.drive.loading, time.kinetic_from_star) {
+            (case_file::Loading::Constant, AutoOr::Auto) => (KineticStart::Auto, Loading::Constant),
+            (case_file::Loading::Constant, AutoOr::Number(from)) => {
+                (KineticStart::At(from), Loading::Constant)
+            }
+            (case_file::Loading::Held, from) => {
+                let from = match from {
+                    AutoOr::Auto => auto_onset_end(file, scales, model),
+                    AutoOr::Number(from) => from,
+                };
+                held(from, dt_star, last_step)
+            }
+        };
         let stop = match time.stop {
             StopReason::End => Stop::at_step(last_step),
             StopReason::Onset => Stop::after_onset(last_step),
@@ -95,6 +106,7 @@ impl TimePlan {
             last_step,
             stop,
             kinetic,
+            loading,
         };
         plan.check_end(file)?;
         Ok(plan)
@@ -103,7 +115,7 @@ impl TimePlan {
     /// Refuses a kinetic window and snapshots after the end of the run.
     fn check_end(&self, file: &CaseFile) -> Result<(), CaseError> {
         let end_star = self.end_star();
-        if let KineticStart::At(from) = self.kinetic
+        if let AutoOr::Number(from) = file.time.kinetic_from_star
             && from >= end_star
         {
             let sentence =
@@ -131,7 +143,6 @@ impl TimePlan {
 /// window begins, which takes longer than 8/V* where less than 48 % of the blocks touch. A drive that loads more slowly and adhesion delay the
 /// onset; under a program of speeds it is counted from the last of them.
 fn auto_duration(file: &CaseFile, scales: &Scales, model: &Model) -> f64 {
-    let delay = 1.0 + file.friction.adhesion.si() / scales.stress();
     let last = match &file.drive.speed {
         DriveSpeed::Program(segments) => segments
             .iter()
@@ -140,5 +151,26 @@ fn auto_duration(file: &CaseFile, scales: &Scales, model: &Model) -> f64 {
         DriveSpeed::VStar(_) | DriveSpeed::Speed(_) => None,
     };
     let path = f64::max(8.0, load_factor(file, model) / K_DRIVE + ONSET_PATH);
-    last.unwrap_or(0.0) + path / model.loading_speed() * delay
+    last.unwrap_or(0.0) + path / model.loading_speed() * delay(file, scales)
+}
+
+/// By how many times adhesion delays the onset.
+fn delay(file: &CaseFile, scales: &Scales) -> f64 {
+    1.0 + file.friction.adhesion.si() / scales.stress()
+}
+
+/// The time of a held drive, t*, up to which the largest mu* counts as static friction: twice that of the onset (Eq. 12), or when the drive springs
+/// of the blocks that touch bear it all, if that is later.
+fn auto_onset_end(file: &CaseFile, scales: &Scales, model: &Model) -> f64 {
+    let path = f64::max(2.0 * ONSET_PATH, load_factor(file, model) / K_DRIVE);
+    path / model.loading_speed() * delay(file, scales)
+}
+
+/// The window of kinetic friction under a drive that is held, and its loading: the largest mu* before the window, or of the whole run, counts as
+/// static friction. A run that ends first has no window.
+fn held(from_star: f64, dt_star: f64, last_step: u64) -> (KineticStart, Loading) {
+    let first = (from_star / dt_star).ceil().max(1.0) as u64;
+    let kinetic = KineticStart::At(first.min(last_step + 1) as f64 * dt_star);
+    let onset_steps = first.min(last_step);
+    (kinetic, Loading::Held { onset_steps })
 }

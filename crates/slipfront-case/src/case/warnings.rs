@@ -30,6 +30,8 @@ const LARGE_V_STAR: f64 = 0.2;
 const LARGE_DRAG: f64 = 0.1;
 /// Drag over what the blocks hold at rest that is never warned of, however little kinetic friction there is.
 const SMALL_DRAG: f64 = 0.01;
+/// Rise of mu* in a step of a held drive above which there is a warning: twice that of V* = 0.03 in steps of 0.1.
+const LARGE_INCREMENT: f64 = 2.25e-3;
 /// Fewest blocks for which the paper calls edge effects small.
 const FEW_BLOCKS: usize = 625;
 
@@ -52,7 +54,8 @@ impl Case {
             )
         });
         let against_front = self.model.speed_against_front();
-        warn(against_front > LARGE_V_STAR, &|| {
+        let is_held = self.model.drive.is_held();
+        warn(against_front > LARGE_V_STAR && !is_held, &|| {
             // But for rounding.
             if (against_front / v_star - 1.0).abs() < 1e-9 {
                 return format!(
@@ -70,6 +73,13 @@ impl Case {
         });
         warn(dt_star > 0.5, &|| {
             format!("dt* = {dt_star} is stable but coarse: with 0.1, mu_s* is good to 1e-3")
+        });
+        let increment = self.model.drive.k_drive * self.model.driven_share() * v_star * dt_star;
+        warn(is_held && increment > LARGE_INCREMENT, &|| {
+            format!(
+                "mu* rises by up to {} in a step in which the held drive moves, and mu_s* is known no better: lower `drive.v_star` or `time.step`",
+                four_digits(increment)
+            )
         });
         let n_blocks = self.model.n_blocks();
         warn(n_blocks < FEW_BLOCKS, &|| {

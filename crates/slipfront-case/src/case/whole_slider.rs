@@ -89,6 +89,7 @@ impl Case {
             && load.pressure_field.is_none()
             && *model.slider() == Slider::default()
             && model.drive.program.is_none()
+            && !model.drive.is_held()
             && drive.motion == Motion::Translation
             && matches!(drive.attached, Attached::At(AttachedEdge::All))
             && drive.stiffness == DriveStiffness::Auto
@@ -178,6 +179,7 @@ mod tests {
             "load.profile={ along = 'x', relative_slope = 0.5 }",
             "drive.attach='left'",
             "drive.motion='rotation'",
+            "drive.loading='held'",
             "drive.stiffness_star=0.1",
             "texture=[{ shape = 'cavity', coverage = 10 }]",
         ] {

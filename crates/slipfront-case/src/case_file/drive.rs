@@ -8,7 +8,7 @@ use super::error::CaseError;
 use super::key_table::{PROGRAM_SPEED, STIFFNESS, UNTIL};
 use super::slider::Slider;
 use super::values::word;
-use super::words::{AttachedEdge, Motion, Outline};
+use super::words::{AttachedEdge, Loading, Motion, Outline};
 use crate::quantity::{QuantityError, Speed, Stiffness, StiffnessPerArea};
 
 /// `[drive]`: how the slider is pulled.
@@ -21,6 +21,8 @@ pub struct Drive {
     pub direction: f64,
     /// How the far ends of the drive springs move.
     pub motion: Motion,
+    /// Whether it stands still while a block in contact slides.
+    pub loading: Loading,
     /// Which blocks have a drive spring: `attach` or `attach_file`.
     pub attached: Attached,
     /// Stiffness of the drive springs: `stiffness`, `stiffness_star`, `stiffness_per_area`, `total_stiffness` or `total_stiffness_star`.
@@ -191,6 +193,8 @@ struct DriveKeys {
     direction: f64,
     #[serde(deserialize_with = "word")]
     motion: Motion,
+    #[serde(deserialize_with = "word")]
+    loading: Loading,
     #[serde(default, deserialize_with = "some_word")]
     attach: Option<AttachedEdge>,
     attach_file: Option<String>,
@@ -269,6 +273,7 @@ impl TryFrom<DriveKeys> for Drive {
             speed,
             direction: keys.direction,
             motion: keys.motion,
+            loading: keys.loading,
             attached,
             stiffness,
         })
@@ -283,6 +288,7 @@ impl From<Drive> for DriveKeys {
             program: None,
             direction: drive.direction,
             motion: drive.motion,
+            loading: drive.loading,
             attach: None,
             attach_file: None,
             stiffness: None,

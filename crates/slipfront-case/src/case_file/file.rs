@@ -23,6 +23,7 @@ use super::source::Source;
 use super::tables::Tables;
 use super::texture::Texture;
 use super::time::Time;
+use super::words::Loading;
 
 /// A whole case file. The default is the baseline of Fig. 3, Table 1 case 8.
 ///
@@ -128,6 +129,9 @@ impl CaseFile {
         self.load.check(&check("load"))?;
         self.drive.check(&check("drive"), &self.slider)?;
         self.friction.check(&check("friction"))?;
+        if self.drive.loading == Loading::Held {
+            self.friction.check_held(&check("friction"))?;
+        }
         for (index, texture) in self.texture.iter().enumerate() {
             let path = format!("texture.{index}");
             texture.check(&Check::new(&self.source, keys_of(texture.shape.name()), &path))?;

@@ -18,7 +18,7 @@ use super::key::{
 };
 use super::probe::names_of;
 use super::shapes;
-use super::words::{AttachedEdge, Motion, Outline};
+use super::words::{AttachedEdge, Loading, Motion, Outline};
 
 /// The keys that stand together: those of a table, or of a shape of texture.
 #[derive(Clone, Copy, Debug)]
@@ -171,6 +171,7 @@ const DRIVE: &[Key] = &[
     key("direction", "0", DEGREES, "direction of the drive, degrees from x towards y")
         .title("direction of the drive", "\u{3b8}", "\u{b0}"),
     key("motion", "\"translation\"", KeyKind::Words(names_of::<Motion>), "whether the drive pulls along the direction or turns"),
+    key("loading", "\"constant\"", KeyKind::Words(names_of::<Loading>), "whether the drive moves all the time or stands while a block in contact slides"),
     key("attach", "\"all\"", KeyKind::Words(names_of::<AttachedEdge>), "which blocks have a drive spring: all, or those of an edge")
         .or("attach_file"),
     key("attach_file", "", KeyKind::File(&["png", "npy"]), "an image or array of the blocks that have a drive spring").or("attach"),

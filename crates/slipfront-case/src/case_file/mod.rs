@@ -58,7 +58,7 @@ pub use tables::Tables;
 pub use texture::Texture;
 pub use time::{RunTime, Time, TimeStep};
 pub use values::AutoOr;
-pub use words::{Arrangement, AttachedEdge, Motion, Outline};
+pub use words::{Arrangement, AttachedEdge, Loading, Motion, Outline};
 
 #[cfg(test)]
 mod tests;

@@ -40,6 +40,16 @@ pub enum Motion {
     Rotation,
 }
 
+/// When the far ends of the drive springs move.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Loading {
+    /// In every step.
+    Constant,
+    /// While no block in contact slides.
+    Held,
+}
+
 /// `lattice`: how columns and rows lie to each other.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]

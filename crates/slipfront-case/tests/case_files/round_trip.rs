@@ -7,9 +7,9 @@ use slipfront::{Edges, StopReason};
 use slipfront_case::case_file::{
     Ageing, AgeingLaw, Along, Arrangement, Array, Attached, AttachedEdge, AutoOr, Bearing, CaseFile, Cavity,
     CavitySize, Center, ContactModel, Count, Damping, Drive, DriveSpeed, DriveStiffness, Friction, Grade,
-    Groove, GrooveSize, HeightMap, KineticFriction, Law, Load, Mask, Motion, Outline, Output, Pattern, Pitch,
-    Polygon, Profile, RunTime, Shape, Slider, SlipWeakeningLength, Snapshots, Source, SpeedSegment, Texture,
-    Time, TimeStep, Velocity, VelocityLaw,
+    Groove, GrooveSize, HeightMap, KineticFriction, Law, Load, Loading, Mask, Motion, Outline, Output,
+    Pattern, Pitch, Polygon, Profile, RunTime, Shape, Slider, SlipWeakeningLength, Snapshots, Source,
+    SpeedSegment, Texture, Time, TimeStep, Velocity, VelocityLaw,
 };
 use slipfront_case::quantity::{Kind, Length, Quantity};
 
@@ -168,6 +168,7 @@ fn drive() -> impl Strategy<Value = Drive> {
         speed,
         direction,
         motion: Motion::Translation,
+        loading: Loading::Constant,
         attached,
         stiffness,
     })
@@ -479,9 +480,16 @@ fn output() -> impl Strategy<Value = Output> {
 
 fn case_file() -> impl Strategy<Value = CaseFile> {
     let textures = prop::collection::vec(texture(), 0..4);
-    (slider(), load(), drive(), friction(), textures, time(), output()).prop_map(
-        |(slider, load, drive, friction, texture, time, output)| {
+    let loading = select(vec![Loading::Constant, Loading::Held]);
+    let drive = (drive(), loading);
+    (slider(), load(), drive, friction(), textures, time(), output()).prop_map(
+        |(slider, load, (mut drive, loading), friction, texture, time, output)| {
             let source = Source::default();
+            // Blocks of other laws do not stop, or grow stronger in time.
+            let stops = friction.law == Law::Projection && friction.contact == ContactModel::Rigid;
+            if stops && friction.ageing.is_none() && friction.healing_time_star.is_none() {
+                drive.loading = loading;
+            }
             CaseFile {
                 slider,
                 load,

@@ -15,10 +15,39 @@ pub(crate) struct RunProgress {
 
 /// The steps of a run.
 struct Steps {
-    /// Step at which this process began.
-    first: u64,
+    /// Where this process began.
+    first: Place,
+    /// Number of steps in which the drive moves: all, unless it is held.
     last: u64,
     n_blocks: usize,
+}
+
+/// How far a run has come.
+#[derive(Clone, Copy)]
+struct Place {
+    /// Steps done.
+    step: u64,
+    /// Those of them in which the drive moved.
+    drive_steps: u64,
+    /// What tells it: t*, or the path of a drive that is held.
+    name: &'static str,
+    value: f64,
+}
+
+impl Place {
+    fn of(now: &Snapshot) -> Self {
+        let drive = &now.model.drive;
+        let (name, value) = match drive.is_held() {
+            false => ("t*", now.time_star),
+            true => ("X*", drive.path(now.drive_time_star)),
+        };
+        Self {
+            step: now.step,
+            drive_steps: now.drive_steps,
+            name,
+            value,
+        }
+    }
 }
 
 impl RunProgress {
@@ -28,7 +57,7 @@ impl RunProgress {
         Self {
             display: ProgressDisplay::new("{wide_bar} {msg}", quiet),
             steps: Steps {
-                first: running.snapshot().step,
+                first: Place::of(&running.snapshot()),
                 last: case.time_plan.last_step,
                 n_blocks: case.model.lattice.n_blocks(),
             },
@@ -36,10 +65,10 @@ impl RunProgress {
     }
 
     pub(crate) fn show(&mut self, now: &Snapshot) {
-        let (time_star, mu_star) = (now.time_star, now.point.mu_star);
+        let (place, mu_star) = (Place::of(now), now.point.mu_star);
         let steps = &self.steps;
-        self.display.show(now.step, steps.last, |passed| {
-            steps.text(now.step, time_star, mu_star, passed)
+        self.display.show(now.drive_steps, steps.last, |passed| {
+            steps.text(place, mu_star, passed)
         });
     }
 
@@ -54,16 +83,19 @@ impl RunProgress {
 }
 
 impl Steps {
-    /// The state of a run at a step. Its rate is that of the steps of this process, which has run for the time `passed`.
-    fn text(&self, step: u64, time_star: f64, mu_star: f64, passed: Duration) -> String {
-        let percent = 100.0 * step as f64 / self.last as f64;
-        let state = format!("{percent:3.0} %  t* = {time_star:.1}  mu* = {mu_star:.3}");
-        let here = step - self.first;
+    /// The state of a run. Its rate is that of the steps of this process, which has run for the time `passed`.
+    fn text(&self, now: Place, mu_star: f64, passed: Duration) -> String {
+        let percent = 100.0 * now.drive_steps as f64 / self.last as f64;
+        let state = format!(
+            "{percent:3.0} %  {} = {:.1}  mu* = {mu_star:.3}",
+            now.name, now.value
+        );
+        let here = now.drive_steps - self.first.drive_steps;
         if here == 0 {
             return state;
         }
-        let rate = here as f64 * self.n_blocks as f64 / passed.as_secs_f64();
-        let left = time_left(self.last - step, here, passed);
+        let rate = (now.step - self.first.step) as f64 * self.n_blocks as f64 / passed.as_secs_f64();
+        let left = time_left(self.last - now.drive_steps, here, passed);
         format!("{state}  {rate:.1e} block-steps/s{left}")
     }
 }
@@ -72,34 +104,62 @@ impl Steps {
 mod tests {
     use super::*;
 
+    fn at(step: u64, time_star: f64) -> Place {
+        Place {
+            step,
+            drive_steps: step,
+            name: "t*",
+            value: time_star,
+        }
+    }
+
     /// Half of what is left took a minute: a minute is left, however much an earlier process had done.
     #[test]
     fn a_resumed_run_counts_its_own_steps() {
         let steps = Steps {
-            first: 8000,
+            first: at(8000, 800.0),
             last: 10_000,
             n_blocks: 60,
         };
         assert_eq!(
-            steps.text(9000, 900.0, 0.5123, Duration::from_secs(60)),
+            steps.text(at(9000, 900.0), 0.5123, Duration::from_secs(60)),
             " 90 %  t* = 900.0  mu* = 0.512  1.0e3 block-steps/s  60 seconds left"
         );
         assert_eq!(
-            steps.text(8000, 800.0, 0.5123, Duration::from_secs(60)),
+            steps.text(at(8000, 800.0), 0.5123, Duration::from_secs(60)),
             " 80 %  t* = 800.0  mu* = 0.512"
+        );
+    }
+
+    /// Of 3000 steps the drive has stood in 2000.
+    #[test]
+    fn a_held_drive_shows_its_path() {
+        let steps = Steps {
+            first: at(0, 0.0),
+            last: 2000,
+            n_blocks: 60,
+        };
+        let now = Place {
+            step: 3000,
+            drive_steps: 1000,
+            name: "X*",
+            value: 3.04,
+        };
+        assert_eq!(
+            steps.text(now, 0.5123, Duration::from_secs(60)),
+            " 50 %  X* = 3.0  mu* = 0.512  3.0e3 block-steps/s  60 seconds left"
         );
     }
 
     #[test]
     fn the_longest_text_fits_a_terminal() {
         let steps = Steps {
-            first: 0,
+            first: at(0, 0.0),
             last: 100_000_000_000,
             n_blocks: 4_000_000_000,
         };
         let text = steps.text(
-            98_765_432_100,
-            123_456_789.1,
+            at(98_765_432_100, 123_456_789.1),
             -0.345,
             Duration::from_secs(59 * 3600),
         );

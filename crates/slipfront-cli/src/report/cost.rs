@@ -16,9 +16,13 @@ pub(crate) fn cost(case: &Case, seconds: f64) -> String {
 }
 
 /// The time in which a slip front crosses the slider, about a block per t*, over that in which the drive loads it, about 1/V*: the
-/// line, and a note where the drive is the faster.
+/// line, and a note where the drive is the faster. A drive that is held waits for the front.
 fn loading(case: &Case) -> (String, Option<String>) {
     let (lattice, drive) = (&case.model.lattice, &case.model.drive);
+    if drive.is_held() {
+        let line = "loading           slow: the drive stands while a front crosses the slider\n";
+        return (line.to_owned(), None);
+    }
     let [nx, ny] = [lattice.nx, lattice.ny].map(|blocks| blocks as f64);
     let (name, blocks) = match drive.direction {
         _ if drive.rotation.is_some() => ("N", nx.max(ny)),

@@ -1,5 +1,6 @@
 //! The resolved physics of a case.
 
+use slipfront::Loading;
 use slipfront::surface::Clearance;
 use slipfront_case::case::{Case, Topography};
 use slipfront_case::case_file::{Attached, AttachedEdge, DriveStiffness, Grade, Motion, Outline};
@@ -122,7 +123,12 @@ fn drive(case: &Case) -> String {
             four_digits(springs * drive.k_drive)
         ),
     };
-    format!("{speed} {motion}{at}{stiffness}")
+    let held = if drive.is_held() {
+        ", standing while a block in contact slides"
+    } else {
+        ""
+    };
+    format!("{speed} {motion}{at}{stiffness}{held}")
 }
 
 /// The lengths over which the mount screens what happens at a place, where every block has a drive spring, and the size from which slip
@@ -207,11 +213,18 @@ pub(crate) fn smallest(case: &Case, smallest: Clearance, said: &[String]) -> Str
 fn time(case: &Case) -> String {
     let time_plan = &case.time_plan;
     let end_star = time_plan.end_star();
+    let held = match time_plan.loading {
+        Loading::Constant => String::new(),
+        Loading::Held { onset_steps } => format!(
+            " of the drive and those in which it stands; mu_s* is the largest mu* to t* = {} of the drive",
+            four_digits(onset_steps as f64 * time_plan.dt_star)
+        ),
+    };
     format!(
         "to t* = {} ({}) in {} of dt* = {}",
         four_digits(end_star),
         with_si_prefix(end_star * case.scales.time(), "s"),
         count(time_plan.last_step as usize, "step"),
         four_digits(time_plan.dt_star)
-    )
+    ) + &held
 }

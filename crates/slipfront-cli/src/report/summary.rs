@@ -2,7 +2,7 @@
 
 use slipfront_case::case::Case;
 use slipfront_case::case_file::Motion;
-use slipfront_case::number_format::{four_digits, with_si_prefix, with_uncertainty};
+use slipfront_case::number_format::{count, four_digits, with_si_prefix, with_uncertainty};
 use slipfront_run::summary::{CycleSummary, PrecursorSummary, Summary};
 
 use super::times::instant;
@@ -16,6 +16,9 @@ pub(crate) fn summary(case: &Case, summary: &Summary) -> String {
     }
     lines.push(("kinetic friction", kinetic_friction(case, summary)));
     lines.push(("sliding blocks", sliding_blocks(case, summary)));
+    if let Some(drive_steps) = summary.drive_steps {
+        lines.push(("held drive", held_drive(summary.steps, drive_steps)));
+    }
     if let Some(precursors) = &summary.precursors {
         lines.push(("events of slip", events(case, precursors)));
     }
@@ -80,6 +83,14 @@ fn sliding_blocks(case: &Case, summary: &Summary) -> String {
         String::new()
     };
     most + &kinetic + &textured
+}
+
+fn held_drive(steps: u64, drive_steps: u64) -> String {
+    format!(
+        "moved in {} of {}, and stood still in the others",
+        drive_steps,
+        count(steps as usize, "step")
+    )
 }
 
 fn events(case: &Case, precursors: &PrecursorSummary) -> String {

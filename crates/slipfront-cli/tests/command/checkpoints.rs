@@ -27,6 +27,9 @@ const SPRINGS: &str = "[slider]\nblocks = [60, 50]\n[drive]\nv_star = 0.01\n[fri
 /// Enough blocks for two threads, until the onset.
 const WIDE: &str = "[slider]\nblocks = [400, 350]\n[drive]\nv_star = 0.05\n[time]\nstop = 'after_onset'\n";
 
+/// A drive that stands for many steps while blocks slip.
+const HELD: &str = "[slider]\nblocks = [60, 50]\n[drive]\nv_star = 0.005\nloading = 'held'\n[[texture]]\nshape = 'cavity'\ncoverage = 10\n";
+
 fn slow_workspace() -> Workspace {
     let workspace = Workspace::small();
     for (name, text) in [
@@ -34,6 +37,7 @@ fn slow_workspace() -> Workspace {
         ("reversal.toml", REVERSAL),
         ("springs.toml", SPRINGS),
         ("wide.toml", WIDE),
+        ("held.toml", HELD),
     ] {
         workspace.write(name, text);
     }
@@ -60,6 +64,7 @@ fn stopped(workspace: &Workspace, line: &str, folder: &str, times: usize) {
 #[case("reversal.toml", "-TERM", 143)]
 #[case("springs.toml", "-TERM", 143)]
 #[case("wide.toml", "-INT", 130)]
+#[case("held.toml", "-TERM", 143)]
 fn stopped_any_number_of_times_it_writes_the_same_bytes(
     #[case] case: &str,
     #[case] signal: &str,

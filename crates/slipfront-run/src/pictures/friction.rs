@@ -238,7 +238,7 @@ pub fn marked_curve(label: String, summary: &Summary) -> FrictionCurve {
     let peak = (summary.onset_time_star, summary.static_friction_star);
     let instants = summary.instants.iter().map(|instant| Instant {
         letter: instant.instant,
-        x: instant.time_star,
+        x: instant.drive_time_star.unwrap_or(instant.time_star),
         friction: instant.mu_star,
     });
     FrictionCurve {
@@ -266,7 +266,8 @@ impl DrawnRun {
         let unit = summary.si.as_ref().map_or(f64::NAN, |si| si.displacement_unit_m);
         let row = |row: SeriesRow| {
             let path = row.drive_displacement_m.map_or(f64::NAN, |path| path / unit);
-            [row.time_star, path, row.mu_star, row.sliding_percent]
+            let time_star = row.drive_time_star.unwrap_or(row.time_star);
+            [time_star, path, row.mu_star, row.sliding_percent]
         };
         Ok(Self {
             rows: series::read_rows(&folder.join(SERIES), SERIES, row)?,

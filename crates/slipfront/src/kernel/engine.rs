@@ -2,26 +2,27 @@
 
 use super::block::{Block, Field};
 use crate::checkpoint::{BlockColumn, MotionBounds};
+use crate::clock::Clock;
 use crate::friction::ContactTotals;
 use crate::model::Model;
 use crate::position_bins::PositionBins;
 use crate::state::State;
 use crate::totals::Totals;
 
-/// A kernel with the state of all blocks. `number` is that of the present step, unless a function advances to it.
+/// A kernel with the state of all blocks. `clock` is at the present step, unless a function advances to it.
 pub(crate) trait Engine: Send + Sync {
-    /// Advances to step `number`: the next one, or the one to begin with.
-    fn step(&mut self, model: &Model, number: u64, energies: bool) -> Totals;
+    /// Advances to the step of `clock`: the next one, or the one to begin with.
+    fn step(&mut self, model: &Model, clock: &Clock, energies: bool) -> Totals;
 
     /// Block `b` with the forces on it.
-    fn block(&self, model: &Model, number: u64, b: usize) -> Block;
+    fn block(&self, model: &Model, clock: &Clock, b: usize) -> Block;
 
     /// Values of `field` in every `stride`-th row, several blocks of a row at a time: `write` is given the row, the column
     /// of the first value, and the values.
     fn read_rows(
         &self,
         model: &Model,
-        number: u64,
+        clock: &Clock,
         field: Field,
         stride: usize,
         write: &mut dyn FnMut(usize, usize, &[f32]),
@@ -43,7 +44,7 @@ pub(crate) trait Engine: Send + Sync {
     fn into_first_slips(self: Box<Self>) -> Vec<f64>;
 
     /// Largest square of a contact stress of a block in contact at any step so far.
-    fn stress_square_max(&self, model: &Model, number: u64) -> f64;
+    fn stress_square_max(&self, model: &Model, clock: &Clock) -> f64;
 
     /// Power that the dampers between blocks take at the present step, `-sum F_v . v`; of a kernel that knows none, 0.
     fn viscous_power(&self) -> f64 {
@@ -59,6 +60,6 @@ pub(crate) trait Engine: Send + Sync {
     }
 
     /// What the law of friction remembers of the blocks from `first` on: one of its
-    /// [`Friction::n_columns`](crate::friction::Friction::n_columns), at the present step.
-    fn read_memory(&self, number: u64, column: usize, first: usize, values: &mut [f64]);
+    /// [`Friction::n_columns`](crate::friction::Friction::n_columns), at the present t*.
+    fn read_memory(&self, time_star: f64, column: usize, first: usize, values: &mut [f64]);
 }

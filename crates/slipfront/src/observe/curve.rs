@@ -15,6 +15,10 @@ pub struct CurveRow {
     pub step: u64,
     /// t*.
     pub time_star: f64,
+    /// Steps in which the drive has moved by then: all, unless it is held.
+    pub drive_steps: u64,
+    /// t* of the drive, on which its path depends.
+    pub drive_time_star: f64,
     /// mu* and N*.
     pub point: CurvePoint,
     /// Energies stored at this instant, and supplied and lost up to it.
@@ -26,14 +30,14 @@ pub struct CurveRow {
 /// Records the curve and keeps the energy balance. It must be called at every step.
 #[derive(Debug, Serialize, Deserialize)]
 pub struct Curve {
-    /// One row for every `stride`-th step from 0, and for the last step.
+    /// One row for every `stride`-th step of the drive from 0, and for the last step.
     pub rows: Vec<CurveRow>,
     stride: u64,
     ledger: Ledger,
 }
 
 impl Curve {
-    /// Records every `stride`-th step.
+    /// Records every `stride`-th step of the drive.
     pub fn every(stride: u64) -> Self {
         Self {
             rows: Vec::new(),
@@ -42,13 +46,13 @@ impl Curve {
         }
     }
 
-    /// Whether this can be the recording that began as `new` and was called at every step up to `step`.
-    pub fn is_consistent_with(&self, new: &Self, step: u64) -> bool {
+    /// Whether this can be the recording that began as `new` and was called at every step until the drive had moved in so many.
+    pub fn is_consistent_with(&self, new: &Self, drive_steps: u64) -> bool {
         let stride = new.stride.max(1);
-        let of_stride = || (0..=step).step_by(stride as usize);
+        let of_stride = || (0..=drive_steps).step_by(stride as usize);
         // A run that has ended has a row of its last step, whatever the stride.
-        let with_last = of_stride().chain((!step.is_multiple_of(stride)).then_some(step));
-        let rows = || self.rows.iter().map(|row| row.step);
+        let with_last = of_stride().chain((!drive_steps.is_multiple_of(stride)).then_some(drive_steps));
+        let rows = || self.rows.iter().map(|row| row.drive_steps);
         self.stride == new.stride && (rows().eq(of_stride()) || rows().eq(with_last))
     }
 }
@@ -56,10 +60,13 @@ impl Curve {
 impl Observer for Curve {
     fn observe(&mut self, now: &Snapshot) -> Result<(), RunError> {
         self.ledger.add(now);
-        if now.last || now.step.is_multiple_of(self.stride) {
+        let is_due = now.clock.drive_moved() && now.drive_steps.is_multiple_of(self.stride);
+        if now.last || is_due {
             self.rows.push(CurveRow {
                 step: now.step,
                 time_star: now.time_star,
+                drive_steps: now.drive_steps,
+                drive_time_star: now.drive_time_star,
                 point: now.point,
                 energies: self.ledger.energies(now),
                 mean_state: now.contact.mean_state,
@@ -68,7 +75,7 @@ impl Observer for Curve {
         Ok(())
     }
 
-    fn needs_energies(&self, step: u64) -> bool {
-        step.is_multiple_of(self.stride)
+    fn needs_energies(&self, drive_steps: u64) -> bool {
+        drive_steps.is_multiple_of(self.stride)
     }
 }

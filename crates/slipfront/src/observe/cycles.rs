@@ -9,13 +9,13 @@ use crate::snapshot::Snapshot;
 /// A segment of a program with a speed above zero, as far as the run went.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Cycle {
-    /// t* at which it begins.
+    /// t* of the drive at which it begins.
     pub from_star: f64,
     /// Its speed.
     pub v_star: f64,
     /// Largest mu* in it: of the instants after its beginning, up to and with its end.
     pub mu_star: f64,
-    /// t* of the largest mu*, the first of equal ones.
+    /// t* of the drive at the largest mu*, the first of equal ones.
     pub time_star: f64,
 }
 
@@ -31,13 +31,13 @@ impl Cycles {
         &self.cycles
     }
 
-    /// Whether this can be the recording of a run up to `time_star`.
-    pub fn is_consistent_with(&self, time_star: f64) -> bool {
+    /// Whether this can be the recording of a run up to this time of the drive.
+    pub fn is_consistent_with(&self, drive_time_star: f64) -> bool {
         let times = self
             .cycles
             .iter()
             .flat_map(|cycle| [cycle.from_star, cycle.time_star]);
-        times.chain([time_star]).is_sorted()
+        times.chain([drive_time_star]).is_sorted()
     }
 }
 
@@ -47,8 +47,7 @@ impl Observer for Cycles {
             return Ok(());
         };
         // What an instant shows is due to the step that ends there.
-        let before = now.step.saturating_sub(1) as f64 * now.dt_star;
-        let segment = program.segment_at(before);
+        let segment = program.segment_at(now.clock.drive_time_before());
         if segment.v_star <= 0.0 {
             return Ok(());
         }
@@ -56,14 +55,14 @@ impl Observer for Cycles {
         match self.cycles.last_mut() {
             Some(cycle) if cycle.from_star == segment.from_star => {
                 if mu_star > cycle.mu_star {
-                    (cycle.mu_star, cycle.time_star) = (mu_star, now.time_star);
+                    (cycle.mu_star, cycle.time_star) = (mu_star, now.drive_time_star);
                 }
             }
             _ => self.cycles.push(Cycle {
                 from_star: segment.from_star,
                 v_star: segment.v_star,
                 mu_star,
-                time_star: now.time_star,
+                time_star: now.drive_time_star,
             }),
         }
         Ok(())

@@ -104,7 +104,9 @@ impl Ledger {
         match self.before {
             Some(before) => {
                 let half = 0.5 * now.dt_star;
-                let speed = now.model.drive.speed_after((now.step - 1) as f64 * now.dt_star);
+                let moved = now.clock.drive_moved();
+                let at_speed = || now.model.drive.speed_after(now.clock.drive_time_before());
+                let speed = if moved { at_speed() } else { 0.0 };
                 self.totals.work += half * (before.work(speed) + powers.work(speed));
                 self.totals.friction_loss += half * (before.friction + powers.friction);
                 self.totals.damping_loss += half * (before.damping + powers.damping);

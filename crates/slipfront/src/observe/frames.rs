@@ -18,6 +18,8 @@ pub struct Frame {
     pub step: u64,
     /// t*.
     pub time_star: f64,
+    /// t* of the drive.
+    pub drive_time_star: f64,
     /// mu* and N*.
     pub point: CurvePoint,
     /// One array per field, row by row from y = 0, every `stride`-th block of each axis from the first on. They are as large as
@@ -69,6 +71,7 @@ impl Selection {
         let mut frame = Frame {
             step: 0,
             time_star: 0.0,
+            drive_time_star: 0.0,
             point: now.point,
             values: vec![vec![0.0; nx * rows.len()]; self.fields.len()],
         };
@@ -79,6 +82,7 @@ impl Selection {
     /// Overwrites a frame of the same selection, without allocating.
     pub(crate) fn capture_into(&self, now: &Snapshot, frame: &mut Frame) {
         (frame.step, frame.time_star, frame.point) = (now.step, now.time_star, now.point);
+        frame.drive_time_star = now.drive_time_star;
         let (nx, rows) = self.counts(now.model);
         for (&field, values) in self.fields.iter().zip(&mut frame.values) {
             now.read_rows(field, self.stride, |j, i, part| {

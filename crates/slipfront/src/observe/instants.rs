@@ -131,9 +131,9 @@ impl Instants {
 impl Observer for Instants {
     fn observe(&mut self, now: &Snapshot) -> Result<(), RunError> {
         let v_star = now.model.loading_speed();
-        // The step before, as its own product: n dt - dt need not be (n - 1) dt to the last bit.
-        let before = (now.step as f64 - 1.0) * now.dt_star;
-        let passes = |time: f64| now.time_star >= time && before < time;
+        // The step of the drive before, as its own product: n dt - dt need not be (n - 1) dt to the last bit.
+        let before = (now.drive_steps as f64 - 1.0) * now.dt_star;
+        let passes = |time: f64| now.clock.drive_moved() && now.drive_time_star >= time && before < time;
         if passes(0.5 / v_star) {
             self.keep(A, now);
         }
@@ -142,7 +142,7 @@ impl Observer for Instants {
         }
         let kinetic_from = self.kinetic.time_star(&now.peak, v_star);
         let middle = 0.5 * (kinetic_from + self.end_time_star);
-        if now.peak.ended && !self.ended && middle > now.time_star {
+        if now.peak.ended && !self.ended && middle > now.drive_time_star {
             // The end of the peak moves the kinetic window: F was the middle of the window of a run without a transition.
             self.valid[F] = false;
         }
@@ -151,8 +151,8 @@ impl Observer for Instants {
         let mut ended = now.peak;
         ended.ended = true;
         let fall_until = self.kinetic.time_star(&ended, v_star);
-        let most_until = now.peak.time_star + ONSET_PATH / v_star;
-        self.known = [most_until, fall_until].map(|until| now.time_star >= until);
+        let most_until = now.peak.drive_time_star + ONSET_PATH / v_star;
+        self.known = [most_until, fall_until].map(|until| now.drive_time_star >= until);
         if now.peak.step == now.step {
             // While mu* still rises the peak lies ahead, as it does at every step before the first slip.
             if (self.valid[B] && !now.mu_star_rises()) || now.last {
@@ -167,11 +167,11 @@ impl Observer for Instants {
             let least = self
                 .first_valid(&[E, D, C])
                 .map_or(f64::INFINITY, |frame| frame.point.mu_star);
-            if now.time_star <= most_until && now.point.sliding_percent > most {
+            if now.drive_time_star <= most_until && now.point.sliding_percent > most {
                 self.keep(D, now);
                 self.valid[E] = false;
-            } else if now.time_star <= fall_until && now.point.mu_star < least {
-                let still_falls = now.mu_star_falls() && (now.step + 1) as f64 * now.dt_star <= fall_until;
+            } else if now.drive_time_star <= fall_until && now.point.mu_star < least {
+                let still_falls = now.mu_star_falls() && now.next_clock().drive_time_star() <= fall_until;
                 if !still_falls || now.last {
                     self.keep(E, now);
                 }

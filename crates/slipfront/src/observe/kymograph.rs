@@ -53,7 +53,7 @@ impl Kymograph {
 
     /// Called when it is due.
     pub fn scheduled(&mut self) -> Scheduled<'_> {
-        Scheduled::new(Schedule::Every(Self::INTERVAL), self)
+        Scheduled::new(Schedule::EveryStep(Self::INTERVAL), self)
     }
 
     /// Blocks in contact of every bin.

@@ -8,8 +8,13 @@ use crate::snapshot::Snapshot;
 /// It must be called at every step.
 impl Observer for Largest {
     fn observe(&mut self, now: &Snapshot) -> Result<(), RunError> {
-        let path = now.model.drive.path(now.time_star);
-        self.update(path, now.time_star, now.point.mu_star, now.point.mu_lateral_star);
+        let path = now.model.drive.path(now.drive_time_star);
+        self.update(
+            path,
+            now.drive_time_star,
+            now.point.mu_star,
+            now.point.mu_lateral_star,
+        );
         Ok(())
     }
 }

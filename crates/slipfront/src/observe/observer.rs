@@ -1,5 +1,6 @@
 //! The interface of all observers, and when they are called.
 
+use crate::clock::Clock;
 use crate::error::RunError;
 use crate::snapshot::Snapshot;
 
@@ -11,9 +12,9 @@ pub trait Observer {
     /// [`RunError::Observer`] ends the run.
     fn observe(&mut self, now: &Snapshot) -> Result<(), RunError>;
 
-    /// Whether it needs the stored energies at `step`. They are measured only at steps at which an observer needs them.
-    fn needs_energies(&self, step: u64) -> bool {
-        let _ = step;
+    /// Whether it needs the stored energies after so many steps of the drive, when it has just moved. They are measured only at steps at which an observer needs them.
+    fn needs_energies(&self, drive_steps: u64) -> bool {
+        let _ = drive_steps;
         false
     }
 }
@@ -21,9 +22,11 @@ pub trait Observer {
 /// At which steps an observer is called.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Schedule {
-    /// At every n-th step from 0.
+    /// At every n-th step from 0, those in which a held drive stands included.
+    EveryStep(u64),
+    /// At every n-th step of the drive from 0.
     Every(u64),
-    /// At these steps, in rising order.
+    /// At these steps of the drive, in rising order.
     At(Vec<u64>),
 }
 
@@ -41,18 +44,19 @@ impl<'a> Scheduled<'a> {
 
     /// Calls `observer` at every step.
     pub fn always(observer: &'a mut dyn Observer) -> Self {
-        Self::new(Schedule::Every(1), observer)
+        Self::new(Schedule::EveryStep(1), observer)
     }
 
-    pub(crate) fn due(&self, step: u64) -> bool {
+    pub(crate) fn due(&self, clock: &Clock) -> bool {
         match &self.schedule {
-            Schedule::Every(n) => step.is_multiple_of(*n),
-            Schedule::At(steps) => steps.binary_search(&step).is_ok(),
+            Schedule::EveryStep(n) => clock.step.is_multiple_of(*n),
+            Schedule::Every(n) => clock.drive_moved() && clock.drive_steps.is_multiple_of(*n),
+            Schedule::At(steps) => clock.drive_moved() && steps.binary_search(&clock.drive_steps).is_ok(),
         }
     }
 
-    pub(crate) fn needs_energies(&self, step: u64) -> bool {
-        self.due(step) && self.observer.needs_energies(step)
+    pub(crate) fn needs_energies(&self, clock: &Clock) -> bool {
+        clock.drive_moved() && self.due(clock) && self.observer.needs_energies(clock.drive_steps)
     }
 
     pub(crate) fn observe(&mut self, now: &Snapshot) -> Result<(), RunError> {

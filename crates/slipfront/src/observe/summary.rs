@@ -18,12 +18,12 @@ pub enum KineticStart {
 }
 
 impl KineticStart {
-    /// Where the window begins, t*, with the peak of mu* as far as it is known, at a
+    /// Where the window begins, t* of the drive, with the peak of mu* as far as it is known, at a
     /// [loading speed](crate::Model::loading_speed) of `v_star`.
     pub fn time_star(&self, peak: &Peak, v_star: f64) -> f64 {
         match *self {
             KineticStart::At(time_star) => time_star,
-            KineticStart::Auto if peak.ended => peak.time_star + ONSET_PATH / v_star,
+            KineticStart::Auto if peak.ended => peak.drive_time_star + ONSET_PATH / v_star,
             KineticStart::Auto => 2.0 * ONSET_PATH / v_star,
         }
     }
@@ -61,8 +61,8 @@ pub enum NoUncertainty {
     },
 }
 
-/// Keeps mu*, what is across the drive and N* of the whole run as at most [`KineticHistory::BINS`] means over equal numbers of steps, so that memory
-/// does not grow with the run. It must be called at every step.
+/// Keeps mu*, what is across the drive and N* of the whole run as at most [`KineticHistory::BINS`] means over equal numbers of steps in which the
+/// drive moves, so that memory does not grow with the run. Its times are those of the drive. It must be called at every step.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct KineticHistory {
     steps_per_bin: u64,
@@ -85,7 +85,7 @@ impl KineticHistory {
     /// Most bytes while an uncertainty is sought: the means, and two copies of those of mu*, with as much again to spare.
     pub const MAX_BYTES: usize = Self::BINS as usize * 2 * (size_of::<Bin>() + size_of::<f64>());
 
-    /// An empty history of a run of `last_step` steps; [`u64::MAX`] for a run without an end. A run that goes on for longer
+    /// An empty history of a run of `last_step` steps of the drive; [`u64::MAX`] for a run without an end. A run that goes on for longer
     /// averages twice as many steps into each mean as often as it must.
     pub fn new(last_step: u64) -> Self {
         let steps_per_bin = if last_step == u64::MAX {
@@ -101,9 +101,9 @@ impl KineticHistory {
         }
     }
 
-    /// Whether this can be the history that began as `new` and was called at every step up to `step`.
-    pub fn is_consistent_with(&self, new: &Self, step: u64) -> bool {
-        let observed = step.saturating_add(1);
+    /// Whether this can be the history that began as `new` and was called at every step until the drive had moved in so many.
+    pub fn is_consistent_with(&self, new: &Self, drive_steps: u64) -> bool {
+        let observed = drive_steps.saturating_add(1);
         let mut steps_per_bin = new.steps_per_bin;
         while observed.div_ceil(steps_per_bin) > Self::BINS {
             steps_per_bin *= 2;
@@ -113,7 +113,7 @@ impl KineticHistory {
             && self.bins.len() as u64 == observed.div_ceil(steps_per_bin)
     }
 
-    /// Adds the next step.
+    /// Adds the next step of the drive.
     fn add(&mut self, point: &CurvePoint) {
         if self.in_bin == 0 {
             if self.bins.len() as u64 == Self::BINS {
@@ -121,7 +121,6 @@ impl KineticHistory {
             }
             self.bins.push(Bin::default());
         }
-        self.sliding_percent_max = self.sliding_percent_max.max(point.sliding_percent);
         let weight = 1.0 / self.steps_per_bin as f64;
         if let Some(bin) = self.bins.last_mut() {
             bin.mu_star += weight * point.mu_star;
@@ -177,7 +176,11 @@ impl KineticHistory {
 
 impl Observer for KineticHistory {
     fn observe(&mut self, now: &Snapshot) -> Result<(), RunError> {
-        self.add(&now.point);
+        self.sliding_percent_max = self.sliding_percent_max.max(now.point.sliding_percent);
+        // A mean over the path of the drive, which is one over time where it always moves.
+        if now.clock.drive_moved() {
+            self.add(&now.point);
+        }
         Ok(())
     }
 }

@@ -12,8 +12,8 @@ use slipfront::surface::{
     cavity_lambda, mesh, mesh_watched, pressure_along,
 };
 use slipfront::{
-    Communicator, Coulomb, Drive, DriveSprings, Edges, Execution, Friction, FrictionLaw, Lattice, Model,
-    Outline, Program, Simulation, SlipWeakening, State, Stop, Surface, VectorField, Weakening, scales,
+    Communicator, Coulomb, Drive, DriveSprings, Edges, Execution, Friction, FrictionLaw, Lattice, Loading,
+    Model, Outline, Program, Simulation, SlipWeakening, State, Stop, Surface, VectorField, Weakening, scales,
 };
 
 /// A slider at rest, stepped by the kernel that this binary tests.
@@ -45,6 +45,7 @@ pub(crate) struct Slider {
     pub(crate) weakening: Option<Weakening>,
     pub(crate) slip_weakening: Option<SlipWeakening>,
     pub(crate) program: Option<Arc<Program>>,
+    pub(crate) loading: Loading,
     pub(crate) load: Load,
     /// Axis and relative slope of a pressure that rises along it.
     pub(crate) pressure: Option<(usize, f64)>,
@@ -71,6 +72,7 @@ impl Default for Slider {
             weakening: None,
             slip_weakening: None,
             program: None,
+            loading: Loading::Constant,
             load: Load::Redistributed,
             pressure: None,
             adhesion: Adhesion::default(),
@@ -169,6 +171,7 @@ impl Slider {
     ) -> Model {
         let drive = Drive {
             program: self.program.clone(),
+            loading: self.loading,
             ..Drive::at_angle(self.v_star, self.degrees)
         };
         let friction = Friction::Coulomb(Coulomb {

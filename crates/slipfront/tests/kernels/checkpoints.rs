@@ -10,8 +10,8 @@ use slipfront::observe::{
     Curve, Cycles, Field, Instants, KineticHistory, KineticStart, Precursors, Scheduled,
 };
 use slipfront::{
-    Ageing, ContactSprings, Coulomb, Edge, Execution, Friction, FrictionLaw, Program, RateAndState, Rotation,
-    Simulation, SlipWeakening, Stop, Weakening,
+    Ageing, ContactSprings, Coulomb, Edge, Execution, Friction, FrictionLaw, Loading, Program, RateAndState,
+    Rotation, Simulation, SlipWeakening, Stop, Weakening,
 };
 
 use crate::common::{Slider, cavity, varied};
@@ -64,6 +64,16 @@ fn unequal(has_outline: bool) -> slipfront::Slider {
         viscosity_time: 0.2,
         ..varied(120, has_outline)
     }
+}
+
+/// A run that stops while the drive stands goes on standing.
+#[rstest]
+fn held_drives(#[values(1, 7)] every: u64) {
+    let slider = Slider {
+        loading: Loading::Held { onset_steps: 300 },
+        ..slider(FrictionLaw::Projection)
+    };
+    goes_on_from_checkpoints(&slider, every);
 }
 
 #[rstest]

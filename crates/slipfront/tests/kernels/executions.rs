@@ -130,6 +130,20 @@ fn textures_and_strains(
     assert_same_bits(&slider.model(), slider.dt_star, None, slider.steps(4.0));
 }
 
+/// Skipped blocks are predicted to slip by a drive that never stands.
+#[rstest]
+fn held_drives(
+    #[values(([40, 24], Edges::Free), ([300, 3], Edges::Free), ([3, 200], Edges::Periodic))] (blocks, edges): (
+        [usize; 2],
+        Edges,
+    ),
+    #[values(0.0, 65.0)] degrees: f64,
+    #[values(false, true)] has_program: bool,
+) {
+    let slider = sliders::held(blocks, edges, degrees, has_program);
+    assert_same_bits(&slider.model(), slider.dt_star, None, 2 * slider.steps(4.0));
+}
+
 /// The strains need every formula of springs, and change it while blocks are at rest.
 #[rstest]
 fn slow_drives(

@@ -30,10 +30,10 @@ fn general() -> Execution {
     }
 }
 
-/// One step, after which the stored energies are known if `energies` is set.
+/// One step, after which the stored energies are known if `energies` is set: then one of the drive, with those before it in which it stands.
 fn go(simulation: &mut Simulation, energies: bool) {
     if energies {
-        let next = simulation.snapshot().step + 1;
+        let next = simulation.snapshot().drive_steps + 1;
         simulation.run(Stop::at_step(next), &mut []).unwrap();
     } else {
         simulation.step();

@@ -202,6 +202,14 @@ fn slow_drives(
     assert_same(&slider, None, slider.steps(2.6));
 }
 
+/// Whether the drive stands is known to all ranks alike.
+#[rstest]
+fn held_drives(#[values(0.0, 65.0)] degrees: f64, #[values(false, true)] has_program: bool) {
+    let slider = sliders::held([40, 24], Edges::Free, degrees, has_program);
+    assert_same(&slider, None, 2 * slider.steps(3.0));
+    assert_goes_on(&slider, &|_, _| ());
+}
+
 #[rstest]
 fn a_state_in_motion(
     #[values([Edges::Free, Edges::Free], [Edges::Periodic, Edges::Periodic])] edges: [Edges; 2],

@@ -1,7 +1,9 @@
 //! The sliders whose runs have the same bits, however they are executed.
 
+use std::sync::Arc;
+
 use slipfront::surface::Texture;
-use slipfront::{Edges, State};
+use slipfront::{Edges, Loading, Program, State};
 
 use crate::common::{self, Slider};
 
@@ -42,6 +44,17 @@ pub(crate) fn slow(blocks: [usize; 2], edges: Edges, degrees: f64, epsilon: f64)
         dt_star: 0.5,
         sigma_static_star: 0.1,
         ..Slider::default()
+    }
+}
+
+/// Under a drive that stands while blocks slip; with a program it goes back and forth.
+pub(crate) fn held(blocks: [usize; 2], edges: Edges, degrees: f64, has_program: bool) -> Slider {
+    let program = || Program::new([(0.06, 40.0), (-0.03, 60.0), (0.1, f64::INFINITY)]);
+    Slider {
+        v_star: 0.1,
+        program: has_program.then(|| Arc::new(program())),
+        loading: Loading::Held { onset_steps: 30 },
+        ..slow(blocks, edges, degrees, 1e-6)
     }
 }
 

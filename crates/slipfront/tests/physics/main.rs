@@ -21,6 +21,7 @@ mod first_slip;
 mod front_speed;
 mod graded;
 mod growth;
+mod held;
 mod lattice_waves;
 mod load_and_adhesion;
 mod observables;

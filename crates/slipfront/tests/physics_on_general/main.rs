@@ -20,6 +20,8 @@ mod first_slip;
 mod front_speed;
 #[path = "../physics/graded.rs"]
 mod graded;
+#[path = "../physics/held.rs"]
+mod held;
 #[path = "../physics/lattice_waves.rs"]
 mod lattice_waves;
 #[path = "../physics/load_and_adhesion.rs"]

@@ -18,7 +18,7 @@ use slipfront::observe::frames::Selection;
 use slipfront::observe::{Curve, Instants, KineticHistory, KineticStart, Observer, Scheduled};
 use slipfront::surface::{Adhesion, Array, Cavity, Groove, Load, Orientation, Shape, Texture, mesh};
 use slipfront::{
-    Drive, Edges, Execution, FrictionLaw, Kernel, Lattice, Model, Simulation, State, Stop, Surface,
+    Drive, Edges, Execution, FrictionLaw, Kernel, Lattice, Loading, Model, Simulation, State, Stop, Surface,
     VectorField,
 };
 
@@ -135,6 +135,7 @@ prop_compose! {
             weakening: None,
             slip_weakening: None,
             program: None,
+            loading: Loading::Constant,
             load: if kept { Load::Kept } else { Load::Redistributed },
             pressure,
             adhesion: adhesion.map_or(Adhesion::default(), |[of_static, of_kinetic]| Adhesion { of_static, of_kinetic }),

@@ -109,7 +109,7 @@ impl Reference<'_> {
 
     /// Energy of the drive springs, `k_s,i (X g_i - u_i)^2/2`.
     pub(crate) fn drive_energy(&self) -> f64 {
-        let path = drive::path(self.model, self.time());
+        let path = drive::path(self.model, self.drive_time());
         self.sum_over(|b| {
             let block = &self.blocks[b];
             let stretch = difference(times(path, block.direction), self.displacement[b]);
@@ -167,7 +167,8 @@ impl Reference<'_> {
         losses.broken_springs += broken;
         if let Some(before) = losses.before.replace(now) {
             let mean = |of: fn(&Powers) -> f64| 0.5 * (of(&before) + of(&now));
-            let paths = [self.step - 1, self.step].map(|step| drive::path(self.model, step as f64 * self.dt));
+            let paths = [self.drive_steps_before, self.drive_steps]
+                .map(|step| drive::path(self.model, step as f64 * self.dt));
             let work_of_drive = mean(|powers| powers.pull) * (paths[1] - paths[0]);
             losses.work += work_of_drive + self.dt * mean(|powers| powers.constant_force);
             losses.friction += self.dt * mean(|powers| powers.friction);

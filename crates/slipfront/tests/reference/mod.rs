@@ -63,6 +63,9 @@ pub(crate) struct Reference<'a> {
     contact: &'a Contact,
     dt: f64,
     step: u64,
+    /// Steps in which the drive has moved, and that number a step before.
+    pub(crate) drive_steps: u64,
+    drive_steps_before: u64,
     blocks: Vec<Block>,
     memory: Vec<Memory>,
     /// **u** at t_n.
@@ -127,6 +130,8 @@ impl<'a> Reference<'a> {
             contact,
             dt,
             step: 0,
+            drive_steps: 0,
+            drive_steps_before: 0,
             blocks: (0..n).map(block).collect(),
             memory: vec![memory; n],
             displacement: zeros.clone(),
@@ -161,9 +166,23 @@ impl<'a> Reference<'a> {
         self.step as f64 * self.dt
     }
 
-    /// From t_n to t_n+1: the displacements (Eq. 8), what contacts remember of the way, and all that belongs to the new instant.
-    pub(crate) fn step(&mut self) {
+    /// Time of the drive at t_n.
+    fn drive_time(&self) -> f64 {
+        self.drive_steps as f64 * self.dt
+    }
+
+    /// Whether the drive moves from t_n to t_n+1: if it is held, only where no block in contact slides.
+    pub(crate) fn drive_moves(&self) -> bool {
+        let slips = |b: usize| self.blocks[b].in_contact && self.slides[b];
+        !self.model.drive.is_held() || !(0..self.blocks.len()).any(slips)
+    }
+
+    /// From t_n to t_n+1, in which the drive moves or stands: the displacements (Eq. 8), what contacts remember of the way, and all that belongs
+    /// to the new instant.
+    pub(crate) fn step(&mut self, drive_moves: bool) {
         self.step += 1;
+        self.drive_steps_before = self.drive_steps;
+        self.drive_steps += u64::from(drive_moves);
         for b in 0..self.blocks.len() {
             let moved = times(self.dt, self.velocity[b]);
             self.displacement[b] = sum(self.displacement[b], moved);
@@ -197,7 +216,7 @@ impl<'a> Reference<'a> {
 
     /// Eq. 2, and the constant force.
     fn drive_force(&self, b: usize) -> Vector {
-        let (block, path) = (&self.blocks[b], drive::path(self.model, self.time()));
+        let (block, path) = (&self.blocks[b], drive::path(self.model, self.drive_time()));
         let u = self.displacement[b];
         let spring = drive::spring_force(block.drive_stiffness, path, block.direction, u);
         sum(spring, block.constant_force)

@@ -75,6 +75,7 @@ pub(crate) fn summary() -> Summary {
         instants: vec![InstantSummary {
             instant: 'A',
             time_star: 16.0,
+            drive_time_star: None,
             mu_star: 0.25,
             sliding_percent: 0.0,
         }],

@@ -86,6 +86,7 @@ pub(crate) fn csv(rows: u64) -> Vec<u8> {
             step,
             time_star,
             time_s: 3e-10 * time_star,
+            drive_time_star: (rows == 3).then_some(0.5 * time_star),
             drive_displacement_m: (rows != 1).then_some(1e-12 * time_star),
             mu_star: 0.3 * step as f64,
             friction_coefficient: 0.3 * step as f64,

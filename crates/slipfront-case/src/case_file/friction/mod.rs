@@ -344,6 +344,14 @@ impl Friction {
         }
     }
 
+    /// Refuses keys that have no meaning under a drive that stands while a block slides.
+    pub(super) fn check_held(&self, check: &Check) -> Result<(), CaseError> {
+        let [_, ageing, _, healing] = self.options();
+        refuse_set(check, &[ageing, healing], HELD_IN_TIME)?;
+        let springs = ("contact", self.contact == ContactModel::Springs);
+        refuse_set(check, &[("law", self.law != Law::Projection), springs], HELD)
+    }
+
     /// Refuses keys that have no meaning under the law.
     fn check_law(&self, check: &Check) -> Result<(), CaseError> {
         let springs = ("contact", self.contact == ContactModel::Springs);
@@ -421,6 +429,14 @@ fn refuse_set(check: &Check, keys: &[(&str, bool)], why: &str) -> Result<(), Cas
         check.refuse(key, |path| format!("`{path}` has no meaning here: {why}"))
     })
 }
+
+/// Why what goes on in time has no meaning under a held drive.
+const HELD_IN_TIME: &str = "with `drive.loading` = \"held\" the drive waits for slip to end, and loads as slowly as you like: no time passes in which \
+                            contacts could grow stronger; leave one of them out";
+
+/// Why other laws have no meaning under a held drive.
+const HELD: &str = "with `drive.loading` = \"held\" the drive moves while all blocks in contact are stuck, as they are by \
+                    `law` = \"projection\" and `contact` = \"rigid\" alone; take these, or `drive.loading` = \"constant\"";
 
 /// Whether a spread is set; where there are no coefficients that it spreads, 0 and its default are no contradiction.
 fn is_spread(sigma: f64) -> bool {

@@ -14,10 +14,10 @@ use crate::lattice::{Bond, harmonic_mean};
 use crate::model::Model;
 use crate::vector_field::length;
 
-/// Block `b` at `time_star`. `motion` gives displacement and velocity of a block.
+/// Block `b` at this time of the drive. `motion` gives displacement and velocity of a block.
 pub(super) fn block(
     model: &Model,
-    time_star: f64,
+    drive_time_star: f64,
     b: usize,
     kinetic_force: f64,
     motion: impl Fn(usize) -> [[f64; 2]; 2],
@@ -27,7 +27,7 @@ pub(super) fn block(
     let drive_spring = model.slider.drive_spring(b);
     let force_drive = model
         .drive
-        .force(displacement, time_star)
+        .force(displacement, drive_time_star)
         .map(|force| drive_spring * force);
     Block {
         displacement,

@@ -10,7 +10,8 @@ use crate::communicator::Alone;
 pub struct FusedKernel {
     model: Model,
     kernel: Fused,
-    next_step: u64,
+    /// The instant of the latest step.
+    latest: Option<Clock>,
 }
 
 impl FusedKernel {
@@ -29,11 +30,10 @@ impl FusedKernel {
         if let Some(width) = width {
             kernel.level = levels()[width];
         }
-        let next_step = 0;
         Self {
             model,
             kernel,
-            next_step,
+            latest: None,
         }
     }
 
@@ -42,11 +42,13 @@ impl FusedKernel {
         &self.model
     }
 
-    /// Makes the next step, the first time that to step 0, and returns its sums over all blocks: with the stored energies if
-    /// `energies` is set.
+    /// Makes the next step, the first time that to step 0, of a drive that moves in every step. Returns its sums over all blocks:
+    /// with the stored energies if `energies` is set.
     pub fn step(&mut self, energies: bool) -> Totals {
-        self.next_step += 1;
-        self.kernel.step(&self.model, self.next_step - 1, energies)
+        let start = Clock::start(self.kernel.dt_star);
+        let clock = self.latest.map_or(start, |latest| latest.next(true));
+        self.latest = Some(clock);
+        self.kernel.step(&self.model, &clock, energies)
     }
 
     /// Displacement and velocity of a block after the latest step.
@@ -61,9 +63,13 @@ impl FusedKernel {
         times
     }
 
-    /// Largest square of a contact stress at the latest step.
+    /// Largest square of a contact stress at any step so far.
+    ///
+    /// # Panics
+    /// Before the first step.
     pub fn stress_square_max(&self) -> f64 {
-        self.kernel.stress_square_max(&self.model, self.next_step - 1)
+        let latest = self.latest.expect("a step was made");
+        self.kernel.stress_square_max(&self.model, &latest)
     }
 
     /// Bounds on the displacements of all blocks along an axis, the lower first.
@@ -83,7 +89,7 @@ impl FusedKernel {
 
     /// Number of vectors that the latest step swept.
     pub fn n_swept_vectors(&self) -> usize {
-        if self.kernel.swept_step != Some(self.next_step - 1) {
+        if self.kernel.swept_step != self.latest.map(|clock| clock.step) {
             return 0;
         }
         let tasks = self.kernel.bands.iter().flat_map(|band| &band.tasks);

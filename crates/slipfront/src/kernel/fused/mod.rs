@@ -51,6 +51,7 @@ use self::step::Step;
 use self::variations::{LargestFactors, blocks_differ};
 use self::vector::LANES;
 use crate::checkpoint::{BlockColumn, Checkpoint, MotionBounds};
+use crate::clock::Clock;
 use crate::communicator::Communicator;
 use crate::fixed_point::{FixedPoint, join, split};
 use crate::friction::Integrator;
@@ -464,12 +465,13 @@ impl Fused {
 }
 
 impl Engine for Fused {
-    fn step(&mut self, model: &Model, number: u64, energies: bool) -> Totals {
+    fn step(&mut self, model: &Model, clock: &Clock, energies: bool) -> Totals {
+        let number = clock.step;
         assert!(
             number < u64::from(NEVER),
             "step {number}: runs end before step {NEVER}"
         );
-        let mut step = Step::new(model, number, self.dt_star);
+        let mut step = Step::new(model, clock);
         if self.swept_step.is_none() {
             // At the start displacements are those of t_0 already.
             step.move_dt = 0.0;
@@ -491,9 +493,9 @@ impl Engine for Fused {
         }
     }
 
-    fn block(&self, model: &Model, number: u64, b: usize) -> Block {
+    fn block(&self, model: &Model, clock: &Clock, b: usize) -> Block {
         let kinetic_force = self.kinetic_force(model, b);
-        fields::block(model, number as f64 * self.dt_star, b, kinetic_force, |b| {
+        fields::block(model, clock.drive_time_star(), b, kinetic_force, |b| {
             self.motion(b)
         })
     }
@@ -501,12 +503,12 @@ impl Engine for Fused {
     fn read_rows(
         &self,
         model: &Model,
-        number: u64,
+        clock: &Clock,
         field: Field,
         stride: usize,
         write: &mut dyn FnMut(usize, usize, &[f32]),
     ) {
-        let step = Step::new(model, number, self.dt_star);
+        let step = Step::new(model, clock);
         let elements = (&self.layout, self.bands.as_slice());
         let root = SquareRoot {
             epsilon: model.epsilon,
@@ -576,12 +578,12 @@ impl Engine for Fused {
         first_slips
     }
 
-    fn stress_square_max(&self, model: &Model, number: u64) -> f64 {
-        let step = Step::new(model, number, self.dt_star);
+    fn stress_square_max(&self, model: &Model, clock: &Clock) -> f64 {
+        let step = Step::new(model, clock);
         let mut square = self.stress_square_max;
         for band in &self.bands {
             for (t, task) in band.tasks.iter().enumerate() {
-                let skipped = if self.swept_step == Some(number) {
+                let skipped = if self.swept_step == Some(clock.step) {
                     !task.active
                 } else {
                     u32::MAX
@@ -601,8 +603,7 @@ impl Engine for Fused {
         Some(self.motion_bounds)
     }
 
-    fn read_memory(&self, number: u64, column: usize, first: usize, values: &mut [f64]) {
-        let time_star = number as f64 * self.dt_star;
+    fn read_memory(&self, time_star: f64, column: usize, first: usize, values: &mut [f64]) {
         for band in &self.bands {
             band.read_memory(&self.layout, time_star, column, first, values);
         }

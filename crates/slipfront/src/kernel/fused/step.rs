@@ -1,5 +1,6 @@
 //! What a step of the fused kernel has in common for all blocks.
 
+use crate::clock::Clock;
 use crate::friction::Integrator;
 use crate::model::Model;
 
@@ -18,20 +19,22 @@ pub(super) struct Step {
     pub(super) drive_position: [f64; 2],
     /// The same at the step before.
     position_before: [f64; 2],
-    /// The step at which the drive changes its speed next.
+    /// The first step at which the drive may change its speed next.
     pub(super) next_change: u64,
-    /// By how much the force of a drive spring on a block at rest grows per time, `k_s V`.
+    /// By how much the force of a drive spring on a block at rest grows per time, `k_s V`; a drive that is held loads more slowly.
     pub(super) force_growth: [f64; 2],
     pub(super) constant_force: [f64; 2],
     pub(super) integrator: Integrator,
 }
 
 impl Step {
-    pub(super) fn new(model: &Model, number: u64, dt_star: f64) -> Self {
-        let drive = &model.drive;
-        let [time_star, before] = [number, number.saturating_sub(1)].map(|n| n as f64 * dt_star);
+    pub(super) fn new(model: &Model, clock: &Clock) -> Self {
+        let (drive, dt_star) = (&model.drive, clock.dt_star);
+        let (time_star, before) = (clock.drive_time_star(), clock.drive_time_before());
+        // The drive moves in every step at most.
+        let steps_until = |t: f64| (t / dt_star).round() as u64 - clock.drive_steps;
         Self {
-            number,
+            number: clock.step,
             dt_star,
             move_dt: dt_star,
             k_drive: drive.k_drive,
@@ -39,7 +42,7 @@ impl Step {
             position_before: drive.position(before),
             next_change: drive
                 .next_change(time_star)
-                .map_or(u64::MAX, |t| (t / dt_star).round() as u64),
+                .map_or(u64::MAX, |t| clock.step + steps_until(t)),
             force_growth: drive
                 .direction
                 .map(|d| drive.k_drive * drive.speed_after(time_star) * d),

@@ -6,6 +6,7 @@ use super::drive::DrivenBlocks;
 use super::rows::Rows;
 use super::springs::{damper_forces, lattice_forces, row_energies};
 use super::weighted::{WeightedScratch, add_weighted, dot_products};
+use crate::clock::Clock;
 use crate::fixed_point::RunningSum;
 use crate::forces::{Forces, part, part_mut};
 use crate::friction::{BandContact, Integrator};
@@ -200,15 +201,15 @@ impl Band {
 
     /// Finds the forces on the blocks and their next velocities, unless these are known, and adds up the `sums` over them.
     #[inline(always)]
-    pub(super) fn evaluate(&mut self, model: &Model, time_star: f64, is_known: bool, sums: BandSums) {
+    pub(super) fn evaluate(&mut self, model: &Model, clock: &Clock, is_known: bool, sums: BandSums) {
         self.sums = sums;
         if !is_known {
             self.counts = [0; 2];
         }
         for blocks in parts(model) {
             if !is_known {
-                self.find_forces(model, &blocks, time_star);
-                self.count(model, &blocks, time_star);
+                self.find_forces(model, &blocks, clock);
+                self.count(model, &blocks, clock.time_star());
             }
             self.add_up(model, &blocks);
         }
@@ -217,7 +218,7 @@ impl Band {
     /// Adds up the energies of the blocks and the drive springs, and finds those of the springs between blocks row by row, after the
     /// next velocities are known.
     #[inline(always)]
-    pub(super) fn add_energies(&mut self, model: &Model, time_star: f64, sums: [RunningSum; 3]) {
+    pub(super) fn add_energies(&mut self, model: &Model, drive_time_star: f64, sums: [RunningSum; 3]) {
         self.energy_sums = sums;
         let [before, after, drive_springs] = &mut self.energy_sums;
         let displacement = &self.state.displacement;
@@ -232,8 +233,14 @@ impl Band {
                 dot_products(velocity, velocity, &mut scratch.terms[..n]);
                 add_weighted(sum, &scratch.terms[..n], masses, &mut scratch.products);
             }
-            self.driven
-                .add_squares(model, &blocks, displacement, time_star, drive_springs, scratch);
+            self.driven.add_squares(
+                model,
+                &blocks,
+                displacement,
+                drive_time_star,
+                drive_springs,
+                scratch,
+            );
         }
         let relative = self.relative_springs.as_ref();
         let u = &self.rows.state(&self.state).displacement;
@@ -271,10 +278,12 @@ impl Band {
 
     /// Finds the forces on some blocks, and their next velocities.
     #[inline(always)]
-    fn find_forces(&mut self, model: &Model, blocks: &Range<usize>, time_star: f64) {
+    fn find_forces(&mut self, model: &Model, blocks: &Range<usize>, clock: &Clock) {
+        let (time_star, drive_time_star) = (clock.time_star(), clock.drive_time_star());
         let displacement = &self.state.displacement;
         let drive = &mut self.forces.drive;
-        self.driven.forces(model, blocks, displacement, time_star, drive);
+        self.driven
+            .forces(model, blocks, displacement, drive_time_star, drive);
         let Forces { lattice, springs, .. } = &mut self.forces;
         let (rows, relative) = (&self.rows, self.relative_springs.as_ref());
         let state = rows.state(&self.state);

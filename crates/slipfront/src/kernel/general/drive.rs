@@ -34,14 +34,14 @@ impl DrivenBlocks {
         }
     }
 
-    /// Eq. 2: `F_s = k_s,i (V t - u)`, of some blocks.
+    /// Eq. 2: `F_s = k_s,i (V t - u)`, of some blocks, at a time of the drive.
     #[inline(always)]
     pub(super) fn forces(
         &self,
         model: &Model,
         blocks: &Range<usize>,
         u: &VectorField,
-        time_star: f64,
+        drive_time_star: f64,
         force: &mut VectorField,
     ) {
         let (k_drive, [along, across]) = (model.drive.k_drive, model.drive.constant_force);
@@ -50,14 +50,14 @@ impl DrivenBlocks {
         let (fx, fy, ux, uy) = (&mut fx[..n], &mut fy[..n], &ux[..n], &uy[..n]);
         match &self.direction {
             None => {
-                let [x, y] = model.drive.position(time_star);
+                let [x, y] = model.drive.position(drive_time_star);
                 for k in 0..n {
                     fx[k] = k_drive * (x - ux[k]) + along;
                     fy[k] = k_drive * (y - uy[k]) + across;
                 }
             }
             Some(direction) => {
-                let path = model.drive.path(time_star);
+                let path = model.drive.path(drive_time_star);
                 let [gx, gy] = part(direction, blocks);
                 let (gx, gy) = (&gx[..n], &gy[..n]);
                 for k in 0..n {
@@ -82,7 +82,7 @@ impl DrivenBlocks {
         model: &Model,
         blocks: &Range<usize>,
         u: &VectorField,
-        time_star: f64,
+        drive_time_star: f64,
         sum: &mut RunningSum,
         scratch: &mut WeightedScratch,
     ) {
@@ -90,14 +90,14 @@ impl DrivenBlocks {
         let (ux, uy, squares) = (&ux[..n], &uy[..n], &mut scratch.terms[..n]);
         match &self.direction {
             None => {
-                let [x, y] = model.drive.position(time_star);
+                let [x, y] = model.drive.position(drive_time_star);
                 for k in 0..n {
                     let (x, y) = (x - ux[k], y - uy[k]);
                     squares[k] = x * x + y * y;
                 }
             }
             Some(direction) => {
-                let path = model.drive.path(time_star);
+                let path = model.drive.path(drive_time_star);
                 let [gx, gy] = part(direction, blocks);
                 let (gx, gy) = (&gx[..n], &gy[..n]);
                 for k in 0..n {

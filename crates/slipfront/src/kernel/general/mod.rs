@@ -26,6 +26,7 @@ use super::bands::for_each_band;
 use super::block::{Block, Field};
 use super::engine::Engine;
 use crate::checkpoint::{BlockColumn, Checkpoint, MotionBounds};
+use crate::clock::Clock;
 use crate::communicator::Communicator;
 use crate::fixed_point::RunningSum;
 use crate::friction::ContactTotals;
@@ -46,7 +47,6 @@ const MIN_BAND_ROWS: usize = 8;
 
 /// The blocks of this rank, and the way to step them.
 pub(crate) struct General {
-    dt_star: f64,
     threads: usize,
     ranks: Arc<dyn Communicator>,
     /// Whether the first step has been evaluated, which does not move the blocks.
@@ -129,7 +129,6 @@ impl General {
             }
         };
         Self {
-            dt_star,
             threads,
             ranks,
             started: false,
@@ -188,7 +187,7 @@ impl General {
             let (model, band) = one.with_model(model);
             band.resume(model);
         }
-        kernel.step(model, checkpoint.step, false);
+        kernel.step(model, &checkpoint.clock(dt_star), false);
         Ok(kernel)
     }
 
@@ -241,12 +240,12 @@ impl General {
     }
 
     /// Energies of all blocks, after their next velocities are known.
-    fn stored_energy(&mut self, model: &Model, time_star: f64) -> StoredEnergy {
+    fn stored_energy(&mut self, model: &Model, drive_time_star: f64) -> StoredEnergy {
         let [before, after, drive_springs] = loop {
             let sums = self.energy_sums;
             for_each_band(self.threads, &mut self.bands, &|one| {
                 let (model, band) = one.with_model(model);
-                dispatch!(Level::new(), _ => band.add_energies(model, time_star, sums));
+                dispatch!(Level::new(), _ => band.add_energies(model, drive_time_star, sums));
             });
             for one in &self.bands {
                 RunningSum::join(&mut self.energy_sums, &one.band.energy_sums);
@@ -279,8 +278,7 @@ impl General {
 }
 
 impl Engine for General {
-    fn step(&mut self, model: &Model, number: u64, energies: bool) -> Totals {
-        let time_star = number as f64 * self.dt_star;
+    fn step(&mut self, model: &Model, clock: &Clock, energies: bool) -> Totals {
         let (threads, level) = (self.threads, Level::new());
         let moves = std::mem::replace(&mut self.started, true);
         for_each_band(threads, &mut self.bands, &|one| {
@@ -293,7 +291,7 @@ impl Engine for General {
             let sums = self.sums;
             for_each_band(threads, &mut self.bands, &|one| {
                 let (model, band) = one.with_model(model);
-                dispatch!(level, _ => band.evaluate(model, time_star, is_known, sums));
+                dispatch!(level, _ => band.evaluate(model, clock, is_known, sums));
             });
             for one in &self.bands {
                 RunningSum::join(&mut self.sums, &one.band.sums);
@@ -312,7 +310,7 @@ impl Engine for General {
         let [n_sliding, n_slipping] = counts.map(|count| count as usize);
         self.viscous_power = 0.0 - found.viscous_power;
         self.contact_totals = ContactTotals::of(found.contact, &model.surface);
-        let stored_energy = energies.then(|| self.stored_energy(model, time_star));
+        let stored_energy = energies.then(|| self.stored_energy(model, clock.drive_time_star()));
         self.bands.iter_mut().for_each(|one| one.band.end_step());
         Totals {
             displacement: found.displacement,
@@ -326,7 +324,7 @@ impl Engine for General {
         }
     }
 
-    fn block(&self, _: &Model, _: u64, b: usize) -> Block {
+    fn block(&self, _: &Model, _: &Clock, b: usize) -> Block {
         let (band, b) = self.locate(b);
         band.block(b)
     }
@@ -334,7 +332,7 @@ impl Engine for General {
     fn read_rows(
         &self,
         model: &Model,
-        _: u64,
+        _: &Clock,
         field: Field,
         stride: usize,
         write: &mut dyn FnMut(usize, usize, &[f32]),
@@ -401,7 +399,7 @@ impl Engine for General {
         bands.flat_map(|one| one.band.first_slip).collect()
     }
 
-    fn stress_square_max(&self, _: &Model, _: u64) -> f64 {
+    fn stress_square_max(&self, _: &Model, _: &Clock) -> f64 {
         let squares = self.bands.iter().map(|one| one.band.stress_square_max);
         let mut largest = [squares.fold(self.stress_square_before, f64::max)];
         self.ranks.largest(&mut largest);
@@ -420,7 +418,7 @@ impl Engine for General {
         self.contact_totals
     }
 
-    fn read_memory(&self, _: u64, column: usize, first: usize, values: &mut [f64]) {
+    fn read_memory(&self, _: f64, column: usize, first: usize, values: &mut [f64]) {
         self.read(first, values, |band| band.contact.columns()[column]);
     }
 }

@@ -1,0 +1,60 @@
+//! The two times of a run: that of the blocks, and that of the drive, which stands while a held drive does.
+
+/// An instant t_n, as counts of steps: times are products of these and of the time step, so that no rounding errors add up.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Clock {
+    /// n.
+    pub(crate) step: u64,
+    /// Steps up to t_n in which the drive moved: n at constant loading.
+    pub(crate) drive_steps: u64,
+    /// Steps just before t_n through which the drive has stood.
+    pub(crate) standing: u64,
+    pub(crate) dt_star: f64,
+}
+
+impl Clock {
+    /// t = 0.
+    pub(crate) fn start(dt_star: f64) -> Self {
+        Self {
+            step: 0,
+            drive_steps: 0,
+            standing: 0,
+            dt_star,
+        }
+    }
+
+    /// The next instant, up to which the drive moves or stands.
+    pub(crate) fn next(self, drive_moves: bool) -> Self {
+        Self {
+            step: self.step + 1,
+            drive_steps: self.drive_steps + u64::from(drive_moves),
+            standing: if drive_moves { 0 } else { self.standing + 1 },
+            ..self
+        }
+    }
+
+    /// Steps in which the drive had moved by the instant before, or by t = 0.
+    pub(crate) fn drive_steps_before(&self) -> u64 {
+        self.drive_steps.saturating_sub(u64::from(self.drive_moved()))
+    }
+
+    /// Whether the drive moved in the step that ends at t_n; so also at t = 0.
+    pub(crate) fn drive_moved(&self) -> bool {
+        self.standing == 0
+    }
+
+    /// t*_n.
+    pub(crate) fn time_star(&self) -> f64 {
+        self.step as f64 * self.dt_star
+    }
+
+    /// Time of the drive, on which its path depends.
+    pub(crate) fn drive_time_star(&self) -> f64 {
+        self.drive_steps as f64 * self.dt_star
+    }
+
+    /// Time of the drive at the instant before.
+    pub(crate) fn drive_time_before(&self) -> f64 {
+        self.drive_steps_before() as f64 * self.dt_star
+    }
+}
