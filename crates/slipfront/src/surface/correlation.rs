@@ -62,6 +62,11 @@ impl CorrelatedField {
         Self { blocks, axes }
     }
 
+    /// Correlation length xi, blocks.
+    pub fn length(&self) -> f64 {
+        self.axes[0].length
+    }
+
     /// Variance of the mean of the field over a block: `I^2`, but for copies beyond periodic edges, with [`deviation_along`].
     pub fn variance_of_blocks(&self) -> f64 {
         self.axes
