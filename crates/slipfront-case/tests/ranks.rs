@@ -84,6 +84,10 @@ fn make_on_ranks(size: usize, text: &str, folder: &Path) -> Vec<Result<Case, Cas
 
 #[rstest]
 #[case::drawn("friction = { seed = 7, sigma_static_star = 0.9, sigma_kinetic_star = 0.2 }")]
+#[case::correlated("friction = { seed = 7, sigma_static_star = 0.9, correlation_length = '3 um' }")]
+#[case::correlated_and_periodic(
+    "slider.edges = 'periodic'\nfriction = { correlation_length = '4 um', mu_kinetic_field = 'mu.csv' }"
+)]
 #[case::shapes(
     "slider.edges = 'periodic'\ntexture = [{ shape = 'cavity', coverage = 20, s = 3, w = 0.2, array = [2, 2], rotate = 20 }, \
      { shape = 'groove', coverage = 10, orientation = 'along' }, { shape = 'cavity', lambda = '0.1 um' }]"

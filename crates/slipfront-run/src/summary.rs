@@ -126,6 +126,12 @@ pub struct Summary {
     pub drive_steps: Option<u64>,
     /// Seed of the random coefficients.
     pub seed: u64,
+    /// Share of the variance of the random coefficients at a point that their means over blocks keep, %, if they are alike over a length.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub variance_of_blocks_percent: Option<f64>,
+    /// Share of that variance that the mean of a surface keeps from seed to seed, %.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub variance_of_surfaces_percent: Option<f64>,
     /// Negative draws of the coefficients of blocks in contact that were set to 0.
     pub negative_draws: usize,
     /// Energy that is not accounted for, relative to the energy put in.
@@ -428,6 +434,7 @@ impl SummaryObservers {
         let last_row = last.copied().unwrap_or_default();
         let (steps, energies) = (last_row.step, last_row.energies);
         let law = case.model.friction.needs();
+        let correlated = case.correlated_field();
         let (mean, time) = (case.scales.mu_static_mean, case.scales.time());
         let energy = case.scales.energy();
         let kinetic_star = kinetic.map(|kinetic| kinetic.mu_star);
@@ -478,6 +485,10 @@ impl SummaryObservers {
             steps,
             drive_steps: is_held.then_some(last_row.drive_steps),
             seed: case.file.friction.seed,
+            variance_of_blocks_percent: correlated
+                .as_ref()
+                .map(|field| 100.0 * field.variance_of_blocks()),
+            variance_of_surfaces_percent: correlated.map(|field| 100.0 * field.variance_of_slider()),
             negative_draws: case.model.surface.negative_draws(),
             energy_error: energies.error(),
             work_j: energies.work * energy,

@@ -113,7 +113,7 @@ fn sentence(axis: &Axis) -> String {
         "but the units of results as long as `drive.v_star` is held: set `drive.speed` in its place"
     } else if keys.contains("slider.block_size") {
         "but the units of results as long as no other length has one: vary `slider.blocks`"
-    } else if keys.contains("friction.seed") {
+    } else if keys.contains("friction.seed") || keys.contains("friction.correlation_length") {
         "as long as no coefficient is random: raise `friction.sigma_static_star`"
     } else if keys.iter().any(|key| key.starts_with("texture")) {
         "since all its levels cover the same blocks: take more of them by `slider.blocks`"
@@ -178,6 +178,7 @@ mod tests {
     fn axes_that_change_what_is_computed_are_not_named() {
         for (key, list) in [
             ("friction.seed", "[1, 2]"),
+            ("friction.correlation_length", "['1 um', '2 um']"),
             ("friction.r_star", "[0.5, 0.6]"),
             ("friction.sigma_kinetic_star", "[0, 0.05]"),
             ("drive.direction", "[0, 10]"),
@@ -204,11 +205,16 @@ mod tests {
         let said = idle(&format!("{sized}{}", axis("texture.0.coverage", "[12, 13]")));
         assert!(said.len() == 1 && said[0].contains("the same blocks"), "{said:?}");
         let smooth = "base.friction.sigma_static_star = 0\nbase.friction.sigma_kinetic_star = 0\n";
-        let said = idle(&format!("{smooth}{}", axis("friction.seed", "[1, 2]")));
-        assert!(
-            said.len() == 1 && said[0].contains("no coefficient is random"),
-            "{said:?}"
-        );
+        for (key, list) in [
+            ("friction.seed", "[1, 2]"),
+            ("friction.correlation_length", "['1 um', '2 um']"),
+        ] {
+            let said = idle(&format!("{smooth}{}", axis(key, list)));
+            assert!(
+                said.len() == 1 && said[0].contains("no coefficient is random"),
+                "{said:?}"
+            );
+        }
     }
 
     /// An axis that counts at the last levels of the others alone is none that changes nothing.

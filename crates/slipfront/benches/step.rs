@@ -1,20 +1,23 @@
 //! Cost of a step of either kernel, in block-steps per second, and of reading a field of all blocks, on the baseline of Fig. 3
-//! once it slides.
+//! once it slides; cost of drawing its coefficients, beside that of all steps of a run.
 
 #![allow(missing_docs)] // Criterion's macros make public functions without a word.
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use slipfront::exact_solutions::first_slip_time_star;
 use slipfront::observe::Field;
-use slipfront::surface::{Coefficients, Distribution, Load};
+use slipfront::surface::{Coefficients, CorrelatedField, Distribution, Load};
 use slipfront::{Drive, Execution, FrictionLaw, Kernel, Lattice, Model, Simulation, Surface, scales};
+
+fn gauss(mean: f64) -> Distribution {
+    Distribution {
+        mean,
+        deviation: 0.05 * mean,
+    }
+}
 
 fn baseline(n: usize) -> Model {
     let lattice = Lattice::free(n, n);
-    let gauss = |mean: f64| Distribution {
-        mean,
-        deviation: 0.05 * mean,
-    };
     let drawn = Coefficients::draw(n * n, gauss(1.0), gauss(0.5), 1);
     let surface = Surface::new(drawn, vec![false; n * n], Load::Redistributed, 1.0).expect("all in contact");
     let damping = scales::damping(0.1);
@@ -84,6 +87,37 @@ fn read_field(criterion: &mut Criterion) {
     group.finish();
 }
 
+fn draw(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("draw");
+    group.sample_size(10);
+    for n in [25, 50, 200] {
+        let lattice = Lattice::free(n, n);
+        for length in [0.25, 1.0, 5.0] {
+            // Each time of another seed, as the runs of a study do.
+            let mut seed = 0;
+            let name = format!("{n}x{n} alike over {length} blocks");
+            group.bench_function(BenchmarkId::from_parameter(name), |bencher| {
+                bencher.iter(|| {
+                    seed += 1;
+                    let field = CorrelatedField::new(&lattice, length);
+                    Coefficients::draw_correlated(&field, &(0..n), gauss(1.0), gauss(0.5), seed)
+                });
+            });
+        }
+        let model = baseline(n);
+        group.bench_function(
+            BenchmarkId::from_parameter(format!("{n}x{n} all steps")),
+            |bencher| {
+                bencher.iter(|| {
+                    let mut simulation = Simulation::new(model.clone(), 0.1, None, Execution::default());
+                    (0..2667).for_each(|_| simulation.step());
+                });
+            },
+        );
+    }
+    group.finish();
+}
+
 fn general(criterion: &mut Criterion) {
     step(criterion, "general_step", Kernel::General);
 }
@@ -92,5 +126,5 @@ fn fused(criterion: &mut Criterion) {
     step(criterion, "fused_step", Kernel::Fused);
 }
 
-criterion_group!(benches, general, fused, read_field);
+criterion_group!(benches, general, fused, read_field, draw);
 criterion_main!(benches);

@@ -1,11 +1,50 @@
 //! Friction coefficients of a case, drawn or read from the files that it names, and what makes thresholds of them.
 
-use slipfront::surface::{Adhesion, Coefficients, Contact, Distribution, Load, pressure_along};
+use slipfront::surface::{
+    Adhesion, Coefficients, Contact, CorrelatedField, Distribution, Load, deviation_along, pressure_along,
+};
 use slipfront::{Lattice, Scales};
 
 use super::groups::Groups;
 use super::inputs::Inputs;
 use crate::case_file::{CaseError, CaseFile};
+use crate::number_format::four_digits;
+
+/// Refuses a correlation length of which the blocks could not be drawn, before any file is read.
+pub(super) fn check_correlation(file: &CaseFile) -> Result<(), CaseError> {
+    let (least, most) = CorrelatedField::LENGTHS.into_inner();
+    let Some(blocks) = correlation_length(file) else {
+        return Ok(());
+    };
+    let told = format!("this makes the correlation length {} blocks", four_digits(blocks));
+    let sentence = if blocks < least {
+        let kept = deviation_along(blocks).powi(2);
+        format!(
+            "{told}, of at least {least}: means over blocks that touch are then hardly alike, and the draw by block is right; leave it out and \
+             multiply `sigma_static_star` and `sigma_kinetic_star` by {}, what means over a block keep of them, or take smaller blocks",
+            four_digits(kept)
+        )
+    } else if blocks > most {
+        format!(
+            "{told}, of at most {most}: the coefficients are then the same everywhere; leave it out, set the spreads to 0, and `mu_static` to \
+             the coefficient"
+        )
+    } else {
+        return Ok(());
+    };
+    Err(file.source.error("friction.correlation_length", sentence))
+}
+
+/// xi in blocks.
+fn correlation_length(file: &CaseFile) -> Option<f64> {
+    let length = file.friction.correlation_length.as_ref()?;
+    Some(length.si() / file.slider.block_size.si())
+}
+
+/// The field of which the random coefficients are means over blocks, if they are not drawn block by block.
+pub(super) fn correlated_field(file: &CaseFile, lattice: &Lattice) -> Option<CorrelatedField> {
+    correlation_length(file).map(|length| CorrelatedField::new(lattice, length))
+}
 
 pub(super) fn coefficients(
     file: &CaseFile,
@@ -22,16 +61,17 @@ pub(super) fn coefficients(
         mean,
         deviation: if given { 0.0 } else { sigma_star * mean },
     };
-    let mut drawn = Coefficients::draw_blocks(
-        lattice.blocks_of(&inputs.slab.rows),
-        spread(mean, groups.sigma_static_star, mu_static.is_some()),
-        spread(
-            groups.r_star * mean,
-            groups.sigma_kinetic_star,
-            mu_kinetic.is_some(),
-        ),
-        friction.seed,
+    let rows = &inputs.slab.rows;
+    let of_static = spread(mean, groups.sigma_static_star, mu_static.is_some());
+    let of_kinetic = spread(
+        groups.r_star * mean,
+        groups.sigma_kinetic_star,
+        mu_kinetic.is_some(),
     );
+    let mut drawn = match correlated_field(file, lattice) {
+        None => Coefficients::draw_blocks(lattice.blocks_of(rows), of_static, of_kinetic, friction.seed),
+        Some(field) => Coefficients::draw_correlated(&field, rows, of_static, of_kinetic, friction.seed),
+    };
     drawn.mu_static = mu_static.unwrap_or(drawn.mu_static);
     drawn.mu_kinetic = mu_kinetic.unwrap_or(drawn.mu_kinetic);
     Ok(drawn)

@@ -5,6 +5,7 @@ use std::ops::Range;
 use slipfront::{Friction, Lattice, Scales};
 
 use super::budget::Budget;
+use super::coefficients::check_correlation;
 use super::groups::Groups;
 use super::options::options;
 use super::ranks::Ranks;
@@ -30,6 +31,7 @@ impl Derived {
     ) -> Result<Self, CaseError> {
         let scales = scales(file);
         let groups = Groups::of(file, &scales)?;
+        check_correlation(file)?;
         let n_ranks = ranks.communicator.size();
         if n_ranks > lattice.ny {
             let sentence = format!(

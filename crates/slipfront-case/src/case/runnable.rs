@@ -3,10 +3,11 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use slipfront::surface::Texture;
+use slipfront::surface::{CorrelatedField, Texture};
 use slipfront::{Communicator, Lattice, Model, Scales};
 
 use super::budget::Budget;
+use super::coefficients::correlated_field;
 use super::derived::Derived;
 use super::drive::{program, refuse_endless_slip, refuse_large_angles};
 use super::groups::Groups;
@@ -199,6 +200,11 @@ impl Case {
                 true
             });
         made.map(|in_blocks| in_blocks.textures)
+    }
+
+    /// The field of which the random coefficients are means over blocks; none if every block draws its own.
+    pub fn correlated_field(&self) -> Option<CorrelatedField> {
+        correlated_field(&self.file, &self.model.lattice)
     }
 
     /// Steps times blocks, those in which a held drive stands left out, the measure of what the run costs.

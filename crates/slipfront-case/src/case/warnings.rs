@@ -21,6 +21,8 @@ const LARGE_SCALE: f64 = 0.01;
 const LARGE_MISFIT: f64 = 0.25;
 /// Relative difference between `mu_static` and the mean of given coefficients above which there is a warning.
 const LARGE_MISMATCH: f64 = 0.1;
+/// Standard deviation of the mean of a surface from seed to seed, relative to that of the coefficients, above which there is a warning.
+const LARGE_COMMON_SHARE: f64 = 0.5;
 /// Strain of the load above which geometric nonlinearity of the springs shows in the third digit.
 const LARGE_EPSILON: f64 = 1e-2;
 /// Speed above which loading is faster than the slip front.
@@ -256,6 +258,19 @@ impl Case {
         })
     }
 
+    /// Where most of the spread is that of whole surfaces from seed to seed, and little of it is on one.
+    fn correlation_warning(&self) -> Option<String> {
+        let share = libm::sqrt(self.correlated_field()?.variance_of_slider());
+        let is_random = self.groups.sigma_static_star > 0.0 || self.groups.sigma_kinetic_star > 0.0;
+        (is_random && share > LARGE_COMMON_SHARE).then(|| {
+            format!(
+                "random coefficients are alike over much of the slider: the mean of a surface scatters from seed to seed by {} of the \
+                 spread, and what is starred is relative to `mu_static`; take several seeds, or a shorter `friction.correlation_length`",
+                four_digits(share)
+            )
+        })
+    }
+
     fn friction_warnings(&self) -> Vec<String> {
         let mut warnings = Vec::new();
         let negative = self.model.surface.negative_draws();
@@ -291,6 +306,7 @@ impl Case {
                 ));
             }
         }
+        warnings.extend(self.correlation_warning());
         let mean = surface.mean_pressure();
         if self.file.load.pressure_field.is_some() && differs(mean, 1.0) {
             warnings.push(format!(

@@ -84,6 +84,7 @@ impl Case {
         model.friction == FrictionLaw::Projection.into()
             && !has_adhesion
             && !has_fields
+            && friction.correlation_length.is_none()
             && file.texture.is_empty()
             && load.profile.is_none()
             && load.pressure_field.is_none()
@@ -165,6 +166,7 @@ mod tests {
             "drive.v_star=0.2",
             "drive.v_star=0.001",
             "friction.sigma_static_star=0.3",
+            "friction.correlation_length='5 um'",
             "friction.sigma_kinetic_star=0.2",
             "friction.law='reversal'",
             "friction.adhesion='10 kPa'",

@@ -136,3 +136,71 @@ fn sliding_that_takes_as_much_force_as_its_start_is_told() {
         "{equal}"
     );
 }
+
+/// A surface in metres: blocks of a half and a third, a texture and another spread leave the field as it is.
+#[test]
+fn coefficients_that_are_alike_over_a_length_are_those_of_the_place() {
+    let made = |parts: usize, edges: &str, rest: &str| {
+        let (nx, ny, size) = (12 * parts, 10 * parts, 30 / parts);
+        case(&format!(
+            "slider = {{ blocks = [{nx}, {ny}], block_size = '{size} um', edges = '{edges}' }}\n\
+             friction.correlation_length = '0.1 mm'\nfriction.mu_static = 0.5\nfriction.seed = 9\n{rest}"
+        ))
+    };
+    for edges in ["free", "periodic"] {
+        let coarse = made(1, edges, "").model;
+        for parts in [2, 3] {
+            let fine = made(parts, edges, "").model;
+            for (one, other) in [
+                (&coarse.surface.mu_static, &fine.surface.mu_static),
+                (&coarse.surface.mu_kinetic, &fine.surface.mu_kinetic),
+            ] {
+                for (b, parent) in one.iter().enumerate() {
+                    let [i, j] = [parts * (b % 12), parts * (b / 12)];
+                    let rows = (j..j + parts).map(|j| &other[12 * parts * j + i..][..parts]);
+                    let mean = rows.flatten().sum::<f64>() / (parts * parts) as f64;
+                    // Some 700 differences of error functions, rounded to 1e-16 of 1, are added, times a spread of 0.025.
+                    assert!(
+                        (mean - parent).abs() < 1e-14,
+                        "{edges} {parts} {b}: {mean} {parent}"
+                    );
+                }
+            }
+        }
+    }
+    let texture = "friction.sigma_static_star = 0.1\ntexture = [{ shape = 'cavity', coverage = 20 }]";
+    let [plain, textured] = ["", texture].map(|rest| made(1, "free", rest).model);
+    for b in (0..plain.n_blocks()).filter(|&b| !textured.surface.textured[b]) {
+        let doubled = 0.5 + 2.0 * (plain.surface.mu_static[b] - 0.5);
+        // One rounding of 0.5 in each.
+        assert!((textured.surface.mu_static[b] - doubled).abs() < 1e-15);
+        assert_eq!(textured.surface.mu_kinetic[b], plain.surface.mu_kinetic[b]);
+    }
+    // Without the key every block draws its own.
+    let by_block = case("slider.blocks = [3, 2]\nfriction.seed = 9").model;
+    let gauss = |mean: f64| slipfront::surface::Distribution {
+        mean,
+        deviation: 0.05 * mean,
+    };
+    let drawn = slipfront::surface::Coefficients::draw(6, gauss(1.0), gauss(0.5), 9);
+    assert_eq!(by_block.surface.mu_static, drawn.mu_static);
+}
+
+/// What is the same all over a surface differs from seed to seed, and a surface that is all but even says so.
+#[test]
+fn a_field_that_is_longer_than_the_slider_is_warned_of() {
+    let said = |rest: &str| {
+        let case = case(&format!("slider.blocks = [25, 25]\n{rest}"));
+        let mut warnings = case.warnings().into_iter();
+        warnings.find(|warning| warning.contains("alike over much of the slider"))
+    };
+    // I = 0.8615 at xi = L, and more than half of the spread from 0.47 L on.
+    let warned = said("friction.correlation_length = '25 um'").unwrap();
+    assert!(
+        warned.contains("from seed to seed by 0.8615 of the spread"),
+        "{warned}"
+    );
+    assert_eq!(said("friction.correlation_length = '5 um'"), None);
+    let even = "friction = { correlation_length = '25 um', sigma_static_star = 0, sigma_kinetic_star = 0 }";
+    assert_eq!(said(even), None);
+}

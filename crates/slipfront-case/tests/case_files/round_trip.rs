@@ -189,6 +189,7 @@ fn friction() -> impl Strategy<Value = Friction> {
         0..=i64::MAX as u64,
         [field(), field()],
         [adhesion(), adhesion()],
+        prop::option::of(length()),
     )
         .prop_map(
             move |(
@@ -198,6 +199,7 @@ fn friction() -> impl Strategy<Value = Friction> {
                 seed,
                 [mu_static_field, mu_kinetic_field],
                 [adhesion, adhesion_kinetic],
+                correlation_length,
             )| {
                 Friction {
                     mu_static,
@@ -209,6 +211,7 @@ fn friction() -> impl Strategy<Value = Friction> {
                     mu_kinetic_field,
                     adhesion,
                     adhesion_kinetic,
+                    correlation_length,
                     ..base.clone()
                 }
             },
@@ -220,6 +223,7 @@ fn friction() -> impl Strategy<Value = Friction> {
             ageing: law.ageing,
             slip_weakening: law.slip_weakening,
             healing_time_star: law.healing_time_star,
+            correlation_length: drawn(&plain, plain.mu_kinetic_field.is_none()),
             ..plain
         }),
         (plain, springs()).prop_map(|(plain, law)| Friction {
@@ -231,10 +235,17 @@ fn friction() -> impl Strategy<Value = Friction> {
             contact_stiffness_star: law.contact_stiffness_star,
             contact_stiffness_per_area: law.contact_stiffness_per_area.clone(),
             redraw: law.redraw,
+            correlation_length: drawn(&plain, false).filter(|_| !law.redraw),
             ..plain
         }),
         rate_and_state(),
     ]
+}
+
+/// The correlation length, of coefficients that are not all given.
+fn drawn(plain: &Friction, draws_kinetic: bool) -> Option<Length> {
+    let is_drawn = draws_kinetic || plain.mu_static_field.is_none();
+    plain.correlation_length.clone().filter(|_| is_drawn)
 }
 
 /// Laws of static and kinetic coefficients.

@@ -86,6 +86,10 @@ fn check_prints_groups_onset_and_cost_and_runs_nothing() {
     ] {
         assert!(said.contains(words), "{words:?} is missing:\n{said}");
     }
+    // I^2 with a = 3, and the product of I with a = 3/6 and 3/5 along the axes.
+    let said = unwrapped(&workspace.succeed("check small.toml --set friction.correlation_length=3um"));
+    let alike = "coefficients are alike over 3 blocks (3 um), of whose variance means over a block keep 96.41 %, and over the slider 44.97 %";
+    assert!(said.contains(alike), "{said}");
     assert_eq!(workspace.files(".").len(), 1, "check has written something");
 }
 

@@ -9,6 +9,7 @@ mod answer;
 mod blocks_that_differ;
 mod composite;
 mod contact_springs;
+mod correlated;
 mod edge_drive;
 mod fronts;
 mod load;
@@ -45,6 +46,7 @@ const CHAPTERS: &[Compute] = &[
     ageing::chapter,
     rate_and_state::chapter,
     adhesion::chapter,
+    correlated::chapter,
     contact_springs::chapter,
     fronts::chapter,
 ];

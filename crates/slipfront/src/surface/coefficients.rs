@@ -37,7 +37,7 @@ pub struct Coefficients {
 
 /// Named random streams of one seed: drawing from one does not change the numbers of another.
 #[derive(Clone, Copy)]
-enum Stream {
+pub(super) enum Stream {
     MuStatic = 0,
     MuKinetic = 1,
 }
@@ -65,7 +65,7 @@ impl Coefficients {
     ) -> Self {
         let draw = |distribution: Distribution, stream: Stream| {
             let mut coefficients = vec![0.0; blocks.len()];
-            let normals = |first| standard_normals(seed, stream, blocks.start + first);
+            let normals = |first| standard_normals(seed, stream, BY_BLOCK, blocks.start + first);
             if blocks.len() > MAX_KEPT {
                 let parts = coefficients.par_chunks_mut(PART).enumerate();
                 parts.for_each(|(k, part)| distribution.scale(normals(k * PART), part));
@@ -137,11 +137,20 @@ thread_local! {
 /// Words of 32 bits that a standard normal takes from its stream: two uniforms of two words.
 const WORDS_PER_DRAW: u128 = 4;
 
-/// Standard normals from draw `first` on, by Box and Muller from two uniforms each, so that draw n always has the same position
+/// Row of the numbers that are drawn block by block; other rows are those of the nodes of a grid.
+const BY_BLOCK: u64 = 0;
+
+/// Standard normals of a row from draw `first` on, by Box and Muller from two uniforms each, so that draw n always has the same position
 /// in the stream. Sine and logarithm are those of `libm`, with the same bits on every machine.
-fn standard_normals(seed: u64, stream: Stream, first: usize) -> impl Iterator<Item = f64> {
+pub(super) fn standard_normals(
+    seed: u64,
+    stream: Stream,
+    row: u64,
+    first: usize,
+) -> impl Iterator<Item = f64> {
     let mut key = [0; 32];
     key[..8].copy_from_slice(&seed.to_le_bytes());
+    key[8..16].copy_from_slice(&row.to_le_bytes());
     let mut rng = ChaCha8Rng::from_seed(key);
     rng.set_stream(stream as u64);
     rng.set_word_pos(WORDS_PER_DRAW * first as u128);
@@ -260,8 +269,12 @@ mod tests {
     /// Pinned: a change of these numbers changes every surface ever published with a seed.
     #[test]
     fn the_first_draws_of_seed_one_never_change() {
-        let z: Vec<f64> = standard_normals(1, Stream::MuStatic, 0).take(3).collect();
-        let k: Vec<f64> = standard_normals(1, Stream::MuKinetic, 0).take(3).collect();
+        let z: Vec<f64> = standard_normals(1, Stream::MuStatic, BY_BLOCK, 0)
+            .take(3)
+            .collect();
+        let k: Vec<f64> = standard_normals(1, Stream::MuKinetic, BY_BLOCK, 0)
+            .take(3)
+            .collect();
         assert_eq!(z, PINNED_STATIC);
         assert_eq!(k, PINNED_KINETIC);
     }

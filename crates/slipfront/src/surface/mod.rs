@@ -1,13 +1,14 @@
 //! The sliding surface: local friction coefficients, texture and load of every block.
 //!
-//! [`Coefficients`] are drawn or given, [`mesh`] finds the textured blocks, and the [`Load`] is distributed over the blocks in
-//! contact; [`Surface::new`] makes the friction thresholds of all blocks from the three, [`Surface::of_ranks`] those of the
-//! blocks that a rank holds.
+//! [`Coefficients`] are drawn, by block or of a [`CorrelatedField`], or given, [`mesh`] finds the textured blocks, and the
+//! [`Load`] is distributed over the blocks in contact; [`Surface::new`] makes the friction thresholds of all blocks from the three,
+//! [`Surface::of_ranks`] those of the blocks that a rank holds.
 
 mod clearance;
 mod closest;
 mod coefficients;
 mod contour;
+mod correlation;
 mod load;
 mod mesh;
 mod outline;
@@ -18,6 +19,7 @@ mod whole;
 pub use clearance::{Clearance, clearance};
 pub use coefficients::{Coefficients, Distribution, STREAMS};
 pub use contour::{Contour, Ellipse, Piece, contours};
+pub use correlation::{CorrelatedField, deviation_along};
 pub use load::{Adhesion, Contact, Load, pressure_along};
 pub use mesh::{Meshed, copies_overlap, mesh, mesh_watched};
 pub use pattern::{Array, n_copies};

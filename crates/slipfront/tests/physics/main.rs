@@ -14,6 +14,7 @@ const KERNEL: Kernel = Kernel::Fused;
 mod ageing;
 mod composite;
 mod contact_springs;
+mod correlated;
 mod driven_fronts;
 mod edge_drive;
 mod energy;

@@ -5,6 +5,7 @@
 
 mod ageing;
 mod contact_springs;
+mod correlation;
 mod rate_and_state;
 mod slip_weakening;
 mod weakening;
@@ -24,7 +25,7 @@ use super::key::{ARRAY, Key, KeyKind, above, count, joined, key, number, quantit
 use super::probe::names_of;
 use super::values::word;
 use crate::number_format::four_digits;
-use crate::quantity::{Pressure, StiffnessPerArea};
+use crate::quantity::{Length, Pressure, StiffnessPerArea};
 
 const SIGMA: KeyKind = number(
     within(0.0, 1.0),
@@ -66,6 +67,7 @@ const CONTACT: &[Key] = &[
 /// The keys of the coefficients and of every law, in the order of the documentation.
 const LISTS: &[&[Key]] = &[
     COEFFICIENTS,
+    correlation::KEYS,
     weakening::KEYS,
     ageing::KEYS,
     slip_weakening::KEYS,
@@ -77,6 +79,7 @@ pub(super) const KEYS: &[Key] = &joined::<{ count(LISTS) }>(LISTS);
 
 /// Words that people try first, each with the advice on it, by law.
 pub(super) const SYNONYMS: &[&[(&str, &str)]] = &[
+    correlation::SYNONYMS,
     weakening::SYNONYMS,
     ageing::SYNONYMS,
     slip_weakening::SYNONYMS,
@@ -132,6 +135,8 @@ pub struct Friction {
     pub adhesion: Pressure,
     /// Shear strength of the sliding contact without load, which adds to the kinetic threshold, Pa.
     pub adhesion_kinetic: Pressure,
+    /// Length over which random coefficients are alike (xi), m; every block draws its own if not given.
+    pub correlation_length: Option<Length>,
     /// Kinetic friction that falls with speed.
     pub velocity: Option<Velocity>,
     /// Static friction that grows while a block is stuck.
@@ -189,6 +194,7 @@ impl Friction {
         check.value("mu_kinetic_field", &self.mu_kinetic_field)?;
         check.value("adhesion", &self.adhesion)?;
         check.value("adhesion_kinetic", &self.adhesion_kinetic)?;
+        check.value("correlation_length", &self.correlation_length)?;
         if let Some(velocity) = &self.velocity {
             velocity.check(check)?;
         }
@@ -319,6 +325,7 @@ impl Friction {
     /// Refuses keys that have no meaning beside each other.
     fn check_together(&self, check: &Check) -> Result<(), CaseError> {
         self.check_law(check)?;
+        self.check_correlation(check)?;
         let [varying @ .., slip_weakening, healing] = self.options();
         match (slip_weakening.1, healing.1) {
             (true, _) => refuse_set(check, &varying, slip_weakening::ALONE)?,
@@ -352,6 +359,23 @@ impl Friction {
         refuse_set(check, &[("law", self.law != Law::Projection), springs], HELD)
     }
 
+    /// Refuses a correlation length where nothing is drawn of a field.
+    fn check_correlation(&self, check: &Check) -> Result<(), CaseError> {
+        let is_correlated = self.correlation_length.is_some();
+        let draws_kinetic = self.has_kinetic_coefficient() && self.mu_kinetic_field.is_none();
+        let all_given = self.mu_static_field.is_some() && !draws_kinetic;
+        refuse_set(
+            check,
+            &[("correlation_length", is_correlated && all_given)],
+            correlation::GIVEN,
+        )?;
+        refuse_set(
+            check,
+            &[("redraw", is_correlated && self.redraw)],
+            correlation::REDRAW,
+        )
+    }
+
     /// Refuses keys that have no meaning under the law.
     fn check_law(&self, check: &Check) -> Result<(), CaseError> {
         let springs = ("contact", self.contact == ContactModel::Springs);
@@ -369,6 +393,7 @@ impl Friction {
                 let others = [
                     ("sigma_static_star", is_spread(self.sigma_static_star)),
                     ("mu_static_field", self.mu_static_field.is_some()),
+                    ("correlation_length", self.correlation_length.is_some()),
                     ("adhesion", self.adhesion.si() != 0.0),
                     springs,
                 ];
@@ -464,6 +489,8 @@ keys_with_choice! {
         mu_kinetic_field: Option<String>,
         adhesion: Pressure,
         adhesion_kinetic: Pressure,
+        #[serde(skip_serializing_if = "Option::is_none")]
+        correlation_length: Option<Length>,
         #[serde(skip_serializing_if = "Option::is_none")]
         velocity: Option<Velocity>,
         #[serde(skip_serializing_if = "Option::is_none")]
