@@ -33,6 +33,8 @@ pub const RECORDS: &str = "records.jsonl";
 /// Tables of a study: a row for every run, a row for every quantity at every point, and, where the direction of the drive is varied, a row
 /// for friction over all directions.
 pub const TABLES: [&str; 3] = ["runs.csv", "points.csv", "anisotropy.csv"];
+/// What a study over meshes found: as numbers, and as a text.
+pub const CONVERGENCE: [&str; 2] = ["convergence.json", "convergence.txt"];
 /// Subfolder of the run folders that a study keeps.
 pub const RUNS: &str = "runs";
 

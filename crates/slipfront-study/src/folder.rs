@@ -22,7 +22,7 @@ use slipfront_case::machine::free_disk;
 use slipfront_case::number_format::byte_size;
 use slipfront_run::folder_error::FolderError;
 use slipfront_run::manifest::Manifest;
-use slipfront_run::names::{CASE, FIGURE_CACHE, RECORDS, RUNS, TABLES};
+use slipfront_run::names::{CASE, CONVERGENCE, FIGURE_CACHE, RECORDS, RUNS, TABLES};
 use slipfront_run::run_folder::copy::copy_run;
 
 /// The study file in the folder, with the base case as a table in it: `slipfront study DIR/study.toml` repeats the study.
@@ -77,8 +77,8 @@ impl StudyFolder {
             if let Ok(before) = parse(&String::from_utf8_lossy(&before)) {
                 folder.remove_pictures(picture_plan::names(&before.axes));
             }
-            for table in TABLES {
-                let _ = remove_if_there(&folder.path.join(table));
+            for name in TABLES.into_iter().chain(CONVERGENCE) {
+                let _ = remove_if_there(&folder.path.join(name));
             }
         }
         folder.write(STUDY, |file| file.write_all(text.as_bytes()))?;
@@ -91,7 +91,7 @@ impl StudyFolder {
     }
 
     /// Writes a file atomically.
-    fn write(
+    pub(crate) fn write(
         &self,
         name: &str,
         fill: impl FnOnce(&mut File) -> std::io::Result<()>,

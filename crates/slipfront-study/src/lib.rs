@@ -9,6 +9,7 @@
 
 mod anisotropy;
 mod axis;
+pub mod converge;
 mod error;
 mod execute;
 mod folder;

@@ -286,7 +286,7 @@ fn refuse_rest(tables: &Tables) -> Result<(), CaseError> {
 
 /// The text of a study. What stands in an axis or under `[study]` keeps its order, which is that of columns and points: a
 /// table in full would have its lists of tables behind all else.
-fn portable_text(mut study: toml::Table) -> Result<String, CaseError> {
+pub(crate) fn portable_text(mut study: toml::Table) -> Result<String, CaseError> {
     let mut text = String::new();
     if let Some(base) = study.remove("base") {
         text += &toml::to_string(&toml::Table::from_iter([("base".to_owned(), base)]))?;

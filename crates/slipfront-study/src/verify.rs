@@ -9,7 +9,7 @@ use slipfront_case::number_format::{are, count};
 use slipfront_case::unfinished::{TemporaryFolder, is_unfinished};
 use slipfront_run::folder_error::FolderError;
 use slipfront_run::manifest::ManifestFile;
-use slipfront_run::names::RUNS;
+use slipfront_run::names::{CONVERGENCE, RUNS};
 use slipfront_run::verify::{
     Verdict, VerifyError, differences, first_line, inspect, unlisted_files, verify_run,
 };
@@ -100,7 +100,7 @@ fn verify_study(folder: &Path) -> Result<Verdict, VerifyStudyError> {
     verdict.differences.extend(differ);
     let is_left = |name: &str| name.rsplit('/').next().is_some_and(is_unfinished);
     let known = files.iter().map(|file| file.name.as_str());
-    let known = known.chain([Records::FILE, RUNS]).collect();
+    let known = known.chain([Records::FILE, RUNS]).chain(CONVERGENCE).collect();
     verdict.notes = unlisted_files(folder, &known, is_left);
     if damaged > 0 {
         let damage = format!(

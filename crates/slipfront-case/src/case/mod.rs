@@ -9,6 +9,7 @@ mod groups;
 mod inputs;
 mod model;
 mod options;
+mod other_blocks;
 mod output;
 mod ranks;
 mod runnable;

@@ -161,7 +161,7 @@ fn delay(file: &CaseFile, scales: &Scales) -> f64 {
 
 /// The time of a held drive, t*, up to which the largest mu* counts as static friction: twice that of the onset (Eq. 12), or when the drive springs
 /// of the blocks that touch bear it all, if that is later.
-fn auto_onset_end(file: &CaseFile, scales: &Scales, model: &Model) -> f64 {
+pub(super) fn auto_onset_end(file: &CaseFile, scales: &Scales, model: &Model) -> f64 {
     let path = f64::max(2.0 * ONSET_PATH, load_factor(file, model) / K_DRIVE);
     path / model.loading_speed() * delay(file, scales)
 }

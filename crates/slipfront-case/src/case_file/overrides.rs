@@ -82,6 +82,14 @@ impl Override {
         &self.text[self.key.clone()]
     }
 
+    /// The value: a string where it is not TOML.
+    pub fn value(&self) -> toml::Value {
+        let text = &self.text[self.value.clone()];
+        let parsed = format!("value = {text}").parse::<toml::Table>();
+        let value = parsed.ok().and_then(|mut table| table.remove("value"));
+        value.unwrap_or_else(|| toml::Value::from(text))
+    }
+
     /// The top-level table that it changes.
     pub(super) fn table(&self) -> &str {
         self.key().split('.').next().unwrap_or_default().trim()

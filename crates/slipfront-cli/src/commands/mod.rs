@@ -2,6 +2,7 @@
 
 pub(crate) mod check;
 pub(crate) mod completions;
+pub(crate) mod converge;
 pub(crate) mod family;
 pub(crate) mod lab;
 pub(crate) mod licences;

@@ -86,7 +86,7 @@ fn merged(plan: &Plan) -> Option<String> {
 }
 
 /// Warnings about the cases of a study, each with the points that it concerns.
-fn case_warnings(plan: &Plan) -> String {
+pub(super) fn case_warnings(plan: &Plan) -> String {
     let all = plan.warnings();
     let mut text = String::new();
     for warning in all.iter().take(MAX_WARNINGS) {

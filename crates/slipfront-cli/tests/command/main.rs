@@ -10,6 +10,7 @@ mod attach_file;
 mod broken;
 #[cfg(unix)]
 mod checkpoints;
+mod converge;
 mod docs;
 mod fixtures;
 mod folder;

@@ -303,6 +303,7 @@ fn what_comes_after_the_windows_is_neither_d_nor_e() {
             let mut now = simulation.snapshot();
             now.step = step;
             now.time_star = step as f64 * slider.dt_star;
+            now.drive_time_star = now.time_star;
             now.point.sliding_percent = if now.time_star <= d_until - 20.0 {
                 0.0
             } else {

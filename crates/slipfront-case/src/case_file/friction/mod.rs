@@ -232,6 +232,23 @@ impl Friction {
         }
     }
 
+    /// Lengths of friction that are those of a block, since no key gives them.
+    pub(crate) fn lengths_of_a_block(&self) -> impl Iterator<Item = &'static str> {
+        let falls_at_once =
+            self.has_kinetic_coefficient() && self.slip_weakening.is_none() && self.mean_ratio() < 1.0;
+        let is_drawn = |field: &Option<String>, sigma: f64| field.is_none() && sigma > 0.0;
+        let draws_static =
+            self.has_static_coefficient() && is_drawn(&self.mu_static_field, self.sigma_static_star);
+        let draws_kinetic =
+            self.has_kinetic_coefficient() && is_drawn(&self.mu_kinetic_field, self.sigma_kinetic_star);
+        let drawn_by_block = self.correlation_length.is_none() && (draws_static || draws_kinetic);
+        let slip =
+            falls_at_once.then_some("the slip over which strength is lost (`friction.slip_weakening`)");
+        let coefficients = drawn_by_block
+            .then_some("the length over which coefficients are alike (`friction.correlation_length`)");
+        slip.into_iter().chain(coefficients)
+    }
+
     /// The law that the keys, which fit each other, ask for at this V*.
     pub fn in_model(&self, v_star: f64, scales: &Scales) -> slipfront::Friction {
         let per_area = self.contact_stiffness_per_area.as_ref();

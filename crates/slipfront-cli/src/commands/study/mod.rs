@@ -8,6 +8,8 @@ use clap::{Args, Subcommand};
 
 use crate::failure::Failure;
 
+pub(super) use run::{estimated_seconds, finish, run_all};
+
 /// Run a study: vary a case over axes and seeds, and answer with tables and pictures
 #[derive(Args)]
 #[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]

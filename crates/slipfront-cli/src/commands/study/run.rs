@@ -81,7 +81,9 @@ impl StudyRun {
         let folder = StudyFolder::open(&out, &file).map_err(Failure::input)?;
         folder.check_disk(&plan).map_err(Failure::input)?;
         let plan = plan.reading_copies(&folder.study);
-        complete(&plan, &folder, self.quiet)
+        let signals = Signals::catch().map_err(Failure::running)?;
+        let results = run_all(&plan, &folder, &signals, self.quiet)?;
+        finish(&plan, &results, &folder, self.quiet)
     }
 }
 
@@ -107,9 +109,13 @@ fn default_out(name: &str, shard: Option<Shard>) -> PathBuf {
     PathBuf::from("results").join(name)
 }
 
-/// Runs what the folder lacks, and writes tables and pictures.
-fn complete(plan: &Plan, folder: &StudyFolder, quiet: bool) -> Result<(), Failure> {
-    let signals = Signals::catch().map_err(Failure::running)?;
+/// Runs what the folder lacks.
+pub(in crate::commands) fn run_all(
+    plan: &Plan,
+    folder: &StudyFolder,
+    signals: &Signals,
+    quiet: bool,
+) -> Result<StudyResults, Failure> {
     let mut progress = StudyProgress::new(quiet);
     if !quiet {
         print_notes(plan, folder);
@@ -119,11 +125,10 @@ fn complete(plan: &Plan, folder: &StudyFolder, quiet: bool) -> Result<(), Failur
         progress.show(now);
     });
     progress.finish();
-    let results = done.map_err(|error| match error {
-        StudyError::Interrupted => Failure::stopped(&signals, error),
+    done.map_err(|error| match error {
+        StudyError::Interrupted => Failure::stopped(signals, error),
         error => Failure::running(error),
-    })?;
-    finish(plan, &results, folder, quiet)
+    })
 }
 
 /// Prints what the user must know before the runs: of axes that change nothing, and of a folder that has been used before.
@@ -144,7 +149,7 @@ fn print_notes(plan: &Plan, folder: &StudyFolder) {
 }
 
 /// Writes tables and pictures, and prints the answer of the study.
-pub(super) fn finish(
+pub(in crate::commands) fn finish(
     plan: &Plan,
     results: &StudyResults,
     folder: &StudyFolder,
@@ -177,7 +182,15 @@ fn expect_no_failures(plan: &Plan, results: &StudyResults) -> Result<(), Failure
 fn dry_run(plan: &Plan, threads: usize) -> Result<String, Failure> {
     // Only one run must fit into this machine: the study may be meant for another one.
     plan.check_memory(1).map_err(Failure::input)?;
-    let (mut block_steps, mut seconds) = (0.0, 0.0);
+    let block_steps: f64 = plan.runs(1).map(|run| plan.cost(run).0).sum();
+    let replicates = plan.settings.min_replicates() as f64;
+    let seconds = estimated_seconds(plan, threads)?;
+    Ok(report::plan(plan, replicates * block_steps, seconds, threads))
+}
+
+/// How long the runs will take, by some steps of each size of slider on this machine.
+pub(in crate::commands) fn estimated_seconds(plan: &Plan, threads: usize) -> Result<f64, Failure> {
+    let mut seconds = 0.0;
     // The time per block depends on the size of the lattice: a small one fits into the cache.
     let mut rates: HashMap<usize, f64> = HashMap::new();
     for run in plan.runs(1) {
@@ -191,10 +204,8 @@ fn dry_run(plan: &Plan, threads: usize) -> Result<String, Failure> {
                 rate
             }
         };
-        block_steps += cost;
         seconds += cost / rate;
     }
     let replicates = plan.settings.min_replicates() as f64;
-    let seconds = replicates * seconds / threads as f64;
-    Ok(report::plan(plan, replicates * block_steps, seconds, threads))
+    Ok(replicates * seconds / threads as f64)
 }

@@ -1,0 +1,366 @@
+//! One slider on other blocks: the keys of a case that its slider, load, mount, friction and time keep when the blocks become finer or
+//! coarser.
+//!
+//! A key with a star counts in units that depend on the edge `l` of a block and on the thickness `h` of the sheet. It is converted by the
+//! ratio of the two units, so that metres, seconds and pascals are held:
+//!
+//! ```text
+//! speed P mu_s l/(h sqrt(E rho)),  time l sqrt(rho/E),  displacement P mu_s l^2/(E h),  spring on each block E h for K l^2
+//! ```
+
+use slipfront::Scales;
+use toml::{Table, Value};
+
+use super::runnable::Case;
+use super::time_plan::auto_onset_end;
+use crate::case_file::{
+    Attached, AttachedEdge, AutoOr, CaseError, CaseFile, DriveSpeed, DriveStiffness, MAX_BLOCKS, Override,
+    RunTime,
+};
+use crate::quantity::Length;
+
+/// What a key with a star counts in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum StarUnit {
+    Speed,
+    Time,
+    /// One over a time.
+    Rate,
+    Displacement,
+    /// The spring of a block, which belongs to an area: held is `K = k* E h/l^2`.
+    SpringOfBlock,
+    /// All springs together.
+    Stiffness,
+    /// Of no unit: a ratio, or a spread of coefficients.
+    None,
+}
+
+/// The units of all keys with a star, within the tables in which they stand too.
+const UNITS: &[(&str, StarUnit)] = &[
+    ("v_star", StarUnit::Speed),
+    ("v_c_star", StarUnit::Speed),
+    ("v_0_star", StarUnit::Speed),
+    ("slip_speed_star", StarUnit::Speed),
+    ("until_star", StarUnit::Time),
+    ("time_star", StarUnit::Time),
+    ("duration_star", StarUnit::Time),
+    ("kinetic_from_star", StarUnit::Time),
+    ("healing_time_star", StarUnit::Time),
+    ("viscosity_time_star", StarUnit::Time),
+    ("theta_0_star", StarUnit::Time),
+    ("omega_star", StarUnit::Rate),
+    ("d_c_star", StarUnit::Displacement),
+    ("length_star", StarUnit::Displacement),
+    ("stiffness_star", StarUnit::SpringOfBlock),
+    ("contact_stiffness_star", StarUnit::SpringOfBlock),
+    ("total_stiffness_star", StarUnit::Stiffness),
+    ("r_star", StarUnit::None),
+    ("sigma_static_star", StarUnit::None),
+    ("sigma_kinetic_star", StarUnit::None),
+];
+
+impl StarUnit {
+    /// The unit in SI, up to a factor that no block changes.
+    fn size(self, scales: &Scales) -> f64 {
+        match self {
+            Self::Speed => scales.speed(),
+            Self::Time => scales.time(),
+            Self::Rate => 1.0 / scales.time(),
+            Self::Displacement => scales.displacement(),
+            Self::SpringOfBlock => scales.stiffness() / (scales.block_size * scales.block_size),
+            Self::Stiffness => scales.stiffness(),
+            Self::None => 1.0,
+        }
+    }
+}
+
+impl Case {
+    /// The keys that put this slider on blocks that are `finer` times as fine, a power of two, and keep in metres, seconds and pascals
+    /// what it is: dimensions, textures, load, mount, damping, lengths of friction, speed and duration. The step keeps its share of the
+    /// time that sound takes across a block. Spreads of coefficients stay: those of blocks are others on other blocks.
+    ///
+    /// # Errors
+    /// When the blocks cannot be divided so, or when the case has values that belong to its blocks.
+    pub fn on_other_blocks(&self, finer: f64) -> Result<Vec<Override>, CaseError> {
+        self.refuse_values_of_blocks()?;
+        let blocks = self.other_blocks(finer)?;
+        let scales = Scales {
+            block_size: self.scales.block_size / finer,
+            thickness: match &self.file.slider.thickness {
+                Some(_) => self.scales.thickness,
+                None => self.scales.thickness / finer,
+            },
+            ..self.scales
+        };
+        let conversion = Conversion {
+            from: &self.scales,
+            to: &scales,
+        };
+        let mut set = vec![
+            (
+                "slider.block_size".to_owned(),
+                Value::from(length_text(scales.block_size)),
+            ),
+            (
+                "slider.blocks".to_owned(),
+                Value::from(blocks.map(i64::from).to_vec()),
+            ),
+            ("time.step".to_owned(), Value::from(self.time_plan.dt_star)),
+        ];
+        // Every key of the case with its default filled in.
+        let mut file = Value::try_from(&self.explicit_times()).map_err(CaseError::from)?;
+        if let Value::Table(file) = &mut file {
+            for (name, table) in file.iter_mut() {
+                conversion.convert(name, table, &mut set);
+            }
+        }
+        if let DriveStiffness::Each(stiffness) = &self.file.drive.stiffness {
+            let area = (scales.block_size / self.scales.block_size).powi(2);
+            set.push((
+                "drive.stiffness".to_owned(),
+                Value::from(format!("{:e} N/m", stiffness.si() * area)),
+            ));
+        }
+        Ok(set.iter().map(|(key, value)| Override::new(key, value)).collect())
+    }
+
+    /// Lengths of the material that are those of a block, since no key gives them: on other blocks they are others.
+    pub fn lengths_of_a_block(&self) -> Vec<&'static str> {
+        let mut lengths = Vec::new();
+        if self.file.slider.thickness.is_none() {
+            lengths.push("the thickness of the sheet (`slider.thickness`)");
+        }
+        if self.file.drive.stiffness == DriveStiffness::Auto {
+            lengths.push("the screening length of the mount (`drive.stiffness_per_area`)");
+        }
+        lengths.extend(self.file.friction.lengths_of_a_block());
+        lengths
+    }
+
+    /// The case file with the times that are "auto" written out, since they count in blocks.
+    fn explicit_times(&self) -> CaseFile {
+        let mut file = self.file.clone();
+        let plan = &self.time_plan;
+        if matches!(file.time.duration, RunTime::Star(AutoOr::Auto)) {
+            file.time.duration = RunTime::Star(AutoOr::Number(plan.end_star()));
+        }
+        let onset_end = auto_onset_end(&self.file, &self.scales, &self.model);
+        let is_steady = !matches!(file.drive.speed, DriveSpeed::Program(_));
+        if is_steady && file.time.kinetic_from_star == AutoOr::Auto && onset_end < plan.end_star() {
+            file.time.kinetic_from_star = AutoOr::Number(onset_end);
+        }
+        file
+    }
+
+    /// Blocks along each axis; an axis of one block keeps it.
+    fn other_blocks(&self, finer: f64) -> Result<[u32; 2], CaseError> {
+        let [nx, ny] = self.file.slider.blocks;
+        let refuse = |sentence: String| self.file.source.error("slider.blocks", sentence);
+        let mut other = [nx, ny];
+        for blocks in other.iter_mut().filter(|blocks| **blocks > 1) {
+            let found = f64::from(*blocks) * finer;
+            if found.fract() != 0.0 || found < 2.0 {
+                return Err(refuse(format!(
+                    "`slider.blocks` = [{nx}, {ny}] cannot be divided into blocks of {} times the size: take numbers that are multiples of {}",
+                    1.0 / finer,
+                    1.0 / finer
+                )));
+            }
+            if found > MAX_BLOCKS as f64 {
+                return Err(refuse(format!(
+                    "`slider.blocks` = [{nx}, {ny}] becomes {found} blocks along an axis, more than {MAX_BLOCKS}: take fewer levels"
+                )));
+            }
+            *blocks = found as u32;
+        }
+        Ok(other)
+    }
+
+    /// Refuses what belongs to the blocks of the case, and has no meaning on others.
+    fn refuse_values_of_blocks(&self) -> Result<(), CaseError> {
+        let file = &self.file;
+        let fields = [
+            ("slider.stiffness_field", &file.slider.stiffness_field),
+            ("slider.density_field", &file.slider.density_field),
+            ("load.pressure_field", &file.load.pressure_field),
+            ("friction.mu_static_field", &file.friction.mu_static_field),
+            ("friction.mu_kinetic_field", &file.friction.mu_kinetic_field),
+        ];
+        if let Some((key, _)) = fields.iter().find(|(_, field)| field.is_some()) {
+            return Err(file.source.error(
+                key,
+                format!("`{key}` has a value for each block of this case, and none for others: leave it out, or give a slope or a length in its place"),
+            ));
+        }
+        let is_line = !matches!(file.drive.attached, Attached::At(AttachedEdge::All));
+        let is_total = matches!(
+            file.drive.stiffness,
+            DriveStiffness::Total(_) | DriveStiffness::TotalStar(_)
+        );
+        if is_line && !is_total {
+            let key = if matches!(file.drive.attached, Attached::File(_)) {
+                "drive.attach_file"
+            } else {
+                "drive.attach"
+            };
+            return Err(file.source.error(
+                key,
+                "a drive at some of the blocks is held on others by its stiffness as a whole: give `drive.total_stiffness`".to_owned(),
+            ));
+        }
+        Ok(())
+    }
+}
+
+/// A length as people write it, if that is the length to the last bit.
+fn length_text(metres: f64) -> String {
+    let units = [("mm", 1e-3), ("um", 1e-6), ("nm", 1e-9)];
+    let texts = units.into_iter().filter_map(|(unit, size)| {
+        let number = (metres / size * 1e6).round() / 1e6;
+        (1.0..1000.0)
+            .contains(&number)
+            .then(|| format!("{number} {unit}"))
+    });
+    let is_exact = |text: &String| {
+        let length = text.parse::<Length>();
+        length.is_ok_and(|length| length.si() == metres)
+    };
+    texts
+        .into_iter()
+        .find(is_exact)
+        .unwrap_or_else(|| format!("{metres:e} m"))
+}
+
+/// From the units of one mesh to those of another.
+struct Conversion<'a> {
+    from: &'a Scales,
+    to: &'a Scales,
+}
+
+impl Conversion<'_> {
+    /// Adds the keys at and below `path` that have other numbers in the other units.
+    fn convert(&self, path: &str, value: &mut Value, set: &mut Vec<(String, Value)>) {
+        let Value::Table(table) = value else { return };
+        for (name, value) in table {
+            let path = format!("{path}.{name}");
+            match value {
+                Value::Table(_) => self.convert(&path, value, set),
+                // Segments of a program stand in one list.
+                Value::Array(segments) if segments.iter().any(Value::is_table) => {
+                    let before = segments.clone();
+                    for segment in segments.iter_mut().filter_map(Value::as_table_mut) {
+                        self.convert_table(segment);
+                    }
+                    if *segments != before {
+                        set.push((path, value.clone()));
+                    }
+                }
+                _ => {
+                    if let Some(number) = self.converted(name, value) {
+                        set.push((path, number));
+                    }
+                }
+            }
+        }
+    }
+
+    fn convert_table(&self, table: &mut Table) {
+        for (name, value) in table {
+            if let Some(number) = self.converted(name, value) {
+                *value = number;
+            }
+        }
+    }
+
+    /// A number in the other units, if the key has units.
+    fn converted(&self, name: &str, value: &Value) -> Option<Value> {
+        let (_, unit) = UNITS.iter().find(|(key, _)| *key == name)?;
+        let number = value
+            .as_float()
+            .or_else(|| value.as_integer().map(|number| number as f64))?;
+        if *unit == StarUnit::None || number == 0.0 {
+            return None;
+        }
+        Some(Value::from(number * (unit.size(self.from) / unit.size(self.to))))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::case_file::SECTIONS;
+
+    /// A key with a star that is not in the table would keep a number in place of what it means.
+    #[test]
+    fn every_key_with_a_star_has_a_unit() {
+        let keys = SECTIONS.iter().flat_map(|section| section.keys);
+        for key in keys.filter(|key| key.name.ends_with("_star")) {
+            assert!(UNITS.iter().any(|(name, _)| *name == key.name), "{}", key.name);
+        }
+    }
+
+    fn case(text: &str) -> Case {
+        Case::parse(text, "case", "", &[]).unwrap()
+    }
+
+    /// What a case is in metres, seconds, newtons per metre and cubic metre.
+    fn in_si(case: &Case) -> Vec<f64> {
+        let (scales, model) = (&case.scales, &case.model);
+        let side = |blocks: usize| blocks as f64 * scales.block_size;
+        let spring = model.slider.drive_spring(0) * slipfront::lattice::K_DRIVE * scales.stiffness();
+        vec![
+            side(model.lattice.nx),
+            side(model.lattice.ny),
+            model.drive.v_star() * scales.speed(),
+            model.damping / scales.time(),
+            case.time_plan.end_star() * scales.time(),
+            spring / (scales.block_size * scales.block_size),
+        ]
+    }
+
+    /// Half and twice as many blocks along a side are one slider: every number is converted by powers of two alone, and rounds once.
+    #[test]
+    fn other_blocks_are_the_same_slider() {
+        let text = "[slider]\nblocks = [20, 40]\nblock_size = '20 um'\nthickness = '20 um'\nviscosity_time_star = 0.2\n\
+            [drive]\nv_star = 0.01\nstiffness_star = 0.375\n[friction]\nslip_weakening = { length_star = 0.6 }\nhealing_time_star = 3\n\
+            [time]\nstep = 0.1\nduration_star = 800";
+        let own = case(text);
+        for finer in [0.5, 1.0, 2.0, 4.0] {
+            let overrides: Vec<String> = own
+                .on_other_blocks(finer)
+                .unwrap()
+                .iter()
+                .map(ToString::to_string)
+                .collect();
+            let other = Case::parse(text, "case", "", &overrides).unwrap();
+            for (one, other) in in_si(&own).into_iter().zip(in_si(&other)) {
+                assert!((one - other).abs() <= 1e-12 * one.abs(), "{finer}: {one} {other}");
+            }
+            assert_eq!(other.time_plan.dt_star, own.time_plan.dt_star);
+            // Of the units of displacement: over a fixed thickness, l^2.
+            let length = |case: &Case| {
+                let values = case.file.values();
+                let found = values.iter().find(|(key, _)| key.ends_with(".length_star`"));
+                found.unwrap().1.parse::<f64>().unwrap() * case.scales.displacement()
+            };
+            assert!((length(&own) / length(&other) - 1.0).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn what_belongs_to_blocks_is_refused() {
+        for (text, expected) in [
+            ("slider.blocks = [25, 25]", "cannot be divided"),
+            (
+                "slider.blocks = [20, 20]\ndrive.attach = 'left'",
+                "give `drive.total_stiffness`",
+            ),
+        ] {
+            let said = case(text).on_other_blocks(0.5).unwrap_err().to_string();
+            assert!(said.contains(expected), "{said}");
+        }
+        // A chain keeps its one row.
+        let chain = case("slider.blocks = [20, 1]").on_other_blocks(2.0).unwrap();
+        assert!(chain.iter().any(|set| set.to_string() == "slider.blocks=[40, 1]"));
+    }
+}

@@ -1,0 +1,107 @@
+//! One slider on several meshes.
+
+use serde_json::Value;
+
+use crate::fixtures::unwrapped;
+use crate::support::workspace::Workspace;
+
+/// All lengths are those of the material; small enough for a test.
+const SHEET: &str = "[slider]\nblocks = [20, 20]\nblock_size = '50 um'\nthickness = '20 um'\n\
+    [drive]\nv_star = 0.02\nstiffness_per_area = '1875 MPa/um'\n\
+    [friction]\nsigma_static_star = 0\nsigma_kinetic_star = 0\nslip_weakening = { length_star = 0.4 }\n\
+    [time]\nstop = 'after_onset'\n\
+    [[texture]]\nshape = 'cavity'\ncoverage = 10\n";
+
+fn found(workspace: &Workspace, folder: &str) -> Value {
+    serde_json::from_slice(&workspace.read(&format!("{folder}/convergence.json"))).unwrap()
+}
+
+/// The number of a mesh is that of the case on its blocks, and the error of the mesh follows from the three.
+#[test]
+fn a_sheet_is_told_with_the_error_of_its_mesh() {
+    let workspace = Workspace::new();
+    workspace.write("sheet.toml", SHEET);
+    let said = unwrapped(&workspace.succeed("converge sheet.toml -o meshes"));
+    let found = found(&workspace, "meshes");
+    let sizes: Vec<&str> = found["meshes"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|mesh| mesh["block_size"].as_str().unwrap())
+        .collect();
+    assert_eq!(sizes, ["100 um", "50 um", "25 um"]);
+    assert_eq!(found["lengths_of_a_block"], Value::Array(Vec::new()));
+    let quantities = found["quantities"].as_array().unwrap();
+    let of = |name: &str| quantities.iter().find(|one| one["quantity"] == name).unwrap();
+    let static_friction = of("static_friction_star");
+    // The second mesh is that of the case itself.
+    let summary = workspace.succeed("run sheet.toml -o run --json");
+    let summary: Value = serde_json::from_str(&summary).unwrap();
+    assert_eq!(static_friction["means"][1], summary["static_friction_star"]);
+    assert!(said.contains("static_reduction_percent:"), "{said}");
+    assert!(
+        workspace
+            .read_text("meshes/convergence.txt")
+            .contains("static_friction_star")
+    );
+    // Once more, all runs are there, and the files the same.
+    let before = workspace.files("meshes");
+    workspace.succeed("converge sheet.toml -o meshes");
+    assert!(workspace.files("meshes") == before);
+    assert!(!workspace.succeed("verify meshes").contains("not slipfront's"));
+}
+
+/// The guide shows what the command prints of the case.
+#[test]
+fn the_guide_shows_what_is_printed() {
+    let workspace = Workspace::new();
+    let repository = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
+    workspace.succeed(&format!("converge {repository}/cases/sheet.toml -o sheet"));
+    let printed = workspace.read_text("sheet/convergence.txt");
+    let shown = printed.split("note:").next().unwrap();
+    let guide = std::fs::read_to_string(format!("{repository}/docs/guide/experiment.md")).unwrap();
+    assert!(guide.contains(shown), "docs/guide/experiment.md lacks:\n{shown}");
+}
+
+/// A limit would look like a number of the material.
+#[test]
+fn no_limit_is_given_where_a_block_is_a_length_of_the_material() {
+    let workspace = Workspace::new();
+    workspace.write(
+        "naive.toml",
+        "slider.blocks = [20, 20]\ntime.stop = 'after_onset'",
+    );
+    let said = unwrapped(&workspace.succeed("converge naive.toml -o naive --replicates 2"));
+    assert!(
+        said.contains("no limit is given") && !said.contains("of which the mesh"),
+        "{said}"
+    );
+    for key in [
+        "thickness",
+        "stiffness_per_area",
+        "slip_weakening",
+        "correlation_length",
+    ] {
+        assert!(said.contains(key), "{key}: {said}");
+    }
+}
+
+/// Before the first run, and before a folder is made.
+#[test]
+fn what_cannot_be_put_on_meshes_is_refused() {
+    let workspace = Workspace::new();
+    workspace.write("sheet.toml", SHEET);
+    for (arguments, expected) in [
+        ("--set slider.blocks=[25,25]", "cannot be divided"),
+        ("--set texture.0.coverage=0.01", "no block is textured"),
+        ("--max-memory 0.001", "more than --max-memory 0.001 allows"),
+        ("--max-memory nan", "more than --max-memory"),
+        ("--max-time 1ns", "longer than --max-time"),
+        ("--set drive.attach=left", "give `drive.total_stiffness`"),
+        ("--levels 2", "2 is not in 3..=7"),
+    ] {
+        let said = unwrapped(&workspace.fail(&format!("converge sheet.toml -o out {arguments}"), 2));
+        assert!(said.contains(expected), "{arguments}: {said}");
+        assert!(!workspace.exists("out"), "{arguments}");
+    }
+}
