@@ -307,11 +307,11 @@ mod tests {
     fn in_si(case: &Case) -> Vec<f64> {
         let (scales, model) = (&case.scales, &case.model);
         let side = |blocks: usize| blocks as f64 * scales.block_size;
-        let spring = model.slider.drive_spring(0) * slipfront::lattice::K_DRIVE * scales.stiffness();
+        let spring = model.drive.k_drive * scales.stiffness();
         vec![
             side(model.lattice.nx),
             side(model.lattice.ny),
-            model.drive.v_star() * scales.speed(),
+            model.drive.v_star * scales.speed(),
             model.damping / scales.time(),
             case.time_plan.end_star() * scales.time(),
             spring / (scales.block_size * scales.block_size),

@@ -23,7 +23,7 @@ use crate::threads::{count_from_one, set_worker_threads};
 #[derive(Args)]
 #[command(after_help = "Examples:
   slipfront converge cases/sheet.toml -o results/sheet
-  slipfront converge cases/sheet.toml --levels 4 --set friction.slip_weakening.length_star=1.2
+  slipfront converge cases/sheet.toml --levels 4 --set drive.v_star=0.005
   slipfront converge cases/circle.toml --replicates 8 --max-time 30min
 
 The slider, its load, mount, damping, speed and duration stay what they are in metres, seconds and pascals; blocks have twice their
