@@ -108,7 +108,7 @@ impl Case {
             ("time.step".to_owned(), Value::from(self.time_plan.dt_star)),
         ];
         // Every key of the case with its default filled in.
-        let mut file = Value::try_from(&self.explicit_times()).map_err(CaseError::from)?;
+        let mut file = Value::try_from(self.explicit_times()).map_err(CaseError::from)?;
         if let Value::Table(file) = &mut file {
             for (name, table) in file.iter_mut() {
                 conversion.convert(name, table, &mut set);

@@ -117,13 +117,13 @@ fn refuse_costly(
 ) -> Result<(), Failure> {
     const GB: f64 = 1e9;
     let memory = plan.memory(threads);
-    if let Some(most) = max_memory.map(|most| most * GB)
-        && !(memory <= most)
-    {
+    // NaN is a limit that nothing fits.
+    let fits = |most: f64| memory <= most * GB;
+    if let Some(most) = max_memory.filter(|most| !fits(*most)) {
         return Err(Failure::input(anyhow!(
             "the runs need {} of memory, {threads} at once: more than --max-memory {} allows; take fewer --levels or --threads",
             byte_size(memory),
-            most / GB
+            most
         )));
     }
     let Some(most) = max_time else { return Ok(()) };
