@@ -61,6 +61,24 @@ fn the_guide_shows_what_is_printed() {
     let shown = printed.split("note:").next().unwrap();
     let guide = std::fs::read_to_string(format!("{repository}/docs/guide/experiment.md")).unwrap();
     assert!(guide.contains(shown), "docs/guide/experiment.md lacks:\n{shown}");
+    // Without a length over which strength is lost.
+    let sheet = std::fs::read_to_string(format!("{repository}/cases/sheet.toml")).unwrap();
+    let lines: Vec<&str> = sheet
+        .lines()
+        .filter(|line| !line.starts_with("slip_weakening"))
+        .collect();
+    workspace.write("crack.toml", lines.join("\n"));
+    workspace.succeed("converge crack.toml -o crack");
+    let found = found(&workspace, "crack");
+    let reduction = &found["quantities"][0]["means"];
+    let means: Vec<String> = reduction
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|mean| format!("{:.1}", mean.as_f64().unwrap()))
+        .collect();
+    let shown = format!("gives {} %", means.join(", "));
+    assert!(guide.contains(&shown), "docs/guide/experiment.md lacks: {shown}");
 }
 
 /// A limit would look like a number of the material.
