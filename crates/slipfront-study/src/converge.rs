@@ -11,11 +11,11 @@
 //! place. No limit is claimed where the differences do not decrease, `|e| >= |d|`.
 
 use std::io::Write as _;
-use std::path::Path;
+use std::path::{Path, absolute};
 
 use serde::Serialize;
 use slipfront_case::case::Case;
-use slipfront_case::case_file::{CaseError, Override};
+use slipfront_case::case_file::{CaseError, CaseFile, Override};
 use slipfront_run::names::CONVERGENCE;
 use toml::{Table, Value};
 
@@ -68,7 +68,7 @@ pub fn mesh_study(
             }
         }
     }
-    let mut base = Value::try_from(&case.file).map_err(CaseError::from)?;
+    let mut base = Value::try_from(reading_originals(case)).map_err(CaseError::from)?;
     if let Some(base) = base.as_table_mut() {
         base.remove("output");
     }
@@ -84,6 +84,18 @@ pub fn mesh_study(
         ("axes".to_owned(), Value::Array(vec![axis.into()])),
     ]);
     StudyFile::parse(&portable_text(table)?, name, name, folder)
+}
+
+/// The case file, which names the copies in a run folder, with the files that were copied in their place.
+fn reading_originals(case: &Case) -> CaseFile {
+    let mut file = case.file.clone();
+    for named in file.files_mut().0 {
+        if let Some(input) = case.inputs.iter().find(|input| input.name == *named.name) {
+            let original = absolute(&input.original).unwrap_or_else(|_| input.original.clone());
+            *named.name = original.display().to_string();
+        }
+    }
+    file
 }
 
 /// A mesh, and what is meshed of the textures.

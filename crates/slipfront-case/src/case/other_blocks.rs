@@ -156,6 +156,11 @@ impl Case {
     fn other_blocks(&self, finer: f64) -> Result<[u32; 2], CaseError> {
         let [nx, ny] = self.file.slider.blocks;
         let refuse = |sentence: String| self.file.source.error("slider.blocks", sentence);
+        if [nx, ny] == [1, 1] {
+            return Err(refuse(
+                "a single block has no mesh that could be finer or coarser".to_owned(),
+            ));
+        }
         let mut other = [nx, ny];
         for blocks in other.iter_mut().filter(|blocks| **blocks > 1) {
             let found = f64::from(*blocks) * finer;
@@ -238,7 +243,7 @@ struct Conversion<'a> {
 }
 
 impl Conversion<'_> {
-    /// Adds the keys at and below `path` that have other numbers in the other units.
+    /// Adds the keys at and below `path` that have units, with their numbers in the other ones.
     fn convert(&self, path: &str, value: &mut Value, set: &mut Vec<(String, Value)>) {
         let Value::Table(table) = value else { return };
         for (name, value) in table {
@@ -247,11 +252,8 @@ impl Conversion<'_> {
                 Value::Table(_) => self.convert(&path, value, set),
                 // Segments of a program stand in one list.
                 Value::Array(segments) if segments.iter().any(Value::is_table) => {
-                    let before = segments.clone();
-                    for segment in segments.iter_mut().filter_map(Value::as_table_mut) {
-                        self.convert_table(segment);
-                    }
-                    if *segments != before {
+                    let tables = segments.iter_mut().filter_map(Value::as_table_mut);
+                    if tables.map(|table| self.convert_table(table)).sum::<usize>() > 0 {
                         set.push((path, value.clone()));
                     }
                 }
@@ -264,12 +266,16 @@ impl Conversion<'_> {
         }
     }
 
-    fn convert_table(&self, table: &mut Table) {
+    /// Converts the numbers of a table; gives how many have units.
+    fn convert_table(&self, table: &mut Table) -> usize {
+        let mut count = 0;
         for (name, value) in table {
             if let Some(number) = self.converted(name, value) {
                 *value = number;
+                count += 1;
             }
         }
+        count
     }
 
     /// A number in the other units, if the key has units.
@@ -347,10 +353,30 @@ mod tests {
         }
     }
 
+    /// A study sets the same keys on all meshes, that of the case included.
+    #[test]
+    fn every_mesh_sets_the_same_keys() {
+        let case = case(
+            "slider.blocks = [20, 20]\nslider.thickness = '1 um'\n\
+             drive.program = [{ v_star = 0.02, until_star = 300 }, { v_star = 0 }]",
+        );
+        let sets = |finer: f64| case.on_other_blocks(finer).unwrap();
+        let keys = |finer: f64| -> Vec<String> {
+            let sets = sets(finer);
+            sets.iter().map(|set| set.key().to_owned()).collect()
+        };
+        assert_eq!(keys(0.5), keys(1.0));
+        assert_eq!(keys(2.0), keys(1.0));
+        let program = sets(2.0).into_iter().find(|set| set.key() == "drive.program");
+        let expected = "[{ v_star = 0.04, until_star = 600.0 }, { v_star = 0.0 }]";
+        assert_eq!(program.unwrap().value().to_string(), expected);
+    }
+
     #[test]
     fn what_belongs_to_blocks_is_refused() {
         for (text, expected) in [
             ("slider.blocks = [25, 25]", "cannot be divided"),
+            ("slider.blocks = [1, 1]", "a single block"),
             (
                 "slider.blocks = [20, 20]\ndrive.attach = 'left'",
                 "give `drive.total_stiffness`",

@@ -81,6 +81,27 @@ fn the_guide_shows_what_is_printed() {
     assert!(guide.contains(&shown), "docs/guide/experiment.md lacks: {shown}");
 }
 
+/// A mask lies where its case says, and is copied into the folder as those of any study.
+#[test]
+fn a_mask_is_laid_over_every_mesh() {
+    let workspace = Workspace::new();
+    let cases = concat!(env!("CARGO_MANIFEST_DIR"), "/../../cases");
+    for (case, file) in [("mask", "herringbone.png"), ("ground", "ground.gsf")] {
+        workspace.succeed(&format!(
+            "converge {cases}/{case}.toml -o {case} --replicates 1 --set time.stop=after_onset"
+        ));
+        assert!(workspace.exists(&format!("{case}/inputs/{file}")));
+        let found = found(&workspace, case);
+        let meshes = found["meshes"].as_array().unwrap();
+        let coverages = meshes
+            .iter()
+            .map(|mesh| mesh["coverage_percent"].as_f64().unwrap());
+        // Neither bare nor all textured.
+        assert!(coverages.clone().all(|percent| (10.0..90.0).contains(&percent)));
+        assert_eq!(coverages.count(), 3);
+    }
+}
+
 /// A limit would look like a number of the material.
 #[test]
 fn no_limit_is_given_where_a_block_is_a_length_of_the_material() {
