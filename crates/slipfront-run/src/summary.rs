@@ -121,7 +121,7 @@ pub struct Summary {
     pub dt_star: f64,
     /// Steps done.
     pub steps: u64,
-    /// Those in which the drive moved, of a drive that is held; in the others it stood.
+    /// Steps in which the drive moved, of a drive that is held; in the others it stood.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub drive_steps: Option<u64>,
     /// Seed of the random coefficients.

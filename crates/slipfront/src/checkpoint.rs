@@ -19,9 +19,9 @@ use crate::totals::Totals;
 pub struct Checkpoint {
     /// Number of steps done.
     pub step: u64,
-    /// Those of them in which the drive moved.
+    /// Number of steps in which the drive moved.
     pub drive_steps: u64,
-    /// The last of them, through which the drive has stood.
+    /// Number of steps just before this one through which the drive has stood.
     pub(crate) standing: u64,
     pub(crate) totals: Totals,
     pub(crate) contact: ContactTotals,

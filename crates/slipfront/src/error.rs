@@ -45,7 +45,7 @@ pub enum RunError {
     TooManySteps {
         /// Steps done.
         step: u64,
-        /// Those in which the drive has moved.
+        /// Steps in which the drive has moved.
         drive_steps: u64,
     },
     /// An observer failed.

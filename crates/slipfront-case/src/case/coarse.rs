@@ -98,7 +98,7 @@ fn greatest_common_divisor([one, other]: [u64; 2]) -> u64 {
 }
 
 /// A length with so many digits that as many copies have room in a pitch as before, which 1e-9 may decide.
-fn ten_digits(length: f64) -> String {
+pub(super) fn ten_digits(length: f64) -> String {
     let (factor, prefix) = si_prefix(length);
     let rounded = format!("{:.9e}", length / factor);
     format!("{} {prefix}m", exact(rounded.parse().unwrap_or(length)))

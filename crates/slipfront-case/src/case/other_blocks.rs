@@ -11,6 +11,7 @@
 use slipfront::Scales;
 use toml::{Table, Value};
 
+use super::coarse::ten_digits;
 use super::runnable::Case;
 use super::time_plan::auto_onset_end;
 use crate::case_file::{
@@ -217,23 +218,15 @@ impl Case {
     }
 }
 
-/// A length as people write it, if that is the length to the last bit.
+/// A length as people write it, if ten digits are that length to the last bit.
 fn length_text(metres: f64) -> String {
-    let units = [("mm", 1e-3), ("um", 1e-6), ("nm", 1e-9)];
-    let texts = units.into_iter().filter_map(|(unit, size)| {
-        let number = (metres / size * 1e6).round() / 1e6;
-        (1.0..1000.0)
-            .contains(&number)
-            .then(|| format!("{number} {unit}"))
-    });
-    let is_exact = |text: &String| {
-        let length = text.parse::<Length>();
-        length.is_ok_and(|length| length.si() == metres)
-    };
-    texts
-        .into_iter()
-        .find(is_exact)
-        .unwrap_or_else(|| format!("{metres:e} m"))
+    let text = ten_digits(metres);
+    let read = text.parse::<Length>();
+    if read.is_ok_and(|length| length.si() == metres) {
+        text
+    } else {
+        format!("{metres:e} m")
+    }
 }
 
 /// From the units of one mesh to those of another.

@@ -27,7 +27,7 @@ struct Steps {
 struct Place {
     /// Steps done.
     step: u64,
-    /// Those of them in which the drive moved.
+    /// Steps in which the drive moved.
     drive_steps: u64,
     /// What tells it: t*, or the path of a drive that is held.
     name: &'static str,
@@ -37,9 +37,10 @@ struct Place {
 impl Place {
     fn of(now: &Snapshot) -> Self {
         let drive = &now.model.drive;
-        let (name, value) = match drive.is_held() {
-            false => ("t*", now.time_star),
-            true => ("X*", drive.path(now.drive_time_star)),
+        let (name, value) = if drive.is_held() {
+            ("X*", drive.path(now.drive_time_star))
+        } else {
+            ("t*", now.time_star)
         };
         Self {
             step: now.step,

@@ -8,7 +8,8 @@ use super::study::case_warnings;
 use super::table::table;
 use crate::wrap::note;
 
-/// The table of what every mesh found, and a sentence on each quantity. Notes name lengths of the material that are the block's, and warnings about the cases.
+/// The table of what every mesh found, and a sentence on each quantity. Notes name lengths of the material that are the block's, and tell the
+/// warnings about the cases.
 pub(crate) fn convergence(plan: &Plan, found: &OnMeshes) -> String {
     let quantities = &found.quantities;
     let mut header = vec!["block", "textured"];

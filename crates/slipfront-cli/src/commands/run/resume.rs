@@ -90,11 +90,12 @@ fn begin(
         Some(loaded) => {
             let checkpoints = Checkpoints::after(case, &loaded);
             // How many steps a run under a held drive takes is not known before.
-            let of = |last: u64| match case.model.drive.is_held() {
-                false => format!(" of {last}"),
-                true => String::new(),
+            let of = if case.model.drive.is_held() {
+                String::new()
+            } else {
+                format!(" of {}", case.time_plan.last_step)
             };
-            let from = format!("step {}{}", loaded.step(), of(case.time_plan.last_step));
+            let from = format!("step {}{of}", loaded.step());
             let resumed = loaded.resume(case, execution);
             let resumed = resumed.map_err(|error| refused(ranks, &error, run, case, previous))?;
             let running = resumed.ok_or_else(|| {
