@@ -1,16 +1,9 @@
 //! Whether blocks are fine enough for the outline of a texture.
 
-use slipfront::surface::{Clearance, clearance};
-
 use super::runnable::Case;
-use super::textures::outlines_in_blocks;
 use crate::case_file::{MAX_BLOCKS, MAX_BLOCKS_TOTAL, Outline, Texture};
 use crate::number_format::{exact, four_digits, si_prefix, with_si_prefix};
 
-/// Blocks that a feature needs across, so that its area is meshed well.
-const ACROSS_A_FEATURE: f64 = 5.0;
-/// Blocks that a gap between two features needs across, so that a slip front can run there.
-const ACROSS_A_GAP: f64 = 10.0;
 /// Share by which a length may be too small: rounding of lengths and of the block size.
 const ROUNDING: f64 = 1e-6;
 /// Smallest edge of a block, m.
@@ -20,25 +13,20 @@ impl Case {
     /// Where blocks are too coarse for the outlines of its textures, and how many there should be; of masks and height maps, whose
     /// outlines are not known, nothing is said.
     pub fn too_coarse(&self) -> Option<String> {
-        let lattice = &self.model.lattice;
-        let outlines = outlines_in_blocks(&self.file, &self.scales, lattice, self.model.n_blocks());
-        let Clearance { feature, gap } = clearance(lattice, &outlines);
-        let [feature_name, gap_name] = names(&self.file.texture);
-        let found = [
-            (feature_name, feature, ACROSS_A_FEATURE),
-            (gap_name, gap, ACROSS_A_GAP),
-        ];
-        let too_small = found.into_iter().filter_map(|(name, blocks, needed)| {
-            let blocks = blocks.filter(|blocks| *blocks < needed * (1.0 - ROUNDING))?;
-            Some((name, blocks, needed))
+        let lengths = self.smallest_lengths();
+        let too_small = lengths.iter().filter_map(|length| {
+            let needed = length
+                .enough
+                .filter(|needed| length.blocks < needed * (1.0 - ROUNDING))?;
+            Some((length.name.as_str(), length.blocks, needed))
         });
         let too_small: Vec<(&str, f64, f64)> = too_small.collect();
         let finer = too_small.iter().map(|(_, blocks, needed)| needed / blocks);
         let finer = finer.reduce(f64::max)?;
         let told = |(place, (name, blocks, _)): (usize, &(&str, f64, f64))| match place {
-            0 if *blocks == 1.0 => format!("the smallest {name} is 1 block across"),
-            0 => format!("the smallest {name} is {} blocks across", four_digits(*blocks)),
-            _ => format!("the smallest {name} {}", four_digits(*blocks)),
+            0 if *blocks == 1.0 => format!("the {name} is 1 block across"),
+            0 => format!("the {name} is {} blocks across", four_digits(*blocks)),
+            _ => format!("the {name} {}", four_digits(*blocks)),
         };
         let told: Vec<String> = too_small.iter().enumerate().map(told).collect();
         let needed: Vec<String> = too_small
@@ -80,7 +68,7 @@ impl Case {
 }
 
 /// What is textured and what is between, as their user calls it.
-fn names(textures: &[Texture]) -> [&'static str; 2] {
+pub(super) fn names(textures: &[Texture]) -> [&'static str; 2] {
     let drawn = |texture: &Texture| Some((texture.shape.outline()?.noun(), texture.pattern.invert));
     let drawn: Vec<(&str, bool)> = textures.iter().filter_map(drawn).collect();
     if drawn.iter().all(|(_, is_inverted)| *is_inverted) {

@@ -125,19 +125,6 @@ impl Case {
         Ok(set.iter().map(|(key, value)| Override::new(key, value)).collect())
     }
 
-    /// Lengths of the material that are those of a block, since no key gives them: on other blocks they are others.
-    pub fn lengths_of_a_block(&self) -> Vec<&'static str> {
-        let mut lengths = Vec::new();
-        if self.file.slider.thickness.is_none() {
-            lengths.push("the thickness of the sheet (`slider.thickness`)");
-        }
-        if self.file.drive.stiffness == DriveStiffness::Auto {
-            lengths.push("the screening length of the mount (`drive.stiffness_per_area`)");
-        }
-        lengths.extend(self.file.friction.lengths_of_a_block());
-        lengths
-    }
-
     /// The case file with the times that are "auto" written out, since they count in blocks.
     fn explicit_times(&self) -> CaseFile {
         let mut file = self.file.clone();

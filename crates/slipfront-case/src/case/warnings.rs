@@ -314,6 +314,7 @@ impl Case {
             ));
         }
         warnings.extend(friction_warning(&self.model));
+        warnings.extend(self.unresolved_lengths());
         let [mean_static, mean_kinetic] = means;
         if mean_kinetic >= mean_static {
             warnings.push(format!(

@@ -14,6 +14,7 @@ mod friction;
 mod key;
 mod key_table;
 mod keys;
+mod length_of_a_block;
 mod load;
 mod motion;
 mod output;
@@ -43,6 +44,7 @@ pub use keys::{
     STUDY_TABLES, TABLES as CASE_TABLES, exclude_each_other, header_below, partners_of,
     unknown as unknown_key, unknown_table as unknown_case_table,
 };
+pub use length_of_a_block::LengthOfABlock;
 pub use load::read_text;
 pub use motion::{Along, Load, Profile};
 pub use output::{Output, Snapshots};

@@ -26,7 +26,7 @@ impl CheckCommand {
         set_threads(None)?;
         let signals = Signals::catch().map_err(Failure::running)?;
         let case = self.case.load(&CommandRanks::alone(), &signals, false)?;
-        print(&report::physics(&case))?;
+        print(&(report::physics(&case) + &report::lengths(&case)))?;
         let seconds = seconds_per_step(&case) * case.time_plan.last_step as f64;
         print(&report::cost(&case, seconds))
     }

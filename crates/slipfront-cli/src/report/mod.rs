@@ -3,6 +3,7 @@
 mod anisotropy;
 mod convergence;
 mod cost;
+mod lengths;
 mod physics;
 mod study;
 mod summary;
@@ -11,6 +12,7 @@ mod times;
 
 pub(crate) use convergence::convergence;
 pub(crate) use cost::cost;
+pub(crate) use lengths::lengths;
 pub use physics::physics;
 pub(crate) use physics::{smallest, texture};
 pub(crate) use study::{plan, study};

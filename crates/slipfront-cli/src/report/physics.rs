@@ -19,9 +19,6 @@ pub fn physics(case: &Case) -> String {
         ("texture", texture(case)),
         ("time", time(case)),
     ];
-    let lengths = lengths(case).map(|lengths| ("lengths", lengths));
-    let branches = branches.into_iter().chain(lengths);
-    let branches: Vec<(&str, String)> = branches.collect();
     let mut text = format!("{}\n", case.name);
     for (number, (name, value)) in branches.iter().enumerate() {
         let branch = if number + 1 < branches.len() {
@@ -129,55 +126,6 @@ fn drive(case: &Case) -> String {
         ""
     };
     format!("{speed} {motion}{at}{stiffness}{held}")
-}
-
-/// Lengths of the slider: those over which its mount screens, and that over which its coefficients are alike.
-fn lengths(case: &Case) -> Option<String> {
-    let told: Vec<String> = [screening(case), correlation(case)]
-        .into_iter()
-        .flatten()
-        .collect();
-    (!told.is_empty()).then(|| told.join("; "))
-}
-
-/// A length, from blocks.
-fn in_blocks(case: &Case, blocks: f64) -> String {
-    let metres = with_si_prefix(blocks * case.scales.block_size, "m");
-    format!("{} blocks ({metres})", four_digits(blocks))
-}
-
-/// The lengths over which the mount screens what happens at a place, where every block has a drive spring, and the size from which slip
-/// runs away.
-fn screening(case: &Case) -> Option<String> {
-    let (keys, model) = (&case.file.drive, &case.model);
-    let is_on_all = matches!(keys.attached, Attached::At(AttachedEdge::All));
-    if !is_on_all || keys.motion == Motion::Rotation || model.n_blocks() == 1 {
-        return None;
-    }
-    let told = |blocks| in_blocks(case, blocks);
-    let [along, across] = model.drive.screening_lengths(&model.lattice).map(told);
-    let critical = model.critical_size().map_or(String::new(), |size| {
-        if size.is_finite() {
-            format!("; slip runs away from {} on", told(size))
-        } else {
-            "; slip of any size is stable on this mount".to_owned()
-        }
-    });
-    Some(format!(
-        "the mount screens stress over {along} along the drive, {across} across{critical}"
-    ))
-}
-
-/// The length over which random coefficients are alike, and how much of their variance is left of means over a block, and over all.
-fn correlation(case: &Case) -> Option<String> {
-    let field = case.correlated_field()?;
-    let percent = |share: f64| four_digits(100.0 * share);
-    Some(format!(
-        "coefficients are alike over {}, of whose variance means over a block keep {} %, and over the slider {} %",
-        in_blocks(case, field.length()),
-        percent(field.variance_of_blocks()),
-        percent(field.variance_of_slider())
-    ))
 }
 
 /// The share of the blocks that is textured, the share asked for, and the roughness of height maps.

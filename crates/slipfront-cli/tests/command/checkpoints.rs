@@ -28,7 +28,7 @@ const SPRINGS: &str = "[slider]\nblocks = [60, 50]\n[drive]\nv_star = 0.01\n[fri
 const WIDE: &str = "[slider]\nblocks = [400, 350]\n[drive]\nv_star = 0.05\n[time]\nstop = 'after_onset'\n";
 
 /// A drive that stands for many steps while blocks slip.
-const HELD: &str = "[slider]\nblocks = [60, 50]\n[drive]\nv_star = 0.005\nloading = 'held'\n[[texture]]\nshape = 'cavity'\ncoverage = 10\n";
+const HELD: &str = "[slider]\nblocks = [60, 50]\n[drive]\nv_star = 0.02\nloading = 'held'\n[time]\nduration_star = 160\n[[texture]]\nshape = 'cavity'\ncoverage = 10\n";
 
 fn slow_workspace() -> Workspace {
     let workspace = Workspace::small();

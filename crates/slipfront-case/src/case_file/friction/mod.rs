@@ -22,6 +22,7 @@ use super::check::Check;
 use super::choice::keys_with_choice;
 use super::error::CaseError;
 use super::key::{ARRAY, Key, KeyKind, above, count, joined, key, number, quantity, whole, within};
+use super::length_of_a_block::LengthOfABlock;
 use super::probe::names_of;
 use super::values::word;
 use crate::number_format::four_digits;
@@ -233,7 +234,7 @@ impl Friction {
     }
 
     /// Lengths of friction that are those of a block, since no key gives them.
-    pub(crate) fn lengths_of_a_block(&self) -> impl Iterator<Item = &'static str> {
+    pub(crate) fn lengths_of_a_block(&self) -> impl Iterator<Item = LengthOfABlock> {
         let falls_at_once =
             self.has_kinetic_coefficient() && self.slip_weakening.is_none() && self.mean_ratio() < 1.0;
         let is_drawn = |field: &Option<String>, sigma: f64| field.is_none() && sigma > 0.0;
@@ -242,10 +243,14 @@ impl Friction {
         let draws_kinetic =
             self.has_kinetic_coefficient() && is_drawn(&self.mu_kinetic_field, self.sigma_kinetic_star);
         let drawn_by_block = self.correlation_length.is_none() && (draws_static || draws_kinetic);
-        let slip =
-            falls_at_once.then_some("the slip over which strength is lost (`friction.slip_weakening`)");
-        let coefficients = drawn_by_block
-            .then_some("the length over which coefficients are alike (`friction.correlation_length`)");
+        let slip = falls_at_once.then_some(LengthOfABlock {
+            length: "the slip over which strength is lost",
+            key: "friction.slip_weakening",
+        });
+        let coefficients = drawn_by_block.then_some(LengthOfABlock {
+            length: "the length over which coefficients are alike",
+            key: "friction.correlation_length",
+        });
         slip.into_iter().chain(coefficients)
     }
 
@@ -459,8 +464,7 @@ impl Friction {
 pub(crate) fn friction_warning(model: &Model) -> Option<String> {
     match &model.friction {
         slipfront::Friction::RateAndState(law) => rate_and_state::warning(law, model),
-        slipfront::Friction::Coulomb(_) => slip_weakening::warning(model),
-        slipfront::Friction::ContactSprings(_) => None,
+        slipfront::Friction::Coulomb(_) | slipfront::Friction::ContactSprings(_) => None,
     }
 }
 

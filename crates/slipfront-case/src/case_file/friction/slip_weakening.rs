@@ -1,7 +1,7 @@
 //! `slip_weakening`: strength that falls with slip.
 
 use serde::{Deserialize, Serialize};
-use slipfront::{Model, Scales, SlipWeakening};
+use slipfront::{Scales, SlipWeakening};
 
 use crate::case_file::check::Check;
 use crate::case_file::error::CaseError;
@@ -72,22 +72,6 @@ impl SlipWeakeningLength {
             healing_time,
         }
     }
-}
-
-/// Blocks of a critical size with which mu_s*, and what a hole changes about it, are within 2 % of those on finer meshes: the test
-/// `static_friction_converges` of the physics.
-const BLOCKS_OF_CRITICAL_SIZE: f64 = 5.0;
-
-/// What there is to say about slip weakening on these blocks.
-pub(super) fn warning(model: &Model) -> Option<String> {
-    let size = model.critical_size()?;
-    (size < BLOCKS_OF_CRITICAL_SIZE).then(|| {
-        format!(
-            "a patch runs away from {} blocks on, and the onset is resolved from {BLOCKS_OF_CRITICAL_SIZE} on: mu_s* still belongs to the size of \
-             a block; take smaller blocks, or a longer `friction.slip_weakening`",
-            four_digits(size)
-        )
-    })
 }
 
 /// The law in words, behind those of static and kinetic friction.

@@ -1,0 +1,180 @@
+//! The lengths of a case against its blocks: which of them decides how much of an answer is the mesh.
+//!
+//! What is enough of each was measured on a sheet of 1 mm with square and round cavities of 50 to 400 um, on 20 to 320 blocks along a side with all
+//! else held in metres, seconds and pascals: blocks from which on the reduction of static friction by the cavity is within 2 % of that on the
+//! finest mesh (`docs/model.md`, "How many blocks a length needs").
+
+use slipfront::surface::{Clearance, clearance};
+
+use super::coarse::names;
+use super::runnable::Case;
+use super::textures::outlines_in_blocks;
+use crate::case_file::{Attached, AttachedEdge, DriveStiffness, LengthOfABlock, Motion};
+use crate::number_format::{four_digits, with_si_prefix};
+
+/// Blocks of the critical size of slip.
+const OF_CRITICAL_SIZE: f64 = 5.0;
+/// Blocks of the screening length along the drive where slip of any size is stable, so that there is no critical size.
+const OF_SCREENING: f64 = 3.0;
+/// Blocks of the correlation length: coefficients are exact means over blocks.
+const OF_CORRELATION: f64 = 1.0;
+/// Blocks across the smallest feature: its area is then meshed within 2 % in root mean square over its place on the mesh.
+pub(super) const ACROSS_A_FEATURE: f64 = 5.0;
+/// Blocks across the smallest gap: one of them is in contact wherever the mesh lies.
+pub(super) const ACROSS_A_GAP: f64 = 2.0;
+
+/// A length of a case, and how many blocks of it an answer needs.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CaseLength {
+    /// Name, such as "critical size".
+    pub name: String,
+    /// The length in blocks; infinite for the critical size of slip that is stable at any size.
+    pub blocks: f64,
+    /// The length in m.
+    pub metres: f64,
+    /// Blocks from which on a reduction of static friction is within 2 % of its limit; none where the length sets no bound.
+    pub enough: Option<f64>,
+}
+
+impl CaseLength {
+    /// Blocks that there are over those that are enough.
+    fn resolution(&self) -> Option<f64> {
+        self.enough.map(|enough| self.blocks / enough)
+    }
+}
+
+impl Case {
+    /// The block, the screening lengths of the mount, the critical size of slip, the correlation length of the coefficients, and the smallest
+    /// feature and gap of the texture, as far as the case has them.
+    pub fn lengths(&self) -> Vec<CaseLength> {
+        let mut lengths = self.material_lengths();
+        lengths.extend(self.smallest_lengths());
+        lengths
+    }
+
+    /// All lengths but those of the texture.
+    fn material_lengths(&self) -> Vec<CaseLength> {
+        let model = &self.model;
+        let critical_size = model.critical_size();
+        let mut lengths = vec![self.length("block", 1.0, None)];
+        if self.has_spring_on_every_block() {
+            let [along, across] = model.drive.screening_lengths(&model.lattice);
+            let is_stable = critical_size == Some(f64::INFINITY);
+            lengths.push(self.length("screening length along", along, is_stable.then_some(OF_SCREENING)));
+            lengths.push(self.length("screening length across", across, None));
+        }
+        let critical_size = critical_size.map(|blocks| ("critical size", blocks, OF_CRITICAL_SIZE));
+        let field = self.correlated_field();
+        let correlation = field.map(|field| ("correlation length", field.length(), OF_CORRELATION));
+        for (name, blocks, enough) in critical_size.into_iter().chain(correlation) {
+            lengths.push(self.length(name, blocks, blocks.is_finite().then_some(enough)));
+        }
+        lengths
+    }
+
+    /// The smallest feature and gap of the textures; none of masks and height maps, whose outlines are not known.
+    pub(super) fn smallest_lengths(&self) -> Vec<CaseLength> {
+        let lattice = &self.model.lattice;
+        let outlines = outlines_in_blocks(&self.file, &self.scales, lattice, self.model.n_blocks());
+        let Clearance { feature, gap } = clearance(lattice, &outlines);
+        let [feature_name, gap_name] = names(&self.file.texture);
+        let found = [
+            (feature_name, feature, ACROSS_A_FEATURE),
+            (gap_name, gap, ACROSS_A_GAP),
+        ];
+        found
+            .into_iter()
+            .filter_map(|(name, blocks, enough)| {
+                Some(self.length(&format!("smallest {name}"), blocks?, Some(enough)))
+            })
+            .collect()
+    }
+
+    /// Lengths of the material that are those of a block, since no key gives them: on other blocks they are others.
+    pub fn lengths_of_a_block(&self) -> Vec<LengthOfABlock> {
+        let file = &self.file;
+        let thickness = file.slider.thickness.is_none().then_some(LengthOfABlock {
+            length: "the thickness of the sheet",
+            key: "slider.thickness",
+        });
+        let mount = (file.drive.stiffness == DriveStiffness::Auto).then_some(LengthOfABlock {
+            length: "the screening length of the mount",
+            key: "drive.stiffness_per_area",
+        });
+        let of_friction = file.friction.lengths_of_a_block();
+        thickness.into_iter().chain(mount).chain(of_friction).collect()
+    }
+
+    /// Which length decides how much of an answer is the mesh, in a sentence without a full stop.
+    pub fn deciding_length(&self, lengths: &[CaseLength]) -> String {
+        let of_a_block = self.lengths_of_a_block();
+        if !of_a_block.is_empty() {
+            let keys: Vec<String> = of_a_block
+                .iter()
+                .map(|length| format!("`{}`", length.key))
+                .collect();
+            let (are, lengths) = if keys.len() > 1 {
+                ("are", "lengths")
+            } else {
+                ("is", "a length")
+            };
+            return format!(
+                "the block of {}: {} {are} not given, which {are} {lengths} of the material",
+                with_si_prefix(self.scales.block_size, "m"),
+                keys.join(", ")
+            );
+        }
+        let resolved = lengths
+            .iter()
+            .filter_map(|length| Some((length, length.resolution()?)));
+        let least = resolved.min_by(|(_, one), (_, other)| one.total_cmp(other));
+        least.map_or(
+            "none: no length needs smaller blocks".to_owned(),
+            |(length, _)| {
+                format!(
+                    "the {}: {} blocks, and {} are enough for 2 % of a reduction",
+                    length.name,
+                    four_digits(length.blocks),
+                    four_digits(length.enough.unwrap_or_default())
+                )
+            },
+        )
+    }
+
+    /// Lengths of friction and mount for which these blocks are too large.
+    pub(super) fn unresolved_lengths(&self) -> Vec<String> {
+        let lengths = self.material_lengths();
+        let unresolved = lengths
+            .iter()
+            .filter(|length| length.resolution().is_some_and(|resolution| resolution < 1.0));
+        unresolved
+            .map(|length| {
+                let enough = length.enough.unwrap_or_default();
+                format!(
+                    "the {} is {} blocks, and {} are enough: what a texture changes about mu_s* still belongs to the size of a block; take \
+                     blocks of at most {}",
+                    length.name,
+                    four_digits(length.blocks),
+                    four_digits(enough),
+                    with_si_prefix(length.metres / enough, "m")
+                )
+            })
+            .collect()
+    }
+
+    /// Whether every block of a slider of several hangs on the drive by a spring of its own, in translation.
+    fn has_spring_on_every_block(&self) -> bool {
+        let drive = &self.file.drive;
+        let is_on_all = matches!(drive.attached, Attached::At(AttachedEdge::All));
+        is_on_all && drive.motion != Motion::Rotation && self.model.n_blocks() > 1
+    }
+
+    fn length(&self, name: &str, blocks: f64, enough: Option<f64>) -> CaseLength {
+        CaseLength {
+            name: name.to_owned(),
+            blocks,
+            metres: blocks * self.scales.block_size,
+            enough,
+        }
+    }
+}

@@ -1,0 +1,49 @@
+//! The lengths of a case, in blocks and in metres.
+
+use slipfront_case::case::{Case, CaseLength};
+use slipfront_case::number_format::{four_digits, with_si_prefix};
+
+use super::table::table;
+
+/// The table of the lengths of a case with the blocks that are enough of each, and which of them decides.
+pub(crate) fn lengths(case: &Case) -> String {
+    let lengths = case.lengths();
+    let rows: Vec<Vec<String>> = lengths.iter().map(|length| row(case, length)).collect();
+    let decides = case.deciding_length(&lengths);
+    table(&["length", "blocks", "metres", "enough"], &rows)
+        + &format!("{:<18}{decides}\n", "length that counts")
+}
+
+fn row(case: &Case, length: &CaseLength) -> Vec<String> {
+    let finite = |text: String| {
+        if length.blocks.is_finite() {
+            text
+        } else {
+            "-".to_owned()
+        }
+    };
+    let mut row = vec![
+        length.name.clone(),
+        finite(four_digits(length.blocks)),
+        finite(with_si_prefix(length.metres, "m")),
+        length.enough.map_or_else(|| "-".to_owned(), four_digits),
+    ];
+    row.extend(remark(case, length));
+    row
+}
+
+/// What there is to say behind a row.
+fn remark(case: &Case, length: &CaseLength) -> Option<String> {
+    if length.blocks.is_infinite() {
+        return Some("slip of any size is stable on this mount".to_owned());
+    }
+    let field = case
+        .correlated_field()
+        .filter(|_| length.name == "correlation length")?;
+    let percent = |share: f64| four_digits(100.0 * share);
+    Some(format!(
+        "means over a block keep {} % of the variance, over the slider {} %",
+        percent(field.variance_of_blocks()),
+        percent(field.variance_of_slider())
+    ))
+}
