@@ -1,18 +1,14 @@
 //! What the commands print: the physics of a case as a tree, its cost, the summary of a run, the plan and the answer of a study.
 
 mod anisotropy;
-mod convergence;
 mod cost;
 mod physics;
 mod study;
 mod summary;
-mod table;
 mod times;
 
-pub(crate) use convergence::convergence;
 pub(crate) use cost::cost;
 pub use physics::physics;
 pub(crate) use physics::{smallest, texture};
 pub(crate) use study::{plan, study};
 pub(crate) use summary::summary;
-pub(crate) use times::duration;
