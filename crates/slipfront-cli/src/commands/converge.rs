@@ -57,13 +57,13 @@ impl ConvergeCommand {
         let signals = Signals::catch().map_err(Failure::running)?;
         let case = self.case.load(&CommandRanks::alone(), &signals, self.quiet)?;
         let (levels, replicates) = (i64::from(self.levels), self.replicates.map(i64::from));
-        let study = MeshStudy::new(&case, levels, replicates).map_err(Failure::input)?;
+        let study = MeshStudy::new(&case, levels, replicates);
+        let MeshStudy { file, plan } = study.map_err(Failure::input)?;
         let limits = CostLimits {
             memory_gb: self.max_memory,
             time: self.max_time,
         };
-        study.check_cost(threads, limits).map_err(Failure::input)?;
-        let MeshStudy { file, plan } = study;
+        limits.check(&plan, threads).map_err(Failure::input)?;
         let out = self.out.unwrap_or_else(|| Path::new("results").join(&file.name));
         let folder = StudyFolder::open(&out, &file).map_err(Failure::input)?;
         folder.check_disk(&plan).map_err(Failure::input)?;

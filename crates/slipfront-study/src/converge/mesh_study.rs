@@ -52,7 +52,7 @@ impl MeshStudy {
             return Err(StudyError::Levels { levels });
         }
         let replicates = replicates.unwrap_or_else(|| default_replicates(case));
-        let table = study_table(case, overrides(case, levels)?, replicates)?;
+        let table = study_table(case, &overrides(case, levels)?, replicates)?;
         let name = format!("{}-meshes", case.name);
         // Every file is named by its whole path.
         let file = StudyFile::parse(&portable_text(table)?, &name, &name, Path::new(""))?;
@@ -60,19 +60,20 @@ impl MeshStudy {
         refuse_bare(&plan)?;
         Ok(Self { file, plan })
     }
+}
 
-    /// Refuses as many runs at once as there is no memory for, and what takes more than the limits allow.
+impl CostLimits {
+    /// Refuses a plan if it has as many runs at once as there is no memory for, or takes more than this.
     ///
     /// # Errors
     /// Says what it takes, the limit, and what takes less.
-    pub fn check_cost(&self, threads: usize, most: CostLimits) -> Result<(), StudyError> {
+    pub fn check(self, plan: &Plan, threads: usize) -> Result<(), StudyError> {
         const GB: f64 = 1e9;
-        let plan = &self.plan;
         plan.check_memory(threads)?;
         let memory = plan.memory(threads);
         // NaN is a limit that nothing fits.
         let fits = |most: f64| memory <= most * GB;
-        if let Some(most) = most.memory_gb.filter(|most| !fits(*most)) {
+        if let Some(most) = self.memory_gb.filter(|most| !fits(*most)) {
             let needed = byte_size(memory);
             return Err(StudyError::MemoryLimit {
                 needed,
@@ -80,7 +81,7 @@ impl MeshStudy {
                 most,
             });
         }
-        let Some(most) = most.time else { return Ok(()) };
+        let Some(most) = self.time else { return Ok(()) };
         let seconds = estimated_seconds(plan, threads)?;
         if seconds > most.as_secs_f64() {
             let estimated = SignedDuration::from_secs(seconds.ceil() as i64);
@@ -98,7 +99,7 @@ fn overrides(case: &Case, levels: i64) -> Result<Vec<Vec<Override>>, CaseError> 
 }
 
 /// The study file.
-fn study_table(case: &Case, on_meshes: Vec<Vec<Override>>, replicates: i64) -> Result<Table, StudyError> {
+fn study_table(case: &Case, on_meshes: &[Vec<Override>], replicates: i64) -> Result<Table, StudyError> {
     // Each key with its values on all meshes, those alone that differ between meshes or from the case.
     let mut zip = Table::new();
     for set in on_meshes.iter().flatten() {
@@ -136,7 +137,7 @@ fn reading_originals(case: &Case) -> CaseFile {
     file
 }
 
-/// Several where surfaces differ by their seeds.
+/// Five surfaces where they differ by their seeds, else one.
 fn default_replicates(case: &Case) -> i64 {
     let groups = &case.groups;
     if groups.sigma_static_star > 0.0 || groups.sigma_kinetic_star > 0.0 {
