@@ -8,6 +8,7 @@
 
 from ._case import Case, CaseError
 from ._cite import cite
+from ._converge import Convergence, QuantityOnMeshes, converge
 from ._open import InterruptedRun, PaperResults, open
 from ._run import FolderError, Run
 from ._simulation import Simulation, run
@@ -17,10 +18,12 @@ from ._study import Study, StudyResults, study
 __all__ = [
     "Case",
     "CaseError",
+    "Convergence",
     "FolderError",
     "ForkError",
     "InterruptedRun",
     "PaperResults",
+    "QuantityOnMeshes",
     "Run",
     "RunError",
     "Simulation",
@@ -28,6 +31,7 @@ __all__ = [
     "StudyResults",
     "__version__",
     "cite",
+    "converge",
     "open",
     "run",
     "study",

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from . import _slipfront
 from ._case import Case
+from ._converge import Convergence
 from ._pickle import sealed
 from ._run import FolderSource, Run
 from ._simulation import Simulation, _threads
@@ -75,14 +76,14 @@ def open(folder: str | os.PathLike[str], *, verify: bool = True) -> Run | Interr
     Parameters
     ----------
     folder
-        That of a run, of a run that was stopped, of a study, or of `slipfront paper`.
+        That of a run, of a run that was stopped, of a study, of `slipfront converge`, or of `slipfront paper`.
     verify
         Hold what stands there against what was written. Of an interrupted run its checkpoint is always verified; that of the paper
         has nothing to be held against.
 
     Returns
     -------
-    Run, InterruptedRun, StudyResults or PaperResults
+    Run, InterruptedRun, StudyResults, PaperResults, or of a folder of `slipfront converge` a Convergence
 
     Raises
     ------
@@ -97,11 +98,13 @@ def open(folder: str | os.PathLike[str], *, verify: bool = True) -> Run | Interr
         return InterruptedRun(path, case, Simulation._of(case, running, None))
     if kind == "paper" and (path / "claims.csv").exists():
         return PaperResults(path)
-    if kind not in ("run", "study"):
+    if kind not in ("run", "study", "meshes"):
         raise _slipfront.FolderError(f"{path} is not the folder of a run, of a study, or of a paper that is finished: name one with a case.toml, a study.toml or a claims.csv")
     if verify:
         _slipfront.verify(path)
     if kind == "study":
         return StudyResults.read(path)
+    if kind == "meshes":
+        return Convergence.read(path)
     native, read = _slipfront.read_run(path)
     return Run(Case(native), FolderSource(path, read), path)

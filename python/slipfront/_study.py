@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
 
 import numpy as np
 
@@ -23,6 +23,15 @@ if TYPE_CHECKING:
 
 Quantities: TypeAlias = Mapping[str, Callable[[Run], float]]
 """Names of the user's own quantities, and the functions of a run that give them."""
+
+Progress: TypeAlias = bool | Callable[[int, int, int], object] | None
+"""True for a bar, False for none, None for one in terminals and notebooks, or a function of the numbers of runs that are done, of all, and of
+failed ones."""
+
+Look: TypeAlias = Callable[[_slipfront.Case, _slipfront.Record, tuple[int, int, bool]], list[float]]
+"""What gives the values of own quantities of a run: of its case, its record, and its point, replicate and whether it is the reference."""
+
+Results = TypeVar("Results", bound="StudyResults")
 
 
 class Study:
@@ -122,7 +131,7 @@ class Study:
         self,
         folder: str | os.PathLike[str] | None = None,
         *,
-        progress: bool | Callable[[int, int, int], object] | None = None,
+        progress: Progress = None,
         threads: int | None = None,
         quantities: Quantities | None = None,
     ) -> StudyResults:
@@ -153,26 +162,12 @@ class Study:
         for quantity in own:
             if self._native.has_column(quantity):
                 raise ValueError(f"the tables have a column `{quantity}` already: give the quantity another name")
-        watch = progress if callable(progress) else None
-        shown = progress if progress is None or isinstance(progress, bool) else False
 
         def look(native: _slipfront.Case, record: _slipfront.Record, _: tuple[int, int, bool]) -> list[float]:
             result = Run(Case(native), record)
             return [float(quantity(result)) for quantity in own.values()]
 
-        temporary = TemporaryFolder()
-        with Bar(shown, None, "run", self.name) as bar:
-
-            def show(done: int, total: int, failed: int) -> None:
-                if watch is not None:
-                    watch(done, total, failed)
-                bar.show(done, total, f"{failed} failed" if failed else "")
-
-            path = temporary.path / self.name if folder is None else Path(folder)
-            values, failures = self._native.execute(path, _threads(threads), look if own else None, show)
-            results = StudyResults.read(path, failures)
-            if folder is None:
-                results.folder = None
+        results, values = executed(self._native, StudyResults, folder, progress, threads, look if own else None)
         if own:
             self._add(results, own, values)
         return results
@@ -208,7 +203,7 @@ def study(
     path: str | os.PathLike[str],
     folder: str | os.PathLike[str] | None = None,
     *,
-    progress: bool | Callable[[int, int, int], object] | None = None,
+    progress: Progress = None,
     threads: int | None = None,
 ) -> StudyResults:
     """Run the study of a study file; `Study.run` says more.
@@ -248,11 +243,9 @@ class StudyResults:
         self._tables = tables
 
     @classmethod
-    def read(cls, folder: Path, failures: Sequence[tuple[str, str]] = ()) -> StudyResults:
+    def read(cls: type[Results], folder: Path, failures: Sequence[tuple[str, str]] = ()) -> Results:
         """The tables in a folder."""
-        names = ("runs", "points", "anisotropy")
-        tables = {name: read_table(folder / f"{name}.csv") for name in names if (folder / f"{name}.csv").exists()}
-        return cls(folder, tables, failures)
+        return cls(folder, read_tables(folder), failures)
 
     @property
     def runs(self) -> pd.DataFrame:
@@ -283,6 +276,39 @@ class StudyResults:
 
     def __repr__(self) -> str:
         return f"StudyResults({len(self._runs['point'])} runs, {len(self.failures)} failed)"
+
+
+def read_tables(folder: Path) -> dict[str, dict[str, list[Any]]]:
+    """The tables of a study in its folder, by their names."""
+    names = ("runs", "points", "anisotropy")
+    return {name: read_table(folder / f"{name}.csv") for name in names if (folder / f"{name}.csv").exists()}
+
+
+def executed(
+    native: _slipfront.Study,
+    kind: type[Results],
+    folder: str | os.PathLike[str] | None,
+    progress: Progress,
+    threads: int | None,
+    look: Look | None = None,
+) -> tuple[Results, dict[tuple[int, int, bool], list[float]]]:
+    """Run what the folder of a study lacks, one in memory unless it is given; its results, and the values of own quantities by run."""
+    watch = progress if callable(progress) else None
+    shown = progress if progress is None or isinstance(progress, bool) else False
+    temporary = TemporaryFolder()
+    with Bar(shown, None, "run", native.name) as bar:
+
+        def show(done: int, total: int, failed: int) -> None:
+            if watch is not None:
+                watch(done, total, failed)
+            bar.show(done, total, f"{failed} failed" if failed else "")
+
+        path = temporary.path / native.name if folder is None else Path(folder)
+        values, failures = native.execute(path, _threads(threads), look, show)
+        results = kind.read(path, failures)
+        if folder is None:
+            results.folder = None
+    return results, values
 
 
 def _axis(name: str, levels: Sequence[Any] | Mapping[str, Mapping[str, Any]], files: _toml.ArrayFiles) -> str:

@@ -48,7 +48,12 @@ pub(crate) fn case_error(py: Python<'_>, error: &Error) -> PyErr {
 pub(crate) fn study_error(py: Python<'_>, error: &StudyError) -> PyErr {
     match error {
         StudyError::File(source) => case_error(py, source),
-        StudyError::Point { .. } => CaseError::new_err(error.to_string()),
+        StudyError::Point { .. }
+        | StudyError::Levels { .. }
+        | StudyError::Bare { .. }
+        | StudyError::MemoryLimit { .. }
+        | StudyError::TimeLimit { .. } => CaseError::new_err(error.to_string()),
+        StudyError::Failed { .. } => RunError::new_err(error.to_string()),
         error => FolderError::new_err(error.to_string()),
     }
 }

@@ -17,6 +17,8 @@ use slipfront_run::run_folder::inspection::Contents;
 use slipfront_run::running::Running;
 use slipfront_run::verify::inspect;
 use slipfront_run::{fields, precursors, series, summary};
+use slipfront_study::converge::is_told;
+use slipfront_study::study_of;
 use slipfront_study::verify::{has_records, verify as verify_folder};
 
 use crate::case::{Case, make};
@@ -42,11 +44,12 @@ impl TemporaryParent {
     }
 }
 
-/// What a folder is: `run`, `interrupted`, `study`, `paper`, or none of these.
+/// What a folder is: `run`, `interrupted`, `study`, `meshes` of a study that tells what its meshes found, `paper`, or none of these.
 #[pyfunction]
 pub(crate) fn kind_of(folder: PathBuf) -> PyResult<Option<&'static str>> {
     if has_records(&folder) {
-        return Ok(Some("study"));
+        let is_of_meshes = study_of(&folder).is_ok_and(|study| is_told(&folder, &study.axes));
+        return Ok(Some(if is_of_meshes { "meshes" } else { "study" }));
     }
     if folder.join(FIGURE_CACHE).is_dir() {
         return Ok(Some("paper"));

@@ -5,12 +5,14 @@ use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use pyo3::exceptions::PyRuntimeError;
+use jiff::SignedDuration;
+use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use slipfront_case::case::Case as SlipfrontCase;
 use slipfront_run::{clock, running};
+use slipfront_study::converge::{self, CostLimits, MeshStudy};
 use slipfront_study::{
-    self as study, Plan, Progress, Role, RunKey, Sample, StudyError, StudyFile, StudyFolder,
+    self as study, Plan, Progress, Role, RunKey, Sample, StudyError, StudyFile, StudyFolder, StudyResults,
 };
 
 use crate::case::{Case, LOOK_EVERY, make};
@@ -23,6 +25,8 @@ use crate::record::Record;
 pub(crate) struct Study {
     file: StudyFile,
     plan: Plan,
+    /// Whether its points are meshes of one slider, of which results tell what differs.
+    is_of_meshes: bool,
 }
 
 /// Values of the user's own quantities: of a run, the number of its point in the whole study, its replicate, and whether it is the
@@ -34,9 +38,22 @@ impl Study {
         let planned = detached(py, || {
             let file = read()?;
             let plan = Plan::new(&file, None)?;
-            Ok(Self { file, plan })
+            Ok(Self {
+                file,
+                plan,
+                is_of_meshes: false,
+            })
         })?;
         planned.map_err(|error| study_error(py, &error))
+    }
+
+    /// Writes tables and pictures, and what meshes found.
+    fn write(&self, plan: &Plan, results: &StudyResults, folder: &StudyFolder) -> Result<(), StudyError> {
+        if self.is_of_meshes {
+            converge::write(plan, results, folder).map(drop)
+        } else {
+            study::write(plan, results, folder)
+        }
     }
 
     fn key(&self, run: RunKey) -> (usize, usize, bool) {
@@ -62,6 +79,34 @@ impl Study {
     #[staticmethod]
     fn of_folder(py: Python<'_>, folder: PathBuf) -> PyResult<Self> {
         Self::of(py, || study::study_of(&folder))
+    }
+
+    /// The study of a case on several meshes.
+    #[staticmethod]
+    fn on_meshes(py: Python<'_>, case: &Case, levels: i64, replicates: Option<i64>) -> PyResult<Self> {
+        let made = detached(py, || MeshStudy::new(&case.0, levels, replicates))?;
+        let MeshStudy { file, plan } = made.map_err(|error| study_error(py, &error))?;
+        Ok(Self {
+            file,
+            plan,
+            is_of_meshes: true,
+        })
+    }
+
+    /// Refuses what takes more memory, in GB, or more time, as "30min", than the user allows.
+    fn check_cost(
+        &self,
+        py: Python<'_>,
+        threads: usize,
+        max_memory: Option<f64>,
+        max_time: Option<&str>,
+    ) -> PyResult<()> {
+        let limits = CostLimits {
+            memory_gb: max_memory,
+            time: max_time.map(parse_time).transpose()?,
+        };
+        let checked = detached(py, || limits.check(&self.plan, threads))?;
+        checked.map_err(|error| study_error(py, &error))
     }
 
     #[getter]
@@ -135,7 +180,7 @@ impl Study {
         [vec![("n", values.len() as f64)], found.unwrap_or_default()].concat()
     }
 
-    /// Runs what the folder lacks, and writes tables and pictures there. `look` is called with the case, the record and the place of
+    /// Runs what the folder lacks, and writes tables and pictures there, and what meshes found. `look` is called with the case, the record and the place of
     /// every run that ends, and gives the values of the user's own quantities; `watch` with the numbers of runs that are done, of all,
     /// and of failed ones. Gives the values by run, and the reasons of the runs that failed.
     fn execute(
@@ -190,7 +235,7 @@ impl Study {
             Ok(Err(error)) => return Err(folder_error(error)),
             Err(_) => return Err(PyRuntimeError::new_err("a fault of the program ended the study")),
         };
-        detached(py, || study::write(&plan, &results, &opened))?.map_err(failed)?;
+        detached(py, || self.write(&plan, &results, &opened))?.map_err(failed)?;
         let describe = |(run, reason): (RunKey, &str)| {
             let place = plan.describe(&plan.points[run.point]);
             (format!("{place}, replicate {}", run.replicate), reason.to_owned())
@@ -198,6 +243,15 @@ impl Study {
         let failures = results.failures().map(describe).collect();
         Ok((std::mem::take(&mut *locked(&shared.own)), failures))
     }
+}
+
+/// A time as the command takes it, such as "30min".
+fn parse_time(text: &str) -> PyResult<SignedDuration> {
+    text.parse().map_err(|error| {
+        PyValueError::new_err(format!(
+            "`max_time` = {text:?} is not a time: give one such as \"30min\" or \"2h\" ({error})"
+        ))
+    })
 }
 
 /// What the threads of a study share with the one that called.

@@ -27,6 +27,8 @@ def held_by(made):
         return state(made.case), made.summary, [made.series.to_dict(), made.fields.to_dict(), made.kymograph.to_dict()]
     if isinstance(made, sf.Simulation):
         return state(made.case), made.checkpoint(), made.recipe(), made.time_s, made.displacement.tolist(), len(made.curves)
+    if isinstance(made, sf.Convergence):
+        return made.to_dict(), made.text, made.runs.to_csv(), made.points.to_csv(), made.failures, made.folder
     if isinstance(made, sf.StudyResults):
         return made.runs.to_csv(), made.points.to_csv(), made.failures, made.folder
     if isinstance(made, sf.InterruptedRun):
@@ -136,6 +138,7 @@ def objects(tmp_path_factory: pytest.TempPathFactory) -> dict[str, object]:
         "run": sf.run(case, progress=False),
         "simulation": simulation,
         "study": sf.Study(case, {"drive.v_star": [0.05, 0.1]}).run(progress=False),
+        "convergence": sf.converge(sf.Case.from_dict({"slider.blocks": [6, 4], "time.duration_star": 60}), replicates=1, progress=False),
         "stopped": stopped(folder),
         "paper": sf.open(folder),
     }
@@ -148,7 +151,7 @@ def test_damage_is_refused_or_changes_nothing(objects: dict[str, object], tmp_pa
         for protocol in of_name:
             (tmp_path / f"{name}-{protocol}").write_bytes(pickle.dumps(objects[name], protocol))
     files = sorted(path.name for path in tmp_path.iterdir())
-    assert len(files) == 5 + 6
+    assert len(files) == 6 + 6
     tried = subprocess.run([sys.executable, "-c", DAMAGE, *files], cwd=tmp_path, capture_output=True, text=True, check=False)
     assert tried.returncode == 0, tried.stdout + tried.stderr
     print(tried.stdout)

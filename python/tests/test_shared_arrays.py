@@ -21,8 +21,12 @@ METHODS: dict[str, list[tuple[Any, ...]]] = {
     "field": [("traction",), ("sliding",), ("contact_stress_star",), ("displacement_x",), ("velocity_y",)],
     "recipe": [()],
     "checkpoint": [()],
+    "to_dict": [()],
+    "to_list": [()],
     "to_toml": [()],
 }
+# Blocks of twice the size divide it too.
+SLIDER_ON_MESHES = {"slider": {"blocks": [12, 10]}, "time": {"duration_star": 100}}
 OURS = (sf.Case, sf.Run, sf.Simulation, sf.StudyResults, sf.PaperResults, sf.InterruptedRun)
 
 
@@ -111,6 +115,7 @@ def holders(folder: Path) -> dict[str, object]:
         "opened run": sf.open(folder / "run"),
         "simulation": simulation,
         "study": study.run(progress=False),
+        "convergence": sf.converge(sf.Case.from_dict(SLIDER_ON_MESHES), progress=False),
         "paper": sf.open(folder / "paper"),
     }
     unpickled = {f"unpickled {name}": pickle.loads(pickle.dumps(holder)) for name, holder in made.items()}

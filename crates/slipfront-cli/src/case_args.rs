@@ -31,12 +31,6 @@ impl CaseArgs {
         self.case.as_deref()
     }
 
-    /// The folder that the files which the case names stand relative to.
-    pub(crate) fn folder(&self) -> PathBuf {
-        let folder = self.case.as_deref().and_then(Path::parent);
-        folder.unwrap_or(Path::new("")).to_owned()
-    }
-
     /// Reads the case, or takes the baseline that is embedded in the program.
     pub(crate) fn load(self, ranks: &CommandRanks, signals: &Signals, quiet: bool) -> Result<Case, Failure> {
         let mut overrides = self.overrides;

@@ -11,7 +11,6 @@ mod browser;
 mod case_args;
 mod checkpoint_timer;
 mod commands;
-mod estimate_cost;
 mod failure;
 mod make_case;
 mod print;

@@ -1,8 +1,10 @@
 //! Sentences broken between words, where a terminal would break them anywhere.
 
-/// The columns of the terminal that stdout is, or 80.
+use slipfront_case::text::{self, COLUMNS, wrapped};
+
+/// The columns of the terminal that stdout is, or 80 of a file or pipe.
 pub(crate) fn stdout_columns() -> usize {
-    columns(terminal_size::terminal_size_of(std::io::stdout())).unwrap_or(80)
+    columns(terminal_size::terminal_size_of(std::io::stdout())).unwrap_or(COLUMNS)
 }
 
 /// The columns of the terminal that stderr is, if it is one.
@@ -17,7 +19,7 @@ fn columns(size: Option<(terminal_size::Width, terminal_size::Height)>) -> Optio
 
 /// A note for stdout, with its line break.
 pub(crate) fn note(sentence: &str) -> String {
-    format!("{}\n", wrapped(&format!("note: {sentence}"), stdout_columns()))
+    text::note(sentence, stdout_columns())
 }
 
 /// A text for stderr: lines are broken on a terminal alone, so that programs find sentences whole. A line that begins with a
@@ -34,55 +36,4 @@ pub(crate) fn for_stderr(text: &str) -> String {
         }
     });
     lines.collect::<Vec<_>>().join("\n")
-}
-
-/// A line broken between words into lines of at most `columns` characters, if no word is longer. Lines after the first are
-/// indented. A command in backquotes is one word, so that it can be copied.
-fn wrapped(line: &str, columns: usize) -> String {
-    const INDENT: &str = "\n      ";
-    let (mut text, mut used) = (String::new(), 0);
-    let mut is_quoted = false;
-    let words = line.split(|c| {
-        is_quoted ^= c == '`';
-        c == ' ' && !is_quoted
-    });
-    for word in words {
-        let width = word.chars().count();
-        if used > 0 && used + 1 + width > columns {
-            text += INDENT;
-            used = INDENT.len() - 1;
-        } else if used > 0 {
-            text.push(' ');
-            used += 1;
-        }
-        text += word;
-        used += width;
-    }
-    text
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn lines_break_between_words() {
-        assert_eq!(wrapped("note: short", 80), "note: short");
-        let long = "note: one two three four";
-        assert_eq!(wrapped(long, 13), "note: one two\n      three\n      four");
-        let command = "go on by `slipfront run --resume a`, or not";
-        assert_eq!(
-            wrapped(command, 30),
-            "go on by\n      `slipfront run --resume a`,\n      or not"
-        );
-        let endless = "x".repeat(20);
-        assert_eq!(wrapped(&endless, 10), endless);
-        let words = "word ".repeat(100);
-        assert!(
-            wrapped(words.trim(), 80)
-                .lines()
-                .all(|line| line.chars().count() <= 80)
-        );
-        assert_eq!(wrapped(words.trim(), 80).replace("\n      ", " "), words.trim());
-    }
 }

@@ -14,6 +14,7 @@ pub mod checksum;
 pub mod clock;
 pub mod columns;
 pub mod error;
+pub mod estimate_cost;
 pub mod fields;
 pub mod folder_error;
 mod friction_unit;

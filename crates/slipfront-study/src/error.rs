@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use jiff::SignedDuration;
 use thiserror::Error;
 
 use slipfront_case::case_file::CaseError;
@@ -11,6 +12,8 @@ use slipfront_plot::PictureError;
 use slipfront_run::folder_error::FolderError;
 use slipfront_run::pictures::error::RunPictureError;
 use slipfront_run::program;
+
+use crate::converge::{MAX_LEVELS, MIN_LEVELS};
 
 /// A study that cannot be used, or had to stop.
 #[derive(Debug, Error)]
@@ -97,6 +100,42 @@ pub enum StudyError {
     Shard { given: String, why: String },
     #[error("cannot draw {name}: {source}")]
     Picture { name: String, source: PictureError },
+    #[error(
+        "{levels} meshes cannot be: give from {MIN_LEVELS} to {MAX_LEVELS} levels, the second of which is the mesh of the case"
+    )]
+    Levels { levels: i64 },
+    #[error(
+        "on blocks of {block_size} no block is textured: begin with finer blocks, by `slider.blocks` and `slider.block_size`"
+    )]
+    Bare { block_size: String },
+    #[error(
+        "the runs need {needed} of memory, {threads} at once: more than --max-memory {most} allows; take fewer --levels or \
+        --threads"
+    )]
+    MemoryLimit {
+        needed: String,
+        threads: usize,
+        most: f64,
+    },
+    #[error(
+        "the runs are estimated to take about {estimated:#}: longer than --max-time {most:#} allows; take fewer --levels or \
+        --replicates"
+    )]
+    TimeLimit {
+        estimated: SignedDuration,
+        most: SignedDuration,
+    },
+    #[error(
+        "{failed} of {} failed, the others stand in the tables; the first, replicate {replicate} of the point {point}: {reason}",
+        count(*runs, "run")
+    )]
+    Failed {
+        failed: usize,
+        runs: usize,
+        replicate: usize,
+        point: String,
+        reason: String,
+    },
     #[error("stopped by a signal: finished runs are safe, and the same command goes on from there")]
     Interrupted,
 }

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use crate::axis::{self, Axis};
 use crate::error::StudyError;
 use crate::identity::{Prepared, physics};
-use crate::plan_warnings::{Warning, Warnings, note_on_replicates};
+use crate::plan_warnings::{self, Warning, Warnings, note_on_replicates};
 use crate::shard::Shard;
 use crate::study_file::{Base, RetainRuns, Settings, StudyFile};
 use crate::summary_values::REDUCTION;
@@ -263,6 +263,11 @@ impl Plan {
         base.with(&self.overrides(point, role, 0..self.axes.len()))
     }
 
+    /// The case file of the first point.
+    pub(crate) fn first_case_file(&self) -> Result<CaseFile, CaseError> {
+        self.case_file(&self.base.parse()?, &self.points[0], Role::Point)
+    }
+
     /// The case of a combination of levels, for a look at what it computes.
     pub(crate) fn case_of(&self, levels: &[usize]) -> Result<Case, CaseError> {
         let axes = self.axes.iter().zip(levels);
@@ -328,6 +333,11 @@ impl Plan {
     /// Warnings about the cases of the study, the first of each kind.
     pub fn warnings(&self) -> &[Warning] {
         &self.warnings
+    }
+
+    /// Warnings about the cases of the study in words, each with the points that it concerns: the first eight, and how many more there are.
+    pub fn told_warnings(&self) -> Vec<String> {
+        plan_warnings::told(self)
     }
 
     /// The case of a run, ready to run, unless a file that it reads has changed since the plan was made.

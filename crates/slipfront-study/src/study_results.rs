@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use crate::error::StudyError;
 use crate::plan::{Plan, Role, RunKey};
 use crate::record::RunResult;
 use crate::statistics::Sample;
@@ -106,5 +107,22 @@ impl StudyResults {
     pub fn failures(&self) -> impl Iterator<Item = (RunKey, &str)> {
         let runs = self.runs.iter();
         runs.filter_map(|(run, result)| Some((*run, result.as_ref().err()?.as_str())))
+    }
+
+    /// Refuses results of which runs have failed, and names the first.
+    ///
+    /// # Errors
+    /// Says how many failed, and why the first.
+    pub fn expect_no_failures(&self, plan: &Plan) -> Result<(), StudyError> {
+        let Some((run, reason)) = self.failures().next() else {
+            return Ok(());
+        };
+        Err(StudyError::Failed {
+            failed: self.failures().count(),
+            runs: self.runs.len(),
+            replicate: run.replicate,
+            point: plan.describe(&plan.points[run.point]),
+            reason: reason.to_owned(),
+        })
     }
 }

@@ -1,5 +1,5 @@
-//! Holds the folder of a study against the tables and pictures that its records give, and the folders of the runs that it kept against
-//! their manifests.
+//! Holds the folder of a study against the tables and pictures that its records give, with what its meshes found where it tells that, and
+//! the folders of the runs that it kept against their manifests.
 
 use std::collections::HashSet;
 use std::io::ErrorKind;
@@ -9,12 +9,13 @@ use slipfront_case::number_format::{are, count};
 use slipfront_case::unfinished::{TemporaryFolder, is_unfinished};
 use slipfront_run::folder_error::FolderError;
 use slipfront_run::manifest::ManifestFile;
-use slipfront_run::names::{CONVERGENCE, RUNS};
+use slipfront_run::names::RUNS;
 use slipfront_run::verify::{
     Verdict, VerifyError, differences, first_line, inspect, unlisted_files, verify_run,
 };
 use thiserror::Error;
 
+use crate::converge::{self, OnMeshes};
 use crate::error::{StudyError, of_others};
 use crate::execute::collect;
 use crate::folder::{StudyFolder, study_of, write};
@@ -94,13 +95,18 @@ fn verify_study(folder: &Path) -> Result<Verdict, VerifyStudyError> {
         Err(error) => return Err(error.into()),
     };
     write(&plan, &results, &again)?;
+    if converge::is_told(folder, &plan.axes) {
+        OnMeshes::of(&plan, &results)
+            .map_err(StudyError::from)?
+            .write(&plan, &again)?;
+    }
     let mut files = files_below(temporary.path(), "").map_err(VerifyError::Temporary)?;
     files.retain(|file| file.name != Records::FILE);
     let differ = differences(&files, folder, "follow from the records");
     verdict.differences.extend(differ);
     let is_left = |name: &str| name.rsplit('/').next().is_some_and(is_unfinished);
     let known = files.iter().map(|file| file.name.as_str());
-    let known = known.chain([Records::FILE, RUNS]).chain(CONVERGENCE).collect();
+    let known = known.chain([Records::FILE, RUNS]).collect();
     verdict.notes = unlisted_files(folder, &known, is_left);
     if damaged > 0 {
         let damage = format!(

@@ -1,9 +1,9 @@
 //! `slipfront check`: the physics and the cost of a case, without running it.
 
 use clap::Args;
+use slipfront_run::estimate_cost::seconds_per_step;
 
 use crate::case_args::CaseArgs;
-use crate::estimate_cost::seconds_per_step;
 use crate::failure::Failure;
 use crate::print::print;
 use crate::ranks::CommandRanks;

@@ -2,22 +2,19 @@
 
 use std::path::{Path, PathBuf};
 
-use anyhow::anyhow;
 use clap::Args;
 use jiff::SignedDuration;
-use slipfront_case::case::Case;
-use slipfront_case::number_format::byte_size;
-use slipfront_study::converge::{MAX_LEVELS, MIN_LEVELS, OnMeshes, mesh_study, meshes, without_texture};
-use slipfront_study::{Plan, StudyFolder};
+use slipfront_study::StudyFolder;
+use slipfront_study::converge::{CostLimits, MAX_LEVELS, MIN_LEVELS, MeshStudy, write};
 
-use super::study::{estimated_seconds, finish, run_all};
+use super::study::run_all;
 use crate::case_args::CaseArgs;
 use crate::failure::Failure;
 use crate::print::print_message;
 use crate::ranks::CommandRanks;
-use crate::report;
 use crate::signals::Signals;
 use crate::threads::{count_from_one, set_worker_threads};
+use crate::wrap::stdout_columns;
 
 /// Run a case on several meshes: what it finds, with an error that says how much of it belongs to the mesh
 #[derive(Args)]
@@ -54,85 +51,28 @@ pub(crate) struct ConvergeCommand {
     quiet: bool,
 }
 
-/// Surfaces of a mesh if coefficients scatter.
-const REPLICATES: u16 = 5;
-
 impl ConvergeCommand {
     pub(crate) fn execute(self) -> Result<(), Failure> {
         let threads = set_worker_threads(self.threads, 0)?;
-        let folder = self.case.folder();
         let signals = Signals::catch().map_err(Failure::running)?;
         let case = self.case.load(&CommandRanks::alone(), &signals, self.quiet)?;
-        let replicates = self.replicates.unwrap_or_else(|| default_replicates(&case));
-        let name = format!("{}-meshes", case.name);
-        let file = mesh_study(&case, &name, &folder, self.levels, u32::from(replicates));
-        let file = file.map_err(Failure::input)?;
-        let plan = Plan::new(&file, None).map_err(Failure::input)?;
-        refuse_vanished(&plan)?;
-        plan.check_memory(threads).map_err(Failure::input)?;
-        refuse_costly(&plan, threads, self.max_memory, self.max_time)?;
-        let out = self.out.unwrap_or_else(|| Path::new("results").join(&name));
+        let (levels, replicates) = (i64::from(self.levels), self.replicates.map(i64::from));
+        let study = MeshStudy::new(&case, levels, replicates);
+        let MeshStudy { file, plan } = study.map_err(Failure::input)?;
+        let limits = CostLimits {
+            memory_gb: self.max_memory,
+            time: self.max_time,
+        };
+        limits.check(&plan, threads).map_err(Failure::input)?;
+        let out = self.out.unwrap_or_else(|| Path::new("results").join(&file.name));
         let folder = StudyFolder::open(&out, &file).map_err(Failure::input)?;
         folder.check_disk(&plan).map_err(Failure::input)?;
         let plan = plan.reading_copies(&folder.study);
         let results = run_all(&plan, &folder, &signals, self.quiet)?;
-        finish(&plan, &results, &folder, true)?;
-        let found = OnMeshes::of(&plan, &results, &case);
-        let text = report::convergence(&plan, &found);
-        found.write(&folder, &text).map_err(Failure::running)?;
+        let found = write(&plan, &results, &folder).map_err(Failure::running)?;
         if !self.quiet {
-            print_message(&text);
+            print_message(&found.text(&plan, stdout_columns()));
         }
         Ok(())
     }
-}
-
-/// Several where surfaces differ by their seeds.
-fn default_replicates(case: &Case) -> u16 {
-    let groups = &case.groups;
-    if groups.sigma_static_star > 0.0 || groups.sigma_kinetic_star > 0.0 {
-        REPLICATES
-    } else {
-        1
-    }
-}
-
-/// Refuses textures that the blocks of a mesh are too large for.
-fn refuse_vanished(plan: &Plan) -> Result<(), Failure> {
-    let Some(position) = without_texture(plan) else {
-        return Ok(());
-    };
-    let size = &meshes(plan)[position].block_size;
-    Err(Failure::input(anyhow!(
-        "on blocks of {size} no block is textured: begin with finer blocks, by `slider.blocks` and `slider.block_size`"
-    )))
-}
-
-/// Refuses what takes more memory or time than the user allows.
-fn refuse_costly(
-    plan: &Plan,
-    threads: usize,
-    max_memory: Option<f64>,
-    max_time: Option<SignedDuration>,
-) -> Result<(), Failure> {
-    const GB: f64 = 1e9;
-    let memory = plan.memory(threads);
-    // NaN is a limit that nothing fits.
-    let fits = |most: f64| memory <= most * GB;
-    if let Some(most) = max_memory.filter(|most| !fits(*most)) {
-        return Err(Failure::input(anyhow!(
-            "the runs need {} of memory, {threads} at once: more than --max-memory {} allows; take fewer --levels or --threads",
-            byte_size(memory),
-            most
-        )));
-    }
-    let Some(most) = max_time else { return Ok(()) };
-    let seconds = estimated_seconds(plan, threads)?;
-    if seconds > most.as_secs_f64() {
-        return Err(Failure::input(anyhow!(
-            "the runs are estimated to take {}: longer than --max-time {most:#} allows; take fewer --levels or --replicates",
-            report::duration(seconds)
-        )));
-    }
-    Ok(())
 }

@@ -1,9 +1,9 @@
 //! How friction depends on the direction of the drive, for a study that varies it.
 
 use slipfront_case::number_format::{four_digits, with_half_width};
+use slipfront_study::text_table::table;
 use slipfront_study::{Anisotropy, OverDirections, Plan, Sample, StudyResults, anisotropies};
 
-use super::table::table;
 use crate::wrap::note;
 
 /// Most rows that are printed, and most notes on what has been left out.

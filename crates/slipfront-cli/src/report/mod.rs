@@ -1,20 +1,16 @@
 //! What the commands print: the physics of a case as a tree, its cost, the summary of a run, the plan and the answer of a study.
 
 mod anisotropy;
-mod convergence;
 mod cost;
 mod lengths;
 mod physics;
 mod study;
 mod summary;
-mod table;
 mod times;
 
-pub(crate) use convergence::convergence;
 pub(crate) use cost::cost;
 pub(crate) use lengths::lengths;
 pub use physics::physics;
 pub(crate) use physics::{smallest, texture};
 pub(crate) use study::{plan, study};
 pub(crate) use summary::summary;
-pub(crate) use times::duration;

@@ -4,12 +4,12 @@ use std::collections::HashSet;
 use std::path::Path;
 
 use slipfront_case::number_format::{are, byte_size, count, four_digits, with_half_width};
+use slipfront_study::text_table::table;
 use slipfront_study::{
     MeshedCoverage, Plan, REDUCTION, StudyResults, idle_axes, quantities_without_pictures, why_no_pictures,
 };
 
 use super::anisotropy::anisotropy;
-use super::table::table;
 use super::times::duration;
 use crate::wrap::note;
 
@@ -18,9 +18,6 @@ const MAX_LEVELS: usize = 10;
 
 /// Most points that are printed.
 const MAX_POINTS: usize = 40;
-
-/// Most warnings about the cases of a study that are printed.
-const MAX_WARNINGS: usize = 8;
 
 /// The plan of a study and what it will cost.
 pub(crate) fn plan(plan: &Plan, block_steps: f64, seconds: f64, threads: usize) -> String {
@@ -85,26 +82,12 @@ fn merged(plan: &Plan) -> Option<String> {
     MeshedCoverage::of(plan)?.merged(plan)
 }
 
-/// Warnings about the cases of a study, each with the points that it concerns.
-pub(super) fn case_warnings(plan: &Plan) -> String {
-    let all = plan.warnings();
-    let mut text = String::new();
-    for warning in all.iter().take(MAX_WARNINGS) {
-        let first = plan.describe(&plan.points[warning.first]);
-        let place = match (warning.points, plan.points.len()) {
-            (some, all) if some == all => "at every point".to_owned(),
-            (1, _) => format!("at the point {first}"),
-            (some, _) => format!("at {some} points, the first {first}"),
-        };
-        text += &note(&format!("{} ({place})", warning.sentence));
-    }
-    if all.len() > MAX_WARNINGS {
-        let more = all.len() - MAX_WARNINGS;
-        text += &note(&format!(
-            "and {more} more of the kind, which `slipfront check` tells for a case"
-        ));
-    }
-    text
+/// Warnings about the cases of a study as notes.
+fn case_warnings(plan: &Plan) -> String {
+    plan.told_warnings()
+        .iter()
+        .map(|sentence| note(sentence))
+        .collect()
 }
 
 /// The answer of a study: its main quantity at every point, notes, and the folder of tables and pictures, with the reason why there

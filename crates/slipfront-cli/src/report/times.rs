@@ -13,7 +13,7 @@ pub(super) fn instant(time_star: f64, scales: &Scales) -> String {
 }
 
 /// How long a computation takes.
-pub(crate) fn duration(seconds: f64) -> String {
+pub(super) fn duration(seconds: f64) -> String {
     if seconds < 1.0 {
         return "less than a second".to_owned();
     }

@@ -3,6 +3,7 @@
 use serde_json::Value;
 
 use crate::fixtures::unwrapped;
+use crate::support::process::stdout;
 use crate::support::workspace::Workspace;
 
 /// All lengths are those of the material; small enough for a test.
@@ -48,7 +49,59 @@ fn a_sheet_is_told_with_the_error_of_its_mesh() {
     let before = workspace.files("meshes");
     workspace.succeed("converge sheet.toml -o meshes");
     assert!(workspace.files("meshes") == before);
+}
+
+/// What the meshes found follows from the records, as tables do.
+#[test]
+fn verify_holds_what_meshes_found_against_the_records() {
+    let workspace = Workspace::new();
+    workspace.write("sheet.toml", SHEET);
+    workspace.succeed("converge sheet.toml -o meshes");
+    workspace.succeed("converge sheet.toml -o other --set texture.0.coverage=20");
     assert!(!workspace.succeed("verify meshes").contains("not slipfront's"));
+    let written = ["convergence.json", "convergence.txt"]
+        .map(|name| (name, workspace.read_text(&format!("meshes/{name}"))));
+    let is_told = |name: &str, how: &str| {
+        let output = workspace.output("verify meshes");
+        assert_eq!(output.status.code(), Some(1), "{name}");
+        let said = stdout(&output);
+        assert!(said.contains(&format!("meshes/{name} {how}")), "{name}: {said}");
+        let others = written.iter().filter(|(other, _)| *other != name);
+        assert!(others.clone().all(|(other, _)| !said.contains(other)), "{said}");
+    };
+    for (name, text) in &written {
+        let path = format!("meshes/{name}");
+        // A digit of a mean.
+        let place = text.rfind("1.00").unwrap();
+        let mut digit = text.clone();
+        digit.replace_range(place..=place, "2");
+        workspace.write(&path, digit);
+        is_told(name, "differs: other bytes follow from the records");
+        workspace.write(&path, workspace.read_text(&format!("other/{name}")));
+        is_told(name, "differs: ");
+        workspace.remove(&path);
+        is_told(name, "is missing");
+        workspace.write(&path, text);
+    }
+    workspace.succeed("verify meshes");
+    // `slipfront study` on the study file computes tables alone, of which the folder is complete.
+    workspace.succeed("study meshes/study.toml -o again");
+    assert!(!workspace.exists("again/convergence.json"));
+    workspace.succeed("verify again");
+}
+
+/// A study over anything else gives no such file.
+#[test]
+fn verify_notes_a_convergence_in_a_study_without_meshes() {
+    let workspace = Workspace::new();
+    workspace.write("sheet.toml", SHEET);
+    workspace.write(
+        "speeds.toml",
+        "base = 'sheet.toml'\n[[axes]]\nkey = 'drive.v_star'\nlist = [0.02, 0.03, 0.04]\n",
+    );
+    workspace.succeed("study speeds.toml -o speeds");
+    workspace.write("speeds/convergence.json", "{}");
+    assert!(unwrapped(&workspace.succeed("verify speeds")).contains("convergence.json is not slipfront's"));
 }
 
 /// The guide shows what the command prints of the case.

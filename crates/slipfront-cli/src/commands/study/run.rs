@@ -1,15 +1,13 @@
 //! `slipfront study STUDY.toml`: runs what is missing, then writes tables and pictures.
 
-use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
 use slipfront_case::disk::is_same;
 use slipfront_case::number_format::count;
 use slipfront_study as study;
-use slipfront_study::{Plan, RunKey, Shard, StudyError, StudyFile, StudyFolder, StudyResults};
+use slipfront_study::{Plan, Shard, StudyError, StudyFile, StudyFolder, StudyResults};
 
-use crate::estimate_cost::seconds_per_step;
 use crate::failure::Failure;
 use crate::print::{print, print_message};
 use crate::print_stderr::print_stderr;
@@ -148,8 +146,8 @@ fn print_notes(plan: &Plan, folder: &StudyFolder) {
     }
 }
 
-/// Writes tables and pictures, and prints the answer of the study.
-pub(in crate::commands) fn finish(
+/// Writes tables and pictures, and prints the answer of the study; fails if runs have failed.
+pub(super) fn finish(
     plan: &Plan,
     results: &StudyResults,
     folder: &StudyFolder,
@@ -159,23 +157,7 @@ pub(in crate::commands) fn finish(
     if !quiet {
         print_message(&report::study(plan, results, folder.path()));
     }
-    expect_no_failures(plan, results)
-}
-
-/// Fails if runs of the study have failed; tables and pictures are written all the same.
-fn expect_no_failures(plan: &Plan, results: &StudyResults) -> Result<(), Failure> {
-    let failed: Vec<(RunKey, &str)> = results.failures().collect();
-    let Some((run, reason)) = failed.first() else {
-        return Ok(());
-    };
-    let place = plan.describe(&plan.points[run.point]);
-    let sentence = format!(
-        "{} of {} failed, the others stand in the tables; the first, replicate {} of the point {place}: {reason}",
-        failed.len(),
-        count(results.runs.len(), "run"),
-        run.replicate
-    );
-    Err(Failure::running(anyhow::anyhow!(sentence)))
+    results.expect_no_failures(plan).map_err(Failure::running)
 }
 
 /// The plan of a study, and its cost as measured on this machine.
@@ -184,28 +166,6 @@ fn dry_run(plan: &Plan, threads: usize) -> Result<String, Failure> {
     plan.check_memory(1).map_err(Failure::input)?;
     let block_steps: f64 = plan.runs(1).map(|run| plan.cost(run).0).sum();
     let replicates = plan.settings.min_replicates() as f64;
-    let seconds = estimated_seconds(plan, threads)?;
+    let seconds = study::estimated_seconds(plan, threads).map_err(Failure::input)?;
     Ok(report::plan(plan, replicates * block_steps, seconds, threads))
-}
-
-/// How long the runs will take, by some steps of each size of slider on this machine.
-pub(in crate::commands) fn estimated_seconds(plan: &Plan, threads: usize) -> Result<f64, Failure> {
-    let mut seconds = 0.0;
-    // The time per block depends on the size of the lattice: a small one fits into the cache.
-    let mut rates: HashMap<usize, f64> = HashMap::new();
-    for run in plan.runs(1) {
-        let (cost, n_blocks) = plan.cost(run);
-        let rate = match rates.get(&n_blocks) {
-            Some(&rate) => rate,
-            None => {
-                let case = plan.case(run, &mut |_| true).map_err(Failure::input)?;
-                let rate = n_blocks as f64 / seconds_per_step(&case);
-                rates.insert(n_blocks, rate);
-                rate
-            }
-        };
-        seconds += cost / rate;
-    }
-    let replicates = plan.settings.min_replicates() as f64;
-    Ok(replicates * seconds / threads as f64)
 }

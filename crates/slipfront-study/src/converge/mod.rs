@@ -10,27 +10,26 @@
 //! A last difference that is smaller than a method of second order leaves is an accident of the outlines as they are meshed: `|d|/4` stands in its
 //! place. No limit is claimed where the differences do not decrease, `|e| >= |d|`.
 
+mod mesh_study;
+mod text;
+
 use std::io::Write as _;
-use std::path::{Path, absolute};
+use std::path::Path;
 
 use serde::Serialize;
-use slipfront_case::case::Case;
-use slipfront_case::case_file::{CaseError, CaseFile, Override};
+use slipfront_case::case_file::CaseError;
+use slipfront_case::text::COLUMNS;
 use slipfront_run::names::CONVERGENCE;
-use toml::{Table, Value};
 
+pub use mesh_study::{CostLimits, MAX_LEVELS, MIN_LEVELS, MeshStudy};
+
+use crate::axis::Axis;
 use crate::error::StudyError;
-use crate::folder::StudyFolder;
+use crate::folder::{self, StudyFolder};
 use crate::plan::Plan;
 use crate::statistics::Sample;
-use crate::study_file::{StudyFile, portable_text};
 use crate::study_results::StudyResults;
 use crate::summary_values::REDUCTION;
-
-/// Fewest meshes: differences of two of them show no order.
-pub const MIN_LEVELS: u8 = 3;
-/// Most meshes: the finest has 64 times as many blocks along a side as the coarsest.
-pub const MAX_LEVELS: u8 = 7;
 
 /// What is measured on every mesh.
 const QUANTITIES: [&str; 4] = [
@@ -43,60 +42,8 @@ const QUANTITIES: [&str; 4] = [
 /// The mean speed of the front, m/s.
 const FRONT_SPEED: &str = "front_speed_m_s";
 
-/// The study of a case on `levels` meshes: blocks of twice its own size, of its own, of half, and so on. The runs of a mesh differ by their
-/// seeds alone; if the case has textures, every run has one without them beside it.
-///
-/// # Errors
-/// When the case cannot be put on these blocks.
-pub fn mesh_study(
-    case: &Case,
-    name: &str,
-    folder: &Path,
-    levels: u8,
-    replicates: u32,
-) -> Result<StudyFile, StudyError> {
-    let made: Vec<Vec<Override>> = (0..levels)
-        .map(|level| case.on_other_blocks(0.5 * f64::from(1_u32 << level)))
-        .collect::<Result<_, CaseError>>()?;
-    // Each key with its values on all meshes, those alone that differ between meshes or from the case.
-    let mut zip = Table::new();
-    for level in &made {
-        for set in level {
-            let list = zip.entry(set.key()).or_insert_with(|| Value::Array(Vec::new()));
-            if let Value::Array(values) = list {
-                values.push(set.value());
-            }
-        }
-    }
-    let mut base = Value::try_from(reading_originals(case)).map_err(CaseError::from)?;
-    if let Some(base) = base.as_table_mut() {
-        base.remove("output");
-    }
-    let mut study = Table::from_iter([("replicates".to_owned(), Value::from(replicates))]);
-    if !case.file.texture.is_empty() {
-        let none = Table::from_iter([("texture".to_owned(), Value::Array(Vec::new()))]);
-        study.insert("reference".to_owned(), none.into());
-    }
-    let axis = Table::from_iter([("zip".to_owned(), Value::Table(zip))]);
-    let table = Table::from_iter([
-        ("base".to_owned(), base),
-        ("study".to_owned(), study.into()),
-        ("axes".to_owned(), Value::Array(vec![axis.into()])),
-    ]);
-    StudyFile::parse(&portable_text(table)?, name, name, folder)
-}
-
-/// The case file, which names the copies in a run folder, with the files that were copied in their place.
-fn reading_originals(case: &Case) -> CaseFile {
-    let mut file = case.file.clone();
-    for named in file.files_mut().0 {
-        if let Some(input) = case.inputs.iter().find(|input| input.name == *named.name) {
-            let original = absolute(&input.original).unwrap_or_else(|_| input.original.clone());
-            *named.name = original.display().to_string();
-        }
-    }
-    file
-}
+/// The keys by which meshes differ.
+const KEYS_OF_MESHES: [&str; 2] = ["slider.block_size", "slider.blocks"];
 
 /// A mesh, and what is meshed of the textures.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -167,24 +114,31 @@ impl Verdict {
     }
 }
 
-/// The meshes of a study that [`mesh_study`] made.
-pub fn meshes(plan: &Plan) -> Vec<Mesh> {
+/// Whether a study has one axis, along which blocks change, of enough meshes.
+fn is_over_meshes(axes: &[Axis]) -> bool {
+    let [axis] = axes else { return false };
+    let has_column = |key: &&str| axis.columns.iter().any(|column| column == key);
+    KEYS_OF_MESHES.iter().all(has_column) && axis.levels.len() >= usize::from(MIN_LEVELS)
+}
+
+/// Whether the folder of a study with these axes holds a file of what meshes found.
+pub fn is_told(folder: &Path, axes: &[Axis]) -> bool {
+    is_over_meshes(axes) && CONVERGENCE.iter().any(|name| folder.join(name).exists())
+}
+
+/// The meshes of a study over the size of the blocks.
+fn meshes(plan: &Plan) -> Vec<Mesh> {
+    let [size, _] = KEYS_OF_MESHES;
     let points = plan.points.iter().enumerate();
     let mesh = |(position, point)| {
         let columns = plan.columns(point);
-        let size = columns.iter().find(|(key, _)| *key == "slider.block_size");
+        let size = columns.iter().find(|(key, _)| *key == size);
         Mesh {
             block_size: size.map_or_else(String::new, |(_, size)| (*size).to_owned()),
             coverage_percent: plan.texture_percent(position),
         }
     };
     points.map(mesh).collect()
-}
-
-/// The first mesh on which no block is textured, of a case with textures.
-pub fn without_texture(plan: &Plan) -> Option<usize> {
-    let is_bare = |position: &usize| plan.has_reference() && plan.texture_percent(*position) == 0.0;
-    (0..plan.points.len()).find(is_bare)
 }
 
 /// What every quantity does that all meshes have a value of.
@@ -217,24 +171,42 @@ pub struct OnMeshes {
 }
 
 impl OnMeshes {
-    /// What the runs of the plan of a [`mesh_study`] found.
-    pub fn of(plan: &Plan, results: &StudyResults, case: &Case) -> Self {
-        Self {
+    /// What the runs of the plan of a [`MeshStudy`] found.
+    ///
+    /// # Errors
+    /// When the case is none any more.
+    pub fn of(plan: &Plan, results: &StudyResults) -> Result<Self, CaseError> {
+        Ok(Self {
             meshes: meshes(plan),
             quantities: convergences(plan, results),
-            lengths_of_a_block: case.lengths_of_a_block(),
-        }
+            lengths_of_a_block: plan.first_case_file()?.lengths_of_a_block(),
+        })
+    }
+
+    /// A table of what every mesh found, a sentence on each quantity, and notes in lines of at most `columns` characters.
+    pub fn text(&self, plan: &Plan, columns: usize) -> String {
+        text::text(plan, self, columns)
     }
 
     /// Writes it to the folder of the study: as `convergence.json`, and as a text that a person reads.
-    ///
-    /// # Errors
-    /// When the system refuses to write.
-    pub fn write(&self, folder: &StudyFolder, text: &str) -> Result<(), StudyError> {
+    pub(crate) fn write(&self, plan: &Plan, folder: &StudyFolder) -> Result<(), StudyError> {
         let [numbers, words] = CONVERGENCE;
+        let text = self.text(plan, COLUMNS);
         folder.write(numbers, |file| Ok(serde_json::to_writer_pretty(file, self)?))?;
         folder.write(words, |file| file.write_all(text.as_bytes()))
     }
+}
+
+/// Writes the tables and pictures of a study over meshes to its folder, and what the meshes found.
+///
+/// # Errors
+/// When a run failed, of which tables tell, or when the system refuses to write.
+pub fn write(plan: &Plan, results: &StudyResults, folder: &StudyFolder) -> Result<OnMeshes, StudyError> {
+    folder::write(plan, results, folder)?;
+    results.expect_no_failures(plan)?;
+    let found = OnMeshes::of(plan, results)?;
+    found.write(plan, folder)?;
+    Ok(found)
 }
 
 #[cfg(test)]

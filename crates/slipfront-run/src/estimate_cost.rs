@@ -10,7 +10,7 @@ const ESTIMATE: Duration = Duration::from_millis(100);
 
 /// Seconds that a step of this case takes when every block is looked at: no run takes longer, and one with blocks at rest
 /// is faster.
-pub(crate) fn seconds_per_step(case: &Case) -> f64 {
+pub fn seconds_per_step(case: &Case) -> f64 {
     let execution = Execution {
         skips: false,
         ..Execution::default()

@@ -5,7 +5,7 @@ const PLUS_MINUS: &str = " \u{b1} ";
 
 /// A table as text, a line a row: each column as wide as its widest cell, numbers to the right and words to the left. Cells beyond the
 /// columns of the header are remarks.
-pub(crate) fn table(header: &[&str], rows: &[Vec<String>]) -> String {
+pub fn table(header: &[&str], rows: &[Vec<String>]) -> String {
     let columns = header.iter().enumerate().map(|(column, name)| {
         let cells: Vec<&str> = rows.iter().map(|row| row[column].as_str()).collect();
         TableColumn::of(name, &cells)

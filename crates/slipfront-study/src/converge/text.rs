@@ -1,0 +1,112 @@
+//! What several meshes found, as a text.
+
+use slipfront_case::number_format::{four_digits, with_half_width};
+use slipfront_case::text::note;
+
+use super::{Convergence, OnMeshes, Verdict};
+use crate::plan::Plan;
+use crate::text_table::table;
+
+/// The table of what every mesh found, and a sentence on each quantity. Notes, in lines of at most `columns` characters, name lengths of the
+/// material that are the block's, and tell the warnings about the cases.
+pub(super) fn text(plan: &Plan, found: &OnMeshes, columns: usize) -> String {
+    let (quantities, lengths) = (&found.quantities, &found.lengths_of_a_block);
+    let mut text = on_meshes(found) + "\n";
+    if quantities.is_empty() {
+        text += &note(
+            "no quantity has a value on every mesh: look at runs.csv for what the runs found",
+            columns,
+        );
+    }
+    for one in quantities {
+        if lengths.is_empty() {
+            text += &format!("  {}\n", sentence(one));
+        } else {
+            text += &format!("  {}\n", of_another_material(one));
+        }
+    }
+    if !lengths.is_empty() {
+        let sentence = format!(
+            "no limit is given, since every mesh is another material: a block gives it {}. Give them as lengths of the material",
+            lengths.join(", ")
+        );
+        text += &note(&sentence, columns);
+    }
+    let warnings = plan.told_warnings();
+    warnings
+        .iter()
+        .fold(text, |text, warning| text + &note(warning, columns))
+}
+
+/// A row for every mesh: the edge of a block, the textured area, and every quantity.
+fn on_meshes(found: &OnMeshes) -> String {
+    let quantities = &found.quantities;
+    let names = quantities.iter().map(|one| one.quantity.as_str());
+    let header: Vec<&str> = ["block", "textured"].into_iter().chain(names).collect();
+    let rows = found.meshes.iter().enumerate().map(|(k, mesh)| {
+        let values = quantities.iter();
+        let values = values.map(|one| with_half_width(one.means[k], one.half_widths[k]));
+        let textured = format!("{} %", four_digits(mesh.coverage_percent));
+        let cells = [mesh.block_size.clone(), textured].into_iter();
+        cells.chain(values).collect()
+    });
+    let rows: Vec<Vec<String>> = rows.collect();
+    table(&header, &rows)
+}
+
+/// The value on the finest mesh, where that is a material of its own.
+fn of_another_material(one: &Convergence) -> String {
+    format!(
+        "{}: {} on the finest mesh, and a number of that mesh",
+        one.quantity,
+        four_digits(one.means[one.means.len() - 1])
+    )
+}
+
+/// The value on the finest mesh, with the error that meshes and surfaces leave.
+fn sentence(one: &Convergence) -> String {
+    let last = one.means.len() - 1;
+    let (name, value, scatter) = (&one.quantity, one.means[last], one.half_widths[last]);
+    let half = scatter.unwrap_or(0.0);
+    let of_surfaces = scatter.map_or(String::new(), |half| {
+        format!(" and the scatter over surfaces {}", two_digits(half))
+    });
+    match one.verdict {
+        Verdict::Converges { order, mesh_error } => format!(
+            "{name}: {}, of which the mesh is {}{of_surfaces} (order {order:.1})",
+            with_error(value, mesh_error + half),
+            two_digits(mesh_error)
+        ),
+        Verdict::Equal => format!("{name}: {} on every mesh{of_surfaces}", four_digits(value)),
+        // What seeds scatter by hides what the mesh does.
+        Verdict::Open { spread } if spread <= half => format!(
+            "{name}: {}; the last three meshes differ by {}, within the scatter over surfaces: more --replicates show more",
+            with_error(value, spread + half),
+            two_digits(spread)
+        ),
+        Verdict::Open { spread } => format!(
+            "{name}: {} on the finest mesh; no limit is claimed, since differences do not decrease: the last three meshes differ by {}",
+            four_digits(value),
+            two_digits(spread)
+        ),
+    }
+}
+
+/// A value to the second digit of its error, and the error.
+fn with_error(value: f64, error: f64) -> String {
+    let places = places_of(error);
+    format!("{value:.places$} \u{b1} {error:.places$}")
+}
+
+fn two_digits(error: f64) -> String {
+    let places = places_of(error);
+    format!("{error:.places$}")
+}
+
+/// Places behind the point down to the second digit of a number.
+fn places_of(number: f64) -> usize {
+    if number == 0.0 {
+        return 0;
+    }
+    (1.0 - number.abs().log10().floor()).clamp(0.0, 12.0) as usize
+}

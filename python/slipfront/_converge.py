@@ -1,0 +1,178 @@
+"""One slider on several meshes: how much of a result belongs to the mesh."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+import os
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from . import _slipfront
+from ._case import Case
+from ._pickle import sealed
+from ._simulation import _threads
+from ._study import Progress, StudyResults, executed, read_tables
+
+
+@dataclasses.dataclass(frozen=True)
+class QuantityOnMeshes:
+    """A quantity on every mesh, the coarsest first, and what the meshes tell of it."""
+
+    quantity: str
+    """Its name, as in `summary.json`."""
+    values: tuple[float, ...]
+    """Mean over the surfaces of each mesh."""
+    scatter: tuple[float | None, ...]
+    """Half width of the interval of each mean, which the scatter over surfaces leaves; None of one surface."""
+    order: float | None
+    """Order of convergence, 1/2 to 2; None unless differences decrease."""
+    mesh_error: float | None
+    """Error that the finest mesh leaves; None where no limit is claimed."""
+    sentence: str
+    """The value on the finest mesh with its errors, or why no limit is claimed."""
+
+    def __repr__(self) -> str:
+        return self.sentence
+
+
+class Convergence(StudyResults):
+    """What several meshes found of one slider, and the tables of the study over them, whose points are the meshes.
+
+    Attributes
+    ----------
+    folder
+        Where they stand; None in memory.
+    text
+        The table and the sentences that the command prints.
+    """
+
+    def __init__(
+        self,
+        folder: Path | None,
+        tables: dict[str, dict[str, list[Any]]],
+        failures: Sequence[tuple[str, str]],
+        found: dict[str, Any],
+        text: str,
+    ) -> None:
+        super().__init__(folder, tables, failures)
+        self._found, self.text = found, text
+
+    @classmethod
+    def read(cls, folder: Path, failures: Sequence[tuple[str, str]] = ()) -> Convergence:
+        """What stands in a folder."""
+        found = json.loads((folder / "convergence.json").read_bytes())
+        text = (folder / "convergence.txt").read_text(encoding="utf-8")
+        return cls(folder, read_tables(folder), failures, found, text)
+
+    @property
+    def block_sizes(self) -> list[str]:
+        """The edge of a block on every mesh, the coarsest first, as a case file has it."""
+        return [str(mesh["block_size"]) for mesh in self._found["meshes"]]
+
+    @property
+    def coverages(self) -> list[float]:
+        """Textured area of every mesh, %."""
+        return [float(mesh["coverage_percent"]) for mesh in self._found["meshes"]]
+
+    @property
+    def quantities(self) -> dict[str, QuantityOnMeshes]:
+        """The quantities that all meshes have a value of, by their names."""
+        # Each has a line that begins with its name.
+        lines = (line.strip() for line in self.text.splitlines())
+        sentences = {line.split(":")[0]: line for line in lines if ": " in line}
+        return {found["quantity"]: self._quantity(found, sentences[found["quantity"]]) for found in self._found["quantities"]}
+
+    @property
+    def lengths_of_a_block(self) -> list[str]:
+        """Lengths of the material that are those of a block: with any of them every mesh is another material, and no limit is claimed."""
+        return list(self._found["lengths_of_a_block"])
+
+    def to_dict(self) -> dict[str, Any]:
+        """The content of `convergence.json`."""
+        return dict(json.loads(json.dumps(self._found)))
+
+    def to_list(self) -> list[dict[str, Any]]:
+        """A dictionary for each quantity, with what a `QuantityOnMeshes` holds."""
+        return [dataclasses.asdict(quantity) for quantity in self.quantities.values()]
+
+    def _quantity(self, found: dict[str, Any], sentence: str) -> QuantityOnMeshes:
+        verdict = found["verdict"]
+        converges = verdict["converges"] if "converges" in verdict else {}
+        mesh_error = 0.0 if verdict == "equal" else converges.get("mesh_error")
+        return QuantityOnMeshes(
+            quantity=found["quantity"],
+            values=tuple(found["means"]),
+            scatter=tuple(found["half_widths"]),
+            order=converges.get("order"),
+            mesh_error=None if self.lengths_of_a_block else mesh_error,
+            sentence=sentence,
+        )
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return sealed(type(self), self.folder, self._tables, self._failures, self._found, self.text)
+
+    def __repr__(self) -> str:
+        return self.text.rstrip()
+
+
+def converge(
+    case: Case | str | os.PathLike[str],
+    folder: str | os.PathLike[str] | None = None,
+    *,
+    levels: int = 3,
+    replicates: int | None = None,
+    threads: int | None = None,
+    max_memory: float | None = None,
+    max_time: str | None = None,
+    progress: Progress = None,
+) -> Convergence:
+    """Run a case on several meshes: what it finds, with an error that says how much of it belongs to the mesh.
+
+    The slider, its load, mount, damping, speed and duration stay what they are in metres, seconds and pascals; blocks have twice their
+    size, their own, half of it, and so on. Ctrl-C ends it with a `KeyboardInterrupt`, an exception in `progress` with that.
+
+    Parameters
+    ----------
+    case
+        A case, or the path of one.
+    folder
+        A folder of results, in which a call that was stopped goes on, and which has the bytes of `slipfront converge`; in memory unless it
+        is given.
+    levels
+        Number of meshes, 3 to 7, each of half the blocks' size of the one before; the second is that of the case.
+    replicates
+        Surfaces of each mesh: unless given, 5 if coefficients scatter, else 1.
+    threads
+        Runs at once, one per core unless given. Results do not depend on it.
+    max_memory
+        Nothing is run if all runs together need more memory, in GB.
+    max_time
+        Nothing is run if the runs are estimated to take longer, such as ``"30min"`` or ``"2h"``.
+    progress
+        As of `Study.run`.
+
+    Raises
+    ------
+    CaseError
+        When the case cannot be put on these meshes, or takes more than is allowed.
+    RunError
+        When a run fails, of which the tables in the folder tell.
+
+    Examples
+    --------
+    >>> coarse = {"slider.blocks": [20, 20], "slider.block_size": "50 um", "time.stop": "after_onset"}
+    >>> found = converge(Case.load("cases/sheet.toml", coarse), progress=False)
+    >>> found.block_sizes
+    ['100 um', '50 um', '25 um']
+    >>> found.quantities["static_friction_star"]
+    static_friction_star: 0.853 ± 0.021, of which the mesh is 0.021 (order 2.0)
+    """
+    case = case if isinstance(case, Case) else Case.load(case)
+    # A file that has changed would make another case than this one.
+    case._native.read_inputs()
+    study = _slipfront.Study.on_meshes(case._native, levels, replicates)
+    study.check_cost(_threads(threads), max_memory, max_time)
+    found, _ = executed(study, Convergence, folder, progress, threads)
+    return found
