@@ -188,6 +188,8 @@ pub(crate) struct CaseReply<'a> {
     pub(crate) time_before_s: f64,
     pub(crate) twin: bool,
     pub(crate) has_memory: bool,
+    /// Which length decides how much of an answer is the mesh.
+    pub(crate) mesh: String,
     pub(crate) warnings: Vec<String>,
     /// The one of the warnings that blocks are too coarse for the outlines of the texture.
     pub(crate) too_coarse: Option<String>,

@@ -207,6 +207,8 @@ export interface CaseReply {
   time_before_s: number;
   twin: boolean;
   has_memory: boolean;
+  /** Which length decides how much of an answer is the mesh. */
+  mesh: string;
   warnings: string[];
   /** The one of the warnings that blocks are too coarse for the outlines of the texture. */
   too_coarse: string | null;

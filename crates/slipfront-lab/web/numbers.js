@@ -111,7 +111,8 @@ export function startNumbers() {
   on('numbers', show);
   on('repeated', showRepeated);
   onPress('repeat', () => send({ do: 'repeat', seeds: find('repeat').dataset.busy ? 0 : find('repeat-seeds').valueAsNumber }));
-  on('case', ({ why }) => {
+  on('case', ({ why, mesh }) => {
+    find('mesh').textContent = say('mesh', { sentence: mesh.replaceAll('`', '') });
     if (why !== 'rest') find('repeated').textContent = '';
   });
 }

@@ -9,7 +9,7 @@ use slipfront::surface::{Clearance, clearance};
 use super::coarse::names;
 use super::runnable::Case;
 use super::textures::outlines_in_blocks;
-use crate::case_file::{Attached, AttachedEdge, DriveStiffness, LengthOfABlock, Motion};
+use crate::case_file::{Attached, AttachedEdge, Motion};
 use crate::number_format::{four_digits, with_si_prefix};
 
 /// Blocks of the critical size of slip.
@@ -17,7 +17,7 @@ const OF_CRITICAL_SIZE: f64 = 5.0;
 /// Blocks of the screening length along the drive where slip of any size is stable, so that there is no critical size.
 const OF_SCREENING: f64 = 3.0;
 /// Blocks of the correlation length: coefficients are exact means over blocks.
-const OF_CORRELATION: f64 = 1.0;
+const OF_CORRELATION: f64 = 0.5;
 /// Blocks across the smallest feature: its area is then meshed within 2 % in root mean square over its place on the mesh.
 pub(super) const ACROSS_A_FEATURE: f64 = 5.0;
 /// Blocks across the smallest gap: one of them is in contact wherever the mesh lies.
@@ -90,55 +90,32 @@ impl Case {
             .collect()
     }
 
-    /// Lengths of the material that are those of a block, since no key gives them: on other blocks they are others.
-    pub fn lengths_of_a_block(&self) -> Vec<LengthOfABlock> {
-        let file = &self.file;
-        let thickness = file.slider.thickness.is_none().then_some(LengthOfABlock {
-            length: "the thickness of the sheet",
-            key: "slider.thickness",
-        });
-        let mount = (file.drive.stiffness == DriveStiffness::Auto).then_some(LengthOfABlock {
-            length: "the screening length of the mount",
-            key: "drive.stiffness_per_area",
-        });
-        let of_friction = file.friction.lengths_of_a_block();
-        thickness.into_iter().chain(mount).chain(of_friction).collect()
-    }
-
     /// Which length decides how much of an answer is the mesh, in a sentence without a full stop.
     pub fn deciding_length(&self, lengths: &[CaseLength]) -> String {
-        let of_a_block = self.lengths_of_a_block();
+        if self.model.n_blocks() == 1 {
+            return "a single block has none".to_owned();
+        }
+        let of_a_block = self.file.lengths_of_a_block();
         if !of_a_block.is_empty() {
-            let keys: Vec<String> = of_a_block
-                .iter()
-                .map(|length| format!("`{}`", length.key))
-                .collect();
-            let (are, lengths) = if keys.len() > 1 {
-                ("are", "lengths")
-            } else {
-                ("is", "a length")
-            };
+            let keys = of_a_block.iter().map(|length| format!("`{}`", length.key));
             return format!(
-                "the block of {}: {} {are} not given, which {are} {lengths} of the material",
+                "the block of {} decides: it takes the place of {}",
                 with_si_prefix(self.scales.block_size, "m"),
-                keys.join(", ")
+                keys.collect::<Vec<_>>().join(", ")
             );
         }
         let resolved = lengths
             .iter()
             .filter_map(|length| Some((length, length.resolution()?)));
         let least = resolved.min_by(|(_, one), (_, other)| one.total_cmp(other));
-        least.map_or(
-            "none: no length needs smaller blocks".to_owned(),
-            |(length, _)| {
-                format!(
-                    "the {}: {} blocks, and {} are enough for 2 % of a reduction",
-                    length.name,
-                    four_digits(length.blocks),
-                    four_digits(length.enough.unwrap_or_default())
-                )
-            },
-        )
+        least.map_or("no length needs smaller blocks".to_owned(), |(length, _)| {
+            format!(
+                "the {} decides: {} blocks, and {} are enough for 2 % of a reduction",
+                length.name,
+                four_digits(length.blocks),
+                four_digits(length.enough.unwrap_or_default())
+            )
+        })
     }
 
     /// Lengths of friction and mount for which these blocks are too large.

@@ -75,21 +75,6 @@ impl StarUnit {
     }
 }
 
-impl CaseFile {
-    /// Lengths of the material that are those of a block, since no key gives them: on other blocks they are others.
-    pub fn lengths_of_a_block(&self) -> Vec<&'static str> {
-        let mut lengths = Vec::new();
-        if self.slider.thickness.is_none() {
-            lengths.push("the thickness of the sheet (`slider.thickness`)");
-        }
-        if self.drive.stiffness == DriveStiffness::Auto {
-            lengths.push("the screening length of the mount (`drive.stiffness_per_area`)");
-        }
-        lengths.extend(self.friction.lengths_of_a_block());
-        lengths
-    }
-}
-
 impl Case {
     /// The keys that put this slider on blocks that are `finer` times as fine, a power of two, and keep in metres, seconds and pascals
     /// what it is: dimensions, textures, load, mount, damping, lengths of friction, speed and duration. The step keeps its share of the

@@ -23,35 +23,31 @@ fn blocks_of(overrides: &[String]) -> [u64; 2] {
 const DIMPLES: &str =
     "[[texture]]\nshape = 'cavity'\nlambda = '30 um'\npitch = '120 um'\nlattice = 'hexagonal'";
 
-/// Dimples of 60 um that are 120 um apart, on a slider of 2 mm: their gaps of 60 um need ten blocks each.
+/// Dimples of 60 um that are 120 um apart, on a slider of 2 mm: they need five blocks each, and their gaps of 60 um two.
 #[test]
-fn a_slider_of_two_millimetres_needs_334_blocks() {
+fn a_slider_of_two_millimetres_needs_167_blocks() {
     for (blocks, expected) in [
         (
             30,
             Some(
-                "the smallest dimple is 0.9 blocks across and the smallest gap 0.9; the outline needs 5 and 10",
+                "the smallest dimple is 0.9 blocks across and the smallest gap 0.9; the outline needs 5 and 2",
             ),
         ),
         (
             50,
             Some(
-                "the smallest dimple is 1.5 blocks across and the smallest gap 1.5; the outline needs 5 and 10",
+                "the smallest dimple is 1.5 blocks across and the smallest gap 1.5; the outline needs 5 and 2",
             ),
         ),
         (
             100,
-            Some("the smallest dimple is 3 blocks across and the smallest gap 3; the outline needs 5 and 10"),
+            Some("the smallest dimple is 3 blocks across; the outline needs 5"),
         ),
         (
-            200,
-            Some("the smallest gap is 6 blocks across; the outline needs 10"),
+            166,
+            Some("the smallest dimple is 4.98 blocks across; the outline needs 5"),
         ),
-        (
-            333,
-            Some("the smallest gap is 9.99 blocks across; the outline needs 10"),
-        ),
-        (334, None),
+        (167, None),
         (400, None),
     ] {
         let size = 2000.0 / f64::from(blocks);
@@ -59,7 +55,7 @@ fn a_slider_of_two_millimetres_needs_334_blocks() {
             format!("slider = {{ blocks = [{blocks}, {blocks}], block_size = '{size} um' }}\n{DIMPLES}");
         let expected = expected.map(|told| {
             format!(
-                "{told}, at least 334 x 334 blocks (`slider.blocks = [334, 334]`, with `slider.block_size = \"5.988023952 um\"` for a \
+                "{told}, at least 167 x 167 blocks (`slider.blocks = [167, 167]`, with `slider.block_size = \"11.9760479 um\"` for a \
                  slider of the same size)"
             )
         });
@@ -95,17 +91,17 @@ fn the_blocks_that_are_named_are_the_fewest() {
         ),
         on(
             square,
-            "shape = 'cavity'\ns = 3\nw = 0.3333333333333333\nrotate = 10\ncoverage = 20\narray = [4, 4]",
+            "shape = 'cavity'\ns = 3\nw = 0.3333333333333333\nrotate = 10\ncoverage = 20\narray = [8, 8]",
         ),
         on(square, "shape = 'groove'\ncoverage = 3"),
         on(
             square,
             "shape = 'groove'\norientation = 'along'\nwidth = '9.3 um'\narray = [1, 4]",
         ),
-        on(square, "shape = 'groove'\nwidth = '20 um'\npitch = '30 um'"),
+        on(square, "shape = 'groove'\nwidth = '20 um'\npitch = '25 um'"),
         on(
             square,
-            "shape = 'groove'\nwidth = '30 um'\noffset = '-50 um'\n[[texture]]\nshape = 'cavity'\nlambda = '20 um'",
+            "shape = 'groove'\nwidth = '30 um'\noffset = '-40 um'\n[[texture]]\nshape = 'cavity'\nlambda = '20 um'",
         ),
         on(
             square,
@@ -117,13 +113,13 @@ fn the_blocks_that_are_named_are_the_fewest() {
         ),
         on(
             periodic,
-            "shape = 'cavity'\nlambda = '4 um'\npitch = '15 um'\nlattice = 'hexagonal'",
+            "shape = 'cavity'\nlambda = '4 um'\npitch = '9 um'\nlattice = 'hexagonal'",
         ),
         on(
             periodic,
             "shape = 'cavity'\nlambda = '1.6 um'\narray = [3, 3]\npitch = '5 um'\nrepeat = { array = [3, 2] }",
         ),
-        on(periodic, "shape = 'groove'\ncoverage = 90"),
+        on(periodic, "shape = 'groove'\ncoverage = 97"),
         on("blocks = [200, 1]", "shape = 'groove'\nwidth = '2.3 um'"),
         on(
             "blocks = [61, 53]",

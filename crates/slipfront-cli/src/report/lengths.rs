@@ -3,15 +3,14 @@
 use slipfront_case::case::{Case, CaseLength};
 use slipfront_case::number_format::{four_digits, with_si_prefix};
 
-use super::table::table;
+use slipfront_study::text_table::table;
 
 /// The table of the lengths of a case with the blocks that are enough of each, and which of them decides.
 pub(crate) fn lengths(case: &Case) -> String {
     let lengths = case.lengths();
     let rows: Vec<Vec<String>> = lengths.iter().map(|length| row(case, length)).collect();
     let decides = case.deciding_length(&lengths);
-    table(&["length", "blocks", "metres", "enough"], &rows)
-        + &format!("{:<18}{decides}\n", "length that counts")
+    table(&["length", "blocks", "metres", "enough"], &rows) + &format!("{:<18}{decides}\n", "mesh")
 }
 
 fn row(case: &Case, length: &CaseLength) -> Vec<String> {

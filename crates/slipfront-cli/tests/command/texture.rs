@@ -107,7 +107,9 @@ fn outlines_and_fields_are_written() {
         );
         let said_in_one_line = said.replace("\n      ", " ");
         assert!(
-            said_in_one_line.contains("the smallest dimple is 0.8 blocks across and the smallest gap 1.2; the outline needs 5 and 10"),
+            said_in_one_line.contains(
+                "the smallest dimple is 0.8 blocks across and the smallest gap 1.2; the outline needs 5 and 2"
+            ),
             "{said}"
         );
         assert!(said.ends_with(&format!("{name}\n")), "{said}");

@@ -150,6 +150,7 @@ fn each_reply(check: &mut impl FnMut(&Reply)) {
             time_before_s: 0.0,
             twin: true,
             has_memory: false,
+            mesh: "the block decides".to_owned(),
             warnings: vec!["a warning".to_owned()],
             too_coarse,
         })));

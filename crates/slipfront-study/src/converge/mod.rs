@@ -167,7 +167,7 @@ pub struct OnMeshes {
     pub quantities: Vec<Convergence>,
     /// Lengths of the material that are those of a block: with any of them, every mesh is another material, and no limit is one of this
     /// slider.
-    pub lengths_of_a_block: Vec<&'static str>,
+    pub lengths_of_a_block: Vec<String>,
 }
 
 impl OnMeshes {
@@ -176,10 +176,11 @@ impl OnMeshes {
     /// # Errors
     /// When the case is none any more.
     pub fn of(plan: &Plan, results: &StudyResults) -> Result<Self, CaseError> {
+        let of_a_block = plan.first_case_file()?.lengths_of_a_block();
         Ok(Self {
             meshes: meshes(plan),
             quantities: convergences(plan, results),
-            lengths_of_a_block: plan.first_case_file()?.lengths_of_a_block(),
+            lengths_of_a_block: of_a_block.iter().map(ToString::to_string).collect(),
         })
     }
 
