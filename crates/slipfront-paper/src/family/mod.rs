@@ -12,6 +12,7 @@ mod contact_springs;
 mod correlated;
 mod edge_drive;
 mod fronts;
+mod held;
 mod load;
 mod page;
 mod patterns;
@@ -37,6 +38,7 @@ const CHAPTERS: &[Compute] = &[
     edge_drive::chapter,
     load::chapter,
     program::chapter,
+    held::chapter,
     torsion::chapter,
     blocks_that_differ::chapter,
     composite::chapter,
