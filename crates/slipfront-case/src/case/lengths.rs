@@ -1,7 +1,7 @@
 //! The lengths of a case against its blocks: which of them decides how much of an answer is the mesh.
 //!
 //! What is enough of each was measured on a sheet of 1 mm with square and round cavities of 50 to 400 um, on 20 to 320 blocks along a side with all
-//! else held in metres, seconds and pascals: blocks from which on the reduction of static friction by the cavity is within 2 % of that on the
+//! else held in metres, seconds and pascals: from so many blocks on the reduction of static friction by the cavity is within 2 % of that on the
 //! finest mesh (`docs/model.md`, "How many blocks a length needs").
 
 use slipfront::surface::{Clearance, clearance};
@@ -14,8 +14,10 @@ use crate::number_format::{four_digits, with_si_prefix};
 
 /// Blocks of the critical size of slip.
 const OF_CRITICAL_SIZE: f64 = 5.0;
-/// Blocks of the screening length along the drive where slip of any size is stable, so that there is no critical size.
+/// Blocks of the screening length along the drive, where it is the shorter one.
 const OF_SCREENING: f64 = 3.0;
+/// Critical size over the screening length above which slip is stable or nearly so on this mount, and the screening length counts.
+const NEARLY_STABLE: f64 = 4.0;
 /// Blocks of the correlation length: coefficients are exact means over blocks.
 const OF_CORRELATION: f64 = 0.5;
 /// Blocks across the smallest feature: its area is then meshed within 2 % in root mean square over its place on the mesh.
@@ -59,8 +61,8 @@ impl Case {
         let mut lengths = vec![self.length("block", 1.0, None)];
         if self.has_spring_on_every_block() {
             let [along, across] = model.drive.screening_lengths(&model.lattice);
-            let is_stable = critical_size == Some(f64::INFINITY);
-            lengths.push(self.length("screening length along", along, is_stable.then_some(OF_SCREENING)));
+            let counts = critical_size.is_some_and(|size| size > NEARLY_STABLE * along);
+            lengths.push(self.length("screening length along", along, counts.then_some(OF_SCREENING)));
             lengths.push(self.length("screening length across", across, None));
         }
         let critical_size = critical_size.map(|blocks| ("critical size", blocks, OF_CRITICAL_SIZE));

@@ -9,6 +9,7 @@ mod good;
 mod hostile;
 mod keys;
 mod laws;
+mod lengths;
 mod reference;
 mod round_trip;
 

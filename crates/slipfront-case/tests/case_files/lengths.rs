@@ -1,0 +1,171 @@
+//! The lengths of a case against its blocks, and the sentences about them.
+
+use slipfront_case::case::Case;
+
+/// A sheet of 1 mm on blocks of 20 um.
+const SHEET: &str = "slider = { blocks = [50, 50], block_size = '20 um', thickness = '20 um' }
+drive = { v_star = 0.01, stiffness_per_area = '1875 MPa/um' }
+[friction]
+sigma_static_star = 0
+sigma_kinetic_star = 0
+";
+
+fn case(text: &str) -> Case {
+    Case::parse(text, "case", "", &[]).unwrap_or_else(|error| panic!("{text}\n{error}"))
+}
+
+/// Name, blocks and what is enough of each length.
+fn lengths(case: &Case) -> Vec<(String, f64, Option<f64>)> {
+    let lengths = case.lengths().into_iter();
+    lengths
+        .map(|length| {
+            let metres = length.blocks * case.scales.block_size;
+            assert_eq!(length.metres, metres, "{}", length.name);
+            (length.name, length.blocks, length.enough)
+        })
+        .collect()
+}
+
+fn assert_lengths(case: &Case, expected: &[(&str, f64, Option<f64>)]) {
+    let found = lengths(case);
+    let names: Vec<&str> = found.iter().map(|(name, ..)| name.as_str()).collect();
+    let expected_names: Vec<&str> = expected.iter().map(|(name, ..)| *name).collect();
+    assert_eq!(names, expected_names);
+    for ((name, blocks, enough), (_, exact, expected_enough)) in found.iter().zip(expected) {
+        // Of some products and roots.
+        let is_close = blocks == exact || (blocks / exact - 1.0).abs() < 1e-12;
+        assert!(is_close, "{name}: {blocks} blocks, exact {exact}");
+        assert_eq!(enough, expected_enough, "{name}");
+    }
+}
+
+/// Note on the length of such a name.
+fn note_on(case: &Case, name: &str) -> Option<String> {
+    let begins = format!("the {name} is ");
+    case.warnings().into_iter().find(|note| note.starts_with(&begins))
+}
+
+/// `L_c = pi sqrt(9/(8 (W - k_s)))` and `sqrt(9/(8 k_s))`, with k_s = 3/8.
+#[test]
+fn the_critical_size_decides_of_a_sheet() {
+    let sheet = case(&format!("{SHEET}slip_weakening = {{ length_star = 0.8 }}"));
+    let critical = std::f64::consts::PI * (1.125_f64 / (0.5 / 0.8 - 0.375)).sqrt();
+    assert_lengths(
+        &sheet,
+        &[
+            ("block", 1.0, None),
+            ("screening length along", 3.0_f64.sqrt(), None),
+            ("screening length across", 1.0, None),
+            ("critical size", critical, Some(5.0)),
+        ],
+    );
+    let said = sheet.deciding_length(&sheet.lengths());
+    assert_eq!(
+        said,
+        "the critical size decides: 6.664 blocks, and 5 are enough for 2 % of a reduction"
+    );
+    assert_eq!(note_on(&sheet, "critical size"), None);
+
+    let coarse = case(&format!("{SHEET}slip_weakening = {{ length_star = 0.4 }}"));
+    assert_eq!(
+        note_on(&coarse, "critical size").unwrap(),
+        "the critical size is 3.562 blocks, and 5 are enough: what a texture changes about mu_s* still belongs to the size of a block; take \
+         blocks of at most 14.25 um"
+    );
+}
+
+/// Where slip of any size is stable, or nearly so, stress is screened over a shorter length than slip needs to run away.
+#[test]
+fn the_screening_length_decides_where_slip_is_stable() {
+    for (length, size) in [(2.0, f64::INFINITY), (1.0, std::f64::consts::PI * 3.0)] {
+        let sheet = case(&format!("{SHEET}slip_weakening = {{ length_star = {length} }}"));
+        let size_enough = size.is_finite().then_some(5.0);
+        assert_lengths(
+            &sheet,
+            &[
+                ("block", 1.0, None),
+                ("screening length along", 3.0_f64.sqrt(), Some(3.0)),
+                ("screening length across", 1.0, None),
+                ("critical size", size, size_enough),
+            ],
+        );
+        let said = sheet.deciding_length(&sheet.lengths());
+        assert!(
+            said.starts_with("the screening length along decides: 1.732 blocks, and 3 are"),
+            "{said}"
+        );
+        assert!(
+            note_on(&sheet, "screening length along")
+                .unwrap()
+                .ends_with("at most 11.55 um")
+        );
+    }
+}
+
+#[test]
+fn features_gaps_and_correlated_coefficients_are_lengths() {
+    let text = format!(
+        "{}slip_weakening = {{ length_star = 0.8 }}\ncorrelation_length = '9 um'\n[[texture]]\nshape = 'groove'\nwidth = '60 um'\n\
+         pitch = '200 um'\n",
+        SHEET.replace("sigma_static_star = 0", "sigma_static_star = 0.05")
+    );
+    let grooved = case(&text);
+    let found = lengths(&grooved);
+    let last: Vec<(&str, f64, Option<f64>)> = found[4..]
+        .iter()
+        .map(|(name, blocks, enough)| (name.as_str(), *blocks, *enough))
+        .collect();
+    assert_eq!(last.len(), 3);
+    for ((name, blocks, enough), expected) in last.iter().zip([
+        ("correlation length", 0.45, 0.5),
+        ("smallest groove", 3.0, 5.0),
+        ("smallest gap", 7.0, 2.0),
+    ]) {
+        assert!(
+            *name == expected.0 && *enough == Some(expected.2),
+            "{name} {enough:?}"
+        );
+        assert!((blocks / expected.1 - 1.0).abs() < 1e-9, "{name}: {blocks}");
+    }
+    let said = grooved.deciding_length(&grooved.lengths());
+    assert!(
+        said.starts_with("the smallest groove decides: 3 blocks"),
+        "{said}"
+    );
+    assert!(
+        note_on(&grooved, "correlation length")
+            .unwrap()
+            .ends_with("at most 18 um")
+    );
+    // The note on the outline of a texture is one of its own, with the blocks to set.
+    assert_eq!(
+        grooved
+            .warnings()
+            .iter()
+            .filter(|note| note.contains("groove is"))
+            .count(),
+        1
+    );
+}
+
+/// A length that no key gives is that of a block, which decides then.
+#[test]
+fn the_block_decides_where_no_key_gives_a_length() {
+    for (text, expected) in [
+        (
+            "",
+            "the block of 1 um decides: it takes the place of `slider.thickness`, `drive.stiffness_per_area`, `friction.slip_weakening`, \
+             `friction.correlation_length`",
+        ),
+        (
+            SHEET,
+            "the block of 20 um decides: it takes the place of `friction.slip_weakening`",
+        ),
+        ("slider.blocks = [1, 1]", "a single block has none"),
+    ] {
+        let case = case(text);
+        assert_eq!(case.deciding_length(&case.lengths()), expected);
+    }
+    let turning = case("drive.motion = 'rotation'");
+    assert_lengths(&turning, &[("block", 1.0, None)]);
+}
