@@ -32,7 +32,7 @@ struct Elapsed {
     time_s: f64,
 }
 
-/// Points of a curve: t* since rest, mu*, N*.
+/// Points of a curve: t* since rest, that of the drive, mu*, N*.
 #[derive(Default)]
 pub(crate) struct CurvePoints {
     pub(crate) time_star: Vec<f64>,
@@ -141,7 +141,7 @@ impl LiveRun {
         self.n_sent += rows.len();
         let before = self.before.time_star;
         CurvePoints {
-            time_star: rows.iter().map(|row| before + row.time_star).collect(),
+            time_star: rows.iter().map(|row| before + row.drive_time_star).collect(),
             mu_star: rows.iter().map(|row| row.point.mu_star).collect(),
             sliding_percent: rows.iter().map(|row| row.point.sliding_percent).collect(),
         }
@@ -156,7 +156,7 @@ impl LiveRun {
     pub(crate) fn peak(&self) -> Option<PeakReply> {
         let now = self.running.snapshot();
         (self.leg == 0 && now.step > 0).then_some(PeakReply {
-            t_star: now.peak.time_star,
+            t_star: now.peak.drive_time_star,
             mu_star: now.peak.mu_star,
             certain: now.peak.ended,
         })

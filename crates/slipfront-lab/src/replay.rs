@@ -85,7 +85,10 @@ pub(crate) fn read(folder: &Path, allowed: &[PathBuf]) -> Result<(Document, Reco
     };
     let recorded = RecordedRun {
         contact_stress_max_pa: summary.si.map_or(f64::NAN, |si| si.contact_stress_max_pa) as f32,
-        time_star: rows.iter().map(|row| row.time_star).collect(),
+        time_star: rows
+            .iter()
+            .map(|row| row.drive_time_star.unwrap_or(row.time_star))
+            .collect(),
         mu_star: rows.iter().map(|row| row.mu_star).collect(),
         snapshots: snapshots.filter(|snapshots| snapshots.stride == 1 && !snapshots.frames.is_empty()),
     };

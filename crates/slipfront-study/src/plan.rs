@@ -54,6 +54,8 @@ struct RunSpec {
     /// Steps times blocks of a run, at most.
     block_steps: f64,
     n_blocks: usize,
+    /// Whether the drive stands while blocks slide, for steps that `block_steps` leaves out.
+    is_held: bool,
     /// Memory of a run beside others, in bytes.
     memory: f64,
     /// Memory of its case alone, in bytes.
@@ -303,6 +305,7 @@ impl Plan {
             physics: physics(&case, base.known())?,
             block_steps: case.block_steps(),
             n_blocks: case.model.lattice.n_blocks(),
+            is_held: case.model.drive.is_held(),
             memory: budget.memory_beside_others(writes),
             memory_of_case: case.budget.making(),
             disk: if writes { budget.disk() } else { 0.0 },
@@ -414,6 +417,11 @@ impl Plan {
     pub fn cost(&self, run: RunKey) -> (f64, usize) {
         let spec = self.spec_of(run);
         (spec.block_steps, spec.n_blocks)
+    }
+
+    /// Whether the drive of any run stands while blocks slide, so that the cost is a least one.
+    pub fn has_held_drive(&self) -> bool {
+        self.runs(1).any(|run| self.spec_of(run).is_held)
     }
 
     /// Memory of `threads` runs at once, if they are the largest, or of the pictures of the study if these take more, beside

@@ -111,16 +111,26 @@ fn scales(case: &Case) -> String {
     )
 }
 
+/// Says what the cost of a drive that is held leaves out, since nobody knows how long it stands.
+pub(super) fn standing(is_held: bool) -> &'static str {
+    if is_held {
+        " at least (without those in which the drive stands)"
+    } else {
+        ""
+    }
+}
+
 fn resources(case: &Case, seconds: f64) -> String {
     let budget = pictures::run_budget(case);
     let available = available_memory().map_or(String::new(), |there| {
         format!(" of {} available", byte_size(there))
     });
     format!(
-        "cost              {:.3e} block-steps, {} on this machine\n\
+        "cost              {:.3e} block-steps{}, {} on this machine\n\
          memory            {}{available}\n\
          disk              {}, the snapshots {} of it; {} more for checkpoints while it runs\n",
         case.block_steps(),
+        standing(case.model.drive.is_held()),
         duration(seconds),
         byte_size(budget.memory()),
         byte_size(budget.disk()),

@@ -10,6 +10,7 @@ use slipfront_study::{
 };
 
 use super::anisotropy::anisotropy;
+use super::cost::standing;
 use super::times::duration;
 use crate::wrap::note;
 
@@ -43,11 +44,12 @@ pub(crate) fn plan(plan: &Plan, block_steps: f64, seconds: f64, threads: usize) 
     };
     format!(
         "{}\n{}  {}, {replicates}{reference}: at most {runs}\n  \
-         {block_steps:.2e} block-steps, {} on {} of this machine\n  \
+         {block_steps:.2e} block-steps{}, {} on {} of this machine\n  \
          {} of memory for {} at once, {} on the disk\n{}{}",
         plan.name,
         axes(plan),
         count(plan.points.len(), "point"),
+        standing(plan.has_held_drive()),
         duration(seconds),
         count(threads, "thread"),
         byte_size(plan.memory(threads)),

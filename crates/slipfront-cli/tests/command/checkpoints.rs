@@ -14,7 +14,7 @@ use crate::support::workspace::Workspace;
 
 /// Around a second: long enough to be stopped several times.
 const SLOW: &str = "[slider]\nblocks = [60, 50]\nedges = ['periodic', 'free']\n[drive]\nv_star = 0.01\n\
-                    [[texture]]\nshape = 'mask'\nfile = 'spot.png'\n";
+                    [friction]\ncorrelation_length = '2.5 um'\n[[texture]]\nshape = 'mask'\nfile = 'spot.png'\n";
 
 /// The general kernel, and snapshots by the step.
 const REVERSAL: &str = "[slider]\nblocks = [60, 50]\n[drive]\nv_star = 0.004\n[friction]\nlaw = 'reversal'\n\

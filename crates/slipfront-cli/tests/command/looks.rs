@@ -86,6 +86,10 @@ fn check_prints_groups_onset_and_cost_and_runs_nothing() {
     ] {
         assert!(said.contains(words), "{words:?} is missing:\n{said}");
     }
+    // How long a held drive stands is not known.
+    let said = unwrapped(&workspace.succeed("check small.toml --set drive.loading=held"));
+    let least = "block-steps at least (without those in which the drive stands), ";
+    assert!(said.contains(least), "{said}");
     // I^2 with a = 3, and the product of I with a = 3/6 and 3/5 along the axes.
     let said = unwrapped(&workspace.succeed("check small.toml --set friction.correlation_length=3um"));
     let alike = "correlation length 3 3 um 0.5 means over a block keep 96.41 % of the variance, over the slider 44.97 %";
