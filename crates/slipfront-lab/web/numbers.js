@@ -112,7 +112,10 @@ export function startNumbers() {
   on('repeated', showRepeated);
   onPress('repeat', () => send({ do: 'repeat', seeds: find('repeat').dataset.busy ? 0 : find('repeat-seeds').valueAsNumber }));
   on('case', ({ why, mesh }) => {
-    find('mesh').textContent = say('mesh', { sentence: mesh.replaceAll('`', '') });
+    // One line, with the reason behind it.
+    const sentence = mesh.replaceAll('`', '');
+    find('mesh').textContent = say('mesh', { sentence: sentence.split(':')[0] });
+    find('mesh').title = sentence;
     if (why !== 'rest') find('repeated').textContent = '';
   });
 }
