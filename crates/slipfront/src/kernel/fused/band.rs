@@ -138,7 +138,7 @@ pub(super) struct Scratch {
     /// Velocities without friction of the present tile.
     free: Vectors,
     /// Fractions of these that kinetic friction removes.
-    removed_fraction: Aligned,
+    free_speed: Aligned,
 }
 
 /// In place of the step at which a block first slips, if it has not slipped.
@@ -224,7 +224,7 @@ impl Band {
                 lattice: Vectors::zeros(TILE),
                 drive: Vectors::zeros(TILE),
                 free: Vectors::zeros(TILE),
-                removed_fraction: Aligned::filled(TILE, 0.0),
+                free_speed: Aligned::filled(TILE, 0.0),
             }),
             stride: layout.stride,
         };
@@ -814,7 +814,7 @@ impl Band {
             first_slip: self.first_slip[elements.clone()].as_chunks_mut().0,
             drive: chunks_mut(&mut scratch.drive, 0, n),
             free: chunks_mut(&mut scratch.free, 0, n),
-            removed_fraction: scratch.removed_fraction[..n].as_chunks_mut().0,
+            free_speed: scratch.free_speed[..n].as_chunks_mut().0,
             prefetched,
             variation,
         }

@@ -286,8 +286,8 @@ pub(super) struct FrictionLoop<'a> {
     pub(super) drive: [ChunksMut<'a>; 2],
     /// Velocity that the block would have without friction, likewise.
     pub(super) free: [ChunksMut<'a>; 2],
-    /// Fraction of it that friction removes if the block slides, likewise.
-    pub(super) removed_fraction: ChunksMut<'a>,
+    /// Its magnitude, likewise.
+    pub(super) free_speed: ChunksMut<'a>,
     /// Memory of later tiles, fetched ahead.
     pub(super) prefetched: [CacheLines; 6],
     /// Of a slider whose blocks differ.
@@ -368,31 +368,72 @@ impl<S: Simd> Sums<i64x8<S>, f64x8<S>> {
         }
     }
 
-    /// Adds what eight blocks contribute to the sums of `w (u - c)` and `w v(t + dt/2)`.
+    /// Adds what eight blocks contribute to the sum of `w (u - c)`.
     #[inline(always)]
-    fn add_motion<const DIFFER: bool>(
+    fn add_displacement<const DIFFER: bool>(
         &mut self,
         simd: S,
         shifts: &Shifts<S>,
         displacement: Vec2x8<S>,
-        velocity: Vec2x8<S>,
         drive_springs: Chunks,
         chunk: usize,
     ) {
         let [ux, uy] = &mut self.displacement;
-        let [vx, vy] = &mut self.velocity;
         if DIFFER {
             let w = load(simd, &drive_springs[chunk]);
             let differences = subtract(displacement, shifts.centres);
             *ux += integers(w * differences[0], shifts.weighted_displacement[0]);
             *uy += integers(w * differences[1], shifts.weighted_displacement[1]);
-            *vx += integers(w * velocity[0], shifts.velocity);
-            *vy += integers(w * velocity[1], shifts.velocity);
         } else {
             *ux += integers(displacement[0], shifts.displacement[0]);
             *uy += integers(displacement[1], shifts.displacement[1]);
-            *vx += integers(velocity[0], shifts.velocity);
-            *vy += integers(velocity[1], shifts.velocity);
+        }
+    }
+
+    /// Adds what eight blocks contribute to the sum of `w v(t + dt/2)`.
+    #[inline(always)]
+    fn add_velocity<const DIFFER: bool>(
+        &mut self,
+        simd: S,
+        shifts: &Shifts<S>,
+        velocity: Vec2x8<S>,
+        drive_springs: Chunks,
+        chunk: usize,
+    ) {
+        let [vx, vy] = &mut self.velocity;
+        let [x, y] = velocity.map(|v| weighted::<S, DIFFER>(simd, v, drive_springs, chunk));
+        *vx += integers(x, shifts.velocity);
+        *vy += integers(y, shifts.velocity);
+    }
+
+    /// Adds what eight blocks contribute to the sum of `w (u - c)^2`.
+    #[inline(always)]
+    fn add_stretch<const DIFFER: bool>(
+        &mut self,
+        simd: S,
+        quanta: &Quanta,
+        shifts: &Shifts<S>,
+        displacement: Vec2x8<S>,
+        drive_springs: Chunks,
+        chunk: usize,
+    ) {
+        let stretch = square(subtract(displacement, shifts.centres));
+        let stretch = weighted::<S, DIFFER>(simd, stretch, drive_springs, chunk);
+        let shift = splat(simd, quanta.displacement_square.shift());
+        self.displacement_square += integers(stretch, shift);
+    }
+
+    /// Adds the zeros that so many vectors at rest contribute to the sums of what moves.
+    #[inline(always)]
+    fn add_zeros<const ENERGY: bool>(&mut self, simd: S, quanta: &Quanta, vectors: i64) {
+        let zeros =
+            |quantum: FixedPoint| i64x8::splat(simd, vectors.wrapping_mul(quantum.shift().to_bits() as i64));
+        self.velocity[0] += zeros(quanta.velocity);
+        self.velocity[1] += zeros(quanta.velocity);
+        self.motion_square += zeros(quanta.motion_square);
+        self.friction_work += zeros(quanta.friction_work);
+        if ENERGY {
+            self.velocity_squares += zeros(quanta.motion_square);
         }
     }
 
@@ -503,17 +544,35 @@ pub(super) fn pull<S: Simd>(simd: S, step: Step, u: Vec2x8<S>) -> Vec2x8<S> {
     )
 }
 
-/// The first part of the friction law: drive (Eq. 2), damping (Eq. 5), and the velocity without friction.
+/// Whether all of eight blocks stand still and stick.
+#[inline(always)]
+fn rest<S: Simd>(
+    simd: S,
+    moving: u8,
+    velocity: Vec2x8<S>,
+    force: Vec2x8<S>,
+    static_limit_squares: &[f64; LANES],
+) -> bool {
+    // Ghosts have the velocity of their blocks, and do not count as moving.
+    moving == 0
+        && bits(
+            simd,
+            is_zero(simd, velocity) & square(force).simd_le(load(simd, static_limit_squares)),
+        ) == u8::MAX
+}
+
+/// The first part of the friction law: drive (Eq. 2), damping (Eq. 5), and the velocity without friction, of vectors that do not [`rest`].
 #[inline(always)]
 fn free_motion<S: Simd, const DIFFER: bool>(simd: S, step: Step, arrays: &mut FrictionLoop) {
-    let n = arrays.removed_fraction.len();
+    let n = arrays.free_speed.len();
     let (u, lattice) = (first_n(arrays.displacement, n), first_n(arrays.lattice, n));
     let velocity = [&arrays.velocity[0][..n], &arrays.velocity[1][..n]];
-    let kinetic_impulses = &arrays.kinetic_impulses[..n];
+    let static_limit_squares = &arrays.static_limit_squares[..n];
+    let moving = &arrays.moving[..n];
     let [dx, dy] = &mut arrays.drive;
     let [fx, fy] = &mut arrays.free;
     let (dx, dy, fx, fy) = (&mut dx[..n], &mut dy[..n], &mut fx[..n], &mut fy[..n]);
-    let removed_fraction = &mut arrays.removed_fraction[..n];
+    let free_speed = &mut arrays.free_speed[..n];
     let variation = arrays.variation.first::<DIFFER>(n);
     for c in 0..n {
         let mut drive = pull(simd, step, load_vec2(simd, u, c));
@@ -528,12 +587,15 @@ fn free_motion<S: Simd, const DIFFER: bool>(simd: S, step: Step, arrays: &mut Fr
             scale(splat(simd, step.integrator.velocity_decay), before),
             scale(force_to_velocity, force),
         );
-        let removed = load(simd, &kinetic_impulses[c]) / square(free).sqrt();
         drive[0].store_array(&mut dx[c]);
         drive[1].store_array(&mut dy[c]);
+        if rest(simd, moving[c], before, force, &static_limit_squares[c]) {
+            continue;
+        }
+        let speed = square(free).sqrt();
         free[0].store_array(&mut fx[c]);
         free[1].store_array(&mut fy[c]);
-        removed.store_array(&mut removed_fraction[c]);
+        speed.store_array(&mut free_speed[c]);
     }
 }
 
@@ -555,7 +617,8 @@ pub(super) fn friction<S: Simd, const ENERGY: bool, const DIFFER: bool>(
     let [dx, dy] = arrays.drive;
     let [fx, fy] = arrays.free;
     let (drive_force, free_velocity) = ([&dx[..n], &dy[..n]], [&fx[..n], &fy[..n]]);
-    let removed_fraction = &arrays.removed_fraction[..n];
+    let free_speed = &arrays.free_speed[..n];
+    let kinetic_impulses = &arrays.kinetic_impulses[..n];
     let static_limit_squares = &arrays.static_limit_squares[..n];
     let (blocks, in_contact) = (&arrays.blocks[..n], &arrays.in_contact[..n]);
     let (moving, slipped) = (&mut arrays.moving[..n], &mut arrays.slipped[..n]);
@@ -563,17 +626,29 @@ pub(super) fn friction<S: Simd, const ENERGY: bool, const DIFFER: bool>(
     let zero = splat(simd, 0.0);
     let shifts = Shifts::of(simd, quanta);
     let variation = arrays.variation.first::<DIFFER>(n);
+    let mut resting = 0;
     for c in 0..n {
         for lines in arrays.prefetched {
             lines.prefetch(c);
         }
         let lattice = load_vec2(simd, lattice_force, c);
         let drive = load_vec2(simd, drive_force, c);
-        let free = load_vec2(simd, free_velocity, c);
-        let removed_fraction = load(simd, &removed_fraction[c]);
         let before = [load(simd, &vx[c]), load(simd, &vy[c])];
 
         let force = add(drive, lattice);
+        if rest(simd, moving[c], before, force, &static_limit_squares[c]) {
+            let displacement = or_else(simd, blocks[c], load_vec2(simd, u, c), shifts.centres);
+            sums.add_displacement::<DIFFER>(simd, &shifts, displacement, variation.drive_springs, c);
+            let stress = zero_missing(simd, in_contact[c], drive);
+            sums.stress_square = sums.stress_square.max(square(stress));
+            if ENERGY {
+                sums.add_stretch::<DIFFER>(simd, quanta, &shifts, displacement, variation.drive_springs, c);
+            }
+            resting += 1;
+            continue;
+        }
+        let free = load_vec2(simd, free_velocity, c);
+        let removed_fraction = load(simd, &kinetic_impulses[c]) / load(simd, &free_speed[c]);
         let sticks = is_zero(simd, before) & square(force).simd_le(load(simd, &static_limit_squares[c]));
         let remaining = splat(simd, 1.0) - removed_fraction;
         let slides = !sticks & remaining.simd_gt(zero);
@@ -594,7 +669,8 @@ pub(super) fn friction<S: Simd, const ENERGY: bool, const DIFFER: bool>(
         let both = zero_missing(simd, blocks[c], add(before, after));
         let displacement = or_else(simd, blocks[c], load_vec2(simd, u, c), shifts.centres);
         let motion_square = weighted::<S, DIFFER>(simd, square(both), variation.mass, c);
-        sums.add_motion::<DIFFER>(simd, &shifts, displacement, after, variation.drive_springs, c);
+        sums.add_displacement::<DIFFER>(simd, &shifts, displacement, variation.drive_springs, c);
+        sums.add_velocity::<DIFFER>(simd, &shifts, after, variation.drive_springs, c);
         sums.motion_square += integers(motion_square, shifts.motion_square);
         sums.friction_work += integers(dot(against, both), shifts.friction_work);
         sums.speed_square = sums.speed_square.max(square(after));
@@ -605,15 +681,13 @@ pub(super) fn friction<S: Simd, const ENERGY: bool, const DIFFER: bool>(
         if ENERGY {
             let motion = square(before) + square(after);
             let motion = weighted::<S, DIFFER>(simd, motion, variation.mass, c);
-            let stretch = square(subtract(displacement, shifts.centres));
-            let stretch = weighted::<S, DIFFER>(simd, stretch, variation.drive_springs, c);
             let motion = zero_missing(simd, blocks[c], [motion, zero])[0];
             sums.velocity_squares += integers(motion, shifts.motion_square);
-            let shift = splat(simd, quanta.displacement_square.shift());
-            sums.displacement_square += integers(stretch, shift);
+            sums.add_stretch::<DIFFER>(simd, quanta, &shifts, displacement, variation.drive_springs, c);
         }
         mark_first_slips(slips, &mut slipped[c], &mut first_slip[c], step.number as u32);
     }
+    sums.add_zeros::<ENERGY>(simd, quanta, resting);
 }
 
 /// Numbers of eight blocks, times the weight of each where blocks differ.
