@@ -130,7 +130,7 @@ fn the_guide_shows_what_is_printed() {
         .iter()
         .map(|mean| format!("{:.1}", mean.as_f64().unwrap()))
         .collect();
-    let shown = format!("gives {} %", means.join(", "));
+    let shown = format!("| {} |", means.join(" | "));
     assert!(guide.contains(&shown), "docs/guide/experiment.md lacks: {shown}");
 }
 

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use assert_cmd::Command;
 
 use crate::support::process::program;
+use crate::support::workspace::Workspace;
 
 fn repository() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
@@ -154,6 +155,40 @@ fn every_link_in_the_book_leads_somewhere() {
     assert!(broken.is_empty(), "{broken}");
     assert!(count >= 50, "only {count} links were found");
     assert_eq!(anchor(" What 31 % means"), "what-31--means");
+}
+
+/// What `run` and `check` print stands in the guides, but for lines that depend on the machine.
+#[test]
+fn the_guides_show_what_run_and_check_print() {
+    let guide = |name: &str| std::fs::read_to_string(repository().join("docs/guide").join(name)).unwrap();
+    let workspace = Workspace::new();
+    let circle = "[slider]\nblocks = [50, 50]\n[[texture]]\nshape = 'cavity'\ncoverage = 10\n";
+    workspace.write("circle.toml", circle);
+    let page = guide("getting-started.md");
+    for line in ["run", "check circle.toml"] {
+        let printed = workspace.succeed(line);
+        assert!(printed.lines().count() > 10, "{line}: {printed}");
+        for printed in printed.lines() {
+            let of_the_machine = ["cost ", "memory ", "disk "];
+            let is_shown = page.lines().any(|shown| shown == printed);
+            assert!(
+                is_shown || of_the_machine.iter().any(|name| printed.starts_with(name)),
+                "docs/guide/getting-started.md lacks, of `{line}`:\n{printed}"
+            );
+        }
+    }
+    let page = guide("experiment.md");
+    for case in ["sheet", "steel"] {
+        let file = repository().join("cases").join(format!("{case}.toml"));
+        let printed = workspace.succeed(&format!("check {}", file.display()));
+        let start = printed.find("  length").unwrap();
+        let end = printed.find("onset expected").unwrap();
+        let lengths = &printed[start..end];
+        assert!(
+            page.contains(lengths),
+            "docs/guide/experiment.md lacks:\n{lengths}"
+        );
+    }
 }
 
 /// Adds the files of Rust in a folder to those found, but for those of tests.

@@ -679,7 +679,7 @@ fn runs_without_the_number_that_decides_do_not_count_for_it() {
     assert_eq!((row["n"].as_str(), row["narrow_enough"].as_str()), ("0", "false"));
 }
 
-/// The tables of the guides on slow loading, soft springs and smaller blocks hold what their studies give.
+/// The tables of the guides on slow loading, soft springs, smaller blocks and dimples on steel hold what their studies give.
 #[test]
 fn the_guides_have_the_reductions_of_their_studies() {
     let repository = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
@@ -707,12 +707,42 @@ fn the_guides_have_the_reductions_of_their_studies() {
         assert!(text.contains(&row), "{row}");
     }
     let text = guide("experiment.md");
-    for (study, axis) in [("soft_springs", "softer"), ("halved_blocks", "blocks")] {
-        let cells: Vec<String> = reductions(study, &[axis])
-            .into_iter()
-            .map(|(_, cell)| cell)
-            .collect();
-        let row = format!("| reduction in % | {} |", cells.join(" | "));
+    let cells = |reductions: &[(Vec<String>, String)]| {
+        let cells: Vec<&str> = reductions.iter().map(|(_, cell)| cell.as_str()).collect();
+        cells.join(" | ")
+    };
+    let row = format!(
+        "| reduction in % | {} |",
+        cells(&reductions("soft_springs", &["softer"]))
+    );
+    assert!(text.contains(&row), "{row}");
+    for slider in reductions("one_cavity_three_sliders", &["held"]).chunks(3) {
+        let row = format!(" | {} |\n", cells(slider));
         assert!(text.contains(&row), "{row}");
     }
+    let row = format!(
+        "| reduction in % | {} |",
+        cells(&reductions("dimples_by_block", &["slider.blocks"]))
+    );
+    assert!(text.contains(&row), "{row}");
+    // The coarsest of three meshes; the others take minutes.
+    let steel = repository.join("cases/steel.toml");
+    workspace.write(
+        "steel.toml",
+        format!(
+            "base = '{}'\n[study]\nreplicates = 5\nreference = {{ texture = [] }}\n[[axes]]\nzip = {{ \"slider.blocks\" = [[100, 100]], \
+             \"slider.block_size\" = ['20 um'] }}\n",
+            steel.display()
+        ),
+    );
+    workspace.succeed("study steel.toml -q -o steel");
+    let points = workspace.results("steel").table("points.csv");
+    let point = points
+        .iter()
+        .find(|row| row["quantity"] == "static_reduction_percent")
+        .unwrap();
+    let number = |name: &str| point[name].parse::<f64>().unwrap();
+    let half = (number("high") - number("low")) / 2.0;
+    let row = format!("  20 um    13.46 % {:>19.2} \u{b1} {half:.2} ", number("mean"));
+    assert!(text.contains(&row), "{row}");
 }
