@@ -17,7 +17,7 @@ use slipfront_run::run_folder::inspection::Contents;
 use slipfront_run::running::Running;
 use slipfront_run::verify::inspect;
 use slipfront_run::{fields, precursors, series, summary};
-use slipfront_study::converge::is_told;
+use slipfront_study::converge::is_written;
 use slipfront_study::study_of;
 use slipfront_study::verify::{has_records, verify as verify_folder};
 
@@ -48,7 +48,7 @@ impl TemporaryParent {
 #[pyfunction]
 pub(crate) fn kind_of(folder: PathBuf) -> PyResult<Option<&'static str>> {
     if has_records(&folder) {
-        let is_of_meshes = study_of(&folder).is_ok_and(|study| is_told(&folder, &study.axes));
+        let is_of_meshes = study_of(&folder).is_ok_and(|study| is_written(&folder, &study.axes));
         return Ok(Some(if is_of_meshes { "meshes" } else { "study" }));
     }
     if folder.join(FIGURE_CACHE).is_dir() {

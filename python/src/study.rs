@@ -10,9 +10,10 @@ use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use slipfront_case::case::Case as SlipfrontCase;
 use slipfront_run::{clock, running};
-use slipfront_study::converge::{self, CostLimits, MeshStudy};
+use slipfront_study::converge::{self, MeshStudy};
 use slipfront_study::{
-    self as study, Plan, Progress, Role, RunKey, Sample, StudyError, StudyFile, StudyFolder, StudyResults,
+    self as study, CostLimits, Plan, Progress, Role, RunKey, Sample, StudyError, StudyFile, StudyFolder,
+    StudyResults,
 };
 
 use crate::case::{Case, LOOK_EVERY, make};

@@ -25,6 +25,19 @@ def long() -> sf.Case:
 
 
 @pytest.fixture
+def diverging() -> sf.Case:
+    """A case with steps just below the limit of the linear lattice, and strains that stiffen its springs beyond it."""
+    tables = {
+        "slider": {"blocks": [8, 8], "omega_star": 0},
+        "load": {"pressure": "50 GPa"},
+        "drive": {"v_star": 10},
+        "friction": {"r_star": 0, "sigma_static_star": 1},
+        "time": {"step": 0.9, "duration_star": 2000},
+    }
+    return sf.Case.from_dict(tables)
+
+
+@pytest.fixture
 def interruptible() -> Iterator[None]:
     """An interrupt raises KeyboardInterrupt also where it is ignored, as in a script that was started in the background."""
     before = signal.signal(signal.SIGINT, signal.default_int_handler)

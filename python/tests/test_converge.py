@@ -194,15 +194,7 @@ def test_a_folder_of_other_things_is_refused(sheet: Path) -> None:
         sf.converge(sheet, sheet.parent, progress=False)
 
 
-def test_a_run_that_fails_is_told(tmp_path: Path) -> None:
-    # Steps just below the limit of the linear lattice, and strains that stiffen its springs beyond it.
-    tables = {
-        "slider": {"blocks": [8, 8], "omega_star": 0},
-        "load": {"pressure": "50 GPa"},
-        "drive": {"v_star": 10},
-        "friction": {"r_star": 0, "sigma_static_star": 1},
-        "time": {"step": 0.9, "duration_star": 2000},
-    }
+def test_a_run_that_fails_is_told(tmp_path: Path, diverging: sf.Case) -> None:
     with pytest.raises(sf.RunError, match="of 3 runs failed, the others stand in the tables; the first, .* diverged"):
-        sf.converge(sf.Case.from_dict(tables), tmp_path / "meshes", replicates=1, progress=False)
+        sf.converge(diverging, tmp_path / "meshes", replicates=1, progress=False)
     assert (tmp_path / "meshes" / "runs.csv").exists() and not (tmp_path / "meshes" / "convergence.json").exists()

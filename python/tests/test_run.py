@@ -168,14 +168,6 @@ def test_pictures_are_drawn(small: sf.Case) -> None:
     assert "mu_s*" in repr(run) and "mu_s*" in run._repr_html_()
 
 
-def test_a_run_that_diverges_says_so() -> None:
-    # A step just below the limit of the linear lattice, and strains that stiffen its springs beyond it.
-    tables = {
-        "slider": {"blocks": [8, 8], "omega_star": 0},
-        "load": {"pressure": "50 GPa"},
-        "drive": {"v_star": 10},
-        "friction": {"r_star": 0, "sigma_static_star": 1},
-        "time": {"step": 0.9, "duration_star": 2000},
-    }
+def test_a_run_that_diverges_says_so(diverging: sf.Case) -> None:
     with pytest.raises(sf.RunError, match="at step .* diverged"):
-        sf.run(sf.Case.from_dict(tables), progress=False)
+        sf.run(diverging, progress=False)

@@ -13,8 +13,6 @@ use slipfront_run::folder_error::FolderError;
 use slipfront_run::pictures::error::RunPictureError;
 use slipfront_run::program;
 
-use crate::converge::{MAX_LEVELS, MIN_LEVELS};
-
 /// A study that cannot be used, or had to stop.
 #[derive(Debug, Error)]
 #[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
@@ -101,9 +99,9 @@ pub enum StudyError {
     #[error("cannot draw {name}: {source}")]
     Picture { name: String, source: PictureError },
     #[error(
-        "{levels} meshes cannot be: give from {MIN_LEVELS} to {MAX_LEVELS} levels, the second of which is the mesh of the case"
+        "{levels} meshes cannot be: give from {fewest} to {most} levels, the second of which is the mesh of the case"
     )]
-    Levels { levels: i64 },
+    Levels { levels: i64, fewest: u8, most: u8 },
     #[error(
         "on blocks of {block_size} no block is textured: begin with finer blocks, by `slider.blocks` and `slider.block_size`"
     )]

@@ -1,11 +1,23 @@
-//! What the runs of a study will cost, from some steps of each size of slider.
+//! What the runs of a study will cost, from some steps of each size of slider, and what they may.
 
 use std::collections::HashMap;
 
+use jiff::SignedDuration;
 use slipfront_case::case_file::CaseError;
+use slipfront_case::number_format::byte_size;
 use slipfront_run::estimate_cost::seconds_per_step;
 
+use crate::error::StudyError;
 use crate::plan::Plan;
+
+/// What the runs of a study may take at most.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct CostLimits {
+    /// Memory of all runs at once, GB.
+    pub memory_gb: Option<f64>,
+    /// Time until all runs are done.
+    pub time: Option<SignedDuration>,
+}
 
 /// Seconds that the runs will take on `threads` threads of this machine, with the fewest replicates.
 ///
@@ -30,4 +42,33 @@ pub fn estimated_seconds(plan: &Plan, threads: usize) -> Result<f64, CaseError> 
     }
     let replicates = plan.settings.min_replicates() as f64;
     Ok(replicates * seconds / threads as f64)
+}
+
+impl CostLimits {
+    /// Refuses a plan if it has as many runs at once as there is no memory for, or takes more than this.
+    ///
+    /// # Errors
+    /// Says what it takes, the limit, and what takes less.
+    pub fn check(self, plan: &Plan, threads: usize) -> Result<(), StudyError> {
+        const GB: f64 = 1e9;
+        plan.check_memory(threads)?;
+        let memory = plan.memory(threads);
+        // NaN is a limit that nothing fits.
+        let fits = |most: f64| memory <= most * GB;
+        if let Some(most) = self.memory_gb.filter(|most| !fits(*most)) {
+            let needed = byte_size(memory);
+            return Err(StudyError::MemoryLimit {
+                needed,
+                threads,
+                most,
+            });
+        }
+        let Some(most) = self.time else { return Ok(()) };
+        let seconds = estimated_seconds(plan, threads)?;
+        if seconds > most.as_secs_f64() {
+            let estimated = SignedDuration::from_secs(seconds.ceil() as i64);
+            return Err(StudyError::TimeLimit { estimated, most });
+        }
+        Ok(())
+    }
 }

@@ -36,12 +36,13 @@ mod study_results;
 mod summary_values;
 mod tables;
 pub mod text_table;
+mod told_warnings;
 pub mod verify;
 
 pub use anisotropy::{Anisotropy, OverDirections, anisotropies};
 pub use axis::{Axis, Level, Spacing};
 pub use error::StudyError;
-pub use estimate_cost::estimated_seconds;
+pub use estimate_cost::{CostLimits, estimated_seconds};
 pub use execute::{LookAtRun, collect, execute, execute_and_look};
 pub use folder::{StudyFolder, is_study, refuse_foreign, study_of, write};
 pub use friction_tensor::Principal;
@@ -60,3 +61,4 @@ pub use summary_values::{REDUCTION, RunQuantity, SummaryValues, is_column, known
 
 /// BLAKE3 hash of the sources of this crate: a part of the identity of the runs that it records.
 pub const SOURCE_HASH: &str = env!("SLIPFRONT_SOURCE_HASH");
+pub use told_warnings::told_warnings;

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use crate::axis::{self, Axis};
 use crate::error::StudyError;
 use crate::identity::{Prepared, physics};
-use crate::plan_warnings::{self, Warning, Warnings, note_on_replicates};
+use crate::plan_warnings::{Warning, Warnings, note_on_replicates};
 use crate::shard::Shard;
 use crate::study_file::{Base, RetainRuns, Settings, StudyFile};
 use crate::summary_values::REDUCTION;
@@ -336,11 +336,6 @@ impl Plan {
     /// Warnings about the cases of the study, the first of each kind.
     pub fn warnings(&self) -> &[Warning] {
         &self.warnings
-    }
-
-    /// Warnings about the cases of the study in words, each with the points that it concerns: the first eight, and how many more there are.
-    pub fn told_warnings(&self) -> Vec<String> {
-        plan_warnings::told(self)
     }
 
     /// The case of a run, ready to run, unless a file that it reads has changed since the plan was made.

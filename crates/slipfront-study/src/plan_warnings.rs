@@ -5,11 +5,6 @@ use std::collections::hash_map::Entry;
 
 use slipfront_case::case::Case;
 
-use crate::plan::Plan;
-
-/// Most warnings about the cases of a study that are told.
-const MAX_TOLD: usize = 8;
-
 /// A warning about points of a study.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Warning {
@@ -66,32 +61,5 @@ pub(crate) fn note_on_replicates(case: &Case) -> Option<&'static str> {
         )
     } else {
         Some("all replicates are the same run: no coefficient is random, and one replicate says all")
-    }
-}
-
-/// The first warnings in words, each with the points that it concerns, and how many more there are.
-pub(crate) fn told(plan: &Plan) -> Vec<String> {
-    let all = plan.warnings();
-    let mut told: Vec<String> = all
-        .iter()
-        .take(MAX_TOLD)
-        .map(|warning| format!("{} ({})", warning.sentence, place(warning, plan)))
-        .collect();
-    if all.len() > MAX_TOLD {
-        let more = all.len() - MAX_TOLD;
-        told.push(format!(
-            "and {more} more of the kind, which `slipfront check` tells for a case"
-        ));
-    }
-    told
-}
-
-/// The points that a warning concerns.
-fn place(warning: &Warning, plan: &Plan) -> String {
-    let first = plan.describe(&plan.points[warning.first]);
-    match (warning.points, plan.points.len()) {
-        (some, all) if some == all => "at every point".to_owned(),
-        (1, _) => format!("at the point {first}"),
-        (some, _) => format!("at {some} points, the first {first}"),
     }
 }

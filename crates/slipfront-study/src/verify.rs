@@ -15,7 +15,7 @@ use slipfront_run::verify::{
 };
 use thiserror::Error;
 
-use crate::converge::{self, OnMeshes};
+use crate::converge::{is_written, write_meshes};
 use crate::error::{StudyError, of_others};
 use crate::execute::collect;
 use crate::folder::{StudyFolder, study_of, write};
@@ -95,10 +95,8 @@ fn verify_study(folder: &Path) -> Result<Verdict, VerifyStudyError> {
         Err(error) => return Err(error.into()),
     };
     write(&plan, &results, &again)?;
-    if converge::is_told(folder, &plan.axes) {
-        OnMeshes::of(&plan, &results)
-            .map_err(StudyError::from)?
-            .write(&plan, &again)?;
+    if is_written(folder, &plan.axes) {
+        write_meshes(&plan, &results, &again)?;
     }
     let mut files = files_below(temporary.path(), "").map_err(VerifyError::Temporary)?;
     files.retain(|file| file.name != Records::FILE);

@@ -1,7 +1,7 @@
 //! Whether blocks are fine enough for the outline of a texture.
 
 use super::runnable::Case;
-use crate::case_file::{MAX_BLOCKS, MAX_BLOCKS_TOTAL, Outline, Texture};
+use crate::case_file::{MAX_BLOCKS, MAX_BLOCKS_TOTAL, Outline};
 use crate::number_format::{exact, four_digits, si_prefix, with_si_prefix};
 
 /// Share by which a length may be too small: rounding of lengths and of the block size.
@@ -65,17 +65,6 @@ impl Case {
             ten_digits(size)
         )
     }
-}
-
-/// What is textured and what is between, as their user calls it.
-pub(super) fn names(textures: &[Texture]) -> [&'static str; 2] {
-    let drawn = |texture: &Texture| Some((texture.shape.outline()?.noun(), texture.pattern.invert));
-    let drawn: Vec<(&str, bool)> = textures.iter().filter_map(drawn).collect();
-    if drawn.iter().all(|(_, is_inverted)| *is_inverted) {
-        return ["gap", "pillar"];
-    }
-    let is_alike = drawn.iter().all(|one| *one == (drawn[0].0, false));
-    [if is_alike { drawn[0].0 } else { "feature" }, "gap"]
 }
 
 fn greatest_common_divisor([one, other]: [u64; 2]) -> u64 {

@@ -6,10 +6,9 @@
 
 use slipfront::surface::{Clearance, clearance};
 
-use super::coarse::names;
 use super::runnable::Case;
 use super::textures::outlines_in_blocks;
-use crate::case_file::{Attached, AttachedEdge, Motion};
+use crate::case_file::{Attached, AttachedEdge, CaseFile, DriveStiffness, LengthOfABlock, Motion, Texture};
 use crate::number_format::{four_digits, with_si_prefix};
 
 /// Blocks of the critical size of slip.
@@ -21,9 +20,9 @@ const NEARLY_STABLE: f64 = 4.0;
 /// Blocks of the correlation length: coefficients are exact means over blocks.
 const OF_CORRELATION: f64 = 0.5;
 /// Blocks across the smallest feature: its area is then meshed within 2 % in root mean square over its place on the mesh.
-pub(super) const ACROSS_A_FEATURE: f64 = 5.0;
+const ACROSS_A_FEATURE: f64 = 5.0;
 /// Blocks across the smallest gap: one of them is in contact wherever the mesh lies.
-pub(super) const ACROSS_A_GAP: f64 = 2.0;
+const ACROSS_A_GAP: f64 = 2.0;
 
 /// A length of a case, and how many blocks of it an answer needs.
 #[derive(Clone, Debug, PartialEq)]
@@ -38,10 +37,19 @@ pub struct CaseLength {
     pub enough: Option<f64>,
 }
 
-impl CaseLength {
-    /// Blocks that there are over those that are enough.
-    fn resolution(&self) -> Option<f64> {
-        self.enough.map(|enough| self.blocks / enough)
+impl CaseFile {
+    /// Lengths of the material that are those of a block, since no key gives them: on other blocks they are others.
+    pub fn lengths_of_a_block(&self) -> Vec<LengthOfABlock> {
+        let thickness = self.slider.thickness.is_none().then_some(LengthOfABlock {
+            length: "the thickness of the sheet",
+            key: "slider.thickness",
+        });
+        let mount = (self.drive.stiffness == DriveStiffness::Auto).then_some(LengthOfABlock {
+            length: "the screening length of the mount",
+            key: "drive.stiffness_per_area",
+        });
+        let of_friction = self.friction.lengths_of_a_block();
+        thickness.into_iter().chain(mount).chain(of_friction).collect()
     }
 }
 
@@ -93,7 +101,7 @@ impl Case {
     }
 
     /// Which length decides how much of an answer is the mesh, in a sentence without a full stop.
-    pub fn deciding_length(&self, lengths: &[CaseLength]) -> String {
+    pub fn deciding_length(&self) -> String {
         if self.model.n_blocks() == 1 {
             return "a single block has none".to_owned();
         }
@@ -106,37 +114,35 @@ impl Case {
                 keys.collect::<Vec<_>>().join(", ")
             );
         }
-        let resolved = lengths
-            .iter()
-            .filter_map(|length| Some((length, length.resolution()?)));
-        let least = resolved.min_by(|(_, one), (_, other)| one.total_cmp(other));
-        least.map_or("no length needs smaller blocks".to_owned(), |(length, _)| {
+        let lengths = self.lengths();
+        let bounded = lengths.iter().filter_map(|length| Some((length, length.enough?)));
+        let least = bounded.min_by(|(one, of_one), (other, of_other)| {
+            (one.blocks / of_one).total_cmp(&(other.blocks / of_other))
+        });
+        least.map_or("no length needs smaller blocks".to_owned(), |(length, enough)| {
             format!(
                 "the {} decides: {} blocks, and {} are enough for 2 % of a reduction",
                 length.name,
                 four_digits(length.blocks),
-                four_digits(length.enough.unwrap_or_default())
+                four_digits(enough)
             )
         })
     }
 
     /// Lengths of friction and mount for which these blocks are too large.
     pub(super) fn unresolved_lengths(&self) -> Vec<String> {
-        let lengths = self.material_lengths();
-        let unresolved = lengths
-            .iter()
-            .filter(|length| length.resolution().is_some_and(|resolution| resolution < 1.0));
-        unresolved
-            .map(|length| {
-                let enough = length.enough.unwrap_or_default();
-                format!(
+        let lengths = self.material_lengths().into_iter();
+        lengths
+            .filter_map(|length| {
+                let enough = length.enough.filter(|enough| length.blocks < *enough)?;
+                Some(format!(
                     "the {} is {} blocks, and {} are enough: what a texture changes about mu_s* still belongs to the size of a block; take \
                      blocks of at most {}",
                     length.name,
                     four_digits(length.blocks),
                     four_digits(enough),
                     with_si_prefix(length.metres / enough, "m")
-                )
+                ))
             })
             .collect()
     }
@@ -156,4 +162,15 @@ impl Case {
             enough,
         }
     }
+}
+
+/// What is textured and what is between, as their user calls it.
+fn names(textures: &[Texture]) -> [&'static str; 2] {
+    let drawn = |texture: &Texture| Some((texture.shape.outline()?.noun(), texture.pattern.invert));
+    let drawn: Vec<(&str, bool)> = textures.iter().filter_map(drawn).collect();
+    if drawn.iter().all(|(_, is_inverted)| *is_inverted) {
+        return ["gap", "pillar"];
+    }
+    let is_alike = drawn.iter().all(|one| *one == (drawn[0].0, false));
+    [if is_alike { drawn[0].0 } else { "feature" }, "gap"]
 }

@@ -59,7 +59,7 @@ fn the_critical_size_decides_of_a_sheet() {
             ("critical size", critical, Some(5.0)),
         ],
     );
-    let said = sheet.deciding_length(&sheet.lengths());
+    let said = sheet.deciding_length();
     assert_eq!(
         said,
         "the critical size decides: 6.664 blocks, and 5 are enough for 2 % of a reduction"
@@ -89,7 +89,7 @@ fn the_screening_length_decides_where_slip_is_stable() {
                 ("critical size", size, size_enough),
             ],
         );
-        let said = sheet.deciding_length(&sheet.lengths());
+        let said = sheet.deciding_length();
         assert!(
             said.starts_with("the screening length along decides: 1.732 blocks, and 3 are"),
             "{said}"
@@ -127,7 +127,7 @@ fn features_gaps_and_correlated_coefficients_are_lengths() {
         );
         assert!((blocks / expected.1 - 1.0).abs() < 1e-9, "{name}: {blocks}");
     }
-    let said = grooved.deciding_length(&grooved.lengths());
+    let said = grooved.deciding_length();
     assert!(
         said.starts_with("the smallest groove decides: 3 blocks"),
         "{said}"
@@ -164,7 +164,7 @@ fn the_block_decides_where_no_key_gives_a_length() {
         ("slider.blocks = [1, 1]", "a single block has none"),
     ] {
         let case = case(text);
-        assert_eq!(case.deciding_length(&case.lengths()), expected);
+        assert_eq!(case.deciding_length(), expected);
     }
     let turning = case("drive.motion = 'rotation'");
     assert_lengths(&turning, &[("block", 1.0, None)]);

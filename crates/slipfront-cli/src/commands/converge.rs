@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use jiff::SignedDuration;
-use slipfront_study::StudyFolder;
-use slipfront_study::converge::{CostLimits, MAX_LEVELS, MIN_LEVELS, MeshStudy, write};
+use slipfront_study::converge::{MAX_LEVELS, MIN_LEVELS, MeshStudy, text, write};
+use slipfront_study::{CostLimits, StudyFolder};
 
 use super::study::run_all;
 use crate::case_args::CaseArgs;
@@ -71,7 +71,7 @@ impl ConvergeCommand {
         let results = run_all(&plan, &folder, &signals, self.quiet)?;
         let found = write(&plan, &results, &folder).map_err(Failure::running)?;
         if !self.quiet {
-            print_message(&found.text(&plan, stdout_columns()));
+            print_message(&text(&plan, &found, stdout_columns()));
         }
         Ok(())
     }

@@ -7,9 +7,8 @@ use slipfront_study::text_table::table;
 
 /// The table of the lengths of a case with the blocks that are enough of each, and which of them decides.
 pub(crate) fn lengths(case: &Case) -> String {
-    let lengths = case.lengths();
-    let rows: Vec<Vec<String>> = lengths.iter().map(|length| row(case, length)).collect();
-    let decides = case.deciding_length(&lengths);
+    let rows: Vec<Vec<String>> = case.lengths().iter().map(|length| row(case, length)).collect();
+    let decides = case.deciding_length();
     table(&["length", "blocks", "metres", "enough"], &rows) + &format!("{:<18}{decides}\n", "mesh")
 }
 

@@ -6,7 +6,8 @@ use std::path::Path;
 use slipfront_case::number_format::{are, byte_size, count, four_digits, with_half_width};
 use slipfront_study::text_table::table;
 use slipfront_study::{
-    MeshedCoverage, Plan, REDUCTION, StudyResults, idle_axes, quantities_without_pictures, why_no_pictures,
+    MeshedCoverage, Plan, REDUCTION, StudyResults, idle_axes, quantities_without_pictures, told_warnings,
+    why_no_pictures,
 };
 
 use super::anisotropy::anisotropy;
@@ -86,7 +87,7 @@ fn merged(plan: &Plan) -> Option<String> {
 
 /// Warnings about the cases of a study as notes.
 fn case_warnings(plan: &Plan) -> String {
-    plan.told_warnings()
+    told_warnings(plan)
         .iter()
         .map(|sentence| note(sentence))
         .collect()

@@ -26,7 +26,7 @@ pub(crate) fn summary(case: &Case, summary: &Summary) -> String {
         lines.push(("peaks", peaks(cycles)));
     }
     lines.push(("energy", energy(summary)));
-    lines.push(("mesh", case.deciding_length(&case.lengths())));
+    lines.push(("mesh", case.deciding_length()));
     let mut text = match summary.motion {
         Some(Motion::Rotation) => String::from("\nmu is the torque over the load times the mean radius\n"),
         _ => String::from("\n"),

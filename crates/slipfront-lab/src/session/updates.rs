@@ -59,7 +59,7 @@ impl Session {
             time_before_s: live.time_before_s(),
             twin: self.twin.is_some(),
             has_memory: live.has_memory(),
-            mesh: case.deciding_length(&case.lengths()),
+            mesh: case.deciding_length(),
             warnings: case.warnings(),
             too_coarse: case.too_coarse(),
         };

@@ -2,15 +2,12 @@
 
 use std::path::{Path, absolute};
 
-use jiff::SignedDuration;
 use slipfront_case::case::Case;
 use slipfront_case::case_file::{CaseError, CaseFile, Override};
-use slipfront_case::number_format::byte_size;
 use toml::{Table, Value};
 
-use super::meshes;
+use super::on_meshes::meshes;
 use crate::error::StudyError;
-use crate::estimate_cost::estimated_seconds;
 use crate::plan::Plan;
 use crate::study_file::{StudyFile, portable_text};
 
@@ -32,15 +29,6 @@ pub struct MeshStudy {
     pub plan: Plan,
 }
 
-/// What the runs of a study may take at most.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct CostLimits {
-    /// Memory of all runs at once, GB.
-    pub memory_gb: Option<f64>,
-    /// Time until all runs are done.
-    pub time: Option<SignedDuration>,
-}
-
 impl MeshStudy {
     /// The case on `levels` meshes, the second of which is its own, with `replicates` surfaces on each: unless given, 5 if coefficients
     /// scatter, else 1.
@@ -49,7 +37,11 @@ impl MeshStudy {
     /// When there are too few or too many meshes, when the case cannot be put on these blocks, or when no block of one mesh is textured.
     pub fn new(case: &Case, levels: i64, replicates: Option<i64>) -> Result<Self, StudyError> {
         if !(i64::from(MIN_LEVELS)..=i64::from(MAX_LEVELS)).contains(&levels) {
-            return Err(StudyError::Levels { levels });
+            return Err(StudyError::Levels {
+                levels,
+                fewest: MIN_LEVELS,
+                most: MAX_LEVELS,
+            });
         }
         let replicates = replicates.unwrap_or_else(|| default_replicates(case));
         let table = study_table(case, &overrides(case, levels)?, replicates)?;
@@ -59,35 +51,6 @@ impl MeshStudy {
         let plan = Plan::new(&file, None)?;
         refuse_bare(&plan)?;
         Ok(Self { file, plan })
-    }
-}
-
-impl CostLimits {
-    /// Refuses a plan if it has as many runs at once as there is no memory for, or takes more than this.
-    ///
-    /// # Errors
-    /// Says what it takes, the limit, and what takes less.
-    pub fn check(self, plan: &Plan, threads: usize) -> Result<(), StudyError> {
-        const GB: f64 = 1e9;
-        plan.check_memory(threads)?;
-        let memory = plan.memory(threads);
-        // NaN is a limit that nothing fits.
-        let fits = |most: f64| memory <= most * GB;
-        if let Some(most) = self.memory_gb.filter(|most| !fits(*most)) {
-            let needed = byte_size(memory);
-            return Err(StudyError::MemoryLimit {
-                needed,
-                threads,
-                most,
-            });
-        }
-        let Some(most) = self.time else { return Ok(()) };
-        let seconds = estimated_seconds(plan, threads)?;
-        if seconds > most.as_secs_f64() {
-            let estimated = SignedDuration::from_secs(seconds.ceil() as i64);
-            return Err(StudyError::TimeLimit { estimated, most });
-        }
-        Ok(())
     }
 }
 

@@ -3,13 +3,14 @@
 use slipfront_case::number_format::{four_digits, with_half_width};
 use slipfront_case::text::note;
 
-use super::{Convergence, OnMeshes, Verdict};
+use super::on_meshes::{Convergence, OnMeshes, Verdict};
 use crate::plan::Plan;
 use crate::text_table::table;
+use crate::told_warnings::told_warnings;
 
 /// The table of what every mesh found, and a sentence on each quantity. Notes, in lines of at most `columns` characters, name lengths of the
 /// material that are the block's, and tell the warnings about the cases.
-pub(super) fn text(plan: &Plan, found: &OnMeshes, columns: usize) -> String {
+pub fn text(plan: &Plan, found: &OnMeshes, columns: usize) -> String {
     let (quantities, lengths) = (&found.quantities, &found.lengths_of_a_block);
     let mut text = on_meshes(found) + "\n";
     if quantities.is_empty() {
@@ -32,7 +33,7 @@ pub(super) fn text(plan: &Plan, found: &OnMeshes, columns: usize) -> String {
         );
         text += &note(&sentence, columns);
     }
-    let warnings = plan.told_warnings();
+    let warnings = told_warnings(plan);
     warnings
         .iter()
         .fold(text, |text, warning| text + &note(warning, columns))

@@ -137,7 +137,7 @@ pub(super) struct Scratch {
     drive: Vectors,
     /// Velocities without friction of the present tile.
     free: Vectors,
-    /// Fractions of these that kinetic friction removes.
+    /// Magnitudes of the velocities without friction of the present tile.
     free_speed: Aligned,
 }
 

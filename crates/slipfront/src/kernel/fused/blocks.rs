@@ -286,7 +286,7 @@ pub(super) struct FrictionLoop<'a> {
     pub(super) drive: [ChunksMut<'a>; 2],
     /// Velocity that the block would have without friction, likewise.
     pub(super) free: [ChunksMut<'a>; 2],
-    /// Its magnitude, likewise.
+    /// Magnitude of the velocity without friction, found by [`free_motion`].
     pub(super) free_speed: ChunksMut<'a>,
     /// Memory of later tiles, fetched ahead.
     pub(super) prefetched: [CacheLines; 6],

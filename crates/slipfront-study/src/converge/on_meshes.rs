@@ -1,0 +1,200 @@
+//! What several meshes found of one slider: the values on each, and the verdict on them.
+
+use serde::Serialize;
+use slipfront_case::case_file::CaseError;
+
+use crate::plan::Plan;
+use crate::statistics::Sample;
+use crate::study_results::StudyResults;
+use crate::summary_values::REDUCTION;
+
+/// What is measured on every mesh.
+const QUANTITIES: [&str; 4] = [
+    REDUCTION,
+    "static_friction_star",
+    "kinetic_friction_star",
+    FRONT_SPEED,
+];
+
+/// The mean speed of the front, m/s.
+const FRONT_SPEED: &str = "front_speed_m_s";
+
+/// The keys by which meshes differ.
+pub(super) const KEYS_OF_MESHES: [&str; 2] = ["slider.block_size", "slider.blocks"];
+
+/// A mesh, and what is meshed of the textures.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Mesh {
+    /// Edge of a block, as in the case file.
+    pub block_size: String,
+    /// Share of the blocks without contact, %.
+    pub coverage_percent: f64,
+}
+
+/// A quantity on all meshes.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Convergence {
+    /// Its name in summaries.
+    pub quantity: String,
+    /// Mean over the seeds on each mesh, the coarsest first.
+    pub means: Vec<f64>,
+    /// Half width of the interval of each mean that the scatter over surfaces leaves; none of one seed.
+    pub half_widths: Vec<Option<f64>>,
+    /// What the meshes tell.
+    pub verdict: Verdict,
+}
+
+/// What differences between meshes tell.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Verdict {
+    /// Differences decrease.
+    Converges {
+        /// Order of convergence, 1/2 to 2.
+        order: f64,
+        /// Error that the finest mesh leaves.
+        mesh_error: f64,
+    },
+    /// All meshes have one value.
+    Equal,
+    /// Differences do not decrease; the values on meshes differ by up to so much.
+    Open {
+        /// Largest value less smallest of the last three meshes.
+        spread: f64,
+    },
+}
+
+impl Verdict {
+    /// The verdict on the values of at least three meshes, the finest last.
+    ///
+    /// # Panics
+    /// On fewer than three.
+    pub fn on(values: &[f64]) -> Self {
+        let [.., coarse, middle, fine] = values else {
+            panic!("three meshes are needed, not {}", values.len());
+        };
+        let [before, last] = [middle - coarse, fine - middle].map(f64::abs);
+        if before == 0.0 && last == 0.0 {
+            return Self::Equal;
+        }
+        if last >= before {
+            let [low, high] = [f64::min, f64::max].map(|of| of(*coarse, of(*middle, *fine)));
+            return Self::Open { spread: high - low };
+        }
+        let order = libm::log2(before / last).clamp(0.5, 2.0);
+        // At most of second order.
+        let richardson = last.max(0.25 * before) / (libm::exp2(order) - 1.0);
+        Self::Converges {
+            order,
+            mesh_error: last.max(richardson),
+        }
+    }
+}
+
+/// The meshes of a study over the size of the blocks.
+pub(super) fn meshes(plan: &Plan) -> Vec<Mesh> {
+    let [size, _] = KEYS_OF_MESHES;
+    let points = plan.points.iter().enumerate();
+    let mesh = |(position, point)| {
+        let columns = plan.columns(point);
+        let size = columns.iter().find(|(key, _)| *key == size);
+        Mesh {
+            block_size: size.map_or_else(String::new, |(_, size)| (*size).to_owned()),
+            coverage_percent: plan.texture_percent(position),
+        }
+    };
+    points.map(mesh).collect()
+}
+
+/// What every quantity does that all meshes have a value of.
+fn convergences(plan: &Plan, results: &StudyResults) -> Vec<Convergence> {
+    let of = |name: &&str| {
+        let samples = (0..plan.points.len()).map(|position| results.sample(plan, position, name));
+        let samples: Vec<Sample> = samples.collect::<Option<_>>()?;
+        let means: Vec<f64> = samples.iter().map(|sample| sample.mean).collect();
+        let verdict = Verdict::on(&means);
+        Some(Convergence {
+            quantity: (*name).to_owned(),
+            means,
+            half_widths: samples.iter().map(|sample| sample.half_width).collect(),
+            verdict,
+        })
+    };
+    QUANTITIES.iter().filter_map(of).collect()
+}
+
+/// What several meshes found of one slider.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct OnMeshes {
+    /// The meshes, the coarsest first.
+    pub meshes: Vec<Mesh>,
+    /// The quantities that all meshes have a value of.
+    pub quantities: Vec<Convergence>,
+    /// Lengths of the material that are those of a block: with any of them, every mesh is another material, and no limit is one of this
+    /// slider.
+    pub lengths_of_a_block: Vec<String>,
+}
+
+impl OnMeshes {
+    /// What the runs of a study over meshes found.
+    ///
+    /// # Errors
+    /// When the case is none any more.
+    pub(crate) fn of(plan: &Plan, results: &StudyResults) -> Result<Self, CaseError> {
+        let of_a_block = plan.first_case_file()?.lengths_of_a_block();
+        Ok(Self {
+            meshes: meshes(plan),
+            quantities: convergences(plan, results),
+            lengths_of_a_block: of_a_block.iter().map(ToString::to_string).collect(),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::summary_values::known;
+
+    /// Sequences of a known order and limit.
+    #[test]
+    fn the_error_bounds_the_distance_to_the_limit() {
+        for order in [0.5, 1.0, 1.5, 2.0, 3.0] {
+            let values: Vec<f64> = (0..4).map(|k| 20.0 + libm::exp2(-order * f64::from(k))).collect();
+            let Verdict::Converges {
+                order: found,
+                mesh_error,
+            } = Verdict::on(&values)
+            else {
+                panic!("order {order}");
+            };
+            // Rounding of values near 20 over differences of 1/512 at least.
+            assert!((found - f64::min(order, 2.0)).abs() < 1e-11, "{order} {found}");
+            assert!(
+                mesh_error >= (values[3] - 20.0) * (1.0 - 1e-11),
+                "{order} {mesh_error}"
+            );
+        }
+        // A small last difference is not trusted: the next mesh of this sequence gave 16.774.
+        let lucky = Verdict::on(&[15.5136, 16.7511, 16.7599]);
+        let Verdict::Converges { mesh_error, .. } = lucky else {
+            panic!("{lucky:?}");
+        };
+        assert!((mesh_error - 1.2375 / 12.0).abs() < 1e-12);
+        assert_eq!(Verdict::on(&[1.0, 2.0, 3.0]), Verdict::Open { spread: 2.0 });
+        assert_eq!(Verdict::on(&[9.0, 1.0, 1.0, 1.0]), Verdict::Equal);
+        // A slower fall than that of the square root of the mesh is taken for it.
+        let slow = Verdict::on(&[0.0, 1.0, 1.9]);
+        let Verdict::Converges { order, mesh_error } = slow else {
+            panic!("{slow:?}");
+        };
+        assert_eq!(order, 0.5);
+        assert!((mesh_error - 0.9 / (2.0_f64.sqrt() - 1.0)).abs() < 1e-12);
+    }
+
+    #[test]
+    fn quantities_are_those_of_summaries() {
+        for quantity in QUANTITIES {
+            assert!(known().iter().any(|name| name == quantity), "{quantity}");
+        }
+    }
+}

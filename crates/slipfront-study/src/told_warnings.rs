@@ -1,0 +1,34 @@
+//! Warnings about the cases of a study, in words.
+
+use crate::plan::Plan;
+use crate::plan_warnings::Warning;
+
+/// Most warnings that are told.
+const MAX_TOLD: usize = 8;
+
+/// Warnings about the cases of a study in words, each with the points that it concerns: the first eight, and how many more there are.
+pub fn told_warnings(plan: &Plan) -> Vec<String> {
+    let all = plan.warnings();
+    let mut told: Vec<String> = all
+        .iter()
+        .take(MAX_TOLD)
+        .map(|warning| format!("{} ({})", warning.sentence, place(warning, plan)))
+        .collect();
+    if all.len() > MAX_TOLD {
+        let more = all.len() - MAX_TOLD;
+        told.push(format!(
+            "and {more} more of the kind, which `slipfront check` tells for a case"
+        ));
+    }
+    told
+}
+
+/// The points that a warning concerns.
+fn place(warning: &Warning, plan: &Plan) -> String {
+    let first = plan.describe(&plan.points[warning.first]);
+    match (warning.points, plan.points.len()) {
+        (some, all) if some == all => "at every point".to_owned(),
+        (1, _) => format!("at the point {first}"),
+        (some, _) => format!("at {some} points, the first {first}"),
+    }
+}
