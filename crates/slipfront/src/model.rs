@@ -126,9 +126,9 @@ impl Model {
         self.slider.n_blocks(&self.lattice)
     }
 
-    /// Size along the drive, in blocks, from which a patch at its threshold runs away where strength falls with slip: that of a long strip across
-    /// the drive whose blocks have the mean strength of those in contact, on the mean of all drive springs. Infinite where the mount is stiff enough for slip of any size to be
-    /// stable; none under other laws.
+    /// Size along the drive, in blocks, from which a patch at its threshold runs away where strength falls with slip: that of a long strip
+    /// across the drive whose blocks have the mean strength of those in contact, on the mean drive spring `k_s`; on none, where only some blocks
+    /// have one. Infinite where the mount is stiff enough for slip of any size to be stable; none under other laws.
     ///
     /// ```text
     /// L_c = pi sqrt(K_el/(W - k_s)),   W = (S - K)/D_c,   K_el = 9/8, 3/4 of a chain
@@ -137,9 +137,13 @@ impl Model {
         let law = self.friction.strength_over_slip()?;
         let share_in_contact = self.surface.n_contact() as f64 / self.n_blocks() as f64;
         let drop = (self.surface.mean_static_force() - self.surface.mean_kinetic_force()) / share_in_contact;
-        // Of a drive at an edge most blocks have no spring.
-        let mount =
-            self.drive.k_drive * self.slider.sum_of_drive_springs(&self.lattice) / self.n_blocks() as f64;
+        let mean_spring = self.slider.sum_of_drive_springs(&self.lattice) / self.n_blocks() as f64;
+        // A stiff drive at an edge does not hold a patch far from it.
+        let mount = if self.slider.drives_some {
+            0.0
+        } else {
+            self.drive.k_drive * mean_spring
+        };
         let unstable = drop / law.length - mount;
         Some(if unstable > 0.0 {
             PI * (self.lattice.stiffness_along() / unstable).sqrt()

@@ -19,6 +19,8 @@ pub struct Slider {
     pub mean_slowness: f64,
     /// Drive springs that are not all alike.
     pub drive_springs: Option<DriveSprings>,
+    /// Whether some blocks of the whole lattice that exist have no drive spring.
+    pub drives_some: bool,
     /// The blocks that exist, if some do not.
     pub outline: Option<Outline>,
     /// Time of the dampers beside all springs between blocks, `tau_v = eta_ij/k_ij` (Kelvin-Voigt); 0 for none.
@@ -81,6 +83,7 @@ impl Default for Slider {
             mean_mass: 1.0,
             mean_slowness: 1.0,
             drive_springs: None,
+            drives_some: false,
             outline: None,
             viscosity_time: 0.0,
         }
@@ -228,6 +231,7 @@ impl Slider {
                 relative: some(&springs.relative),
                 sum: springs.sum,
             }),
+            drives_some: self.drives_some,
             outline: self.outline.as_ref().map(|outline| Outline {
                 exists: outline.exists[blocks.clone()].to_vec(),
                 n_blocks: outline.n_blocks,
@@ -269,7 +273,12 @@ impl Slider {
     /// Takes the drive springs away from all blocks but some of those that this rank holds, called by all `ranks` at once.
     pub fn attach(&mut self, n_blocks: usize, is_attached: impl Fn(usize) -> bool, ranks: &dyn Communicator) {
         let relative = |b: usize| if is_attached(b) { self.drive_spring(b) } else { 0.0 };
-        self.drive_springs = Some(DriveSprings::new((0..n_blocks).map(relative).collect(), ranks));
+        let mut without = [(0..n_blocks)
+            .filter(|&b| self.exists(b) && !is_attached(b))
+            .count() as i64];
+        ranks.sum(&mut without);
+        let springs = DriveSprings::new((0..n_blocks).map(relative).collect(), ranks);
+        (self.drive_springs, self.drives_some) = (Some(springs), without[0] > 0);
     }
 
     /// [`attach`](Self::attach) the blocks of one edge of the lattice, on the rank that holds these `rows`.

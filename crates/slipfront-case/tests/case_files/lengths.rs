@@ -74,6 +74,28 @@ fn the_critical_size_decides_of_a_sheet() {
     );
 }
 
+/// Of a drive at an edge most blocks hang on no spring: however stiff it is, it does not hold a patch far from it, `L_c = pi sqrt(9/(8 W))`.
+#[test]
+fn a_stiff_drive_at_an_edge_does_not_make_slip_stable() {
+    for (stiffness, edge) in [(0.375, "left"), (1000.0, "right")] {
+        let sheet = case(&format!(
+            "drive = {{ v_star = 0.01, stiffness_star = {stiffness}, attach = '{edge}' }}\n[slider]\nblocks = [50, 50]\nblock_size = \
+             '20 um'\nthickness = '20 um'\n[friction]\nsigma_static_star = 0\nsigma_kinetic_star = 0\nslip_weakening = {{ length_star = \
+             0.2 }}"
+        ));
+        let critical = std::f64::consts::PI * (1.125_f64 / (0.5 / 0.2)).sqrt();
+        assert_lengths(
+            &sheet,
+            &[("block", 1.0, None), ("critical size", critical, Some(5.0))],
+        );
+        assert_eq!(
+            note_on(&sheet, "critical size").unwrap(),
+            "the critical size is 2.107 blocks, and 5 are enough: what a texture changes about mu_s* still belongs to the size of a block; \
+             take blocks of at most 8.43 um"
+        );
+    }
+}
+
 /// Where slip of any size is stable, or nearly so, stress is screened over a shorter length than slip needs to run away.
 #[test]
 fn the_screening_length_decides_where_slip_is_stable() {

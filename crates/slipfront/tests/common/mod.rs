@@ -250,6 +250,7 @@ fn part(body: &slipfront::Slider, blocks: Range<usize>) -> slipfront::Slider {
             relative: springs.relative[blocks.clone()].to_vec(),
             sum: springs.sum,
         }),
+        drives_some: body.drives_some,
         outline: body.outline.as_ref().map(|outline| Outline {
             exists: outline.exists[blocks.clone()].to_vec(),
             n_blocks: outline.n_blocks,
