@@ -14,11 +14,13 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use slipfront::communicator::Alone;
-use slipfront::surface::{Adhesion, Coefficients, Contact, Distribution, Load, pressure_along};
+use slipfront::surface::{
+    Adhesion, Coefficients, Contact, CorrelatedField, Distribution, Load, pressure_along,
+};
 use slipfront::{
-    Ageing, ContactSprings, Coulomb, Drive, Edge, Execution, Friction, FrictionLaw, Kernel, Lattice, Model,
-    Outline, Program, RateAndState, Rotation, Simulation, Slider, SlipWeakening, State, Surface, VectorField,
-    Weakening, scales,
+    Ageing, ContactSprings, Coulomb, Drive, Edge, Execution, Friction, FrictionLaw, Kernel, Lattice, Loading,
+    Model, Outline, Program, RateAndState, Rotation, Simulation, Slider, SlipWeakening, State, Surface,
+    VectorField, Weakening, scales,
 };
 
 const V_STAR: f64 = 0.03;
@@ -45,6 +47,8 @@ pub(crate) enum Choice {
     Weakening,
     SlipWeakening,
     Healing,
+    Correlated,
+    Held,
     Ageing,
     Reversal,
     Literal,
@@ -55,7 +59,7 @@ pub(crate) enum Choice {
 use Choice::{Disc, Grading, LoadProfile, Viscosity};
 
 /// The options that are measured, with their names.
-pub(crate) const MEASURED: [(&str, &[Choice]); 21] = [
+pub(crate) const MEASURED: [(&str, &[Choice]); 23] = [
     ("plain", &[]),
     ("edge drive", &[Choice::EdgeDrive]),
     ("load profile", &[LoadProfile]),
@@ -67,6 +71,8 @@ pub(crate) const MEASURED: [(&str, &[Choice]); 21] = [
         "slip weakening, healing",
         &[Choice::SlipWeakening, Choice::Healing],
     ),
+    ("correlated coefficients", &[Choice::Correlated]),
+    ("held drive", &[Choice::Held]),
     ("grading", &[Grading]),
     ("disc", &[Disc]),
     ("graded disc, weakening", &[Grading, Disc, Choice::Weakening]),
@@ -118,7 +124,12 @@ pub(crate) fn model(size: usize, choices: &[Choice]) -> Result<Model, Box<dyn Er
         },
         ..Contact::new(Load::Redistributed, 1.0)
     };
-    let drawn = Coefficients::draw(n, gauss(1.0), gauss(0.5), 1);
+    let drawn = if has(Choice::Correlated) {
+        let field = CorrelatedField::new(&lattice, 5.0);
+        Coefficients::draw_correlated(&field, &rows, gauss(1.0), gauss(0.5), 1)
+    } else {
+        Coefficients::draw(n, gauss(1.0), gauss(0.5), 1)
+    };
     let surface = Surface::of_ranks(drawn, vec![false; n], contact, &slider, &Alone)?;
     let coulomb = Coulomb {
         law: if has(Choice::Reversal) {
@@ -173,6 +184,11 @@ pub(crate) fn model(size: usize, choices: &[Choice]) -> Result<Model, Box<dyn Er
     if has(Choice::Program) {
         let segments = [(V_STAR, 5.0), (0.5 * V_STAR, 9.0), (V_STAR, f64::INFINITY)];
         model.drive.program = Some(Arc::new(Program::new(segments)));
+    }
+    if has(Choice::Held) {
+        model.drive.loading = Loading::Held {
+            onset_steps: u64::MAX,
+        };
     }
     Ok(model)
 }

@@ -15,7 +15,7 @@ use serde::{Deserialize, Serialize};
 
 pub use self::contact_springs::ContactSprings;
 pub use self::coulomb::*;
-pub(crate) use self::integrator::Integrator;
+pub(crate) use self::integrator::{Integrator, SMALLEST_VELOCITY};
 pub use self::needs::Needs;
 pub use self::rate_and_state::RateAndState;
 

@@ -95,4 +95,5 @@ mod kymograph;
 mod ranks;
 mod rest_and_widths;
 mod sliders;
+mod small_velocities;
 mod variations;

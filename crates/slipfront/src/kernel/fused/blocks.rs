@@ -11,10 +11,11 @@ use super::step::Step;
 use super::variations::Variation;
 use super::vector::{
     Chunks, ChunksMut, LANES, Vec2x8, add, bits, dot, is_zero, lane_max, lane_sum, load, load_vec2, mask,
-    or_zero, scale, select, shift_in, splat, square, subtract,
+    or_zero, or_zero_below, scale, select, shift_in, splat, square, subtract,
 };
 use crate::communicator::Communicator;
 use crate::fixed_point::{FixedPoint, join, split};
+use crate::friction::SMALLEST_VELOCITY;
 use crate::lattice::Bond;
 
 /// x and y of a quantity of the springs to the next row: north, north-east and north-west.
@@ -592,6 +593,7 @@ fn free_motion<S: Simd, const DIFFER: bool>(simd: S, step: Step, arrays: &mut Fr
         if rest(simd, moving[c], before, force, &static_limit_squares[c]) {
             continue;
         }
+        let free = or_zero_below(simd, SMALLEST_VELOCITY, free);
         let speed = square(free).sqrt();
         free[0].store_array(&mut fx[c]);
         free[1].store_array(&mut fy[c]);

@@ -91,6 +91,16 @@ pub(super) fn or_zero<S: Simd>(simd: S, mask: mask64x8<S>, a: Vec2x8<S>) -> Vec2
     select(mask, a, [zero, zero])
 }
 
+/// Zero of their sign in place of components below `least`; what is no number stays so.
+#[inline(always)]
+pub(super) fn or_zero_below<S: Simd>(simd: S, least: f64, [x, y]: Vec2x8<S>) -> Vec2x8<S> {
+    let (least, zero) = (splat(simd, least), splat(simd, 0.0));
+    [
+        x.abs().simd_lt(least).select(zero * x, x),
+        y.abs().simd_lt(least).select(zero * y, y),
+    ]
+}
+
 /// Shifts `a` by one block: the last of `before` and the first seven of `a`.
 #[inline(always)]
 pub(super) fn shift_in<S: Simd>(before: Vec2x8<S>, a: Vec2x8<S>) -> Vec2x8<S> {
