@@ -29,6 +29,8 @@ pub(crate) struct LiveRun {
 struct Elapsed {
     steps: u64,
     time_star: f64,
+    /// t* of the drive, which stands at times under a held one.
+    drive_time_star: f64,
     time_s: f64,
 }
 
@@ -72,6 +74,7 @@ impl LiveRun {
         self.before = Elapsed {
             steps: self.before.steps + leg.steps,
             time_star: self.before.time_star + leg.steps as f64 * dt_star,
+            drive_time_star: self.before.drive_time_star + leg.drive_time_star,
             time_s: self.before.time_s + leg.time_s,
         };
         self.origin = Some(origin);
@@ -135,11 +138,16 @@ impl LiveRun {
         self.before.time_star
     }
 
+    /// t* of the drive of the legs before this one.
+    pub(crate) fn drive_time_before_star(&self) -> f64 {
+        self.before.drive_time_star
+    }
+
     /// The points of the curve that the page has not been sent yet; from now on they count as sent.
     pub(crate) fn take_unsent_points(&mut self) -> CurvePoints {
         let rows = &self.running.rows()[self.n_sent..];
         self.n_sent += rows.len();
-        let before = self.before.time_star;
+        let before = self.before.drive_time_star;
         CurvePoints {
             time_star: rows.iter().map(|row| before + row.drive_time_star).collect(),
             mu_star: rows.iter().map(|row| row.point.mu_star).collect(),

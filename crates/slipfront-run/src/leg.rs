@@ -14,6 +14,8 @@ pub struct Leg {
     pub running: Running,
     /// Steps of the leg before, with the one that had begun.
     pub steps: u64,
+    /// t* of the drive in these steps.
+    pub drive_time_star: f64,
     /// How long they have taken, s.
     pub time_s: f64,
     /// Where the driven ends of the drive springs stand, block by block, m: what the displacements of the new leg are less than those
@@ -132,6 +134,7 @@ impl Running {
         Ok(Leg {
             running: Self::start(case, Some(state), Execution::on_threads(threads)),
             steps,
+            drive_time_star: self.snapshot().next_drive_time_star(),
             time_s: time_star * before.scales.time(),
             drive_m: drive,
         })
@@ -220,6 +223,21 @@ mod tests {
         assert!(
             mu_star < 1e-14 && displacement < 1e-13,
             "{mu_star:e} {displacement:e}"
+        );
+    }
+
+    #[test]
+    fn the_time_of_a_held_drive_goes_on_from_where_it_stands() {
+        let case = case_of(&["drive.loading = 'held'"]);
+        let running = started(&case, 1500);
+        let leg = running.change(&case, 1).unwrap();
+        let (now, path) = (running.snapshot(), running.snapshot().next_path());
+        assert!(now.drive_steps + 100 < now.step, "the drive has hardly stood");
+        // A quotient and a product of the same numbers.
+        let time_star = path / case.model.drive.v_star;
+        assert!(
+            (leg.drive_time_star / time_star - 1.0).abs() < 1e-15,
+            "{time_star}"
         );
     }
 

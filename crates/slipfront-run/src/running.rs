@@ -331,7 +331,7 @@ impl Running {
         &self.observers.kymograph
     }
 
-    /// The instants A-F that are known by now and t* of each, as [`Instants::by_now`]; none of a run that keeps snapshots at times
+    /// The instants A-F that are known by now and t* of the drive at each, as [`Instants::by_now`]; none of a run that keeps snapshots at times
     /// alone.
     pub fn instants(&self) -> impl Iterator<Item = (char, f64)> {
         let instants = self.observers.fields.instants.iter();

@@ -170,9 +170,14 @@ impl Snapshot<'_> {
         self.clock.next(!stands)
     }
 
+    /// Time of the drive at the next step.
+    pub fn next_drive_time_star(&self) -> f64 {
+        self.next_clock().drive_time_star()
+    }
+
     /// Path of the drive at the next step, along the direction or of a rotation at its largest radius.
     pub fn next_path(&self) -> f64 {
-        self.model.drive.path(self.next_clock().drive_time_star())
+        self.model.drive.path(self.next_drive_time_star())
     }
 
     /// mu* at the next step, which the velocities of the blocks already determine up to rounding.
@@ -181,8 +186,7 @@ impl Snapshot<'_> {
         for axis in 0..2 {
             totals.displacement[axis] += self.dt_star * totals.velocity_after[axis];
         }
-        let drive_time_star = self.next_clock().drive_time_star();
-        CurvePoint::measure(self.model, &totals, drive_time_star).mu_star
+        CurvePoint::measure(self.model, &totals, self.next_drive_time_star()).mu_star
     }
 
     /// Whether mu* will be higher at the next step.

@@ -166,7 +166,7 @@ impl Session {
         let summary = live
             .summary()
             .and_then(|summary| serde_json::from_str(&summary_json(&summary)).ok());
-        let before = live.time_before_star();
+        let before = live.drive_time_before_star();
         let instants = live
             .running()
             .instants()
