@@ -20,12 +20,8 @@ cargo build --quiet --release --locked -p slipfront --example step_cost
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
-# A surface without any library: coefficients of a small congruential generator, around 1 and 0.5.
-surface() { # SIZE MEAN SEED
-  awk -v n="$1" -v mean="$2" -v x="$3" 'BEGIN {
-    for (k = 0; k < n * n; k++) { x = (x * 16807) % 2147483647; printf "%.17g\n", mean * (0.9 + 0.2 * x / 2147483647) }
-  }' | perl -ne 'print pack("d<", $_)'
-}
+# shellcheck source=benches/surface.sh
+source benches/surface.sh
 
 instructions() { # SIZE STEPS FLAG...
   local size=$1 steps=$2

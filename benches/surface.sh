@@ -1,0 +1,8 @@
+# Sourced by scripts: a surface without any library, for `step_cost`.
+
+# Coefficients of a small congruential generator around a mean, as little-endian doubles.
+surface() { # SIZE MEAN SEED
+  awk -v n="$1" -v mean="$2" -v x="$3" 'BEGIN {
+    for (k = 0; k < n * n; k++) { x = (x * 16807) % 2147483647; printf "%.17g\n", mean * (0.9 + 0.2 * x / 2147483647) }
+  }' | perl -ne 'print pack("d<", $_)'
+}
