@@ -1,8 +1,8 @@
 //! A canvas as pixels, drawn by `tiny-skia`. Its features `simd` and `std` are off, so that every machine computes the same bits.
 
 use tiny_skia::{
-    Color, ColorU8, FillRule, LineCap, LineJoin, Paint, Path, PathBuilder, Pixmap, Rect, Stroke, StrokeDash,
-    Transform,
+    Color, ColorU8, FillRule, LineCap, LineJoin, Paint, Path, PathBuilder, Pixmap, PremultipliedColorU8,
+    Rect, Stroke, StrokeDash, Transform,
 };
 
 use crate::canvas::{Canvas, Element, Primitive};
@@ -145,14 +145,20 @@ fn draw_image(pixmap: &mut Pixmap, image: &Image) {
     let columns = cells(image.columns, width);
     let rows = cells(image.rows(), height);
     let mut row_sums = vec![[0; 3]; width];
-    let mut summed = None;
+    let mut sums = row_sums.clone();
+    let (mut above, mut summed) = (None, None);
     for (y, rows) in rows.chunks_exact(SAMPLES).enumerate() {
-        let mut sums = vec![[0; 3]; width];
+        let start = (top + y) * pitch + left;
+        let pixels = pixmap.pixels_mut();
+        // Most rows of pixels lie in the same cells as the one above.
+        if above.replace(rows) == Some(rows) {
+            pixels.copy_within(start - pitch..start - pitch + width, start);
+            continue;
+        }
+        sums.fill([0; 3]);
         for &row in rows {
-            if summed != Some(row) {
-                let levels = &image.levels[row * image.columns..];
-                sum_row(&mut row_sums, levels, &columns, &colours);
-                summed = Some(row);
+            if summed.replace(row) != Some(row) {
+                sum_row(&mut row_sums, &image.levels[row * image.columns..], &columns, &colours);
             }
             for (sum, row_sum) in sums.iter_mut().zip(&row_sums) {
                 for (channel, part) in sum.iter_mut().zip(row_sum) {
@@ -160,13 +166,17 @@ fn draw_image(pixmap: &mut Pixmap, image: &Image) {
                 }
             }
         }
-        let start = (top + y) * pitch + left;
-        for (pixel, sum) in pixmap.pixels_mut()[start..start + width].iter_mut().zip(&sums) {
-            let count = (SAMPLES * SAMPLES) as u16;
-            let [red, green, blue] = sum.map(|channel: u16| ((channel + count / 2) / count) as u8);
-            *pixel = ColorU8::from_rgba(red, green, blue, 255).premultiply();
+        for (pixel, sum) in pixels[start..start + width].iter_mut().zip(&sums) {
+            *pixel = mean_colour(sum);
         }
     }
+}
+
+/// The mean of the colours of all samples of a pixel, of which this is the sum.
+fn mean_colour(sum: &[u16; 3]) -> PremultipliedColorU8 {
+    let count = (SAMPLES * SAMPLES) as u16;
+    let [red, green, blue] = sum.map(|channel| ((channel + count / 2) / count) as u8);
+    ColorU8::from_rgba(red, green, blue, 255).premultiply()
 }
 
 /// The cell at every sample along a side.
