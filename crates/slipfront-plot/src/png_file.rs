@@ -24,7 +24,7 @@ pub(crate) fn encode(
         None => {
             let per_metre = (DPI / 0.0254).round() as u32;
             encoder.set_color(png::ColorType::Rgb);
-            // The default, 6, takes a third more time for 1 % fewer bytes.
+            // The default, 6, takes a third more time to save 1 % of the bytes.
             encoder.set_deflate_compression(png::DeflateCompression::Level(4));
             encoder.set_pixel_dims(Some(png::PixelDimensions {
                 xppu: per_metre,

@@ -158,7 +158,12 @@ fn draw_image(pixmap: &mut Pixmap, image: &Image) {
         sums.fill([0; 3]);
         for &row in rows {
             if summed.replace(row) != Some(row) {
-                sum_row(&mut row_sums, &image.levels[row * image.columns..], &columns, &colours);
+                sum_row(
+                    &mut row_sums,
+                    &image.levels[row * image.columns..],
+                    &columns,
+                    &colours,
+                );
             }
             for (sum, row_sum) in sums.iter_mut().zip(&row_sums) {
                 for (channel, part) in sum.iter_mut().zip(row_sum) {
@@ -300,5 +305,40 @@ mod tests {
         let [dark, mixed, bright] = pixels(image, [(10, 12), (11, 12), (12, 12)]);
         assert_eq!((dark, bright), ([0x44, 0x01, 0x54], [0xfd, 0xe7, 0x25]));
         assert_eq!(mixed, [161, 116, 61]);
+    }
+
+    /// Cells of every colour, more and fewer of them than pixels: rows of pixels that lie in one row of cells, and that lie in several.
+    #[test]
+    fn every_pixel_of_an_image_is_the_mean_of_its_samples() {
+        for [columns, rows, width, height] in [[3, 4, 11, 18], [7, 20, 11, 18], [1, 1, 8, 6], [5, 6, 5, 6]] {
+            let levels: Vec<u8> = (0..columns * rows).map(|cell| (cell * 97 % 256) as u8).collect();
+            let mean_at = |x: usize, y: usize| {
+                let cell = |pixel: usize, sample: usize, cells: usize, pixels: usize| {
+                    (2 * (SAMPLES * pixel + sample) + 1) * cells / (2 * SAMPLES * pixels)
+                };
+                let samples = (0..SAMPLES * SAMPLES).map(|k| {
+                    let row = cell(y, k / SAMPLES, rows, height);
+                    palette()[usize::from(levels[row * columns + cell(x, k % SAMPLES, columns, width)])]
+                });
+                let samples: Vec<Rgb> = samples.collect();
+                [0, 1, 2].map(|channel| {
+                    let sum: usize = samples.iter().map(|colour| usize::from(colour[channel])).sum();
+                    (sum as f64 / samples.len() as f64).round() as u8
+                })
+            };
+            let mut canvas = Canvas::new(20.0, 25.0);
+            canvas.images.push(Image {
+                area: Area::new(4.0, 3.0, width as f64, height as f64),
+                columns,
+                levels: levels.clone(),
+            });
+            let found = rgb(&canvas).unwrap();
+            for (index, found) in found.chunks_exact(3).enumerate() {
+                let (x, y) = (index % 20, index / 20);
+                let inside = (4..4 + width).contains(&x) && (3..3 + height).contains(&y);
+                let expected = if inside { mean_at(x - 4, y - 3) } else { WHITE };
+                assert_eq!(found, expected, "{columns} x {rows}: ({x}, {y})");
+            }
+        }
     }
 }
