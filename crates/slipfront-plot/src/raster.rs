@@ -158,21 +158,22 @@ fn draw_image(pixmap: &mut Pixmap, image: &Image) {
         sums.fill([0; 3]);
         for &row in rows {
             if summed.replace(row) != Some(row) {
-                sum_row(
-                    &mut row_sums,
-                    &image.levels[row * image.columns..],
-                    &columns,
-                    &colours,
-                );
+                let levels = &image.levels[row * image.columns..];
+                sum_row(&mut row_sums, levels, &columns, &colours);
             }
-            for (sum, row_sum) in sums.iter_mut().zip(&row_sums) {
-                for (channel, part) in sum.iter_mut().zip(row_sum) {
-                    *channel += part;
-                }
-            }
+            add(&mut sums, &row_sums);
         }
         for (pixel, sum) in pixels[start..start + width].iter_mut().zip(&sums) {
             *pixel = mean_colour(sum);
+        }
+    }
+}
+
+/// Adds the sums of one row of samples to those of a row of pixels.
+fn add(sums: &mut [[u16; 3]], row_sums: &[[u16; 3]]) {
+    for (sum, row_sum) in sums.iter_mut().zip(row_sums) {
+        for (channel, part) in sum.iter_mut().zip(row_sum) {
+            *channel += part;
         }
     }
 }
