@@ -65,7 +65,7 @@ enum Command {
   slipfront run cases/groove_across.toml --set texture.0.coverage=5 -o results/groove-5
   slipfront run results/baseline/case.toml -o results/again    repeats a run bit for bit
   slipfront run --resume results/baseline                      goes on with a run that was stopped
-  slipfront run --json | jq .static_friction_star
+  slipfront run --no-pictures --json | jq .static_friction_star
 
 {CHECKPOINTS_HELP}"
         )

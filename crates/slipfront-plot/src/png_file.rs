@@ -14,15 +14,18 @@ pub(crate) fn encode(
     let mut file = Vec::new();
     let mut encoder = png::Encoder::new(&mut file, width as u32, height as u32);
     encoder.set_depth(png::BitDepth::Eight);
+    // Most of a picture is as it is a row above.
+    encoder.set_filter(png::Filter::Up);
     match palette {
         Some(palette) => {
             encoder.set_color(png::ColorType::Indexed);
             encoder.set_palette(palette);
-            encoder.set_filter(png::Filter::Up);
         }
         None => {
             let per_metre = (DPI / 0.0254).round() as u32;
             encoder.set_color(png::ColorType::Rgb);
+            // The default, 6, takes a third more time to save 1 % of the bytes.
+            encoder.set_deflate_compression(png::DeflateCompression::Level(4));
             encoder.set_pixel_dims(Some(png::PixelDimensions {
                 xppu: per_metre,
                 yppu: per_metre,

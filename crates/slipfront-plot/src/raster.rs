@@ -1,8 +1,8 @@
 //! A canvas as pixels, drawn by `tiny-skia`. Its features `simd` and `std` are off, so that every machine computes the same bits.
 
 use tiny_skia::{
-    Color, ColorU8, FillRule, LineCap, LineJoin, Paint, Path, PathBuilder, Pixmap, Rect, Stroke, StrokeDash,
-    Transform,
+    Color, ColorU8, FillRule, LineCap, LineJoin, Paint, Path, PathBuilder, Pixmap, PremultipliedColorU8,
+    Rect, Stroke, StrokeDash, Transform,
 };
 
 use crate::canvas::{Canvas, Element, Primitive};
@@ -145,28 +145,44 @@ fn draw_image(pixmap: &mut Pixmap, image: &Image) {
     let columns = cells(image.columns, width);
     let rows = cells(image.rows(), height);
     let mut row_sums = vec![[0; 3]; width];
-    let mut summed = None;
+    let mut sums = row_sums.clone();
+    let (mut above, mut summed) = (None, None);
     for (y, rows) in rows.chunks_exact(SAMPLES).enumerate() {
-        let mut sums = vec![[0; 3]; width];
+        let start = (top + y) * pitch + left;
+        let pixels = pixmap.pixels_mut();
+        // Most rows of pixels lie in the same cells as the one above.
+        if above.replace(rows) == Some(rows) {
+            pixels.copy_within(start - pitch..start - pitch + width, start);
+            continue;
+        }
+        sums.fill([0; 3]);
         for &row in rows {
-            if summed != Some(row) {
+            if summed.replace(row) != Some(row) {
                 let levels = &image.levels[row * image.columns..];
                 sum_row(&mut row_sums, levels, &columns, &colours);
-                summed = Some(row);
             }
-            for (sum, row_sum) in sums.iter_mut().zip(&row_sums) {
-                for (channel, part) in sum.iter_mut().zip(row_sum) {
-                    *channel += part;
-                }
-            }
+            add(&mut sums, &row_sums);
         }
-        let start = (top + y) * pitch + left;
-        for (pixel, sum) in pixmap.pixels_mut()[start..start + width].iter_mut().zip(&sums) {
-            let count = (SAMPLES * SAMPLES) as u16;
-            let [red, green, blue] = sum.map(|channel: u16| ((channel + count / 2) / count) as u8);
-            *pixel = ColorU8::from_rgba(red, green, blue, 255).premultiply();
+        for (pixel, sum) in pixels[start..start + width].iter_mut().zip(&sums) {
+            *pixel = mean_colour(sum);
         }
     }
+}
+
+/// Adds the sums of one row of samples to those of a row of pixels.
+fn add(sums: &mut [[u16; 3]], row_sums: &[[u16; 3]]) {
+    for (sum, row_sum) in sums.iter_mut().zip(row_sums) {
+        for (channel, part) in sum.iter_mut().zip(row_sum) {
+            *channel += part;
+        }
+    }
+}
+
+/// The mean of the colours of all samples of a pixel, of which this is the sum.
+fn mean_colour(sum: &[u16; 3]) -> PremultipliedColorU8 {
+    let count = (SAMPLES * SAMPLES) as u16;
+    let [red, green, blue] = sum.map(|channel| ((channel + count / 2) / count) as u8);
+    ColorU8::from_rgba(red, green, blue, 255).premultiply()
 }
 
 /// The cell at every sample along a side.
@@ -290,5 +306,40 @@ mod tests {
         let [dark, mixed, bright] = pixels(image, [(10, 12), (11, 12), (12, 12)]);
         assert_eq!((dark, bright), ([0x44, 0x01, 0x54], [0xfd, 0xe7, 0x25]));
         assert_eq!(mixed, [161, 116, 61]);
+    }
+
+    /// Cells of every colour, more and fewer of them than pixels: rows of pixels that lie in one row of cells, and that lie in several.
+    #[test]
+    fn every_pixel_of_an_image_is_the_mean_of_its_samples() {
+        for [columns, rows, width, height] in [[3, 4, 11, 18], [7, 20, 11, 18], [1, 1, 8, 6], [5, 6, 5, 6]] {
+            let levels: Vec<u8> = (0..columns * rows).map(|cell| (cell * 97 % 256) as u8).collect();
+            let mean_at = |x: usize, y: usize| {
+                let cell = |pixel: usize, sample: usize, cells: usize, pixels: usize| {
+                    (2 * (SAMPLES * pixel + sample) + 1) * cells / (2 * SAMPLES * pixels)
+                };
+                let samples = (0..SAMPLES * SAMPLES).map(|k| {
+                    let row = cell(y, k / SAMPLES, rows, height);
+                    palette()[usize::from(levels[row * columns + cell(x, k % SAMPLES, columns, width)])]
+                });
+                let samples: Vec<Rgb> = samples.collect();
+                [0, 1, 2].map(|channel| {
+                    let sum: usize = samples.iter().map(|colour| usize::from(colour[channel])).sum();
+                    (sum as f64 / samples.len() as f64).round() as u8
+                })
+            };
+            let mut canvas = Canvas::new(20.0, 25.0);
+            canvas.images.push(Image {
+                area: Area::new(4.0, 3.0, width as f64, height as f64),
+                columns,
+                levels: levels.clone(),
+            });
+            let found = rgb(&canvas).unwrap();
+            for (index, found) in found.chunks_exact(3).enumerate() {
+                let (x, y) = (index % 20, index / 20);
+                let inside = (4..4 + width).contains(&x) && (3..3 + height).contains(&y);
+                let expected = if inside { mean_at(x - 4, y - 3) } else { WHITE };
+                assert_eq!(found, expected, "{columns} x {rows}: ({x}, {y})");
+            }
+        }
     }
 }

@@ -180,13 +180,13 @@ fn every_kind_of_picture_has_its_bytes() {
 }
 
 const EXPECTED: &str = "
-friction: 7916a16eac823a06 39e7d75c21a892ce
-frictions: a801ec10e573e7f0 97c7a99eb06c1316
-stress: 26592f410e944d4d c746b6e0b06e93a2
-fields: fd950b5a47a2df03 8f4d23a2c441b4fd
-response: ba4e4a0d0d72a45c 5991bde13763647d
-bars: ec38e49d1f4e2ea0 d41a227e5256f7f8
-heat map: 44f526d6ddb16eb7 06fe94334eb4715a
-shapes: 60442453361eadd4 df42d00a6f846272
-polar: b7a78d4616bf89ba 8101120fe361c860
+friction: 7916a16eac823a06 6e36789aa0cadfc9
+frictions: a801ec10e573e7f0 dcbfe507f0f93c5f
+stress: 26592f410e944d4d 16e64b56a97b1662
+fields: fd950b5a47a2df03 e57b6172f8ad223d
+response: ba4e4a0d0d72a45c 555ac14d0b627db3
+bars: ec38e49d1f4e2ea0 223f61650297411f
+heat map: 44f526d6ddb16eb7 208f875d32cac2e7
+shapes: 60442453361eadd4 1a6b0ca345f59c48
+polar: b7a78d4616bf89ba 2db9a60b0f4856b8
 ";

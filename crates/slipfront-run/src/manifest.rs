@@ -10,7 +10,7 @@ use slipfront::surface::STREAMS;
 use slipfront::{Kernel, simd_width};
 use thiserror::Error;
 
-use crate::names::{CASE, MANIFEST};
+use crate::names::{CASE, MANIFEST, RunPicture};
 use crate::resume_command::resume_command;
 use crate::{clock, program};
 use slipfront_case::case::{Case, Input};
@@ -131,6 +131,12 @@ impl Manifest {
             files,
             checksum: String::new(),
         }
+    }
+
+    /// Whether the run has drawn its pictures, of which every run has that of the friction.
+    pub fn has_pictures(&self) -> bool {
+        let friction = RunPicture::Friction.files();
+        self.files.iter().any(|file| friction.contains(&file.name))
     }
 
     /// The manifest with its checksum, and the bytes of its file.

@@ -12,6 +12,7 @@ use slipfront_case::unfinished::TemporaryFolder;
 use slipfront_run::clock;
 use slipfront_run::manifest::Manifest;
 use slipfront_run::pictures;
+use slipfront_run::pictures::error::RunPictureError;
 use slipfront_run::program;
 use slipfront_run::results;
 use slipfront_run::run_folder::RunFolder;
@@ -155,11 +156,13 @@ impl VerifyCommand {
         let made = again.path().join("run");
         let mut made = RunFolder::prepare(&made, false, &case.inputs).map_err(Failure::running)?;
         results::write_case(&case, &mut made).map_err(Failure::running)?;
-        let now = pictures::write_run(&case, &mut record, made, started, 1).map_err(Failure::running)?;
+        results::write(&case, &mut record, &mut made).map_err(Failure::running)?;
+        let before = run.manifest().ok();
+        let now = complete_as(before, &case, made, started).map_err(Failure::running)?;
         verdict
             .differences
             .extend(differences(&now.files, folder, "are written now"));
-        if let Ok(before) = run.manifest() {
+        if let Some(before) = before {
             verdict
                 .differences
                 .extend(no_longer_written(before, &now, folder));
@@ -195,6 +198,20 @@ impl VerifyCommand {
             text += &wrap::note(note);
         }
         text
+    }
+}
+
+/// Completes the folder of a repeated run, with pictures unless the run before has drawn none.
+fn complete_as(
+    before: Option<&Manifest>,
+    case: &Case,
+    folder: RunFolder,
+    started: jiff::Timestamp,
+) -> Result<Manifest, RunPictureError> {
+    if before.is_none_or(Manifest::has_pictures) {
+        pictures::complete(case, folder, started, 1)
+    } else {
+        Ok(folder.complete(case, started, 1)?)
     }
 }
 

@@ -1,7 +1,7 @@
 //! The same case gives the same bytes, however often, wherever and by however many threads it is run.
 
 use crate::fixtures::SMALL;
-use crate::support::workspace::Workspace;
+use crate::support::workspace::{Files, Workspace};
 
 /// A texture from a picture, coefficients from a table, in folders of their own.
 fn with_inputs(workspace: &Workspace) {
@@ -34,6 +34,48 @@ fn the_baseline_repeats_to_the_byte() {
     for other in ["one", "two", "again"] {
         workspace.assert_same_run("first", other);
     }
+}
+
+/// Whether a file of a run is one that `--no-pictures` leaves out.
+fn is_drawn(name: &str) -> bool {
+    [".svg", ".png", ".gif"]
+        .iter()
+        .any(|ending| name.ends_with(ending))
+}
+
+#[test]
+fn a_run_without_pictures_has_the_bytes_of_every_other_file() {
+    let workspace = Workspace::small();
+    let case = "small.toml --set output.movie=true";
+    workspace.succeed(&format!("run {case} -o drawn"));
+    let said = workspace.succeed(&format!("run {case} --no-pictures -o plain"));
+    assert!(said.contains("series.csv") && !said.contains(".svg"), "{said}");
+    let (pictures, others): (Files, Files) = workspace
+        .run_files("drawn")
+        .into_iter()
+        .partition(|(name, _)| is_drawn(name));
+    assert_eq!(pictures.len(), 7, "{:?}", pictures.keys());
+    assert!(workspace.run_files("plain") == others);
+    // They are what can be drawn of it at any time.
+    workspace.succeed("plot plain --out later");
+    workspace.succeed("movie plain --out later/movie.gif");
+    assert!(workspace.files("later") == pictures);
+}
+
+#[test]
+fn a_run_without_pictures_is_repeated_and_resumed_without_them() {
+    let workspace = Workspace::small();
+    workspace.succeed("run small.toml --no-pictures -o a");
+    workspace.succeed("verify --rerun a");
+    workspace.succeed("run small.toml --no-pictures -o b");
+    workspace.interrupt("b");
+    workspace.succeed("run --resume b --no-pictures");
+    workspace.assert_same_run("a", "b");
+    // The option belongs to the command, not to the case.
+    workspace.succeed("run small.toml -o c");
+    workspace.interrupt("b");
+    workspace.succeed("run --resume b");
+    workspace.assert_same_run("c", "b");
 }
 
 #[test]

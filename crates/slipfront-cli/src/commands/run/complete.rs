@@ -29,7 +29,7 @@ pub(super) fn complete(
     options: RunOptions,
 ) -> Result<(), RankFailure> {
     let (case, ranks) = (Arc::clone(running.case()), options.ranks.clone());
-    let (threads, is_verbose) = (options.threads, options.is_verbose());
+    let (threads, draws, is_verbose) = (options.threads, options.draws, options.is_verbose());
     let (started, first_step) = (checkpoints.started(), running.snapshot().step);
     let out = checkpoints.folder().to_owned();
     let mut timer = CheckpointTimer::new(checkpoints, options.interval, options.signals, options.ranks);
@@ -62,7 +62,11 @@ pub(super) fn complete(
     let fields = ranks.agree(fields.map_err(|error| failed(error.into())))?;
     let finished = folder.zip(fields).map(|(mut folder, fields)| {
         folder.place(FIELDS, fields)?;
-        pictures::complete(&case, folder, started, threads)
+        if draws {
+            pictures::complete(&case, folder, started, threads)
+        } else {
+            Ok(folder.complete(&case, started, threads)?)
+        }
     });
     ranks.agree(finished.transpose().map_err(failed))?;
     if options.json {

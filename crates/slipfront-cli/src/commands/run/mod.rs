@@ -57,6 +57,9 @@ pub(crate) struct RunCommand {
     /// Go on from the checkpoint before the latest one
     #[arg(long, requires = "resume")]
     previous: bool,
+    /// Draw neither pictures nor a movie; `slipfront plot` and `slipfront movie` make them from the files of the run
+    #[arg(long)]
+    no_pictures: bool,
     /// Most threads to use [default: one per core]; results do not depend on it
     #[arg(long, value_name = "N", value_parser = count_from_one)]
     threads: Option<u16>,
@@ -110,6 +113,7 @@ impl RunCommand {
             ("--previous", flag(self.previous)),
             ("--force", flag(self.force)),
             ("--checkpoint", self.checkpoint.to_string()),
+            ("--no-pictures", flag(self.no_pictures)),
             ("--json", flag(self.json)),
         ];
         options.map(|(name, value)| (name.to_owned(), value)).into()
@@ -122,6 +126,7 @@ impl RunCommand {
             ranks: ranks.clone(),
             threads: set_threads(self.threads.or(default))?,
             interval: self.checkpoint,
+            draws: !self.no_pictures,
             signals: Signals::catch().map_err(Failure::running)?,
             quiet: self.quiet,
             json: self.json,

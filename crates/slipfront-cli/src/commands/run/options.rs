@@ -9,6 +9,8 @@ pub(super) struct RunOptions {
     pub(super) ranks: CommandRanks,
     pub(super) threads: usize,
     pub(super) interval: Interval,
+    /// Whether pictures are drawn, and the movie that the case asks for.
+    pub(super) draws: bool,
     pub(super) signals: Signals,
     pub(super) quiet: bool,
     pub(super) json: bool,
