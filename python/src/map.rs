@@ -38,7 +38,9 @@ pub(crate) fn run_summaries(
     let runs = (0..cases.len()).into_par_iter().with_max_len(1).map(run);
     let mut signal = None;
     let look = || {
-        signal = signal.take().or_else(|| Python::attach(|py| py.check_signals().err()));
+        signal = signal
+            .take()
+            .or_else(|| Python::attach(|py| py.check_signals().err()));
         stop.store(signal.is_some(), Ordering::Relaxed);
     };
     let ended: Option<Vec<_>> = detached(py, || watched(|| pool.install(|| runs.collect()), look))?;

@@ -22,10 +22,7 @@ use slipfront_run::running;
 const ROUNDS: usize = 15;
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let size: usize = std::env::args()
-        .nth(1)
-        .ok_or("usage: small_runs SIZE")?
-        .parse()?;
+    let size: usize = std::env::args().nth(1).ok_or("usage: small_runs SIZE")?.parse()?;
     for (name, time) in [
         ("to the end of the peak", "stop = 'after_onset'"),
         ("along a path", "duration_star = 150"),
@@ -44,8 +41,12 @@ fn measure(name: &str, text: &str) -> Result<(), Box<dyn Error>> {
     let steps = run_summary(&case)?.steps;
     let mut least = [f64::INFINITY; 4];
     for _ in 0..ROUNDS {
-        let mut simulation =
-            Simulation::new(Arc::clone(&case.model), case.time_plan.dt_star, None, Execution::default());
+        let mut simulation = Simulation::new(
+            Arc::clone(&case.model),
+            case.time_plan.dt_star,
+            None,
+            Execution::default(),
+        );
         let times = [
             timed(make),
             timed(|| (0..steps).for_each(|_| simulation.step())),

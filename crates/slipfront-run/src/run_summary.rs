@@ -66,3 +66,57 @@ fn summary(
     add_front(&mut summary, numbers, case, &first_slips, &Alone);
     summary
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::running;
+
+    /// Every observer of a run has numbers in the summary of one of these.
+    #[test]
+    fn the_numbers_are_those_of_a_run_that_records_all() {
+        for text in [
+            "texture = [{ shape = 'cavity', coverage = 10 }]",
+            "texture = [{ shape = 'cavity', coverage = 10 }]\ntime.stop = 'after_onset'",
+            "drive.loading = 'held'\ntime = { stop = 'after_onset', kinetic_from_star = 120 }",
+            "drive = { attach = 'left', v_star = 0.1 }\ntime.duration_star = 300",
+            "drive.program = [{ v_star = 0.1, until_star = 40 }, { v_star = 0.2 }]\noutput.series = 7",
+            "drive.v_star = 0.1\noutput.snapshots = [10, 20]",
+            "drive.v_star = 0.1\noutput = { snapshots = { every = 9 }, stride = 3, fields = ['traction'] }",
+            "drive.v_star = 0.1\nfriction = { law = 'rate_and_state', a = 0.02, b = 0.06, d_c_star = 0.05, v_0_star = 0.01, mu_0 = 0.6 }",
+        ] {
+            let text = format!("slider.blocks = [20, 12]\n{text}");
+            let case = Arc::new(Case::parse(&text, "case", "", &[]).unwrap());
+            let whole = running::run(&case, 1).unwrap().summary;
+            // NaN is equal as it is printed.
+            assert_eq!(
+                format!("{:?}", run_summary(&case).unwrap()),
+                format!("{whole:?}"),
+                "{text}"
+            );
+        }
+    }
+
+    #[test]
+    fn a_run_is_given_up_when_it_is_told_so() {
+        let case = Case::parse(
+            "slider.blocks = [20, 20]\ntime.duration_star = 1e8",
+            "case",
+            "",
+            &[],
+        )
+        .unwrap();
+        let looks = std::cell::Cell::new(0);
+        let ends = || looks.replace(looks.get() + 1) == 3;
+        assert_eq!(run_summary_unless(&case, &ends), None);
+        assert_eq!(looks.get(), 4);
+    }
+
+    #[test]
+    fn a_run_that_diverges_is_an_error() {
+        let text = "slider = { blocks = [8, 8], omega_star = 0 }\nload.pressure = '50 GPa'\ndrive.v_star = 10\n\
+                    friction = { r_star = 0, sigma_static_star = 1 }\ntime = { step = 0.9, duration_star = 2000 }";
+        let case = Case::parse(text, "case", "", &[]).unwrap();
+        assert!(run_summary(&case).unwrap_err().to_string().contains("diverged"));
+    }
+}

@@ -48,8 +48,7 @@ pub fn springs_on_a_lone_block(k_drive: f64) -> f64 {
     let response = |n: usize| {
         let (x, y) = (n % WAVES, n / WAVES);
         let both = 2.0 * K_DIAGONAL * (1.0 - cosines[x] * cosines[y]);
-        let [xx, yy] =
-            [x, y].map(|wave| k_drive + 2.0 * K_STRAIGHT * (1.0 - cosines[wave]) + both);
+        let [xx, yy] = [x, y].map(|wave| k_drive + 2.0 * K_STRAIGHT * (1.0 - cosines[wave]) + both);
         let xy = 2.0 * K_DIAGONAL * sines[x] * sines[y];
         yy / (xx * yy - xy * xy)
     };

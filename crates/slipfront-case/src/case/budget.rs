@@ -163,7 +163,12 @@ impl Budget {
     pub(super) fn check_running(&self, file: &CaseFile) -> Result<(), CaseError> {
         let stepping = self.stepping();
         if self.ranks_on_node * stepping >= SMALL {
-            let demand = self.demand(file, "a run of this case", (self.cause_of_blocks(), stepping), stepping);
+            let demand = self.demand(
+                file,
+                "a run of this case",
+                (self.cause_of_blocks(), stepping),
+                stepping,
+            );
             self.compare(demand, available_memory())?;
         }
         self.check_making(file)

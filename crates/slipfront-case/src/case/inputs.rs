@@ -90,7 +90,10 @@ impl NamedFiles {
         let found = named.map(|named| {
             let contents = files.in_memory.and_then(|in_memory| in_memory.get(&*named.name));
             let (original, stamp) = match contents {
-                Some(contents) => (PathBuf::from(&*named.name), Ok(blake3::hash(contents).to_string())),
+                Some(contents) => (
+                    PathBuf::from(&*named.name),
+                    Ok(blake3::hash(contents).to_string()),
+                ),
                 None => {
                     let original = files.folder.join(&*named.name);
                     let stamp = stamp(&original);
@@ -149,7 +152,12 @@ impl NamedFiles {
             if let Some(digest) = known.get(&**original) {
                 return Ok(*digest);
             }
-            let opened = open(original, found.contents.as_ref(), found.holds, [lattice.nx, lattice.ny]);
+            let opened = open(
+                original,
+                found.contents.as_ref(),
+                found.holds,
+                [lattice.nx, lattice.ny],
+            );
             let digest = opened.and_then(|opened| digest(original, opened));
             let digest = digest.map_err(|error| placed(file, &found.key, error))?;
             known.insert(original, digest);
