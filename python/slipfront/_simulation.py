@@ -235,10 +235,11 @@ class Simulation:
             raise ValueError(f"steps are counted from 0, not {n}")
         taken = 0
         with self._alone as native:
-            while self._ended is None and taken < n:
+            while True:
                 steps, self._ended = native.advance(n - taken)
                 taken += steps
-        return taken
+                if self._ended is not None or taken == n:
+                    return taken
 
     def run_until(
         self,

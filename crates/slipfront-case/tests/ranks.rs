@@ -193,13 +193,16 @@ fn files_in_memory_make_the_case_of_those_on_the_disk(#[case] text: &str) {
 
 #[rstest]
 #[case::value("friction.mu_static_field = 'negative.csv'", "`negative.csv` has -0.8")]
-#[case::image("texture = [{ shape = 'mask', file = 'cut.png' }]", "`cut.png` ends before")]
+#[case::image(
+    "texture = [{ shape = 'mask', file = 'cut.png' }]",
+    "`cut.png` is not a readable .png file: it ends before"
+)]
 #[case::missing(
     "friction.mu_static_field = 'missing.npy'",
     "cannot read `nowhere/missing.npy`"
 )]
 #[case::long(
-    "slider.outline_file = 'long.npy'",
+    "load.pressure_field = 'long.npy'",
     "`long.npy` has 20000 bytes where 9 rows of 11 numbers take"
 )]
 fn files_in_memory_are_refused_in_the_same_sentences(#[case] text: &str, #[case] wanted: &str) {
