@@ -9,6 +9,7 @@
 from ._case import Case, CaseError
 from ._cite import cite
 from ._converge import Convergence, QuantityOnMeshes, converge
+from ._map import map
 from ._open import InterruptedRun, PaperResults, open
 from ._run import FolderError, Run
 from ._simulation import Simulation, run
@@ -32,6 +33,7 @@ __all__ = [
     "__version__",
     "cite",
     "converge",
+    "map",
     "open",
     "run",
     "study",

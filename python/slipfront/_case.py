@@ -15,7 +15,6 @@ import numpy.typing as npt
 
 from . import _slipfront, _toml
 from ._pickle import sealed
-from ._temporary import TemporaryFolder
 
 Overrides: TypeAlias = Mapping[str, Any]
 """Keys with dots, such as ``drive.v_star`` or ``texture.0.coverage``, and their values; or names of tables with the keys to set there."""
@@ -43,12 +42,9 @@ class Case:
     """
 
     _make: Callable[[], _slipfront.Case]
-    _folder: TemporaryFolder | None
 
-    def __init__(self, native: _slipfront.Case, folder: TemporaryFolder | None = None) -> None:
+    def __init__(self, native: _slipfront.Case) -> None:
         object.__setattr__(self, "_native", native)
-        # Holds the files of arrays as long as the case may read them.
-        object.__setattr__(self, "_folder", folder)
 
     @functools.cached_property
     def _native(self) -> _slipfront.Case:
@@ -74,9 +70,8 @@ class Case:
         >>> Case.load("cases/circle.toml", {"drive.v_star": 0.05}).name
         'circle'
         """
-        arrays = _toml.ArrayFiles()
-        native = _slipfront.Case.load(Path(path), _overrides(overrides, arrays))
-        return cls(native, arrays.folder)
+        arrays = _toml.Arrays()
+        return cls(_slipfront.Case.load(Path(path), _overrides(overrides, arrays), arrays.contents))
 
     @classmethod
     def parse(
@@ -110,9 +105,8 @@ class Case:
         ...     print(error.line, error.column)
         2 7
         """
-        arrays = _toml.ArrayFiles()
-        native = _slipfront.Case.parse(text, name, Path(folder), _overrides(overrides, arrays))
-        return cls(native, arrays.folder)
+        arrays = _toml.Arrays()
+        return cls(_slipfront.Case.parse(text, name, Path(folder), _overrides(overrides, arrays), arrays.contents))
 
     @classmethod
     def from_dict(cls, tables: Mapping[str, Any], *, name: str = "case") -> Case:
@@ -133,9 +127,8 @@ class Case:
         >>> int(case.textured.sum())
         16
         """
-        arrays = _toml.ArrayFiles()
-        native = _slipfront.Case.parse(_toml.document(tables, arrays), name, Path(), [])
-        return cls(native, arrays.folder)
+        arrays = _toml.Arrays()
+        return cls(_slipfront.Case.parse(_toml.document(tables, arrays), name, Path(), [], arrays.contents))
 
     def replace(self, overrides: Overrides) -> Case:
         """This case with other values of some keys.
@@ -146,9 +139,9 @@ class Case:
         >>> round(case.numbers["texture_percent"])
         5
         """
-        arrays = _toml.ArrayFiles(self._folder)
-        native = _slipfront.Case.parse(self._text(), self.name, Path(), _overrides(overrides, arrays))
-        return type(self)(native, arrays.folder)
+        arrays = _toml.Arrays(self._native.arrays)
+        set_anew = _overrides(overrides, arrays)
+        return type(self)(_slipfront.Case.parse(self._text(), self.name, Path(), set_anew, arrays.contents))
 
     @property
     def name(self) -> str:
@@ -195,12 +188,14 @@ class Case:
         return self._native.to_toml()
 
     def _text(self) -> str:
-        """The resolved case, which names files where they stand, and not the copies beside its results."""
+        """The resolved case, which names files where they stand or as they are called in memory, and not the copies beside its results."""
         text = self.to_toml()
         # A file that has changed would make another case than this one in what is not replaced.
         self._native.read_inputs()
+        arrays = self._native.arrays
         for copy, original, _ in self._native.inputs:
-            text = text.replace(_toml.word(copy), _toml.word(str(original.absolute())))
+            name = str(original) if str(original) in arrays else str(original.absolute())
+            text = text.replace(_toml.word(copy), _toml.word(name))
         return text
 
     def __repr__(self) -> str:
@@ -229,15 +224,11 @@ class Case:
 
 
 def _unpickled(text: str, name: str, files: dict[str, bytes]) -> Case:
-    folder = TemporaryFolder() if files else None
-    for copy, contents in files.items():
-        assert folder is not None
-        path = folder.path / copy
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_bytes(contents)
+    arrays = {_toml.IN_MEMORY + copy: contents for copy, contents in files.items()}
+    for copy in files:
+        text = text.replace(_toml.word(copy), _toml.word(_toml.IN_MEMORY + copy))
     case = Case.__new__(Case)
-    make = functools.partial(_slipfront.Case.parse, text, name, folder.path if folder else Path(), [])
-    vars(case).update(_make=make, _folder=folder)
+    vars(case)["_make"] = functools.partial(_slipfront.Case.parse, text, name, Path(), [], arrays)
     # A process that was forked too late is told when it uses the case: it would die of an exception here, in the midst of reading
     # the tasks of multiprocessing.Pool, which would wait for it for ever.
     with contextlib.suppress(_slipfront.ForkError):
@@ -245,7 +236,7 @@ def _unpickled(text: str, name: str, files: dict[str, bytes]) -> Case:
     return case
 
 
-def _overrides(given: Overrides | None, arrays: _toml.ArrayFiles) -> list[str]:
+def _overrides(given: Overrides | None, arrays: _toml.Arrays) -> list[str]:
     return [f"{key}={_toml.value(value, arrays)}" for key, value in _toml.by_key(given or {}).items()]
 
 

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from . import _slipfront
+from . import _slipfront, _toml
 from ._case import Case
 from ._pickle import sealed
 from ._simulation import _threads
@@ -172,7 +172,12 @@ def converge(
     case = case if isinstance(case, Case) else Case.load(case)
     # A file that has changed would make another case than this one.
     case._native.read_inputs()
-    study = _slipfront.Study.on_meshes(case._native, levels, replicates)
+    native, arrays = case._native, _toml.Arrays(case._native.arrays)
+    # Its runs read arrays from files.
+    text, array_files = arrays.on_disk(case._text())
+    if array_files is not None:
+        native = _slipfront.Case.parse(text, case.name, Path(), [], {})
+    study = _slipfront.Study.on_meshes(native, levels, replicates)
     study.check_cost(_threads(threads), max_memory, max_time)
     found, _ = executed(study, Convergence, folder, progress, threads)
     return found

@@ -8,7 +8,7 @@ import math
 import operator
 import os
 import threading
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
@@ -65,6 +65,35 @@ def run(case: Case | str | os.PathLike[str], progress: Progress = None, threads:
     return simulation.run(progress=progress)
 
 
+class _Alone:
+    """The native simulation, within `with` for one thread at a time.
+
+    A class and no generator: a step of a small slider takes a few times as long as entering it.
+
+    Parameters
+    ----------
+    native
+        None of one that was unpickled in a process that cannot use it.
+    """
+
+    def __init__(self, native: _slipfront.Simulation | None) -> None:
+        self._native = native
+        self._lock = threading.Lock()
+
+    def __enter__(self) -> _slipfront.Simulation:
+        # The lock of a process that was forked may be one that nobody there holds.
+        _slipfront.check_process()
+        assert self._native is not None
+        if not self._lock.acquire(blocking=False):
+            raise RuntimeError(
+                "another thread is using this simulation: wait for it, or give each thread a simulation of its own (copy.copy)"
+            )
+        return self._native
+
+    def __exit__(self, *raised: object) -> None:
+        self._lock.release()
+
+
 class Simulation:
     """A run in progress, from rest.
 
@@ -103,24 +132,8 @@ class Simulation:
 
     def _begin(self, case: Case, native: _slipfront.Simulation | None) -> None:
         self._case = case
-        # None of one that was unpickled in a process that cannot use it.
-        self._native = native
+        self._alone = _Alone(native)
         self._ended: str | None = None
-        self._lock = threading.Lock()
-
-    @contextlib.contextmanager
-    def _alone(self) -> Iterator[_slipfront.Simulation]:
-        # The lock of a process that was forked may be one that nobody there holds.
-        _slipfront.check_process()
-        if not self._lock.acquire(blocking=False):
-            raise RuntimeError(
-                "another thread is using this simulation: wait for it, or give each thread a simulation of its own (copy.copy)"
-            )
-        try:
-            assert self._native is not None
-            yield self._native
-        finally:
-            self._lock.release()
 
     @property
     def case(self) -> Case:
@@ -135,7 +148,7 @@ class Simulation:
     @property
     def steps(self) -> int:
         """Steps since the start, those before changes included."""
-        with self._alone() as native:
+        with self._alone as native:
             return self._before[0] + native.step
 
     @property
@@ -165,20 +178,20 @@ class Simulation:
 
     @property
     def _point(self) -> list[float]:
-        with self._alone() as native:
+        with self._alone as native:
             return native.point
 
     @property
     def displacement(self) -> npt.NDArray[np.float64]:
         """Displacements of the blocks from rest along x and y, m, (2, N_y, N_x). They cannot be written to."""
-        with self._alone() as native:
+        with self._alone as native:
             moved, _ = native.motion()
         return _dataset.read_only(moved * self._case.numbers["displacement_unit_m"] + self._origin)
 
     @property
     def velocity(self) -> npt.NDArray[np.float64]:
         """Velocities of the blocks half a step later, m/s, (2, N_y, N_x). They cannot be written to."""
-        with self._alone() as native:
+        with self._alone as native:
             _, velocity = native.motion()
         return _dataset.read_only(velocity * self._case.numbers["speed_unit_m_s"])
 
@@ -191,7 +204,7 @@ class Simulation:
             ``contact_stress_star`` (over its largest value so far), ``traction`` (Pa), ``displacement_x``, ``displacement_y`` (m, since
             the last change), ``velocity_x``, ``velocity_y`` (m/s) or ``sliding``.
         """
-        with self._alone() as native:
+        with self._alone as native:
             return native.field(name)
 
     @property
@@ -200,7 +213,7 @@ class Simulation:
         return _dataset.table(self._columns())
 
     def _columns(self) -> dict[str, Any]:
-        with self._alone() as native:
+        with self._alone as native:
             columns = native.series()
         return {**columns, "time_s": columns["time_s"] + self._before[1]}
 
@@ -220,11 +233,13 @@ class Simulation:
         n = operator.index(n)
         if n < 0:
             raise ValueError(f"steps are counted from 0, not {n}")
-        with self._alone() as native:
-            first = native.step
-            while self._ended is None and (left := n - (native.step - first)) > 0:
-                self._ended = native.advance(left)
-            return native.step - first
+        taken = 0
+        with self._alone as native:
+            while True:
+                steps, self._ended = native.advance(n - taken)
+                taken += steps
+                if self._ended is not None or taken == n:
+                    return taken
 
     def run_until(
         self,
@@ -270,7 +285,7 @@ class Simulation:
                 observer(self)
             if condition is not None and condition(self):
                 return True
-            with self._alone() as native:
+            with self._alone as native:
                 left = last - native.step
             if left <= 0:
                 return True
@@ -294,17 +309,18 @@ class Simulation:
         shown = progress if progress is None or isinstance(progress, bool) else False
         last = self._case.last_step
         # A short run is over before a bar is worth its while.
-        with self._alone() as native:
-            self._ended = self._ended or native.advance(_ALL)
+        with self._alone as native:
+            if self._ended is None:
+                _, self._ended = native.advance(_ALL)
         if self._ended is None:
             with Bar(shown, last, "step", self._case.name) as bar:
                 while self._ended is None:
                     if watch is not None:
                         watch(self)
-                    with self._alone() as native:
+                    with self._alone as native:
                         bar.show(native.step, said=f"mu* = {native.point[1]:.3f}")
-                        self._ended = native.advance(_ALL)
-        with self._alone() as native:
+                        _, self._ended = native.advance(_ALL)
+        with self._alone as native:
             return Run(self._case, native.record(self._ended))
 
     def change(self, overrides: Mapping[str, Any]) -> None:
@@ -332,7 +348,7 @@ class Simulation:
         (0.1, 0.0)
         """
         case = self._case.replace(overrides)
-        with self._alone() as native:
+        with self._alone as native:
             begun, steps, time_s, drive = native.change(case._native, self._threads)
         self._curves.append(self._columns())
         self._legs.append((self._case, steps))
@@ -357,13 +373,13 @@ class Simulation:
 
         The last leg is the present one. Every change takes the step that was begun to its end.
         """
-        with self._alone() as native:
+        with self._alone as native:
             now = native.step
         return [*((case.to_toml(), steps) for case, steps in self._legs), (self._case.to_toml(), now)]
 
     def checkpoint(self) -> bytes:
         """All that `resume` needs to go on with the same bits."""
-        with self._alone() as native:
+        with self._alone as native:
             return native.checkpoint()
 
     @classmethod

@@ -74,11 +74,12 @@ class Study:
                 raise ValueError("a study file has its own axes and settings: give the path alone")
             self._native = _slipfront.Study.load(Path(case))
             return
-        files = _toml.ArrayFiles(case._folder)
-        listed = "".join(_axis(name, levels, files) for name, levels in (axes or {}).items())
+        arrays = _toml.Arrays(case._native.arrays)
+        listed = "".join(_axis(name, levels, arrays) for name, levels in (axes or {}).items())
         study = {"replicates": replicates, **(settings or {})}
-        text = _toml.document({"study": study}, files) + listed + _as_base(case)
-        self._arrays = files.folder
+        text = _toml.document({"study": study}, arrays) + listed + _as_base(case)
+        # Its runs read arrays from files, which stand as long as it may have some to do.
+        text, self._arrays = arrays.on_disk(text)
         self._native = _slipfront.Study.parse(text, name or f"{case.name}-study", Path())
 
     @classmethod
@@ -311,14 +312,14 @@ def executed(
     return results, values
 
 
-def _axis(name: str, levels: Sequence[Any] | Mapping[str, Mapping[str, Any]], files: _toml.ArrayFiles) -> str:
+def _axis(name: str, levels: Sequence[Any] | Mapping[str, Mapping[str, Any]], arrays: _toml.Arrays) -> str:
     if isinstance(levels, Mapping):
         of_level = ((level, _toml.by_key(keys)) for level, keys in levels.items())
-        variants = "".join(f"{_toml.key(level)} = {_toml.value(keys, files)}\n" for level, keys in of_level)
+        variants = "".join(f"{_toml.key(level)} = {_toml.value(keys, arrays)}\n" for level, keys in of_level)
         return f"[[axes]]\nname = {_toml.word(name)}\n[axes.variants]\n{variants}"
     if isinstance(levels, str) or not hasattr(levels, "__iter__"):
         raise TypeError(f"the levels of `{name}` are a list, such as [{levels!r}], not {levels!r}")
-    return f"[[axes]]\nkey = {_toml.word(name)}\nlist = {_toml.value(list(levels), files)}\n"
+    return f"[[axes]]\nkey = {_toml.word(name)}\nlist = {_toml.value(list(levels), arrays)}\n"
 
 
 def _as_base(case: Case) -> str:

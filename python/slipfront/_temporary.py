@@ -19,15 +19,9 @@ class TemporaryFolder:
     """A new folder that is removed when nothing refers to this object any more.
 
     If the process is killed before, the next one that makes such a folder removes it.
-
-    Parameters
-    ----------
-    others
-        Folders that stand at least as long.
     """
 
-    def __init__(self, *others: "TemporaryFolder | None") -> None:
+    def __init__(self) -> None:
         parent = _slipfront.TemporaryParent()
         self.path = Path(tempfile.mkdtemp(dir=parent.path))
-        self._others = others
         self.remove = weakref.finalize(self, _remove, self.path, parent, os.getpid())

@@ -1,7 +1,9 @@
-"""Values of Python as the text of a case: TOML, quantities with their units, arrays as files."""
+"""Values of Python as the text of a case: TOML, quantities with their units, arrays as files in memory."""
 
 from __future__ import annotations
 
+import io
+import itertools
 import json
 import math
 import re
@@ -16,43 +18,60 @@ from ._temporary import TemporaryFolder
 _BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")
 
 
-class ArrayFiles:
-    """The files of arrays that are handed over in place of the name of a file.
+IN_MEMORY = "memory:/"
+"""How the names of files begin that are in memory."""
+
+
+class Arrays:
+    """Arrays that are handed over in place of the name of a file: files of numpy in memory.
 
     Parameters
     ----------
     others
-        A folder that stands as long as theirs.
+        Files in memory that may be named beside them.
 
     Attributes
     ----------
-    folder
-        Where they stand: that of others unless there is an array.
+    contents
+        All of them, by their names.
     """
 
-    def __init__(self, others: TemporaryFolder | None = None) -> None:
-        self.folder = others
-        self._others = others
+    def __init__(self, others: Mapping[str, bytes] | None = None) -> None:
+        self.contents = dict(others or {})
+        folders = (f"{IN_MEMORY}{number}/" for number in itertools.count(1))
+        self._folder = next(folder for folder in folders if not any(name.startswith(folder) for name in self.contents))
         self._count = 0
 
-    def write(self, array: np.ndarray[Any, Any]) -> str:
-        """Write an array and give the name of its file."""
+    def add(self, array: np.ndarray[Any, Any]) -> str:
+        """Add an array and give the name of its file."""
         if np.ma.is_masked(array):
             # What is masked is not known: NaN, which the case refuses where it cannot do without.
             array = np.ma.filled(array.astype(np.float64), np.nan)
-        if self.folder is None or self._count == 0:
-            self.folder = TemporaryFolder(self._others)
         self._count += 1
-        path = self.folder.path / f"array-{self._count}.npy"
-        np.save(path, np.ascontiguousarray(array))
-        return str(path)
+        name = f"{self._folder}array-{self._count}.npy"
+        file = io.BytesIO()
+        np.save(file, np.ascontiguousarray(array))
+        self.contents[name] = file.getvalue()
+        return name
+
+    def on_disk(self, text: str) -> tuple[str, TemporaryFolder | None]:
+        """A text that names files on the disk in their place, and the folder that holds these; none if there is no array."""
+        if not self.contents:
+            return text, None
+        folder = TemporaryFolder()
+        for name, contents in self.contents.items():
+            path = folder.path / name.removeprefix(IN_MEMORY)
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_bytes(contents)
+            text = text.replace(word(name), word(str(path)))
+        return text, folder
 
 
-def value(given: Any, arrays: ArrayFiles) -> str:
+def value(given: Any, arrays: Arrays) -> str:
     """A value as TOML writes it.
 
-    >>> files = ArrayFiles()
-    >>> value({"shape": "cavity", "coverage": 10, "center": (1, 2.5)}, files)
+    >>> arrays = Arrays()
+    >>> value({"shape": "cavity", "coverage": 10, "center": (1, 2.5)}, arrays)
     '{ shape = "cavity", coverage = 10, center = [1, 2.5] }'
     """
     if isinstance(given, (bool, np.bool_)):
@@ -73,7 +92,7 @@ def value(given: Any, arrays: ArrayFiles) -> str:
     if hasattr(given, "__array__"):
         array = np.asanyarray(given)
         # What has rows is a field or a mask, of which a case names the file.
-        return word(arrays.write(array)) if array.ndim == 2 else value(array.tolist(), arrays)
+        return word(arrays.add(array)) if array.ndim == 2 else value(array.tolist(), arrays)
     if isinstance(given, Sequence):
         return "[" + ", ".join(value(inner, arrays) for inner in given) + "]"
     raise TypeError(
@@ -106,10 +125,10 @@ def key(name: str) -> str:
     return name if _BARE_KEY.fullmatch(name) else word(name)
 
 
-def document(tables: Mapping[str, Any], arrays: ArrayFiles) -> str:
+def document(tables: Mapping[str, Any], arrays: Arrays) -> str:
     """The text of a case: a line for each value, a heading for each table.
 
-    >>> print(document({"drive": {"v_star": 0.1}, "texture": [{"shape": "cavity"}]}, ArrayFiles()))
+    >>> print(document({"drive": {"v_star": 0.1}, "texture": [{"shape": "cavity"}]}, Arrays()))
     [drive]
     v_star = 0.1
     [[texture]]
@@ -128,7 +147,7 @@ def document(tables: Mapping[str, Any], arrays: ArrayFiles) -> str:
     return "\n".join([*plain, *headed, ""])
 
 
-def _lines(table: Mapping[str, Any], arrays: ArrayFiles) -> list[str]:
+def _lines(table: Mapping[str, Any], arrays: Arrays) -> list[str]:
     # A key with dots is a key within tables, as in the command's --set.
     def path(name: str) -> str:
         return ".".join(key(part) for part in name.split("."))
@@ -153,6 +172,6 @@ def _quantities(given: Any) -> str:
         if isinstance(number, list):
             return "[" + ", ".join(write(one) for one in number) + "]"
         # A number without a unit is written as one.
-        return word(f"{number!r} {unit}") if unit else value(number, ArrayFiles())
+        return word(f"{number!r} {unit}") if unit else value(number, Arrays())
 
     return write(magnitude)

@@ -1,14 +1,17 @@
 //! Cases.
 
+use std::collections::BTreeMap;
+use std::io::Read;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use numpy::{Element, PyArray2};
 use pyo3::prelude::*;
+use pyo3::pybacked::PyBackedBytes;
 use pyo3::types::{PyBytes, PyDict};
 use slipfront::Surface;
-use slipfront_case::case::{Case as SlipfrontCase, Ranks};
+use slipfront_case::case::{Case as SlipfrontCase, Files, FilesInMemory, Ranks};
 use slipfront_case::case_file::{CaseError as Error, CaseFile};
 use slipfront_run::pictures;
 
@@ -49,6 +52,16 @@ pub(crate) fn make(
     }
 }
 
+/// Files of arrays by the names that a case gives them.
+type Arrays = BTreeMap<String, PyBackedBytes>;
+
+fn in_memory(arrays: &Arrays) -> FilesInMemory {
+    let contents = arrays.iter();
+    contents
+        .map(|(name, contents)| (name.clone(), Arc::from(&**contents)))
+        .collect()
+}
+
 /// Numbers of the surface of a case, which are not copied.
 fn of_surface<'py, T: Element>(
     case: &Bound<'py, Case>,
@@ -60,15 +73,16 @@ fn of_surface<'py, T: Element>(
 
 #[pymethods]
 impl Case {
-    /// The case of a file, with overrides of the form KEY=VALUE.
+    /// The case of a file, with overrides of the form KEY=VALUE, which may name arrays that are in memory.
     #[staticmethod]
-    fn load(py: Python<'_>, path: PathBuf, overrides: Vec<String>) -> PyResult<Self> {
+    fn load(py: Python<'_>, path: PathBuf, overrides: Vec<String>, arrays: Arrays) -> PyResult<Self> {
+        let arrays = in_memory(&arrays);
         make(py, |watch| {
-            SlipfrontCase::load(&path, &overrides, watch, Ranks::ALONE)
+            SlipfrontCase::load_with(&path, &overrides, Some(&arrays), watch, Ranks::ALONE)
         })
     }
 
-    /// The case of a text that is called `name`; the files it names stand relative to a folder.
+    /// The case of a text that is called `name`; the files it names are arrays in memory, or stand relative to a folder.
     #[staticmethod]
     fn parse(
         py: Python<'_>,
@@ -76,10 +90,16 @@ impl Case {
         name: &str,
         folder: PathBuf,
         overrides: Vec<String>,
+        arrays: Arrays,
     ) -> PyResult<Self> {
+        let arrays = in_memory(&arrays);
+        let files = Files {
+            folder: &folder,
+            in_memory: Some(&arrays),
+        };
         make(py, |watch| {
             let file = CaseFile::parse(text, name, &overrides)?;
-            SlipfrontCase::to_run(file, name, &folder, watch, Ranks::ALONE)
+            SlipfrontCase::to_run_with(file, name, files, watch, Ranks::ALONE)
         })
     }
 
@@ -94,7 +114,8 @@ impl Case {
         self.0.file.to_toml().map_err(|error| case_error(py, &error))
     }
 
-    /// The files that it reads: the name of each in the resolved case, where it stands, and the hash of its contents.
+    /// The files that it reads: the name of each in the resolved case, where it stands or the name that it has in memory, and the hash of
+    /// its contents.
     #[getter]
     fn inputs(&self) -> Vec<(String, PathBuf, String)> {
         let inputs = self.0.inputs.iter();
@@ -109,13 +130,27 @@ impl Case {
             .collect()
     }
 
+    /// The files that are in memory, by the names that they have there.
+    #[getter]
+    fn arrays<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let files = PyDict::new(py);
+        for input in &self.0.inputs {
+            if let Some(contents) = &input.contents {
+                files.set_item(input.original.to_string_lossy(), PyBytes::new(py, contents))?;
+            }
+        }
+        Ok(files)
+    }
+
     /// The contents of the files that it reads, by their names in the resolved case; an error if one is no longer what the case was
     /// made of.
     fn read_inputs<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let files = PyDict::new(py);
         for input in &self.0.inputs {
             let path = input.original.display();
-            let contents = std::fs::read(&input.original).map_err(|error| {
+            let mut contents = Vec::new();
+            let read = input.open().and_then(|mut file| file.read_to_end(&mut contents));
+            read.map_err(|error| {
                 CaseError::new_err(format!(
                     "{path}, which the case reads, cannot be read again: {error}"
                 ))

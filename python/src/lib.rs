@@ -12,6 +12,7 @@ mod arrays;
 mod case;
 mod errors;
 mod folder;
+mod map;
 mod pickle;
 mod process;
 mod record;
@@ -46,6 +47,7 @@ fn _slipfront(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<record::Record>()?;
     module.add_class::<study::Study>()?;
     module.add_class::<folder::TemporaryParent>()?;
+    module.add_function(wrap_pyfunction!(map::run_summaries, module)?)?;
     module.add_function(wrap_pyfunction!(folder::kind_of, module)?)?;
     module.add_function(wrap_pyfunction!(folder::read_run, module)?)?;
     module.add_function(wrap_pyfunction!(folder::interrupted, module)?)?;

@@ -101,9 +101,10 @@ impl Simulation {
         Ok((Self::of(leg.running)?, leg.steps, leg.time_s, drive))
     }
 
-    /// At most `steps` steps, for 50 ms or a little longer; whether the run has ended: `end`, `onset` or none.
-    fn advance(&mut self, py: Python<'_>, steps: u64) -> PyResult<Option<&'static str>> {
+    /// At most `steps` steps, for 50 ms or a little longer; how many were taken, and whether the run has ended: `end`, `onset` or none.
+    fn advance(&mut self, py: Python<'_>, steps: u64) -> PyResult<(u64, Option<&'static str>)> {
         let running = self.running.as_mut().ok_or_else(ended)?;
+        let first = running.snapshot().step;
         let (piece, threads) = (running.case().steps_per_poll(), running.threads());
         let mut left = steps;
         let mut advance = || {
@@ -122,10 +123,11 @@ impl Simulation {
             1 => advance(),
             _ => rayon::scope(|_| advance()),
         })?;
-        Ok(reason.map_err(run_error)?.map(|reason| match reason {
+        let reason = reason.map_err(run_error)?.map(|reason| match reason {
             StopReason::End => "end",
             StopReason::Onset => "onset",
-        }))
+        });
+        Ok((running.snapshot().step - first, reason))
     }
 
     /// Number of the step.

@@ -7,6 +7,7 @@ import subprocess
 import sys
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -115,6 +116,78 @@ def test_arrays_stand_in_for_files_and_are_pickled() -> None:
     assert (twin.mu_static == changed.mu_static).all()
 
 
+def test_arrays_in_memory_make_no_folder(tmp_path: Path) -> None:
+    """Neither a case that is made, changed, pickled or run does, nor one that another process has pickled."""
+    program = """
+import os, pickle
+import numpy as np
+import slipfront as sf
+
+mask = np.eye(3, 4, dtype=bool)
+case = sf.Case.from_dict({"slider": {"blocks": [4, 3]}, "texture": [{"shape": "mask", "file": mask}], "time": {"duration_star": 5}})
+other = sf.Case.load("cases/circle.toml", {"slider.blocks": [4, 3], "texture": [{"shape": "mask", "file": ~mask}]})
+assert (other.textured == ~mask).all()
+twin = pickle.loads(pickle.dumps(case.replace({"drive.v_star": 0.2})))
+assert (twin.textured == mask).all() and (twin.replace({"friction.seed": 2}).textured == mask).all()
+sf.map([case, twin])
+sf.run(case, progress=False)
+simulation = sf.Simulation(case)
+simulation.textured = ~mask
+assert (simulation.textured == ~mask).all()
+print(os.listdir(os.environ["TMPDIR"]))
+"""
+    env = os.environ | {"TMPDIR": str(tmp_path)}
+    done = subprocess.run([sys.executable, "-c", program], env=env, stdout=subprocess.PIPE, text=True, check=True)
+    assert done.stdout.strip() == "[]"
+
+
+def test_an_array_is_the_file_of_numpy_with_its_values(tmp_path: Path) -> None:
+    """What is saved has the bytes of a run that reads files, and is a whole case."""
+    rng = np.random.default_rng(8)
+    mask, coefficients = rng.random((10, 12)) < 0.1, rng.uniform(0.8, 1.2, (10, 12))
+
+    def tables(texture: object, field: object) -> dict[str, Any]:
+        return {
+            "slider": {"blocks": [12, 10]},
+            "time": {"duration_star": 60},
+            "texture": [{"shape": "mask", "file": texture}],
+            "friction": {"mu_static_field": field},
+        }
+
+    for number, array in ((1, mask), (2, coefficients)):
+        np.save(tmp_path / f"array-{number}.npy", array)
+    on_disk = sf.Case.from_dict(tables(tmp_path / "array-1.npy", tmp_path / "array-2.npy"))
+    in_memory = sf.Case.from_dict(tables(mask, coefficients))
+    assert in_memory == on_disk and in_memory._hashes() == on_disk._hashes()
+    saved = [sf.run(case, progress=False).save(tmp_path / name) for case, name in ((on_disk, "disk"), (in_memory, "memory"))]
+    files = [sorted(path.relative_to(folder) for path in folder.rglob("*") if path.is_file()) for folder in saved]
+    assert files[0] == files[1] and Path("inputs/array-2.npy") in files[0]
+    for file in files[0]:
+        assert file.name == "manifest.json" or (saved[0] / file).read_bytes() == (saved[1] / file).read_bytes(), file
+    again = sf.Case.load(saved[1] / "case.toml")
+    assert again == in_memory and sf.map([again]) == sf.map([in_memory])
+
+
+def test_arrays_follow_a_case(tmp_path: Path) -> None:
+    """Arrays of a case that is changed stand beside new ones, and beside files of their names."""
+    mask, field = np.eye(10, 12, dtype=bool), np.full((10, 12), 0.9)
+    case = sf.Case.from_dict({"slider": {"blocks": [12, 10]}, "texture": [{"shape": "mask", "file": mask}]})
+    both = pickle.loads(pickle.dumps(case.replace({"load.pressure_field": field}))).replace({"friction.mu_static_field": field + 1})
+    assert (both.textured == mask).all() and both.mu_static[0, 1] == both.mu_static.max()
+    assert list(both._hashes()) == ["inputs/array-1.npy", "inputs/2-array-1.npy", "inputs/3-array-1.npy"]
+    np.save(tmp_path / "array-1.npy", ~mask)
+    text = 'slider.blocks = [12, 10]\n[[texture]]\nshape = "mask"\nfile = "array-1.npy"\n'
+    beside = sf.Case.parse(text, {"friction.mu_static_field": field}, folder=tmp_path)
+    assert (beside.textured == ~mask).all() and len(beside._hashes()) == 2
+    with pytest.raises(sf.CaseError, match=r"`memory:/2/array-1.npy` has the shape \(3, 4\) where \(10, 12\)"):
+        case.replace({"friction.mu_static_field": field[:3, :4]})
+    with pytest.raises(sf.CaseError, match="array-1.npy` has 80128 bytes where 10 rows of 12 numbers take at most"):
+        case.replace({"friction.mu_static_field": np.ones((100, 100))})
+    study = sf.Study(both, {"texture.0.file": [mask, ~mask], "drive.v_star": [0.2]}, settings={"keep": "all"})
+    results = study.run(tmp_path / "study", progress=False)
+    assert list(results.runs["texture_percent"]) == [pytest.approx(100 / 12), pytest.approx(1100 / 12)]
+
+
 def test_a_file_that_changes_does_not_change_the_case_in_silence(tmp_path: Path) -> None:
     def written(blocks: int) -> None:
         mask = np.zeros((10, 12), dtype=bool)
@@ -192,12 +265,13 @@ import numpy as np
 import slipfront as sf
 
 case = sf.Case.from_dict({"slider": {"blocks": [4, 3]}, "texture": [{"shape": "mask", "file": np.eye(3, 4, dtype=bool)}]})
+study = sf.Study(case, {"drive.v_star": [0.2]})
 if os.fork() == 0:
-    # It has the files in common with the process that made them.
-    del case
+    # It has the files of the study's arrays in common with the process that made them.
+    del study
     raise SystemExit
 os.wait()
-assert case.replace({"drive.v_star": 0.2}).textured.sum() == 3
+assert sf.Study(case, {"drive.v_star": [0.2]}).n_points == study.n_points == 1
 print(len(os.listdir(os.environ["TMPDIR"])), flush=True)
 if KILLED:
     os.kill(os.getpid(), signal.SIGKILL)

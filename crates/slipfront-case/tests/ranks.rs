@@ -3,14 +3,14 @@
 #![allow(clippy::unwrap_used)] // A helper that cannot do its work fails its test.
 
 use std::fs::File;
-use std::io::Write;
+use std::io::{Read, Write};
 use std::path::Path;
 
 use rstest::rstest;
 use slipfront::communicator::Communicator;
 use slipfront::testing::Threads;
 use slipfront_case::arrays::write_mask_png;
-use slipfront_case::case::{Case, Ranks};
+use slipfront_case::case::{Case, Files, FilesInMemory, Ranks};
 use slipfront_case::case_file::{CaseError, CaseFile};
 
 const NX: usize = 11;
@@ -129,6 +129,90 @@ fn ranks_make_the_case_that_one_process_makes(#[case] text: &str) {
             assert_eq!(part.warnings(), alone.warnings());
             assert_eq!(part.expected, alone.expected);
             assert_eq!(part.budget.inputs, alone.budget.inputs);
+        }
+    }
+}
+
+/// What so many ranks make of the files of a folder, which each of them has in memory.
+fn make_in_memory(size: usize, text: &str, folder: &Path) -> Vec<Result<Case, CaseError>> {
+    let entries = std::fs::read_dir(folder).unwrap().map(Result::unwrap);
+    let contents = |entry: std::fs::DirEntry| {
+        let contents = std::fs::read(entry.path()).unwrap();
+        (entry.file_name().into_string().unwrap(), contents.into())
+    };
+    let in_memory: FilesInMemory = entries.map(contents).collect();
+    Threads::run(size, |communicator| {
+        let ranks = Ranks {
+            communicator,
+            on_node: size,
+        };
+        let files = Files {
+            folder: Path::new("nowhere"),
+            in_memory: Some(&in_memory),
+        };
+        let text = format!("slider.blocks = [{NX}, {NY}]\n{text}");
+        let file = CaseFile::parse(&text, "case.toml", &[])?;
+        Case::to_run_with(file, "case", files, &mut |_| true, ranks)
+    })
+}
+
+#[rstest]
+#[case::masks(
+    "texture = [{ shape = 'mask', file = 'mask.png' }, { shape = 'mask', file = 'mask.npy' }]\nload.pressure_field = 'mu.csv'"
+)]
+#[case::columns("friction = { mu_static_field = 'fortran.npy', mu_kinetic_field = 'mu.csv' }")]
+#[case::heights(
+    "texture = [{ shape = 'height_map', file = 'c.npy', height_unit = '1 um', pixel_size = '1 um', bearing_percent = 50 }]"
+)]
+fn files_in_memory_make_the_case_of_those_on_the_disk(#[case] text: &str) {
+    let folder = tempfile::tempdir().unwrap();
+    write_inputs(folder.path());
+    for size in [1, 3] {
+        let on_disk = make_on_ranks(size, text, folder.path());
+        let in_memory = make_in_memory(size, text, folder.path());
+        for (on_disk, in_memory) in on_disk.into_iter().zip(in_memory) {
+            let (on_disk, in_memory) = (on_disk.unwrap(), in_memory.unwrap());
+            assert_eq!(in_memory.model, on_disk.model);
+            assert_eq!(in_memory.file, on_disk.file);
+            assert_eq!(in_memory.budget, on_disk.budget);
+            let named = |case: &Case| {
+                let inputs = case.inputs.iter();
+                inputs
+                    .map(|input| (input.name.clone(), input.length, input.hash))
+                    .collect::<Vec<_>>()
+            };
+            assert_eq!(named(&in_memory), named(&on_disk));
+            for input in &in_memory.inputs {
+                let mut copy = Vec::new();
+                input.open().unwrap().read_to_end(&mut copy).unwrap();
+                assert_eq!(blake3::hash(&copy), input.hash);
+            }
+        }
+    }
+}
+
+#[rstest]
+#[case::value("friction.mu_static_field = 'negative.csv'", "`negative.csv` has -0.8")]
+#[case::image(
+    "texture = [{ shape = 'mask', file = 'cut.png' }]",
+    "`cut.png` is not a readable .png file: it ends before"
+)]
+#[case::missing(
+    "friction.mu_static_field = 'missing.npy'",
+    "cannot read `nowhere/missing.npy`"
+)]
+#[case::long(
+    "load.pressure_field = 'long.npy'",
+    "`long.npy` has 20000 bytes where 9 rows of 11 numbers take"
+)]
+fn files_in_memory_are_refused_in_the_same_sentences(#[case] text: &str, #[case] wanted: &str) {
+    let folder = tempfile::tempdir().unwrap();
+    write_inputs(folder.path());
+    std::fs::write(folder.path().join("long.npy"), [0; 20_000]).unwrap();
+    for size in [1, 3] {
+        for made in make_in_memory(size, text, folder.path()) {
+            let said = made.unwrap_err().to_string();
+            assert!(said.contains(wanted), "{said}");
         }
     }
 }

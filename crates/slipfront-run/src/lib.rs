@@ -4,7 +4,7 @@
 //! Case -> Record -> files -> pictures
 //! ```
 //!
-//! Each arrow is one function: [`running::run`], [`results::write`], `pictures::complete` (with the feature `plot`), which also writes the
+//! Each arrow is one function: [`running::run`], of which [`run_summary::run_summary`] gives the numbers alone, [`results::write`], `pictures::complete` (with the feature `plot`), which also writes the
 //! manifest.
 
 pub mod agree;
@@ -30,6 +30,7 @@ pub mod program;
 pub mod results;
 pub mod resume_command;
 pub mod run_folder;
+pub mod run_summary;
 pub mod running;
 pub mod series;
 pub mod summary;

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use slipfront::communicator::Communicator;
 use slipfront::observe::frames::{Selection, kept};
 use slipfront::observe::{
-    CurveRow, Frame, Frames, Instants, Kinetic, Kymograph, Precursors, Schedule, Scheduled,
+    CurveRow, Field, Frame, Frames, Instants, Kinetic, Kymograph, Precursors, Schedule, Scheduled,
 };
 use slipfront::{Checkpoint, Execution, Kernel, RunError, Simulation, Snapshot, State, StopReason};
 
@@ -102,6 +102,13 @@ fn on_useful_threads(case: &Case, execution: Execution) -> Execution {
     }
 }
 
+/// The instants A-F of a run of this case, with these fields of each; none of a run that keeps snapshots at times alone.
+pub(crate) fn instants_of(case: &Case, fields: Vec<Field>) -> Option<Instants> {
+    let (plan, stride) = (&case.time_plan, case.output.stride);
+    let has_instants = !matches!(case.output.snapshots, Snapshots::At(_));
+    has_instants.then(|| Instants::new(Selection { fields, stride }, plan.kinetic, plan.end_star()))
+}
+
 /// The fields of the output of a case, as the observers select them.
 fn selection(output: &Output) -> Selection {
     Selection {
@@ -113,17 +120,11 @@ fn selection(output: &Output) -> Selection {
 impl Observers {
     /// Those of a run that begins.
     fn new(case: &Case) -> Self {
-        let (time_plan, output) = (&case.time_plan, &case.output);
-        let selection = selection(output);
-        let instants = || Instants::new(selection.clone(), time_plan.kinetic, time_plan.end_star());
-        let (has_instants, has_times) = match output.snapshots {
-            Snapshots::Instants => (true, false),
-            Snapshots::At(_) => (false, true),
-            Snapshots::Every(_) => (true, true),
-        };
+        let output = &case.output;
+        let has_times = !matches!(output.snapshots, Snapshots::Instants);
         let fields = Fields {
-            instants: has_instants.then(|| Box::new(instants())),
-            frames: has_times.then(|| Frames::new(selection.clone())),
+            instants: instants_of(case, output.fields.clone()).map(Box::new),
+            frames: has_times.then(|| Frames::new(selection(output))),
         };
         Self {
             summary: SummaryObservers::new(case),
@@ -465,7 +466,7 @@ impl Running {
 }
 
 /// Adds what the first slips of all blocks tell of the front, if one has passed.
-fn add_front(
+pub(crate) fn add_front(
     numbers: &mut Summary,
     observers: &SummaryObservers,
     case: &Case,
@@ -514,7 +515,6 @@ fn lettered(instants: Vec<(char, Frame)>, frames: Vec<Frame>) -> Vec<(String, Fr
 #[cfg(test)]
 mod tests {
     use super::*;
-    use slipfront::observe::Field;
 
     /// What is known on the way becomes what the run leaves.
     #[test]

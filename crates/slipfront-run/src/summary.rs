@@ -312,10 +312,19 @@ pub(crate) struct SummaryObservers {
 }
 
 impl SummaryObservers {
-    /// Those of a run of at most `last_step` steps, [`u64::MAX`] for a run without an end.
+    /// Those of a run of this case.
     pub(crate) fn new(case: &Case) -> Self {
+        Self::with_rows_every(case.output.series_stride, case)
+    }
+
+    /// Those of a run of which the first and the last row of the curve alone are kept.
+    pub(crate) fn without_curve(case: &Case) -> Self {
+        Self::with_rows_every(u64::MAX, case)
+    }
+
+    fn with_rows_every(stride: u64, case: &Case) -> Self {
         Self {
-            curve: Curve::every(case.output.series_stride),
+            curve: Curve::every(stride),
             history: KineticHistory::new(case.time_plan.last_step),
             precursors: case.file.drive.edge().map(Precursors::new),
             cycles: case.model.drive.program.is_some().then(Cycles::default),

@@ -42,11 +42,14 @@ pub fn springs_on_a_lone_block(k_drive: f64) -> f64 {
     /// Waves along each axis, enough for four digits down to a tenth of [`K_DRIVE`].
     const WAVES: usize = 64;
     let wave = |n: usize| (n as f64 + 0.5) / WAVES as f64 * std::f64::consts::TAU;
+    // Every one stands in many terms of the sum.
+    let cosines: [f64; WAVES] = std::array::from_fn(|n| libm::cos(wave(n)));
+    let sines: [f64; WAVES] = std::array::from_fn(|n| libm::sin(wave(n)));
     let response = |n: usize| {
-        let [qx, qy] = [wave(n % WAVES), wave(n / WAVES)];
-        let both = 2.0 * K_DIAGONAL * (1.0 - libm::cos(qx) * libm::cos(qy));
-        let [xx, yy] = [qx, qy].map(|q| k_drive + 2.0 * K_STRAIGHT * (1.0 - libm::cos(q)) + both);
-        let xy = 2.0 * K_DIAGONAL * libm::sin(qx) * libm::sin(qy);
+        let (x, y) = (n % WAVES, n / WAVES);
+        let both = 2.0 * K_DIAGONAL * (1.0 - cosines[x] * cosines[y]);
+        let [xx, yy] = [x, y].map(|wave| k_drive + 2.0 * K_STRAIGHT * (1.0 - cosines[wave]) + both);
+        let xy = 2.0 * K_DIAGONAL * sines[x] * sines[y];
         yy / (xx * yy - xy * xy)
     };
     let n_waves = WAVES * WAVES;

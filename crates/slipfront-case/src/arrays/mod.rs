@@ -36,7 +36,16 @@ use error::{contents_error, unknown_extension};
 /// # Errors
 /// [`ArrayError`] if the file is missing, not a regular file, or longer than that lattice can need.
 pub fn open_file(path: &Path, nx: usize, ny: usize) -> Result<File, ArrayError> {
-    let (file, found) = open(path)?;
+    let (file, length) = open(path)?;
+    limit_length(path, length, nx, ny)?;
+    Ok(file)
+}
+
+/// Refuses a file that is longer than a lattice of `nx` x `ny` blocks can need.
+///
+/// # Errors
+/// [`ArrayError`] with both lengths.
+pub fn limit_length(path: &Path, found: u64, nx: usize, ny: usize) -> Result<(), ArrayError> {
     let blocks = (nx as u64).saturating_mul(ny as u64);
     let of_blocks = |head: u64, number: u64| Some(blocks.saturating_mul(number).saturating_add(head));
     // A `.npy` holds a header and 64 bits per block, a `.csv` numbers, separators and comments.
@@ -46,18 +55,18 @@ pub fn open_file(path: &Path, nx: usize, ny: usize) -> Result<File, ArrayError> 
         _ => None,
     };
     let longest = of_array.unwrap_or(pixels::FILE_MAX_BYTES);
-    if found > longest {
-        let (what, remedy) = match of_array {
-            Some(_) => (
-                format!("{ny} rows of {nx} numbers take"),
-                "write one number per block, or change `blocks`",
-            ),
-            None => ("an image takes".to_owned(), "scale it down"),
-        };
-        let problem = format!("has {found} bytes where {what} at most {longest}; {remedy}");
-        return Err(contents_error(path, problem));
+    if found <= longest {
+        return Ok(());
     }
-    Ok(file)
+    let (what, remedy) = match of_array {
+        Some(_) => (
+            format!("{ny} rows of {nx} numbers take"),
+            "write one number per block, or change `blocks`",
+        ),
+        None => ("an image takes".to_owned(), "scale it down"),
+    };
+    let problem = format!("has {found} bytes where {what} at most {longest}; {remedy}");
+    Err(contents_error(path, problem))
 }
 
 /// Opens a height map, which may have any number of points for a block.
@@ -65,13 +74,22 @@ pub fn open_file(path: &Path, nx: usize, ny: usize) -> Result<File, ArrayError> 
 /// # Errors
 /// [`ArrayError`] if the file is missing, not a regular file, or longer than 256 MiB.
 pub fn open_height_map(path: &Path) -> Result<File, ArrayError> {
-    let (file, found) = open(path)?;
+    let (file, length) = open(path)?;
+    limit_length_of_height_map(path, length)?;
+    Ok(file)
+}
+
+/// Refuses a height map that is longer than 256 MiB.
+///
+/// # Errors
+/// [`ArrayError`] with both lengths.
+pub fn limit_length_of_height_map(path: &Path, found: u64) -> Result<(), ArrayError> {
     let longest = pixels::FILE_MAX_BYTES;
     if found > longest {
         let problem = format!("has {found} bytes where a height map takes at most {longest}; scale it down");
         return Err(contents_error(path, problem));
     }
-    Ok(file)
+    Ok(())
 }
 
 /// Opens a regular file, and tells its length in bytes.

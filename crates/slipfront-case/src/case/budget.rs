@@ -20,8 +20,8 @@ const HEAP: f64 = 1.05;
 /// The program itself.
 pub const PROGRAM: f64 = 8.0 * 1024.0 * 1024.0;
 
-/// Cases whose making takes less are not compared with the machine.
-const SMALL: f64 = 64.0 * 1024.0 * 1024.0;
+/// What takes less memory is not compared with the machine: to ask what it has takes longer than to make a small case.
+pub const SMALL: f64 = 64.0 * 1024.0 * 1024.0;
 
 /// Memory that a case takes while it is made and stepped.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -161,9 +161,16 @@ impl Budget {
 
     /// Refuses a case that cannot be stepped, or not even be made.
     pub(super) fn check_running(&self, file: &CaseFile) -> Result<(), CaseError> {
-        let most = (self.cause_of_blocks(), self.stepping());
-        let demand = self.demand(file, "a run of this case", most, self.stepping());
-        self.compare(demand, available_memory())?;
+        let stepping = self.stepping();
+        if self.ranks_on_node * stepping >= SMALL {
+            let demand = self.demand(
+                file,
+                "a run of this case",
+                (self.cause_of_blocks(), stepping),
+                stepping,
+            );
+            self.compare(demand, available_memory())?;
+        }
         self.check_making(file)
     }
 

@@ -1,16 +1,18 @@
 //! Files that a case reads.
 
 use std::collections::HashMap;
-use std::fs::File;
-use std::io::BufReader;
+use std::io::{self, BufReader};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use blake3::Hasher;
 use slipfront::{Communicator, Lattice};
 
+use super::files::{Files, Opened};
 use super::ranks::Ranks;
 use crate::arrays::{self, ArrayError, Slab};
 use crate::case_file::{CaseError, CaseFile, FileUse};
+use crate::disk::open_regular;
 use crate::machine::machine_number;
 use crate::same::{Given, expect_same, of_all, words_of};
 use crate::text::{display_path, single_line};
@@ -23,13 +25,28 @@ pub type Watch<'a> = dyn FnMut(f64) -> bool + 'a;
 pub struct Input {
     /// Path of its copy in the run folder.
     pub name: String,
-    /// Path that it is read from.
+    /// Path that it is read from, or its name if it is in memory.
     pub original: PathBuf,
+    /// Its contents, if they are in memory.
+    pub contents: Option<Arc<[u8]>>,
     /// Its length in bytes.
     pub length: u64,
     /// Hash of its contents, taken before the case was made of them: a copy that is made afterwards and has the same one holds
     /// what the case was made of.
     pub hash: blake3::Hash,
+}
+
+impl Input {
+    /// Opens it to be copied.
+    ///
+    /// # Errors
+    /// When it is on the disk and is no regular file that can be read.
+    pub fn open(&self) -> io::Result<Opened> {
+        match &self.contents {
+            Some(contents) => Ok(Opened::in_memory(contents)),
+            None => open_regular(&self.original).map(Opened::OnDisk),
+        }
+    }
 }
 
 /// Names the copy of a file in the folder `inputs/` after its plain name; files of one name and different contents are
@@ -57,25 +74,38 @@ struct FoundFile {
     key: String,
     holds: FileUse,
     original: PathBuf,
+    /// Its contents, if they are in memory.
+    contents: Option<Arc<[u8]>>,
     /// What changes when the file does, or is another one.
     stamp: String,
 }
 
-/// Files that a case names, relative to a folder, as they are before any of them is read.
+/// Files that a case names, as they are before any of them is read.
 pub(super) struct NamedFiles(Vec<FoundFile>);
 
 impl NamedFiles {
     /// Finds the files, and opens none.
-    pub(super) fn find(file: &mut CaseFile, folder: &Path) -> Result<Self, CaseError> {
-        let (files, source) = file.files_mut();
-        let found = files.map(|named| {
-            let original = folder.join(&*named.name);
-            let stamp = stamp(&original).map_err(|error| source.error(&named.key, error.to_string()))?;
+    pub(super) fn find(file: &mut CaseFile, files: Files) -> Result<Self, CaseError> {
+        let (named, source) = file.files_mut();
+        let found = named.map(|named| {
+            let contents = files.in_memory.and_then(|in_memory| in_memory.get(&*named.name));
+            let (original, stamp) = match contents {
+                Some(contents) => (
+                    PathBuf::from(&*named.name),
+                    Ok(blake3::hash(contents).to_string()),
+                ),
+                None => {
+                    let original = files.folder.join(&*named.name);
+                    let stamp = stamp(&original);
+                    (original, stamp)
+                }
+            };
             Ok(FoundFile {
+                stamp: stamp.map_err(|error| source.error(&named.key, error.to_string()))?,
                 key: named.key,
                 holds: named.holds,
                 original,
-                stamp,
+                contents: contents.cloned(),
             })
         });
         found.collect::<Result<_, _>>().map(Self)
@@ -122,10 +152,12 @@ impl NamedFiles {
             if let Some(digest) = known.get(&**original) {
                 return Ok(*digest);
             }
-            let opened = match found.holds {
-                FileUse::Blocks => arrays::open_file(original, lattice.nx, lattice.ny),
-                FileUse::HeightMap => arrays::open_height_map(original),
-            };
+            let opened = open(
+                original,
+                found.contents.as_ref(),
+                found.holds,
+                [lattice.nx, lattice.ny],
+            );
             let digest = opened.and_then(|opened| digest(original, opened));
             let digest = digest.map_err(|error| placed(file, &found.key, error))?;
             known.insert(original, digest);
@@ -169,6 +201,7 @@ impl NamedFiles {
                 inputs.push(Input {
                     name,
                     original: found.original.clone(),
+                    contents: found.contents.clone(),
                     length: *length,
                     hash: *hash,
                 });
@@ -179,7 +212,7 @@ impl NamedFiles {
 
     /// Fails if a file has changed since it was found: what was read of it afterwards need not be what was hashed.
     pub(super) fn expect_unchanged(&self, file: &CaseFile) -> Result<(), CaseError> {
-        for found in &self.0 {
+        for found in self.0.iter().filter(|found| found.contents.is_none()) {
             let now = stamp(&found.original).map_err(|error| placed(file, &found.key, error))?;
             if now != found.stamp {
                 let sentence = format!(
@@ -233,7 +266,29 @@ fn hash_of_words(words: [i64; 4]) -> blake3::Hash {
     blake3::Hash::from_bytes(bytes)
 }
 
-fn digest(path: &Path, file: File) -> Result<Digest, ArrayError> {
+/// Opens a file that is in memory or on the disk, and is read as what it holds for a lattice of so many columns and rows.
+fn open(
+    original: &Path,
+    contents: Option<&Arc<[u8]>>,
+    holds: FileUse,
+    [nx, ny]: [usize; 2],
+) -> Result<Opened, ArrayError> {
+    let Some(contents) = contents else {
+        let file = match holds {
+            FileUse::Blocks => arrays::open_file(original, nx, ny),
+            FileUse::HeightMap => arrays::open_height_map(original),
+        };
+        return file.map(Opened::OnDisk);
+    };
+    let length = contents.len() as u64;
+    match holds {
+        FileUse::Blocks => arrays::limit_length(original, length, nx, ny)?,
+        FileUse::HeightMap => arrays::limit_length_of_height_map(original, length)?,
+    }
+    Ok(Opened::in_memory(contents))
+}
+
+fn digest(path: &Path, file: Opened) -> Result<Digest, ArrayError> {
     let mut hasher = Hasher::new();
     hasher.update_reader(file).map_err(|source| ArrayError::Read {
         path: path.to_owned(),
@@ -249,17 +304,19 @@ pub(super) struct Inputs {
 }
 
 impl Inputs {
-    /// Reads the file that has this name in the case, which `key` gives it.
-    pub(super) fn read<T>(
+    /// Reads the file that has this name in the case, which `key` gives it, as what it `holds`.
+    fn read<T>(
         &self,
         file: &CaseFile,
-        key: &str,
-        name: &str,
-        read: impl FnOnce(&Path, &mut BufReader<File>) -> Result<T, ArrayError>,
+        (key, name): (&str, &str),
+        holds: FileUse,
+        read: impl FnOnce(&Path, &mut BufReader<Opened>) -> Result<T, ArrayError>,
     ) -> Result<T, CaseError> {
         let Slab { nx, ny, .. } = self.slab;
-        let original = self.original(name);
-        let opened = arrays::open_file(original, nx, ny);
+        let input = self.files.iter().find(|input| input.name == name);
+        let original = input.map_or(Path::new(name), |input| &input.original);
+        let contents = input.and_then(|input| input.contents.as_ref());
+        let opened = open(original, contents, holds, [nx, ny]);
         let read = opened.and_then(|opened| read(original, &mut BufReader::new(opened)));
         read.map_err(|error| placed(file, key, error))
     }
@@ -274,7 +331,7 @@ impl Inputs {
         slab: &Slab,
         watch: &mut Watch,
     ) -> Result<Vec<bool>, CaseError> {
-        self.read(file, key, name, |path, source| {
+        self.read(file, (key, name), FileUse::Blocks, |path, source| {
             if is_array(path) {
                 arrays::mask_npy(path, source, slab)
             } else {
@@ -291,18 +348,9 @@ impl Inputs {
         file: &CaseFile,
         key: &str,
         name: &str,
-        read: impl FnOnce(&Path, &mut BufReader<File>) -> Result<T, ArrayError>,
+        read: impl FnOnce(&Path, &mut BufReader<Opened>) -> Result<T, ArrayError>,
     ) -> Result<T, CaseError> {
-        let original = self.original(name);
-        let opened = arrays::open_height_map(original);
-        let read = opened.and_then(|opened| read(original, &mut BufReader::new(opened)));
-        read.map_err(|error| placed(file, key, error))
-    }
-
-    /// The path of the file that has this name in the case.
-    fn original<'a>(&'a self, name: &'a str) -> &'a Path {
-        let input = self.files.iter().find(|input| input.name == name);
-        input.map_or(Path::new(name), |input| &input.original)
+        self.read(file, (key, name), FileUse::HeightMap, read)
     }
 
     /// Reads a number of every block from the file of this name, if the case names one.
@@ -313,7 +361,7 @@ impl Inputs {
         name: &Option<String>,
     ) -> Result<Option<Vec<f64>>, CaseError> {
         let read = |name: &String| {
-            self.read(file, key, name, |path, source| {
+            self.read(file, (key, name), FileUse::Blocks, |path, source| {
                 arrays::field(path, source, &self.slab)
             })
         };

@@ -5,6 +5,7 @@ mod coarse;
 mod coefficients;
 mod derived;
 mod drive;
+mod files;
 mod groups;
 mod inputs;
 mod lengths;
@@ -21,8 +22,9 @@ mod topography;
 mod warnings;
 mod whole_slider;
 
-pub use self::budget::{Budget, Cause, Demand, PROGRAM};
+pub use self::budget::{Budget, Cause, Demand, PROGRAM, SMALL};
 pub use self::derived::scales;
+pub use self::files::{Files, FilesInMemory, Opened};
 pub use self::groups::Groups;
 pub use self::inputs::{Input, Watch, name_of_copy};
 pub use self::lengths::CaseLength;

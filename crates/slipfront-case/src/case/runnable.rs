@@ -10,6 +10,7 @@ use super::budget::Budget;
 use super::coefficients::correlated_field;
 use super::derived::Derived;
 use super::drive::{program, refuse_endless_slip, refuse_large_angles};
+use super::files::{Files, FilesInMemory};
 use super::groups::Groups;
 use super::inputs::{Input, Inputs, NamedFiles, Watch};
 use super::model::{self, TextureReport};
@@ -82,12 +83,24 @@ impl Case {
         watch: &mut Watch,
         ranks: Ranks,
     ) -> Result<Self, CaseError> {
+        Self::load_with(path, overrides, None, watch, ranks)
+    }
+
+    /// Loads a case file as [`load`](Self::load) does; of the files that it or an override names, some may be in memory.
+    pub fn load_with(
+        path: &Path,
+        overrides: &[String],
+        in_memory: Option<&FilesInMemory>,
+        watch: &mut Watch,
+        ranks: Ranks,
+    ) -> Result<Self, CaseError> {
         let file = ranks.agree(CaseFile::load(path, overrides))?;
         let name = path
             .file_stem()
             .map_or_else(|| "case".to_owned(), |stem| stem.to_string_lossy().into_owned());
         let folder = path.parent().unwrap_or(Path::new(""));
-        Self::to_run(file, &name, folder, watch, ranks)
+        let files = Files { folder, in_memory };
+        Self::to_run_with(file, &name, files, watch, ranks)
     }
 
     /// Makes a case of text alone, as [`load`](Self::load) does; the files it names stand relative to `folder`.
@@ -111,7 +124,33 @@ impl Case {
         watch: &mut Watch,
         ranks: Ranks,
     ) -> Result<Self, CaseError> {
-        Self::make(file, name, folder, true, watch, ranks)
+        Self::to_run_with(file, name, folder.into(), watch, ranks)
+    }
+
+    /// Makes a case as [`to_run`](Self::to_run) does, of which files may be in memory.
+    ///
+    /// ```
+    /// use std::path::Path;
+    /// use slipfront_case::case::{Case, Files, FilesInMemory, Ranks};
+    /// use slipfront_case::case_file::CaseFile;
+    /// let text = "slider.blocks = [2, 2]\ntexture = [{ shape = 'mask', file = 'drawn.npy' }]";
+    /// let header = "{'descr': '|b1', 'fortran_order': False, 'shape': (2, 2)}";
+    /// let drawn = [&b"\x93NUMPY\x01\x00"[..], &[header.len() as u8, 0], header.as_bytes(), &[1, 0, 0, 0]].concat();
+    /// let in_memory = FilesInMemory::from([("drawn.npy".to_owned(), drawn.into())]);
+    /// let files = Files { folder: Path::new(""), in_memory: Some(&in_memory) };
+    /// let file = CaseFile::parse(text, "case", &[])?;
+    /// let case = Case::to_run_with(file, "case", files, &mut |_| true, Ranks::ALONE)?;
+    /// assert_eq!(case.model.surface.textured, [true, false, false, false]);
+    /// # Ok::<(), slipfront_case::case_file::CaseError>(())
+    /// ```
+    pub fn to_run_with(
+        file: CaseFile,
+        name: &str,
+        files: Files,
+        watch: &mut Watch,
+        ranks: Ranks,
+    ) -> Result<Self, CaseError> {
+        Self::make(file, name, files, true, watch, ranks)
     }
 
     /// Makes a case of a case file on all `ranks` at once; the files it names stand relative to `folder`. The memory in
@@ -123,14 +162,14 @@ impl Case {
         watch: &mut Watch,
         ranks: Ranks,
     ) -> Result<Self, CaseError> {
-        Self::make(file, name, folder, false, watch, ranks)
+        Self::make(file, name, folder.into(), false, watch, ranks)
     }
 
     /// The file, what follows from it alone, what it reads, the model, the steps.
     fn make(
         mut file: CaseFile,
         name: &str,
-        folder: &Path,
+        files: Files,
         to_run: bool,
         watch: &mut Watch,
         ranks: Ranks,
@@ -141,7 +180,7 @@ impl Case {
         let rows = lattice.rows_of(ranks.communicator);
         // Nothing is allocated before all ranks have looked at the memory that they share.
         let derived = Derived::of(&file, &lattice, &rows, &ranks, to_run)
-            .and_then(|derived| Ok((derived, NamedFiles::find(&mut file, folder)?)));
+            .and_then(|derived| Ok((derived, NamedFiles::find(&mut file, files)?)));
         let (mut derived, named) = ranks.agree(derived)?;
         let inputs = Inputs {
             files: named.read(&mut file, &lattice, &ranks)?,

@@ -16,7 +16,7 @@ use std::path::{Path, PathBuf};
 use slipfront::Communicator;
 use slipfront::communicator::text_of;
 use slipfront_case::case::{Case, Input};
-use slipfront_case::disk::{found_at, found_behind, make_folders, open_regular, sync_folder, write_temp};
+use slipfront_case::disk::{found_at, found_behind, make_folders, sync_folder, write_temp};
 use slipfront_case::text::display_path;
 use slipfront_case::unfinished::clear_unfinished;
 use tempfile::TempPath;
@@ -293,7 +293,7 @@ impl RunFolder {
             to: path.clone(),
             source,
         };
-        let mut original = open_regular(&input.original).map_err(failed)?;
+        let mut original = input.open().map_err(failed)?;
         let file = write_temp(&self.temporary(), |to| std::io::copy(&mut original, to).map(drop));
         let file = file.map_err(failed)?;
         let copied = hash_temp(&file, &input.name).map_err(FolderError::write(&path))?;

@@ -105,7 +105,7 @@ impl Coefficients {
     /// in contact.
     pub(super) fn restrict(&mut self, textured: &[bool]) -> usize {
         let restrict = |coefficients: &mut [f64]| -> usize {
-            let pairs = coefficients.par_iter_mut().zip(textured);
+            let pairs = coefficients.par_iter_mut().with_min_len(PART).zip(textured);
             let is_negative = |(coefficient, &textured): (&mut f64, &bool)| {
                 let is_negative = *coefficient < 0.0;
                 if is_negative || textured {
@@ -122,8 +122,8 @@ impl Coefficients {
 /// Most blocks whose standard normals are kept. Those of more are drawn on several threads.
 const MAX_KEPT: usize = 10_000;
 
-/// Blocks for which a thread draws at once: some tenths of a millisecond of work.
-const PART: usize = 1 << 13;
+/// Blocks for which a thread draws at once: some tenths of a millisecond of work. Fewer are not worth waking a thread.
+pub(super) const PART: usize = 1 << 13;
 
 /// Standard normals, with the seed and the blocks that they are drawn for.
 type Kept = (u64, Range<usize>, Vec<f64>);

@@ -29,6 +29,7 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
+use self::coefficients::PART;
 use self::whole::Whole;
 use crate::communicator::{Alone, Communicator};
 use crate::error::SurfaceError;
@@ -115,7 +116,8 @@ impl Surface {
             whole,
             min_slip_threshold: f64::NAN,
         };
-        let in_contact = (0..n).into_par_iter().filter(|&b| !surface.textured[b]);
+        let blocks = (0..n).into_par_iter().with_min_len(PART);
+        let in_contact = blocks.filter(|&b| !surface.textured[b]);
         let thresholds = in_contact
             .map(|b| surface.static_limit(b).max(surface.kinetic_force(b)) / slider.drive_spring(b));
         let mut largest_negative = [-thresholds.reduce(|| f64::INFINITY, f64::min)];

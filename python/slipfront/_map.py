@@ -1,0 +1,66 @@
+"""Many small runs in one call."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Iterable, Mapping
+from typing import Any, TypeAlias
+
+from . import _slipfront
+from ._case import Case, CaseError
+from ._simulation import _threads
+
+CaseLike: TypeAlias = Case | Mapping[str, Any] | str | os.PathLike[str]
+"""A case, its tables as `Case.from_dict` takes them, or the path of a case file."""
+
+
+def map(cases: Iterable[CaseLike], threads: int | None = None) -> list[dict[str, Any]]:
+    """Run cases, and give the numbers of each.
+
+    Every run has one thread, and ends where its `time.stop` says. No file is written. All cases are in memory until the last run ends, and
+    of each run its numbers alone: `run` gives the curve and the fields of one of them. Other threads of Python go on meanwhile. Ctrl-C ends
+    it with a `KeyboardInterrupt`.
+
+    Parameters
+    ----------
+    cases
+        Cases, dictionaries, or paths of case files.
+    threads
+        Runs at once, one per core unless given. Results do not depend on it.
+
+    Returns
+    -------
+    list of dict
+        `Run.summary` of every case, in their order and to the last bit.
+
+    Raises
+    ------
+    CaseError
+        When one of them is no case, before any is run; the message begins with its place in the list, from 0.
+    RunError
+        When a run diverges; the message begins with the place of the first one that does.
+
+    Examples
+    --------
+    >>> base = Case.from_dict({"slider": {"blocks": [10, 10]}, "time": {"stop": "after_onset"}})
+    >>> found = map(base.replace({"friction.seed": seed}) for seed in (1, 2))
+    >>> [round(numbers["static_friction_star"], 3) for numbers in found]
+    [0.912, 0.878]
+    """
+    made = [_made(index, given) for index, given in enumerate(cases)]
+    summaries = _slipfront.run_summaries([case._native for case in made], _threads(threads))
+    return [json.loads(summary) for summary in summaries]
+
+
+def _made(index: int, given: CaseLike) -> Case:
+    try:
+        if isinstance(given, Case):
+            return given
+        if isinstance(given, Mapping):
+            return Case.from_dict(given)
+        return Case.load(given)
+    except CaseError as error:
+        told = CaseError(f"case {index}: {error}")
+        told.line, told.column = error.line, error.column
+        raise told from error

@@ -1,0 +1,72 @@
+//! Many runs at once, of which the numbers alone are kept.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::mpsc::{self, RecvTimeoutError};
+
+use pyo3::exceptions::PyRuntimeError;
+use pyo3::prelude::*;
+use rayon::prelude::*;
+use slipfront_case::case::Case as SlipfrontCase;
+use slipfront_run::run_summary::run_summary_unless;
+use slipfront_run::summary::summary_json;
+
+use crate::case::{Case, LOOK_EVERY};
+use crate::errors::{RunError, folder_error};
+use crate::process::detached;
+
+/// Runs cases, one on each thread at a time, and gives `summary.json` of each in their order. A signal ends all of them. A run that
+/// diverges ends those after it, so that it is always the first one that is told of.
+#[pyfunction]
+pub(crate) fn run_summaries(
+    py: Python<'_>,
+    cases: Vec<Bound<'_, Case>>,
+    threads: usize,
+) -> PyResult<Vec<String>> {
+    let cases: Vec<Arc<SlipfrontCase>> = cases.iter().map(|case| Arc::clone(&case.get().0)).collect();
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+    let pool = pool.map_err(folder_error)?;
+    let (stop, first_diverged) = (AtomicBool::new(false), AtomicUsize::new(usize::MAX));
+    let run = |index: usize| {
+        let ends = || stop.load(Ordering::Relaxed) || first_diverged.load(Ordering::Relaxed) < index;
+        let ended = run_summary_unless(&cases[index], &ends)?;
+        if ended.is_err() {
+            first_diverged.fetch_min(index, Ordering::Relaxed);
+        }
+        Some(ended.map(|summary| summary_json(&summary)))
+    };
+    let runs = (0..cases.len()).into_par_iter().with_max_len(1).map(run);
+    let mut signal = None;
+    let look = || {
+        signal = signal
+            .take()
+            .or_else(|| Python::attach(|py| py.check_signals().err()));
+        stop.store(signal.is_some(), Ordering::Relaxed);
+    };
+    let ended: Option<Vec<_>> = detached(py, || watched(|| pool.install(|| runs.collect()), look))?;
+    if let Some(signal) = signal {
+        return Err(signal);
+    }
+    let ended = ended.ok_or_else(|| PyRuntimeError::new_err("a fault of the program ended the runs"))?;
+    let named = ended.into_iter().zip(&cases).enumerate();
+    let summaries = named.filter_map(|(index, (ended, case))| {
+        let told = |error| RunError::new_err(format!("case {index} ({}): {error}", case.name));
+        Some(ended?.map_err(told))
+    });
+    summaries.collect()
+}
+
+/// Does this work on another thread, and looks for signals on this one, to which they come; none if the work panicked.
+fn watched<T: Send>(work: impl FnOnce() -> T + Send, mut look: impl FnMut()) -> Option<T> {
+    std::thread::scope(|scope| {
+        let (done, result) = mpsc::channel();
+        let worker = scope.spawn(move || done.send(work()).is_ok());
+        loop {
+            match result.recv_timeout(LOOK_EVERY) {
+                Ok(found) => return Some(found),
+                Err(RecvTimeoutError::Timeout) => look(),
+                Err(RecvTimeoutError::Disconnected) => return worker.join().err().and(None),
+            }
+        }
+    })
+}
