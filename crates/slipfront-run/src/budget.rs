@@ -8,7 +8,7 @@ use std::ops::Range;
 use std::path::Path;
 
 use slipfront::observe::{CurveRow, Frame, KineticHistory, Kymograph, Precursors, SlipEvent, frames};
-use slipfront_case::case::{Budget, Case, Cause, Demand, PROGRAM, SMALL};
+use slipfront_case::case::{Budget, Case, Cause, Demand, PROGRAM};
 use slipfront_case::case_file::{CaseError, CaseFile};
 use slipfront_case::machine::{available_memory, free_disk};
 use slipfront_case::number_format::{byte_size, count};
@@ -278,9 +278,6 @@ impl RunBudget {
     /// # Errors
     /// A sentence with both figures, what most of it is for, and the key to change.
     pub fn check_memory(&self, file: &CaseFile) -> Result<(), CaseError> {
-        if self.on_node(self.largest(true)) < SMALL {
-            return Ok(());
-        }
         let made = self.case.blocks * self.case.surface;
         self.compare_memory(file, made, available_memory())
     }

@@ -20,8 +20,9 @@ const HEAP: f64 = 1.05;
 /// The program itself.
 pub const PROGRAM: f64 = 8.0 * 1024.0 * 1024.0;
 
-/// What takes less memory is not compared with the machine: to ask what it has takes longer than to make a small case.
-pub const SMALL: f64 = 64.0 * 1024.0 * 1024.0;
+/// Cases that take less memory are not compared with the machine: to ask what it has takes longer than to make a small one. Commands compare all
+/// that a run takes.
+const SMALL: f64 = 64.0 * 1024.0 * 1024.0;
 
 /// Memory that a case takes while it is made and stepped.
 #[derive(Clone, Copy, Debug, PartialEq)]

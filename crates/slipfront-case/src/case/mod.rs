@@ -22,7 +22,7 @@ mod topography;
 mod warnings;
 mod whole_slider;
 
-pub use self::budget::{Budget, Cause, Demand, PROGRAM, SMALL};
+pub use self::budget::{Budget, Cause, Demand, PROGRAM};
 pub use self::derived::scales;
 pub use self::files::{Files, FilesInMemory, Opened};
 pub use self::groups::Groups;
