@@ -20,6 +20,7 @@ has() { grep -qw "$1" /proc/cpuinfo; }
 if has avx512f; then width=AVX-512; elif has avx2; then width=AVX2; else width="no AVX2"; fi
 name=${1:-"$(field 'model name'), family $(field 'cpu family'), model $(field model), $width"}
 
+rounds=3
 work=$PWD/target/machine
 rm -rf "$work"
 mkdir -p "$work"
@@ -29,10 +30,10 @@ say() { printf '%s\n' "$@" >> "$section"; }
 table() { awk -F '\t' '{ gsub("\t", " | "); print "| " $0 " |" } NR == 1 { gsub("[^|]+", "---"); print "|" $0 "|" }' >> "$section"; }
 busy() { awk '/^cpu / { print $2 + $3 + $4 + $7 + $8 + $9 }' /proc/stat; }
 own() { awk '{ print $14 + $15 + $16 + $17 }' "/proc/$$/stat"; }
-# Least of the wall times of three times a command, in seconds.
-best_of_three() {
+# Least of the wall times of a command that is run some times, in seconds.
+best_of() {
   local TIMEFORMAT=%R
-  for _ in 1 2 3; do
+  for ((round = 0; round < rounds; round++)); do
     rm -rf "$work/out"
     { time "$@" > "$work/stdout" 2> "$work/stderr" || { cat "$work/stderr" >&2; exit 1; } } 2>&1
   done | sort -n | head -1
@@ -102,10 +103,10 @@ say "**Whole commands**, wall time in seconds, best of three." ""
 printf '[base.slider]\nblocks = [25, 25]\n[study]\nreplicates = 1000\n' > "$work/study.toml"
 {
   printf 'command\tseconds\n'
-  printf '`slipfront run`\t%s\n' "$(best_of_three "$slipfront" run --quiet -o "$work/out")"
-  printf '`slipfront run --no-pictures`\t%s\n' "$(best_of_three "$slipfront" run --no-pictures --quiet -o "$work/out")"
-  printf 'study of 1000 runs of the baseline\t%s\n' "$(best_of_three "$slipfront" study --quiet "$work/study.toml" -o "$work/out")"
-  printf '`slipfront paper`\t%s\n' "$(best_of_three "$slipfront" paper --quiet -o "$work/out")"
+  printf '`slipfront run`\t%s\n' "$(best_of "$slipfront" run --quiet -o "$work/out")"
+  printf '`slipfront run --no-pictures`\t%s\n' "$(best_of "$slipfront" run --no-pictures --quiet -o "$work/out")"
+  printf 'study of 1000 runs of the baseline\t%s\n' "$(best_of "$slipfront" study --quiet "$work/study.toml" -o "$work/out")"
+  printf '`slipfront paper`, once\t%s\n' "$(rounds=1 best_of "$slipfront" paper --quiet -o "$work/out")"
 } | table
 say ""
 
@@ -121,11 +122,11 @@ duration_star = 24
 [output]
 snapshots = []
 END
-  ranks() { best_of_three mpirun --allow-run-as-root --oversubscribe -n "$1" target/release/slipfront-mpi run "$work/ranks.toml" --quiet -o "$work/out"; }
+  ranks() { best_of mpirun --allow-run-as-root --oversubscribe -n "$1" target/release/slipfront-mpi run "$work/ranks.toml" --quiet -o "$work/out"; }
   {
     printf 'way\tseconds\n'
-    printf 'one thread\t%s\n' "$(best_of_three "$slipfront" run "$work/ranks.toml" --threads 1 --quiet -o "$work/out")"
-    printf 'two threads\t%s\n' "$(best_of_three "$slipfront" run "$work/ranks.toml" --threads 2 --quiet -o "$work/out")"
+    printf 'one thread\t%s\n' "$(best_of "$slipfront" run "$work/ranks.toml" --threads 1 --quiet -o "$work/out")"
+    printf 'two threads\t%s\n' "$(best_of "$slipfront" run "$work/ranks.toml" --threads 2 --quiet -o "$work/out")"
     printf 'one rank\t%s\n' "$(ranks 1)"
     printf 'two ranks\t%s\n' "$(ranks 2)"
   } | table
