@@ -4,7 +4,8 @@
 #     benches/against.sh [-r ROUNDS] [-c COMMIT] [WHAT...]
 #
 # WHAT: step, run, study, paper, family; the first three unless told. Each is made by both programs alternately, ROUNDS times, 5 unless told;
-# the medians of the wall times and of the processor times, and the ratios of these, are printed. COMMIT is the one in benches/against.txt
+# the medians of the wall times, and the ratios of these, of the least wall times and of the processor times, are printed: where they differ by
+# much, the machine was busy. COMMIT is the one in benches/against.txt
 # unless told: the last before the work on speed that is under way. It is built in target/against. The machine should have nothing else to do.
 set -euo pipefail
 export LC_ALL=C
@@ -86,8 +87,10 @@ found = collections.defaultdict(lambda: collections.defaultdict(list))
 for line in open(sys.argv[1]):
     name, which, wall, processor = line.rstrip("\n").split("\t")
     found[name][which].append((float(wall), float(processor)))
-print("| | before | now | ratio | ratio of processor times |\n|---|---|---|---|---|")
+print("| | before | now | ratio | of the least | of processor times |\n|---|---|---|---|---|---|")
 for name, times in found.items():
-    wall, processor = ([statistics.median(t[k] for t in times[which]) for which in ("before", "now")] for k in (0, 1))
-    print(f"| {name} | {wall[0]:.3f} | {wall[1]:.3f} | {wall[1] / wall[0]:.2f} | {processor[1] / processor[0]:.2f} |")
+    of = lambda statistic, k: [statistic(t[k] for t in times[which]) for which in ("before", "now")]
+    wall, least, processor = of(statistics.median, 0), of(min, 0), of(statistics.median, 1)
+    ratios = " | ".join(f"{now / before:.2f}" for before, now in (wall, least, processor))
+    print(f"| {name} | {wall[0]:.3f} | {wall[1]:.3f} | {ratios} |")
 END
