@@ -81,8 +81,8 @@ int main(int count, char **arguments) {
   double each = best(multiply_and_add, 100000) / cycle;
   double roots = best(root_and_quotient, 20000) / cycle;
   double cycles = operations * each + roots;
-  printf("%.2f GHz; %d numbers in a vector, %.1f operations a cycle; root and division of eight numbers %.0f cycles\n", 1e-9 / cycle, LANES,
+  printf("%.2f GHz; %d numbers in a vector, %.1f operations a cycle; root and division of eight numbers %.0f cycles.\n", 1e-9 / cycle, LANES,
          1 / each, roots);
-  printf("%s operations on eight numbers: at least %.0f cycles for eight blocks, %.2f ns a block\n", arguments[1], cycles,
+  printf("%s operations on eight numbers: at least %.0f cycles for eight blocks, %.2f ns a block.\n", arguments[1], cycles,
          cycles * cycle * 1e9 / 8);
 }

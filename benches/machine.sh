@@ -49,7 +49,7 @@ say "$cores processors of this kind; $(rustc --version), $(uname -sm). Measured 
 
 if command -v gcc > /dev/null && { has avx || has avx512f; }; then
   gcc -std=gnu11 -O2 -march=native -o "$work/bound" benches/bound.c
-  say "**Bound.** $("$work/bound" "$OPERATIONS" | tr '\n' ' ')" ""
+  say "**Bound.** $("$work/bound" "$OPERATIONS" | paste -s -d ' ')" ""
 else
   say "**Bound.** Not measured: it takes gcc, and a processor with AVX." ""
 fi
