@@ -10,8 +10,8 @@
 set -euo pipefail
 export LC_ALL=C
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
-# shellcheck source=benches/surface.sh
-source benches/surface.sh
+# shellcheck source=benches/common.sh
+source benches/common.sh
 
 rounds=5
 commit=$(cat benches/against.txt)

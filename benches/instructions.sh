@@ -20,8 +20,8 @@ cargo build --quiet --release --locked -p slipfront --example step_cost
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
-# shellcheck source=benches/surface.sh
-source benches/surface.sh
+# shellcheck source=benches/common.sh
+source benches/common.sh
 
 instructions() { # SIZE STEPS FLAG...
   local size=$1 steps=$2

@@ -10,6 +10,8 @@
 set -euo pipefail
 export LC_ALL=C
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
+# shellcheck source=benches/common.sh
+source benches/common.sh
 
 page=docs/performance.md
 # Vector operations of eight numbers in a step of eight blocks, square root and division aside: docs/performance.md counts them.
@@ -28,7 +30,6 @@ section=$work/section.md
 say() { printf '%s\n' "$@" >> "$section"; }
 # A table in Markdown of lines whose columns a tab separates.
 table() { awk -F '\t' '{ gsub("\t", " | "); print "| " $0 " |" } NR == 1 { gsub("[^|]+", "---"); print "|" $0 "|" }' >> "$section"; }
-busy() { awk '/^cpu / { print $2 + $3 + $4 + $7 + $8 + $9 }' /proc/stat; }
 own() { awk '{ print $14 + $15 + $16 + $17 }' "/proc/$$/stat"; }
 # Least of the wall times of a command that is run some times, in seconds.
 best_of() {

@@ -11,6 +11,8 @@
 
 set -euo pipefail
 export LC_ALL=C
+# shellcheck source=benches/common.sh
+source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 slipfront=$(realpath "${1:-$(dirname "$0")/../target/release/slipfront}")
 work=$(mktemp -d)
@@ -31,8 +33,6 @@ seconds() { # of one study, and of the processor time it took
   local TIMEFORMAT='%R %U %S'
   { time "$slipfront" study study.toml --quiet --threads "$1" -o out; } 2>&1
 }
-
-busy() { awk '/^cpu / { print $2 + $3 + $4 + $7 + $8 + $9 }' /proc/stat; }
 
 before=$(busy)
 began=$(date +%s.%N)

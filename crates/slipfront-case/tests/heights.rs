@@ -10,7 +10,7 @@ use rstest::rstest;
 use serde_json::Value;
 use slipfront::testing::Threads;
 use slipfront_case::arrays::{
-    ArrayError, HeightMap, HeightMapUnits, Room, height_map, open_height_map, write_mask_png,
+    ArrayError, HeightMap, HeightMapUnits, Room, height_map, limit_length_of_height_map, open, write_mask_png,
 };
 use slipfront_case::case::{Case, Ranks};
 use slipfront_case::case_file::CaseFile;
@@ -20,7 +20,9 @@ fn folder() -> PathBuf {
 }
 
 fn read(path: &Path, units: HeightMapUnits, blocks: [usize; 2]) -> Result<HeightMap, ArrayError> {
-    let mut source = BufReader::new(open_height_map(path)?);
+    let (file, length) = open(path)?;
+    limit_length_of_height_map(path, length)?;
+    let mut source = BufReader::new(file);
     let room = Room {
         blocks,
         is_place: false,

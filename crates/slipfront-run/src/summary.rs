@@ -312,12 +312,12 @@ pub(crate) struct SummaryObservers {
 }
 
 impl SummaryObservers {
-    /// Those of a run of this case.
+    /// Observers of a run of this case, at its start.
     pub(crate) fn new(case: &Case) -> Self {
         Self::with_rows_every(case.output.series_stride, case)
     }
 
-    /// Those of a run of which the first and the last row of the curve alone are kept.
+    /// Observers that keep the first and the last row of the curve alone.
     pub(crate) fn without_curve(case: &Case) -> Self {
         Self::with_rows_every(u64::MAX, case)
     }

@@ -31,14 +31,15 @@ pub use table::{reader as table_reader, separator};
 use crate::disk::open_regular;
 use error::{contents_error, unknown_extension};
 
-/// Opens a file for a lattice of `nx` x `ny` blocks.
+/// Opens a file, and tells its length in bytes.
 ///
 /// # Errors
-/// [`ArrayError`] if the file is missing, not a regular file, or longer than that lattice can need.
-pub fn open_file(path: &Path, nx: usize, ny: usize) -> Result<File, ArrayError> {
-    let (file, length) = open(path)?;
-    limit_length(path, length, nx, ny)?;
-    Ok(file)
+/// [`ArrayError`] if the file is missing or not a regular file.
+pub fn open(path: &Path) -> Result<(File, u64), ArrayError> {
+    let read_error = ArrayError::read(path);
+    let file = open_regular(path).map_err(&read_error)?;
+    let length = file.metadata().map_err(&read_error)?.len();
+    Ok((file, length))
 }
 
 /// Refuses a file that is longer than a lattice of `nx` x `ny` blocks can need.
@@ -69,17 +70,7 @@ pub fn limit_length(path: &Path, found: u64, nx: usize, ny: usize) -> Result<(),
     Err(contents_error(path, problem))
 }
 
-/// Opens a height map, which may have any number of points for a block.
-///
-/// # Errors
-/// [`ArrayError`] if the file is missing, not a regular file, or longer than 256 MiB.
-pub fn open_height_map(path: &Path) -> Result<File, ArrayError> {
-    let (file, length) = open(path)?;
-    limit_length_of_height_map(path, length)?;
-    Ok(file)
-}
-
-/// Refuses a height map that is longer than 256 MiB.
+/// Refuses a height map that is longer than 256 MiB. It may have any number of points for a block.
 ///
 /// # Errors
 /// [`ArrayError`] with both lengths.
@@ -90,14 +81,6 @@ pub fn limit_length_of_height_map(path: &Path, found: u64) -> Result<(), ArrayEr
         return Err(contents_error(path, problem));
     }
     Ok(())
-}
-
-/// Opens a regular file, and tells its length in bytes.
-fn open(path: &Path) -> Result<(File, u64), ArrayError> {
-    let read_error = ArrayError::read(path);
-    let file = open_regular(path).map_err(&read_error)?;
-    let length = file.metadata().map_err(&read_error)?.len();
-    Ok((file, length))
 }
 
 /// One number per block of some rows, of a `.npy` or `.csv` file called `path`.

@@ -43,7 +43,9 @@ fn field_npy() -> Vec<u8> {
 }
 
 fn open(path: &Path, nx: usize, ny: usize) -> Result<BufReader<File>, ArrayError> {
-    Ok(BufReader::new(open_file(path, nx, ny)?))
+    let (file, length) = super::open(path)?;
+    limit_length(path, length, nx, ny)?;
+    Ok(BufReader::new(file))
 }
 
 /// What is read of all rows at once. Every division of the rows among several ranks, the lowest of which tells its error, gives

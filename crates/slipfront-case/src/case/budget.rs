@@ -20,8 +20,8 @@ const HEAP: f64 = 1.05;
 /// The program itself.
 pub const PROGRAM: f64 = 8.0 * 1024.0 * 1024.0;
 
-/// Cases that take less memory are not compared with the machine: to ask what it has takes longer than to make a small one. Commands compare all
-/// that a run takes.
+/// Cases that take less memory are not compared with the machine: to ask what it has takes longer than to make a small one. Commands
+/// compare all that a run takes.
 const SMALL: f64 = 64.0 * 1024.0 * 1024.0;
 
 /// Memory that a case takes while it is made and stepped.

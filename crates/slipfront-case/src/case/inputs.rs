@@ -273,19 +273,18 @@ fn open(
     holds: FileUse,
     [nx, ny]: [usize; 2],
 ) -> Result<Opened, ArrayError> {
-    let Some(contents) = contents else {
-        let file = match holds {
-            FileUse::Blocks => arrays::open_file(original, nx, ny),
-            FileUse::HeightMap => arrays::open_height_map(original),
-        };
-        return file.map(Opened::OnDisk);
+    let (opened, length) = match contents {
+        Some(contents) => (Opened::in_memory(contents), contents.len() as u64),
+        None => {
+            let (file, length) = arrays::open(original)?;
+            (Opened::OnDisk(file), length)
+        }
     };
-    let length = contents.len() as u64;
     match holds {
         FileUse::Blocks => arrays::limit_length(original, length, nx, ny)?,
         FileUse::HeightMap => arrays::limit_length_of_height_map(original, length)?,
     }
-    Ok(Opened::in_memory(contents))
+    Ok(opened)
 }
 
 fn digest(path: &Path, file: Opened) -> Result<Digest, ArrayError> {

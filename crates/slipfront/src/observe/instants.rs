@@ -90,8 +90,8 @@ impl Instants {
         found
     }
 
-    /// The instants that the run would have had if it ended now, and t* of the drive at each. C is a candidate until mu* has fallen far enough, and
-    /// so is F until then.
+    /// The instants that the run would have had if it ended now, and t* of the drive at each. C is a candidate until mu* has fallen far
+    /// enough, and so is F until then.
     pub fn by_now(&self) -> impl Iterator<Item = (char, f64)> {
         let shown = LETTERS.into_iter().zip(self.shown());
         shown.filter_map(|(letter, frame)| Some((letter, self.frames[frame?].as_ref()?.drive_time_star)))
