@@ -119,6 +119,22 @@ fn a_warning_of_the_queue_stops_it(#[case] signal: &str, #[case] status: i32) {
 
 /// A full disk under the log, or a terminal that has gone, costs what would have been said, and nothing else.
 #[cfg(target_os = "linux")]
+/// The case is read from a pipe in which nobody writes, so that the command never comes to look at the first signal.
+#[test]
+fn a_second_signal_ends_it_at_once() {
+    let workspace = Workspace::small();
+    let pipe = Command::new("mkfifo").arg(workspace.path("pipe.toml")).status();
+    assert!(pipe.unwrap().success());
+    let mut child = workspace.start("check pipe.toml");
+    wait_for_signal_handlers(&child);
+    for signal in ["-INT", "-TERM"] {
+        send(&child, signal);
+    }
+    let status = child.wait().unwrap().code();
+    // The first is still on its way where the second overtakes it.
+    assert!(matches!(status, Some(130 | 143)), "{status:?}");
+}
+
 #[test]
 fn what_cannot_be_said_is_no_failure() {
     let workspace = slow_workspace();

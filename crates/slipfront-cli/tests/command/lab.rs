@@ -80,19 +80,6 @@ fn it_serves_its_page_until_a_signal() {
     }
 }
 
-/// Both signals come while the command stands still, so that it sees the second before it has ended by the first.
-#[test]
-fn a_second_signal_ends_it_at_once() {
-    let workspace = Workspace::small();
-    let (child, _) = open(&workspace, "lab --no-open");
-    for signal in ["-STOP", "-INT", "-TERM", "-CONT"] {
-        send(&child, signal);
-    }
-    let status = ended(child).status.code();
-    // Whichever of them it is given last.
-    assert!(matches!(status, Some(130 | 143)), "{status:?}");
-}
-
 /// A desktop of a test's own: programs by their names, before those of the system.
 struct Desktop(Workspace);
 
