@@ -10,7 +10,7 @@ from ._case import Case, CaseError
 from ._cite import cite
 from ._converge import Convergence, QuantityOnMeshes, converge
 from ._map import map
-from ._open import InterruptedRun, PaperResults, open
+from ._open import InterruptedRun, PaperResults, open, open_run, open_study
 from ._run import FolderError, Run
 from ._simulation import Simulation, run
 from ._slipfront import ForkError, RunError, __version__
@@ -35,6 +35,8 @@ __all__ = [
     "converge",
     "map",
     "open",
+    "open_run",
+    "open_study",
     "run",
     "study",
 ]

@@ -5,6 +5,8 @@ from __future__ import annotations
 import contextlib
 import functools
 import html
+import io
+import json
 import os
 from collections.abc import Callable, Mapping
 from pathlib import Path
@@ -23,27 +25,53 @@ Overrides: TypeAlias = Mapping[str, Any]
 class Case:
     """A case that can be run: valid, resolved, and never changed.
 
-    It is made by `load`, `parse` or `from_dict`, and by `replace` of another case. Values are those of a case file: numbers,
-    words, quantities such as ``"50 kPa"`` or of pint, lists and tables. Where a case names the file of a mask or of a field, an
-    array with two dimensions (rows from y = 0 on) may stand in its place.
+    It is made of a dictionary, by `load` of a file or `parse` of a text, and by `replace` of another case. Values are those of a case
+    file: numbers, words, quantities such as ``"50 kPa"`` or of pint, lists and tables. Where a case names the file of a mask or of a
+    field, an array with two dimensions or a list of rows (from y = 0 on) may stand in its place.
+
+    Parameters
+    ----------
+    tables
+        Tables by their names; keys may have dots.
+    name
+        What the case is called in messages and results.
 
     Raises
     ------
     CaseError
-        When the case cannot be run, in the sentence of the command, with `line` and `column`.
+        When the case cannot be run, in the sentence of the command, with `line` and `column`; one that is a `FileNotFoundError` too
+        when there is no such file.
 
     Examples
     --------
-    >>> case = Case.from_dict({"slider": {"blocks": [12, 10]}, "time": {"duration_star": 150}})
+    >>> case = Case({"slider": {"blocks": [12, 10]}, "time": {"duration_star": 150}})
     >>> case.shape
     (10, 12)
-    >>> case.replace({"drive.v_star": 0.05}).numbers["v_star"]
+    >>> case.replace({"drive.v_star": 0.05})["drive.v_star"]
     0.05
+    >>> rows = [[0, 0, 0], [0, 1, 0]]
+    >>> int(Case({"slider": {"blocks": [3, 2]}, "texture": [{"shape": "mask", "file": rows}]}).textured.sum())
+    1
     """
 
     _make: Callable[[], _slipfront.Case]
 
-    def __init__(self, native: _slipfront.Case) -> None:
+    def __init__(self, tables: Mapping[str, Any], *, name: str = "case") -> None:
+        if not isinstance(tables, Mapping):
+            raise TypeError(
+                f"a case is made of a dictionary of its tables, not of {type(tables).__name__}: "
+                "of a file by Case.load, of a text by Case.parse"
+            )
+        arrays = _toml.Arrays()
+        self._set(_slipfront.Case.parse(_toml.document(tables, arrays), name, Path(), [], arrays.contents))
+
+    @classmethod
+    def _of(cls, native: _slipfront.Case) -> Case:
+        case = cls.__new__(cls)
+        case._set(native)
+        return case
+
+    def _set(self, native: _slipfront.Case) -> None:
         object.__setattr__(self, "_native", native)
 
     @functools.cached_property
@@ -71,7 +99,7 @@ class Case:
         'circle'
         """
         arrays = _toml.Arrays()
-        return cls(_slipfront.Case.load(Path(path), _overrides(overrides, arrays), arrays.contents))
+        return cls._of(_slipfront.Case.load(Path(path), _overrides(overrides, arrays), arrays.contents))
 
     @classmethod
     def parse(
@@ -106,29 +134,18 @@ class Case:
         2 7
         """
         arrays = _toml.Arrays()
-        return cls(_slipfront.Case.parse(text, name, Path(folder), _overrides(overrides, arrays), arrays.contents))
+        return cls._of(_slipfront.Case.parse(text, name, Path(folder), _overrides(overrides, arrays), arrays.contents))
 
     @classmethod
     def from_dict(cls, tables: Mapping[str, Any], *, name: str = "case") -> Case:
-        """The case of a dictionary with the tables and keys of a case file.
+        """The case of a dictionary, as `Case` itself makes it.
 
         Parameters
         ----------
-        tables
-            Tables by their names; keys may have dots.
-        name
-            What the case is called in messages and results.
-
-        Examples
-        --------
-        >>> mask = np.zeros((20, 20), dtype=bool)
-        >>> mask[8:12, 8:12] = True
-        >>> case = Case.from_dict({"slider": {"blocks": [20, 20]}, "texture": [{"shape": "mask", "file": mask}]})
-        >>> int(case.textured.sum())
-        16
+        tables, name
+            As of `Case`.
         """
-        arrays = _toml.Arrays()
-        return cls(_slipfront.Case.parse(_toml.document(tables, arrays), name, Path(), [], arrays.contents))
+        return cls(tables, name=name)
 
     def replace(self, overrides: Overrides) -> Case:
         """This case with other values of some keys.
@@ -141,7 +158,7 @@ class Case:
         """
         arrays = _toml.Arrays(self._native.arrays)
         set_anew = _overrides(overrides, arrays)
-        return type(self)(_slipfront.Case.parse(self._text(), self.name, Path(), set_anew, arrays.contents))
+        return self._of(_slipfront.Case.parse(self._text(), self.name, Path(), set_anew, arrays.contents))
 
     @property
     def name(self) -> str:
@@ -186,6 +203,43 @@ class Case:
     def to_toml(self) -> str:
         """The resolved case with every default, as `case.toml` of its results has it."""
         return self._native.to_toml()
+
+    def to_dict(self) -> dict[str, Any]:
+        """The resolved case as `Case` takes it, with every default, files by where they stand, and arrays as they are.
+
+        Examples
+        --------
+        >>> case = Case({"drive": {"v_star": 0.05}})
+        >>> case.to_dict()["drive"]["v_star"]
+        0.05
+        >>> Case(case.to_dict()) == case
+        True
+        """
+        arrays = {name: np.load(io.BytesIO(contents)) for name, contents in self._native.arrays.items()}
+        files = {copy: arrays.get(str(original), str(original.absolute())) for copy, original, _ in self._native.inputs}
+        return dict(_with_files(json.loads(self._native.to_json()), files))
+
+    def __getitem__(self, key: str) -> Any:
+        """The value of a key with dots, such as ``drive.v_star`` or ``texture.0.coverage``, or a table; its default if it was not given.
+
+        Raises
+        ------
+        KeyError
+            When the resolved case has no such key.
+        """
+        if not isinstance(key, str):
+            raise TypeError(f"a key of a case is a text such as 'drive.v_star', not {key!r}")
+        found: Any = self.to_dict()
+        parts = key.split(".")
+        for place, part in enumerate(parts):
+            below = dict(enumerate(found)) if isinstance(found, list) else found
+            name = int(part) if isinstance(found, list) and part.isdecimal() else part
+            if not isinstance(below, dict) or name not in below:
+                within = f"`{'.'.join(parts[:place])}` of the case" if place else "the case"
+                known = ", ".join(map(str, below)) if isinstance(below, dict) else "no keys"
+                raise KeyError(f"{within} has no `{part}`: it has {known or 'none'}")
+            found = below[name]
+        return found
 
     def _text(self) -> str:
         """The resolved case, which names files where they stand or as they are called in memory, and not the copies beside its results."""
@@ -236,8 +290,33 @@ def _unpickled(text: str, name: str, files: dict[str, bytes]) -> Case:
     return case
 
 
+def _with_files(value: Any, files: Mapping[str, Any]) -> Any:
+    """A value of a resolved case with files in place of their names there, and without keys that have no value."""
+    if isinstance(value, list):
+        return [_with_files(inner, files) for inner in value]
+    if not isinstance(value, dict):
+        return value
+    given = {key: inner for key, inner in value.items() if inner is not None}
+    return {key: files.get(inner, inner) if _toml.names_file(key) else _with_files(inner, files) for key, inner in given.items()}
+
+
+def as_case(given: CaseLike) -> Case:
+    """The case that is given, of its tables, or of its file."""
+    if isinstance(given, Case):
+        return given
+    return Case(given) if isinstance(given, Mapping) else Case.load(given)
+
+
+CaseLike: TypeAlias = Case | Mapping[str, Any] | str | os.PathLike[str]
+"""A case, its tables as `Case` takes them, or the path of a case file."""
+
+
 def _overrides(given: Overrides | None, arrays: _toml.Arrays) -> list[str]:
-    return [f"{key}={_toml.value(value, arrays)}" for key, value in _toml.by_key(given or {}).items()]
+    return [f"{key}={_toml.value(value, arrays, key)}" for key, value in _toml.by_key(given or {}).items()]
 
 
 CaseError = _slipfront.CaseError
+
+
+class MissingFileError(CaseError, FileNotFoundError):
+    """A case or a study whose file is not there; the native part raises it."""

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from . import _slipfront, _toml
-from ._case import Case
+from ._case import Case, CaseLike, as_case
 from ._pickle import sealed
 from ._simulation import _threads
 from ._study import Progress, StudyResults, executed, read_tables
@@ -118,7 +118,7 @@ class Convergence(StudyResults):
 
 
 def converge(
-    case: Case | str | os.PathLike[str],
+    case: CaseLike,
     folder: str | os.PathLike[str] | None = None,
     *,
     levels: int = 3,
@@ -136,7 +136,7 @@ def converge(
     Parameters
     ----------
     case
-        A case, or the path of one.
+        A case, a dictionary of its tables, or the path of its file.
     folder
         A folder of results, in which a call that was stopped goes on, and which has the bytes of `slipfront converge`; in memory unless it
         is given.
@@ -169,7 +169,7 @@ def converge(
     >>> found.quantities["static_friction_star"]
     static_friction_star: 0.853 ± 0.021, of which the mesh is 0.021 (order 2.0)
     """
-    case = case if isinstance(case, Case) else Case.load(case)
+    case = as_case(case)
     # A file that has changed would make another case than this one.
     case._native.read_inputs()
     native, arrays = case._native, _toml.Arrays(case._native.arrays)

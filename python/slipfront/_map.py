@@ -3,17 +3,12 @@
 from __future__ import annotations
 
 import json
-import os
-from collections.abc import Iterable, Mapping
-from typing import Any, TypeAlias
+from collections.abc import Iterable
+from typing import Any
 
 from . import _slipfront
-from ._case import Case, CaseError
+from ._case import Case, CaseError, CaseLike, as_case
 from ._simulation import _threads
-
-CaseLike: TypeAlias = Case | Mapping[str, Any] | str | os.PathLike[str]
-"""A case, its tables as `Case.from_dict` takes them, or the path of a case file."""
-
 
 def map(cases: Iterable[CaseLike], threads: int | None = None) -> list[dict[str, Any]]:
     """Run cases, and give the numbers of each.
@@ -43,7 +38,7 @@ def map(cases: Iterable[CaseLike], threads: int | None = None) -> list[dict[str,
 
     Examples
     --------
-    >>> base = Case.from_dict({"slider": {"blocks": [10, 10]}, "time": {"stop": "after_onset"}})
+    >>> base = Case({"slider": {"blocks": [10, 10]}, "time": {"stop": "after_onset"}})
     >>> found = map(base.replace({"friction.seed": seed}) for seed in (1, 2))
     >>> [round(numbers["static_friction_star"], 3) for numbers in found]
     [0.912, 0.878]
@@ -55,11 +50,7 @@ def map(cases: Iterable[CaseLike], threads: int | None = None) -> list[dict[str,
 
 def _made(index: int, given: CaseLike) -> Case:
     try:
-        if isinstance(given, Case):
-            return given
-        if isinstance(given, Mapping):
-            return Case.from_dict(given)
-        return Case.load(given)
+        return as_case(given)
     except CaseError as error:
         told = CaseError(f"case {index}: {error}")
         told.line, told.column = error.line, error.column

@@ -70,8 +70,47 @@ class PaperResults:
         return f"PaperResults({self.folder})"
 
 
+def open_run(folder: str | os.PathLike[str], *, verify: bool = True) -> Run:
+    """Read the folder of a run.
+
+    Parameters
+    ----------
+    folder, verify
+        As of `open`.
+
+    Raises
+    ------
+    FolderError
+        When it is not the folder of a complete run, or not as it was written.
+    """
+    found = open(folder, verify=verify)
+    if isinstance(found, Run):
+        return found
+    interrupted = ": go on with it by `slipfront run --resume`" if isinstance(found, InterruptedRun) else ""
+    raise _slipfront.FolderError(f"{folder} is not the folder of a complete run but holds {found!r}{interrupted}")
+
+
+def open_study(folder: str | os.PathLike[str], *, verify: bool = True) -> StudyResults:
+    """Read the folder of a study, or of `slipfront converge`, which is one over meshes.
+
+    Parameters
+    ----------
+    folder, verify
+        As of `open`.
+
+    Raises
+    ------
+    FolderError
+        When it is not the folder of a study, or not as it was written.
+    """
+    found = open(folder, verify=verify)
+    if isinstance(found, StudyResults):
+        return found
+    raise _slipfront.FolderError(f"{folder} is not the folder of a study but holds {found!r}")
+
+
 def open(folder: str | os.PathLike[str], *, verify: bool = True) -> Run | InterruptedRun | StudyResults | PaperResults:
-    """Read a folder of the command.
+    """Read a folder of the command; where it is known what it holds, `open_run` and `open_study` tell a type checker.
 
     Parameters
     ----------
@@ -88,13 +127,15 @@ def open(folder: str | os.PathLike[str], *, verify: bool = True) -> Run | Interr
     Raises
     ------
     FolderError
-        When it is none of these, or not as it was written.
+        When it is none of these, or not as it was written; one that is a `FileNotFoundError` too when there is none.
     """
     path = Path(folder)
+    if not path.exists():
+        raise MissingFolderError(f"there is no folder {path}")
     kind = _slipfront.kind_of(path)
     if kind == "interrupted":
         native, running = _slipfront.interrupted(path, _threads(None))
-        case = Case(native)
+        case = Case._of(native)
         return InterruptedRun(path, case, Simulation._of(case, running, None))
     if kind == "paper" and (path / "claims.csv").exists():
         return PaperResults(path)
@@ -107,4 +148,8 @@ def open(folder: str | os.PathLike[str], *, verify: bool = True) -> Run | Interr
     if kind == "meshes":
         return Convergence.read(path)
     native, read = _slipfront.read_run(path)
-    return Run(Case(native), FolderSource(path, read), path)
+    return Run(Case._of(native), FolderSource(path, read), path)
+
+
+class MissingFolderError(_slipfront.FolderError, FileNotFoundError):
+    """A folder that is not there."""

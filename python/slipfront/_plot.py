@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+    from matplotlib.image import AxesImage
 
 _WIDTH = 85 / 25.4
 _STYLE = {
@@ -38,20 +39,26 @@ class Drawn(Protocol):
     @property
     def series(self) -> xr.Dataset: ...
     @property
+    def kymograph(self) -> xr.Dataset | None: ...
+    @property
     def _arrays(self) -> dict[str, Any]: ...
 
 
 def plot(run: Drawn, kind: str, ax: Axes | None, *, instant: str | int = -1, label: str | None = None) -> Axes:
     """Draw a run; `Run.plot` says what."""
+    if kind == "friction":
+        return drawn(partial(_friction, run, label), 0.75, ax)
+    if kind == "kymograph":
+        return drawn(partial(_kymograph, run), 0.75, ax)
+    values, title = (run._arrays["first_slip_time_star"], "first slip, t*") if kind == "front" else _field(run, kind, instant)
+    height = min(max(0.85 * values.shape[0] / values.shape[1], 0.3), 1.5)
+    return drawn(partial(_map, run, values, title), height, ax)
+
+
+def drawn(draw: Callable[[Axes], None], height: float, ax: Axes | None) -> Axes:
+    """Draw in these axes, or in new ones as wide as a column of a journal, of this height over their width."""
     import matplotlib.pyplot as plt
 
-    draw: Callable[[Axes], None]
-    if kind == "friction":
-        height, draw = 0.75, partial(_friction, run, label)
-    else:
-        values, title = (run._arrays["first_slip_time_star"], "first slip, t*") if kind == "front" else _field(run, kind, instant)
-        height = min(max(0.85 * values.shape[0] / values.shape[1], 0.3), 1.5)
-        draw = partial(_map, run, values, title)
     if ax is not None:
         draw(ax)
         return ax
@@ -79,6 +86,32 @@ def _friction(run: Drawn, label: str | None, ax: Axes) -> None:
         ax.legend(frameon=False)
 
 
+def _kymograph(run: Drawn, ax: Axes) -> None:
+    kymograph = run.kymograph
+    if kymograph is None:
+        raise ValueError("the folder of the run is of a version that kept no kymograph: run its case again")
+    time_star, place = np.asarray(kymograph["time_star"]), np.asarray(kymograph["place"])
+    unit, prefix = _unit(float(place[-1]))
+    # Each value stands for the time and the place around it.
+    (first, last), (start, end) = _ends(time_star), _ends(place)
+    extent = (first, last, start / unit, end / unit)
+    percent = 100 * np.asarray(kymograph["sliding_share"]).T
+    image = ax.imshow(percent, origin="lower", extent=extent, aspect="auto", cmap="viridis", vmin=0, interpolation="nearest")
+    ax.set_xlabel("$t^*$")
+    ax.set_ylabel(f"along the drive ({prefix}m)")
+    _colorbar(ax, image, "sliding (%)")
+
+
+def _ends(centres: npt.NDArray[np.float64]) -> tuple[float, float]:
+    """Where equal intervals around these centres begin and end."""
+    half = 0.5 * (centres[-1] - centres[0]) / max(len(centres) - 1, 1)
+    return float(centres[0] - half), float(centres[-1] + half)
+
+
+def _colorbar(ax: Axes, image: AxesImage, title: str) -> None:
+    cast("Figure", ax.get_figure(root=True)).colorbar(image, ax=ax, label=title, fraction=0.046, pad=0.03)
+
+
 def _map(run: Drawn, values: npt.NDArray[Any], title: str, ax: Axes) -> None:
     x, y = (run._arrays[axis] for axis in ("x", "y"))
     half = 0.5 * run.case.numbers["block_size_m"] * run._arrays["stride"]
@@ -95,14 +128,14 @@ def _map(run: Drawn, values: npt.NDArray[Any], title: str, ax: Axes) -> None:
         ax.contour(across, along, fine, levels=[0.5], colors="white", linewidths=0.8)
     ax.set_xlabel(f"x ({prefix}m)")
     ax.set_ylabel(f"y ({prefix}m)")
-    cast("Figure", ax.get_figure(root=True)).colorbar(image, ax=ax, label=title, fraction=0.046, pad=0.03)
+    _colorbar(ax, image, title)
 
 
 def _field(run: Drawn, name: str, instant: str | int) -> tuple[npt.NDArray[Any], str]:
     arrays = run._arrays["fields"]
     if name not in arrays:
         kept = ", ".join(f'"{kept}"' for kept in arrays) or "none"
-        raise ValueError(f'the run has no field "{name}"; pictures are "friction", "front", and its fields: {kept}')
+        raise ValueError(f'the run has no field "{name}"; pictures are "friction", "front", "kymograph", and its fields: {kept}')
     letters = list(run._arrays["instants"]["instant"])
     if isinstance(instant, str):
         found = [position for position, shown in enumerate(letters) if instant in shown]
@@ -114,6 +147,39 @@ def _field(run: Drawn, name: str, instant: str | int) -> tuple[npt.NDArray[Any],
     size, prefix = _unit(float(np.nanmax(np.abs(shown), initial=0.0))) if unit != "1" else (1.0, "")
     in_unit = "" if unit == "1" else f" ({prefix}{unit.replace(' s-1', '/s')})"
     return shown / size, long_name + in_unit
+
+
+def plot_points(points: dict[str, list[Any]], quantity: str, ax: Axes | None, over: str | None) -> Axes:
+    """Draw the means of a quantity over an axis of a study; `StudyResults.plot` says more."""
+    columns = list(points)
+    axes = [name for name in columns[columns.index("point") + 1 : columns.index("quantity")] if name != "texture_percent"]
+    rows = [dict(zip(columns, cells, strict=True)) for cells in zip(*points.values(), strict=True)]
+    found = [row for row in rows if row["quantity"] == quantity]
+    if not found:
+        known = ", ".join(dict.fromkeys(f'"{row["quantity"]}"' for row in rows))
+        raise ValueError(f'the study has no quantity "{quantity}": it has {known}')
+    if not axes:
+        raise ValueError("a study without an axis has one point: `points` tells its mean")
+    along = axes[0] if over is None else over
+    if along not in axes:
+        raise ValueError(f'the study has no axis "{along}": it has {", ".join(axes)}')
+    others = [name for name in axes if name != along]
+    curves: dict[str, list[dict[str, Any]]] = {}
+    for row in found:
+        curves.setdefault(", ".join(f"{name} = {row[name]}" for name in others), []).append(row)
+    return drawn(partial(_points, curves, along, quantity), 0.75, ax)
+
+
+def _points(curves: dict[str, list[dict[str, Any]]], along: str, quantity: str, ax: Axes) -> None:
+    for label, rows in curves.items():
+        mean, low, high = (np.array([row[column] for row in rows], dtype=float) for column in ("mean", "low", "high"))
+        # One run has no interval.
+        errors = np.nan_to_num([mean - low, high - mean])
+        ax.errorbar([row[along] for row in rows], mean, errors, marker="o", ms=3, capsize=2, label=label)
+    ax.set_xlabel(along)
+    ax.set_ylabel(quantity)
+    if len(curves) > 1:
+        ax.legend(frameon=False)
 
 
 def _unit(largest: float) -> tuple[float, str]:

@@ -260,8 +260,8 @@ class Run:
         Parameters
         ----------
         kind
-            ``"friction"``: mu* over t* with the instants A to F; ``"front"``: when each block first slid; or the name of a field, such as
-            ``"traction"``, at the snapshot ``instant`` (a letter, or its number).
+            ``"friction"``: mu* over t* with the instants A to F; ``"front"``: when each block first slid; ``"kymograph"``: the share of
+            the blocks that slide over t* and along the drive; or the name of a field, such as ``"traction"``, at the snapshot ``instant`` (a letter, or its number).
         ax
             Axes to draw in, in their own style; new ones unless given.
         options

@@ -15,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _dataset, _slipfront
-from ._case import Case
+from ._case import Case, CaseLike, as_case
 from ._pickle import sealed
 from ._progress import Bar
 from ._run import Run
@@ -29,7 +29,7 @@ Progress: TypeAlias = bool | Callable[["Simulation"], object] | None
 _ALL = 2**63
 
 
-def run(case: Case | str | os.PathLike[str], progress: Progress = None, threads: int | None = None) -> Run:
+def run(case: CaseLike, progress: Progress = None, threads: int | None = None) -> Run:
     """Run a case to its end.
 
     Other threads of Python go on meanwhile. Ctrl-C ends it with a `KeyboardInterrupt`, an exception in `progress` with that.
@@ -37,7 +37,7 @@ def run(case: Case | str | os.PathLike[str], progress: Progress = None, threads:
     Parameters
     ----------
     case
-        A case, or the path of one.
+        A case, a dictionary of its tables, or the path of its file.
     progress
         True for a bar, False for none, None (default) for a bar in terminals and notebooks; or a function that is called with
         the simulation every 50 ms.
@@ -61,7 +61,7 @@ def run(case: Case | str | os.PathLike[str], progress: Progress = None, threads:
     >>> float(result.series["mu_star"].max()) == result.static_friction_star
     True
     """
-    simulation = Simulation(case if isinstance(case, Case) else Case.load(case), threads=threads)
+    simulation = Simulation(as_case(case), threads=threads)
     return simulation.run(progress=progress)
 
 

@@ -20,6 +20,7 @@ from ._temporary import TemporaryFolder
 
 if TYPE_CHECKING:
     import pandas as pd
+    from matplotlib.axes import Axes
 
 Quantities: TypeAlias = Mapping[str, Callable[[Run], float]]
 """Names of the user's own quantities, and the functions of a run that give them."""
@@ -126,7 +127,7 @@ class Study:
             raise IndexError(f"the study has {self.n_points} points, counted from 0, and none of number {point}")
         if replicate < 0:
             raise IndexError(f"replicates are counted from 0, not {replicate}")
-        return Case(self._native.case(point, replicate, reference))
+        return Case._of(self._native.case(point, replicate, reference))
 
     def run(
         self,
@@ -165,7 +166,7 @@ class Study:
                 raise ValueError(f"the tables have a column `{quantity}` already: give the quantity another name")
 
         def look(native: _slipfront.Case, record: _slipfront.Record, _: tuple[int, int, bool]) -> list[float]:
-            result = Run(Case(native), record)
+            result = Run(Case._of(native), record)
             return [float(quantity(result)) for quantity in own.values()]
 
         results, values = executed(self._native, StudyResults, folder, progress, threads, look if own else None)
@@ -272,6 +273,26 @@ class StudyResults:
         table = self._tables.get("anisotropy")
         return None if table is None else frame(table)
 
+    def plot(self, quantity: str = "static_friction_star", ax: Axes | None = None, *, over: str | None = None) -> Axes:
+        """Draw the means of a quantity with their confidence intervals over an axis of the study, as wide as a column of a journal (85 mm).
+
+        Parameters
+        ----------
+        quantity
+            One of the column ``quantity`` of `points`.
+        ax
+            Axes to draw in, in their own style; new ones unless given.
+        over
+            The axis, as its column in `points` is called: the first unless given. Each combination of the others is a curve.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+        """
+        from ._plot import plot_points
+
+        return plot_points(self._tables["points"], quantity, ax, over)
+
     def __reduce__(self) -> tuple[Any, ...]:
         return sealed(type(self), self.folder, self._tables, self._failures)
 
@@ -319,7 +340,8 @@ def _axis(name: str, levels: Sequence[Any] | Mapping[str, Mapping[str, Any]], ar
         return f"[[axes]]\nname = {_toml.word(name)}\n[axes.variants]\n{variants}"
     if isinstance(levels, str) or not hasattr(levels, "__iter__"):
         raise TypeError(f"the levels of `{name}` are a list, such as [{levels!r}], not {levels!r}")
-    return f"[[axes]]\nkey = {_toml.word(name)}\nlist = {_toml.value(list(levels), arrays)}\n"
+    listed = ", ".join(_toml.value(level, arrays, name) for level in levels)
+    return f"[[axes]]\nkey = {_toml.word(name)}\nlist = [{listed}]\n"
 
 
 def _as_base(case: Case) -> str:

@@ -40,15 +40,15 @@ class Arrays:
         self.contents = dict(others or {})
         folders = (f"{IN_MEMORY}{number}/" for number in itertools.count(1))
         self._folder = next(folder for folder in folders if not any(name.startswith(folder) for name in self.contents))
-        self._count = 0
 
-    def add(self, array: np.ndarray[Any, Any]) -> str:
-        """Add an array and give the name of its file."""
+    def add(self, array: np.ndarray[Any, Any], of: str) -> str:
+        """Add the array that a key is given and return the name of its file, which errors tell as that of the key."""
         if np.ma.is_masked(array):
             # What is masked is not known: NaN, which the case refuses where it cannot do without.
             array = np.ma.filled(array.astype(np.float64), np.nan)
-        self._count += 1
-        name = f"{self._folder}array-{self._count}.npy"
+        stem = self._folder + re.sub(r"[^A-Za-z0-9_.-]", "_", of or "array")
+        names = itertools.chain([f"{stem}.npy"], (f"{stem}-{number}.npy" for number in itertools.count(2)))
+        name = next(name for name in names if name not in self.contents)
         file = io.BytesIO()
         np.save(file, np.ascontiguousarray(array))
         self.contents[name] = file.getvalue()
@@ -67,8 +67,14 @@ class Arrays:
         return text, folder
 
 
-def value(given: Any, arrays: Arrays) -> str:
-    """A value as TOML writes it.
+def names_file(key: str) -> bool:
+    """Whether the value of a key is the name of a file, in whose place an array may stand."""
+    name = key.rpartition(".")[2]
+    return name == "file" or name.endswith(("_file", "_field"))
+
+
+def value(given: Any, arrays: Arrays, of: str = "") -> str:
+    """A value as TOML writes it, of a key with dots that says whether it names a file.
 
     >>> arrays = Arrays()
     >>> value({"shape": "cavity", "coverage": 10, "center": (1, 2.5)}, arrays)
@@ -85,19 +91,36 @@ def value(given: Any, arrays: Arrays) -> str:
     if isinstance(given, Path):
         return word(str(given))
     if isinstance(given, Mapping):
-        pairs = (f"{key(name)} = {value(inner, arrays)}" for name, inner in given.items())
+        pairs = (f"{key(name)} = {value(inner, arrays, _below(of, name))}" for name, inner in given.items())
         return "{ " + ", ".join(pairs) + " }"
     if hasattr(given, "magnitude") and hasattr(given, "units"):
         return _quantities(given)
     if hasattr(given, "__array__"):
         array = np.asanyarray(given)
         # What has rows is a field or a mask, of which a case names the file.
-        return word(arrays.add(array)) if array.ndim == 2 else value(array.tolist(), arrays)
+        return word(arrays.add(array, of)) if array.ndim == 2 else value(array.tolist(), arrays)
     if isinstance(given, Sequence):
-        return "[" + ", ".join(value(inner, arrays) for inner in given) + "]"
+        if names_file(of):
+            return word(arrays.add(_rows(of, given), of))
+        return "[" + ", ".join(value(inner, arrays, _below(of, str(place))) for place, inner in enumerate(given)) + "]"
     raise TypeError(
         f"a case is made of tables, lists, words, numbers, quantities and arrays, not of {type(given).__name__}"
     )
+
+
+def _below(of: str, name: str) -> str:
+    return f"{of}.{name}" if of else name
+
+
+def _rows(of: str, given: Sequence[Any]) -> np.ndarray[Any, Any]:
+    """The array of a list of rows."""
+    try:
+        array = np.asarray(given)
+        if array.ndim == 2 and array.dtype.kind in "biuf":
+            return array
+    except ValueError:
+        pass
+    raise ValueError(f"`{of}` is the name of a file, an array with two dimensions, or a list of rows of numbers, all of one length")
 
 
 def by_key(overrides: Mapping[str, Any]) -> dict[str, Any]:
@@ -138,21 +161,21 @@ def document(tables: Mapping[str, Any], arrays: Arrays) -> str:
     plain, headed = [], []
     for name, given in tables.items():
         if isinstance(given, Mapping):
-            headed += [f"[{key(name)}]", *_lines(given, arrays)]
+            headed += [f"[{key(name)}]", *_lines(given, arrays, name)]
         elif isinstance(given, Sequence) and given and all(isinstance(one, Mapping) for one in given):
-            for one in given:
-                headed += [f"[[{key(name)}]]", *_lines(one, arrays)]
+            for place, one in enumerate(given):
+                headed += [f"[[{key(name)}]]", *_lines(one, arrays, f"{name}.{place}")]
         else:
-            plain += _lines({name: given}, arrays)
+            plain += _lines({name: given}, arrays, "")
     return "\n".join([*plain, *headed, ""])
 
 
-def _lines(table: Mapping[str, Any], arrays: Arrays) -> list[str]:
+def _lines(table: Mapping[str, Any], arrays: Arrays, of: str) -> list[str]:
     # A key with dots is a key within tables, as in the command's --set.
     def path(name: str) -> str:
         return ".".join(key(part) for part in name.split("."))
 
-    return [f"{path(name)} = {value(given, arrays)}" for name, given in table.items()]
+    return [f"{path(name)} = {value(given, arrays, _below(of, name))}" for name, given in table.items()]
 
 
 def _number(number: float) -> str:

@@ -114,6 +114,11 @@ impl Case {
         self.0.file.to_toml().map_err(|error| case_error(py, &error))
     }
 
+    /// The resolved case, with every default, as JSON.
+    fn to_json(&self) -> PyResult<String> {
+        serde_json::to_string(&self.0.file).map_err(|error| CaseError::new_err(error.to_string()))
+    }
+
     /// The files that it reads: the name of each in the resolved case, where it stands or the name that it has in memory, and the hash of
     /// its contents.
     #[getter]

@@ -1,5 +1,8 @@
 //! Errors as exceptions, with the sentences of the command.
 
+use std::fmt::Display;
+use std::io::ErrorKind;
+
 use pyo3::create_exception;
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
@@ -26,9 +29,47 @@ create_exception!(
     "A folder of results that cannot be read or written, or is not as it was written."
 );
 
+/// What the command calls its options, and what Python has in their place.
+const OPTIONS: [(&str, &str); 8] = [
+    ("another --set", "another override"),
+    ("--set ", ""),
+    ("with --out", "by `folder`"),
+    ("with --force", "by `force=True`"),
+    ("--max-memory", "`max_memory`"),
+    ("--max-time", "`max_time`"),
+    ("--levels", "`levels`"),
+    ("--replicates", "`replicates`"),
+];
+
+/// How the names of files begin that are arrays in memory: a number and the key that was given the array follow.
+const IN_MEMORY: &str = "memory:/";
+
+/// The sentence of an error in the words of Python: arguments in place of options, keys in place of files in memory.
+fn in_words_of_python(error: impl Display) -> String {
+    let mut sentence = error.to_string();
+    for (option, argument) in OPTIONS {
+        sentence = sentence.replace(option, argument);
+    }
+    let mut parts = sentence.split(IN_MEMORY);
+    let mut told = parts.next().unwrap_or_default().to_owned();
+    for part in parts {
+        let named = part.split_once('/').and_then(|(_, rest)| rest.split_once(".npy"));
+        match named {
+            Some((key, rest)) => told.extend([key, rest]),
+            None => told.extend([IN_MEMORY, part]),
+        }
+    }
+    told
+}
+
 /// A case that cannot be run, as an exception with its place.
 pub(crate) fn case_error(py: Python<'_>, error: &Error) -> PyErr {
-    let raised = CaseError::new_err(error.to_string());
+    let sentence = in_words_of_python(error);
+    let raised = if is_missing(error) {
+        missing_file_error(py, sentence)
+    } else {
+        CaseError::new_err(sentence)
+    };
     let place = match error {
         Error::Invalid(invalid) => match &invalid.place {
             Some(Place::File { line, column, .. }) => (Some(*line), Some(*column)),
@@ -44,6 +85,26 @@ pub(crate) fn case_error(py: Python<'_>, error: &Error) -> PyErr {
     set.err().unwrap_or(raised)
 }
 
+/// Whether the file of a case or of a study is not there.
+fn is_missing(error: &Error) -> bool {
+    match error {
+        Error::Misspelt { .. } => true,
+        Error::Unreadable { source, .. } => source.kind() == ErrorKind::NotFound,
+        _ => false,
+    }
+}
+
+/// A case error that is a `FileNotFoundError` too: a class with two bases is made in Python.
+fn missing_file_error(py: Python<'_>, sentence: String) -> PyErr {
+    let class = py
+        .import("slipfront._case")
+        .and_then(|module| module.getattr("MissingFileError"));
+    match class.and_then(|class| class.call1((sentence,))) {
+        Ok(raised) => PyErr::from_value(raised),
+        Err(error) => error,
+    }
+}
+
 /// A study that cannot be planned or run.
 pub(crate) fn study_error(py: Python<'_>, error: &StudyError) -> PyErr {
     match error {
@@ -52,13 +113,13 @@ pub(crate) fn study_error(py: Python<'_>, error: &StudyError) -> PyErr {
         | StudyError::Levels { .. }
         | StudyError::Bare { .. }
         | StudyError::MemoryLimit { .. }
-        | StudyError::TimeLimit { .. } => CaseError::new_err(error.to_string()),
-        StudyError::Failed { .. } => RunError::new_err(error.to_string()),
-        error => FolderError::new_err(error.to_string()),
+        | StudyError::TimeLimit { .. } => CaseError::new_err(in_words_of_python(error)),
+        StudyError::Failed { .. } => RunError::new_err(in_words_of_python(error)),
+        error => FolderError::new_err(in_words_of_python(error)),
     }
 }
 
 /// A folder that cannot be read or written.
-pub(crate) fn folder_error(error: impl std::fmt::Display) -> PyErr {
-    FolderError::new_err(error.to_string())
+pub(crate) fn folder_error(error: impl Display) -> PyErr {
+    FolderError::new_err(in_words_of_python(error))
 }

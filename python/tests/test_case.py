@@ -24,7 +24,7 @@ def test_a_case_is_the_same_from_a_path_a_text_and_a_dictionary() -> None:
         "texture": [{"shape": "cavity", "coverage": 10}],
     }
     assert sf.Case.parse(path.read_text()).to_toml() == loaded.to_toml()
-    assert sf.Case.from_dict(tables).to_toml() == loaded.to_toml()
+    assert sf.Case(tables).to_toml() == sf.Case.from_dict(tables).to_toml() == loaded.to_toml()
     assert loaded == sf.Case.load(str(path))
     assert hash(loaded) == hash(sf.Case.load(str(path)))
     assert loaded != loaded.replace({"drive.v_star": 0.5})
@@ -70,10 +70,77 @@ def test_errors_have_the_sentences_of_the_command() -> None:
     with pytest.raises(sf.CaseError, match="did you mean cases/circle.toml") as raised:
         sf.Case.load("cases/cirle.toml")
     assert raised.value.line is None
-    with pytest.raises(sf.CaseError, match="--set drive.v_star=0"):
+    with pytest.raises(sf.CaseError, match="^drive.v_star=0: "):
         sf.Case.load("cases/circle.toml", {"drive.v_star": 0})
     with pytest.raises(TypeError, match="not of object"):
         sf.Case.from_dict({"drive": {"v_star": object()}})
+    with pytest.raises(TypeError, match="a dictionary of its tables, not of str: of a file by Case.load"):
+        sf.Case("cases/circle.toml")  # type: ignore[arg-type]
+
+
+def test_a_file_that_is_missing_is_one_for_python_too(tmp_path: Path) -> None:
+    for missing in ("cases/cirle.toml", tmp_path / "none.toml"):
+        for use in (sf.Case.load, sf.run, sf.Study):
+            with pytest.raises(FileNotFoundError) as raised:
+                use(missing)
+            assert isinstance(raised.value, sf.CaseError) and raised.value.line is None
+            assert type(pickle.loads(pickle.dumps(raised.value))) is type(raised.value)
+    for read in (sf.open, sf.open_run, sf.open_study):
+        with pytest.raises(FileNotFoundError, match="there is no folder") as lost:
+            read(tmp_path / "none")
+        assert isinstance(lost.value, sf.FolderError)
+    with pytest.raises(sf.CaseError) as folder:
+        sf.Case.load(tmp_path)
+    assert not isinstance(folder.value, FileNotFoundError)
+
+
+def test_a_case_is_a_dictionary_again(tmp_path: Path) -> None:
+    mask = np.eye(10, 12, dtype=bool)
+    np.save(tmp_path / "mask.npy", mask)
+    tables: dict[str, Any] = {
+        "slider": {"blocks": [12, 10]},
+        "load": {"pressure_field": np.full((10, 12), 0.9)},
+        "texture": [{"shape": "mask", "file": mask}, {"shape": "groove", "coverage": 10}],
+        "output": {"snapshots": {"every": 100}},
+    }
+    in_memory = sf.Case(tables)
+    tables["texture"][0]["file"] = tmp_path / "mask.npy"
+    for case in (in_memory, sf.Case(tables), pickle.loads(pickle.dumps(in_memory)), sf.Case.load("cases/circle.toml")):
+        again = sf.Case(case.to_dict(), name=case.name)
+        assert again == case and (again.textured == case.textured).all()
+        # What is changed in the dictionary changes another case.
+        case.to_dict()["slider"]["blocks"][0] = 1
+        assert again == case
+    assert (in_memory["texture.0.file"] == mask).all() and in_memory["texture.1.coverage"] == 10
+    assert sf.Case(tables)["texture.0.file"] == str(tmp_path / "mask.npy")
+    assert in_memory["drive"]["v_star"] == in_memory["drive.v_star"] == in_memory.numbers["v_star"]
+    for key, told in (("drive.v_stra", "`drive` of the case has no `v_stra`"), ("texture.2", "has no `2`: it has 0, 1"), ("speed", "the case has no `speed`")):
+        with pytest.raises(KeyError, match=told):
+            in_memory[key]
+    with pytest.raises(KeyError, match="has no `x`: it has no keys"):
+        in_memory["drive.v_star.x"]
+    with pytest.raises(TypeError, match="not 0"):
+        list(in_memory)  # type: ignore[call-overload]
+
+
+def test_rows_of_a_list_are_a_mask_and_a_field() -> None:
+    mask, field = np.eye(10, 12, dtype=int), np.linspace(0.8, 1.2, 120).reshape(10, 12)
+
+    def case(texture: Any, pressure: Any) -> sf.Case:
+        return sf.Case({"slider": {"blocks": [12, 10]}, "load": {"pressure_field": pressure}, "texture": [{"shape": "mask", "file": texture}]})
+
+    of_arrays = case(mask, field)
+    for rows in (mask.tolist(), [tuple(row) for row in mask.tolist()], [[bool(one) for one in row] for row in mask]):
+        of_rows = case(rows, field.tolist())
+        assert (of_rows.textured == of_arrays.textured).all() and sf.map([of_rows]) == sf.map([of_arrays])
+    study = sf.Study(of_arrays, {"texture.0.file": [mask.tolist(), (1 - mask).tolist()]})
+    assert [study.case(point).textured.sum() for point in (0, 1)] == [10, 110]
+    for wrong in ([[0, 1], [1]], [0, 1], [["a"]]):
+        with pytest.raises(ValueError, match="`texture.0.file` is the name of a file, an array"):
+            case(wrong, field)
+    with pytest.raises(sf.CaseError, match=r"`texture.0.file` has the shape \(2, 2\) where \(10, 12\)") as raised:
+        case([[0, 1], [1, 0]], field)
+    assert "memory:" not in str(raised.value)
 
 
 def test_a_case_never_changes() -> None:
@@ -154,14 +221,15 @@ def test_an_array_is_the_file_of_numpy_with_its_values(tmp_path: Path) -> None:
             "friction": {"mu_static_field": field},
         }
 
-    for number, array in ((1, mask), (2, coefficients)):
-        np.save(tmp_path / f"array-{number}.npy", array)
-    on_disk = sf.Case.from_dict(tables(tmp_path / "array-1.npy", tmp_path / "array-2.npy"))
+    paths = [tmp_path / "texture.0.file.npy", tmp_path / "friction.mu_static_field.npy"]
+    for path, array in zip(paths, (mask, coefficients), strict=True):
+        np.save(path, array)
+    on_disk = sf.Case.from_dict(tables(*paths))
     in_memory = sf.Case.from_dict(tables(mask, coefficients))
     assert in_memory == on_disk and in_memory._hashes() == on_disk._hashes()
     saved = [sf.run(case, progress=False).save(tmp_path / name) for case, name in ((on_disk, "disk"), (in_memory, "memory"))]
     files = [sorted(path.relative_to(folder) for path in folder.rglob("*") if path.is_file()) for folder in saved]
-    assert files[0] == files[1] and Path("inputs/array-2.npy") in files[0]
+    assert files[0] == files[1] and Path("inputs") / paths[1].name in files[0]
     for file in files[0]:
         assert file.name == "manifest.json" or (saved[0] / file).read_bytes() == (saved[1] / file).read_bytes(), file
     again = sf.Case.load(saved[1] / "case.toml")
@@ -174,14 +242,17 @@ def test_arrays_follow_a_case(tmp_path: Path) -> None:
     case = sf.Case.from_dict({"slider": {"blocks": [12, 10]}, "texture": [{"shape": "mask", "file": mask}]})
     both = pickle.loads(pickle.dumps(case.replace({"load.pressure_field": field}))).replace({"friction.mu_static_field": field + 1})
     assert (both.textured == mask).all() and both.mu_static[0, 1] == both.mu_static.max()
-    assert list(both._hashes()) == ["inputs/array-1.npy", "inputs/2-array-1.npy", "inputs/3-array-1.npy"]
-    np.save(tmp_path / "array-1.npy", ~mask)
-    text = 'slider.blocks = [12, 10]\n[[texture]]\nshape = "mask"\nfile = "array-1.npy"\n'
+    named = ("texture.0.file", "load.pressure_field", "friction.mu_static_field")
+    assert set(both._hashes()) == {f"inputs/{key}.npy" for key in named}
+    twice = case.replace({"texture": [{"shape": "mask", "file": mask}, {"shape": "mask", "file": mask[::-1]}]})
+    assert (twice.textured == mask | mask[::-1]).all()
+    np.save(tmp_path / "mask.npy", ~mask)
+    text = 'slider.blocks = [12, 10]\n[[texture]]\nshape = "mask"\nfile = "mask.npy"\n'
     beside = sf.Case.parse(text, {"friction.mu_static_field": field}, folder=tmp_path)
     assert (beside.textured == ~mask).all() and len(beside._hashes()) == 2
-    with pytest.raises(sf.CaseError, match=r"`memory:/2/array-1.npy` has the shape \(3, 4\) where \(10, 12\)"):
+    with pytest.raises(sf.CaseError, match=r"`friction.mu_static_field` has the shape \(3, 4\) where \(10, 12\)"):
         case.replace({"friction.mu_static_field": field[:3, :4]})
-    with pytest.raises(sf.CaseError, match="array-1.npy` has 80128 bytes where 10 rows of 12 numbers take at most"):
+    with pytest.raises(sf.CaseError, match="`friction.mu_static_field` has 80128 bytes where 10 rows of 12 numbers take at most"):
         case.replace({"friction.mu_static_field": np.ones((100, 100))})
     study = sf.Study(both, {"texture.0.file": [mask, ~mask], "drive.v_star": [0.2]}, settings={"keep": "all"})
     results = study.run(tmp_path / "study", progress=False)

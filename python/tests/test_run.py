@@ -156,7 +156,7 @@ def test_pictures_are_drawn(small: sf.Case) -> None:
     import matplotlib.pyplot as plt
 
     run = sf.run(small, progress=False)
-    for kind in ("friction", "front", "traction", "contact_stress_star"):
+    for kind in ("friction", "front", "kymograph", "traction", "contact_stress_star"):
         axes = run.plot(kind)
         assert axes.get_xlabel()
         plt.close("all")

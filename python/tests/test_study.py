@@ -4,6 +4,7 @@ import math
 import os
 import signal
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -42,6 +43,35 @@ def test_a_folder_is_that_of_the_command_and_goes_on(study: sf.Study, tmp_path: 
     assert (folder / "points.csv").exists() and (folder / "study.toml").exists()
     opened = sf.open(folder)
     assert isinstance(opened, sf.StudyResults) and opened.points.equals(first.points)
+    assert sf.open_study(folder).points.equals(first.points)
+    with pytest.raises(sf.FolderError, match=r"not the folder of a complete run but holds StudyResults\(6 runs"):
+        sf.open_run(folder)
+
+
+def test_means_are_drawn_over_an_axis(small: sf.Case) -> None:
+    matplotlib = pytest.importorskip("matplotlib")
+    matplotlib.use("agg")
+    import matplotlib.pyplot as plt
+
+    axes: dict[str, Any] = {"drive.v_star": [0.02, 0.05, 0.1], "shape": {"plain": {}, "groove": {"texture": [{"shape": "groove", "coverage": 10}]}}}
+    results = sf.Study(small, axes, replicates=2).run(progress=False)
+    over_speed, over_shape = results.plot("sliding_percent_max"), results.plot("sliding_percent_max", over="shape")
+    assert (over_speed.get_xlabel(), over_speed.get_ylabel()) == ("drive.v_star", "sliding_percent_max")
+    assert [len(drawn.containers) for drawn in (over_speed, over_shape)] == [2, 3]
+    points = results.points.query("quantity == 'sliding_percent_max' and shape == 'groove'")
+    # Each curve is the first of the lines of its error bars.
+    curves = [drawn for drawn in over_speed.lines if drawn.get_linestyle() == "-"]
+    assert len(curves) == 2
+    line = curves[1]
+    assert np.array_equal(line.get_xdata(), axes["drive.v_star"]) and np.array_equal(line.get_ydata(), points["mean"])
+    assert results.plot("steps", ax=over_speed) is over_speed
+    plt.close("all")
+    with pytest.raises(ValueError, match='no quantity "speed": it has "static_friction_star"'):
+        results.plot("speed")
+    with pytest.raises(ValueError, match='no axis "drive.direction": it has drive.v_star, shape'):
+        results.plot(over="drive.direction")
+    with pytest.raises(ValueError, match="a study without an axis has one point"):
+        sf.Study(small, replicates=1).run(progress=False).plot("steps")
 
 
 def test_own_quantities_are_columns_and_found_again(study: sf.Study, tmp_path: Path) -> None:

@@ -9,7 +9,7 @@ use std::time::Duration;
 use rstest::rstest;
 
 use crate::broken::DIVERGING;
-use crate::support::process::{program, send, stderr, try_send, wait_for_signal_handlers};
+use crate::support::process::{ignores_hangup, program, send, stderr, try_send, wait_for_signal_handlers};
 use crate::support::workspace::Workspace;
 
 /// Around a second: long enough to be stopped several times.
@@ -449,13 +449,7 @@ fn a_terminal_that_closes_loses_nothing() {
     workspace.wait_for("halted/inputs/spot.png");
     send(&child, "-HUP");
     let output = child.wait_with_output().unwrap();
-    // Whoever started these tests under `nohup` has told the runs in them as well.
-    let status = std::fs::read_to_string("/proc/self/status").unwrap();
-    let ignored = status
-        .lines()
-        .find_map(|line| line.strip_prefix("SigIgn:"))
-        .unwrap();
-    if u64::from_str_radix(ignored.trim(), 16).unwrap() & 1 == 0 {
+    if !ignores_hangup() {
         assert_eq!(output.status.code(), Some(129), "{}", stderr(&output));
         assert!(stderr(&output).contains("which is saved"), "{}", stderr(&output));
         workspace.succeed("run --resume halted");

@@ -57,3 +57,11 @@ pub(crate) fn wait_for_signal_handlers(child: &Child) {
         sleep(Duration::from_millis(300));
     }
 }
+
+/// Whether these tests were started under `nohup`, which tells the commands in them as well not to mind a terminal that closes.
+pub(crate) fn ignores_hangup() -> bool {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let ignored = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+    let ignored = ignored.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok());
+    ignored.is_some_and(|mask| mask & 1 == 1)
+}
