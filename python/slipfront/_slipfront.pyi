@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 __all__ = [
+    "IN_MEMORY",
     "Case",
     "CaseError",
     "FolderError",
@@ -30,6 +31,7 @@ __all__ = [
     "with_checksum",
 ]
 
+IN_MEMORY: str
 __version__: str
 
 class CaseError(ValueError):

@@ -13,13 +13,14 @@ from typing import Any
 
 import numpy as np
 
+from . import _slipfront
 from ._temporary import TemporaryFolder
 
 _BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")
 
 
-IN_MEMORY = "memory:/"
-"""How the names of files begin that are in memory."""
+IN_MEMORY = _slipfront.IN_MEMORY
+"""How the names of files begin that are in memory; a number and the key that was given the array follow."""
 
 
 class Arrays:

@@ -42,7 +42,7 @@ const OPTIONS: [(&str, &str); 8] = [
 ];
 
 /// How the names of files begin that are arrays in memory: a number and the key that was given the array follow.
-const IN_MEMORY: &str = "memory:/";
+pub(crate) const IN_MEMORY: &str = "memory:/";
 
 /// The sentence of an error in the words of Python: arguments in place of options, keys in place of files in memory.
 fn in_words_of_python(error: impl Display) -> String {

@@ -34,6 +34,7 @@ fn command(py: Python<'_>, arguments: Vec<OsString>) -> PyResult<u8> {
 fn _slipfront(module: &Bound<'_, PyModule>) -> PyResult<()> {
     let py = module.py();
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
+    module.add("IN_MEMORY", errors::IN_MEMORY)?;
     let case_error = py.get_type::<errors::CaseError>();
     // Of an error that is not one of a place in a file.
     case_error.setattr("line", py.None())?;
