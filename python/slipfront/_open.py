@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from . import _slipfront
 from ._case import Case
@@ -17,6 +17,8 @@ from ._tables import frame, read_table
 
 if TYPE_CHECKING:
     import pandas as pd
+
+Results = TypeVar("Results", Run, StudyResults)
 
 
 class InterruptedRun:
@@ -83,11 +85,7 @@ def open_run(folder: str | os.PathLike[str], *, verify: bool = True) -> Run:
     FolderError
         When it is not the folder of a complete run, or not as it was written.
     """
-    found = open(folder, verify=verify)
-    if isinstance(found, Run):
-        return found
-    interrupted = ": go on with it by `slipfront run --resume`" if isinstance(found, InterruptedRun) else ""
-    raise _slipfront.FolderError(f"{folder} is not the folder of a complete run but holds {found!r}{interrupted}")
+    return _open_as(Run, "a complete run", folder, verify)
 
 
 def open_study(folder: str | os.PathLike[str], *, verify: bool = True) -> StudyResults:
@@ -103,10 +101,15 @@ def open_study(folder: str | os.PathLike[str], *, verify: bool = True) -> StudyR
     FolderError
         When it is not the folder of a study, or not as it was written.
     """
+    return _open_as(StudyResults, "a study", folder, verify)
+
+
+def _open_as(kind: type[Results], called: str, folder: str | os.PathLike[str], verify: bool) -> Results:
     found = open(folder, verify=verify)
-    if isinstance(found, StudyResults):
+    if isinstance(found, kind):
         return found
-    raise _slipfront.FolderError(f"{folder} is not the folder of a study but holds {found!r}")
+    remedy = ": go on with it by `slipfront run --resume`" if isinstance(found, InterruptedRun) else ""
+    raise _slipfront.FolderError(f"{folder} is not the folder of {called} but holds {found!r}{remedy}")
 
 
 def open(folder: str | os.PathLike[str], *, verify: bool = True) -> Run | InterruptedRun | StudyResults | PaperResults:

@@ -30,7 +30,7 @@ create_exception!(
 );
 
 /// What the command calls its options, and what Python has in their place.
-const OPTIONS: [(&str, &str); 8] = [
+const OPTIONS: [(&str, &str); 9] = [
     ("another --set", "another override"),
     ("--set ", ""),
     ("with --out", "by `folder`"),
@@ -39,6 +39,7 @@ const OPTIONS: [(&str, &str); 8] = [
     ("--max-time", "`max_time`"),
     ("--levels", "`levels`"),
     ("--replicates", "`replicates`"),
+    ("--threads", "`threads`"),
 ];
 
 /// How the names of files begin that are arrays in memory: a number and the key that was given the array follow.

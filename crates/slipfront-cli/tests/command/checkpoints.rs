@@ -117,9 +117,8 @@ fn a_warning_of_the_queue_stops_it(#[case] signal: &str, #[case] status: i32) {
     workspace.succeed("verify warned");
 }
 
-/// A full disk under the log, or a terminal that has gone, costs what would have been said, and nothing else.
-#[cfg(target_os = "linux")]
 /// The case is read from a pipe in which nobody writes, so that the command never comes to look at the first signal.
+#[cfg(unix)]
 #[test]
 fn a_second_signal_ends_it_at_once() {
     let workspace = Workspace::small();
@@ -135,6 +134,8 @@ fn a_second_signal_ends_it_at_once() {
     assert!(matches!(status, Some(130 | 143)), "{status:?}");
 }
 
+/// A full disk under the log, or a terminal that has gone, costs what would have been said, and nothing else.
+#[cfg(target_os = "linux")]
 #[test]
 fn what_cannot_be_said_is_no_failure() {
     let workspace = slow_workspace();

@@ -43,14 +43,9 @@ pub(crate) fn wait_for(what: &str, mut holds: impl FnMut() -> bool) {
 
 /// Waits until the command has installed its signal handlers: a signal that comes before ends it.
 pub(crate) fn wait_for_signal_handlers(child: &Child) {
-    let status = format!("/proc/{}/status", child.id());
+    let process = child.id().to_string();
     // SIGXCPU, number 24, is caught last; a process that has ended has no mask.
-    let caught = || {
-        let text = std::fs::read_to_string(&status).unwrap_or_default();
-        let mask = text.lines().find_map(|line| line.strip_prefix("SigCgt:"));
-        let mask = mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok());
-        mask.is_none_or(|mask| mask >> 23 & 1 == 1)
-    };
+    let caught = || signal_mask(&process, "SigCgt:").is_none_or(|mask| mask >> 23 & 1 == 1);
     if cfg!(target_os = "linux") {
         wait_for("signals to be caught", caught);
     } else {
@@ -60,8 +55,12 @@ pub(crate) fn wait_for_signal_handlers(child: &Child) {
 
 /// Whether these tests were started under `nohup`, which tells the commands in them as well not to mind a terminal that closes.
 pub(crate) fn ignores_hangup() -> bool {
-    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
-    let ignored = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
-    let ignored = ignored.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok());
-    ignored.is_some_and(|mask| mask & 1 == 1)
+    signal_mask("self", "SigIgn:").is_some_and(|mask| mask & 1 == 1)
+}
+
+/// A set of signals in the status of a process, number n at bit n - 1; none of a process that has ended.
+fn signal_mask(process: &str, name: &str) -> Option<u64> {
+    let status = std::fs::read_to_string(format!("/proc/{process}/status")).ok()?;
+    let mask = status.lines().find_map(|line| line.strip_prefix(name))?;
+    u64::from_str_radix(mask.trim(), 16).ok()
 }
