@@ -11,6 +11,7 @@ use slipfront_case::text::display_path;
 use slipfront_plot::PictureError;
 use slipfront_run::folder_error::FolderError;
 use slipfront_run::pictures::error::RunPictureError;
+use slipfront_run::pictures::texture_file::TextureFileError;
 use slipfront_run::program;
 
 /// A study that cannot be used, or had to stop.
@@ -63,6 +64,12 @@ pub enum StudyError {
     Folder(#[from] FolderError),
     #[error("the folder {path} holds other things than a study: choose another with --out")]
     NotAStudy { path: PathBuf },
+    #[error("the folder {path} holds other things than a design: choose another with --out")]
+    NotADesign { path: PathBuf },
+    #[error("the folder {path} holds another design, or this one before it was changed: choose another with --out")]
+    OtherDesign { path: PathBuf },
+    #[error("cannot write the texture: {0}")]
+    Texture(#[from] TextureFileError),
     #[error("another study is running in {path}: wait for it, or choose another folder with --out")]
     Busy { path: PathBuf },
     #[error(
@@ -134,6 +141,10 @@ pub enum StudyError {
         point: String,
         reason: String,
     },
+    #[error(
+        "no texture keeps these limits: widen `design.coverage`, lower `design.feature` or `design.gap`, or allow more features"
+    )]
+    NoDesign,
     #[error("stopped by a signal: finished runs are safe, and the same command goes on from there")]
     Interrupted,
 }

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use crate::anisotropy::anisotropies;
 use crate::error::StudyError;
-use crate::input_copies::Copy;
+use crate::files_in_folder::{copy_in, write_in};
 use crate::journal::Records;
 use crate::pictures;
 use crate::plan::{Plan, RunKey};
@@ -15,8 +15,7 @@ use crate::study_file::StudyFile;
 use crate::study_results::StudyResults;
 use crate::{picture_plan, tables};
 use slipfront_case::disk::{
-    TEXT_MAX_BYTES, folder_of, found_at, is_empty, make_folders, open_limited, read_limited, remove_if_there,
-    write_atomic_with, write_beside,
+    TEXT_MAX_BYTES, is_empty, make_folders, open_limited, read_limited, remove_if_there,
 };
 use slipfront_case::machine::free_disk;
 use slipfront_case::number_format::byte_size;
@@ -70,7 +69,7 @@ impl StudyFolder {
             changed: before.is_some(),
             study: parse(&text)?,
         };
-        folder.copy(&copies)?;
+        copy_in(path, &copies)?;
         if let Some(before) = before {
             // Its tables and pictures do not belong to this study, and can be made from the records again. If its file cannot
             // be read, the names of its pictures are not known, and they stay.
@@ -96,42 +95,7 @@ impl StudyFolder {
         name: &str,
         fill: impl FnOnce(&mut File) -> std::io::Result<()>,
     ) -> Result<(), StudyError> {
-        let path = self.path.join(name);
-        let folder = path.parent().unwrap_or(&self.path);
-        let written = make_folders(folder).and_then(|()| write_atomic_with(&path, fill));
-        written.map_err(|source| StudyError::Write { path, source })
-    }
-
-    /// Copies files, all of them under hidden names first: the name of a copy may be that of another original.
-    fn copy(&self, copies: &[Copy]) -> Result<(), StudyError> {
-        let failed = |path: &Path| {
-            let path = path.to_owned();
-            |source| StudyError::Write { path, source }
-        };
-        let mut staged = Vec::new();
-        for Copy { name, original, .. } in copies {
-            let path = self.path.join(name);
-            // A link may lead to a folder that is not of this study.
-            for above in path.ancestors().skip(1).take_while(|above| *above != self.path) {
-                let found = found_at(above).map_err(FolderError::read(above))?;
-                if found.is_some_and(|found| !found.is_dir()) {
-                    let path = above.to_owned();
-                    return Err(FolderError::Foreign { path }.into());
-                }
-            }
-            let copied = make_folders(folder_of(&path)).and_then(|()| {
-                write_beside(&path, |to| {
-                    std::io::copy(&mut File::open(original)?, to).map(|_| ())
-                })
-            });
-            // There may be more of them than can be open; the lock on the records keeps other processes away.
-            staged.push((copied.map_err(failed(&path))?.into_temp_path(), path));
-        }
-        for (file, path) in staged {
-            let persisted = file.persist(&path).map_err(|error| error.error);
-            persisted.map_err(failed(&path))?;
-        }
-        Ok(())
+        write_in(&self.path, name, fill)
     }
 
     /// Copies complete run folders, and the cases of failed runs, from the folder of a shard, where this folder lacks them.

@@ -1,4 +1,4 @@
-//! The journal of a study: a line for every finished run, appended and forced to the disk.
+//! Journals: a line for every run that has ended, appended and forced to the disk.
 //!
 //! A line that a crash cut short, or that was damaged later, fails its checksum, and its run counts as not done. Before
 //! anything is appended, a part of a line at the end of the file is cut off.
@@ -9,35 +9,29 @@ use std::io::{BufRead, BufReader, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
+use serde::de::DeserializeOwned;
+
 use crate::error::StudyError;
 use crate::record::{FinishedRun, RunResult, looks_like_ours, may_begin_ours, parse_line, to_line};
 use slipfront_case::disk::{open_limited, sync_folder};
 use slipfront_case::unfinished::clear_unfinished;
 use slipfront_run::names::RECORDS;
 
-/// The record file of a study folder, open for one process alone, whose threads may share it.
+/// A file of records, a line each, open for one process alone.
 #[derive(Debug)]
-pub struct Records {
+pub(crate) struct Journal {
     path: PathBuf,
-    written: Mutex<Written>,
-    /// Lines that failed their checksum.
-    pub damaged: usize,
-}
-
-/// The file, and what stands in it.
-#[derive(Debug)]
-struct Written {
     file: File,
-    results: HashMap<String, RunResult>,
 }
 
-impl Records {
-    /// Name of the record file in its folder.
-    pub const FILE: &str = RECORDS;
-
-    /// Opens the records of a study folder, unless another process has them open; a folder without them gets an empty file.
-    pub fn open(folder: &Path) -> Result<Self, StudyError> {
-        let path = folder.join(RECORDS);
+impl Journal {
+    /// Opens the file of this name in a folder, unless another process has it open, and makes an empty one where there is none. Gives the
+    /// records in it, and the number of lines that failed their checksum.
+    pub(crate) fn open<T: DeserializeOwned>(
+        folder: &Path,
+        name: &str,
+    ) -> Result<(Self, Vec<T>, usize), StudyError> {
+        let path = folder.join(name);
         let mut file = open_locked(&path, folder)?;
         // A study that has changed since it was killed may not write the same files again.
         clear_unfinished(folder);
@@ -51,15 +45,58 @@ impl Records {
         if lines.bytes == 0 {
             sync_folder(folder).map_err(failed("write to", &path))?;
         }
+        Ok((Self { path, file }, lines.records, lines.damaged))
+    }
+
+    /// Appends lines and waits until the disk has them; what had been recorded before stays whole.
+    pub(crate) fn append(&mut self, lines: &[u8]) -> Result<(), StudyError> {
+        let Self { path, file } = self;
+        let before = file.stream_position();
+        let before = before.map_err(failed("write to", path))?;
+        let appended = file.write_all(lines).and_then(|()| file.sync_data());
+        appended.map_err(|source| {
+            // Whole lines stay. If a part of a line cannot be cut off, the next start does it.
+            let length = file.metadata().map_or(0, |file| file.len());
+            let there = length.saturating_sub(before) as usize;
+            let there = &lines[..lines.len().min(there)];
+            let last_break = there.iter().rposition(|&byte| byte == b'\n');
+            let whole = last_break.map_or(0, |end| end + 1);
+            let _ = file.set_len(before + whole as u64);
+            failed("write to", path)(source)
+        })
+    }
+}
+
+/// The record file of a study folder, open for one process alone, whose threads may share it.
+#[derive(Debug)]
+pub struct Records {
+    written: Mutex<Written>,
+    /// Lines that failed their checksum.
+    pub damaged: usize,
+}
+
+/// The file, and what stands in it.
+#[derive(Debug)]
+struct Written {
+    journal: Journal,
+    results: HashMap<String, RunResult>,
+}
+
+impl Records {
+    /// Name of the record file in its folder.
+    pub const FILE: &str = RECORDS;
+
+    /// Opens the records of a study folder, unless another process has them open; a folder without them gets an empty file.
+    pub fn open(folder: &Path) -> Result<Self, StudyError> {
+        let (journal, records, damaged) = Journal::open(folder, RECORDS)?;
         // Each record is dropped before the next is looked at.
-        let results = lines.records.into_iter().map(|record| entry(&record));
+        let results = records.into_iter().map(|record| entry(&record));
         Ok(Self {
-            path,
             written: Mutex::new(Written {
-                file,
+                journal,
                 results: results.collect(),
             }),
-            damaged: lines.damaged,
+            damaged,
         })
     }
 
@@ -86,26 +123,14 @@ impl Records {
     /// Appends finished runs that are not recorded yet and waits until the disk has them; what had been recorded before stays
     /// whole.
     pub fn append(&self, records: &[FinishedRun]) -> Result<(), StudyError> {
-        let Written { file, results } = &mut *self.written();
+        let Written { journal, results } = &mut *self.written();
         // Studies that share the file may have made the same run at the same time.
         let unknown = records.iter().filter(|record| !results.contains_key(&record.id));
         let lines: Vec<u8> = unknown.flat_map(to_line).collect();
         if lines.is_empty() {
             return Ok(());
         }
-        let before = file.stream_position();
-        let before = before.map_err(failed("write to", &self.path))?;
-        let appended = file.write_all(&lines).and_then(|()| file.sync_data());
-        appended.map_err(|source| {
-            // Whole lines stay. If a part of a line cannot be cut off, the next start does it.
-            let length = file.metadata().map_or(0, |file| file.len());
-            let there = length.saturating_sub(before) as usize;
-            let there = &lines[..lines.len().min(there)];
-            let last_break = there.iter().rposition(|&byte| byte == b'\n');
-            let whole = last_break.map_or(0, |end| end + 1);
-            let _ = file.set_len(before + whole as u64);
-            failed("write to", &self.path)(source)
-        })?;
+        journal.append(&lines)?;
         results.extend(records.iter().map(entry));
         Ok(())
     }
@@ -113,7 +138,7 @@ impl Records {
     /// Appends the records of another folder that are not here yet, and returns their number.
     pub fn merge(&mut self, folder: &Path) -> Result<usize, StudyError> {
         let path = folder.join(RECORDS);
-        let read = open_limited(&path, u64::MAX).and_then(|mut file| JournalLines::read(&mut file));
+        let read = open_limited(&path, u64::MAX).and_then(|mut file| JournalLines::<FinishedRun>::read(&mut file));
         let lines = read.map_err(failed("read", &path))?;
         if lines.are_foreign() {
             return Err(StudyError::NotRecords { path });
@@ -171,9 +196,8 @@ const LINES_AT_ONCE: usize = 1000;
 const LINE_MAX_BYTES: u64 = 1 << 20;
 
 /// The contents of a record file.
-#[derive(Default)]
-struct JournalLines {
-    records: Vec<FinishedRun>,
+struct JournalLines<T> {
+    records: Vec<T>,
     /// Lines that fail their checksum.
     damaged: usize,
     /// Whether a line is a record or may once have been one.
@@ -187,11 +211,19 @@ struct JournalLines {
     cut_at: Option<u64>,
 }
 
-impl JournalLines {
+impl<T: DeserializeOwned> JournalLines<T> {
     /// Reads line by line: a file of any length takes no more memory than its records.
     fn read(file: &mut impl Read) -> std::io::Result<Self> {
         let mut file = BufReader::new(file);
-        let mut lines = Self::default();
+        let mut lines = Self {
+            records: Vec::new(),
+            damaged: 0,
+            ours: false,
+            too_long: false,
+            bytes: 0,
+            lacks_break: false,
+            cut_at: None,
+        };
         let mut line = Vec::new();
         while !lines.too_long {
             line.clear();

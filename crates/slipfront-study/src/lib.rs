@@ -10,9 +10,11 @@
 mod anisotropy;
 mod axis;
 pub mod converge;
+pub mod design;
 mod error;
 mod estimate_cost;
 mod execute;
+mod files_in_folder;
 mod folder;
 mod friction_tensor;
 mod identity;

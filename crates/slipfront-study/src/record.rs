@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
 use crate::summary_values::SummaryValues;
@@ -56,14 +57,14 @@ pub struct FinishedRun {
 }
 
 /// The line of a record with its line break.
-pub(crate) fn to_line(record: &FinishedRun) -> Vec<u8> {
+pub(crate) fn to_line(record: &impl Serialize) -> Vec<u8> {
     // Our own struct of numbers and strings: serialisation cannot fail.
     let json = serde_json::to_string(record).unwrap_or_default();
     format!("{} {json}\n", checksum(json.as_bytes())).into_bytes()
 }
 
 /// The record of a line without its line break; none if it fails its checksum.
-pub(crate) fn parse_line(line: &[u8]) -> Option<FinishedRun> {
+pub(crate) fn parse_line<T: DeserializeOwned>(line: &[u8]) -> Option<T> {
     let (sum, json) = line.split_at_checked(CHECKSUM)?;
     let json = json.strip_prefix(b" ")?;
     if checksum(json).as_bytes() != sum {

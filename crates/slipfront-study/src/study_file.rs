@@ -195,10 +195,7 @@ impl Settings {
 impl StudyFile {
     /// The study with its base case inside and its files beside it, for the results folder.
     pub(crate) fn portable(&self) -> Result<(String, Vec<Copy>), StudyError> {
-        let source = Source::new(&self.base.name, &self.base.text);
-        let base: Result<toml::Table, _> = limit_nesting(&source, 0, &self.base.text)?.parse();
-        let base = base.map_err(|error| syntax_error(&source, 0, &error))?;
-        let mut table = toml::Table::from_iter([("base".to_owned(), base.into())]);
+        let mut table = toml::Table::from_iter([("base".to_owned(), base_table(&self.base)?.into())]);
         table.extend(self.table.clone().into_iter().filter(|(key, _)| key != "base"));
         let copies = input_copies::copy(&mut table, &self.base.folder)?;
         Ok((portable_text(table)?, copies))
@@ -284,6 +281,13 @@ fn refuse_rest(tables: &Tables) -> Result<(), CaseError> {
     Err(tables.source.error_at(key.span(), sentence))
 }
 
+/// The keys of a base case.
+pub(crate) fn base_table(base: &Base) -> Result<toml::Table, CaseError> {
+    let source = Source::new(&base.name, &base.text);
+    let table: Result<toml::Table, _> = limit_nesting(&source, 0, &base.text)?.parse();
+    table.map_err(|error| syntax_error(&source, 0, &error))
+}
+
 /// The text of a study. What stands in an axis or under `[study]` keeps its order, which is that of columns and points: a
 /// table in full would have its lists of tables behind all else.
 pub(crate) fn portable_text(mut study: toml::Table) -> Result<String, CaseError> {
@@ -306,7 +310,8 @@ pub(crate) fn portable_text(mut study: toml::Table) -> Result<String, CaseError>
     Ok(text)
 }
 
-fn read_base(tables: &mut Tables, file: &str, folder: &Path) -> Result<Base, StudyError> {
+/// The base case of a file called `file`: a table of it, a case file that it names relative to `folder`, or the baseline.
+pub(crate) fn read_base(tables: &mut Tables, file: &str, folder: &Path) -> Result<Base, StudyError> {
     let folder = folder.to_owned();
     let Some(value) = tables.root.remove("base") else {
         // Without a base the baseline is varied.

@@ -179,6 +179,21 @@ impl<'a, S: BufRead + Seek> NpyArray<'a, S> {
     }
 }
 
+/// The bytes of a `.npy` file of the shape (ny, nx) that holds a mask of rows of `nx` blocks, the smallest y first. [`mask_npy`] gives it back.
+pub fn npy_of_mask(nx: usize, textured: &[bool]) -> Vec<u8> {
+    const BEFORE_HEADER: usize = 10;
+    let ny = textured.len() / nx.max(1);
+    let mut header = format!("{{'descr': '|b1', 'fortran_order': False, 'shape': ({ny}, {nx}), }}");
+    // Numpy begins the data at a multiple of 64 bytes, after a line break.
+    let blanks = 63 - (BEFORE_HEADER + header.len()) % 64;
+    header.extend(std::iter::repeat_n(' ', blanks));
+    header.push('\n');
+    let length = (header.len() as u16).to_le_bytes();
+    let data = textured.iter().map(|&is_textured| u8::from(is_textured));
+    let head = [&b"\x93NUMPY\x01\x00"[..], &length, header.as_bytes()].concat();
+    head.into_iter().chain(data).collect()
+}
+
 /// Reads the header from the first bytes of a file; returns it with the number of bytes before the data.
 fn read_header<'a>(head: &'a [u8], path: &Path) -> Result<(NpyHeader<'a>, usize), ArrayError> {
     let refuse = |detail: &str| broken(path, ".npy", detail);

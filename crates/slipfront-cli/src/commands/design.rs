@@ -1,0 +1,99 @@
+//! `slipfront design`: the texture that gives the friction that is wished for.
+
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use clap::Args;
+use jiff::SignedDuration;
+use slipfront_case::number_format::count;
+use slipfront_study::StudyError;
+use slipfront_study::design::{Bounds, DesignFile, DesignFolder};
+
+use crate::failure::Failure;
+use crate::print::print_message;
+use crate::print_stderr::print_stderr;
+use crate::progress::design::DesignProgress;
+use crate::signals::Signals;
+use crate::threads::{count_from_one, set_threads};
+use crate::wrap::for_stderr;
+
+/// Search for the texture that gives the friction that is wished for, and judge it on surfaces that the search has not seen
+#[derive(Args)]
+#[command(after_help = "Examples:
+  slipfront design cases/designs/least_friction.toml
+  slipfront design cases/designs/least_friction.toml --runs 2000 -o results/quick
+  slipfront design cases/designs/static_friction.toml --time 60s
+
+Stopped in any way, the same command goes on where it was. The folder holds the mask as .npy, .png, .svg, .dxf and .gsf, a case that
+reads it, and the verdict beside named patterns.")]
+pub(crate) struct DesignCommand {
+    /// Design file
+    #[arg(value_name = "DESIGN.toml")]
+    design: PathBuf,
+    /// Folder for the results [default: results/ and the name of the design]
+    #[arg(short, long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Runs of the search, in place of `design.runs`; the verdict takes some more
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    runs: Option<u32>,
+    /// Cuts the search short after this time, such as 60s or 10min; what is found then depends on the speed of this machine
+    #[arg(long, value_name = "TIME")]
+    time: Option<SignedDuration>,
+    /// Most runs at once [default: one per core]; results do not depend on it
+    #[arg(long, value_name = "N", value_parser = count_from_one)]
+    threads: Option<u16>,
+    /// Show neither progress nor the verdict
+    #[arg(short, long)]
+    quiet: bool,
+}
+
+impl DesignCommand {
+    pub(crate) fn execute(self) -> Result<(), Failure> {
+        set_threads(self.threads)?;
+        let file = DesignFile::load(&self.design).map_err(Failure::input)?;
+        // An invalid design leaves no folder.
+        file.design().map_err(Failure::input)?;
+        let out = self.out.unwrap_or_else(|| Path::new("results").join(&file.name));
+        let mut folder = DesignFolder::open(&out, &file).map_err(Failure::input)?;
+        let design = folder.file.design().map_err(Failure::input)?;
+        let signals = Signals::catch().map_err(Failure::running)?;
+        let began = Instant::now();
+        let most = self.time.map(|time| time.as_secs_f64());
+        let share_of_time = || most.map_or(0.0, |most| began.elapsed().as_secs_f64() / most);
+        let bounds = Bounds {
+            runs: self.runs.unwrap_or(file.keys.runs) as usize,
+            share_of_time: &share_of_time,
+            stop: &signals.stop,
+        };
+        if !self.quiet {
+            print_notes(&folder);
+        }
+        let mut progress = DesignProgress::new(self.quiet);
+        let found = folder.run(&design, &bounds, &mut |now| progress.show(now));
+        progress.finish();
+        let outcome = found.map_err(|error| match error {
+            StudyError::Interrupted => Failure::stopped(&signals, error),
+            StudyError::NoDesign => Failure::input(error),
+            error => Failure::running(error),
+        })?;
+        let text = folder.write(&design, &outcome).map_err(Failure::running)?;
+        if !self.quiet {
+            print_message(&format!("{text}\n{}\n", folder.path().display()));
+        }
+        Ok(())
+    }
+}
+
+/// Prints what the user must know of a folder that has been used before.
+fn print_notes(folder: &DesignFolder) {
+    let note = |sentence: &str| print_stderr(&for_stderr(&format!("note: {sentence}")));
+    if folder.damaged > 0 {
+        note(&format!(
+            "the journal has {}, passed over: its runs count as not made",
+            count(folder.damaged, "damaged line")
+        ));
+    }
+    if folder.n_kept() > 0 {
+        note(&format!("the folder holds {} of an earlier call, which are not repeated", count(folder.n_kept(), "run")));
+    }
+}

@@ -1,0 +1,379 @@
+//! Runs of designs in memory: which are wanted, which are known, and what is lost by each.
+
+use std::collections::{HashMap, HashSet};
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use rayon::prelude::*;
+use slipfront::StopReason;
+use slipfront_case::arrays::npy_of_mask;
+use slipfront_case::case::{Case, Files, FilesInMemory, Ranks};
+use slipfront_case::case_file::{
+    Arrangement, AutoOr, CaseError, CaseFile, Count, DEFAULT_THRESHOLD, Mask, Pattern, RunTime, Shape, Snapshots, Texture,
+    TimeStep,
+};
+use slipfront_run::run_summary::run_summary_unless;
+use slipfront_run::running::{Record, run_unless};
+
+use super::grid::Grid;
+use super::search::hash;
+use super::wish::{Measured, Wish};
+use crate::error::StudyError;
+use crate::identity::physics;
+use crate::statistics::mean;
+
+/// The step that designs are tried with: it finds reductions in the order of those at a quarter of it, at a third of the cost.
+const COARSE_STEP: f64 = 0.4;
+
+/// The time up to which the largest mu* of a design counts as its static friction, over the latest t* at which a slider with as much
+/// texture as the limits allow is expected to slip (Eq. 12): a block that its own drive spring alone must pull until it slips, without help
+/// of its neighbours, slips at 2.67/2.5 = 1.07 of that time.
+const SEARCHED: f64 = 1.2;
+
+/// Multiple of that time up to which verdicts look, so that no design is good only until the search has looked away.
+const JUDGED: f64 = 2.0;
+
+/// How a run of a design is made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Fidelity {
+    /// With a coarse step.
+    Coarse,
+    /// With the step of the case.
+    Fine,
+    /// With the step of the case, for longer.
+    Verdict,
+}
+
+/// A case in which designs are tried.
+#[derive(Debug)]
+pub(crate) struct Subject {
+    /// The case, without textures.
+    file: CaseFile,
+    name: String,
+    folder: PathBuf,
+    /// Steps dt*, the coarse one and that of the case.
+    steps: [f64; 2],
+    /// Ends of runs, t*: of the search, and of verdicts.
+    ends: [f64; 2],
+    /// What decides its numbers but for texture, seed, step and end.
+    physics: blake3::Hash,
+    /// Seed of its surface in the search.
+    seed: u64,
+    /// Whether surfaces differ by their seeds.
+    scatters: bool,
+    /// Largest share of texture, %.
+    most: f64,
+    /// mu_s.
+    pub(crate) mu_static: f64,
+}
+
+/// A run that is wanted.
+#[derive(Clone)]
+pub(crate) struct Wanted {
+    /// Index of the case.
+    pub(crate) subject: usize,
+    /// The texture; none for the slider without.
+    pub(crate) texture: Option<Arc<Vec<bool>>>,
+    /// Number of the surface; 0 is that of the search.
+    pub(crate) surface: u64,
+    /// How it is made.
+    pub(crate) fidelity: Fidelity,
+}
+
+/// Identity of a run: a hash of all that decides its numbers.
+pub type RunId = String;
+
+/// What runs have found, by their identities; none of a run that diverged.
+pub type Known = HashMap<RunId, Option<Measured>>;
+
+/// Takes runs that have ended, in their order.
+pub type Keep<'a> = dyn FnMut(&[(RunId, Option<Measured>)]) -> Result<(), StudyError> + 'a;
+
+impl Subject {
+    /// A case in which designs with up to `most` % of texture are tried, to find what the wish is about.
+    pub(crate) fn new(case: &Case, folder: &Path, wish: &Wish, most: f64) -> Result<Self, CaseError> {
+        let mut file = case.file.clone();
+        file.texture.clear();
+        file.output.snapshots = Snapshots::At(Vec::new());
+        file.output.series = AutoOr::Auto;
+        file.time.stop = StopReason::End;
+        let own = case.time_plan.dt_star;
+        let coarse = own.max(COARSE_STEP.min(0.5 * case.time_plan.step_limit));
+        let whole = case.time_plan.end_star();
+        let mut subject = Self {
+            name: case.name.clone(),
+            folder: folder.to_owned(),
+            steps: [coarse, own],
+            ends: [whole; 2],
+            physics: blake3::Hash::from_bytes([0; 32]),
+            seed: file.friction.seed,
+            scatters: case.groups.sigma_static_star > 0.0 || case.groups.sigma_kinetic_star > 0.0,
+            most,
+            mu_static: case.scales.mu_static_mean,
+            file,
+        };
+        let bare = subject.case(None, 0, Fidelity::Fine)?;
+        subject.physics = physics(&bare, None)?;
+        let is_short = !wish.needs_sliding() && bare.file.drive.edge().is_none() && bare.model.drive.program.is_none();
+        if is_short {
+            let load_factor = 1.0 / (1.0 - 0.01 * most.min(90.0));
+            let onset = bare.expected.onset_star[1] * load_factor;
+            subject.ends = [SEARCHED, JUDGED * SEARCHED].map(|times| times * onset);
+        }
+        Ok(subject)
+    }
+
+    /// The case, without textures.
+    pub(crate) fn file(&self) -> &CaseFile {
+        &self.file
+    }
+
+    /// The case with other keys.
+    pub(crate) fn with(&self, change: impl FnOnce(&mut CaseFile), wish: &Wish) -> Result<Self, CaseError> {
+        let mut file = self.file.clone();
+        change(&mut file);
+        let folder = self.folder.as_path();
+        let case = Case::to_run(file, &self.name, folder, &mut |_| true, Ranks::ALONE)?;
+        Self::new(&case, folder, wish, self.most)
+    }
+
+    /// The case on blocks of half the size; none if it cannot be put there.
+    pub(crate) fn on_finer_blocks(&self, wish: &Wish) -> Option<Self> {
+        let case = Case::to_run(self.file.clone(), &self.name, &self.folder, &mut |_| true, Ranks::ALONE).ok()?;
+        let set = case.on_other_blocks(2.0).ok()?;
+        let set: Vec<String> = set.iter().map(ToString::to_string).collect();
+        let text = self.file.to_toml().ok()?;
+        let finer = Case::parse(&text, &self.name, &self.folder, &set).ok()?;
+        Self::new(&finer, &self.folder, wish, self.most).ok()
+    }
+
+    fn step_and_end(&self, fidelity: Fidelity) -> [f64; 2] {
+        let [coarse, own] = self.steps;
+        let [searched, judged] = self.ends;
+        match fidelity {
+            Fidelity::Coarse => [coarse, searched],
+            Fidelity::Fine => [own, searched],
+            Fidelity::Verdict => [own, judged],
+        }
+    }
+
+    /// The case with a texture.
+    pub(crate) fn case(
+        &self,
+        texture: Option<&[bool]>,
+        surface: u64,
+        fidelity: Fidelity,
+    ) -> Result<Case, CaseError> {
+        let mut file = self.file.clone();
+        let [step, end] = self.step_and_end(fidelity);
+        file.time.step = TimeStep::Number(step);
+        file.time.duration = RunTime::Star(AutoOr::Number(end));
+        file.friction.seed = self.seed + surface;
+        let mut in_memory = FilesInMemory::new();
+        if let Some(texture) = texture {
+            file.texture.push(masked());
+            let columns = file.slider.blocks[0] as usize;
+            in_memory.insert(MASK.to_owned(), npy_of_mask(columns, texture).into());
+        }
+        let files = Files {
+            folder: &self.folder,
+            in_memory: Some(&in_memory),
+        };
+        Case::to_run_with(file, &self.name, files, &mut |_| true, Ranks::ALONE)
+    }
+}
+
+/// Name of the mask of a design, in cases and in its folder.
+pub(crate) const MASK: &str = "mask.npy";
+
+/// The texture of a case whose mask is that of a design.
+pub(crate) fn masked() -> Texture {
+    Texture {
+        shape: Shape::Mask(Mask {
+            file: MASK.to_owned(),
+            threshold: DEFAULT_THRESHOLD,
+        }),
+        pattern: Pattern {
+            pitch: None,
+            array: Count::Auto,
+            lattice: Arrangement::Square,
+            repeat: None,
+            invert: false,
+        },
+    }
+}
+
+/// The cases in which designs are tried, and how their losses become one.
+#[derive(Debug)]
+pub(crate) struct Evaluator {
+    /// The cases, all with the same blocks.
+    pub(crate) subjects: Vec<Subject>,
+    /// The blocks.
+    pub(crate) grid: Grid,
+    /// The wish.
+    pub(crate) wish: Wish,
+    /// Whether the worst case counts, in place of the mean.
+    pub(crate) is_worst: bool,
+}
+
+impl Evaluator {
+    /// Other cases for this wish.
+    pub(crate) fn with_subjects(&self, subjects: Vec<Subject>, grid: Grid) -> Self {
+        Self {
+            subjects,
+            grid,
+            wish: self.wish.clone(),
+            is_worst: self.is_worst,
+        }
+    }
+
+    /// Whether surfaces differ by their seeds in any case.
+    pub(crate) fn scatters(&self) -> bool {
+        self.subjects.iter().any(|subject| subject.scatters)
+    }
+
+    /// Identity of a run.
+    pub(crate) fn id(&self, wanted: &Wanted) -> RunId {
+        let subject = &self.subjects[wanted.subject];
+        let mut hasher = blake3::Hasher::new();
+        hasher.update(subject.physics.as_bytes());
+        if let Some(texture) = &wanted.texture {
+            hasher.update(&hash(texture));
+        }
+        hasher.update(&(subject.seed + wanted.surface).to_le_bytes());
+        for number in subject.step_and_end(wanted.fidelity) {
+            hasher.update(&number.to_le_bytes());
+        }
+        if let Wish::Curve(points) = &self.wish {
+            for number in points.as_flattened() {
+                hasher.update(&number.to_le_bytes());
+            }
+        }
+        hasher.finalize().to_hex()[..32].to_owned()
+    }
+
+    /// The runs of some textures on some surfaces, each with that of the slider without texture.
+    pub(crate) fn wanted(
+        &self,
+        textures: &[Arc<Vec<bool>>],
+        surfaces: Range<u64>,
+        fidelity: Fidelity,
+    ) -> Vec<Wanted> {
+        let textures: Vec<Option<&Arc<Vec<bool>>>> =
+            std::iter::once(None).chain(textures.iter().map(Some)).collect();
+        let mut wanted = Vec::new();
+        for surface in surfaces {
+            for texture in &textures {
+                wanted.extend((0..self.subjects.len()).map(|subject| Wanted {
+                    subject,
+                    texture: texture.cloned(),
+                    surface,
+                    fidelity,
+                }));
+            }
+        }
+        wanted
+    }
+
+    /// Makes the runs that are not known yet, on the threads of rayon's pool, and hands them over in the order in which they are wanted;
+    /// how many there were. After a stop, none of them is handed over.
+    pub(crate) fn run(
+        &self,
+        wanted: &[Wanted],
+        known: &mut Known,
+        stop: &AtomicBool,
+        keep: &mut Keep,
+    ) -> Result<usize, StudyError> {
+        let mut asked = HashSet::new();
+        let missing: Vec<(RunId, &Wanted)> = wanted
+            .iter()
+            .map(|wanted| (self.id(wanted), wanted))
+            .filter(|(id, _)| !known.contains_key(id) && asked.insert(id.clone()))
+            .collect();
+        let runs = missing.into_par_iter().with_max_len(1);
+        let ended: Result<Vec<_>, StudyError> = runs
+            .map(|(id, wanted)| Ok((id, self.measure(wanted, stop)?.ok_or(StudyError::Interrupted)?)))
+            .collect();
+        let ended = ended?;
+        keep(&ended)?;
+        let n = ended.len();
+        known.extend(ended);
+        Ok(n)
+    }
+
+    /// One run; none after a stop, and none within of one that diverges.
+    fn measure(&self, wanted: &Wanted, stop: &AtomicBool) -> Result<Option<Option<Measured>>, CaseError> {
+        let ends = || stop.load(Ordering::Relaxed);
+        let texture = wanted.texture.as_ref().map(|texture| texture.as_slice());
+        let case = self.subjects[wanted.subject].case(texture, wanted.surface, wanted.fidelity)?;
+        let Wish::Curve(points) = &self.wish else {
+            let summary = run_summary_unless(&case, &ends);
+            return Ok(summary.map(|summary| summary.ok().map(|summary| Measured::of(&summary))));
+        };
+        let record = run_unless(&Arc::new(case), &ends);
+        Ok(record.map(|record| {
+            record.ok().map(|record| Measured {
+                misfit: Some(misfit(points, &record)),
+                ..Measured::of(&record.summary)
+            })
+        }))
+    }
+
+    /// The numbers of a run; none of one that diverged or was not made.
+    pub(crate) fn found(&self, wanted: &Wanted, known: &Known) -> Option<Measured> {
+        known.get(&self.id(wanted)).cloned().flatten()
+    }
+
+    /// The loss of a texture on some surfaces: of the mean deviation of each case, the mean over the cases or the largest; infinite if a run
+    /// diverged.
+    pub(crate) fn loss(
+        &self,
+        texture: &Arc<Vec<bool>>,
+        surfaces: Range<u64>,
+        fidelity: Fidelity,
+        known: &Known,
+    ) -> f64 {
+        let deviation = |subject: usize, surface: u64| {
+            let found = |texture: Option<&Arc<Vec<bool>>>| {
+                let wanted = Wanted {
+                    subject,
+                    texture: texture.cloned(),
+                    surface,
+                    fidelity,
+                };
+                self.found(&wanted, known)
+            };
+            let pair = found(Some(texture)).zip(found(None));
+            pair.map_or(f64::NAN, |(with, without)| self.wish.deviation(&with, &without))
+        };
+        let losses = (0..self.subjects.len()).map(|subject| {
+            let deviations: Vec<f64> = surfaces.clone().map(|surface| deviation(subject, surface)).collect();
+            let loss = self.wish.loss(mean(&deviations));
+            if loss.is_nan() { f64::INFINITY } else { loss }
+        });
+        if self.is_worst {
+            losses.fold(f64::NEG_INFINITY, f64::max)
+        } else {
+            losses.sum::<f64>() / self.subjects.len() as f64
+        }
+    }
+}
+
+/// Root of the mean square of mu* less what it should be at some times of the drive, with mu* linear between its rows.
+fn misfit(points: &[[f64; 2]], record: &Record) -> f64 {
+    let rows = &record.rows;
+    let mut next = 0;
+    let squares = points.iter().map(|&[time, wanted]| {
+        while next + 1 < rows.len() && rows[next].drive_time_star < time {
+            next += 1;
+        }
+        let [before, after] = [&rows[next.saturating_sub(1)], &rows[next]];
+        let [from, to] = [before, after].map(|row| row.drive_time_star);
+        let share = if to > from { ((time - from) / (to - from)).clamp(0.0, 1.0) } else { 1.0 };
+        let found = before.point.mu_star + share * (after.point.mu_star - before.point.mu_star);
+        (found - wanted) * (found - wanted)
+    });
+    (squares.sum::<f64>() / points.len() as f64).sqrt()
+}

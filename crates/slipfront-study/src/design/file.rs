@@ -1,0 +1,420 @@
+//! The design file: a base case, the wish, the limits, and how long to search.
+
+use std::path::Path;
+
+use serde::Deserialize;
+use slipfront_case::case::{Case, Ranks};
+use slipfront_case::case_file::{
+    CaseError, CaseFile, Override, Source, Tables, limit_nesting, read_text, syntax_error, unknown_key,
+};
+use slipfront_case::quantity::{Force, Length};
+use slipfront_run::measured::{Column, Measure, MeasuredRecord};
+use toml::de::DeTable;
+use toml::{Table, Value};
+
+use super::limits::Limits;
+use super::wish::{Quantity, Wish};
+use super::{Design, Grid};
+use crate::axis::overrides;
+use crate::error::StudyError;
+use crate::input_copies::{self, Copy};
+use crate::study_file::{Base, base_table, portable_text, read_base};
+
+/// The tables of a design file.
+const TABLES: [&str; 2] = ["base", "design"];
+
+/// Runs of a search, unless the file says otherwise.
+const DEFAULT_RUNS: u32 = 10_000;
+
+/// Most runs of a search.
+const MAX_RUNS: u32 = 100_000_000;
+
+/// A design file.
+#[derive(Clone, Debug)]
+pub struct DesignFile {
+    /// Name of the design and of its results.
+    pub name: String,
+    /// Its keys.
+    pub keys: DesignKeys,
+    base: Base,
+    source: Source,
+    table: Table,
+}
+
+/// `[design]`.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct DesignKeys {
+    wish: WishKeys,
+    /// Least and largest share of the slider that is textured, %.
+    coverage: [f64; 2],
+    feature: Option<Length>,
+    feature_blocks: Option<u32>,
+    gap: Option<Length>,
+    gap_blocks: Option<u32>,
+    #[serde(default)]
+    mirror: Mirror,
+    #[serde(default = "one_cell")]
+    copies: [u32; 2],
+    forbidden: Option<Value>,
+    max_features: Option<u32>,
+    writing: Option<Writing>,
+    #[serde(default)]
+    cases: Vec<Table>,
+    #[serde(default)]
+    judge_by: JudgeBy,
+    /// Runs of the search.
+    #[serde(default = "default_runs")]
+    pub runs: u32,
+    #[serde(default = "first_start")]
+    start: u64,
+    #[serde(default)]
+    starts: Vec<Value>,
+}
+
+fn one_cell() -> [u32; 2] {
+    [1, 1]
+}
+
+fn default_runs() -> u32 {
+    DEFAULT_RUNS
+}
+
+fn first_start() -> u64 {
+    1
+}
+
+/// `wish`: exactly one of its forms.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct WishKeys {
+    least: Option<Quantity>,
+    largest: Option<Quantity>,
+    value: Option<Number>,
+    of: Option<String>,
+    curve: Option<CurveKeys>,
+}
+
+/// A coefficient, or a force with its unit.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(untagged)]
+enum Number {
+    Coefficient(f64),
+    Force(String),
+}
+
+/// A curve to follow: two columns of a table, path of the drive and friction.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct CurveKeys {
+    file: String,
+    x: String,
+    y: String,
+    x_unit: Option<String>,
+    y_unit: Option<String>,
+}
+
+/// A laser's writing: lines so far apart, all together at most so long.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Writing {
+    line_spacing: Length,
+    max_length: Option<Length>,
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+enum Mirror {
+    #[default]
+    None,
+    X,
+    Y,
+    Both,
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+enum JudgeBy {
+    #[default]
+    Mean,
+    Worst,
+}
+
+impl DesignFile {
+    /// Loads a design file; a base case that it names stands relative to it.
+    ///
+    /// # Errors
+    /// As [`parse`](Self::parse), and when the file cannot be read.
+    pub fn load(path: &Path) -> Result<Self, StudyError> {
+        let text = read_text(path)?;
+        let stem = path.file_stem();
+        let name = stem.map_or_else(|| "design".into(), |stem| stem.to_string_lossy());
+        let folder = path.parent().unwrap_or(Path::new(""));
+        Self::parse(&text, &path.display().to_string(), &name, folder)
+    }
+
+    /// Reads a design file called `file` in messages; a base case that it names stands relative to `folder`.
+    ///
+    /// # Errors
+    /// When it is no TOML, has unknown keys, or values out of their bounds.
+    pub fn parse(text: &str, file: &str, name: &str, folder: &Path) -> Result<Self, StudyError> {
+        let mut source = Source::new(file, text);
+        let root = DeTable::parse(limit_nesting(&source, 0, text)?);
+        let root = root
+            .map_err(|error| syntax_error(&source, 0, &error))?
+            .into_inner();
+        source.note_places(&root);
+        let mut tables = Tables {
+            root,
+            source: &source,
+        };
+        let base = read_base(&mut tables, file, folder)?;
+        let keys: DesignKeys = tables.read("design")?;
+        if let Some(key) = tables.root.keys().min_by_key(|key| key.span().start) {
+            let sentence = unknown_key(key.get_ref(), "a design file", &TABLES);
+            return Err(source.error_at(key.span(), sentence).into());
+        }
+        keys.check(&source)?;
+        let table = text.parse().map_err(|error| syntax_error(&source, 0, &error))?;
+        Ok(Self {
+            name: name.to_owned(),
+            keys,
+            base,
+            source,
+            table,
+        })
+    }
+
+    /// The design with its base case inside and its files beside it, for the results folder.
+    pub(crate) fn portable(&self) -> Result<(String, Vec<Copy>), StudyError> {
+        let mut table = Table::from_iter([("base".to_owned(), base_table(&self.base)?.into())]);
+        table.extend(self.table.clone().into_iter().filter(|(key, _)| key != "base"));
+        let copies = input_copies::copy(&mut table, &self.base.folder)?;
+        Ok((portable_text(table)?, copies))
+    }
+
+    /// The case in which designs are tried first, with the texture that it has.
+    ///
+    /// # Errors
+    /// When it is no valid case.
+    pub fn case(&self) -> Result<Case, CaseError> {
+        self.case_with(&[])
+    }
+
+    fn case_with(&self, set: &[Override]) -> Result<Case, CaseError> {
+        let set: Vec<&Override> = set.iter().collect();
+        let file: CaseFile = self.base.parse()?.with(&set)?;
+        Case::to_run(file, &self.name, &self.base.folder, &mut |_| true, Ranks::ALONE)
+    }
+
+    /// The textured blocks of the base case with other textures, in place of its own.
+    fn textured(&self, key: &str, textures: &Value) -> Result<Vec<bool>, CaseError> {
+        if !textures.is_array() {
+            let sentence = format!(
+                "`{key}` must be a list of textures, each as in a case file, such as [{{ shape = \"mask\", file = \"mask.png\" }}]"
+            );
+            return Err(self.error(key, sentence));
+        }
+        let case = self.case_with(&[Override::new("texture", textures)])?;
+        Ok(case.model.surface.textured.clone())
+    }
+
+    /// The design that the file asks for.
+    ///
+    /// # Errors
+    /// When a case of it is not valid, or when its limits do not belong to its blocks.
+    pub fn design(&self) -> Result<Design, StudyError> {
+        let base = self.case()?;
+        let keys = &self.keys;
+        let case = |set: &Table| self.case_with(&overrides(set));
+        let mut cases: Vec<Case> = keys.cases.iter().map(case).collect::<Result<_, _>>()?;
+        if cases.is_empty() {
+            cases.push(self.case()?);
+        }
+        let grid = Grid::of(&base);
+        if cases.iter().any(|case| Grid::of(case) != grid || case.scales.block_size != base.scales.block_size) {
+            let sentence = "all cases of a design have the blocks of the base".to_owned();
+            return Err(self.error("cases", sentence).into());
+        }
+        let limits = self.limits(&base, &grid)?;
+        let wish = self.wish(&base, &grid)?;
+        if matches!(wish, Wish::Curve(_)) && cases.len() > 1 {
+            let sentence = "a curve is that of one case: leave out `cases`".to_owned();
+            return Err(self.error("cases", sentence).into());
+        }
+        let folder = self.base.folder.as_path();
+        let cases: Vec<(&Case, &Path)> = cases.iter().map(|case| (case, folder)).collect();
+        let mut design = Design::new(&cases, wish, keys.judge_by == JudgeBy::Worst, limits, keys.start)?;
+        for (k, textures) in keys.starts.iter().enumerate() {
+            let textured = self.textured("starts", textures)?;
+            design.begin_with(format!("start {} of the file", k + 1), textured);
+        }
+        if base.model.surface.texture_percent() > 0.0 {
+            design.begin_with("texture of the case".to_owned(), base.model.surface.textured.clone());
+        }
+        Ok(design)
+    }
+
+    /// An error about a key of `[design]`.
+    fn error(&self, key: &str, sentence: String) -> CaseError {
+        self.source.error(&format!("design.{key}"), sentence)
+    }
+
+    /// The limits in blocks.
+    fn limits(&self, base: &Case, grid: &Grid) -> Result<Limits, CaseError> {
+        let keys = &self.keys;
+        let narrowest = grid.size[0].min(grid.size[1]);
+        let width = |key: &str, length: &Option<Length>, blocks: Option<u32>| {
+            let of_length = |length: &Length| {
+                // A length that is a whole number of blocks up to rounding must not gain one.
+                (length.si() / base.scales.block_size - 1e-6).ceil().max(1.0) as usize
+            };
+            let blocks = blocks.map_or_else(|| length.as_ref().map_or(1, of_length), |blocks| blocks as usize);
+            if blocks > narrowest {
+                let sentence = format!("`{key}` is {blocks} blocks, more than the slider's {narrowest} across");
+                return Err(self.error(key, sentence));
+            }
+            Ok(blocks)
+        };
+        let copies = keys.copies.map(|cells| cells as usize);
+        for (axis, name) in ["columns", "rows"].into_iter().enumerate() {
+            if copies[axis] == 0 || !grid.size[axis].is_multiple_of(copies[axis]) {
+                let sentence = format!(
+                    "`copies` must divide the slider: it has {} {name} of blocks, which {} does not divide",
+                    grid.size[axis], copies[axis]
+                );
+                return Err(self.error("copies", sentence));
+            }
+        }
+        let forbidden = keys.forbidden.as_ref();
+        let forbidden = forbidden.map(|textures| self.textured("forbidden", textures)).transpose()?;
+        Ok(Limits {
+            coverage: [keys.coverage[0], self.largest_coverage(base, grid)],
+            feature: width("feature", &keys.feature, keys.feature_blocks)?,
+            gap: width("gap", &keys.gap, keys.gap_blocks)?,
+            mirror: match keys.mirror {
+                Mirror::None => [false, false],
+                Mirror::X => [true, false],
+                Mirror::Y => [false, true],
+                Mirror::Both => [true, true],
+            },
+            copies,
+            forbidden,
+            max_features: keys.max_features.map(|most| most as usize),
+        })
+    }
+
+    /// The largest coverage, %, that neither the window nor the length of a laser's lines forbids.
+    fn largest_coverage(&self, base: &Case, grid: &Grid) -> f64 {
+        let [_, most] = self.keys.coverage;
+        let Some(Writing { line_spacing, max_length: Some(length) }) = &self.keys.writing else {
+            return most;
+        };
+        let area = grid.n_blocks() as f64 * base.scales.block_size * base.scales.block_size;
+        most.min(100.0 * length.si() * line_spacing.si() / area)
+    }
+
+    /// Distance between the lines of a laser, m, if the file gives one.
+    pub(crate) fn line_spacing(&self) -> Option<f64> {
+        self.keys.writing.as_ref().map(|writing| writing.line_spacing.si())
+    }
+
+    /// The wish in units of mu_s and of t*.
+    fn wish(&self, base: &Case, grid: &Grid) -> Result<Wish, StudyError> {
+        let refuse = |sentence: &str| Err(self.error("wish", sentence.to_owned()).into());
+        let mu_s = base.scales.mu_static_mean;
+        let load = base.scales.pressure * base.scales.block_size.powi(2) * grid.n_blocks() as f64;
+        let keys = &self.keys.wish;
+        match (keys.least, keys.largest, &keys.value, &keys.of, &keys.curve) {
+            (Some(quantity), None, None, None, None) => Ok(Wish::Least(quantity)),
+            (None, Some(quantity), None, None, None) => Ok(Wish::Largest(quantity)),
+            (None, None, Some(value), Some(of), None) => {
+                let (name, is_star) = of.strip_suffix("_star").map_or((of.as_str(), false), |name| (name, true));
+                let quantity = match name {
+                    "static_friction" => Quantity::StaticFriction,
+                    "kinetic_friction" => Quantity::KineticFriction,
+                    "friction_drop" => Quantity::FrictionDrop,
+                    _ => return refuse("`of` must be static_friction, kinetic_friction or friction_drop, also with _star for a share of mu_s"),
+                };
+                let star = match value {
+                    Number::Coefficient(value) if is_star => *value,
+                    Number::Coefficient(value) => value / mu_s,
+                    Number::Force(text) => match text.parse::<Force>() {
+                        Ok(force) => force.si() / (load * mu_s),
+                        Err(error) => return refuse(&format!("`value`: {error}")),
+                    },
+                };
+                if !(star > 0.0 && star.is_finite()) {
+                    return refuse("`value` must be more than 0");
+                }
+                Ok(Wish::Value(quantity, star))
+            }
+            (None, None, None, None, Some(curve)) => self.curve(curve, base, load),
+            _ => refuse(
+                "`wish` is one of { least = \"static_friction\" }, { largest = \"static_friction\" }, { value = 0.3, of = \
+                 \"static_friction\" } and { curve = { file = \"wanted.csv\", x = \"X (um)\", y = \"mu (1)\" } }",
+            ),
+        }
+    }
+
+    /// The curve of a table as mu* at times t* of the drive.
+    fn curve(&self, keys: &CurveKeys, base: &Case, load: f64) -> Result<Wish, StudyError> {
+        let column = |name: &str, unit: &Option<String>| Column {
+            name: name.to_owned(),
+            unit: unit.clone(),
+        };
+        let measure = if keys.y_unit.as_deref().is_some_and(|unit| unit != "1") {
+            Measure::Force
+        } else {
+            Measure::Coefficient
+        };
+        let path = self.base.folder.join(&keys.file);
+        let columns = [&column(&keys.x, &keys.x_unit), &column(&keys.y, &keys.y_unit)];
+        let record = MeasuredRecord::read(&path, columns, [Measure::Displacement, measure]);
+        let record = record.map_err(|error| self.error("wish.curve", error.to_string()))?;
+        let mu_s = base.scales.mu_static_mean;
+        let unit = if measure == Measure::Force { load * mu_s } else { mu_s };
+        // The drive has gone X at t* = X/(V* l_x), with one unit l_x of displacement.
+        let path_of_time = base.groups.v_star * base.scales.displacement();
+        let points = record.x.iter().zip(&record.y);
+        Ok(Wish::Curve(points.map(|(x, y)| [x / path_of_time, y / unit]).collect()))
+    }
+}
+
+impl DesignKeys {
+    fn check(&self, source: &Source) -> Result<(), CaseError> {
+        let refuse = |key: &str, sentence: String| Err(source.error(&format!("design.{key}"), sentence));
+        let [least, most] = self.coverage;
+        if !(0.0 <= least && least <= most && 0.0 < most && most < 100.0) {
+            let sentence =
+                format!("`coverage` = [{least}, {most}] must rise from at least 0 to less than 100, in %, such as [0, 10]");
+            return refuse("coverage", sentence);
+        }
+        for (key, length, blocks) in [
+            ("feature", &self.feature, self.feature_blocks),
+            ("gap", &self.gap, self.gap_blocks),
+        ] {
+            if length.is_some() && blocks.is_some() {
+                let sentence = format!("`{key}` and `{key}_blocks` exclude each other: keep one");
+                return refuse(key, sentence);
+            }
+            if blocks == Some(0) || length.as_ref().is_some_and(|length| length.si().is_nan() || length.si() <= 0.0) {
+                return refuse(key, format!("`{key}` must be more than 0"));
+            }
+        }
+        if !(1..=MAX_RUNS).contains(&self.runs) {
+            let sentence = format!("`runs` = {} must lie between 1 and {MAX_RUNS}", self.runs);
+            return refuse("runs", sentence);
+        }
+        if self.max_features == Some(0) {
+            return refuse("max_features", "`max_features` must be at least 1".to_owned());
+        }
+        if let Some(writing) = &self.writing {
+            let lengths = std::iter::once(&writing.line_spacing).chain(&writing.max_length);
+            if lengths.into_iter().any(|length| length.si().is_nan() || length.si() <= 0.0) {
+                return refuse("writing", "the lengths of `writing` must be more than 0".to_owned());
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,128 @@
+//! The results folder of a design: the design file, the journal of its runs, tables, the mask and a case that reads it.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+use slipfront_case::disk::{TEXT_MAX_BYTES, is_empty, make_folders, read_limited};
+use slipfront_run::folder_error::FolderError;
+
+use super::evaluate::{Known, RunId};
+use super::file::DesignFile;
+use super::stages::{Bounds, SearchProgress};
+use super::wish::Measured;
+use super::{Design, Outcome};
+use crate::error::StudyError;
+use crate::files_in_folder::{copy_in, write_in};
+use crate::journal::Journal;
+use crate::record::to_line;
+
+/// The design file in the folder, with the base case as a table in it: `slipfront design DIR/design.toml` repeats the design.
+const DESIGN: &str = "design.toml";
+
+/// The journal of a design: a line for every run.
+pub(crate) const JOURNAL: &str = "design.jsonl";
+
+/// A line of the journal.
+#[derive(Serialize, Deserialize)]
+struct KeptRun {
+    id: RunId,
+    found: Option<Measured>,
+}
+
+/// A results folder, with the runs that were kept in it.
+#[derive(Debug)]
+pub struct DesignFolder {
+    path: PathBuf,
+    journal: Journal,
+    known: Known,
+    /// Lines of the journal that failed their checksum.
+    pub damaged: usize,
+    /// The design in the folder, which reads copies of its files.
+    pub file: DesignFile,
+}
+
+impl DesignFolder {
+    /// Opens a results folder: a new one, an empty one, or one of an earlier call that no other process works in.
+    ///
+    /// # Errors
+    /// When it holds other things, another process works in it, or it cannot be written to.
+    pub fn open(path: &Path, file: &DesignFile) -> Result<Self, StudyError> {
+        make_folders(path).map_err(FolderError::unwritable(path))?;
+        let used = path.join(JOURNAL).exists();
+        if !used && !is_empty(path).map_err(FolderError::unwritable(path))? {
+            return Err(StudyError::NotADesign {
+                path: path.to_owned(),
+            });
+        }
+        let (text, copies) = file.portable()?;
+        let before = read_limited(&path.join(DESIGN), TEXT_MAX_BYTES).ok();
+        if before.is_some_and(|before| before != text.as_bytes()) {
+            return Err(StudyError::OtherDesign {
+                path: path.to_owned(),
+            });
+        }
+        let (journal, kept, damaged) = Journal::open::<KeptRun>(path, JOURNAL).map_err(|error| match error {
+            StudyError::NotRecords { path } => FolderError::Foreign { path }.into(),
+            error => error,
+        })?;
+        copy_in(path, &copies)?;
+        write_in(path, DESIGN, |to| to.write_all(text.as_bytes()))?;
+        let name = path.join(DESIGN).display().to_string();
+        Ok(Self {
+            path: path.to_owned(),
+            journal,
+            known: kept.into_iter().map(|run| (run.id, run.found)).collect(),
+            damaged,
+            file: DesignFile::parse(&text, &name, &file.name, path)?,
+        })
+    }
+
+    /// The folder.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Number of runs that were kept.
+    pub fn n_kept(&self) -> usize {
+        self.known.len()
+    }
+
+    /// Searches and judges, or goes on where an earlier call was; every run is kept as soon as those that were begun with it have ended.
+    ///
+    /// # Errors
+    /// As [`Design::run`]. After a stop, the best texture so far stands in the folder without a verdict.
+    pub fn run(
+        &mut self,
+        design: &Design,
+        bounds: &Bounds,
+        watch: &mut dyn FnMut(&SearchProgress),
+    ) -> Result<Outcome, StudyError> {
+        let mut best = None;
+        let mut watch = |now: &SearchProgress| {
+            best = now.best_texture.clone().or(best.take());
+            watch(now);
+        };
+        let Self { journal, known, .. } = self;
+        let mut keep = |runs: &[(RunId, Option<Measured>)]| {
+            let lines = runs.iter().flat_map(|(id, found)| {
+                to_line(&KeptRun {
+                    id: id.clone(),
+                    found: found.clone(),
+                })
+            });
+            let lines: Vec<u8> = lines.collect();
+            if lines.is_empty() { Ok(()) } else { journal.append(&lines) }
+        };
+        let found = design.run(bounds, known, &mut keep, &mut watch);
+        if let (Err(StudyError::Interrupted), Some(best)) = (&found, best) {
+            self.write_mask(design, &best)?;
+        }
+        found
+    }
+}
+
+/// Whether the folder is the results folder of a design.
+pub fn is_design(folder: &Path) -> bool {
+    folder.join(DESIGN).exists() && folder.join(JOURNAL).exists()
+}

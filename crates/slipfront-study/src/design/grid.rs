@@ -1,0 +1,246 @@
+//! Sets of blocks, and how narrow they are: openings by squares, on a slider with edges.
+
+use slipfront::lattice::Edges;
+use slipfront_case::case::Case;
+
+/// The blocks of a slider. Sets of them are row-major, the smallest y first.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Grid {
+    /// Blocks along x and along y.
+    pub size: [usize; 2],
+    /// Whether the last block along an axis is the neighbour of the first.
+    pub periodic: [bool; 2],
+    /// Which blocks exist: all, unless the slider has an outline.
+    pub exists: Vec<bool>,
+}
+
+impl Grid {
+    /// The blocks of the slider of a case.
+    pub fn of(case: &Case) -> Self {
+        let lattice = &case.model.lattice;
+        let slider = case.model.slider();
+        Self {
+            size: [lattice.nx, lattice.ny],
+            periodic: lattice.edges.map(|edges| edges == Edges::Periodic),
+            exists: (0..lattice.n_blocks()).map(|b| slider.exists(b)).collect(),
+        }
+    }
+
+    /// Number of blocks that exist.
+    pub fn n_blocks(&self) -> usize {
+        count(&self.exists)
+    }
+
+    /// Share of a set in the blocks that exist, %.
+    pub fn percent(&self, set: &[bool]) -> f64 {
+        100.0 * count(set) as f64 / self.n_blocks() as f64
+    }
+
+    /// The blocks that exist and are not in a set.
+    pub fn others(&self, set: &[bool]) -> Vec<bool> {
+        let pairs = self.exists.iter().zip(set);
+        pairs.map(|(&exists, &is_in)| exists && !is_in).collect()
+    }
+
+    /// The opening of a set: all its squares of `side` x `side` blocks, each wholly in the set. What lies outside of the slider is in no set,
+    /// so that a strip along an edge is as narrow as it is seen.
+    pub fn opened(&self, set: &[bool], side: usize) -> Vec<bool> {
+        if side <= 1 {
+            return set.to_vec();
+        }
+        if (0..2).any(|axis| side > self.size[axis]) {
+            return vec![false; set.len()];
+        }
+        let mut found = set.to_vec();
+        for axis in 0..2 {
+            self.pass(&mut found, axis, side, Pass::AllAfter);
+        }
+        for axis in 0..2 {
+            self.pass(&mut found, axis, side, Pass::AnyBefore);
+        }
+        found
+    }
+
+    /// The smallest width of a set: the largest side of a square by which it can be opened without losing a block; none of an empty set.
+    pub fn width(&self, set: &[bool]) -> Option<usize> {
+        if !set.contains(&true) {
+            return None;
+        }
+        let most = self.size[0].min(self.size[1]);
+        // A union of squares is one of smaller squares too.
+        let (mut low, mut high) = (1, most);
+        while low < high {
+            let middle = (low + high).div_ceil(2);
+            if self.opened(set, middle) == set {
+                low = middle;
+            } else {
+                high = middle - 1;
+            }
+        }
+        Some(low)
+    }
+
+    /// Number of pieces of a set whose blocks touch at an edge.
+    pub fn n_pieces(&self, set: &[bool]) -> usize {
+        let mut left = set.to_vec();
+        let mut pieces = 0;
+        let mut to_visit = Vec::new();
+        for first in 0..left.len() {
+            if !left[first] {
+                continue;
+            }
+            pieces += 1;
+            left[first] = false;
+            to_visit.push(first);
+            while let Some(block) = to_visit.pop() {
+                for next in self.neighbours(block).into_iter().flatten() {
+                    if std::mem::take(&mut left[next]) {
+                        to_visit.push(next);
+                    }
+                }
+            }
+        }
+        pieces
+    }
+
+    /// The neighbours of a block along the axes.
+    fn neighbours(&self, block: usize) -> [Option<usize>; 4] {
+        [(0, false), (0, true), (1, false), (1, true)].map(|(axis, is_forward)| {
+            let [stride, n] = [[1, self.size[0]][axis], self.size[axis]];
+            let place = block / stride % n;
+            let wraps = place == if is_forward { n - 1 } else { 0 };
+            match (wraps, is_forward) {
+                (true, _) if !self.periodic[axis] => None,
+                (true, true) => Some(block - (n - 1) * stride),
+                (true, false) => Some(block + (n - 1) * stride),
+                (false, true) => Some(block + stride),
+                (false, false) => Some(block - stride),
+            }
+        })
+    }
+
+    /// Replaces every block by whether all of the `side` blocks from it on are in the set, or any of those up to it.
+    fn pass(&self, set: &mut [bool], axis: usize, side: usize, pass: Pass) {
+        let n = self.size[axis];
+        let [stride, across] = [[1, self.size[0]][axis], [self.size[0], 1][axis]];
+        let mut line = vec![false; n];
+        for first in (0..self.size[1 - axis]).map(|place| place * across) {
+            for (place, value) in line.iter_mut().enumerate() {
+                *value = set[first + place * stride];
+            }
+            // How many of the blocks that end here are in the set, one after the other, and how many are not.
+            let (mut inside, mut outside) = (0, side);
+            let turns = if self.periodic[axis] { 2 } else { 1 };
+            for place in (0..turns * n).map(|place| place % n) {
+                (inside, outside) = if line[place] {
+                    (inside + 1, 0)
+                } else {
+                    (0, outside + 1)
+                };
+                match pass {
+                    Pass::AllAfter => {
+                        // A line that does not wrap has no square before its first block.
+                        let start = (place + n + 1 - side) % n;
+                        set[first + start * stride] = inside >= side;
+                    }
+                    Pass::AnyBefore => set[first + place * stride] = outside < side,
+                }
+            }
+            if pass == Pass::AllAfter && !self.periodic[axis] {
+                for place in n + 1 - side..n {
+                    set[first + place * stride] = false;
+                }
+            }
+        }
+    }
+}
+
+/// What a pass over a line looks at.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Pass {
+    AllAfter,
+    AnyBefore,
+}
+
+/// Number of blocks in a set.
+pub fn count(set: &[bool]) -> usize {
+    set.iter().filter(|&&is_in| is_in).count()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A grid, and a set drawn with `#`, the largest y first.
+    pub(crate) fn drawn(rows: &[&str], periodic: [bool; 2]) -> (Grid, Vec<bool>) {
+        let set: Vec<bool> = rows
+            .iter()
+            .rev()
+            .flat_map(|row| row.bytes().map(|byte| byte == b'#'))
+            .collect();
+        let size = [rows[0].len(), rows.len()];
+        let exists = vec![true; set.len()];
+        (Grid { size, periodic, exists }, set)
+    }
+
+    /// The definition of an opening, square by square.
+    fn opened_by_squares(grid: &Grid, set: &[bool], side: usize) -> Vec<bool> {
+        let [nx, ny] = grid.size;
+        let mut found = vec![false; set.len()];
+        for y in 0..ny {
+            for x in 0..nx {
+                if (!grid.periodic[0] && x + side > nx) || (!grid.periodic[1] && y + side > ny) {
+                    continue;
+                }
+                let square: Vec<usize> = (0..side * side)
+                    .map(|k| (y + k / side) % ny * nx + (x + k % side) % nx)
+                    .collect();
+                if square.iter().all(|&block| set[block]) {
+                    for block in square {
+                        found[block] = true;
+                    }
+                }
+            }
+        }
+        found
+    }
+
+    #[test]
+    fn an_opening_is_the_union_of_its_squares() {
+        let mut draws = crate::design::random::Draws::new(3);
+        for trial in 0..200 {
+            let size = [3 + draws.below(8), 3 + draws.below(8)];
+            let n = size[0] * size[1];
+            let grid = Grid {
+                size,
+                periodic: [trial % 2 == 0, trial % 3 == 0],
+                exists: vec![true; n],
+            };
+            let set: Vec<bool> = (0..n).map(|_| draws.uniform() < 0.8).collect();
+            for side in 1..=4 {
+                let expected = if side > size[0].min(size[1]) {
+                    vec![false; n]
+                } else {
+                    opened_by_squares(&grid, &set, side)
+                };
+                assert_eq!(grid.opened(&set, side), expected, "{grid:?} {side}");
+            }
+        }
+    }
+
+    /// A strip of one block along an edge is one block wide, whatever may lie outside.
+    #[test]
+    fn slivers_at_edges_are_seen() {
+        let rows = ["#....", "#....", "#.###", "#.###", "#.###"];
+        let (grid, set) = drawn(&rows, [false; 2]);
+        assert_eq!(grid.width(&set), Some(1));
+        assert_eq!(grid.n_pieces(&set), 2);
+        let opened = grid.opened(&set, 3);
+        assert_eq!(opened, drawn(&[".....", ".....", "..###", "..###", "..###"], [false; 2]).1);
+        assert_eq!(grid.width(&opened), Some(3));
+        // Around a periodic axis, the strip is a part of what lies beyond.
+        let (around, set) = drawn(&["##..#", "##..#", "##..#"], [true, false]);
+        assert_eq!((around.width(&set), around.n_pieces(&set)), (Some(3), 1));
+        assert_eq!(around.width(&vec![false; 15]), None);
+    }
+}

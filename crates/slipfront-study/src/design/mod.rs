@@ -1,0 +1,163 @@
+//! From a wish to a texture: the search for a mask that gives the friction that is wished for, within limits, and the verdict on it.
+//!
+//! ```text
+//! wish, limits -> drafts of patches -> masks -> runs on one surface -> the best on several -> the verdict on fresh ones
+//! ```
+//!
+//! A search sees some surfaces, and what it finds is good on these. What a design is said to give is measured on surfaces that were not
+//! looked at before.
+
+mod evaluate;
+mod file;
+mod folder;
+mod grid;
+mod limits;
+mod named;
+mod patch;
+mod random;
+mod report;
+mod search;
+mod sensitivity;
+mod stages;
+mod verdict;
+mod wish;
+
+use std::path::Path;
+use std::sync::Arc;
+
+use slipfront_case::case::Case;
+
+use self::evaluate::{Evaluator, Subject};
+use self::named::{GROOVE, Named, named};
+use self::stages::{Stages, Tried};
+use self::verdict::{Contender, Judge};
+use crate::error::StudyError;
+
+pub use self::file::{DesignFile, DesignKeys};
+pub use self::evaluate::{Keep, Known, RunId};
+pub use self::folder::{DesignFolder, is_design};
+pub use self::grid::Grid;
+pub use self::limits::{Illegal, Limits};
+pub use self::sensitivity::Changed;
+pub use self::stages::{Bounds, DesignStage, SearchProgress};
+pub use self::verdict::{Given, Mean, OnFresh, Verdict};
+pub use self::wish::{Measured, Quantity, Wish};
+
+/// A wish with its limits, and the cases in which designs are tried.
+#[derive(Debug)]
+pub struct Design {
+    evaluator: Evaluator,
+    limits: Limits,
+    /// Where the random drafts of the search begin.
+    start: u64,
+    /// Masks with which the search begins too, and their names.
+    drawn: Vec<(String, Vec<bool>)>,
+}
+
+/// What a search has found.
+#[derive(Debug)]
+pub struct Outcome {
+    /// Textured blocks of the design.
+    pub texture: Arc<Vec<bool>>,
+    /// The verdict on it.
+    pub verdict: Verdict,
+    /// Every texture that was judged, by its name, the design first.
+    pub(crate) compared: Vec<(String, Option<Arc<Vec<bool>>>)>,
+    /// What was tried on the way, in its order.
+    pub(crate) tried: Vec<Tried>,
+}
+
+impl Design {
+    /// A design for some cases, whose files stand relative to the folder beside each; `is_worst` asks for the worst case, in place of the
+    /// mean over them.
+    ///
+    /// # Errors
+    /// When a case cannot be run for as long as the search needs.
+    pub fn new(
+        cases: &[(&Case, &Path)],
+        wish: Wish,
+        is_worst: bool,
+        limits: Limits,
+        start: u64,
+    ) -> Result<Self, StudyError> {
+        let subject = |(case, folder): &(&Case, &Path)| Subject::new(case, folder, &wish, limits.coverage[1]);
+        let subjects = cases.iter().map(subject).collect::<Result<Vec<_>, _>>()?;
+        let grid = Grid::of(cases[0].0);
+        Ok(Self {
+            evaluator: Evaluator {
+                subjects,
+                grid,
+                wish,
+                is_worst,
+            },
+            limits,
+            start,
+            drawn: Vec::new(),
+        })
+    }
+
+    /// Lets the search begin with a mask too, which counts as a named pattern if it is legal.
+    pub fn begin_with(&mut self, name: String, textured: Vec<bool>) {
+        self.drawn.push((name, textured));
+    }
+
+    /// Searches, and judges what was found on fresh surfaces.
+    ///
+    /// # Errors
+    /// When the limits leave no texture, when runs cannot be made or kept, and after a stop.
+    pub fn run(
+        &self,
+        bounds: &Bounds,
+        known: &mut Known,
+        keep: &mut Keep,
+        watch: &mut dyn FnMut(&SearchProgress),
+    ) -> Result<Outcome, StudyError> {
+        let grid = &self.evaluator.grid;
+        let mut starts = named(grid, self.limits.coverage[1]);
+        starts.extend(self.drawn.iter().map(|(name, textured)| Named::drawn(grid, name, textured)));
+        let contender = |named: &Named| {
+            let texture = self.limits.texture(grid, &named.draft)?;
+            Some(Contender {
+                name: named.name.clone(),
+                texture: texture.into(),
+            })
+        };
+        let legal: Vec<Contender> = starts.iter().filter_map(contender).collect();
+        let groove = legal.iter().find(|named| named.name == GROOVE);
+        let mut stages = Stages::new(&self.evaluator, self.limits.clone(), self.start, starts);
+        let best = stages.run(bounds, known, keep, watch)?;
+        let searched: Vec<Contender> = best
+            .into_iter()
+            .map(|texture| Contender {
+                name: "design".to_owned(),
+                texture,
+            })
+            .collect();
+        let mut judged_runs = 0;
+        let mut keep = |runs: &[(RunId, Option<Measured>)]| {
+            keep(runs)?;
+            judged_runs += runs.len();
+            watch(&SearchProgress {
+                runs: judged_runs,
+                of: Judge::most_runs(&self.evaluator),
+                stage: DesignStage::Judging,
+                best: f64::NAN,
+                best_texture: None,
+            });
+            Ok(())
+        };
+        let judge = Judge {
+            evaluator: &self.evaluator,
+            stop: bounds.stop,
+        };
+        let judged = judge
+            .verdict(&searched, &legal, groove, known, &mut keep)?
+            .ok_or(StudyError::NoDesign)?;
+        Ok(Outcome {
+            texture: judged.texture,
+            verdict: judged.verdict,
+            compared: judged.compared,
+            tried: stages.tried,
+        })
+    }
+}

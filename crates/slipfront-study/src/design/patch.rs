@@ -1,0 +1,198 @@
+//! Drafts of textures: patches that grow together until they cover what is asked for.
+
+use std::sync::Arc;
+
+use super::grid::Grid;
+
+/// Form of a patch.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Form {
+    /// A strip, or a rectangle.
+    Rectangle,
+    /// An ellipse, or a disc.
+    Ellipse,
+}
+
+/// A part of a texture. Lengths are in blocks; the block in column 0 and row 0 has its centre at (1/2, 1/2).
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Patch {
+    /// Its centre.
+    pub(crate) center: [f64; 2],
+    /// Half of its length and of its width, before it grows.
+    pub(crate) half: [f64; 2],
+    /// Angle of its length from x, radians.
+    pub(crate) angle: f64,
+    /// Its form.
+    pub(crate) form: Form,
+}
+
+impl Patch {
+    /// By how much the patch must grow on every side until it holds a point, in blocks; less than 0 inside of it. With (u, v) the place of
+    /// the point along length and width, and a and b their halves:
+    ///
+    /// ```text
+    /// rectangle  max(|u| - a, |v| - b);   ellipse  (sqrt((u/a)^2 + (v/b)^2) - 1) min(a, b)
+    /// ```
+    fn growth(&self, [x, y]: [f64; 2], [cos, sin]: [f64; 2]) -> f64 {
+        let [u, v] = [cos * x + sin * y, cos * y - sin * x].map(f64::abs);
+        let [a, b] = self.half;
+        match self.form {
+            Form::Rectangle => (u - a).max(v - b),
+            Form::Ellipse => {
+                let [a, b] = [a.max(0.5), b.max(0.5)];
+                (((u / a) * (u / a) + (v / b) * (v / b)).sqrt() - 1.0) * a.min(b)
+            }
+        }
+    }
+
+    /// Lowers the growth of every block to that of this patch.
+    fn lower(&self, grid: &Grid, growth: &mut [f64]) {
+        let direction = [libm::cos(self.angle), libm::sin(self.angle)];
+        let [nx, ny] = grid.size;
+        let along = |axis: usize, n: usize| -> Vec<f64> {
+            let places = (0..n).map(|place| place as f64 + 0.5 - self.center[axis]);
+            let wrapped = |distance: f64| {
+                if grid.periodic[axis] {
+                    distance - (distance / n as f64).round() * n as f64
+                } else {
+                    distance
+                }
+            };
+            places.map(wrapped).collect()
+        };
+        let [columns, rows] = [along(0, nx), along(1, ny)];
+        for (line, y) in growth.chunks_exact_mut(nx).zip(rows) {
+            for (growth, &x) in line.iter_mut().zip(&columns) {
+                *growth = growth.min(self.growth([x, y], direction));
+            }
+        }
+    }
+}
+
+/// A draft of a texture.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Draft {
+    /// Its patches.
+    pub(crate) patches: Vec<Patch>,
+    /// A texture that was drawn block by block, if it begins with one: by how many blocks it must grow until it holds each block.
+    pub(crate) drawn: Option<Arc<Vec<f64>>>,
+    /// Share of the slider that it is to cover at the most, %.
+    pub(crate) percent: f64,
+}
+
+impl Draft {
+    /// By how much the draft must grow until it holds each block.
+    pub(crate) fn growth(&self, grid: &Grid) -> Vec<f64> {
+        let n = grid.exists.len();
+        let mut growth = match &self.drawn {
+            Some(drawn) => drawn.to_vec(),
+            None => vec![f64::INFINITY; n],
+        };
+        for patch in &self.patches {
+            patch.lower(grid, &mut growth);
+        }
+        growth
+    }
+}
+
+/// By how many blocks a set must grow until it holds each block: the number of steps to it, straight or diagonal; of a block in it, 1 less
+/// the number of steps out of it.
+pub(crate) fn growth_of(grid: &Grid, set: &[bool]) -> Vec<f64> {
+    let outwards = steps_to(grid, set);
+    let inwards = steps_to(grid, &set.iter().map(|is_in| !is_in).collect::<Vec<_>>());
+    let pairs = outwards.iter().zip(&inwards);
+    pairs.map(|(out, into)| if *out > 0.0 { *out } else { 1.0 - into }).collect()
+}
+
+/// Number of steps, straight or diagonal, from every block to a set; as many as the slider has blocks if the set is empty.
+fn steps_to(grid: &Grid, set: &[bool]) -> Vec<f64> {
+    let [nx, ny] = grid.size;
+    let most = (nx * ny) as f64;
+    let mut steps: Vec<f64> = set.iter().map(|&is_in| if is_in { 0.0 } else { most }).collect();
+    let mut reached: Vec<usize> = (0..set.len()).filter(|&block| set[block]).collect();
+    let mut distance = 0.0;
+    while !reached.is_empty() {
+        distance += 1.0;
+        let mut next = Vec::new();
+        for block in reached {
+            for [dx, dy] in [-1, 0, 1].into_iter().flat_map(|dy| [-1, 0, 1].map(|dx| [dx, dy])) {
+                let place = |axis: usize, at: usize, step: isize| {
+                    let (n, to) = (grid.size[axis] as isize, at as isize + step);
+                    (grid.periodic[axis] || (0..n).contains(&to)).then(|| to.rem_euclid(n) as usize)
+                };
+                if let (Some(x), Some(y)) = (place(0, block % nx, dx), place(1, block / nx, dy))
+                    && steps[y * nx + x] > distance
+                {
+                    steps[y * nx + x] = distance;
+                    next.push(y * nx + x);
+                }
+            }
+        }
+        reached = next;
+    }
+    steps
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn grid(size: [usize; 2], periodic: [bool; 2]) -> Grid {
+        let exists = vec![true; size[0] * size[1]];
+        Grid {
+            size,
+            periodic,
+            exists,
+        }
+    }
+
+    fn of(patch: Patch, grid: &Grid) -> Vec<f64> {
+        let draft = Draft {
+            patches: vec![patch],
+            drawn: None,
+            percent: 100.0,
+        };
+        draft.growth(grid)
+    }
+
+    #[test]
+    fn a_strip_grows_on_every_side() {
+        let strip = Patch {
+            center: [2.5, 2.5],
+            half: [100.0, 0.5],
+            angle: 0.5 * std::f64::consts::PI,
+            form: Form::Rectangle,
+        };
+        let growth = of(strip, &grid([5, 4], [false; 2]));
+        for (block, growth) in growth.iter().enumerate() {
+            let distance = (block % 5).abs_diff(2) as f64;
+            // The cosine of a right angle is rounded.
+            assert!((growth - (distance - 0.5)).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn an_ellipse_reaches_around_a_periodic_axis() {
+        let disc = Patch {
+            center: [0.5, 0.5],
+            half: [2.0, 2.0],
+            angle: 0.3,
+            form: Form::Ellipse,
+        };
+        let growth = of(disc, &grid([8, 8], [true, false]));
+        let expected = |x: f64, y: f64| (x * x + y * y).sqrt() - 2.0;
+        assert!((growth[7] - expected(1.0, 0.0)).abs() < 1e-12);
+        assert!((growth[8 * 7] - expected(0.0, 7.0)).abs() < 1e-12);
+    }
+
+    /// A drawn set is what has grown by at most 0.
+    #[test]
+    fn a_drawn_set_comes_back() {
+        let grid = grid([6, 3], [false; 2]);
+        let set: Vec<bool> = (0..18).map(|block| (1..4).contains(&(block % 6))).collect();
+        let growth = growth_of(&grid, &set);
+        assert_eq!(growth[..6], [1.0, 0.0, -1.0, 0.0, 1.0, 2.0]);
+        let back: Vec<bool> = growth.iter().map(|&growth| growth <= 0.0).collect();
+        assert_eq!(back, set);
+    }
+}

@@ -1,0 +1,368 @@
+//! What a design leaves: the mask as files for programs and lasers, a case that reads it, tables, pictures, and a text that a person reads.
+
+use std::io::Write;
+use std::sync::Arc;
+
+use serde::Serialize;
+use slipfront_case::arrays::npy_of_mask;
+use slipfront_case::case::{Case, Ranks};
+use slipfront_case::number_format::{count, four_digits, with_half_width, with_si_prefix};
+use slipfront_case::text::{COLUMNS, note, wrapped};
+use slipfront_plot::{FieldMap, FieldMaps, FrictionAxes, FrictionCurve};
+use slipfront_run::names::CASE;
+use slipfront_run::pictures::texture_file;
+use slipfront_run::running;
+
+use super::evaluate::{Fidelity, MASK, masked};
+use super::folder::DesignFolder;
+use super::verdict::{Mean, OnFresh, Verdict};
+use super::wish::{Quantity, Wish};
+use super::{Design, Outcome};
+use crate::error::StudyError;
+use crate::files_in_folder::write_in;
+use crate::text_table::table;
+
+/// A table of every draft that was tried.
+const EVALUATIONS: &str = "evaluations.csv";
+
+/// The verdict, as numbers and as a text.
+const VERDICT: [&str; 2] = ["design.json", "design.txt"];
+
+/// Endings of the mask in other formats.
+const MASK_ENDINGS: [&str; 4] = ["png", "svg", "dxf", "gsf"];
+
+/// The texture of a design on its blocks.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct AsMeshed {
+    /// Share of the blocks that are textured, %.
+    pub coverage_percent: f64,
+    /// Features that touch nowhere along an edge of a block.
+    pub features: usize,
+    /// Smallest width of a feature, m.
+    pub feature_m: Option<f64>,
+    /// Smallest width of what touches, m.
+    pub gap_m: Option<f64>,
+    /// Length of the lines of a laser, m, if their distance is given.
+    pub writing_length_m: Option<f64>,
+}
+
+/// `design.json`.
+#[derive(Serialize)]
+struct Written<'a> {
+    as_meshed: &'a AsMeshed,
+    #[serde(flatten)]
+    verdict: &'a Verdict,
+    version: &'static str,
+}
+
+/// A row of `evaluations.csv`.
+#[derive(Serialize)]
+struct Row<'a> {
+    number: usize,
+    stage: &'static str,
+    origin: &'a str,
+    coverage_percent: f64,
+    loss: f64,
+    texture: String,
+}
+
+impl DesignFolder {
+    /// Writes what a design leaves, and gives the text of the verdict.
+    ///
+    /// # Errors
+    /// When the system refuses to write, or a picture cannot be drawn.
+    pub fn write(&self, design: &Design, outcome: &Outcome) -> Result<String, StudyError> {
+        let folder = self.path();
+        let texture = outcome.texture.as_slice();
+        self.write_mask(design, texture)?;
+        let case = Case::load(&folder.join(CASE), &[], &mut |_| true, Ranks::ALONE)?;
+        for ending in MASK_ENDINGS {
+            texture_file::write(&case, &folder.join(format!("mask.{ending}")), None)?;
+        }
+        self.write_pictures(design, outcome)?;
+        write_in(folder, EVALUATIONS, |to| Ok(evaluations(design, outcome, to)?))?;
+        let as_meshed = self.as_meshed(design, texture, &case);
+        let [numbers, words] = VERDICT;
+        let written = Written {
+            as_meshed: &as_meshed,
+            verdict: &outcome.verdict,
+            version: env!("CARGO_PKG_VERSION"),
+        };
+        write_in(folder, numbers, |to| Ok(serde_json::to_writer_pretty(to, &written)?))?;
+        let text = in_words(design, &outcome.verdict, &as_meshed, &case);
+        write_in(folder, words, |to| to.write_all(text.as_bytes()))?;
+        Ok(text)
+    }
+
+    /// Writes a mask, and the case that reads it.
+    pub(crate) fn write_mask(&self, design: &Design, texture: &[bool]) -> Result<(), StudyError> {
+        let columns = design.evaluator.grid.size[0];
+        write_in(self.path(), MASK, |to| to.write_all(&npy_of_mask(columns, texture)))?;
+        let mut file = self.file.case()?.file;
+        file.texture = vec![masked()];
+        let text = file.to_toml()?;
+        write_in(self.path(), CASE, |to| to.write_all(text.as_bytes()))
+    }
+
+    fn as_meshed(&self, design: &Design, texture: &[bool], case: &Case) -> AsMeshed {
+        let grid = &design.evaluator.grid;
+        let size = case.scales.block_size;
+        let width = |set: &[bool]| grid.width(set).map(|blocks| blocks as f64 * size);
+        let area = 0.01 * grid.percent(texture) * grid.n_blocks() as f64 * size * size;
+        AsMeshed {
+            coverage_percent: grid.percent(texture),
+            features: grid.n_pieces(texture),
+            feature_m: width(texture),
+            gap_m: width(&grid.others(texture)),
+            writing_length_m: self.file.line_spacing().map(|spacing| area / spacing),
+        }
+    }
+
+    /// Curves of the design and of what it is held against, on a fresh surface, and maps of where they slip first.
+    fn write_pictures(&self, design: &Design, outcome: &Outcome) -> Result<(), StudyError> {
+        let subject = &design.evaluator.subjects[0];
+        let [nx, ny] = design.evaluator.grid.size;
+        let (mut curves, mut maps, mut latest) = (Vec::new(), Vec::new(), 0.0_f64);
+        for (name, texture) in &outcome.compared {
+            let texture = texture.as_ref().map(|texture| texture.as_slice());
+            let case = Arc::new(subject.case(texture, outcome.verdict.first_surface, Fidelity::Verdict)?);
+            // Its verdict was found on this surface among others, so that it does not diverge.
+            let Ok(record) = running::run(&case, 1) else { continue };
+            curves.push(FrictionCurve {
+                label: name.clone(),
+                x: record.rows.iter().map(|row| row.time_star).collect(),
+                friction: record.rows.iter().map(|row| row.point.mu_star).collect(),
+                sliding_percent: record.rows.iter().map(|row| row.point.sliding_percent).collect(),
+                ..FrictionCurve::default()
+            });
+            let slips = record.first_slip_time_star.iter().map(|time| *time as f32);
+            let finite = record.first_slip_time_star.iter().copied().filter(|time| time.is_finite());
+            latest = finite.fold(latest, f64::max);
+            maps.push(FieldMap {
+                label: name.clone(),
+                note: format!("largest \u{3bc}* {}", four_digits(record.summary.mu_star_max)),
+                nx,
+                ny,
+                values: slips.collect(),
+                textured: texture.map_or_else(|| vec![false; nx * ny], <[bool]>::to_vec),
+                marks: Vec::new(),
+            });
+        }
+        let maps = FieldMaps {
+            value_title: "t* of the first slip".to_owned(),
+            range: [0.0, latest.max(1.0)],
+            columns: 2,
+            maps,
+        };
+        let pictures = [
+            ("friction", slipfront_plot::friction(&curves, &FrictionAxes::default())),
+            ("first_slips", slipfront_plot::field_maps(&maps)),
+        ];
+        for (name, picture) in pictures {
+            let picture = picture.map_err(|source| StudyError::Picture {
+                name: name.to_owned(),
+                source,
+            })?;
+            write_in(self.path(), &format!("{name}.svg"), |to| to.write_all(picture.svg.as_bytes()))?;
+            write_in(self.path(), &format!("{name}.png"), |to| to.write_all(&picture.png))?;
+        }
+        Ok(())
+    }
+}
+
+/// Writes a row for every draft that was tried.
+fn evaluations(design: &Design, outcome: &Outcome, to: &mut impl Write) -> Result<(), csv::Error> {
+    let mut table = csv::Writer::from_writer(to);
+    for (k, tried) in outcome.tried.iter().enumerate() {
+        let hash = blake3::Hash::from_bytes(super::search::hash(&tried.texture));
+        table.serialize(Row {
+            number: k + 1,
+            stage: if tried.is_refined { "several surfaces" } else { "one surface" },
+            origin: &tried.origin,
+            coverage_percent: design.evaluator.grid.percent(&tried.texture),
+            loss: tried.loss,
+            texture: hash.to_hex()[..16].to_owned(),
+        })?;
+    }
+    Ok(table.flush()?)
+}
+
+/// The verdict as a person reads it.
+fn in_words(design: &Design, verdict: &Verdict, as_meshed: &AsMeshed, case: &Case) -> String {
+    let wish = &design.evaluator.wish;
+    let mut text = format!("{}\n\n", wrapped(&headline(wish, verdict), COLUMNS));
+    text += &on_fresh(wish, verdict);
+    text += &format!(
+        "\nOn {} not seen by the search; intervals of 95 %. {}\n",
+        count(verdict.surfaces as usize, "surface"),
+        optimism(wish, verdict)
+    );
+    let length = |length: Option<f64>| length.map_or("none".to_owned(), |length| with_si_prefix(length, "m"));
+    text += &format!(
+        "Texture as meshed: {} % in {}, features at least {} wide, gaps at least {}",
+        four_digits(as_meshed.coverage_percent),
+        count(as_meshed.features, "piece"),
+        length(as_meshed.feature_m),
+        length(as_meshed.gap_m)
+    );
+    if let Some(length) = as_meshed.writing_length_m {
+        text += &format!(", {} of laser lines", with_si_prefix(length, "m"));
+    }
+    text += ".\n\nUnder changes:\n";
+    text += &under_changes(wish, verdict);
+    let lengths = case.file.lengths_of_a_block();
+    if !lengths.is_empty() {
+        let names: Vec<String> = lengths.iter().map(ToString::to_string).collect();
+        let sentence = format!(
+            "the gain belongs to blocks of this size, since a block gives the material {}: give them as lengths of the material, and look \
+             with `slipfront converge` at what is left",
+            names.join(", ")
+        );
+        text += &note(&sentence, COLUMNS);
+    }
+    text
+}
+
+fn unit(wish: &Wish) -> &'static str {
+    match wish {
+        Wish::Curve(_) => "",
+        _ => " %",
+    }
+}
+
+/// The name of what a loss says.
+fn called(wish: &Wish) -> &'static str {
+    match wish {
+        Wish::Least(_) => "reduction",
+        Wish::Largest(_) => "rise",
+        Wish::Value(..) => "distance from the value",
+        Wish::Curve(_) => "RMS distance from the curve",
+    }
+}
+
+fn quantity(quantity: Quantity) -> &'static str {
+    match quantity {
+        Quantity::StaticFriction => "static friction",
+        Quantity::KineticFriction => "kinetic friction",
+        Quantity::FrictionDrop => "drop of friction",
+    }
+}
+
+fn headline(wish: &Wish, verdict: &Verdict) -> String {
+    let loss = wish.told(verdict.design.loss);
+    let of = quantity(wish.quantity());
+    let mut text = match wish {
+        Wish::Least(_) | Wish::Largest(_) => format!(
+            "{} of {of}: {}{} against the slider without texture",
+            called(wish),
+            four_digits(loss),
+            unit(wish)
+        ),
+        Wish::Value(_, wanted) => format!(
+            "{of} of {} mu_s wished for: {} mu_s found, {} % from it",
+            four_digits(*wanted),
+            given(wish.quantity(), &verdict.design.cases[0]).map_or("nothing".to_owned(), |mean| with_half_width(mean.mean, mean.half_width)),
+            four_digits(loss)
+        ),
+        Wish::Curve(_) => format!("curve wished for: {} from it, as a root of the mean square of mu*", four_digits(loss)),
+    };
+    if verdict.is_named {
+        text += &format!(
+            ". It is the {}: nothing that the search found is better on fresh surfaces with 95 % confidence",
+            verdict.design.name
+        );
+    }
+    if let Wish::Value(..) = wish
+        && loss > MISSED_PERCENT
+    {
+        text += ". The value is out of reach of these limits, or of this search: give more runs, or wider limits";
+    }
+    text
+}
+
+/// A value is told as missed when the design is so far from it, %.
+const MISSED_PERCENT: f64 = 0.5;
+
+fn given(quantity: Quantity, given: &super::verdict::Given) -> Option<Mean> {
+    match quantity {
+        Quantity::StaticFriction => Some(given.static_friction_star),
+        Quantity::KineticFriction => given.kinetic_friction_star,
+        Quantity::FrictionDrop => None,
+    }
+}
+
+/// A row for every texture that was judged, and every case.
+fn on_fresh(wish: &Wish, verdict: &Verdict) -> String {
+    let header = [
+        "texture",
+        "covers",
+        "largest mu*",
+        "first peak",
+        "mu_k*",
+        called(wish),
+        "the design is better by",
+    ];
+    let mut rows = Vec::new();
+    for found in std::iter::once(&verdict.design).chain(&verdict.others) {
+        for (k, given) in found.cases.iter().enumerate() {
+            let name = if found.cases.len() == 1 {
+                found.name.clone()
+            } else {
+                format!("{}, case {}", found.name, k + 1)
+            };
+            let mean = |mean: Mean| with_half_width(mean.mean, mean.half_width);
+            let is_first = k == 0;
+            rows.push(vec![
+                name,
+                format!("{} %", four_digits(found.coverage_percent)),
+                mean(given.static_friction_star),
+                mean(given.first_peak_star),
+                given.kinetic_friction_star.map_or("-".to_owned(), mean),
+                loss_cell(wish, found, is_first),
+                better_cell(wish, found.design_is_better_by.filter(|_| is_first)),
+            ]);
+        }
+    }
+    table(&header, &rows)
+}
+
+fn loss_cell(wish: &Wish, found: &OnFresh, is_first: bool) -> String {
+    if is_first && found.loss.is_finite() {
+        format!("{}{}", four_digits(wish.told(found.loss)), unit(wish))
+    } else {
+        "-".to_owned()
+    }
+}
+
+/// A difference of losses in what they are shown in.
+fn better_cell(wish: &Wish, better: Option<Mean>) -> String {
+    let factor = if matches!(wish, Wish::Curve(_)) { 1.0 } else { 100.0 };
+    better.map_or("-".to_owned(), |better| {
+        let half_width = better.half_width.map(|half| factor * half);
+        with_half_width(factor * better.mean, half_width)
+    })
+}
+
+fn optimism(wish: &Wish, verdict: &Verdict) -> String {
+    let factor = if matches!(wish, Wish::Curve(_)) { 1.0 } else { 100.0 };
+    format!(
+        "On the surfaces that it was chosen by, the design looked better by {}.",
+        four_digits(factor * verdict.optimism)
+    )
+}
+
+fn under_changes(wish: &Wish, verdict: &Verdict) -> String {
+    let header = ["change", called(wish), "better than the best named by"];
+    let rows: Vec<Vec<String>> = verdict
+        .sensitivity
+        .iter()
+        .map(|changed| {
+            vec![
+                changed.change.clone(),
+                format!("{}{}", four_digits(wish.told(changed.loss.mean)), unit(wish)),
+                better_cell(wish, changed.better_by),
+            ]
+        })
+        .collect();
+    table(&header, &rows)
+}

@@ -1,0 +1,175 @@
+//! What is left of a design when it is not made or used quite as it was designed.
+
+
+use serde::Serialize;
+use slipfront_case::case_file::DriveSpeed;
+use slipfront_case::quantity::Speed;
+
+use super::evaluate::{Evaluator, Keep, Known};
+use super::grid::Grid;
+use super::verdict::{Contender, Judge, Mean, Surfaces};
+use crate::error::StudyError;
+
+/// Surfaces on which it is looked at.
+pub(crate) const SURFACES: u64 = 16;
+
+/// Changes that are looked at: of place, of speed, and of the mesh.
+pub(crate) const N_CHANGES: u64 = SHIFTS.len() as u64 + SPEEDS.len() as u64 + 1;
+
+/// A design under a change.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Changed {
+    /// What is changed.
+    pub change: String,
+    /// The loss of the design then, the mean over surfaces.
+    pub loss: Mean,
+    /// The loss of the other texture under this change less that of the design, surface by surface: above 0 where the design is better.
+    pub better_by: Option<Mean>,
+}
+
+/// Changes of the texture itself: misplaced by one block to every side, what leaves a slider with edges lost.
+const SHIFTS: [(&str, [isize; 2]); 4] = [
+    ("one block towards +x", [1, 0]),
+    ("one block towards -x", [-1, 0]),
+    ("one block towards +y", [0, 1]),
+    ("one block towards -y", [0, -1]),
+];
+
+/// Changes of the speed of the drive.
+const SPEEDS: [(&str, f64); 2] = [("a third of the speed", 1.0 / 3.0), ("three times the speed", 3.0)];
+
+impl Judge<'_> {
+    /// Every change, with the design beside another texture.
+    pub(crate) fn sensitivity(
+        &self,
+        design: &Contender,
+        other: Option<&Contender>,
+        known: &mut Known,
+        keep: &mut Keep,
+    ) -> Result<Vec<Changed>, StudyError> {
+        let mut changed = Vec::new();
+        for (change, shift) in SHIFTS {
+            let shifted = Contender {
+                name: design.name.clone(),
+                texture: moved(&self.evaluator.grid, &design.texture, shift).into(),
+            };
+            changed.push(self.under(change, &shifted, other, known, keep)?);
+        }
+        for (change, factor) in SPEEDS {
+            if let Some(evaluator) = self.evaluator.at_speed(factor)? {
+                let judge = Judge {
+                    evaluator: &evaluator,
+                    ..*self
+                };
+                changed.push(judge.under(change, design, other, known, keep)?);
+            }
+        }
+        if let Some(evaluator) = self.evaluator.on_finer_blocks() {
+            let judge = Judge {
+                evaluator: &evaluator,
+                ..*self
+            };
+            let size = self.evaluator.grid.size;
+            let finer = |contender: &Contender| Contender {
+                name: contender.name.clone(),
+                texture: doubled(size, &contender.texture).into(),
+            };
+            let change = "blocks of half the size";
+            let (design, other) = (finer(design), other.map(finer));
+            changed.push(judge.under(change, &design, other.as_ref(), known, keep)?);
+        }
+        Ok(changed)
+    }
+
+    /// A texture beside another under a change.
+    fn under(
+        &self,
+        change: &str,
+        design: &Contender,
+        other: Option<&Contender>,
+        known: &mut Known,
+        keep: &mut Keep,
+    ) -> Result<Changed, StudyError> {
+        let first = Surfaces::of(self.evaluator).judged.start;
+        let surfaces = first..first + if self.evaluator.scatters() { SURFACES } else { 1 };
+        let both: Vec<&Contender> = std::iter::once(design).chain(other).collect();
+        self.run(&both, surfaces.clone(), known, keep)?;
+        let losses = surfaces.clone().map(|surface| self.loss(design, surface..surface + 1, known));
+        Ok(Changed {
+            change: change.to_owned(),
+            loss: Mean::of(&losses.collect::<Vec<_>>()),
+            better_by: other.map(|other| self.difference(other, design, surfaces, known)),
+        })
+    }
+}
+
+impl Evaluator {
+    /// The same cases at another speed of the drive; none if one of them has a program of speeds.
+    fn at_speed(&self, factor: f64) -> Result<Option<Self>, StudyError> {
+        let faster = |speed: &DriveSpeed| match speed {
+            DriveSpeed::VStar(v_star) => Some(DriveSpeed::VStar(v_star * factor)),
+            DriveSpeed::Speed(speed) => Some(DriveSpeed::Speed(Speed::from_si(speed.si() * factor))),
+            DriveSpeed::Program(_) => None,
+        };
+        let mut subjects = Vec::new();
+        for subject in &self.subjects {
+            let Some(speed) = faster(&subject.file().drive.speed) else {
+                return Ok(None);
+            };
+            subjects.push(subject.with(|file| file.drive.speed = speed, &self.wish)?);
+        }
+        Ok(Some(self.with_subjects(subjects, self.grid.clone())))
+    }
+
+    /// The cases on blocks of half the size, as [`Case::on_other_blocks`](slipfront_case::case::Case::on_other_blocks) puts them there; none if
+    /// one of them cannot be.
+    fn on_finer_blocks(&self) -> Option<Self> {
+        let subjects: Option<Vec<_>> = self.subjects.iter().map(|subject| subject.on_finer_blocks(&self.wish)).collect();
+        let grid = Grid {
+            size: self.grid.size.map(|n| 2 * n),
+            periodic: self.grid.periodic,
+            exists: doubled(self.grid.size, &self.grid.exists),
+        };
+        Some(self.with_subjects(subjects?, grid))
+    }
+}
+
+/// A set that is moved; what leaves a slider with edges is lost.
+fn moved(grid: &Grid, set: &[bool], shift: [isize; 2]) -> Vec<bool> {
+    let [nx, ny] = grid.size.map(|n| n as isize);
+    let at = |block: usize| {
+        let place = [block as isize % nx - shift[0], block as isize / nx - shift[1]];
+        let [x, y] = [0, 1].map(|axis| {
+            let n = [nx, ny][axis];
+            (grid.periodic[axis] || (0..n).contains(&place[axis])).then(|| place[axis].rem_euclid(n))
+        });
+        let from = x.zip(y).map(|(x, y)| (y * nx + x) as usize);
+        grid.exists[block] && from.is_some_and(|from| set[from])
+    };
+    (0..set.len()).map(at).collect()
+}
+
+/// A set on blocks of half the size.
+fn doubled([nx, ny]: [usize; 2], set: &[bool]) -> Vec<bool> {
+    let blocks = (0..2 * ny).flat_map(|y| (0..2 * nx).map(move |x| y / 2 * nx + x / 2));
+    blocks.map(|block| set[block]).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sets_are_moved_and_doubled() {
+        let grid = Grid {
+            size: [3, 2],
+            periodic: [true, false],
+            exists: vec![true; 6],
+        };
+        let set = [true, false, false, false, false, true];
+        assert_eq!(moved(&grid, &set, [1, 0]), [false, true, false, true, false, false]);
+        assert_eq!(moved(&grid, &set, [0, 1]), [false, false, false, true, false, false]);
+        let fine = doubled([2, 1], &[true, false]);
+        assert_eq!(fine, [true, true, false, false, true, true, false, false]);
+    }
+}

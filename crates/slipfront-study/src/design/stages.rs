@@ -1,0 +1,180 @@
+//! The stages of a search: many drafts on one surface with a coarse step, then fewer on several with that of the case.
+
+use std::ops::Range;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+use super::evaluate::{Evaluator, Fidelity, Keep, Known};
+use super::limits::Limits;
+use super::named::Named;
+use super::search::{Found, Proposal, Search};
+use crate::error::StudyError;
+
+/// Drafts that are asked for at once. What is asked for depends on it, and not on the number of threads.
+const BATCH: usize = 32;
+
+/// Share of the runs that go to drafts on one surface.
+const EXPLORED: f64 = 0.7;
+
+/// Surfaces of the second stage.
+const REFINED_SURFACES: u64 = 4;
+
+/// A draft that was tried.
+#[derive(Clone, Debug)]
+pub(crate) struct Tried {
+    /// Whether on several surfaces with the step of the case, or on one with a coarse step.
+    pub(crate) is_refined: bool,
+    /// Where it comes from.
+    pub(crate) origin: String,
+    /// Its blocks.
+    pub(crate) texture: Arc<Vec<bool>>,
+    /// Its loss, a mean over surfaces.
+    pub(crate) loss: f64,
+}
+
+/// What is done for a design.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum DesignStage {
+    /// Drafts are tried on one surface with a coarse step.
+    Exploring,
+    /// Drafts are tried on several surfaces with the step of the case.
+    Refining,
+    /// The best are judged on fresh surfaces.
+    Judging,
+}
+
+/// What a design shows on its way.
+#[derive(Clone, Debug)]
+pub struct SearchProgress {
+    /// Runs done, of the search or of the verdict.
+    pub runs: usize,
+    /// Runs that the search has, or that the verdict takes at the most.
+    pub of: usize,
+    /// What is done.
+    pub stage: DesignStage,
+    /// What the best draft of this stage gives, as the report tells it; NaN if there is none.
+    pub best: f64,
+    /// Its blocks.
+    pub best_texture: Option<Arc<Vec<bool>>>,
+}
+
+/// How long a search may be.
+pub struct Bounds<'a> {
+    /// Runs of the search, without those of the verdict.
+    pub runs: usize,
+    /// Share of the time allowed that has passed; never 1 without such a bound.
+    pub share_of_time: &'a dyn Fn() -> f64,
+    /// Ends everything.
+    pub stop: &'a AtomicBool,
+}
+
+/// A search, with what it has tried.
+pub(crate) struct Stages<'a> {
+    evaluator: &'a Evaluator,
+    search: Search,
+    /// Runs of the search.
+    runs: usize,
+    /// Whether surfaces differ by their seeds.
+    scatters: bool,
+    /// All drafts that were tried, in their order.
+    pub(crate) tried: Vec<Tried>,
+}
+
+impl<'a> Stages<'a> {
+    /// A search that begins with named patterns.
+    pub(crate) fn new(evaluator: &'a Evaluator, limits: Limits, start: u64, starts: Vec<Named>) -> Self {
+        let search = Search::new(evaluator.grid.clone(), limits, start, starts);
+        Self {
+            evaluator,
+            search,
+            runs: 0,
+            scatters: evaluator.scatters(),
+            tried: Vec::new(),
+        }
+    }
+
+    /// Both stages; the finalists, the best first.
+    pub(crate) fn run(
+        &mut self,
+        bounds: &Bounds,
+        known: &mut Known,
+        keep: &mut Keep,
+        watch: &mut dyn FnMut(&SearchProgress),
+    ) -> Result<Vec<Arc<Vec<bool>>>, StudyError> {
+        let explored = (EXPLORED * bounds.runs as f64) as usize;
+        while self.runs < explored && (bounds.share_of_time)() < EXPLORED {
+            let proposals = self.search.ask(BATCH);
+            if !self.try_out(proposals, false, (bounds, known, keep, watch))? {
+                break;
+            }
+        }
+        let best: Vec<Proposal> = self.search.best().iter().map(|found| found.proposal.clone()).collect();
+        self.search.begin_again();
+        let mut goes_on = self.try_out(best, true, (bounds, known, keep, watch))?;
+        while goes_on && self.runs < bounds.runs && (bounds.share_of_time)() < 1.0 {
+            let proposals = self.search.ask(BATCH / 2);
+            goes_on = self.try_out(proposals, true, (bounds, known, keep, watch))?;
+        }
+        let best = self.search.best().iter();
+        Ok(best.map(|found| Arc::clone(&found.proposal.texture)).collect())
+    }
+
+    /// Makes the runs of some textures, and tells the search their losses; whether there were any.
+    fn try_out(
+        &mut self,
+        proposals: Vec<Proposal>,
+        is_refined: bool,
+        (bounds, known, keep, watch): (&Bounds, &mut Known, &mut Keep, &mut dyn FnMut(&SearchProgress)),
+    ) -> Result<bool, StudyError> {
+        let (surfaces, fidelity) = self.stage(is_refined);
+        let textures: Vec<_> = proposals.iter().map(|found| Arc::clone(&found.texture)).collect();
+        let wanted = self.evaluator.wanted(&textures, surfaces.clone(), fidelity);
+        self.evaluator.run(&wanted, known, bounds.stop, keep)?;
+        // Runs that are known already count alike, so that a search that goes on is the one that never stopped.
+        self.runs += wanted.len();
+        let found: Vec<Found> = proposals
+            .into_iter()
+            .map(|proposal| {
+                let loss = self.evaluator.loss(&proposal.texture, surfaces.clone(), fidelity, known);
+                Found { proposal, loss }
+            })
+            .collect();
+        self.tried.extend(found.iter().map(|found| Tried {
+            is_refined,
+            origin: found.proposal.origin.clone(),
+            texture: Arc::clone(&found.proposal.texture),
+            loss: found.loss,
+        }));
+        let has_any = !found.is_empty();
+        self.search.tell(&found);
+        watch(&self.progress(bounds, is_refined));
+        Ok(has_any)
+    }
+
+    fn progress(&self, bounds: &Bounds, is_refined: bool) -> SearchProgress {
+        let best = self.search.best().first();
+        SearchProgress {
+            runs: self.runs,
+            of: bounds.runs,
+            stage: if is_refined {
+                DesignStage::Refining
+            } else {
+                DesignStage::Exploring
+            },
+            best: best.map_or(f64::NAN, |found| self.evaluator.wish.told(found.loss)),
+            best_texture: best.map(|found| Arc::clone(&found.proposal.texture)),
+        }
+    }
+
+    /// Surfaces and step of a stage.
+    fn stage(&self, is_refined: bool) -> (Range<u64>, Fidelity) {
+        if is_refined {
+            (0..if self.scatters { REFINED_SURFACES } else { 1 }, Fidelity::Fine)
+        } else {
+            (0..1, Fidelity::Coarse)
+        }
+    }
+
+    /// The first surface that the search has not seen.
+    pub(crate) const UNSEEN: u64 = REFINED_SURFACES;
+}

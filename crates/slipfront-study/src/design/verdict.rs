@@ -1,0 +1,316 @@
+//! The verdict on a design: what it gives on surfaces that the search has not seen, beside named patterns.
+
+use std::ops::Range;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+use serde::Serialize;
+
+use super::evaluate::{Evaluator, Fidelity, Keep, Known, Wanted};
+use super::sensitivity::{self, Changed};
+use super::stages::Stages;
+use super::wish::Measured;
+use crate::error::StudyError;
+use crate::statistics::Sample;
+use crate::study_file::CONFIDENCE;
+
+/// Surfaces on which finalists are compared.
+const COMPARED: u64 = 16;
+
+/// Surfaces on which the winner is judged.
+const JUDGED: u64 = 64;
+
+/// Most designs of the search among the finalists.
+const MOST_FINALISTS: usize = 8;
+
+/// Named patterns among the finalists.
+const NAMED_FINALISTS: usize = 4;
+
+/// A texture that is compared with others, under its name.
+#[derive(Clone, Debug)]
+pub(crate) struct Contender {
+    /// Its name.
+    pub(crate) name: String,
+    /// Its blocks.
+    pub(crate) texture: Arc<Vec<bool>>,
+}
+
+/// A mean over surfaces, and half the width of its 95 % interval; none where surfaces do not differ.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Mean {
+    /// The mean.
+    pub mean: f64,
+    /// Half the width of the interval.
+    pub half_width: Option<f64>,
+}
+
+/// What a texture gives on fresh surfaces in one case.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Given {
+    /// The largest mu*.
+    pub static_friction_star: Mean,
+    /// The first peak of mu*.
+    pub first_peak_star: Mean,
+    /// mu_k*, where runs are long enough.
+    pub kinetic_friction_star: Option<Mean>,
+}
+
+/// A texture on fresh surfaces.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct OnFresh {
+    /// Its name.
+    pub name: String,
+    /// Share of the blocks that are textured, %.
+    pub coverage_percent: f64,
+    /// What it gives in each case.
+    pub cases: Vec<Given>,
+    /// Its loss over all cases.
+    pub loss: f64,
+    /// The loss of this texture less that of the design, surface by surface: above 0 where the design is better; none of the design.
+    pub design_is_better_by: Option<Mean>,
+}
+
+/// The verdict.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Verdict {
+    /// Fresh surfaces that it was found on.
+    pub surfaces: u64,
+    /// Number of the first of them, added to the seed of the case.
+    pub first_surface: u64,
+    /// The design.
+    pub design: OnFresh,
+    /// Whether the design is a named pattern, since none that was searched for is better on fresh surfaces than the best of them.
+    pub is_named: bool,
+    /// The slider without texture, the groove across, and the best named pattern, those that there are; and the best of the search if it
+    /// was not better.
+    pub others: Vec<OnFresh>,
+    /// The loss on fresh surfaces less that on the surfaces that the search chose by.
+    pub optimism: f64,
+    /// The design under changes of itself, of the speed and of the mesh, beside the best named pattern.
+    pub sensitivity: Vec<Changed>,
+}
+
+/// The winner, and what it was held against.
+pub(crate) struct Judged {
+    /// Its blocks.
+    pub(crate) texture: Arc<Vec<bool>>,
+    /// Every texture that was judged, by its name, the winner first.
+    pub(crate) compared: Vec<(String, Option<Arc<Vec<bool>>>)>,
+    /// The verdict.
+    pub(crate) verdict: Verdict,
+}
+
+/// Numbers of the surfaces on which finalists are compared and judged.
+pub(crate) struct Surfaces {
+    compared: Range<u64>,
+    pub(crate) judged: Range<u64>,
+}
+
+impl Surfaces {
+    pub(crate) fn of(evaluator: &Evaluator) -> Self {
+        let first = Stages::UNSEEN;
+        if evaluator.scatters() {
+            let judged = first + COMPARED;
+            Self {
+                compared: first..judged,
+                judged: judged..judged + JUDGED,
+            }
+        } else {
+            Self {
+                compared: 0..1,
+                judged: 0..1,
+            }
+        }
+    }
+}
+
+/// What a verdict works with.
+pub(crate) struct Judge<'a> {
+    /// The runs.
+    pub(crate) evaluator: &'a Evaluator,
+    /// Ends everything.
+    pub(crate) stop: &'a AtomicBool,
+}
+
+impl Judge<'_> {
+    /// Runs of a verdict at the most.
+    pub(crate) fn most_runs(evaluator: &Evaluator) -> usize {
+        let [compared, judged, changed] = if evaluator.scatters() {
+            [COMPARED, JUDGED, sensitivity::SURFACES]
+        } else {
+            [1; 3]
+        };
+        // With the slider without texture, the groove, the best named pattern, and the design.
+        let finalists = (MOST_FINALISTS + NAMED_FINALISTS + 1) as u64;
+        let runs = finalists * compared + 4 * judged + 3 * sensitivity::N_CHANGES * changed;
+        evaluator.subjects.len() * runs as usize
+    }
+
+    /// Compares the finalists of a search with the best of the named patterns, and gives the winner with the verdict on it; none if there is
+    /// neither.
+    pub(crate) fn verdict(
+        &self,
+        searched: &[Contender],
+        named: &[Contender],
+        groove: Option<&Contender>,
+        known: &mut Known,
+        keep: &mut Keep,
+    ) -> Result<Option<Judged>, StudyError> {
+        let Surfaces { compared, judged } = Surfaces::of(self.evaluator);
+        let searched = &searched[..searched.len().min(MOST_FINALISTS)];
+        let named = &self.shortlist(named, known, keep)?;
+        let all: Vec<&Contender> = searched.iter().chain(named).collect();
+        self.run(&all, compared.clone(), known, keep)?;
+        let by_loss = |contenders: &[Contender], known: &Known| {
+            let loss = |contender: &Contender| self.loss(contender, compared.clone(), known);
+            let best = contenders.iter().min_by(|a, b| loss(a).total_cmp(&loss(b)));
+            best.cloned()
+        };
+        let (winner, best_named) = (by_loss(searched, known), by_loss(named, known));
+        let Some(first) = winner.clone().or_else(|| best_named.clone()) else {
+            return Ok(None);
+        };
+        let to_judge: Vec<&Contender> = winner.iter().chain(&best_named).chain(groove).collect();
+        self.run(&to_judge, judged.clone(), known, keep)?;
+        let is_beaten = |named: &Contender| {
+            let better = self.difference(named, &first, judged.clone(), known);
+            better.mean - better.half_width.unwrap_or(0.0) <= 0.0
+        };
+        let is_named = winner.is_none() || best_named.as_ref().is_some_and(is_beaten);
+        let design = match &best_named {
+            Some(named) if is_named => named.clone(),
+            _ => first.clone(),
+        };
+        let mut others: Vec<&Contender> = Vec::new();
+        for other in groove.into_iter().chain(&best_named).chain(&winner) {
+            if other.texture != design.texture && others.iter().all(|known| known.texture != other.texture) {
+                others.push(other);
+            }
+        }
+        let beside = best_named.as_ref().filter(|named| named.texture != design.texture).or(groove);
+        let sensitivity = self.sensitivity(&design, beside, known, keep)?;
+        let on_fresh = |contender: Option<&Contender>, known: &Known| {
+            self.on_fresh(contender, &design, judged.clone(), known)
+        };
+        let verdict = Verdict {
+            surfaces: judged.end - judged.start,
+            first_surface: judged.start,
+            design: on_fresh(Some(&design), known),
+            is_named,
+            others: std::iter::once(None)
+                .chain(others.iter().copied().map(Some))
+                .map(|other| on_fresh(other, known))
+                .collect(),
+            optimism: self.loss(&design, judged.clone(), known) - self.loss(&design, compared, known),
+            sensitivity,
+        };
+        let compared = others.iter().map(|other| (other.name.clone(), Some(Arc::clone(&other.texture))));
+        let compared = [
+            (design.name.clone(), Some(Arc::clone(&design.texture))),
+            (verdict.others[0].name.clone(), None),
+        ]
+        .into_iter()
+        .chain(compared)
+        .collect();
+        Ok(Some(Judged {
+            texture: design.texture,
+            compared,
+            verdict,
+        }))
+    }
+
+    /// The named patterns that are best on the surface of the search, with the step of the case.
+    fn shortlist(
+        &self,
+        named: &[Contender],
+        known: &mut Known,
+        keep: &mut Keep,
+    ) -> Result<Vec<Contender>, StudyError> {
+        let textures: Vec<_> = named.iter().map(|named| Arc::clone(&named.texture)).collect();
+        let wanted = self.evaluator.wanted(&textures, 0..1, Fidelity::Fine);
+        self.evaluator.run(&wanted, known, self.stop, keep)?;
+        let loss = |named: &Contender| self.evaluator.loss(&named.texture, 0..1, Fidelity::Fine, known);
+        let mut named = named.to_vec();
+        named.sort_by(|a, b| loss(a).total_cmp(&loss(b)));
+        named.dedup_by(|a, b| a.texture == b.texture);
+        named.truncate(NAMED_FINALISTS);
+        Ok(named)
+    }
+
+    /// Makes the runs of some textures on some surfaces.
+    pub(crate) fn run(
+        &self,
+        contenders: &[&Contender],
+        surfaces: Range<u64>,
+        known: &mut Known,
+        keep: &mut Keep,
+    ) -> Result<(), StudyError> {
+        let textures: Vec<_> = contenders.iter().map(|found| Arc::clone(&found.texture)).collect();
+        // One surface after the other, so that no more of them are lost after a stop.
+        for surface in surfaces {
+            let wanted = self.evaluator.wanted(&textures, surface..surface + 1, Fidelity::Verdict);
+            self.evaluator.run(&wanted, known, self.stop, keep)?;
+        }
+        Ok(())
+    }
+
+    pub(crate) fn loss(&self, contender: &Contender, surfaces: Range<u64>, known: &Known) -> f64 {
+        self.evaluator.loss(&contender.texture, surfaces, Fidelity::Verdict, known)
+    }
+
+    /// The loss of one texture less that of another, surface by surface.
+    pub(crate) fn difference(&self, one: &Contender, other: &Contender, surfaces: Range<u64>, known: &Known) -> Mean {
+        let loss = |contender, surface| self.loss(contender, surface..surface + 1, known);
+        let differences = surfaces.map(|surface| loss(one, surface) - loss(other, surface));
+        Mean::of(&differences.collect::<Vec<_>>())
+    }
+
+    /// What a texture gives; without a texture that of the bare slider.
+    fn on_fresh(
+        &self,
+        contender: Option<&Contender>,
+        design: &Contender,
+        surfaces: Range<u64>,
+        known: &Known,
+    ) -> OnFresh {
+        let given = |subject: usize| {
+            let run = |surface| Wanted {
+                subject,
+                texture: contender.map(|contender| Arc::clone(&contender.texture)),
+                surface,
+                fidelity: Fidelity::Verdict,
+            };
+            let found: Vec<Measured> = surfaces
+                .clone()
+                .filter_map(|surface| self.evaluator.found(&run(surface), known))
+                .collect();
+            let mean = |of: &dyn Fn(&Measured) -> f64| Mean::of(&found.iter().map(of).collect::<Vec<_>>());
+            let kinetic: Option<Vec<f64>> = found.iter().map(|found| found.kinetic_star).collect();
+            Given {
+                static_friction_star: mean(&|found| found.largest_star),
+                first_peak_star: mean(&|found| found.first_peak_star),
+                kinetic_friction_star: kinetic.map(|values| Mean::of(&values)),
+            }
+        };
+        OnFresh {
+            name: contender.map_or("no texture", |contender| &contender.name).to_owned(),
+            coverage_percent: contender.map_or(0.0, |found| self.evaluator.grid.percent(&found.texture)),
+            cases: (0..self.evaluator.subjects.len()).map(given).collect(),
+            loss: contender.map_or(f64::NAN, |contender| self.loss(contender, surfaces.clone(), known)),
+            design_is_better_by: contender
+                .filter(|contender| contender.texture != design.texture)
+                .map(|contender| self.difference(contender, design, surfaces.clone(), known)),
+        }
+    }
+}
+
+impl Mean {
+    /// The mean of values, with its interval if there are several.
+    pub(crate) fn of(values: &[f64]) -> Self {
+        let sample = Sample::of(values, CONFIDENCE);
+        Self {
+            mean: sample.map_or(f64::NAN, |sample| sample.mean),
+            half_width: sample.and_then(|sample| sample.half_width),
+        }
+    }
+}

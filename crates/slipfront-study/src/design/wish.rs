@@ -1,0 +1,112 @@
+//! What a design is to be good for, and how far a texture is from it.
+
+use serde::{Deserialize, Serialize};
+use slipfront_run::summary::Summary;
+
+/// A number of a run that a wish is about.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Quantity {
+    /// The largest mu* up to a stated time.
+    StaticFriction,
+    /// mu_k*.
+    KineticFriction,
+    /// The largest mu* less mu_k*.
+    FrictionDrop,
+}
+
+/// A wish.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Wish {
+    /// As little of a quantity as there can be.
+    Least(Quantity),
+    /// As much of a quantity as there can be.
+    Largest(Quantity),
+    /// A value of a quantity, in units of mu_s.
+    Value(Quantity, f64),
+    /// A whole curve: mu* at times t* of the drive, both in the order of time.
+    Curve(Vec<[f64; 2]>),
+}
+
+/// What a design is made of in a run.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Measured {
+    /// The largest mu* of the run.
+    pub(crate) largest_star: f64,
+    /// mu_s*: its first peak.
+    pub(crate) first_peak_star: f64,
+    /// mu_k*, of runs that are long enough.
+    pub(crate) kinetic_star: Option<f64>,
+    /// Root of the mean square by which mu* differs from the curve of the wish, if it has one.
+    pub(crate) misfit: Option<f64>,
+}
+
+impl Measured {
+    /// What the numbers of a run say.
+    pub(crate) fn of(summary: &Summary) -> Self {
+        Self {
+            largest_star: summary.mu_star_max,
+            first_peak_star: summary.static_friction_star,
+            kinetic_star: summary.kinetic_friction_star,
+            misfit: None,
+        }
+    }
+
+    /// A quantity; NaN where the run has none.
+    pub(crate) fn get(&self, quantity: Quantity) -> f64 {
+        let kinetic = || self.kinetic_star.unwrap_or(f64::NAN);
+        match quantity {
+            Quantity::StaticFriction => self.largest_star,
+            Quantity::KineticFriction => kinetic(),
+            Quantity::FrictionDrop => self.largest_star - kinetic(),
+        }
+    }
+}
+
+impl Wish {
+    /// The quantity that it is about: of a curve its largest value.
+    pub fn quantity(&self) -> Quantity {
+        match self {
+            Self::Least(quantity) | Self::Largest(quantity) | Self::Value(quantity, _) => *quantity,
+            Self::Curve(_) => Quantity::StaticFriction,
+        }
+    }
+
+    /// Whether runs must last until sliding is steady.
+    pub fn needs_sliding(&self) -> bool {
+        self.quantity() != Quantity::StaticFriction
+    }
+
+    /// How far a run with a texture is from the wish, given the run of the same surface without it:
+    ///
+    /// ```text
+    /// least  q/q_0;   largest  -q/q_0;   value  q/q_wanted - 1;   curve  root of the mean square of the differences of mu*
+    /// ```
+    pub(crate) fn deviation(&self, with: &Measured, without: &Measured) -> f64 {
+        let ratio = |quantity| with.get(quantity) / without.get(quantity);
+        match self {
+            Self::Least(quantity) => ratio(*quantity),
+            Self::Largest(quantity) => -ratio(*quantity),
+            Self::Value(quantity, wanted) => with.get(*quantity) / wanted - 1.0,
+            Self::Curve(_) => with.misfit.unwrap_or(f64::NAN),
+        }
+    }
+
+    /// The loss of a mean deviation, the less the better: its size, where it is that from a value.
+    pub(crate) fn loss(&self, deviation: f64) -> f64 {
+        match self {
+            Self::Value(..) => deviation.abs(),
+            _ => deviation,
+        }
+    }
+
+    /// A loss as it is told: a reduction or a rise in %, the distance from a value in %, or that from a curve.
+    pub(crate) fn told(&self, loss: f64) -> f64 {
+        match self {
+            Self::Least(_) => 100.0 * (1.0 - loss),
+            Self::Largest(_) => 100.0 * (-loss - 1.0),
+            Self::Value(..) => 100.0 * loss,
+            Self::Curve(_) => loss,
+        }
+    }
+}
