@@ -115,13 +115,15 @@ impl Subject {
             file,
         };
         let bare = subject.case(None, 0, Fidelity::Fine)?;
-        subject.physics = physics(&bare, None)?;
         let is_short = !wish.needs_sliding() && bare.file.drive.edge().is_none() && bare.model.drive.program.is_none();
         if is_short {
+            // No window of kinetic friction may begin after the end.
+            subject.file.time.kinetic_from_star = AutoOr::Auto;
             let load_factor = 1.0 / (1.0 - 0.01 * most.min(90.0));
             let onset = bare.expected.onset_star[1] * load_factor;
             subject.ends = [SEARCHED, JUDGED * SEARCHED].map(|times| times * onset);
         }
+        subject.physics = physics(&subject.case(None, 0, Fidelity::Fine)?, None)?;
         Ok(subject)
     }
 

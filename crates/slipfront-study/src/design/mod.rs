@@ -113,16 +113,17 @@ impl Design {
         watch: &mut dyn FnMut(&SearchProgress),
     ) -> Result<Outcome, StudyError> {
         let grid = &self.evaluator.grid;
-        let mut starts = named(grid, self.limits.coverage[1]);
-        starts.extend(self.drawn.iter().map(|(name, textured)| Named::drawn(grid, name, textured)));
-        let contender = |named: &Named| {
-            let texture = self.limits.texture(grid, &named.draft)?;
-            Some(Contender {
+        let mut starts = named(grid, &self.limits);
+        let drawn = self.drawn.iter().map(|(name, textured)| Named::drawn(grid, name, textured));
+        starts.extend(drawn.filter_map(|named| Some((self.limits.texture(grid, &named.draft)?, named))).map(|(texture, named)| (named, texture)));
+        let (starts, textures): (Vec<Named>, Vec<_>) = starts.into_iter().unzip();
+        let pairs = starts.iter().zip(textures);
+        let legal: Vec<Contender> = pairs
+            .map(|(named, texture)| Contender {
                 name: named.name.clone(),
                 texture: texture.into(),
             })
-        };
-        let legal: Vec<Contender> = starts.iter().filter_map(contender).collect();
+            .collect();
         let groove = legal.iter().find(|named| named.name == GROOVE);
         let mut stages = Stages::new(&self.evaluator, self.limits.clone(), self.start, starts);
         let best = stages.run(bounds, known, keep, watch)?;

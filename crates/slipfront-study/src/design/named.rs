@@ -2,7 +2,8 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use super::grid::Grid;
+use super::grid::{Grid, count};
+use super::limits::Limits;
 use super::patch::{Draft, Form, Patch, growth_of};
 
 /// A pattern and its name.
@@ -31,13 +32,26 @@ impl Named {
 /// The pattern that others are held against first.
 pub(crate) const GROOVE: &str = "groove across";
 
-/// Named patterns that cover up to `percent` of a slider: grooves across and along it (x is the direction of the drive, unless that is
+/// Named patterns that are legal, each with its texture, which covers as much as the limits allow.
+pub(crate) fn named(grid: &Grid, limits: &Limits) -> Vec<(Named, Vec<bool>)> {
+    let percent = limits.coverage[1];
+    // A strip whose middle is that of a block has an odd number of blocks across, and one whose middle is an edge an even number.
+    let [edges, middles] = [0.0, 0.5].map(|shift| shifted(grid, percent, shift));
+    let textured = |named: Named| Some((limits.texture(grid, &named.draft)?, named));
+    let larger = |(one, other): (Named, Named)| {
+        let both = [textured(one), textured(other)].into_iter().flatten();
+        both.max_by_key(|(texture, _)| count(texture)).map(|(texture, named)| (named, texture))
+    };
+    edges.into_iter().zip(middles).filter_map(larger).collect()
+}
+
+/// Named patterns whose strips and cavities are moved by so many blocks: grooves across and along it (x is the direction of the drive, unless that is
 /// turned), in the middle, in pairs and in threes, one that is tilted, a frame, a cross, and cavities, round and square, one or several.
-pub(crate) fn named(grid: &Grid, percent: f64) -> Vec<Named> {
+fn shifted(grid: &Grid, percent: f64, shift: f64) -> Vec<Named> {
     let size = grid.size.map(|n| n as f64);
     let strip = |axis: usize, place: f64, angle: f64| {
         let mut center = size.map(|n| 0.5 * n);
-        center[axis] = place * size[axis];
+        center[axis] = place * size[axis] + shift;
         Patch {
             center,
             half: [size[0] + size[1], 0.0],
@@ -51,7 +65,7 @@ pub(crate) fn named(grid: &Grid, percent: f64) -> Vec<Named> {
         let place = |k: usize, n: usize, axis: usize| (k as f64 + 0.5) / n as f64 * size[axis];
         let cells = (0..rows).flat_map(|row| (0..columns).map(move |column| [column, row]));
         let cavity = |[column, row]: [usize; 2]| Patch {
-            center: [place(column, columns, 0), place(row, rows, 1)],
+            center: [place(column, columns, 0) + shift, place(row, rows, 1) + shift],
             half: [0.5, 0.5],
             angle: 0.0,
             form,

@@ -11,7 +11,7 @@ use super::verdict::{Contender, Judge, Mean, Surfaces};
 use crate::error::StudyError;
 
 /// Surfaces on which it is looked at.
-pub(crate) const SURFACES: u64 = 16;
+pub(crate) const SURFACES: u64 = 8;
 
 /// Changes that are looked at: of place, of speed, and of the mesh.
 pub(crate) const N_CHANGES: u64 = SHIFTS.len() as u64 + SPEEDS.len() as u64 + 1;

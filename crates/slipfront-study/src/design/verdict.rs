@@ -308,9 +308,12 @@ impl Mean {
     /// The mean of values, with its interval if there are several.
     pub(crate) fn of(values: &[f64]) -> Self {
         let sample = Sample::of(values, CONFIDENCE);
+        let mean = sample.map_or(f64::NAN, |sample| sample.mean);
+        // What differs by its rounding alone does not scatter.
+        let scatters = |half: &f64| *half > 1e-12 * mean.abs();
         Self {
-            mean: sample.map_or(f64::NAN, |sample| sample.mean),
-            half_width: sample.and_then(|sample| sample.half_width),
+            mean,
+            half_width: sample.and_then(|sample| sample.half_width).filter(scatters),
         }
     }
 }
