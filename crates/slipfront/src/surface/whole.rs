@@ -77,8 +77,14 @@ impl Whole {
         ranks.largest(&mut largest);
 
         let fixed = largest.map(FixedPoint::new);
-        let sum = |blocks: Range<usize>| -> [i128; SUMS] {
-            array::from_fn(|k| fixed[k].sum(blocks.len(), |b| terms(blocks.start + b)[k]))
+        let sum = |blocks: Range<usize>| {
+            let mut sums = [0_i128; SUMS];
+            for terms in blocks.map(terms) {
+                for ((sum, fixed), term) in sums.iter_mut().zip(fixed).zip(terms) {
+                    *sum += i128::from(fixed.integer(term));
+                }
+            }
+            sums
         };
         let added = |one: [i128; SUMS], other: [i128; SUMS]| array::from_fn(|k| one[k] + other[k]);
         let sums: [i128; SUMS] = parts().map(sum).reduce(|| [0; SUMS], added);
