@@ -171,8 +171,11 @@ impl<'a, S: BufRead + Seek> NpyArray<'a, S> {
         for numbers in numbers.chunks_mut(piece.len() / size) {
             let stored = &mut piece[..numbers.len() * size];
             self.source.read_exact(stored).map_err(&read_error)?;
-            for (number, stored) in numbers.iter_mut().zip(stored.chunks_exact(size)) {
-                *number = self.number.decode(stored);
+            match size {
+                1 => self.number.decode::<1>(stored, numbers),
+                2 => self.number.decode::<2>(stored, numbers),
+                4 => self.number.decode::<4>(stored, numbers),
+                _ => self.number.decode::<8>(stored, numbers),
             }
         }
         Ok(())
@@ -279,16 +282,25 @@ impl NumberType {
         })
     }
 
-    /// The value of `size` bytes; integers beyond 2^53 are rounded.
-    fn decode(&self, bytes: &[u8]) -> f64 {
-        let mut little = [0; 8];
-        little[..self.size].copy_from_slice(bytes);
-        if self.big_endian {
-            little[..self.size].reverse();
+    /// Decodes numbers of `SIZE` bytes, which is its `size`.
+    fn decode<const SIZE: usize>(&self, stored: &[u8], numbers: &mut [f64]) {
+        for (number, stored) in numbers.iter_mut().zip(stored.as_chunks().0) {
+            *number = self.value::<SIZE>(*stored);
         }
-        let bits = u64::from_le_bytes(little);
-        let unused = 64 - 8 * self.size as u32;
-        match (self.kind, self.size) {
+    }
+
+    /// The value of `SIZE` bytes; integers beyond 2^53 are rounded.
+    #[inline(always)]
+    fn value<const SIZE: usize>(&self, mut stored: [u8; SIZE]) -> f64 {
+        if self.big_endian {
+            stored.reverse();
+        }
+        let bits = stored
+            .iter()
+            .rev()
+            .fold(0, |bits, byte| bits << 8 | u64::from(*byte));
+        let unused = 64 - 8 * SIZE as u32;
+        match (self.kind, SIZE) {
             (Kind::Float, 2) => half(bits as u16),
             (Kind::Float, 4) => f64::from(f32::from_bits(bits as u32)),
             (Kind::Float, _) => f64::from_bits(bits),
