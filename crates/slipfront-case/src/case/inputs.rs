@@ -74,8 +74,8 @@ struct FoundFile {
     key: String,
     holds: FileUse,
     original: PathBuf,
-    /// Its contents, if they are in memory.
-    contents: Option<Arc<[u8]>>,
+    /// Its contents and their hash, if they are in memory.
+    contents: Option<(Arc<[u8]>, blake3::Hash)>,
     /// What changes when the file does, or is another one.
     stamp: String,
 }
@@ -89,11 +89,9 @@ impl NamedFiles {
         let (named, source) = file.files_mut();
         let found = named.map(|named| {
             let contents = files.in_memory.and_then(|in_memory| in_memory.get(&*named.name));
-            let (original, stamp) = match contents {
-                Some(contents) => (
-                    PathBuf::from(&*named.name),
-                    Ok(blake3::hash(contents).to_string()),
-                ),
+            let contents = contents.map(|contents| (Arc::clone(contents), blake3::hash(contents)));
+            let (original, stamp) = match &contents {
+                Some((_, hash)) => (PathBuf::from(&*named.name), Ok(hash.to_string())),
                 None => {
                     let original = files.folder.join(&*named.name);
                     let stamp = stamp(&original);
@@ -105,7 +103,7 @@ impl NamedFiles {
                 key: named.key,
                 holds: named.holds,
                 original,
-                contents: contents.cloned(),
+                contents,
             })
         });
         found.collect::<Result<_, _>>().map(Self)
@@ -152,13 +150,17 @@ impl NamedFiles {
             if let Some(digest) = known.get(&**original) {
                 return Ok(*digest);
             }
+            let contents = found.contents.as_ref();
             let opened = open(
                 original,
-                found.contents.as_ref(),
+                contents.map(|(contents, _)| contents),
                 found.holds,
                 [lattice.nx, lattice.ny],
             );
-            let digest = opened.and_then(|opened| digest(original, opened));
+            let digest = opened.and_then(|opened| match contents {
+                Some((contents, hash)) => Ok((contents.len() as u64, *hash)),
+                None => digest(original, opened),
+            });
             let digest = digest.map_err(|error| placed(file, &found.key, error))?;
             known.insert(original, digest);
             Ok(digest)
@@ -201,7 +203,7 @@ impl NamedFiles {
                 inputs.push(Input {
                     name,
                     original: found.original.clone(),
-                    contents: found.contents.clone(),
+                    contents: found.contents.as_ref().map(|(contents, _)| Arc::clone(contents)),
                     length: *length,
                     hash: *hash,
                 });
