@@ -51,16 +51,13 @@ impl GivenBlocks {
             let key = format!("slider.{field}");
             let values = inputs.read_field(file, &key, name)?;
             let bounds = MIN_RELATIVE..=MAX_RELATIVE;
-            let is_wrong = |b: &usize| {
+            let mut of_blocks = values.iter().flatten().enumerate();
+            let is_wrong = |(b, value): &(usize, &f64)| {
                 let exists = exists.as_ref().is_none_or(|exists| exists[*b]);
-                exists
-                    && values
-                        .as_ref()
-                        .is_some_and(|values| !bounds.contains(&values[*b]))
+                exists && !bounds.contains(value)
             };
-            if let Some(b) = (0..inputs.slab.n_blocks()).find(is_wrong) {
+            if let Some((b, value)) = of_blocks.find(is_wrong) {
                 let (i, j) = lattice.column_row(b + inputs.slab.rows.start * lattice.nx);
-                let value = values.as_ref().map_or(f64::NAN, |values| values[b]);
                 let sentence = format!(
                     "block ({i}, {j}) has {value:?}: it must be at least {MIN_RELATIVE:e} and at most {MAX_RELATIVE:e}; it is relative, \
                      so that 1 changes nothing"
