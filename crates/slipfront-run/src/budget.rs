@@ -69,7 +69,8 @@ pub struct RunBudget {
 
 /// What takes memory or disk space.
 struct Part {
-    cause: Cause,
+    /// Its words are made for a refusal alone, since many small cases are judged.
+    cause: fn(&RunBudget) -> Cause,
     /// Bytes in each [`Phase`].
     bytes: [f64; 5],
 }
@@ -133,7 +134,7 @@ impl RunBudget {
         let event_text = COLUMN_BYTES as f64 * event_columns;
         [
             Part {
-                cause: self.case.cause_of_blocks(),
+                cause: |budget| budget.case.cause_of_blocks(),
                 bytes: [
                     blocks * self.case.surface,
                     self.case.stepping(),
@@ -144,12 +145,12 @@ impl RunBudget {
                 ],
             },
             Part {
-                cause: Cause {
+                cause: |budget| Cause {
                     key: "output.snapshots",
                     what: format!(
                         "{} of {}",
-                        count(frames as usize, "snapshot"),
-                        count(fields as usize, "field")
+                        count(budget.frames as usize, "snapshot"),
+                        count(budget.fields as usize, "field")
                     ),
                     remedy: "take fewer `output.snapshots`, name fewer `output.fields`, or raise `output.stride`",
                 },
@@ -162,9 +163,9 @@ impl RunBudget {
                 ],
             },
             Part {
-                cause: Cause {
+                cause: |budget| Cause {
                     key: "output.series",
-                    what: format!("{} of the series", count(rows as usize, "row")),
+                    what: format!("{} of the series", count(budget.rows as usize, "row")),
                     remedy: "raise `output.series`",
                 },
                 bytes: [
@@ -176,9 +177,9 @@ impl RunBudget {
                 ],
             },
             Part {
-                cause: Cause {
+                cause: |budget| Cause {
                     key: "drive.attach",
-                    what: count(self.events as usize, "slip event"),
+                    what: count(budget.events as usize, "slip event"),
                     remedy: "shorten the run",
                 },
                 bytes: [
@@ -191,7 +192,7 @@ impl RunBudget {
                 ],
             },
             Part {
-                cause: Budget::cause_of_inputs(),
+                cause: |_| Budget::cause_of_inputs(),
                 bytes: [self.case.laid, 0.0, 0.0, self.case.inputs, 0.0],
             },
         ]
@@ -358,7 +359,7 @@ impl RunBudget {
             }
         }
         let bytes = bytes_of(&most);
-        (most.cause, bytes)
+        ((most.cause)(self), bytes)
     }
 }
 
