@@ -11,7 +11,7 @@ use pyo3::prelude::*;
 use pyo3::pybacked::PyBackedBytes;
 use pyo3::types::{PyBytes, PyDict};
 use slipfront::Surface;
-use slipfront_case::case::{Case as SlipfrontCase, Files, FilesInMemory, Ranks};
+use slipfront_case::case::{Budget, Case as SlipfrontCase, Files, FilesInMemory, Ranks};
 use slipfront_case::case_file::{CaseError as Error, CaseFile};
 use slipfront_run::pictures;
 
@@ -26,8 +26,8 @@ pub(crate) const LOOK_EVERY: Duration = Duration::from_millis(50);
 #[pyclass(frozen, module = "slipfront._slipfront")]
 pub(crate) struct Case(pub(crate) Arc<SlipfrontCase>);
 
-/// Makes a case while other threads of Python go on, refused if a run of it has no memory; `make` is given what watches its texture. A
-/// signal ends it.
+/// Makes a case while other threads of Python go on, refused if a run of it has no memory, unless that is [small](Budget::SMALL); `make`
+/// is given what watches its texture. A signal ends it.
 pub(crate) fn make(
     py: Python<'_>,
     make: impl FnOnce(&mut dyn FnMut(f64) -> bool) -> Result<SlipfrontCase, Error> + Send,
@@ -42,7 +42,10 @@ pub(crate) fn make(
             }
             signal.is_none()
         })?;
-        pictures::run_budget(&case).check_memory(&case.file)?;
+        let budget = pictures::run_budget(&case);
+        if budget.memory() >= Budget::SMALL {
+            budget.check_memory(&case.file)?;
+        }
         Ok(case)
     })?;
     match (made, signal) {

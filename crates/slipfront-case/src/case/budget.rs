@@ -20,10 +20,6 @@ const HEAP: f64 = 1.05;
 /// The program itself.
 pub const PROGRAM: f64 = 8.0 * 1024.0 * 1024.0;
 
-/// Cases that take less memory are not compared with the machine: to ask what it has takes longer than to make a small one. Commands
-/// compare all that a run takes.
-const SMALL: f64 = 64.0 * 1024.0 * 1024.0;
-
 /// Memory that a case takes while it is made and stepped.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Budget {
@@ -81,6 +77,10 @@ impl Cause {
 }
 
 impl Budget {
+    /// Cases that take less memory are not compared with the machine, nor in Python their runs: to ask what it has takes longer than to make
+    /// a small one. Commands compare all that a run takes.
+    pub const SMALL: f64 = 64.0 * 1024.0 * 1024.0;
+
     /// The budget of a case with a model of these options, for a process that holds these rows.
     pub(super) fn new(
         lattice: &Lattice,
@@ -145,7 +145,7 @@ impl Budget {
 
     /// Refuses a case that cannot even be made.
     pub(super) fn check_making(&self, file: &CaseFile) -> Result<(), CaseError> {
-        if self.making() < SMALL {
+        if self.making() < Self::SMALL {
             return Ok(());
         }
         let of_blocks = self.blocks * self.surface;
@@ -163,7 +163,7 @@ impl Budget {
     /// Refuses a case that cannot be stepped, or not even be made.
     pub(super) fn check_running(&self, file: &CaseFile) -> Result<(), CaseError> {
         let stepping = self.stepping();
-        if self.ranks_on_node * stepping >= SMALL {
+        if self.ranks_on_node * stepping >= Self::SMALL {
             let demand = self.demand(
                 file,
                 "a run of this case",
