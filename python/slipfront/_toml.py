@@ -17,6 +17,7 @@ from . import _slipfront
 from ._temporary import TemporaryFolder
 
 _BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")
+_IN_QUOTES = json.JSONEncoder(ensure_ascii=False).encode
 
 
 IN_MEMORY = _slipfront.IN_MEMORY
@@ -141,7 +142,7 @@ def by_key(overrides: Mapping[str, Any]) -> dict[str, Any]:
 
 def word(text: str) -> str:
     """A text as TOML writes it."""
-    return json.dumps(text, ensure_ascii=False)
+    return _IN_QUOTES(text)
 
 
 def key(name: str) -> str:
