@@ -9,6 +9,7 @@
 from ._case import Case, CaseError
 from ._cite import cite
 from ._converge import Convergence, QuantityOnMeshes, converge
+from ._design import Design, DesignResults, Largest, Least, Value
 from ._map import map
 from ._open import InterruptedRun, PaperResults, open, open_run, open_study
 from ._run import FolderError, Run
@@ -20,9 +21,13 @@ __all__ = [
     "Case",
     "CaseError",
     "Convergence",
+    "Design",
+    "DesignResults",
     "FolderError",
     "ForkError",
     "InterruptedRun",
+    "Largest",
+    "Least",
     "PaperResults",
     "QuantityOnMeshes",
     "Run",
@@ -30,6 +35,7 @@ __all__ = [
     "Simulation",
     "Study",
     "StudyResults",
+    "Value",
     "__version__",
     "cite",
     "converge",

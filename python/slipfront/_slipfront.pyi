@@ -11,6 +11,7 @@ __all__ = [
     "IN_MEMORY",
     "Case",
     "CaseError",
+    "Design",
     "FolderError",
     "ForkError",
     "Record",
@@ -131,6 +132,30 @@ class Study:
         look: Callable[[Case, Record, tuple[int, int, bool]], list[float]] | None,
         watch: Callable[[int, int, int], object] | None,
     ) -> tuple[dict[tuple[int, int, bool], list[float]], list[tuple[str, str]]]: ...
+
+@final
+class Design:
+    @staticmethod
+    def parse(text: str, name: str, folder: Path) -> Design: ...
+    @staticmethod
+    def load(path: Path) -> Design: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def size(self) -> list[int]: ...
+    def illegal(self, mask: bytes) -> str | None: ...
+    def ask(self, n: int) -> list[bytes]: ...
+    def tell(self, masks: list[bytes], losses: list[float]) -> None: ...
+    def best(self) -> tuple[bytes, float] | None: ...
+    def losses(self, masks: list[bytes], surfaces: int, is_coarse: bool, threads: int) -> list[float]: ...
+    def execute(
+        self,
+        folder: Path,
+        runs: int | None,
+        seconds: float | None,
+        threads: int,
+        watch: Callable[[int, int, float], object] | None,
+    ) -> str: ...
 
 @final
 class TemporaryParent:

@@ -37,7 +37,13 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     for start in starts {
         let wish = Wish::Least(Quantity::StaticFriction);
-        let design = Design::new(&[(&case, Path::new(""))], wish, false, limits.clone(), start.parse()?)?;
+        let design = Design::new(
+            &[(&case, Path::new(""))],
+            wish,
+            false,
+            limits.clone(),
+            start.parse()?,
+        )?;
         let bounds = Bounds {
             runs: runs.parse()?,
             share_of_time: &|| 0.0,
@@ -60,12 +66,22 @@ fn main() -> Result<(), Box<dyn Error>> {
             began.elapsed().as_secs_f64()
         );
         for other in &verdict.others {
-            println!("   {}: {:.2} %, {:?}", other.name, 100.0 * (1.0 - other.loss), other.design_is_better_by);
+            println!(
+                "   {}: {:.2} %, {:?}",
+                other.name,
+                100.0 * (1.0 - other.loss),
+                other.design_is_better_by
+            );
         }
         println!("   optimism {:.2}", 100.0 * verdict.optimism);
         let columns: usize = size.parse()?;
         for row in outcome.texture.chunks_exact(columns).rev() {
-            println!("   {}", row.iter().map(|&is_in| if is_in { '#' } else { '.' }).collect::<String>());
+            println!(
+                "   {}",
+                row.iter()
+                    .map(|&is_in| if is_in { '#' } else { '.' })
+                    .collect::<String>()
+            );
         }
     }
     Ok(())

@@ -66,7 +66,9 @@ pub enum StudyError {
     NotAStudy { path: PathBuf },
     #[error("the folder {path} holds other things than a design: choose another with --out")]
     NotADesign { path: PathBuf },
-    #[error("the folder {path} holds another design, or this one before it was changed: choose another with --out")]
+    #[error(
+        "the folder {path} holds another design, or this one before it was changed: choose another with --out"
+    )]
     OtherDesign { path: PathBuf },
     #[error("cannot write the texture: {0}")]
     Texture(#[from] TextureFileError),

@@ -138,7 +138,8 @@ impl Records {
     /// Appends the records of another folder that are not here yet, and returns their number.
     pub fn merge(&mut self, folder: &Path) -> Result<usize, StudyError> {
         let path = folder.join(RECORDS);
-        let read = open_limited(&path, u64::MAX).and_then(|mut file| JournalLines::<FinishedRun>::read(&mut file));
+        let read =
+            open_limited(&path, u64::MAX).and_then(|mut file| JournalLines::<FinishedRun>::read(&mut file));
         let lines = read.map_err(failed("read", &path))?;
         if lines.are_foreign() {
             return Err(StudyError::NotRecords { path });
@@ -322,7 +323,7 @@ mod tests {
         for bit in 0..8 {
             let mut damaged = lines.clone();
             damaged[middle] ^= 1 << bit;
-            let lines = JournalLines::read(&mut damaged.as_slice()).unwrap();
+            let lines = JournalLines::<FinishedRun>::read(&mut damaged.as_slice()).unwrap();
             let ids: Vec<&str> = lines.records.iter().map(|record| record.id.as_str()).collect();
             assert_eq!(ids, ["a", "c"]);
             assert!(lines.damaged >= 1);

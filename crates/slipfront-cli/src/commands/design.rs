@@ -94,6 +94,9 @@ fn print_notes(folder: &DesignFolder) {
         ));
     }
     if folder.n_kept() > 0 {
-        note(&format!("the folder holds {} of an earlier call, which are not repeated", count(folder.n_kept(), "run")));
+        note(&format!(
+            "the folder holds {} of an earlier call, which are not repeated",
+            count(folder.n_kept(), "run")
+        ));
     }
 }

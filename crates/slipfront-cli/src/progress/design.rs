@@ -55,6 +55,9 @@ mod tests {
             best_texture: None,
         };
         let text = text(&now, Duration::from_secs(10));
-        assert!(text.starts_with("50 of 100 runs") && text.ends_with("one surface  best 31.25"), "{text}");
+        assert!(
+            text.starts_with("50 of 100 runs") && text.ends_with("one surface  best 31.25"),
+            "{text}"
+        );
     }
 }

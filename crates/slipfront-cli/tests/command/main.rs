@@ -11,6 +11,7 @@ mod broken;
 #[cfg(unix)]
 mod checkpoints;
 mod converge;
+mod design;
 mod docs;
 mod fixtures;
 mod folder;

@@ -11,8 +11,8 @@ use slipfront::StopReason;
 use slipfront_case::arrays::npy_of_mask;
 use slipfront_case::case::{Case, Files, FilesInMemory, Ranks};
 use slipfront_case::case_file::{
-    Arrangement, AutoOr, CaseError, CaseFile, Count, DEFAULT_THRESHOLD, Mask, Pattern, RunTime, Shape, Snapshots, Texture,
-    TimeStep,
+    Arrangement, AutoOr, CaseError, CaseFile, Count, DEFAULT_THRESHOLD, Mask, Pattern, RunTime, Shape,
+    Snapshots, Texture, TimeStep,
 };
 use slipfront_run::run_summary::run_summary_unless;
 use slipfront_run::running::{Record, run_unless};
@@ -65,8 +65,6 @@ pub(crate) struct Subject {
     scatters: bool,
     /// Largest share of texture, %.
     most: f64,
-    /// mu_s.
-    pub(crate) mu_static: f64,
 }
 
 /// A run that is wanted.
@@ -111,11 +109,11 @@ impl Subject {
             seed: file.friction.seed,
             scatters: case.groups.sigma_static_star > 0.0 || case.groups.sigma_kinetic_star > 0.0,
             most,
-            mu_static: case.scales.mu_static_mean,
             file,
         };
         let bare = subject.case(None, 0, Fidelity::Fine)?;
-        let is_short = !wish.needs_sliding() && bare.file.drive.edge().is_none() && bare.model.drive.program.is_none();
+        let is_short =
+            !wish.needs_sliding() && bare.file.drive.edge().is_none() && bare.model.drive.program.is_none();
         if is_short {
             // No window of kinetic friction may begin after the end.
             subject.file.time.kinetic_from_star = AutoOr::Auto;
@@ -143,7 +141,14 @@ impl Subject {
 
     /// The case on blocks of half the size; none if it cannot be put there.
     pub(crate) fn on_finer_blocks(&self, wish: &Wish) -> Option<Self> {
-        let case = Case::to_run(self.file.clone(), &self.name, &self.folder, &mut |_| true, Ranks::ALONE).ok()?;
+        let case = Case::to_run(
+            self.file.clone(),
+            &self.name,
+            &self.folder,
+            &mut |_| true,
+            Ranks::ALONE,
+        )
+        .ok()?;
         let set = case.on_other_blocks(2.0).ok()?;
         let set: Vec<String> = set.iter().map(ToString::to_string).collect();
         let text = self.file.to_toml().ok()?;
@@ -175,7 +180,7 @@ impl Subject {
         file.friction.seed = self.seed + surface;
         let mut in_memory = FilesInMemory::new();
         if let Some(texture) = texture {
-            file.texture.push(masked());
+            file.texture.push(masked(MASK));
             let columns = file.slider.blocks[0] as usize;
             in_memory.insert(MASK.to_owned(), npy_of_mask(columns, texture).into());
         }
@@ -190,11 +195,11 @@ impl Subject {
 /// Name of the mask of a design, in cases and in its folder.
 pub(crate) const MASK: &str = "mask.npy";
 
-/// The texture of a case whose mask is that of a design.
-pub(crate) fn masked() -> Texture {
+/// The texture of a case whose mask is a file.
+pub(crate) fn masked(file: &str) -> Texture {
     Texture {
         shape: Shape::Mask(Mask {
-            file: MASK.to_owned(),
+            file: file.to_owned(),
             threshold: DEFAULT_THRESHOLD,
         }),
         pattern: Pattern {
@@ -351,7 +356,10 @@ impl Evaluator {
             pair.map_or(f64::NAN, |(with, without)| self.wish.deviation(&with, &without))
         };
         let losses = (0..self.subjects.len()).map(|subject| {
-            let deviations: Vec<f64> = surfaces.clone().map(|surface| deviation(subject, surface)).collect();
+            let deviations: Vec<f64> = surfaces
+                .clone()
+                .map(|surface| deviation(subject, surface))
+                .collect();
             let loss = self.wish.loss(mean(&deviations));
             if loss.is_nan() { f64::INFINITY } else { loss }
         });
@@ -373,9 +381,75 @@ fn misfit(points: &[[f64; 2]], record: &Record) -> f64 {
         }
         let [before, after] = [&rows[next.saturating_sub(1)], &rows[next]];
         let [from, to] = [before, after].map(|row| row.drive_time_star);
-        let share = if to > from { ((time - from) / (to - from)).clamp(0.0, 1.0) } else { 1.0 };
+        let share = if to > from {
+            ((time - from) / (to - from)).clamp(0.0, 1.0)
+        } else {
+            1.0
+        };
         let found = before.point.mu_star + share * (after.point.mu_star - before.point.mu_star);
         (found - wanted) * (found - wanted)
     });
     (squares.sum::<f64>() / points.len() as f64).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::wish::Quantity;
+    use super::*;
+
+    fn subject(text: &str) -> Subject {
+        let case = Case::parse(text, "case", "", &[]).unwrap();
+        Subject::new(&case, Path::new(""), &Wish::Least(Quantity::StaticFriction), 10.0).unwrap()
+    }
+
+    /// Bars that a search once placed so that mu* ripples at 0.5005, just above the level of sliding, before it rises on to 0.59: not the
+    /// ripple counts, with either step.
+    #[test]
+    fn a_ripple_before_the_peak_is_no_reduction() {
+        let subject = subject(
+            "slider.blocks = [50, 50]\ndrive.v_star = 0.005\n\
+             friction = { sigma_static_star = 0, sigma_kinetic_star = 0 }",
+        );
+        let rows = include_str!("../../../slipfront/tests/physics/first_peak_mask.txt")
+            .lines()
+            .rev();
+        let texture: Vec<bool> = rows
+            .flat_map(|row| row.bytes().map(|mark| mark == b'#'))
+            .collect();
+        for fidelity in [Fidelity::Coarse, Fidelity::Fine] {
+            let case = subject.case(Some(&texture), 0, fidelity).unwrap();
+            let largest = slipfront_run::run_summary::run_summary(&case)
+                .unwrap()
+                .mu_star_max;
+            assert!(largest > 0.59, "{fidelity:?}: {largest}");
+        }
+    }
+
+    /// Every block in contact has slipped before the search looks away, as far as its own drive spring alone can make it.
+    #[test]
+    fn a_search_looks_until_every_block_has_slipped() {
+        let subject = subject("slider.blocks = [4, 4]\ndrive.v_star = 0.1\ntime.kinetic_from_star = 70");
+        let [searched, judged] = subject.ends;
+        // A tenth of the blocks bears nothing; the others bear it by springs of 3/8.
+        assert!(searched > 1.0 / 0.9 / (0.375 * 0.1) && judged == 2.0 * searched);
+        assert_eq!(subject.steps, [0.4, 0.1]);
+        let case = subject.case(None, 3, Fidelity::Coarse).unwrap();
+        assert_eq!((case.time_plan.dt_star, case.file.friction.seed), (0.4, 4));
+        assert_eq!(case.time_plan.last_step, (searched / 0.4).ceil() as u64);
+    }
+
+    #[test]
+    fn a_curve_is_compared_between_its_rows() {
+        let case = Case::parse("slider.blocks = [4, 4]\noutput.series = 5", "case", "", &[]).unwrap();
+        let record = slipfront_run::running::run(&Arc::new(case), 1).unwrap();
+        let points = record.rows.windows(2).map(|rows| {
+            let [time, mu] = [0, 1].map(|k| [rows[k].drive_time_star, rows[k].point.mu_star]);
+            [0.5 * (time[0] + mu[0]), 0.5 * (time[1] + mu[1])]
+        });
+        let points: Vec<[f64; 2]> = points.collect();
+        // The middle of two rows, rounded.
+        assert!(misfit(&points, &record) < 1e-15);
+        let raised: Vec<[f64; 2]> = points.iter().map(|[time, mu]| [*time, mu + 0.5]).collect();
+        assert!((misfit(&raised, &record) - 0.5).abs() < 1e-15);
+    }
 }

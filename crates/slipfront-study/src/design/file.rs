@@ -5,7 +5,7 @@ use std::path::Path;
 use serde::Deserialize;
 use slipfront_case::case::{Case, Ranks};
 use slipfront_case::case_file::{
-    CaseError, CaseFile, Override, Source, Tables, limit_nesting, read_text, syntax_error, unknown_key,
+    CaseError, CaseFile, Override, Place, Source, Tables, limit_nesting, read_text, syntax_error, unknown_key,
 };
 use slipfront_case::quantity::{Force, Length};
 use slipfront_run::measured::{Column, Measure, MeasuredRecord};
@@ -215,7 +215,8 @@ impl DesignFile {
             );
             return Err(self.error(key, sentence));
         }
-        let case = self.case_with(&[Override::new("texture", textures)])?;
+        let case = self.case_with(&[Override::new("texture", textures)]);
+        let case = case.map_err(|error| self.found_in(key, error))?;
         Ok(case.model.surface.textured.clone())
     }
 
@@ -226,13 +227,19 @@ impl DesignFile {
     pub fn design(&self) -> Result<Design, StudyError> {
         let base = self.case()?;
         let keys = &self.keys;
-        let case = |set: &Table| self.case_with(&overrides(set));
+        let case = |set: &Table| {
+            let case = self.case_with(&overrides(set));
+            case.map_err(|error| self.found_in("cases", error))
+        };
         let mut cases: Vec<Case> = keys.cases.iter().map(case).collect::<Result<_, _>>()?;
         if cases.is_empty() {
             cases.push(self.case()?);
         }
         let grid = Grid::of(&base);
-        if cases.iter().any(|case| Grid::of(case) != grid || case.scales.block_size != base.scales.block_size) {
+        if cases
+            .iter()
+            .any(|case| Grid::of(case) != grid || case.scales.block_size != base.scales.block_size)
+        {
             let sentence = "all cases of a design have the blocks of the base".to_owned();
             return Err(self.error("cases", sentence).into());
         }
@@ -250,7 +257,10 @@ impl DesignFile {
             design.begin_with(format!("start {} of the file", k + 1), textured);
         }
         if base.model.surface.texture_percent() > 0.0 {
-            design.begin_with("texture of the case".to_owned(), base.model.surface.textured.clone());
+            design.begin_with(
+                "texture of the case".to_owned(),
+                base.model.surface.textured.clone(),
+            );
         }
         Ok(design)
     }
@@ -260,19 +270,32 @@ impl DesignFile {
         self.source.error(&format!("design.{key}"), sentence)
     }
 
+    /// An error about a case that a key of `[design]` makes, at the place of the key.
+    fn found_in(&self, key: &str, error: CaseError) -> CaseError {
+        match error {
+            CaseError::Invalid(invalid) => match invalid.place {
+                Some(Place::Override(given)) => self.error(key, format!("`{given}`: {}", invalid.sentence)),
+                _ => CaseError::Invalid(invalid),
+            },
+            error => error,
+        }
+    }
+
     /// The limits in blocks.
     fn limits(&self, base: &Case, grid: &Grid) -> Result<Limits, CaseError> {
         let keys = &self.keys;
         let narrowest = grid.size[0].min(grid.size[1]);
-        let width = |key: &str, length: &Option<Length>, blocks: Option<u32>| {
+        let width = |[key, in_blocks]: [&str; 2], length: &Option<Length>, blocks: Option<u32>| {
             let of_length = |length: &Length| {
                 // A length that is a whole number of blocks up to rounding must not gain one.
                 (length.si() / base.scales.block_size - 1e-6).ceil().max(1.0) as usize
             };
-            let blocks = blocks.map_or_else(|| length.as_ref().map_or(1, of_length), |blocks| blocks as usize);
+            let blocks =
+                blocks.map_or_else(|| length.as_ref().map_or(1, of_length), |blocks| blocks as usize);
             if blocks > narrowest {
-                let sentence = format!("`{key}` is {blocks} blocks, more than the slider's {narrowest} across");
-                return Err(self.error(key, sentence));
+                let sentence =
+                    format!("`{key}` is {blocks} blocks, more than the slider's {narrowest} across");
+                return Err(self.error(if length.is_some() { key } else { in_blocks }, sentence));
             }
             Ok(blocks)
         };
@@ -287,11 +310,13 @@ impl DesignFile {
             }
         }
         let forbidden = keys.forbidden.as_ref();
-        let forbidden = forbidden.map(|textures| self.textured("forbidden", textures)).transpose()?;
+        let forbidden = forbidden
+            .map(|textures| self.textured("forbidden", textures))
+            .transpose()?;
         Ok(Limits {
             coverage: [keys.coverage[0], self.largest_coverage(base, grid)],
-            feature: width("feature", &keys.feature, keys.feature_blocks)?,
-            gap: width("gap", &keys.gap, keys.gap_blocks)?,
+            feature: width(["feature", "feature_blocks"], &keys.feature, keys.feature_blocks)?,
+            gap: width(["gap", "gap_blocks"], &keys.gap, keys.gap_blocks)?,
             mirror: match keys.mirror {
                 Mirror::None => [false, false],
                 Mirror::X => [true, false],
@@ -307,7 +332,11 @@ impl DesignFile {
     /// The largest coverage, %, that neither the window nor the length of a laser's lines forbids.
     fn largest_coverage(&self, base: &Case, grid: &Grid) -> f64 {
         let [_, most] = self.keys.coverage;
-        let Some(Writing { line_spacing, max_length: Some(length) }) = &self.keys.writing else {
+        let Some(Writing {
+            line_spacing,
+            max_length: Some(length),
+        }) = &self.keys.writing
+        else {
             return most;
         };
         let area = grid.n_blocks() as f64 * base.scales.block_size * base.scales.block_size;
@@ -316,7 +345,10 @@ impl DesignFile {
 
     /// Distance between the lines of a laser, m, if the file gives one.
     pub(crate) fn line_spacing(&self) -> Option<f64> {
-        self.keys.writing.as_ref().map(|writing| writing.line_spacing.si())
+        self.keys
+            .writing
+            .as_ref()
+            .map(|writing| writing.line_spacing.si())
     }
 
     /// The wish in units of mu_s and of t*.
@@ -329,12 +361,18 @@ impl DesignFile {
             (Some(quantity), None, None, None, None) => Ok(Wish::Least(quantity)),
             (None, Some(quantity), None, None, None) => Ok(Wish::Largest(quantity)),
             (None, None, Some(value), Some(of), None) => {
-                let (name, is_star) = of.strip_suffix("_star").map_or((of.as_str(), false), |name| (name, true));
+                let (name, is_star) = of
+                    .strip_suffix("_star")
+                    .map_or((of.as_str(), false), |name| (name, true));
                 let quantity = match name {
                     "static_friction" => Quantity::StaticFriction,
                     "kinetic_friction" => Quantity::KineticFriction,
                     "friction_drop" => Quantity::FrictionDrop,
-                    _ => return refuse("`of` must be static_friction, kinetic_friction or friction_drop, also with _star for a share of mu_s"),
+                    _ => {
+                        return refuse(
+                            "`of` must be static_friction, kinetic_friction or friction_drop, also with _star for a share of mu_s",
+                        );
+                    }
                 };
                 let star = match value {
                     Number::Coefficient(value) if is_star => *value,
@@ -373,11 +411,17 @@ impl DesignFile {
         let record = MeasuredRecord::read(&path, columns, [Measure::Displacement, measure]);
         let record = record.map_err(|error| self.error("wish.curve", error.to_string()))?;
         let mu_s = base.scales.mu_static_mean;
-        let unit = if measure == Measure::Force { load * mu_s } else { mu_s };
+        let unit = if measure == Measure::Force {
+            load * mu_s
+        } else {
+            mu_s
+        };
         // The drive has gone X at t* = X/(V* l_x), with one unit l_x of displacement.
         let path_of_time = base.groups.v_star * base.scales.displacement();
         let points = record.x.iter().zip(&record.y);
-        Ok(Wish::Curve(points.map(|(x, y)| [x / path_of_time, y / unit]).collect()))
+        Ok(Wish::Curve(
+            points.map(|(x, y)| [x / path_of_time, y / unit]).collect(),
+        ))
     }
 }
 
@@ -386,8 +430,9 @@ impl DesignKeys {
         let refuse = |key: &str, sentence: String| Err(source.error(&format!("design.{key}"), sentence));
         let [least, most] = self.coverage;
         if !(0.0 <= least && least <= most && 0.0 < most && most < 100.0) {
-            let sentence =
-                format!("`coverage` = [{least}, {most}] must rise from at least 0 to less than 100, in %, such as [0, 10]");
+            let sentence = format!(
+                "`coverage` = [{least}, {most}] must rise from at least 0 to less than 100, in %, such as [0, 10]"
+            );
             return refuse("coverage", sentence);
         }
         for (key, length, blocks) in [
@@ -398,7 +443,16 @@ impl DesignKeys {
                 let sentence = format!("`{key}` and `{key}_blocks` exclude each other: keep one");
                 return refuse(key, sentence);
             }
-            if blocks == Some(0) || length.as_ref().is_some_and(|length| length.si().is_nan() || length.si() <= 0.0) {
+            if blocks == Some(0) {
+                return refuse(
+                    &format!("{key}_blocks"),
+                    format!("`{key}_blocks` = 0 must be at least 1"),
+                );
+            }
+            if length
+                .as_ref()
+                .is_some_and(|length| length.si().is_nan() || length.si() <= 0.0)
+            {
                 return refuse(key, format!("`{key}` must be more than 0"));
             }
         }
@@ -411,8 +465,14 @@ impl DesignKeys {
         }
         if let Some(writing) = &self.writing {
             let lengths = std::iter::once(&writing.line_spacing).chain(&writing.max_length);
-            if lengths.into_iter().any(|length| length.si().is_nan() || length.si() <= 0.0) {
-                return refuse("writing", "the lengths of `writing` must be more than 0".to_owned());
+            if lengths
+                .into_iter()
+                .any(|length| length.si().is_nan() || length.si() <= 0.0)
+            {
+                return refuse(
+                    "writing",
+                    "the lengths of `writing` must be more than 0".to_owned(),
+                );
             }
         }
         Ok(())

@@ -62,10 +62,11 @@ impl DesignFolder {
                 path: path.to_owned(),
             });
         }
-        let (journal, kept, damaged) = Journal::open::<KeptRun>(path, JOURNAL).map_err(|error| match error {
-            StudyError::NotRecords { path } => FolderError::Foreign { path }.into(),
-            error => error,
-        })?;
+        let (journal, kept, damaged) =
+            Journal::open::<KeptRun>(path, JOURNAL).map_err(|error| match error {
+                StudyError::NotRecords { path } => FolderError::Foreign { path }.into(),
+                error => error,
+            })?;
         copy_in(path, &copies)?;
         write_in(path, DESIGN, |to| to.write_all(text.as_bytes()))?;
         let name = path.join(DESIGN).display().to_string();
@@ -112,7 +113,11 @@ impl DesignFolder {
                 })
             });
             let lines: Vec<u8> = lines.collect();
-            if lines.is_empty() { Ok(()) } else { journal.append(&lines) }
+            if lines.is_empty() {
+                Ok(())
+            } else {
+                journal.append(&lines)
+            }
         };
         let found = design.run(bounds, known, &mut keep, &mut watch);
         if let (Err(StudyError::Interrupted), Some(best)) = (&found, best) {

@@ -163,16 +163,16 @@ enum Pass {
 }
 
 /// Number of blocks in a set.
-pub fn count(set: &[bool]) -> usize {
+pub(super) fn count(set: &[bool]) -> usize {
     set.iter().filter(|&&is_in| is_in).count()
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
 
     /// A grid, and a set drawn with `#`, the largest y first.
-    pub(crate) fn drawn(rows: &[&str], periodic: [bool; 2]) -> (Grid, Vec<bool>) {
+    pub(in crate::design) fn drawn(rows: &[&str], periodic: [bool; 2]) -> (Grid, Vec<bool>) {
         let set: Vec<bool> = rows
             .iter()
             .rev()
@@ -180,7 +180,14 @@ mod tests {
             .collect();
         let size = [rows[0].len(), rows.len()];
         let exists = vec![true; set.len()];
-        (Grid { size, periodic, exists }, set)
+        (
+            Grid {
+                size,
+                periodic,
+                exists,
+            },
+            set,
+        )
     }
 
     /// The definition of an opening, square by square.
@@ -236,11 +243,14 @@ mod tests {
         assert_eq!(grid.width(&set), Some(1));
         assert_eq!(grid.n_pieces(&set), 2);
         let opened = grid.opened(&set, 3);
-        assert_eq!(opened, drawn(&[".....", ".....", "..###", "..###", "..###"], [false; 2]).1);
+        assert_eq!(
+            opened,
+            drawn(&[".....", ".....", "..###", "..###", "..###"], [false; 2]).1
+        );
         assert_eq!(grid.width(&opened), Some(3));
         // Around a periodic axis, the strip is a part of what lies beyond.
         let (around, set) = drawn(&["##..#", "##..#", "##..#"], [true, false]);
         assert_eq!((around.width(&set), around.n_pieces(&set)), (Some(3), 1));
-        assert_eq!(around.width(&vec![false; 15]), None);
+        assert_eq!(around.width(&[false; 15]), None);
     }
 }

@@ -1,5 +1,7 @@
 //! Which textures a design may have, and the texture of a draft: legal as it is made.
 
+use slipfront_case::number_format::{are, count as count_of};
+
 use super::grid::{Grid, count};
 use super::patch::Draft;
 
@@ -28,15 +30,15 @@ pub struct Limits {
 pub enum Illegal {
     #[error("the texture covers {found:.2} % of the slider, where {least} to {most} % are allowed")]
     Coverage { found: f64, least: f64, most: f64 },
-    #[error("a feature is {found} blocks wide, where {least} are the least")]
+    #[error("a feature is {} wide, where {least} are the least", count_of(*found, "block"))]
     Feature { found: usize, least: usize },
-    #[error("a gap between features, or between one and an edge, is {found} blocks wide, where {least} are the least")]
+    #[error("a gap between features, or between one and an edge, is {} wide, where {least} are the least", count_of(*found, "block"))]
     Gap { found: usize, least: usize },
     #[error("the texture is not the mirror image of itself about the middle of {axis}")]
     Mirror { axis: char },
     #[error("the {columns} x {rows} cells of the slider have not all one texture")]
     Copies { columns: usize, rows: usize },
-    #[error("{blocks} textured blocks lie where the texture is forbidden")]
+    #[error("{} textured where texture is forbidden", are(*blocks, "block"))]
     Forbidden { blocks: usize },
     #[error("the texture has {found} features, where {most} are allowed")]
     Features { found: usize, most: usize },
@@ -73,7 +75,9 @@ impl Limits {
             return Err(Illegal::Copies { columns, rows });
         }
         let forbidden = self.forbidden.iter().flatten().zip(textured);
-        let blocks = forbidden.filter(|(forbidden, textured)| **forbidden && **textured).count();
+        let blocks = forbidden
+            .filter(|(forbidden, textured)| **forbidden && **textured)
+            .count();
         if blocks > 0 {
             return Err(Illegal::Forbidden { blocks });
         }
@@ -97,7 +101,7 @@ impl Limits {
         let most = (share * grid.n_blocks() as f64 + 1e-9) as usize;
         let grown = |level: f64| {
             let held: Vec<bool> = growth.iter().map(|&growth| growth <= level).collect();
-            self.smoothed(grid, held)
+            self.smoothed(grid, &held)
         };
         // What is covered rises with the growth.
         let (mut low, mut high) = (0, levels.len());
@@ -141,8 +145,8 @@ impl Limits {
     }
 
     /// A set without what is too narrow, and without gaps that are.
-    fn smoothed(&self, grid: &Grid, set: Vec<bool>) -> Vec<bool> {
-        let opened = grid.opened(&set, self.feature);
+    fn smoothed(&self, grid: &Grid, set: &[bool]) -> Vec<bool> {
+        let opened = grid.opened(set, self.feature);
         if self.gap <= 1 {
             return opened;
         }
@@ -170,5 +174,132 @@ fn mirrored(grid: &Grid, block: usize, axis: usize) -> usize {
         y * nx + nx - 1 - x
     } else {
         (ny - 1 - y) * nx + x
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::design::grid::tests::drawn;
+    use crate::design::named::named;
+    use crate::design::search::Search;
+
+    fn limits() -> Limits {
+        Limits {
+            coverage: [0.0, 100.0],
+            feature: 1,
+            gap: 1,
+            mirror: [false; 2],
+            copies: [1, 1],
+            forbidden: None,
+            max_features: None,
+        }
+    }
+
+    #[test]
+    fn every_limit_is_told_by_what_breaks_it() {
+        let rows = ["....", ".##.", ".##.", "...#"];
+        let (grid, textured) = drawn(&rows, [false; 2]);
+        let said = |limits: &Limits| limits.check(&grid, &textured);
+        assert_eq!(said(&limits()), Ok(()));
+        let check = |change: &dyn Fn(&mut Limits)| {
+            let mut changed = limits();
+            change(&mut changed);
+            said(&changed).unwrap_err()
+        };
+        assert_eq!(
+            check(&|limits| limits.coverage = [0.0, 30.0]),
+            Illegal::Coverage {
+                found: 31.25,
+                least: 0.0,
+                most: 30.0
+            }
+        );
+        assert_eq!(
+            check(&|limits| limits.feature = 2),
+            Illegal::Feature { found: 1, least: 2 }
+        );
+        assert_eq!(
+            check(&|limits| limits.gap = 2),
+            Illegal::Gap { found: 1, least: 2 }
+        );
+        assert_eq!(
+            check(&|limits| limits.mirror = [true, false]),
+            Illegal::Mirror { axis: 'x' }
+        );
+        assert_eq!(
+            check(&|limits| limits.mirror = [false, true]),
+            Illegal::Mirror { axis: 'y' }
+        );
+        let copies = check(&|limits| limits.copies = [2, 1]);
+        assert_eq!(copies, Illegal::Copies { columns: 2, rows: 1 });
+        let mut forbidden = vec![false; 16];
+        forbidden[3] = true;
+        let found = check(&|limits| limits.forbidden = Some(forbidden.clone()));
+        assert_eq!(found, Illegal::Forbidden { blocks: 1 });
+        let features = check(&|limits| limits.max_features = Some(1));
+        assert_eq!(features, Illegal::Features { found: 2, most: 1 });
+    }
+
+    /// Everything that a search asks for is legal and new, whatever the limits, and it asks for the same after the same losses.
+    #[test]
+    fn what_is_asked_for_is_legal_and_new() {
+        let [nx, ny] = [24, 18];
+        let mut corner = vec![false; nx * ny];
+        corner[..6 * nx].fill(true);
+        for (k, change) in [
+            &(|_: &mut Limits| {}) as &dyn Fn(&mut Limits),
+            &|limits| limits.feature = 4,
+            &|limits| limits.mirror = [true, true],
+            &|limits| limits.copies = [2, 3],
+            &|limits| limits.forbidden = Some(corner.clone()),
+            &|limits| limits.max_features = Some(1),
+            &|limits| limits.coverage = [12.0, 30.0],
+        ]
+        .into_iter()
+        .enumerate()
+        {
+            let mut limits = Limits {
+                coverage: [0.0, 15.0],
+                feature: 2,
+                gap: 2,
+                ..limits()
+            };
+            change(&mut limits);
+            let grid = Grid {
+                size: [nx, ny],
+                periodic: [k % 2 == 1, false],
+                exists: vec![true; nx * ny],
+            };
+            let starts = || {
+                named(&grid, &limits)
+                    .into_iter()
+                    .map(|(named, _)| named)
+                    .collect()
+            };
+            let mut twins = [0; 2].map(|_| Search::new(grid.clone(), limits.clone(), 5, starts()));
+            let mut seen = std::collections::HashSet::new();
+            for _ in 0..4 {
+                let [asked, again] = twins.each_mut().map(|search| search.ask(24));
+                assert!(!asked.is_empty(), "{limits:?}");
+                for (one, other) in asked.iter().zip(&again) {
+                    assert_eq!(one.texture, other.texture);
+                    assert_eq!(limits.check(&grid, &one.texture), Ok(()), "{limits:?}");
+                    assert!(seen.insert(one.texture.clone()));
+                }
+                // A loss without any meaning: how far the texture lies to the left.
+                let told: Vec<_> = asked
+                    .into_iter()
+                    .map(|proposal| {
+                        let columns = (0..nx * ny).filter(|&block| proposal.texture[block]);
+                        let loss = columns.map(|block| (block % nx) as f64).sum();
+                        super::super::search::Found { proposal, loss }
+                    })
+                    .collect();
+                for search in &mut twins {
+                    search.tell(&told);
+                }
+            }
+        }
     }
 }

@@ -13,6 +13,7 @@ mod folder;
 mod grid;
 mod limits;
 mod named;
+mod open_search;
 mod patch;
 mod random;
 mod report;
@@ -24,20 +25,23 @@ mod wish;
 
 use std::path::Path;
 use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 
 use slipfront_case::case::Case;
 
-use self::evaluate::{Evaluator, Subject};
+use self::evaluate::{Evaluator, Fidelity, Subject};
 use self::named::{GROOVE, Named, named};
+use self::search::Search;
 use self::stages::{Stages, Tried};
 use self::verdict::{Contender, Judge};
 use crate::error::StudyError;
 
-pub use self::file::{DesignFile, DesignKeys};
 pub use self::evaluate::{Keep, Known, RunId};
+pub use self::file::{DesignFile, DesignKeys};
 pub use self::folder::{DesignFolder, is_design};
 pub use self::grid::Grid;
 pub use self::limits::{Illegal, Limits};
+pub use self::open_search::OpenSearch;
 pub use self::sensitivity::Changed;
 pub use self::stages::{Bounds, DesignStage, SearchProgress};
 pub use self::verdict::{Given, Mean, OnFresh, Verdict};
@@ -114,8 +118,15 @@ impl Design {
     ) -> Result<Outcome, StudyError> {
         let grid = &self.evaluator.grid;
         let mut starts = named(grid, &self.limits);
-        let drawn = self.drawn.iter().map(|(name, textured)| Named::drawn(grid, name, textured));
-        starts.extend(drawn.filter_map(|named| Some((self.limits.texture(grid, &named.draft)?, named))).map(|(texture, named)| (named, texture)));
+        let drawn = self
+            .drawn
+            .iter()
+            .map(|(name, textured)| Named::drawn(grid, name, textured));
+        starts.extend(
+            drawn
+                .filter_map(|named| Some((self.limits.texture(grid, &named.draft)?, named)))
+                .map(|(texture, named)| (named, texture)),
+        );
         let (starts, textures): (Vec<Named>, Vec<_>) = starts.into_iter().unzip();
         let pairs = starts.iter().zip(textures);
         let legal: Vec<Contender> = pairs
@@ -160,5 +171,50 @@ impl Design {
             compared: judged.compared,
             tried: stages.tried,
         })
+    }
+
+    /// A search of which somebody else makes the runs.
+    pub fn open_search(&self) -> OpenSearch {
+        let grid = self.evaluator.grid.clone();
+        let (starts, _): (Vec<Named>, Vec<_>) = named(&grid, &self.limits).into_iter().unzip();
+        OpenSearch::new(Search::new(grid, self.limits.clone(), self.start, starts))
+    }
+
+    /// Why a texture is not legal, unless it is.
+    ///
+    /// # Errors
+    /// The first limit that it breaks.
+    pub fn check(&self, textured: &[bool]) -> Result<(), Illegal> {
+        self.limits.check(&self.evaluator.grid, textured)
+    }
+
+    /// Blocks along x and along y.
+    pub fn size(&self) -> [usize; 2] {
+        self.evaluator.grid.size
+    }
+
+    /// How far each texture is from the wish, the less the better, as a mean over the first `surfaces` surfaces of the search; with a coarse
+    /// step, or that of the case.
+    ///
+    /// # Errors
+    /// When runs cannot be made, and after a stop.
+    pub fn losses(
+        &self,
+        textures: Vec<Vec<bool>>,
+        surfaces: u64,
+        is_coarse: bool,
+        known: &mut Known,
+        stop: &AtomicBool,
+    ) -> Result<Vec<f64>, StudyError> {
+        let fidelity = if is_coarse {
+            Fidelity::Coarse
+        } else {
+            Fidelity::Fine
+        };
+        let textures: Vec<Arc<Vec<bool>>> = textures.into_iter().map(Arc::new).collect();
+        let wanted = self.evaluator.wanted(&textures, 0..surfaces, fidelity);
+        self.evaluator.run(&wanted, known, stop, &mut |_| Ok(()))?;
+        let loss = |texture| self.evaluator.loss(texture, 0..surfaces, fidelity, known);
+        Ok(textures.iter().map(loss).collect())
     }
 }

@@ -40,7 +40,8 @@ pub(crate) fn named(grid: &Grid, limits: &Limits) -> Vec<(Named, Vec<bool>)> {
     let textured = |named: Named| Some((limits.texture(grid, &named.draft)?, named));
     let larger = |(one, other): (Named, Named)| {
         let both = [textured(one), textured(other)].into_iter().flatten();
-        both.max_by_key(|(texture, _)| count(texture)).map(|(texture, named)| (named, texture))
+        both.max_by_key(|(texture, _)| count(texture))
+            .map(|(texture, named)| (named, texture))
     };
     edges.into_iter().zip(middles).filter_map(larger).collect()
 }
@@ -77,17 +78,32 @@ fn shifted(grid: &Grid, percent: f64, shift: f64) -> Vec<Named> {
     let patterns: Vec<(&str, Vec<Patch>)> = vec![
         (GROOVE, vec![across(0.5)]),
         ("groove along", vec![along(0.5)]),
-        ("two grooves across at 1/4 and 3/4", vec![across(quarter), across(1.0 - quarter)]),
-        ("two grooves across at 1/3 and 2/3", vec![across(third), across(1.0 - third)]),
-        ("two grooves along at 1/4 and 3/4", vec![along(quarter), along(1.0 - quarter)]),
+        (
+            "two grooves across at 1/4 and 3/4",
+            vec![across(quarter), across(1.0 - quarter)],
+        ),
+        (
+            "two grooves across at 1/3 and 2/3",
+            vec![across(third), across(1.0 - third)],
+        ),
+        (
+            "two grooves along at 1/4 and 3/4",
+            vec![along(quarter), along(1.0 - quarter)],
+        ),
         (
             "three grooves across",
             [1.0, 3.0, 5.0].map(|place| across(place / 6.0)).to_vec(),
         ),
         ("grooves at the edges across", vec![across(0.0), across(1.0)]),
         ("grooves at the edges along", vec![along(0.0), along(1.0)]),
-        ("groove tilted by 30 degrees", vec![strip(0, 0.5, third * FRAC_PI_2)]),
-        ("groove tilted by 60 degrees", vec![strip(0, 0.5, 2.0 * third * FRAC_PI_2)]),
+        (
+            "groove tilted by 30 degrees",
+            vec![strip(0, 0.5, third * FRAC_PI_2)],
+        ),
+        (
+            "groove tilted by 60 degrees",
+            vec![strip(0, 0.5, 2.0 * third * FRAC_PI_2)],
+        ),
         ("frame", frame()),
         ("cross", vec![across(0.5), along(0.5)]),
         ("round cavity", cavities(1, 1, Form::Ellipse)),

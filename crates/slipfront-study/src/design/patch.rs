@@ -107,7 +107,9 @@ pub(crate) fn growth_of(grid: &Grid, set: &[bool]) -> Vec<f64> {
     let outwards = steps_to(grid, set);
     let inwards = steps_to(grid, &set.iter().map(|is_in| !is_in).collect::<Vec<_>>());
     let pairs = outwards.iter().zip(&inwards);
-    pairs.map(|(out, into)| if *out > 0.0 { *out } else { 1.0 - into }).collect()
+    pairs
+        .map(|(out, into)| if *out > 0.0 { *out } else { 1.0 - into })
+        .collect()
 }
 
 /// Number of steps, straight or diagonal, from every block to a set; as many as the slider has blocks if the set is empty.
@@ -121,7 +123,10 @@ fn steps_to(grid: &Grid, set: &[bool]) -> Vec<f64> {
         distance += 1.0;
         let mut next = Vec::new();
         for block in reached {
-            for [dx, dy] in [-1, 0, 1].into_iter().flat_map(|dy| [-1, 0, 1].map(|dx| [dx, dy])) {
+            for [dx, dy] in [-1, 0, 1]
+                .into_iter()
+                .flat_map(|dy| [-1, 0, 1].map(|dx| [dx, dy]))
+            {
                 let place = |axis: usize, at: usize, step: isize| {
                     let (n, to) = (grid.size[axis] as isize, at as isize + step);
                     (grid.periodic[axis] || (0..n).contains(&to)).then(|| to.rem_euclid(n) as usize)

@@ -4,13 +4,13 @@ use std::io::Write;
 use std::sync::Arc;
 
 use serde::Serialize;
-use slipfront_case::arrays::npy_of_mask;
+use slipfront_case::arrays::{npy_of_mask, write_mask_png};
 use slipfront_case::case::{Case, Ranks};
 use slipfront_case::number_format::{count, four_digits, with_half_width, with_si_prefix};
 use slipfront_case::text::{COLUMNS, note, wrapped};
 use slipfront_plot::{FieldMap, FieldMaps, FrictionAxes, FrictionCurve};
 use slipfront_run::names::CASE;
-use slipfront_run::pictures::texture_file;
+use slipfront_run::pictures::texture_file::{self, TextureFileError};
 use slipfront_run::running;
 
 use super::evaluate::{Fidelity, MASK, masked};
@@ -29,11 +29,14 @@ const EVALUATIONS: &str = "evaluations.csv";
 const VERDICT: [&str; 2] = ["design.json", "design.txt"];
 
 /// Endings of the mask in other formats.
-const MASK_ENDINGS: [&str; 4] = ["png", "svg", "dxf", "gsf"];
+const MASK_ENDINGS: [&str; 3] = ["svg", "dxf", "gsf"];
+
+/// The mask as a picture, which the case reads.
+const PICTURE: &str = "mask.png";
 
 /// The texture of a design on its blocks.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct AsMeshed {
+pub(super) struct AsMeshed {
     /// Share of the blocks that are textured, %.
     pub coverage_percent: f64,
     /// Features that touch nowhere along an edge of a block.
@@ -88,7 +91,9 @@ impl DesignFolder {
             verdict: &outcome.verdict,
             version: env!("CARGO_PKG_VERSION"),
         };
-        write_in(folder, numbers, |to| Ok(serde_json::to_writer_pretty(to, &written)?))?;
+        write_in(folder, numbers, |to| {
+            Ok(serde_json::to_writer_pretty(to, &written)?)
+        })?;
         let text = in_words(design, &outcome.verdict, &as_meshed, &case);
         write_in(folder, words, |to| to.write_all(text.as_bytes()))?;
         Ok(text)
@@ -96,10 +101,13 @@ impl DesignFolder {
 
     /// Writes a mask, and the case that reads it.
     pub(crate) fn write_mask(&self, design: &Design, texture: &[bool]) -> Result<(), StudyError> {
-        let columns = design.evaluator.grid.size[0];
-        write_in(self.path(), MASK, |to| to.write_all(&npy_of_mask(columns, texture)))?;
+        let [nx, ny] = design.evaluator.grid.size;
+        write_in(self.path(), MASK, |to| to.write_all(&npy_of_mask(nx, texture)))?;
+        let picture = self.path().join(PICTURE);
+        write_mask_png(&picture, nx, ny, texture).map_err(TextureFileError::from)?;
         let mut file = self.file.case()?.file;
-        file.texture = vec![masked()];
+        // A picture is laid over every mesh; an array belongs to its blocks.
+        file.texture = vec![masked(PICTURE)];
         let text = file.to_toml()?;
         write_in(self.path(), CASE, |to| to.write_all(text.as_bytes()))
     }
@@ -127,7 +135,9 @@ impl DesignFolder {
             let texture = texture.as_ref().map(|texture| texture.as_slice());
             let case = Arc::new(subject.case(texture, outcome.verdict.first_surface, Fidelity::Verdict)?);
             // Its verdict was found on this surface among others, so that it does not diverge.
-            let Ok(record) = running::run(&case, 1) else { continue };
+            let Ok(record) = running::run(&case, 1) else {
+                continue;
+            };
             curves.push(FrictionCurve {
                 label: name.clone(),
                 x: record.rows.iter().map(|row| row.time_star).collect(),
@@ -136,7 +146,11 @@ impl DesignFolder {
                 ..FrictionCurve::default()
             });
             let slips = record.first_slip_time_star.iter().map(|time| *time as f32);
-            let finite = record.first_slip_time_star.iter().copied().filter(|time| time.is_finite());
+            let finite = record
+                .first_slip_time_star
+                .iter()
+                .copied()
+                .filter(|time| time.is_finite());
             latest = finite.fold(latest, f64::max);
             maps.push(FieldMap {
                 label: name.clone(),
@@ -155,7 +169,10 @@ impl DesignFolder {
             maps,
         };
         let pictures = [
-            ("friction", slipfront_plot::friction(&curves, &FrictionAxes::default())),
+            (
+                "friction",
+                slipfront_plot::friction(&curves, &FrictionAxes::default()),
+            ),
             ("first_slips", slipfront_plot::field_maps(&maps)),
         ];
         for (name, picture) in pictures {
@@ -163,8 +180,12 @@ impl DesignFolder {
                 name: name.to_owned(),
                 source,
             })?;
-            write_in(self.path(), &format!("{name}.svg"), |to| to.write_all(picture.svg.as_bytes()))?;
-            write_in(self.path(), &format!("{name}.png"), |to| to.write_all(&picture.png))?;
+            write_in(self.path(), &format!("{name}.svg"), |to| {
+                to.write_all(picture.svg.as_bytes())
+            })?;
+            write_in(self.path(), &format!("{name}.png"), |to| {
+                to.write_all(&picture.png)
+            })?;
         }
         Ok(())
     }
@@ -177,7 +198,11 @@ fn evaluations(design: &Design, outcome: &Outcome, to: &mut impl Write) -> Resul
         let hash = blake3::Hash::from_bytes(super::search::hash(&tried.texture));
         table.serialize(Row {
             number: k + 1,
-            stage: if tried.is_refined { "several surfaces" } else { "one surface" },
+            stage: if tried.is_refined {
+                "several surfaces"
+            } else {
+                "one surface"
+            },
             origin: &tried.origin,
             coverage_percent: design.evaluator.grid.percent(&tried.texture),
             loss: tried.loss,
@@ -261,10 +286,15 @@ fn headline(wish: &Wish, verdict: &Verdict) -> String {
         Wish::Value(_, wanted) => format!(
             "{of} of {} mu_s wished for: {} mu_s found, {} % from it",
             four_digits(*wanted),
-            given(wish.quantity(), &verdict.design.cases[0]).map_or("nothing".to_owned(), |mean| with_half_width(mean.mean, mean.half_width)),
+            given(wish.quantity(), &verdict.design.cases[0]).map_or("nothing".to_owned(), |mean| {
+                with_half_width(mean.mean, mean.half_width)
+            }),
             four_digits(loss)
         ),
-        Wish::Curve(_) => format!("curve wished for: {} from it, as a root of the mean square of mu*", four_digits(loss)),
+        Wish::Curve(_) => format!(
+            "curve wished for: {} from it, as a root of the mean square of mu*",
+            four_digits(loss)
+        ),
     };
     if verdict.is_named {
         text += &format!(
@@ -275,7 +305,8 @@ fn headline(wish: &Wish, verdict: &Verdict) -> String {
     if let Wish::Value(..) = wish
         && loss > MISSED_PERCENT
     {
-        text += ". The value is out of reach of these limits, or of this search: give more runs, or wider limits";
+        text +=
+            ". The value is out of reach of these limits, or of this search: give more runs, or wider limits";
     }
     text
 }
@@ -336,7 +367,11 @@ fn loss_cell(wish: &Wish, found: &OnFresh, is_first: bool) -> String {
 
 /// A difference of losses in what they are shown in.
 fn better_cell(wish: &Wish, better: Option<Mean>) -> String {
-    let factor = if matches!(wish, Wish::Curve(_)) { 1.0 } else { 100.0 };
+    let factor = if matches!(wish, Wish::Curve(_)) {
+        1.0
+    } else {
+        100.0
+    };
     better.map_or("-".to_owned(), |better| {
         let half_width = better.half_width.map(|half| factor * half);
         with_half_width(factor * better.mean, half_width)
@@ -344,7 +379,11 @@ fn better_cell(wish: &Wish, better: Option<Mean>) -> String {
 }
 
 fn optimism(wish: &Wish, verdict: &Verdict) -> String {
-    let factor = if matches!(wish, Wish::Curve(_)) { 1.0 } else { 100.0 };
+    let factor = if matches!(wish, Wish::Curve(_)) {
+        1.0
+    } else {
+        100.0
+    };
     format!(
         "On the surfaces that it was chosen by, the design looked better by {}.",
         four_digits(factor * verdict.optimism)

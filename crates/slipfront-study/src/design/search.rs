@@ -113,7 +113,11 @@ impl Search {
 
     /// Takes the losses of textures that were asked for, in their order.
     pub(crate) fn tell(&mut self, found: &[Found]) {
-        let found: Vec<Found> = found.iter().filter(|found| found.loss.is_finite()).cloned().collect();
+        let found: Vec<Found> = found
+            .iter()
+            .filter(|found| found.loss.is_finite())
+            .cloned()
+            .collect();
         merge(&mut self.best, &found, FINALISTS, self.limits.feature);
         merge(&mut self.population, &found, POPULATION, self.limits.feature);
         let best = self.population.first().map_or(f64::INFINITY, |found| found.loss);
@@ -321,7 +325,11 @@ fn merge(list: &mut Vec<Found>, found: &[Found], most: usize, feature: usize) {
             break;
         }
         let differs = |kept: &Found| {
-            let pairs = kept.proposal.texture.iter().zip(candidate.proposal.texture.iter());
+            let pairs = kept
+                .proposal
+                .texture
+                .iter()
+                .zip(candidate.proposal.texture.iter());
             pairs.filter(|(kept, new)| kept != new).take(least).count() == least
         };
         if list.iter().all(differs) {

@@ -1,6 +1,5 @@
 //! What is left of a design when it is not made or used quite as it was designed.
 
-
 use serde::Serialize;
 use slipfront_case::case_file::DriveSpeed;
 use slipfront_case::quantity::Speed;
@@ -36,7 +35,10 @@ const SHIFTS: [(&str, [isize; 2]); 4] = [
 ];
 
 /// Changes of the speed of the drive.
-const SPEEDS: [(&str, f64); 2] = [("a third of the speed", 1.0 / 3.0), ("three times the speed", 3.0)];
+const SPEEDS: [(&str, f64); 2] = [
+    ("a third of the speed", 1.0 / 3.0),
+    ("three times the speed", 3.0),
+];
 
 impl Judge<'_> {
     /// Every change, with the design beside another texture.
@@ -94,7 +96,9 @@ impl Judge<'_> {
         let surfaces = first..first + if self.evaluator.scatters() { SURFACES } else { 1 };
         let both: Vec<&Contender> = std::iter::once(design).chain(other).collect();
         self.run(&both, surfaces.clone(), known, keep)?;
-        let losses = surfaces.clone().map(|surface| self.loss(design, surface..surface + 1, known));
+        let losses = surfaces
+            .clone()
+            .map(|surface| self.loss(design, surface..surface + 1, known));
         Ok(Changed {
             change: change.to_owned(),
             loss: Mean::of(&losses.collect::<Vec<_>>()),
@@ -124,7 +128,11 @@ impl Evaluator {
     /// The cases on blocks of half the size, as [`Case::on_other_blocks`](slipfront_case::case::Case::on_other_blocks) puts them there; none if
     /// one of them cannot be.
     fn on_finer_blocks(&self) -> Option<Self> {
-        let subjects: Option<Vec<_>> = self.subjects.iter().map(|subject| subject.on_finer_blocks(&self.wish)).collect();
+        let subjects: Option<Vec<_>> = self
+            .subjects
+            .iter()
+            .map(|subject| subject.on_finer_blocks(&self.wish))
+            .collect();
         let grid = Grid {
             size: self.grid.size.map(|n| 2 * n),
             periodic: self.grid.periodic,
@@ -167,8 +175,14 @@ mod tests {
             exists: vec![true; 6],
         };
         let set = [true, false, false, false, false, true];
-        assert_eq!(moved(&grid, &set, [1, 0]), [false, true, false, true, false, false]);
-        assert_eq!(moved(&grid, &set, [0, 1]), [false, false, false, true, false, false]);
+        assert_eq!(
+            moved(&grid, &set, [1, 0]),
+            [false, true, false, true, false, false]
+        );
+        assert_eq!(
+            moved(&grid, &set, [0, 1]),
+            [false, false, false, true, false, false]
+        );
         let fine = doubled([2, 1], &[true, false]);
         assert_eq!(fine, [true, true, false, false, true, true, false, false]);
     }

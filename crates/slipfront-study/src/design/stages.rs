@@ -104,16 +104,21 @@ impl<'a> Stages<'a> {
         let explored = (EXPLORED * bounds.runs as f64) as usize;
         while self.runs < explored && (bounds.share_of_time)() < EXPLORED {
             let proposals = self.search.ask(BATCH);
-            if !self.try_out(proposals, false, (bounds, known, keep, watch))? {
+            if !self.try_out(proposals, false, bounds, known, keep, watch)? {
                 break;
             }
         }
-        let best: Vec<Proposal> = self.search.best().iter().map(|found| found.proposal.clone()).collect();
+        let best: Vec<Proposal> = self
+            .search
+            .best()
+            .iter()
+            .map(|found| found.proposal.clone())
+            .collect();
         self.search.begin_again();
-        let mut goes_on = self.try_out(best, true, (bounds, known, keep, watch))?;
+        let mut goes_on = self.try_out(best, true, bounds, known, keep, watch)?;
         while goes_on && self.runs < bounds.runs && (bounds.share_of_time)() < 1.0 {
             let proposals = self.search.ask(BATCH / 2);
-            goes_on = self.try_out(proposals, true, (bounds, known, keep, watch))?;
+            goes_on = self.try_out(proposals, true, bounds, known, keep, watch)?;
         }
         let best = self.search.best().iter();
         Ok(best.map(|found| Arc::clone(&found.proposal.texture)).collect())
@@ -124,7 +129,10 @@ impl<'a> Stages<'a> {
         &mut self,
         proposals: Vec<Proposal>,
         is_refined: bool,
-        (bounds, known, keep, watch): (&Bounds, &mut Known, &mut Keep, &mut dyn FnMut(&SearchProgress)),
+        bounds: &Bounds,
+        known: &mut Known,
+        keep: &mut Keep,
+        watch: &mut dyn FnMut(&SearchProgress),
     ) -> Result<bool, StudyError> {
         let (surfaces, fidelity) = self.stage(is_refined);
         let textures: Vec<_> = proposals.iter().map(|found| Arc::clone(&found.texture)).collect();
@@ -135,7 +143,9 @@ impl<'a> Stages<'a> {
         let found: Vec<Found> = proposals
             .into_iter()
             .map(|proposal| {
-                let loss = self.evaluator.loss(&proposal.texture, surfaces.clone(), fidelity, known);
+                let loss = self
+                    .evaluator
+                    .loss(&proposal.texture, surfaces.clone(), fidelity, known);
                 Found { proposal, loss }
             })
             .collect();
@@ -169,7 +179,10 @@ impl<'a> Stages<'a> {
     /// Surfaces and step of a stage.
     fn stage(&self, is_refined: bool) -> (Range<u64>, Fidelity) {
         if is_refined {
-            (0..if self.scatters { REFINED_SURFACES } else { 1 }, Fidelity::Fine)
+            (
+                0..if self.scatters { REFINED_SURFACES } else { 1 },
+                Fidelity::Fine,
+            )
         } else {
             (0..1, Fidelity::Coarse)
         }

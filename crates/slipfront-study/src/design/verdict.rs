@@ -187,7 +187,10 @@ impl Judge<'_> {
                 others.push(other);
             }
         }
-        let beside = best_named.as_ref().filter(|named| named.texture != design.texture).or(groove);
+        let beside = best_named
+            .as_ref()
+            .filter(|named| named.texture != design.texture)
+            .or(groove);
         let sensitivity = self.sensitivity(&design, beside, known, keep)?;
         let on_fresh = |contender: Option<&Contender>, known: &Known| {
             self.on_fresh(contender, &design, judged.clone(), known)
@@ -204,7 +207,9 @@ impl Judge<'_> {
             optimism: self.loss(&design, judged.clone(), known) - self.loss(&design, compared, known),
             sensitivity,
         };
-        let compared = others.iter().map(|other| (other.name.clone(), Some(Arc::clone(&other.texture))));
+        let compared = others
+            .iter()
+            .map(|other| (other.name.clone(), Some(Arc::clone(&other.texture))));
         let compared = [
             (design.name.clone(), Some(Arc::clone(&design.texture))),
             (verdict.others[0].name.clone(), None),
@@ -245,21 +250,33 @@ impl Judge<'_> {
         known: &mut Known,
         keep: &mut Keep,
     ) -> Result<(), StudyError> {
-        let textures: Vec<_> = contenders.iter().map(|found| Arc::clone(&found.texture)).collect();
+        let textures: Vec<_> = contenders
+            .iter()
+            .map(|found| Arc::clone(&found.texture))
+            .collect();
         // One surface after the other, so that no more of them are lost after a stop.
         for surface in surfaces {
-            let wanted = self.evaluator.wanted(&textures, surface..surface + 1, Fidelity::Verdict);
+            let wanted = self
+                .evaluator
+                .wanted(&textures, surface..surface + 1, Fidelity::Verdict);
             self.evaluator.run(&wanted, known, self.stop, keep)?;
         }
         Ok(())
     }
 
     pub(crate) fn loss(&self, contender: &Contender, surfaces: Range<u64>, known: &Known) -> f64 {
-        self.evaluator.loss(&contender.texture, surfaces, Fidelity::Verdict, known)
+        self.evaluator
+            .loss(&contender.texture, surfaces, Fidelity::Verdict, known)
     }
 
     /// The loss of one texture less that of another, surface by surface.
-    pub(crate) fn difference(&self, one: &Contender, other: &Contender, surfaces: Range<u64>, known: &Known) -> Mean {
+    pub(crate) fn difference(
+        &self,
+        one: &Contender,
+        other: &Contender,
+        surfaces: Range<u64>,
+        known: &Known,
+    ) -> Mean {
         let loss = |contender, surface| self.loss(contender, surface..surface + 1, known);
         let differences = surfaces.map(|surface| loss(one, surface) - loss(other, surface));
         Mean::of(&differences.collect::<Vec<_>>())
@@ -293,10 +310,14 @@ impl Judge<'_> {
             }
         };
         OnFresh {
-            name: contender.map_or("no texture", |contender| &contender.name).to_owned(),
+            name: contender
+                .map_or("no texture", |contender| &contender.name)
+                .to_owned(),
             coverage_percent: contender.map_or(0.0, |found| self.evaluator.grid.percent(&found.texture)),
             cases: (0..self.evaluator.subjects.len()).map(given).collect(),
-            loss: contender.map_or(f64::NAN, |contender| self.loss(contender, surfaces.clone(), known)),
+            loss: contender.map_or(f64::NAN, |contender| {
+                self.loss(contender, surfaces.clone(), known)
+            }),
             design_is_better_by: contender
                 .filter(|contender| contender.texture != design.texture)
                 .map(|contender| self.difference(contender, design, surfaces.clone(), known)),

@@ -110,3 +110,39 @@ impl Wish {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn losses_are_what_they_are_called() {
+        let run = |largest_star: f64, kinetic_star: f64| Measured {
+            largest_star,
+            first_peak_star: 0.0,
+            kinetic_star: Some(kinetic_star),
+            misfit: Some(0.25),
+        };
+        let (with, without) = (run(0.75, 0.5), run(1.0, 0.25));
+        let told = |wish: Wish| wish.told(wish.loss(wish.deviation(&with, &without)));
+        assert_eq!(told(Wish::Least(Quantity::StaticFriction)), 25.0);
+        assert_eq!(told(Wish::Largest(Quantity::StaticFriction)), -25.0);
+        assert_eq!(told(Wish::Largest(Quantity::KineticFriction)), 100.0);
+        assert_eq!(
+            told(Wish::Least(Quantity::FrictionDrop)),
+            100.0 * (1.0 - 0.25 / 0.75)
+        );
+        assert_eq!(told(Wish::Value(Quantity::StaticFriction, 1.5)), 50.0);
+        assert_eq!(told(Wish::Value(Quantity::StaticFriction, 0.5)), 50.0);
+        assert_eq!(told(Wish::Curve(Vec::new())), 0.25);
+        let short = Measured {
+            kinetic_star: None,
+            ..with.clone()
+        };
+        assert!(
+            Wish::Least(Quantity::KineticFriction)
+                .deviation(&short, &without)
+                .is_nan()
+        );
+    }
+}

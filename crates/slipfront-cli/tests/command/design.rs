@@ -1,0 +1,104 @@
+//! The search for a texture.
+
+use serde_json::Value;
+
+use crate::fixtures::unwrapped;
+use crate::support::workspace::Workspace;
+
+const WISH: &str = "[base]\nslider.blocks = [16, 16]\ndrive.v_star = 0.1\n\
+    [design]\nwish = { least = 'static_friction' }\ncoverage = [0, 15]\nfeature_blocks = 2\ngap_blocks = 2\nruns = 120\n";
+
+fn verdict(workspace: &Workspace, folder: &str) -> Value {
+    serde_json::from_slice(&workspace.read(&format!("{folder}/design.json"))).unwrap()
+}
+
+/// What is said is what was written, the case runs with the texture, and the files are those of any other call.
+#[test]
+fn a_design_is_a_texture_that_other_commands_read() {
+    let workspace = Workspace::new();
+    workspace.write("wish.toml", WISH);
+    let said = workspace.succeed("design wish.toml -o found --threads 1");
+    let found = verdict(&workspace, "found");
+    let text = workspace.read_text("found/design.txt");
+    assert!(
+        said.starts_with(&text) && said.trim_end().ends_with("found"),
+        "{said}"
+    );
+    assert!(text.starts_with("reduction of static friction: "), "{text}");
+    let loss = found["design"]["loss"].as_f64().unwrap();
+    assert!(loss < 0.9, "{found}");
+    // On the surface of the search the case gives about what the verdict tells of others.
+    workspace.succeed("run found/case.toml -o run --no-pictures");
+    let summary: Value = serde_json::from_slice(&workspace.read("run/summary.json")).unwrap();
+    let mean = &found["design"]["cases"][0]["static_friction_star"];
+    let told = mean["mean"].as_f64().unwrap();
+    let largest = summary["mu_star_max"].as_f64().unwrap();
+    assert!((largest / told - 1.0).abs() < 0.1, "{largest} {told}");
+    assert_eq!(summary["texture_percent"], found["as_meshed"]["coverage_percent"]);
+    // The picture of the mask is the mask.
+    workspace.write(
+        "again.toml",
+        workspace
+            .read_text("found/case.toml")
+            .replace("mask.png", "mask.npy"),
+    );
+    workspace.write("mask.npy", workspace.read("found/mask.npy"));
+    workspace.succeed("run again.toml -o again --no-pictures");
+    assert_eq!(
+        workspace.read("again/summary.json"),
+        workspace.read("run/summary.json")
+    );
+    // It is laid over other meshes, too.
+    workspace.succeed("converge found/case.toml --replicates 1 -o meshes --quiet");
+    // The design in the folder repeats it, on two threads.
+    workspace.succeed("design found/design.toml -o twice --threads 2 --quiet");
+    for name in [
+        "design.json",
+        "design.txt",
+        "evaluations.csv",
+        "mask.npy",
+        "mask.dxf",
+        "friction.svg",
+    ] {
+        assert_eq!(
+            workspace.read(&format!("found/{name}")),
+            workspace.read(&format!("twice/{name}")),
+            "{name}"
+        );
+    }
+    // Once more, nothing is run, and nothing changes.
+    let before = workspace.files("twice");
+    workspace.succeed("design wish.toml -o twice");
+    assert!(workspace.files("twice") == before);
+}
+
+/// Without time for a search, the best named pattern is told as one.
+#[test]
+fn a_search_without_time_is_none() {
+    let workspace = Workspace::new();
+    workspace.write("wish.toml", WISH);
+    let said = unwrapped(&workspace.succeed("design wish.toml -o found --time 0s"));
+    assert!(said.contains("nothing that the search found is better"), "{said}");
+    assert_eq!(verdict(&workspace, "found")["is_named"], Value::Bool(true));
+}
+
+#[test]
+fn folders_of_others_are_left_alone() {
+    let workspace = Workspace::new();
+    workspace.write("wish.toml", WISH);
+    workspace.write("mine/notes.txt", "kept");
+    let said = workspace.fail("design wish.toml -o mine", 2);
+    assert!(said.contains("holds other things than a design"), "{said}");
+    workspace.succeed("design wish.toml -o found --time 0s --quiet");
+    workspace.write("other.toml", WISH.replace("15]", "12]"));
+    let said = workspace.fail("design other.toml -o found", 2);
+    assert!(said.contains("holds another design"), "{said}");
+    let said = workspace.fail("study found/design.toml -o found", 2);
+    assert!(said.contains("design"), "{said}");
+    workspace.write(
+        "none.toml",
+        WISH.replace("feature_blocks = 2", "feature_blocks = 8"),
+    );
+    let said = workspace.fail("design none.toml -o none", 2);
+    assert!(said.contains("no texture keeps these limits"), "{said}");
+}

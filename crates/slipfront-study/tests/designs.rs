@@ -1,0 +1,368 @@
+//! Designs: what the search finds, and that it finds the same however it is run.
+
+// Helpers of tests are not tests by themselves to clippy.
+#![allow(clippy::unwrap_used)]
+
+use std::fs;
+use std::path::Path;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use slipfront_study::StudyError;
+use slipfront_study::design::{Bounds, Design, DesignFile, DesignFolder, DesignStage, Known, Outcome};
+
+/// A small slider whose named patterns cover less than the limits allow.
+const BASE: &str = "[base]\nslider.blocks = [16, 16]\ndrive.v_star = 0.1\n[design]\n";
+
+/// Surfaces that do not differ by their seeds, so that a verdict takes one of them.
+const SMOOTH: &str = "[base]\nslider.blocks = [16, 16]\ndrive.v_star = 0.1\n\
+    friction = { sigma_static_star = 0, sigma_kinetic_star = 0 }\n[design]\n";
+
+fn file(keys: &str) -> DesignFile {
+    file_of(BASE, keys)
+}
+
+fn file_of(base: &str, keys: &str) -> DesignFile {
+    let text = format!("{base}{keys}\n");
+    DesignFile::parse(&text, "design.toml", "design", Path::new("")).unwrap_or_else(|error| panic!("{error}"))
+}
+
+const LEAST: &str =
+    "wish = { least = 'static_friction' }\ncoverage = [0, 15]\nfeature_blocks = 2\ngap_blocks = 2";
+
+fn bounds(runs: usize, stop: &AtomicBool) -> Bounds<'_> {
+    Bounds {
+        runs,
+        share_of_time: &|| 0.0,
+        stop,
+    }
+}
+
+fn run(design: &Design, runs: usize) -> Outcome {
+    design
+        .run(
+            &bounds(runs, &AtomicBool::new(false)),
+            &mut Known::new(),
+            &mut |_| Ok(()),
+            &mut |_| {},
+        )
+        .unwrap()
+}
+
+fn found(keys: &str, runs: usize) -> Outcome {
+    run(&file_of(SMOOTH, keys).design().unwrap(), runs)
+}
+
+/// The example of the book and the files of `cases/designs` can be run, and every key is explained.
+#[test]
+fn design_files_are_true() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let mut seen = 0;
+    for page in ["docs/reference/design-file.md", "docs/guide/design.md"] {
+        let text = fs::read_to_string(root.join(page)).unwrap();
+        for rest in text.split("```toml design\n").skip(1) {
+            let block = rest.split("```").next().unwrap();
+            let file = DesignFile::parse(block, page, "design", &root.join("cases"))
+                .unwrap_or_else(|error| panic!("{error}"));
+            file.design()
+                .unwrap_or_else(|error| panic!("{page}: {error}\n{block}"));
+            seen += 1;
+        }
+    }
+    assert!(seen >= 3, "only {seen} examples");
+    for entry in fs::read_dir(root.join("cases/designs")).unwrap() {
+        let file = DesignFile::load(&entry.unwrap().path()).unwrap_or_else(|error| panic!("{error}"));
+        file.design()
+            .unwrap_or_else(|error| panic!("{}: {error}", file.name));
+    }
+    let text = fs::read_to_string(root.join("docs/reference/design-file.md")).unwrap();
+    for key in [
+        "base",
+        "wish",
+        "least",
+        "largest",
+        "value",
+        "of",
+        "curve",
+        "coverage",
+        "feature",
+        "feature_blocks",
+        "gap",
+        "gap_blocks",
+        "mirror",
+        "copies",
+        "forbidden",
+        "max_features",
+        "writing",
+        "line_spacing",
+        "max_length",
+        "cases",
+        "judge_by",
+        "runs",
+        "start",
+        "starts",
+    ] {
+        assert!(text.contains(&format!("`{key}`")), "`{key}` is not explained");
+    }
+}
+
+/// The files of a folder, without the journal, whose lines are in the order in which runs were begun.
+fn files(folder: &Path) -> Vec<(String, Vec<u8>)> {
+    let mut files: Vec<_> = fs::read_dir(folder)
+        .unwrap()
+        .flatten()
+        .map(|entry| entry.path())
+        .filter(|path| path.is_file())
+        .map(|path| {
+            (
+                path.file_name().unwrap().to_string_lossy().into_owned(),
+                fs::read(&path).unwrap(),
+            )
+        })
+        .collect();
+    files.sort();
+    files
+}
+
+/// A search to the end on three threads, and one on a single thread that is stopped again and again and whose journal loses its end.
+#[test]
+fn a_search_that_was_stopped_leaves_the_same_bytes() {
+    let file = file(LEAST);
+    let folders = [0; 2].map(|_| tempfile::tempdir().unwrap());
+    let in_one_go = folders[0].path();
+    let on = |threads: usize| {
+        rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .unwrap()
+    };
+    let mut folder = DesignFolder::open(in_one_go, &file).unwrap();
+    let design = folder.file.design().unwrap();
+    let never = AtomicBool::new(false);
+    let outcome = on(3).install(|| folder.run(&design, &bounds(150, &never), &mut |_| {}).unwrap());
+    folder.write(&design, &outcome).unwrap();
+
+    let stopped = folders[1].path();
+    let mut stages = Vec::new();
+    for round in 0.. {
+        let mut folder = DesignFolder::open(stopped, &file).unwrap();
+        assert_eq!(folder.damaged, usize::from(round > 0));
+        let design = folder.file.design().unwrap();
+        let stop = AtomicBool::new(false);
+        let before = folder.n_kept();
+        let found = on(1).install(|| {
+            folder.run(&design, &bounds(150, &stop), &mut |now| {
+                let is_enough = match round {
+                    0 => now.runs > 60,
+                    1 => now.stage == DesignStage::Refining,
+                    2 => now.stage == DesignStage::Judging,
+                    3 => now.stage == DesignStage::Judging && now.runs > 200,
+                    _ => false,
+                };
+                if is_enough {
+                    stages.push(now.stage);
+                    stop.store(true, Ordering::Relaxed);
+                }
+            })
+        });
+        match found {
+            Ok(outcome) => {
+                folder.write(&design, &outcome).unwrap();
+                break;
+            }
+            Err(StudyError::Interrupted) => assert!(folder.n_kept() > before),
+            Err(error) => panic!("{error}"),
+        }
+        assert!(round > 3 || stopped.join("mask.npy").exists(), "the best is kept");
+        drop(folder);
+        // What a kill can leave: a line cut short.
+        let journal = stopped.join("design.jsonl");
+        let mut bytes = fs::read(&journal).unwrap();
+        bytes.truncate(bytes.len() - 30);
+        fs::write(&journal, bytes).unwrap();
+    }
+    assert!(
+        stages.len() > 2 && stages.contains(&DesignStage::Judging),
+        "{stages:?}"
+    );
+    assert!(files(in_one_go) == files(stopped), "the folders differ");
+}
+
+/// The design is at least as good as every named pattern, and the gains are those of paired runs.
+#[test]
+fn the_design_is_not_worse_than_named_patterns() {
+    let outcome = run(&file(LEAST).design().unwrap(), 300);
+    let verdict = &outcome.verdict;
+    assert!(verdict.design.loss < 0.9, "{verdict:?}");
+    for other in verdict.others.iter().skip(1) {
+        let better = other.design_is_better_by.unwrap();
+        // The mean of differences is the difference of means, but for rounding.
+        assert!((better.mean - (other.loss - verdict.design.loss)).abs() < 1e-12);
+        assert!(better.mean >= 0.0, "{other:?}");
+    }
+    // Without a search, the best named pattern is what remains.
+    let named = found(LEAST, 1);
+    assert!(named.verdict.is_named, "{:?}", named.verdict);
+    assert!(named.verdict.design.loss >= found(LEAST, 300).verdict.design.loss);
+    assert!(named.verdict.optimism.abs() < 0.05);
+}
+
+#[test]
+fn a_value_is_found_or_told_as_out_of_reach() {
+    let value = |value: f64| {
+        let keys = format!(
+            "wish = {{ value = {value}, of = 'static_friction_star' }}\ncoverage = [0, 15]\nfeature_blocks = 2"
+        );
+        let outcome = found(&keys, 300);
+        (
+            outcome.verdict.design.cases[0].static_friction_star.mean,
+            outcome.verdict,
+        )
+    };
+    let (least, _) = value(0.05);
+    let (reached, verdict) = value(0.78);
+    // Between the smallest and the largest that there is, within the 0.5 % that a report calls found.
+    assert!(
+        least > 0.5 && (reached / 0.78 - 1.0).abs() < 0.005,
+        "{least} {verdict:?}"
+    );
+    assert!(verdict.design.loss < 0.005);
+}
+
+/// A curve that a texture has left is met by a texture.
+#[test]
+fn a_curve_is_followed() {
+    let folder = tempfile::tempdir().unwrap();
+    let case = slipfront_case::case::Case::parse(
+        "slider.blocks = [16, 16]\ndrive.v_star = 0.1\nfriction = { sigma_static_star = 0, sigma_kinetic_star = 0 }\ntexture = [{ shape = 'groove', coverage = 12.5 }]",
+        "case",
+        "",
+        &[],
+    )
+    .unwrap();
+    let record = slipfront_run::running::run(&std::sync::Arc::new(case), 1).unwrap();
+    let mut table = "X (nm),mu (1)\n".to_owned();
+    for row in record.rows.iter().filter(|row| row.time_star < 30.0) {
+        let path = 0.1 * row.time_star * record.summary.si.as_ref().unwrap().displacement_unit_m * 1e9;
+        table += &format!(
+            "{path},{}\n",
+            row.point.mu_star * record.summary.static_friction / record.summary.static_friction_star
+        );
+    }
+    fs::write(folder.path().join("wanted.csv"), table).unwrap();
+    let text = format!(
+        "{SMOOTH}wish = {{ curve = {{ file = 'wanted.csv', x = 'X', y = 'mu' }} }}\ncoverage = [0, 15]\nfeature_blocks = 2\n"
+    );
+    let file = DesignFile::parse(&text, "design.toml", "design", folder.path()).unwrap();
+    let outcome = run(&file.design().unwrap(), 200);
+    // The groove itself is one of the textures that it begins with; its curve is rounded in the table.
+    assert!(outcome.verdict.design.loss < 1e-9, "{:?}", outcome.verdict);
+}
+
+#[test]
+fn limits_are_kept_and_cases_are_all_looked_at() {
+    let keys = "wish = { largest = 'static_friction' }\ncoverage = [5, 12]\nfeature = '2 um'\ngap = '2 um'\nmirror = 'both'\n\
+                max_features = 2\nforbidden = [{ shape = 'cavity', coverage = 20 }]\njudge_by = 'worst'\n\
+                cases = [{ drive.v_star = 0.1 }, { drive.v_star = 0.2 }]\n\
+                starts = [[{ shape = 'groove', orientation = 'along', coverage = 12.5 }]]";
+    let outcome = found(keys, 250);
+    let blocks = outcome.texture.iter().filter(|&&textured| textured).count();
+    assert!((13..=30).contains(&blocks), "{blocks}");
+    for (block, &textured) in outcome.texture.iter().enumerate() {
+        let [x, y] = [block % 16, block / 16];
+        assert_eq!(textured, outcome.texture[y * 16 + 15 - x]);
+        assert_eq!(textured, outcome.texture[(15 - y) * 16 + x]);
+        // The cavity that is forbidden reaches 4.04 blocks from the middle.
+        let from_middle = (x as f64 - 7.5).hypot(y as f64 - 7.5);
+        assert!(!textured || from_middle > 4.0);
+    }
+    assert_eq!(outcome.verdict.design.cases.len(), 2);
+}
+
+#[test]
+fn what_cannot_be_is_told_with_its_place() {
+    let said = |keys: &str| {
+        let text = format!("{BASE}{keys}\n");
+        let file = DesignFile::parse(&text, "design.toml", "design", Path::new(""));
+        match file.and_then(|file| file.design()) {
+            Ok(_) => panic!("{keys} is accepted"),
+            Err(error) => error.to_string(),
+        }
+    };
+    let wish = "wish = { least = 'static_friction' }";
+    for (keys, expected) in [
+        ("coverage = [0, 10]", "wish"),
+        ("wish = { least = 'friction' }\ncoverage = [0, 10]", "friction"),
+        (
+            "wish = { least = 'static_friction', value = 0.3 }\ncoverage = [0, 10]",
+            "`wish` is one of",
+        ),
+        ("wish = { value = 0.3 }\ncoverage = [0, 10]", "`wish` is one of"),
+        (
+            "wish = { value = '3 m', of = 'static_friction' }\ncoverage = [0, 10]",
+            "3 m",
+        ),
+        (
+            "wish = { value = -1, of = 'static_friction' }\ncoverage = [0, 10]",
+            "more than 0",
+        ),
+        (
+            "wish = { value = 1, of = 'work' }\ncoverage = [0, 10]",
+            "`of` must be",
+        ),
+        (&format!("{wish}\ncoverage = [10, 0]"), "`coverage` = [10, 0]"),
+        (&format!("{wish}\ncoverage = [0, 10]\nfeatures = 2"), "feature"),
+        (
+            &format!("{wish}\ncoverage = [0, 10]\nfeature = '1 um'\nfeature_blocks = 1"),
+            "exclude each other",
+        ),
+        (
+            &format!("{wish}\ncoverage = [0, 10]\nfeature = '30 um'"),
+            "30 blocks, more than the slider's 16",
+        ),
+        (
+            &format!("{wish}\ncoverage = [0, 10]\ngap_blocks = 0"),
+            "must be at least 1",
+        ),
+        (
+            &format!("{wish}\ncoverage = [0, 10]\ncopies = [3, 1]"),
+            "which 3 does not divide",
+        ),
+        (&format!("{wish}\ncoverage = [0, 10]\nruns = 0"), "`runs` = 0"),
+        (
+            &format!("{wish}\ncoverage = [0, 10]\nmax_features = 0"),
+            "at least 1",
+        ),
+        (
+            &format!("{wish}\ncoverage = [0, 10]\nforbidden = 3"),
+            "must be a list of textures",
+        ),
+        (
+            &format!("{wish}\ncoverage = [0, 10]\nstarts = [[{{ shape = 'star' }}]]"),
+            "star",
+        ),
+        (
+            &format!("{wish}\ncoverage = [0, 10]\ncases = [{{ slider.blocks = [8, 8] }}]"),
+            "the blocks of the base",
+        ),
+        (
+            &format!("{wish}\ncoverage = [0, 10]\n[study]\nreplicates = 3"),
+            "study",
+        ),
+    ] {
+        let said = said(keys);
+        assert!(
+            said.contains(expected) && said.contains("design.toml"),
+            "{keys}\n{said}"
+        );
+    }
+    // Limits that no texture keeps.
+    let file = file("wish = { least = 'static_friction' }\ncoverage = [1, 3]\nfeature_blocks = 4");
+    let never = AtomicBool::new(false);
+    let error = file.design().unwrap().run(
+        &bounds(10, &never),
+        &mut Known::new(),
+        &mut |_| Ok(()),
+        &mut |_| {},
+    );
+    assert!(matches!(error, Err(StudyError::NoDesign)));
+}

@@ -1,0 +1,296 @@
+"""From a wish to a texture: the search for the mask that gives the friction that is wished for."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+import os
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import Any, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _slipfront, _toml
+from ._case import Case, CaseLike, as_case
+from ._pickle import sealed
+from ._progress import Bar
+from ._simulation import _threads
+from ._study import _as_base
+from ._temporary import TemporaryFolder
+
+Mask: TypeAlias = npt.NDArray[np.bool_]
+"""A texture of shape (ny, nx), the smallest y first: True where a block is textured."""
+
+
+@dataclasses.dataclass(frozen=True)
+class Least:
+    """The wish for as little of a quantity as there can be: `static_friction`, `kinetic_friction` or `friction_drop`."""
+
+    quantity: str
+
+    def _table(self) -> dict[str, Any]:
+        return {"least": self.quantity}
+
+
+@dataclasses.dataclass(frozen=True)
+class Largest:
+    """The wish for as much of a quantity as there can be: `static_friction`, `kinetic_friction` or `friction_drop`."""
+
+    quantity: str
+
+    def _table(self) -> dict[str, Any]:
+        return {"largest": self.quantity}
+
+
+@dataclasses.dataclass(frozen=True)
+class Value:
+    """The wish for a value of a quantity, or with ``_star`` behind its name for a share of mu_s; a force is a text such as ``"12 mN"``."""
+
+    value: float | str
+    of: str = "static_friction"
+
+    def _table(self) -> dict[str, Any]:
+        return {"value": self.value, "of": self.of}
+
+
+Wish: TypeAlias = Least | Largest | Value | Mapping[str, Any]
+"""A wish, or the table `wish` of a design file."""
+
+DesignProgress: TypeAlias = bool | Callable[[int, int, float], object] | None
+"""True for a bar, False for none, None for one in terminals and notebooks, or a function of the numbers of runs that are done and of all, and
+of what the best draft gives."""
+
+
+class Design:
+    """A design: a wish, its limits, and the case in which textures are tried.
+
+    Parameters
+    ----------
+    case
+        The case, a dictionary of its tables or the path of its file; or the path of a design file, with which nothing else is given.
+    wish
+        What the texture is to be good for.
+    coverage
+        Least and largest share of the slider that is textured, %.
+    keys
+        Further keys of the table ``[design]``, such as ``feature``, ``gap``, ``feature_blocks``, ``runs`` or ``forbidden``. Masks in textures
+        may be arrays.
+
+    Examples
+    --------
+    >>> slider = {"slider": {"blocks": [16, 16]}, "drive": {"v_star": 0.1}}
+    >>> design = Design(slider, Least("static_friction"), (0, 15), feature_blocks=2, gap_blocks=2, runs=150)
+    >>> found = design.run(progress=False)
+    >>> found.mask.shape, bool(found.coverage <= 15)
+    ((16, 16), True)
+
+    Another search in place of its own: ask for legal textures, or draw some, and tell how good they are.
+
+    >>> masks = design.ask(4)
+    >>> losses = design.evaluate(masks)
+    >>> design.tell(masks, losses)
+    >>> bool(design.best[1] == min(losses))
+    True
+    """
+
+    def __init__(
+        self,
+        case: CaseLike,
+        wish: Wish | None = None,
+        coverage: tuple[float, float] | None = None,
+        *,
+        name: str | None = None,
+        **keys: Any,
+    ) -> None:
+        if wish is None or coverage is None:
+            if wish is not None or coverage is not None or keys or not isinstance(case, (str, os.PathLike)):
+                raise ValueError("give a case with `wish` and `coverage`, or the path of a design file alone")
+            self._native = _slipfront.Design.load(Path(case))
+            return
+        case = as_case(case)
+        arrays = _toml.Arrays(case._native.arrays)
+        table = dict(wish) if isinstance(wish, Mapping) else wish._table()
+        lines = {"wish": table, "coverage": list(coverage), **keys}
+        text = "[design]\n" + "".join(
+            f"{key} = {_toml.value(given, arrays, f'design.{key}')}\n" for key, given in lines.items() if given is not None
+        )
+        # Its runs read arrays from files, which stand as long as it may have some to do.
+        text, self._arrays = arrays.on_disk(text + _as_base(case))
+        self._native = _slipfront.Design.parse(text, name or f"{case.name}-design", Path())
+
+    @property
+    def name(self) -> str:
+        """What the design is called."""
+        return self._native.name
+
+    def illegal(self, mask: npt.ArrayLike) -> str | None:
+        """Why a texture breaks a limit; None if it keeps all."""
+        return self._native.illegal(self._bytes(mask))
+
+    def ask(self, n: int) -> list[Mask]:
+        """Up to `n` legal textures that were not asked for before; fewer where the limits leave few."""
+        return [self._mask(texture) for texture in self._native.ask(n)]
+
+    def tell(self, masks: Iterable[npt.ArrayLike], losses: Sequence[float]) -> None:
+        """Tell how good textures are, the less the better: what was asked for, and what was found elsewhere."""
+        texts = [self._bytes(mask) for mask in masks]
+        if len(texts) != len(losses):
+            raise ValueError(f"there are {len(texts)} masks and {len(losses)} losses: give one for each")
+        self._native.tell(texts, [float(loss) for loss in losses])
+
+    @property
+    def best(self) -> tuple[Mask, float]:
+        """The best texture that was told of, and its loss."""
+        found = self._native.best()
+        if found is None:
+            raise LookupError("nothing was told yet")
+        return self._mask(found[0]), found[1]
+
+    def evaluate(
+        self, masks: Iterable[npt.ArrayLike], *, surfaces: int = 1, coarse: bool = True, threads: int | None = None
+    ) -> list[float]:
+        """How far textures are from the wish, the less the better; infinite for one that breaks a limit.
+
+        Of a wish for the least or the largest it is the ratio to the slider without texture, or that with its sign changed; of a value
+        the relative distance from it; of a curve the root of the mean square of the differences of mu*.
+
+        Parameters
+        ----------
+        masks
+            Textures.
+        surfaces
+            Random surfaces of the search over which the mean is taken. The verdict of `run` is found on others.
+        coarse
+            Whether the step is coarse, as in the first stage of the search, or that of the case.
+        threads
+            Runs at once, one per core unless given. Results do not depend on it.
+        """
+        texts = [self._bytes(mask) for mask in masks]
+        legal = [text for text in texts if self._native.illegal(text) is None]
+        losses = dict(zip(legal, self._native.losses(legal, surfaces, coarse, _threads(threads)), strict=True))
+        return [losses.get(text, float("inf")) for text in texts]
+
+    def run(
+        self,
+        folder: str | os.PathLike[str] | None = None,
+        *,
+        runs: int | None = None,
+        time: float | None = None,
+        progress: DesignProgress = None,
+        threads: int | None = None,
+    ) -> DesignResults:
+        """Search for the texture, and judge it on surfaces that the search has not seen.
+
+        Parameters
+        ----------
+        folder
+            A folder of results, in which a call that was stopped goes on, and which has the bytes of `slipfront design`; in memory unless
+            it is given.
+        runs
+            Runs of the search, in place of those of the design.
+        time
+            Seconds after which the search is cut short; what is found then depends on the speed of the machine.
+        progress
+            How far it is, as `DesignProgress` says.
+        threads
+            Runs at once, one per core unless given. Results do not depend on it.
+
+        Raises
+        ------
+        CaseError
+            When no texture keeps the limits.
+        """
+        watch = progress if callable(progress) else None
+        shown = progress if progress is None or isinstance(progress, bool) else False
+        temporary = TemporaryFolder()
+        with Bar(shown, None, "run", self.name) as bar:
+
+            def show(done: int, total: int, best: float) -> None:
+                if watch is not None:
+                    watch(done, total, best)
+                bar.show(done, total, f"best {best:.4g}" if best == best else "verdict")
+
+            path = temporary.path / self.name if folder is None else Path(folder)
+            self._native.execute(path, runs, time, _threads(threads), show)
+            return DesignResults.read(path, None if folder is None else path)
+
+    def _bytes(self, mask: npt.ArrayLike) -> bytes:
+        array = np.asarray(mask)
+        columns, rows = self._native.size
+        if array.shape != (rows, columns):
+            raise ValueError(f"a mask of this slider has the shape ({rows}, {columns}), that is (ny, nx), not {array.shape}")
+        return np.ascontiguousarray(array.astype(np.bool_)).tobytes()
+
+    def _mask(self, texture: bytes) -> Mask:
+        columns, rows = self._native.size
+        return np.frombuffer(texture, dtype=np.bool_).reshape(rows, columns)
+
+    def __repr__(self) -> str:
+        columns, rows = self._native.size
+        return f"Design({self.name}: {columns} x {rows} blocks)"
+
+
+class DesignResults:
+    """What a design leaves.
+
+    Attributes
+    ----------
+    folder
+        Where it stands; None in memory.
+    mask
+        The texture, of shape (ny, nx), the smallest y first.
+    text
+        The verdict as the command prints it.
+    """
+
+    def __init__(self, folder: Path | None, mask: Mask, case_text: str, found: dict[str, Any], text: str) -> None:
+        self.folder, self.mask, self.text = folder, mask, text
+        self._case_text, self._found = case_text, found
+
+    @classmethod
+    def read(cls, folder: Path, kept: Path | None) -> DesignResults:
+        """What stands in a folder, which is kept as `kept` or gone afterwards."""
+        mask = np.load(folder / "mask.npy")
+        found = json.loads((folder / "design.json").read_bytes())
+        text = (folder / "design.txt").read_text(encoding="utf-8")
+        return cls(kept, mask, (folder / "case.toml").read_text(encoding="utf-8"), found, text)
+
+    @property
+    def case(self) -> Case:
+        """The case with this texture, in its folder; in memory, `Case.replace` gives a case the mask: ``{"texture": [...]}``."""
+        if self.folder is None:
+            raise LookupError("a design in memory has no case file: give the case the texture [{'shape': 'mask', 'file': results.mask}]")
+        return Case.load(self.folder / "case.toml")
+
+    @property
+    def coverage(self) -> float:
+        """Textured share of the slider, %."""
+        return float(self._found["as_meshed"]["coverage_percent"])
+
+    @property
+    def loss(self) -> float:
+        """How far the design is from the wish on fresh surfaces, as `Design.evaluate` tells it."""
+        return float(self._found["design"]["loss"])
+
+    @property
+    def static_friction_star(self) -> tuple[float, float | None]:
+        """The largest mu* on fresh surfaces in the first case, and half of the width of its 95 % interval."""
+        mean = self._found["design"]["cases"][0]["static_friction_star"]
+        return mean["mean"], mean["half_width"]
+
+    @property
+    def is_named(self) -> bool:
+        """Whether it is a named pattern, since nothing that was searched for is better."""
+        return bool(self._found["is_named"])
+
+    def to_dict(self) -> dict[str, Any]:
+        """The content of `design.json`."""
+        return dict(json.loads(json.dumps(self._found)))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return sealed(type(self), self.folder, self.mask, self._case_text, self._found, self.text)
+
+    def __repr__(self) -> str:
+        return self.text.rstrip()

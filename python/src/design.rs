@@ -1,0 +1,206 @@
+//! Designs: the search for a texture.
+
+use std::borrow::Cow;
+use std::path::PathBuf;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, PoisonError};
+use std::time::Instant;
+
+use pyo3::exceptions::PyRuntimeError;
+use pyo3::prelude::*;
+use pyo3::pybacked::PyBackedBytes;
+use slipfront_study::StudyError;
+use slipfront_study::design::{
+    Bounds, Design as SlipfrontDesign, DesignFile, DesignFolder, Known, OpenSearch, SearchProgress,
+};
+
+use crate::case::LOOK_EVERY;
+use crate::errors::{folder_error, study_error};
+use crate::process::detached;
+
+/// A design: its file, and what it has been asked and told.
+#[pyclass(frozen, module = "slipfront._slipfront")]
+pub(crate) struct Design {
+    file: DesignFile,
+    design: SlipfrontDesign,
+    search: Mutex<OpenSearch>,
+    /// Runs that were made to evaluate textures.
+    known: Mutex<Known>,
+}
+
+/// Textures as bytes of 0 and 1.
+fn sets(masks: &[PyBackedBytes]) -> Vec<Vec<bool>> {
+    let set = |mask: &PyBackedBytes| mask.iter().map(|&byte| byte != 0).collect();
+    masks.iter().map(set).collect()
+}
+
+fn bytes(texture: &[bool]) -> Cow<'static, [u8]> {
+    texture
+        .iter()
+        .map(|&is_in| u8::from(is_in))
+        .collect::<Vec<u8>>()
+        .into()
+}
+
+#[pymethods]
+impl Design {
+    /// The design of a text that is called `name`; the files it names stand relative to a folder.
+    #[staticmethod]
+    fn parse(py: Python<'_>, text: &str, name: &str, folder: PathBuf) -> PyResult<Self> {
+        Self::of(py, || DesignFile::parse(text, name, name, &folder))
+    }
+
+    #[staticmethod]
+    fn load(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
+        Self::of(py, || DesignFile::load(&path))
+    }
+
+    #[getter]
+    fn name(&self) -> &str {
+        &self.file.name
+    }
+
+    /// Blocks along x and along y.
+    #[getter]
+    fn size(&self) -> [usize; 2] {
+        self.design.size()
+    }
+
+    /// Why a texture is not legal; none if it is.
+    fn illegal(&self, mask: PyBackedBytes) -> Option<String> {
+        let [mask] = sets(&[mask]).try_into().ok()?;
+        self.design.check(&mask).err().map(|error| error.to_string())
+    }
+
+    fn ask(&self, py: Python<'_>, n: usize) -> PyResult<Vec<Cow<'static, [u8]>>> {
+        let asked = detached(py, || {
+            self.search.lock().unwrap_or_else(PoisonError::into_inner).ask(n)
+        })?;
+        Ok(asked.iter().map(|texture| bytes(texture)).collect())
+    }
+
+    fn tell(&self, py: Python<'_>, masks: Vec<PyBackedBytes>, losses: Vec<f64>) -> PyResult<()> {
+        let told = sets(&masks).into_iter().zip(losses).collect();
+        detached(py, || {
+            self.search
+                .lock()
+                .unwrap_or_else(PoisonError::into_inner)
+                .tell(told);
+        })
+    }
+
+    /// The best texture that was told of, and its loss.
+    fn best(&self) -> Option<(Cow<'static, [u8]>, f64)> {
+        let search = self.search.lock().unwrap_or_else(PoisonError::into_inner);
+        search.best().map(|(texture, loss)| (bytes(&texture), loss))
+    }
+
+    /// How far textures are from the wish on some surfaces.
+    fn losses(
+        &self,
+        py: Python<'_>,
+        masks: Vec<PyBackedBytes>,
+        surfaces: u64,
+        is_coarse: bool,
+        threads: usize,
+    ) -> PyResult<Vec<f64>> {
+        let textures = sets(&masks);
+        let evaluate = |stop: &AtomicBool| {
+            let mut known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
+            self.design
+                .losses(textures, surfaces, is_coarse, &mut known, stop)
+        };
+        watched(py, threads, evaluate, &mut |_| Ok(()))
+    }
+
+    /// Searches in a folder, or goes on there, and writes what the design leaves; gives the verdict as a text.
+    fn execute(
+        &self,
+        py: Python<'_>,
+        folder: PathBuf,
+        runs: Option<usize>,
+        seconds: Option<f64>,
+        threads: usize,
+        watch: Option<Py<PyAny>>,
+    ) -> PyResult<String> {
+        let opened = detached(py, || DesignFolder::open(&folder, &self.file))?;
+        let mut opened = opened.map_err(|error| study_error(py, &error))?;
+        let progress: Mutex<Option<SearchProgress>> = Mutex::new(None);
+        let began = Instant::now();
+        let search = |stop: &AtomicBool| {
+            let design = opened.file.design()?;
+            let share_of_time = || seconds.map_or(0.0, |most| began.elapsed().as_secs_f64() / most);
+            let bounds = Bounds {
+                runs: runs.unwrap_or(opened.file.keys.runs as usize),
+                share_of_time: &share_of_time,
+                stop,
+            };
+            let outcome = opened.run(&design, &bounds, &mut |now| {
+                *progress.lock().unwrap_or_else(PoisonError::into_inner) = Some(now.clone());
+            })?;
+            opened.write(&design, &outcome)
+        };
+        let mut show = |py: Python<'_>| {
+            let now = progress.lock().unwrap_or_else(PoisonError::into_inner).take();
+            match (&watch, now) {
+                (Some(watch), Some(now)) => watch.call1(py, (now.runs, now.of, now.best)).map(drop),
+                _ => Ok(()),
+            }
+        };
+        watched(py, threads, search, &mut show)
+    }
+}
+
+impl Design {
+    fn of(py: Python<'_>, read: impl FnOnce() -> Result<DesignFile, StudyError> + Send) -> PyResult<Self> {
+        let made = detached(py, || {
+            let file = read()?;
+            let design = file.design()?;
+            let search = Mutex::new(design.open_search());
+            Ok(Self {
+                file,
+                design,
+                search,
+                known: Mutex::default(),
+            })
+        })?;
+        made.map_err(|error| study_error(py, &error))
+    }
+}
+
+/// Does this work on a pool of so many threads; this one looks for signals and shows what is new. An exception of either ends the work.
+fn watched<T: Send>(
+    py: Python<'_>,
+    threads: usize,
+    work: impl FnOnce(&AtomicBool) -> Result<T, StudyError> + Send,
+    show: &mut (dyn FnMut(Python<'_>) -> PyResult<()> + Send),
+) -> PyResult<T> {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+    let pool = pool.map_err(folder_error)?;
+    let stop = AtomicBool::new(false);
+    let mut raised = None;
+    let ended = detached(py, || {
+        std::thread::scope(|scope| {
+            let worker = scope.spawn(|| pool.install(|| work(&stop)));
+            loop {
+                let is_finished = worker.is_finished();
+                let shown = Python::attach(|py| py.check_signals().and_then(|()| show(py)));
+                if let Err(error) = shown {
+                    raised.get_or_insert(error);
+                    stop.store(true, Ordering::Relaxed);
+                }
+                if is_finished {
+                    break worker.join();
+                }
+                std::thread::park_timeout(LOOK_EVERY);
+            }
+        })
+    })?;
+    if let Some(error) = raised {
+        return Err(error);
+    }
+    match ended {
+        Ok(found) => found.map_err(|error| study_error(py, &error)),
+        Err(_) => Err(PyRuntimeError::new_err("a fault of the program ended the design")),
+    }
+}
