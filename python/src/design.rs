@@ -128,17 +128,15 @@ impl Design {
         let progress: Mutex<Option<SearchProgress>> = Mutex::new(None);
         let began = Instant::now();
         let search = |stop: &AtomicBool| {
-            let design = opened.file.design()?;
             let share_of_time = || seconds.map_or(0.0, |most| began.elapsed().as_secs_f64() / most);
             let bounds = Bounds {
                 runs: runs.unwrap_or(opened.file.keys.runs as usize),
                 share_of_time: &share_of_time,
                 stop,
             };
-            let outcome = opened.run(&design, &bounds, &mut |now| {
+            opened.find(&bounds, &mut |now| {
                 *progress.lock().unwrap_or_else(PoisonError::into_inner) = Some(now.clone());
-            })?;
-            opened.write(&design, &outcome)
+            })
         };
         let mut show = |py: Python<'_>| {
             let now = progress.lock().unwrap_or_else(PoisonError::into_inner).take();

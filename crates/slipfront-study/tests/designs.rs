@@ -327,6 +327,10 @@ fn what_cannot_be_is_told_with_its_place() {
             &format!("{wish}\ncoverage = [0, 10]\ncopies = [3, 1]"),
             "which 3 does not divide",
         ),
+        (
+            &format!("{wish}\ncoverage = [0, 10]\nfront = [5, 12]"),
+            "at most 10, the largest `coverage`",
+        ),
         (&format!("{wish}\ncoverage = [0, 10]\nruns = 0"), "`runs` = 0"),
         (
             &format!("{wish}\ncoverage = [0, 10]\nmax_features = 0"),

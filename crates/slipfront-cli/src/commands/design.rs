@@ -53,9 +53,12 @@ impl DesignCommand {
         let file = DesignFile::load(&self.design).map_err(Failure::input)?;
         // An invalid design leaves no folder.
         file.design().map_err(Failure::input)?;
+        if self.time.is_some() && !file.keys.front.is_empty() {
+            let sentence = "a search that is cut short by --time has no time for a front: give --runs, or leave out `design.front`";
+            return Err(Failure::input(anyhow::anyhow!(sentence)));
+        }
         let out = self.out.unwrap_or_else(|| Path::new("results").join(&file.name));
         let mut folder = DesignFolder::open(&out, &file).map_err(Failure::input)?;
-        let design = folder.file.design().map_err(Failure::input)?;
         let signals = Signals::catch().map_err(Failure::running)?;
         let began = Instant::now();
         let most = self.time.map(|time| time.as_secs_f64());
@@ -69,14 +72,13 @@ impl DesignCommand {
             print_notes(&folder);
         }
         let mut progress = DesignProgress::new(self.quiet);
-        let found = folder.run(&design, &bounds, &mut |now| progress.show(now));
+        let found = folder.find(&bounds, &mut |now| progress.show(now));
         progress.finish();
-        let outcome = found.map_err(|error| match error {
+        let text = found.map_err(|error| match error {
             StudyError::Interrupted => Failure::stopped(&signals, error),
             StudyError::NoDesign => Failure::input(error),
             error => Failure::running(error),
         })?;
-        let text = folder.write(&design, &outcome).map_err(Failure::running)?;
         if !self.quiet {
             print_message(&format!("{text}\n{}\n", folder.path().display()));
         }

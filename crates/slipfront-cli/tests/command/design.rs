@@ -102,3 +102,27 @@ fn folders_of_others_are_left_alone() {
     let said = workspace.fail("design none.toml -o none", 2);
     assert!(said.contains("no texture keeps these limits"), "{said}");
 }
+
+/// More texture never gives less of what is wished for, since what covers less is legal too.
+#[test]
+fn a_front_tells_what_less_texture_gives() {
+    let workspace = Workspace::new();
+    let smooth = "[base]\nfriction = { sigma_static_star = 0, sigma_kinetic_star = 0 }\n";
+    let wish = WISH
+        .replace("[base]\n", smooth)
+        .replace("runs = 120", "runs = 60\nfront = [5, 10, 15]");
+    workspace.write("wish.toml", wish);
+    let said = workspace.succeed("design wish.toml -o found");
+    assert!(said.contains("With less texture:"), "{said}");
+    let table = workspace.read_text("found/front.csv");
+    let losses: Vec<f64> = table
+        .lines()
+        .skip(1)
+        .map(|row| row.split(',').nth(2).unwrap().parse().unwrap())
+        .collect();
+    assert!(
+        losses.len() == 3 && losses.is_sorted_by(|one, next| one >= next),
+        "{table}"
+    );
+    assert!(workspace.exists("found/front.png") && workspace.exists("found/front.svg"));
+}

@@ -70,6 +70,9 @@ pub struct DesignKeys {
     start: u64,
     #[serde(default)]
     starts: Vec<Value>,
+    /// Coverages, %, up to which a design is asked for too.
+    #[serde(default)]
+    pub front: Vec<f64>,
 }
 
 fn one_cell() -> [u32; 2] {
@@ -225,6 +228,21 @@ impl DesignFile {
     /// # Errors
     /// When a case of it is not valid, or when its limits do not belong to its blocks.
     pub fn design(&self) -> Result<Design, StudyError> {
+        self.design_up_to(self.keys.coverage[1])
+    }
+
+    /// The designs of a front: every coverage in `front`, with the design that may cover no more.
+    ///
+    /// # Errors
+    /// As [`design`](Self::design).
+    pub fn designs_of_front(&self) -> Result<Vec<(f64, Design)>, StudyError> {
+        let percents = self.keys.front.iter();
+        percents
+            .map(|&percent| Ok((percent, self.design_up_to(percent)?)))
+            .collect()
+    }
+
+    fn design_up_to(&self, percent: f64) -> Result<Design, StudyError> {
         let base = self.case()?;
         let keys = &self.keys;
         let case = |set: &Table| {
@@ -243,7 +261,7 @@ impl DesignFile {
             let sentence = "all cases of a design have the blocks of the base".to_owned();
             return Err(self.error("cases", sentence).into());
         }
-        let limits = self.limits(&base, &grid)?;
+        let limits = self.limits(&base, &grid, percent)?;
         let wish = self.wish(&base, &grid)?;
         if matches!(wish, Wish::Curve(_)) && cases.len() > 1 {
             let sentence = "a curve is that of one case: leave out `cases`".to_owned();
@@ -282,7 +300,7 @@ impl DesignFile {
     }
 
     /// The limits in blocks.
-    fn limits(&self, base: &Case, grid: &Grid) -> Result<Limits, CaseError> {
+    fn limits(&self, base: &Case, grid: &Grid, percent: f64) -> Result<Limits, CaseError> {
         let keys = &self.keys;
         let narrowest = grid.size[0].min(grid.size[1]);
         let width = |[key, in_blocks]: [&str; 2], length: &Option<Length>, blocks: Option<u32>| {
@@ -314,7 +332,7 @@ impl DesignFile {
             .map(|textures| self.textured("forbidden", textures))
             .transpose()?;
         Ok(Limits {
-            coverage: [keys.coverage[0], self.largest_coverage(base, grid)],
+            coverage: [keys.coverage[0], self.largest_coverage(base, grid, percent)],
             feature: width(["feature", "feature_blocks"], &keys.feature, keys.feature_blocks)?,
             gap: width(["gap", "gap_blocks"], &keys.gap, keys.gap_blocks)?,
             mirror: match keys.mirror {
@@ -329,9 +347,8 @@ impl DesignFile {
         })
     }
 
-    /// The largest coverage, %, that neither the window nor the length of a laser's lines forbids.
-    fn largest_coverage(&self, base: &Case, grid: &Grid) -> f64 {
-        let [_, most] = self.keys.coverage;
+    /// The largest coverage, %, of at most `most`, that the length of a laser's lines does not forbid.
+    fn largest_coverage(&self, base: &Case, grid: &Grid, most: f64) -> f64 {
         let Some(Writing {
             line_spacing,
             max_length: Some(length),
@@ -455,6 +472,18 @@ impl DesignKeys {
             {
                 return refuse(key, format!("`{key}` must be more than 0"));
             }
+        }
+        let rises = self.front.windows(2).all(|pair| pair[0] < pair[1]);
+        if !rises
+            || self
+                .front
+                .iter()
+                .any(|&percent| !(least < percent && percent <= most))
+        {
+            let sentence = format!(
+                "`front` must rise from more than {least} to at most {most}, the largest `coverage`, in %, such as [2, 4, 6, 8, 10]"
+            );
+            return refuse("front", sentence);
         }
         if !(1..=MAX_RUNS).contains(&self.runs) {
             let sentence = format!("`runs` = {} must lie between 1 and {MAX_RUNS}", self.runs);

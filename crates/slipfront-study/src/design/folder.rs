@@ -89,6 +89,26 @@ impl DesignFolder {
         self.known.len()
     }
 
+    /// Finds the design, and those of a front if the file asks for one, writes what they leave, and gives the verdict as a text.
+    ///
+    /// # Errors
+    /// As [`run`](Self::run), and when the system refuses to write.
+    pub fn find(
+        &mut self,
+        bounds: &Bounds,
+        watch: &mut dyn FnMut(&SearchProgress),
+    ) -> Result<String, StudyError> {
+        let design = self.file.design()?;
+        let outcome = self.run(&design, bounds, watch)?;
+        let text = self.write(&design, &outcome)?;
+        let mut front = Vec::new();
+        for (percent, design) in self.file.designs_of_front()? {
+            let outcome = self.run(&design, bounds, watch)?;
+            front.push((percent, design, outcome));
+        }
+        Ok(text + &self.write_front(&front)?)
+    }
+
     /// Searches and judges, or goes on where an earlier call was; every run is kept as soon as those that were begun with it have ended.
     ///
     /// # Errors

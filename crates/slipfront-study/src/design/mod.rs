@@ -10,6 +10,7 @@
 mod evaluate;
 mod file;
 mod folder;
+mod front;
 mod grid;
 mod limits;
 mod named;

@@ -248,7 +248,7 @@ fn in_words(design: &Design, verdict: &Verdict, as_meshed: &AsMeshed, case: &Cas
     text
 }
 
-fn unit(wish: &Wish) -> &'static str {
+pub(super) fn unit(wish: &Wish) -> &'static str {
     match wish {
         Wish::Curve(_) => "",
         _ => " %",
@@ -256,7 +256,7 @@ fn unit(wish: &Wish) -> &'static str {
 }
 
 /// The name of what a loss says.
-fn called(wish: &Wish) -> &'static str {
+pub(super) fn called(wish: &Wish) -> &'static str {
     match wish {
         Wish::Least(_) => "reduction",
         Wish::Largest(_) => "rise",
@@ -280,7 +280,7 @@ fn headline(wish: &Wish, verdict: &Verdict) -> String {
         Wish::Least(_) | Wish::Largest(_) => format!(
             "{} of {of}: {}{} against the slider without texture",
             called(wish),
-            four_digits(loss),
+            with_half_width(loss, verdict.design.loss_half_width.map(|half| 100.0 * half)),
             unit(wish)
         ),
         Wish::Value(_, wanted) => format!(

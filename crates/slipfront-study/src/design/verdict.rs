@@ -66,6 +66,8 @@ pub struct OnFresh {
     pub cases: Vec<Given>,
     /// Its loss over all cases.
     pub loss: f64,
+    /// Half the width of the interval of its loss, which the scatter over surfaces leaves.
+    pub loss_half_width: Option<f64>,
     /// The loss of this texture less that of the design, surface by surface: above 0 where the design is better; none of the design.
     pub design_is_better_by: Option<Mean>,
 }
@@ -317,6 +319,10 @@ impl Judge<'_> {
             cases: (0..self.evaluator.subjects.len()).map(given).collect(),
             loss: contender.map_or(f64::NAN, |contender| {
                 self.loss(contender, surfaces.clone(), known)
+            }),
+            loss_half_width: contender.and_then(|contender| {
+                let loss = |surface| self.loss(contender, surface..surface + 1, known);
+                Mean::of(&surfaces.clone().map(loss).collect::<Vec<_>>()).half_width
             }),
             design_is_better_by: contender
                 .filter(|contender| contender.texture != design.texture)

@@ -1,0 +1,102 @@
+//! A front: what can be had of a wish with how much texture.
+
+use std::io::Write;
+
+use serde::Serialize;
+use slipfront_case::number_format::four_digits;
+use slipfront_plot::{Response, Responses};
+
+use super::folder::DesignFolder;
+use super::report::{called, unit};
+use super::{Design, Outcome};
+use crate::error::StudyError;
+use crate::files_in_folder::write_in;
+use crate::text_table::table;
+
+/// Table and pictures of a front.
+const FRONT: &str = "front";
+
+/// A row of `front.csv`.
+#[derive(Serialize)]
+struct Row<'a> {
+    coverage_limit_percent: f64,
+    coverage_percent: f64,
+    loss: f64,
+    loss_half_width: Option<f64>,
+    static_friction_star: f64,
+    static_friction_star_half_width: Option<f64>,
+    design: &'a str,
+}
+
+impl DesignFolder {
+    /// Writes a front as a table and a picture, and gives it as a text.
+    ///
+    /// # Errors
+    /// When the system refuses to write, or the picture cannot be drawn.
+    pub fn write_front(&self, front: &[(f64, Design, Outcome)]) -> Result<String, StudyError> {
+        let Some((_, first, _)) = front.first() else {
+            return Ok(String::new());
+        };
+        let wish = &first.evaluator.wish;
+        write_in(self.path(), &format!("{FRONT}.csv"), |to| {
+            let mut table = csv::Writer::from_writer(to);
+            for (limit, _, Outcome { verdict, .. }) in front {
+                let friction = verdict.design.cases[0].static_friction_star;
+                table
+                    .serialize(Row {
+                        coverage_limit_percent: *limit,
+                        coverage_percent: verdict.design.coverage_percent,
+                        loss: verdict.design.loss,
+                        loss_half_width: verdict.design.loss_half_width,
+                        static_friction_star: friction.mean,
+                        static_friction_star_half_width: friction.half_width,
+                        design: &verdict.design.name,
+                    })
+                    .map_err(std::io::Error::from)?;
+            }
+            table.flush()
+        })?;
+        let mut curve = Response::default();
+        let mut rows = Vec::new();
+        for (limit, _, Outcome { verdict, .. }) in front {
+            let design = &verdict.design;
+            let half = design.loss_half_width.unwrap_or(f64::NAN);
+            let ends = [design.loss - half, design.loss + half].map(|loss| wish.told(loss));
+            curve.x.push(design.coverage_percent);
+            curve.mean.push(wish.told(design.loss));
+            curve.low.push(ends[0].min(ends[1]));
+            curve.high.push(ends[0].max(ends[1]));
+            rows.push(vec![
+                format!("{} %", four_digits(*limit)),
+                format!("{} %", four_digits(design.coverage_percent)),
+                format!("{}{}", four_digits(wish.told(design.loss)), unit(wish)),
+                design.name.clone(),
+            ]);
+        }
+        let picture = slipfront_plot::response(&Responses {
+            x_title: "textured area (%)".to_owned(),
+            y_title: format!(
+                "{}{}",
+                called(wish),
+                if unit(wish).is_empty() { "" } else { " (%)" }
+            ),
+            note: format!("95 % of {} fresh surfaces", front[0].2.verdict.surfaces),
+            curves: vec![curve],
+            ..Responses::default()
+        });
+        let picture = picture.map_err(|source| StudyError::Picture {
+            name: FRONT.to_owned(),
+            source,
+        })?;
+        write_in(self.path(), &format!("{FRONT}.svg"), |to| {
+            to.write_all(picture.svg.as_bytes())
+        })?;
+        write_in(self.path(), &format!("{FRONT}.png"), |to| {
+            to.write_all(&picture.png)
+        })?;
+        Ok(format!(
+            "\nWith less texture:\n{}",
+            table(&["at most", "covers", called(wish), "texture"], &rows)
+        ))
+    }
+}
