@@ -18,6 +18,7 @@ use slipfront_run::running::Running;
 use slipfront_run::verify::inspect;
 use slipfront_run::{fields, precursors, series, summary};
 use slipfront_study::converge::is_written;
+use slipfront_study::design::is_design;
 use slipfront_study::study_of;
 use slipfront_study::verify::{has_records, verify as verify_folder};
 
@@ -44,12 +45,15 @@ impl TemporaryParent {
     }
 }
 
-/// What a folder is: `run`, `interrupted`, `study`, `meshes` of a study that tells what its meshes found, `paper`, or none of these.
+/// What a folder is: `run`, `interrupted`, `study`, `meshes` of a study that tells what its meshes found, `design`, `paper`, or none of these.
 #[pyfunction]
 pub(crate) fn kind_of(folder: PathBuf) -> PyResult<Option<&'static str>> {
     if has_records(&folder) {
         let is_of_meshes = study_of(&folder).is_ok_and(|study| is_written(&folder, &study.axes));
         return Ok(Some(if is_of_meshes { "meshes" } else { "study" }));
+    }
+    if is_design(&folder) && folder.join("design.json").exists() {
+        return Ok(Some("design"));
     }
     if folder.join(FIGURE_CACHE).is_dir() {
         return Ok(Some("paper"));

@@ -2,6 +2,8 @@
 
 import json
 import pickle
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -21,13 +23,18 @@ def test_a_design_has_the_bytes_of_the_command(tmp_path: Path) -> None:
     found = design().run(tmp_path / "one", progress=lambda *now: shown.append(now), threads=2)
     assert shown and shown[-1][0] <= shown[-1][1]
     (tmp_path / "wish.toml").write_bytes((tmp_path / "one/design.toml").read_bytes())
-    sf_command = pytest.importorskip("slipfront._slipfront").command
-    sf_command(["slipfront", "design", str(tmp_path / "wish.toml"), "-o", str(tmp_path / "two"), "--quiet", "--threads", "1"])
+    command = [sys.executable, "-m", "slipfront", "design", "wish.toml", "-o", "two", "--quiet", "--threads", "1"]
+    subprocess.run(command, cwd=tmp_path, check=True)
     for name in ("mask.npy", "design.json", "evaluations.csv", "mask.dxf", "friction.png"):
         assert (tmp_path / "one" / name).read_bytes() == (tmp_path / "two" / name).read_bytes(), name
     assert found.to_dict() == json.loads((tmp_path / "two/design.json").read_text())
     assert found.mask.sum() == round(found.coverage * 2.56)
     assert found.case.texture_percent == pytest.approx(found.coverage)
+    opened = sf.open(tmp_path / "one")
+    assert isinstance(opened, sf.DesignResults) and opened.to_dict() == found.to_dict()
+    (tmp_path / "two/mask.npy").write_bytes((tmp_path / "two/mask.npy").read_bytes()[:-1] + b"\2")
+    with pytest.raises(sf.FolderError, match=r"mask\.npy differs"):
+        sf.open(tmp_path / "two")
     in_memory = design().run(progress=False)
     assert (in_memory.mask == found.mask).all() and in_memory.loss == found.loss
     with pytest.raises(LookupError, match="in memory"):

@@ -1,9 +1,10 @@
 //! Holds the folder of a study against the tables and pictures that its records give, with what its meshes found where it tells that, and
-//! the folders of the runs that it kept against their manifests.
+//! the folders of the runs that it kept against their manifests; and that of a design against what its runs give.
 
 use std::collections::HashSet;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::AtomicBool;
 
 use slipfront_case::number_format::{are, count};
 use slipfront_case::unfinished::{TemporaryFolder, is_unfinished};
@@ -16,6 +17,7 @@ use slipfront_run::verify::{
 use thiserror::Error;
 
 use crate::converge::{is_written, write_meshes};
+use crate::design::{Bounds, DesignFile, DesignFolder, JOURNAL, is_design, search_of};
 use crate::error::{StudyError, of_others};
 use crate::execute::collect;
 use crate::folder::{StudyFolder, study_of, write};
@@ -38,6 +40,8 @@ pub enum VerifyStudyError {
         runs: usize,
         others: usize,
     },
+    #[error("the design in {path} was not finished: run it again to go on with it, and verify it then")]
+    UnfinishedDesign { path: PathBuf },
     #[error(transparent)]
     Study(#[from] StudyError),
     #[error(transparent)]
@@ -55,9 +59,56 @@ pub fn has_records(folder: &Path) -> bool {
 pub fn verify(folder: &Path) -> Result<Verdict, VerifyStudyError> {
     if has_records(folder) {
         verify_study(folder)
+    } else if is_design(folder) {
+        verify_design(folder)
     } else {
         Ok(verify_run(&inspect(folder)?)?)
     }
+}
+
+/// Finds a design again from the runs in its journal, and holds the folder against what it leaves. Runs that the journal lacks are made.
+fn verify_design(folder: &Path) -> Result<Verdict, VerifyStudyError> {
+    let mut verdict = Verdict::default();
+    let Some(search) = search_of(folder)? else {
+        let path = folder.to_owned();
+        return Err(VerifyStudyError::UnfinishedDesign { path });
+    };
+    if search.is_cut_short {
+        verdict.what =
+            "a design whose search --time has cut short: which drafts were tried depends on the machine"
+                .to_owned();
+        verdict
+            .notes
+            .push("its files were not derived again from its runs".to_owned());
+        return Ok(verdict);
+    }
+    let temporary = TemporaryFolder::new(folder).map_err(VerifyError::Temporary)?;
+    let journal = temporary.path().join(JOURNAL);
+    std::fs::copy(folder.join(JOURNAL), journal).map_err(VerifyError::Temporary)?;
+    let file = DesignFile::load(&folder.join("design.toml"))?;
+    let mut again = DesignFolder::open(temporary.path(), &file)?;
+    let kept = again.n_kept();
+    let bounds = Bounds {
+        runs: search.runs,
+        share_of_time: &|| 0.0,
+        stop: &AtomicBool::new(false),
+    };
+    again.find(&bounds, &mut |_| {})?;
+    let made = again.n_kept() - kept;
+    if made > 0 {
+        let sentence = format!("{} not in the journal, and made again", are(made, "run"));
+        verdict.notes.push(sentence);
+    }
+    let mut files = files_below(temporary.path(), "").map_err(VerifyError::Temporary)?;
+    files.retain(|file| file.name != JOURNAL);
+    verdict.differences = differences(&files, folder, "follow from its runs");
+    let is_left = |name: &str| name.rsplit('/').next().is_some_and(is_unfinished);
+    let known = files.iter().map(|file| file.name.as_str());
+    verdict
+        .notes
+        .extend(unlisted_files(folder, &known.chain([JOURNAL]).collect(), is_left));
+    verdict.what = format!("a design as its {} give it", count(kept, "recorded run"));
+    Ok(verdict)
 }
 
 /// Makes tables and pictures of a study again from its records, and holds the folder against them; then its run

@@ -75,7 +75,19 @@ impl DesignCommand {
         let found = folder.find(&bounds, &mut |now| progress.show(now));
         progress.finish();
         let text = found.map_err(|error| match error {
-            StudyError::Interrupted => Failure::stopped(&signals, error),
+            StudyError::Interrupted => {
+                let best = folder.path().join("mask.npy");
+                let so_far = if best.exists() {
+                    format!(
+                        "the best texture so far stands in {}, without a verdict; ",
+                        best.display()
+                    )
+                } else {
+                    String::new()
+                };
+                let sentence = format!("stopped by a signal: {so_far}the same command goes on from there");
+                Failure::stopped(&signals, anyhow::anyhow!(sentence))
+            }
             StudyError::NoDesign => Failure::input(error),
             error => Failure::running(error),
         })?;

@@ -3,6 +3,7 @@
 use serde_json::Value;
 
 use crate::fixtures::unwrapped;
+use crate::support::process::{send, stderr, stdout, wait_for};
 use crate::support::workspace::Workspace;
 
 const WISH: &str = "[base]\nslider.blocks = [16, 16]\ndrive.v_star = 0.1\n\
@@ -66,6 +67,14 @@ fn a_design_is_a_texture_that_other_commands_read() {
             "{name}"
         );
     }
+    let said = workspace.succeed("verify twice");
+    assert!(said.contains("a design as its"), "{said}");
+    workspace.write(
+        "found/design.json",
+        workspace.read_text("found/design.json").replacen("0.", "1.", 1),
+    );
+    let differs = workspace.output("verify found");
+    assert!(differs.status.code() == Some(1) && stdout(&differs).contains("design.json differs"));
     // Once more, nothing is run, and nothing changes.
     let before = workspace.files("twice");
     workspace.succeed("design wish.toml -o twice");
@@ -125,4 +134,29 @@ fn a_front_tells_what_less_texture_gives() {
         "{table}"
     );
     assert!(workspace.exists("found/front.png") && workspace.exists("found/front.svg"));
+}
+
+/// The best so far is a texture that can be run, and the same command goes on.
+#[cfg(unix)]
+#[test]
+fn a_signal_keeps_the_best() {
+    let workspace = Workspace::new();
+    workspace.write("wish.toml", WISH.replace("runs = 120", "runs = 1000000"));
+    let child = workspace.start("design wish.toml -o found");
+    let has_runs =
+        || workspace.exists("found/design.jsonl") && workspace.read("found/design.jsonl").len() > 10_000;
+    wait_for("a few batches of runs", has_runs);
+    send(&child, "-INT");
+    let output = child.wait_with_output().unwrap();
+    let said = unwrapped(&stderr(&output));
+    assert_eq!(output.status.code(), Some(130), "{said}");
+    assert!(
+        said.contains("the best texture so far stands in found/mask.npy"),
+        "{said}"
+    );
+    workspace.succeed("run found/case.toml -o run --no-pictures --quiet");
+    let said = workspace.fail("verify found", 2);
+    assert!(said.contains("the design in found was not finished"), "{said}");
+    let said = workspace.output("design wish.toml -o found --time 0s");
+    assert!(stderr(&said).contains("of an earlier call, which are not repeated"));
 }

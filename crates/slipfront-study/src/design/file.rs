@@ -9,6 +9,7 @@ use slipfront_case::case_file::{
 };
 use slipfront_case::quantity::{Force, Length};
 use slipfront_run::measured::{Column, Measure, MeasuredRecord};
+use slipfront_run::pictures::texture_file::textured_blocks;
 use toml::de::DeTable;
 use toml::{Table, Value};
 
@@ -220,7 +221,7 @@ impl DesignFile {
         }
         let case = self.case_with(&[Override::new("texture", textures)]);
         let case = case.map_err(|error| self.found_in(key, error))?;
-        Ok(case.model.surface.textured.clone())
+        Ok(textured_blocks(&case))
     }
 
     /// The design that the file asks for.
@@ -275,10 +276,7 @@ impl DesignFile {
             design.begin_with(format!("start {} of the file", k + 1), textured);
         }
         if base.model.surface.texture_percent() > 0.0 {
-            design.begin_with(
-                "texture of the case".to_owned(),
-                base.model.surface.textured.clone(),
-            );
+            design.begin_with("texture of the case".to_owned(), textured_blocks(&base));
         }
         Ok(design)
     }

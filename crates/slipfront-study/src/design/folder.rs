@@ -9,7 +9,8 @@ use slipfront_run::folder_error::FolderError;
 
 use super::evaluate::{Known, RunId};
 use super::file::DesignFile;
-use super::stages::{Bounds, SearchProgress};
+use super::report::VERDICT;
+use super::stages::{Bounds, Length, SearchProgress};
 use super::wish::Measured;
 use super::{Design, Outcome};
 use crate::error::StudyError;
@@ -145,6 +146,22 @@ impl DesignFolder {
         }
         found
     }
+}
+
+/// How long the search was whose results stand in a folder; none if it was not finished.
+pub(crate) fn search_of(folder: &Path) -> Result<Option<Length>, StudyError> {
+    #[derive(Deserialize)]
+    struct Found {
+        search: Length,
+    }
+    let path = folder.join(VERDICT[0]);
+    if !path.exists() {
+        return Ok(None);
+    }
+    let text = read_limited(&path, TEXT_MAX_BYTES).map_err(FolderError::read(&path))?;
+    Ok(serde_json::from_slice::<Found>(&text)
+        .ok()
+        .map(|found| found.search))
 }
 
 /// Whether the folder is the results folder of a design.

@@ -33,13 +33,14 @@ use slipfront_case::case::Case;
 use self::evaluate::{Evaluator, Fidelity, Subject};
 use self::named::{GROOVE, Named, named};
 use self::search::Search;
-use self::stages::{Stages, Tried};
+use self::stages::{Length, Stages, Tried};
 use self::verdict::{Contender, Judge};
 use crate::error::StudyError;
 
 pub use self::evaluate::{Keep, Known, RunId};
 pub use self::file::{DesignFile, DesignKeys};
 pub use self::folder::{DesignFolder, is_design};
+pub(crate) use self::folder::{JOURNAL, search_of};
 pub use self::grid::Grid;
 pub use self::limits::{Illegal, Limits};
 pub use self::open_search::OpenSearch;
@@ -68,6 +69,8 @@ pub struct Outcome {
     pub verdict: Verdict,
     /// Every texture that was judged, by its name, the design first.
     pub(crate) compared: Vec<(String, Option<Arc<Vec<bool>>>)>,
+    /// How long the search was.
+    pub(crate) length: Length,
     /// What was tried on the way, in its order.
     pub(crate) tried: Vec<Tried>,
 }
@@ -170,6 +173,7 @@ impl Design {
             texture: judged.texture,
             verdict: judged.verdict,
             compared: judged.compared,
+            length: stages.length(bounds),
             tried: stages.tried,
         })
     }

@@ -15,6 +15,7 @@ use slipfront_run::running;
 
 use super::evaluate::{Fidelity, MASK, masked};
 use super::folder::DesignFolder;
+use super::stages::Length;
 use super::verdict::{Mean, OnFresh, Verdict};
 use super::wish::{Quantity, Wish};
 use super::{Design, Outcome};
@@ -26,7 +27,7 @@ use crate::text_table::table;
 const EVALUATIONS: &str = "evaluations.csv";
 
 /// The verdict, as numbers and as a text.
-const VERDICT: [&str; 2] = ["design.json", "design.txt"];
+pub(super) const VERDICT: [&str; 2] = ["design.json", "design.txt"];
 
 /// Endings of the mask in other formats.
 const MASK_ENDINGS: [&str; 3] = ["svg", "dxf", "gsf"];
@@ -52,6 +53,7 @@ pub(super) struct AsMeshed {
 /// `design.json`.
 #[derive(Serialize)]
 struct Written<'a> {
+    search: Length,
     as_meshed: &'a AsMeshed,
     #[serde(flatten)]
     verdict: &'a Verdict,
@@ -87,6 +89,7 @@ impl DesignFolder {
         let as_meshed = self.as_meshed(design, texture, &case);
         let [numbers, words] = VERDICT;
         let written = Written {
+            search: outcome.length,
             as_meshed: &as_meshed,
             verdict: &outcome.verdict,
             version: env!("CARGO_PKG_VERSION"),

@@ -4,6 +4,8 @@ use std::ops::Range;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
+use serde::{Deserialize, Serialize};
+
 use super::evaluate::{Evaluator, Fidelity, Keep, Known};
 use super::limits::Limits;
 use super::named::Named;
@@ -68,6 +70,15 @@ pub struct Bounds<'a> {
     pub stop: &'a AtomicBool,
 }
 
+/// How long a search was.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub(crate) struct Length {
+    /// Runs that it was given.
+    pub(crate) runs: usize,
+    /// Whether the time allowed was over before, so that the drafts tried depend on the speed of the machine.
+    pub(crate) is_cut_short: bool,
+}
+
 /// A search, with what it has tried.
 pub(crate) struct Stages<'a> {
     evaluator: &'a Evaluator,
@@ -76,6 +87,8 @@ pub(crate) struct Stages<'a> {
     runs: usize,
     /// Whether surfaces differ by their seeds.
     scatters: bool,
+    /// Whether the time allowed was over before the runs.
+    is_cut_short: bool,
     /// All drafts that were tried, in their order.
     pub(crate) tried: Vec<Tried>,
 }
@@ -89,6 +102,7 @@ impl<'a> Stages<'a> {
             search,
             runs: 0,
             scatters: evaluator.scatters(),
+            is_cut_short: false,
             tried: Vec::new(),
         }
     }
@@ -102,7 +116,7 @@ impl<'a> Stages<'a> {
         watch: &mut dyn FnMut(&SearchProgress),
     ) -> Result<Vec<Arc<Vec<bool>>>, StudyError> {
         let explored = (EXPLORED * bounds.runs as f64) as usize;
-        while self.runs < explored && (bounds.share_of_time)() < EXPLORED {
+        while self.runs < explored && self.is_within(bounds, EXPLORED) {
             let proposals = self.search.ask(BATCH);
             if !self.try_out(proposals, false, bounds, known, keep, watch)? {
                 break;
@@ -116,12 +130,27 @@ impl<'a> Stages<'a> {
             .collect();
         self.search.begin_again();
         let mut goes_on = self.try_out(best, true, bounds, known, keep, watch)?;
-        while goes_on && self.runs < bounds.runs && (bounds.share_of_time)() < 1.0 {
+        while goes_on && self.runs < bounds.runs && self.is_within(bounds, 1.0) {
             let proposals = self.search.ask(BATCH / 2);
             goes_on = self.try_out(proposals, true, bounds, known, keep, watch)?;
         }
         let best = self.search.best().iter();
         Ok(best.map(|found| Arc::clone(&found.proposal.texture)).collect())
+    }
+
+    /// Whether less than this share of the time has passed.
+    fn is_within(&mut self, bounds: &Bounds, share: f64) -> bool {
+        let is_within = (bounds.share_of_time)() < share;
+        self.is_cut_short |= !is_within;
+        is_within
+    }
+
+    /// The length of the search.
+    pub(crate) fn length(&self, bounds: &Bounds) -> Length {
+        Length {
+            runs: bounds.runs,
+            is_cut_short: self.is_cut_short,
+        }
     }
 
     /// Makes the runs of some textures, and tells the search their losses; whether there were any.
