@@ -2,7 +2,7 @@
 //! kernel.
 
 use std::sync::mpsc::{Receiver, Sender, channel};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread;
 
 use crate::communicator::Communicator;
@@ -16,6 +16,96 @@ pub struct Threads {
     to: Vec<Sender<Vec<u64>>>,
     /// From each rank. Only the thread of this rank listens.
     from: Vec<Arc<Mutex<Receiver<Vec<u64>>>>>,
+    seat: Arc<Seat>,
+}
+
+/// Where all ranks meet to tell each other something: each is woken once, and not once by every other.
+#[derive(Debug)]
+struct Meeting {
+    table: Mutex<Table>,
+    all_are_here: Condvar,
+}
+
+#[derive(Debug)]
+struct Table {
+    /// Of each rank that has come.
+    words: Vec<Option<Vec<u64>>>,
+    n_here: usize,
+    /// Meetings that are over.
+    n_over: u64,
+    /// Of each rank at the last meeting. The next is not over before all have read them.
+    latest: Arc<Vec<Vec<u64>>>,
+    ended: Option<usize>,
+}
+
+/// That of a rank at the meetings; it is gone when the rank has ended.
+#[derive(Debug)]
+struct Seat {
+    rank: usize,
+    meeting: Arc<Meeting>,
+}
+
+impl Meeting {
+    fn new(size: usize) -> Self {
+        let table = Table {
+            words: vec![None; size],
+            n_here: 0,
+            n_over: 0,
+            latest: Arc::default(),
+            ended: None,
+        };
+        Self {
+            table: Mutex::new(table),
+            all_are_here: Condvar::new(),
+        }
+    }
+}
+
+/// How often a rank lets others go first before it sleeps until it is woken, which costs far more. There are more ranks than cores, and
+/// what one waits for is mostly there when its turn comes again.
+const TURNS: usize = 16;
+
+impl Seat {
+    fn table(&self) -> MutexGuard<'_, Table> {
+        self.meeting.table.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// What every rank has, rank 0 first.
+    fn gather(&self, words: Vec<u64>) -> Arc<Vec<Vec<u64>>> {
+        let mut table = self.table();
+        table.words[self.rank] = Some(words);
+        table.n_here += 1;
+        if table.n_here == table.words.len() {
+            table.latest = Arc::new(table.words.iter_mut().filter_map(Option::take).collect());
+            (table.n_here, table.n_over) = (0, table.n_over + 1);
+            self.meeting.all_are_here.notify_all();
+        } else {
+            let n_over = table.n_over;
+            let mut n_turns = 0;
+            while table.n_over == n_over {
+                if let Some(ended) = table.ended {
+                    panic!("rank {} waits for rank {ended}, which has ended", self.rank);
+                }
+                if n_turns < TURNS {
+                    n_turns += 1;
+                    drop(table);
+                    thread::yield_now();
+                    table = self.table();
+                } else {
+                    let woken = self.meeting.all_are_here.wait(table);
+                    table = woken.unwrap_or_else(PoisonError::into_inner);
+                }
+            }
+        }
+        table.latest.clone()
+    }
+}
+
+impl Drop for Seat {
+    fn drop(&mut self) {
+        self.table().ended = Some(self.rank);
+        self.meeting.all_are_here.notify_all();
+    }
 }
 
 impl Threads {
@@ -24,11 +114,16 @@ impl Threads {
     /// # Panics
     /// If the work of a rank does: the others, which wait for it in vain, end as well.
     pub fn run<T: Send>(size: usize, work: impl Fn(&Threads) -> T + Sync) -> Vec<T> {
+        let meeting = Arc::new(Meeting::new(size));
         let mut ranks: Vec<Threads> = (0..size)
             .map(|rank| Threads {
                 rank,
                 to: Vec::new(),
                 from: Vec::new(),
+                seat: Arc::new(Seat {
+                    rank,
+                    meeting: meeting.clone(),
+                }),
             })
             .collect();
         for to in 0..size {
@@ -58,18 +153,16 @@ impl Threads {
 
     fn receive(&self, rank: usize) -> Vec<u64> {
         let from = self.from[rank].lock().unwrap_or_else(PoisonError::into_inner);
+        for _ in 0..TURNS {
+            if let Ok(words) = from.try_recv() {
+                return words;
+            }
+            thread::yield_now();
+        }
         match from.recv() {
             Ok(words) => words,
             Err(_) => panic!("rank {} waits for rank {rank}, which has ended", self.rank),
         }
-    }
-
-    /// What every rank has, rank 0 first.
-    fn gather(&self, words: &[u64]) -> impl Iterator<Item = Vec<u64>> {
-        for rank in 0..self.size() {
-            self.send(rank, words.to_vec());
-        }
-        (0..self.size()).map(|rank| self.receive(rank))
     }
 }
 
@@ -110,8 +203,8 @@ impl Communicator for Threads {
 
     fn largest(&self, values: &mut [f64]) {
         let words: Vec<u64> = values.iter().map(|value| value.to_bits()).collect();
-        for words in self.gather(&words) {
-            for (value, bits) in values.iter_mut().zip(words) {
+        for words in &*self.seat.gather(words) {
+            for (value, &bits) in values.iter_mut().zip(words) {
                 *value = value.max(f64::from_bits(bits));
             }
         }
@@ -120,7 +213,7 @@ impl Communicator for Threads {
     fn sum(&self, values: &mut [i64]) {
         let words: Vec<u64> = values.iter().map(|value| value.cast_unsigned()).collect();
         values.fill(0);
-        for words in self.gather(&words) {
+        for words in &*self.seat.gather(words) {
             for (value, word) in values.iter_mut().zip(words) {
                 *value = value.wrapping_add(word.cast_signed());
             }
