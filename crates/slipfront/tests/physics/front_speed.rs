@@ -63,7 +63,8 @@ fn a_front_runs_at_its_speed(
 }
 
 /// The speed of a run, which is found from planes over its first slips. Under a low prestress the front must be started, by five
-/// columns that move at the start, and gathers speed over many columns; the median leaves that out. The rest is half a step as above.
+/// columns that move at the start, and gathers speed over columns that are the more, the lower it is; the median leaves them out where
+/// the strip is several times as long. The rest is half a step as above.
 #[rstest]
 fn planes_find_the_speed_of_a_front(
     #[values(0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9)] tau: f64,
@@ -74,16 +75,20 @@ fn planes_find_the_speed_of_a_front(
     )]
     (rows, direction, stiffness): (usize, [f64; 2], f64),
 ) {
-    const LONG: usize = 240;
+    let columns = match tau {
+        ..0.25 => 240,
+        ..0.35 => 160,
+        _ => COLUMNS,
+    };
     let (dt, exact) = (0.005, front_speed(stiffness.sqrt(), tau));
-    let model = strip(LONG, rows, direction, tau);
+    let model = strip(columns, rows, direction, tau);
     let mut state = State::at_rest(model.lattice.n_blocks());
     let started = 0.5 * (1.0 - KINETIC) / stiffness.sqrt();
-    for b in (0..state.velocity.x.len()).filter(|b| b % LONG < 5) {
+    for b in (0..state.velocity.x.len()).filter(|b| b % columns < 5) {
         state.velocity.x[b] = started * direction[0];
         state.velocity.y[b] = started * direction[1];
     }
-    let steps = (1.2 * LONG as f64 / (exact * dt)) as u64;
+    let steps = (1.2 * columns as f64 / (exact * dt)) as u64;
     let mut simulation = from_state(&model, dt, state);
     simulation.run(Stop::at_step(steps), &mut []).unwrap();
     let times = simulation.into_first_slip_time_star();
