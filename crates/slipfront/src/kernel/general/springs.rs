@@ -305,46 +305,56 @@ pub(super) fn row_energies(
     epsilon: f64,
     row: &mut [f64],
 ) -> [Vec<f64>; 4] {
-    let lattice = &rows.lattice;
-    let mut row_energy = |number: usize, j: usize| -> f64 {
-        let bond = &Bond::ALL[number];
+    let mut found = <[Vec<f64>; 4]>::default();
+    for (number, of_rows) in found.iter_mut().enumerate() {
         let relative = relative.map(|relative| &*relative[number]);
-        // One block of the row may have its neighbour beyond the end of the row. The neighbours of all others are equally far away.
-        let (end, first) = match bond.offset[0] {
-            1 => (Some(lattice.nx - 1), 0),
-            -1 => (Some(0), 1),
-            _ => (None, 0),
-        };
-        let beyond = end.and_then(|i| {
-            let b = lattice.block(i, j);
-            let energy = bond.energy(difference(u, b, lattice.neighbour(i, j, bond.offset)?), epsilon);
-            Some(relative.map_or(energy, |relative| relative[b] * energy))
-        });
-        let inside = lattice.nx - usize::from(end.is_some());
-        let neighbour = if inside > 0 {
-            lattice.neighbour(first, j, bond.offset)
-        } else {
-            None
-        };
-        let along = neighbour.map_or(0.0, |neighbour| {
-            let (b, row) = (lattice.block(first, j), &mut row[..inside]);
-            let blocks = b..b + inside;
-            energies(
-                bond,
-                epsilon,
-                part(u, &blocks),
-                part(u, &(neighbour..neighbour + inside)),
-                row,
-            );
-            if let Some(relative) = relative {
-                let weighted = row.iter_mut().zip(&relative[blocks]);
-                weighted.for_each(|(energy, relative)| *energy *= relative);
-            }
-            fixed_point::sum(inside, |k| row[k])
-        });
-        along + beyond.unwrap_or(0.0)
+        for j in rows.own_rows() {
+            of_rows.push(row_energy(rows, u, relative, epsilon, (number, j), row));
+        }
+    }
+    found
+}
+
+/// The same along one bond of one row. Nothing of it is left to closures, which may be compiled without the vectors of the step.
+#[inline(always)]
+fn row_energy(
+    rows: &Rows,
+    u: &VectorField,
+    relative: Option<&[f64]>,
+    epsilon: f64,
+    (number, j): (usize, usize),
+    row: &mut [f64],
+) -> f64 {
+    let (lattice, bond) = (&rows.lattice, &Bond::ALL[number]);
+    // One block of the row may have its neighbour beyond the end of the row. The neighbours of all others are equally far away.
+    let (end, first) = match bond.offset[0] {
+        1 => (Some(lattice.nx - 1), 0),
+        -1 => (Some(0), 1),
+        _ => (None, 0),
     };
-    [0, 1, 2, 3].map(|bond| rows.own_rows().map(|j| row_energy(bond, j)).collect())
+    let beyond = end.and_then(|i| {
+        let b = lattice.block(i, j);
+        let energy = bond.energy(difference(u, b, lattice.neighbour(i, j, bond.offset)?), epsilon);
+        Some(relative.map_or(energy, |relative| relative[b] * energy))
+    });
+    let inside = lattice.nx - usize::from(end.is_some());
+    let neighbour = if inside > 0 {
+        lattice.neighbour(first, j, bond.offset)
+    } else {
+        None
+    };
+    let mut along = 0.0;
+    if let Some(neighbour) = neighbour {
+        let (b, row) = (lattice.block(first, j), &mut row[..inside]);
+        let (blocks, neighbours) = (b..b + inside, neighbour..neighbour + inside);
+        energies(bond, epsilon, part(u, &blocks), part(u, &neighbours), row);
+        if let Some(relative) = relative {
+            let weighted = row.iter_mut().zip(&relative[blocks]);
+            weighted.for_each(|(energy, relative)| *energy *= relative);
+        }
+        along = fixed_point::sum(inside, |k| row[k]);
+    }
+    along + beyond.unwrap_or(0.0)
 }
 
 /// Energies of the springs along one bond of blocks displaced by `u`, to their neighbours displaced by `v`.
