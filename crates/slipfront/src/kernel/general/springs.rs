@@ -315,7 +315,7 @@ pub(super) fn row_energies(
     found
 }
 
-/// The same along one bond of one row. Nothing of it is left to closures, which may be compiled without the vectors of the step.
+/// The energy of the springs along one bond of one row. Nothing of it is left to closures, which may be compiled without the vectors of the step.
 #[inline(always)]
 fn row_energy(
     rows: &Rows,
