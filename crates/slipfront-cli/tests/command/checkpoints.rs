@@ -3,6 +3,7 @@
 use std::fs::File;
 use std::io::{BufRead, BufReader};
 use std::process::{Command, Stdio};
+use std::sync::LazyLock;
 use std::thread::sleep;
 use std::time::Duration;
 
@@ -10,14 +11,14 @@ use rstest::rstest;
 
 use crate::broken::DIVERGING;
 use crate::support::process::{ignores_hangup, program, send, stderr, try_send, wait_for_signal_handlers};
-use crate::support::workspace::Workspace;
+use crate::support::workspace::{Files, Workspace};
 
 /// Around a second: long enough to be stopped several times.
 const SLOW: &str = "[slider]\nblocks = [60, 50]\nedges = ['periodic', 'free']\n[drive]\nv_star = 0.01\n\
                     [friction]\ncorrelation_length = '2.5 um'\n[[texture]]\nshape = 'mask'\nfile = 'spot.png'\n";
 
 /// The general kernel, and snapshots by the step.
-const REVERSAL: &str = "[slider]\nblocks = [60, 50]\n[drive]\nv_star = 0.004\n[friction]\nlaw = 'reversal'\n\
+const REVERSAL: &str = "[slider]\nblocks = [60, 50]\n[drive]\nv_star = 0.01\n[friction]\nlaw = 'reversal'\n\
                        [output]\nsnapshots = { every = 75 }\n";
 
 /// A law that remembers something of every block.
@@ -41,10 +42,24 @@ fn slow_workspace() -> Workspace {
     ] {
         workspace.write(name, text);
     }
-    let cavity = "texture small.toml -o spot.png --set texture.0={shape=\"cavity\",coverage=15}";
-    workspace.succeed(&format!("{cavity} --set slider.blocks=[60,50]"));
+    workspace.write("spot.png", &*SPOT);
     workspace
 }
+
+/// The texture of `slow.toml`.
+static SPOT: LazyLock<Vec<u8>> = LazyLock::new(|| {
+    let workspace = Workspace::small();
+    let cavity = "texture small.toml -o spot.png --set texture.0={shape=\"cavity\",coverage=15}";
+    workspace.succeed(&format!("{cavity} --set slider.blocks=[60,50]"));
+    workspace.read("spot.png")
+});
+
+/// The folder of a run of `slow.toml` without a stop, which is made once: whatever is compared with it has the same bytes.
+static WHOLE: LazyLock<Files> = LazyLock::new(|| {
+    let workspace = slow_workspace();
+    workspace.succeed("run slow.toml -o whole");
+    workspace.files("whole")
+});
 
 /// Begins a run and stops it so many times, each of which saves a checkpoint.
 fn stopped(workspace: &Workspace, line: &str, folder: &str, times: usize) {
@@ -162,7 +177,7 @@ fn what_cannot_be_said_is_no_failure() {
 #[test]
 fn a_signal_saves_and_the_run_goes_on() {
     let workspace = slow_workspace();
-    workspace.succeed("run slow.toml -o whole");
+    workspace.fill("whole", &WHOLE);
     let child = workspace.start("run slow.toml -o saved");
     workspace.wait_for("saved/case.toml");
     send(&child, "-USR1");
@@ -272,7 +287,7 @@ fn an_interrupted_run_is_not_begun_again_by_mistake() {
     );
     let said = workspace.fail("verify halted", 2);
     assert!(said.contains("slipfront run --resume halted"), "{said}");
-    workspace.succeed("run slow.toml -o whole");
+    workspace.fill("whole", &WHOLE);
     workspace.succeed("run slow.toml -o halted --force");
     workspace.assert_same_run("whole", "halted");
 }
@@ -309,7 +324,7 @@ fn sealed(mut bytes: Vec<u8>) -> Vec<u8> {
 #[test]
 fn a_checkpoint_that_is_not_whole_or_not_its_own_is_refused() {
     let workspace = slow_workspace();
-    workspace.succeed("run slow.toml -o whole");
+    workspace.fill("whole", &WHOLE);
     stopped(&workspace, "run slow.toml -o halted", "halted", 2);
     let latest = workspace.read("halted/.slipfront/checkpoint.bin");
     let refused = |bytes: &[u8], why: &str| {
@@ -402,7 +417,7 @@ fn a_resumed_run_that_diverges_leaves_its_case() {
 #[test]
 fn where_only_the_one_before_is_left_it_is_taken() {
     let workspace = slow_workspace();
-    workspace.succeed("run slow.toml -o whole");
+    workspace.fill("whole", &WHOLE);
     stopped(&workspace, "run slow.toml -o halted", "halted", 2);
     std::fs::remove_file(workspace.path("halted/.slipfront/checkpoint.bin")).unwrap();
     assert!(
@@ -419,7 +434,7 @@ fn where_only_the_one_before_is_left_it_is_taken() {
 #[test]
 fn a_case_that_is_changed_during_the_run_is_not_called_its_own() {
     let workspace = slow_workspace();
-    workspace.succeed("run slow.toml -o whole");
+    workspace.fill("whole", &WHOLE);
     for file in ["case.toml", "inputs/spot.png"] {
         let child = workspace.start("run slow.toml --quiet -o edited");
         wait_for_signal_handlers(&child);
@@ -444,7 +459,7 @@ fn a_case_that_is_changed_during_the_run_is_not_called_its_own() {
 #[test]
 fn a_terminal_that_closes_loses_nothing() {
     let workspace = slow_workspace();
-    workspace.succeed("run slow.toml -o whole");
+    workspace.fill("whole", &WHOLE);
     let child = workspace.start("run slow.toml --quiet -o halted");
     wait_for_signal_handlers(&child);
     workspace.wait_for("halted/inputs/spot.png");
