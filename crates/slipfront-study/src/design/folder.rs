@@ -9,7 +9,7 @@ use slipfront_run::folder_error::FolderError;
 
 use super::evaluate::{Known, RunId};
 use super::file::DesignFile;
-use super::report::VERDICT;
+use super::report::{Report, VERDICT};
 use super::stages::{Bounds, Length, SearchProgress};
 use super::wish::Measured;
 use super::{Design, Outcome};
@@ -85,6 +85,21 @@ impl DesignFolder {
         &self.path
     }
 
+    fn report(&self) -> Report<'_> {
+        Report {
+            path: &self.path,
+            file: &self.file,
+        }
+    }
+
+    /// Writes what a design leaves, and gives the text of the verdict.
+    ///
+    /// # Errors
+    /// When the system refuses to write, or a picture cannot be drawn.
+    pub fn write(&self, design: &Design, outcome: &Outcome) -> Result<String, StudyError> {
+        self.report().write(design, outcome)
+    }
+
     /// Number of runs that were kept.
     pub fn n_kept(&self) -> usize {
         self.known.len()
@@ -107,7 +122,7 @@ impl DesignFolder {
             let outcome = self.run(&design, bounds, watch)?;
             front.push((percent, design, outcome));
         }
-        Ok(text + &self.write_front(&front)?)
+        Ok(text + &self.report().write_front(&front)?)
     }
 
     /// Searches and judges, or goes on where an earlier call was; every run is kept as soon as those that were begun with it have ended.
@@ -142,7 +157,7 @@ impl DesignFolder {
         };
         let found = design.run(bounds, known, &mut keep, &mut watch);
         if let (Err(StudyError::Interrupted), Some(best)) = (&found, best) {
-            self.write_mask(design, &best)?;
+            self.report().write_mask(design, &best)?;
         }
         found
     }

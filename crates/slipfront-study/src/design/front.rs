@@ -6,8 +6,7 @@ use serde::Serialize;
 use slipfront_case::number_format::four_digits;
 use slipfront_plot::{Response, Responses};
 
-use super::folder::DesignFolder;
-use super::report::{called, unit};
+use super::report::{Report, called, unit};
 use super::{Design, Outcome};
 use crate::error::StudyError;
 use crate::files_in_folder::write_in;
@@ -28,17 +27,17 @@ struct Row<'a> {
     design: &'a str,
 }
 
-impl DesignFolder {
+impl Report<'_> {
     /// Writes a front as a table and a picture, and gives it as a text.
     ///
     /// # Errors
     /// When the system refuses to write, or the picture cannot be drawn.
-    pub fn write_front(&self, front: &[(f64, Design, Outcome)]) -> Result<String, StudyError> {
+    pub(super) fn write_front(&self, front: &[(f64, Design, Outcome)]) -> Result<String, StudyError> {
         let Some((_, first, _)) = front.first() else {
             return Ok(String::new());
         };
         let wish = &first.evaluator.wish;
-        write_in(self.path(), &format!("{FRONT}.csv"), |to| {
+        write_in(self.path, &format!("{FRONT}.csv"), |to| {
             let mut table = csv::Writer::from_writer(to);
             for (limit, _, Outcome { verdict, .. }) in front {
                 let friction = verdict.design.cases[0].static_friction_star;
@@ -88,10 +87,10 @@ impl DesignFolder {
             name: FRONT.to_owned(),
             source,
         })?;
-        write_in(self.path(), &format!("{FRONT}.svg"), |to| {
+        write_in(self.path, &format!("{FRONT}.svg"), |to| {
             to.write_all(picture.svg.as_bytes())
         })?;
-        write_in(self.path(), &format!("{FRONT}.png"), |to| {
+        write_in(self.path, &format!("{FRONT}.png"), |to| {
             to.write_all(&picture.png)
         })?;
         Ok(format!(

@@ -12,6 +12,7 @@ mod file;
 mod folder;
 mod front;
 mod grid;
+mod judge;
 mod limits;
 mod named;
 mod open_search;
@@ -31,10 +32,10 @@ use std::sync::atomic::AtomicBool;
 use slipfront_case::case::Case;
 
 use self::evaluate::{Evaluator, Fidelity, Subject};
+use self::judge::{Contender, Judge};
 use self::named::{GROOVE, Named, named};
 use self::search::Search;
 use self::stages::{Length, Stages, Tried};
-use self::verdict::{Contender, Judge};
 use crate::error::StudyError;
 
 pub use self::evaluate::{Keep, Known, RunId};
@@ -42,11 +43,12 @@ pub use self::file::{DesignFile, DesignKeys};
 pub use self::folder::{DesignFolder, is_design};
 pub(crate) use self::folder::{JOURNAL, search_of};
 pub use self::grid::Grid;
+pub use self::judge::Mean;
 pub use self::limits::{Illegal, Limits};
 pub use self::open_search::OpenSearch;
 pub use self::sensitivity::Changed;
 pub use self::stages::{Bounds, DesignStage, SearchProgress};
-pub use self::verdict::{Given, Mean, OnFresh, Verdict};
+pub use self::verdict::{Given, OnFresh, Verdict};
 pub use self::wish::{Measured, Quantity, Wish};
 
 /// A wish with its limits, and the cases in which designs are tried.

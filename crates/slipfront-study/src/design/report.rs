@@ -1,6 +1,7 @@
 //! What a design leaves: the mask as files for programs and lasers, a case that reads it, tables, pictures, and a text that a person reads.
 
 use std::io::Write;
+use std::path::Path;
 use std::sync::Arc;
 
 use serde::Serialize;
@@ -14,9 +15,10 @@ use slipfront_run::pictures::texture_file::{self, TextureFileError};
 use slipfront_run::running;
 
 use super::evaluate::{Fidelity, MASK, masked};
-use super::folder::DesignFolder;
+use super::file::DesignFile;
+use super::judge::Mean;
 use super::stages::Length;
-use super::verdict::{Mean, OnFresh, Verdict};
+use super::verdict::{OnFresh, Verdict};
 use super::wish::{Quantity, Wish};
 use super::{Design, Outcome};
 use crate::error::StudyError;
@@ -71,13 +73,21 @@ struct Row<'a> {
     texture: String,
 }
 
-impl DesignFolder {
+/// Where a design leaves what it leaves.
+pub(super) struct Report<'a> {
+    /// The results folder.
+    pub(super) path: &'a Path,
+    /// The design in it.
+    pub(super) file: &'a DesignFile,
+}
+
+impl Report<'_> {
     /// Writes what a design leaves, and gives the text of the verdict.
     ///
     /// # Errors
     /// When the system refuses to write, or a picture cannot be drawn.
-    pub fn write(&self, design: &Design, outcome: &Outcome) -> Result<String, StudyError> {
-        let folder = self.path();
+    pub(super) fn write(&self, design: &Design, outcome: &Outcome) -> Result<String, StudyError> {
+        let folder = self.path;
         let texture = outcome.texture.as_slice();
         self.write_mask(design, texture)?;
         let case = Case::load(&folder.join(CASE), &[], &mut |_| true, Ranks::ALONE)?;
@@ -103,16 +113,16 @@ impl DesignFolder {
     }
 
     /// Writes a mask, and the case that reads it.
-    pub(crate) fn write_mask(&self, design: &Design, texture: &[bool]) -> Result<(), StudyError> {
+    pub(super) fn write_mask(&self, design: &Design, texture: &[bool]) -> Result<(), StudyError> {
         let [nx, ny] = design.evaluator.grid.size;
-        write_in(self.path(), MASK, |to| to.write_all(&npy_of_mask(nx, texture)))?;
-        let picture = self.path().join(PICTURE);
+        write_in(self.path, MASK, |to| to.write_all(&npy_of_mask(nx, texture)))?;
+        let picture = self.path.join(PICTURE);
         write_mask_png(&picture, nx, ny, texture).map_err(TextureFileError::from)?;
         let mut file = self.file.case()?.file;
         // A picture is laid over every mesh; an array belongs to its blocks.
         file.texture = vec![masked(PICTURE)];
         let text = file.to_toml()?;
-        write_in(self.path(), CASE, |to| to.write_all(text.as_bytes()))
+        write_in(self.path, CASE, |to| to.write_all(text.as_bytes()))
     }
 
     fn as_meshed(&self, design: &Design, texture: &[bool], case: &Case) -> AsMeshed {
@@ -183,12 +193,10 @@ impl DesignFolder {
                 name: name.to_owned(),
                 source,
             })?;
-            write_in(self.path(), &format!("{name}.svg"), |to| {
+            write_in(self.path, &format!("{name}.svg"), |to| {
                 to.write_all(picture.svg.as_bytes())
             })?;
-            write_in(self.path(), &format!("{name}.png"), |to| {
-                to.write_all(&picture.png)
-            })?;
+            write_in(self.path, &format!("{name}.png"), |to| to.write_all(&picture.png))?;
         }
         Ok(())
     }

@@ -6,7 +6,7 @@ use slipfront_case::quantity::Speed;
 
 use super::evaluate::{Evaluator, Keep, Known};
 use super::grid::Grid;
-use super::verdict::{Contender, Judge, Mean, Surfaces};
+use super::judge::{Contender, Judge, Mean, Surfaces};
 use crate::error::StudyError;
 
 /// Surfaces on which it is looked at.

@@ -2,47 +2,20 @@
 
 use std::ops::Range;
 use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
 
 use serde::Serialize;
 
 use super::evaluate::{Evaluator, Fidelity, Keep, Known, Wanted};
+use super::judge::{COMPARED, Contender, JUDGED, Judge, Mean, Surfaces};
 use super::sensitivity::{self, Changed};
-use super::stages::Stages;
 use super::wish::Measured;
 use crate::error::StudyError;
-use crate::statistics::Sample;
-use crate::study_file::CONFIDENCE;
-
-/// Surfaces on which finalists are compared.
-const COMPARED: u64 = 16;
-
-/// Surfaces on which the winner is judged.
-const JUDGED: u64 = 64;
 
 /// Most designs of the search among the finalists.
 const MOST_FINALISTS: usize = 8;
 
 /// Named patterns among the finalists.
 const NAMED_FINALISTS: usize = 4;
-
-/// A texture that is compared with others, under its name.
-#[derive(Clone, Debug)]
-pub(crate) struct Contender {
-    /// Its name.
-    pub(crate) name: String,
-    /// Its blocks.
-    pub(crate) texture: Arc<Vec<bool>>,
-}
-
-/// A mean over surfaces, and half the width of its 95 % interval; none where surfaces do not differ.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Mean {
-    /// The mean.
-    pub mean: f64,
-    /// Half the width of the interval.
-    pub half_width: Option<f64>,
-}
 
 /// What a texture gives on fresh surfaces in one case.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -100,38 +73,6 @@ pub(crate) struct Judged {
     pub(crate) compared: Vec<(String, Option<Arc<Vec<bool>>>)>,
     /// The verdict.
     pub(crate) verdict: Verdict,
-}
-
-/// Numbers of the surfaces on which finalists are compared and judged.
-pub(crate) struct Surfaces {
-    compared: Range<u64>,
-    pub(crate) judged: Range<u64>,
-}
-
-impl Surfaces {
-    pub(crate) fn of(evaluator: &Evaluator) -> Self {
-        let first = Stages::UNSEEN;
-        if evaluator.scatters() {
-            let judged = first + COMPARED;
-            Self {
-                compared: first..judged,
-                judged: judged..judged + JUDGED,
-            }
-        } else {
-            Self {
-                compared: 0..1,
-                judged: 0..1,
-            }
-        }
-    }
-}
-
-/// What a verdict works with.
-pub(crate) struct Judge<'a> {
-    /// The runs.
-    pub(crate) evaluator: &'a Evaluator,
-    /// Ends everything.
-    pub(crate) stop: &'a AtomicBool,
 }
 
 impl Judge<'_> {
@@ -244,46 +185,6 @@ impl Judge<'_> {
         Ok(named)
     }
 
-    /// Makes the runs of some textures on some surfaces.
-    pub(crate) fn run(
-        &self,
-        contenders: &[&Contender],
-        surfaces: Range<u64>,
-        known: &mut Known,
-        keep: &mut Keep,
-    ) -> Result<(), StudyError> {
-        let textures: Vec<_> = contenders
-            .iter()
-            .map(|found| Arc::clone(&found.texture))
-            .collect();
-        // One surface after the other, so that no more of them are lost after a stop.
-        for surface in surfaces {
-            let wanted = self
-                .evaluator
-                .wanted(&textures, surface..surface + 1, Fidelity::Verdict);
-            self.evaluator.run(&wanted, known, self.stop, keep)?;
-        }
-        Ok(())
-    }
-
-    pub(crate) fn loss(&self, contender: &Contender, surfaces: Range<u64>, known: &Known) -> f64 {
-        self.evaluator
-            .loss(&contender.texture, surfaces, Fidelity::Verdict, known)
-    }
-
-    /// The loss of one texture less that of another, surface by surface.
-    pub(crate) fn difference(
-        &self,
-        one: &Contender,
-        other: &Contender,
-        surfaces: Range<u64>,
-        known: &Known,
-    ) -> Mean {
-        let loss = |contender, surface| self.loss(contender, surface..surface + 1, known);
-        let differences = surfaces.map(|surface| loss(one, surface) - loss(other, surface));
-        Mean::of(&differences.collect::<Vec<_>>())
-    }
-
     /// What a texture gives; without a texture that of the bare slider.
     fn on_fresh(
         &self,
@@ -327,20 +228,6 @@ impl Judge<'_> {
             design_is_better_by: contender
                 .filter(|contender| contender.texture != design.texture)
                 .map(|contender| self.difference(contender, design, surfaces.clone(), known)),
-        }
-    }
-}
-
-impl Mean {
-    /// The mean of values, with its interval if there are several.
-    pub(crate) fn of(values: &[f64]) -> Self {
-        let sample = Sample::of(values, CONFIDENCE);
-        let mean = sample.map_or(f64::NAN, |sample| sample.mean);
-        // What differs by its rounding alone does not scatter.
-        let scatters = |half: &f64| *half > 1e-12 * mean.abs();
-        Self {
-            mean,
-            half_width: sample.and_then(|sample| sample.half_width).filter(scatters),
         }
     }
 }

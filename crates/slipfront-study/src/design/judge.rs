@@ -1,0 +1,125 @@
+//! Textures beside each other on fresh surfaces: their losses, and differences of these surface by surface.
+
+use std::ops::Range;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+use serde::Serialize;
+
+use super::evaluate::{Evaluator, Fidelity, Keep, Known};
+use super::stages::Stages;
+use crate::error::StudyError;
+use crate::statistics::Sample;
+use crate::study_file::CONFIDENCE;
+
+/// Surfaces on which finalists are compared.
+pub(super) const COMPARED: u64 = 16;
+
+/// Surfaces on which the winner is judged.
+pub(super) const JUDGED: u64 = 64;
+
+/// A texture that is compared with others, under its name.
+#[derive(Clone, Debug)]
+pub(crate) struct Contender {
+    /// Its name.
+    pub(crate) name: String,
+    /// Its blocks.
+    pub(crate) texture: Arc<Vec<bool>>,
+}
+
+/// A mean over surfaces, and half the width of its 95 % interval; none where surfaces do not differ.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Mean {
+    /// The mean.
+    pub mean: f64,
+    /// Half the width of the interval.
+    pub half_width: Option<f64>,
+}
+
+impl Mean {
+    /// The mean of values, with its interval if there are several.
+    pub(crate) fn of(values: &[f64]) -> Self {
+        let sample = Sample::of(values, CONFIDENCE);
+        let mean = sample.map_or(f64::NAN, |sample| sample.mean);
+        // What differs by its rounding alone does not scatter.
+        let scatters = |half: &f64| *half > 1e-12 * mean.abs();
+        Self {
+            mean,
+            half_width: sample.and_then(|sample| sample.half_width).filter(scatters),
+        }
+    }
+}
+
+/// Numbers of the surfaces on which finalists are compared and judged.
+pub(crate) struct Surfaces {
+    pub(crate) compared: Range<u64>,
+    pub(crate) judged: Range<u64>,
+}
+
+impl Surfaces {
+    pub(crate) fn of(evaluator: &Evaluator) -> Self {
+        let first = Stages::UNSEEN;
+        if evaluator.scatters() {
+            let judged = first + COMPARED;
+            Self {
+                compared: first..judged,
+                judged: judged..judged + JUDGED,
+            }
+        } else {
+            Self {
+                compared: 0..1,
+                judged: 0..1,
+            }
+        }
+    }
+}
+
+/// What a verdict works with.
+pub(crate) struct Judge<'a> {
+    /// The runs.
+    pub(crate) evaluator: &'a Evaluator,
+    /// Ends everything.
+    pub(crate) stop: &'a AtomicBool,
+}
+
+impl Judge<'_> {
+    /// Makes the runs of some textures on some surfaces.
+    pub(crate) fn run(
+        &self,
+        contenders: &[&Contender],
+        surfaces: Range<u64>,
+        known: &mut Known,
+        keep: &mut Keep,
+    ) -> Result<(), StudyError> {
+        let textures: Vec<_> = contenders
+            .iter()
+            .map(|found| Arc::clone(&found.texture))
+            .collect();
+        // One surface after the other, so that no more of them are lost after a stop.
+        for surface in surfaces {
+            let wanted = self
+                .evaluator
+                .wanted(&textures, surface..surface + 1, Fidelity::Verdict);
+            self.evaluator.run(&wanted, known, self.stop, keep)?;
+        }
+        Ok(())
+    }
+
+    pub(crate) fn loss(&self, contender: &Contender, surfaces: Range<u64>, known: &Known) -> f64 {
+        self.evaluator
+            .loss(&contender.texture, surfaces, Fidelity::Verdict, known)
+    }
+
+    /// The loss of one texture less that of another, surface by surface.
+    pub(crate) fn difference(
+        &self,
+        one: &Contender,
+        other: &Contender,
+        surfaces: Range<u64>,
+        known: &Known,
+    ) -> Mean {
+        let loss = |contender, surface| self.loss(contender, surface..surface + 1, known);
+        let differences = surfaces.map(|surface| loss(one, surface) - loss(other, surface));
+        Mean::of(&differences.collect::<Vec<_>>())
+    }
+}
