@@ -5,6 +5,7 @@ import pickle
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -13,8 +14,8 @@ import slipfront as sf
 SLIDER = {"slider": {"blocks": [16, 16]}, "drive": {"v_star": 0.1}}
 
 
-def design(**keys: object) -> sf.Design:
-    limits: dict[str, object] = {"feature_blocks": 2, "gap_blocks": 2, "runs": 120, **keys}
+def design(**keys: Any) -> sf.Design:
+    limits: dict[str, Any] = {"feature_blocks": 2, "gap_blocks": 2, "runs": 120, **keys}
     return sf.Design(SLIDER, sf.Least("static_friction"), (0, 15), **limits)
 
 
