@@ -1,7 +1,6 @@
 //! Cases.
 
 use std::collections::BTreeMap;
-use std::io::Read;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -16,7 +15,7 @@ use slipfront_case::case_file::{CaseError as Error, CaseFile};
 use slipfront_run::pictures;
 
 use crate::arrays::borrowed;
-use crate::errors::{CaseError, case_error};
+use crate::errors::case_error;
 use crate::process::detached;
 
 /// How long the engine works between two looks at signals.
@@ -155,19 +154,7 @@ impl Case {
     fn read_inputs<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let files = PyDict::new(py);
         for input in &self.0.inputs {
-            let path = input.original.display();
-            let mut contents = Vec::new();
-            let read = input.open().and_then(|mut file| file.read_to_end(&mut contents));
-            read.map_err(|error| {
-                CaseError::new_err(format!(
-                    "{path}, which the case reads, cannot be read again: {error}"
-                ))
-            })?;
-            if blake3::hash(&contents) != input.hash {
-                return Err(CaseError::new_err(format!(
-                    "{path} has changed since the case was made of it: load the case anew"
-                )));
-            }
+            let contents = input.read_again().map_err(|error| case_error(py, &error))?;
             files.set_item(&input.name, PyBytes::new(py, &contents))?;
         }
         Ok(files)

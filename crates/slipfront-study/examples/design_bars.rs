@@ -12,7 +12,6 @@
 
 use std::collections::HashMap;
 use std::error::Error;
-use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
 use slipfront_case::case::Case;
@@ -36,7 +35,6 @@ fn main() -> Result<(), Box<dyn Error>> {
         .iter()
         .map(|&factor| case(factor))
         .collect::<Result<_, _>>()?;
-    let cases: Vec<(&Case, &Path)> = cases.iter().map(|case| (case, Path::new(""))).collect();
     let wanted = wish.parse::<f64>().ok();
     let limits = Limits {
         coverage: [0.0, 10.0],

@@ -258,6 +258,31 @@ fn a_curve_is_followed() {
     assert!(outcome.verdict.design.loss < 1e-9, "{:?}", outcome.verdict);
 }
 
+/// A base that names files is searched from where it stands and from its copies alike; a copy that has changed is refused.
+#[test]
+fn a_base_may_name_files() {
+    let folder = tempfile::tempdir().unwrap();
+    let field = |value: f64| vec![vec![value.to_string(); 8].join(","); 8].join("\n");
+    fs::write(folder.path().join("mu.csv"), field(0.9)).unwrap();
+    let text = "[base]\nslider.blocks = [8, 8]\ndrive.v_star = 0.1\nfriction.mu_static_field = 'mu.csv'\n\
+                [design]\nwish = { least = 'static_friction' }\ncoverage = [0, 25]\nfeature_blocks = 2";
+    let file = DesignFile::parse(text, "design.toml", "design", folder.path()).unwrap();
+    let found = run(&file.design().unwrap(), 20);
+    let out = folder.path().join("out");
+    let mut opened = DesignFolder::open(&out, &file).unwrap();
+    opened
+        .find(&bounds(20, &AtomicBool::new(false)), &mut |_| {})
+        .unwrap();
+    let written: serde_json::Value =
+        serde_json::from_slice(&fs::read(out.join("design.json")).unwrap()).unwrap();
+    assert_eq!(written["design"]["loss"], found.verdict.design.loss);
+    drop(opened);
+    let design = file.design().unwrap();
+    fs::write(folder.path().join("mu.csv"), field(0.5)).unwrap();
+    let again = run(&design, 20).verdict;
+    assert_eq!(again.design, found.verdict.design, "it keeps what it was made of");
+}
+
 #[test]
 fn limits_are_kept_and_cases_are_all_looked_at() {
     let keys = "wish = { largest = 'static_friction' }\ncoverage = [5, 12]\nfeature = '2 um'\ngap = '2 um'\nmirror = 'both'\n\

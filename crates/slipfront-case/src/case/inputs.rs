@@ -1,7 +1,7 @@
 //! Files that a case reads.
 
 use std::collections::HashMap;
-use std::io::{self, BufReader};
+use std::io::{self, BufReader, Read};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -37,6 +37,28 @@ pub struct Input {
 }
 
 impl Input {
+    /// Its contents, read once more unless they are in memory.
+    ///
+    /// # Errors
+    /// When it cannot be read, or is no longer what the case was made of.
+    pub fn read_again(&self) -> Result<Arc<[u8]>, CaseError> {
+        if let Some(contents) = &self.contents {
+            return Ok(Arc::clone(contents));
+        }
+        let path = self.original.display();
+        let mut contents = Vec::new();
+        let read = self.open().and_then(|mut file| file.read_to_end(&mut contents));
+        read.map_err(|error| {
+            let sentence = format!("{path}, which the case reads, cannot be read again: {error}");
+            CaseError::invalid(None, sentence)
+        })?;
+        if blake3::hash(&contents) != self.hash {
+            let sentence = format!("{path} has changed since the case was made of it: load the case anew");
+            return Err(CaseError::invalid(None, sentence));
+        }
+        Ok(contents.into())
+    }
+
     /// Opens it to be copied.
     ///
     /// # Errors

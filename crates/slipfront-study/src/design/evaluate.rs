@@ -2,7 +2,7 @@
 
 use std::collections::{HashMap, HashSet};
 use std::ops::Range;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -52,7 +52,8 @@ pub(crate) struct Subject {
     /// The case, without textures.
     file: CaseFile,
     name: String,
-    folder: PathBuf,
+    /// The files that the case names, and the mask has its place among: no run looks at the disk.
+    files: FilesInMemory,
     /// Steps dt*, the coarse one and that of the case.
     steps: [f64; 2],
     /// Ends of runs, t*: of the search, and of verdicts.
@@ -91,7 +92,7 @@ pub type Keep<'a> = dyn FnMut(&[(RunId, Option<Measured>)]) -> Result<(), StudyE
 
 impl Subject {
     /// A case in which designs with up to `most` % of texture are tried, to find what the wish is about.
-    pub(crate) fn new(case: &Case, folder: &Path, wish: &Wish, most: f64) -> Result<Self, CaseError> {
+    pub(crate) fn new(case: &Case, wish: &Wish, most: f64) -> Result<Self, CaseError> {
         let mut file = case.file.clone();
         file.texture.clear();
         file.output.snapshots = Snapshots::At(Vec::new());
@@ -102,7 +103,11 @@ impl Subject {
         let whole = case.time_plan.end_star();
         let mut subject = Self {
             name: case.name.clone(),
-            folder: folder.to_owned(),
+            files: case
+                .inputs
+                .iter()
+                .map(|input| Ok((input.name.clone(), input.read_again()?)))
+                .collect::<Result<_, CaseError>>()?,
             steps: [coarse, own],
             ends: [whole; 2],
             physics: blake3::Hash::from_bytes([0; 32]),
@@ -134,26 +139,25 @@ impl Subject {
     pub(crate) fn with(&self, change: impl FnOnce(&mut CaseFile), wish: &Wish) -> Result<Self, CaseError> {
         let mut file = self.file.clone();
         change(&mut file);
-        let folder = self.folder.as_path();
-        let case = Case::to_run(file, &self.name, folder, &mut |_| true, Ranks::ALONE)?;
-        Self::new(&case, folder, wish, self.most)
+        Self::new(&self.made_of(file, &self.files)?, wish, self.most)
     }
 
     /// The case on blocks of half the size; none if it cannot be put there.
     pub(crate) fn on_finer_blocks(&self, wish: &Wish) -> Option<Self> {
-        let case = Case::to_run(
-            self.file.clone(),
-            &self.name,
-            &self.folder,
-            &mut |_| true,
-            Ranks::ALONE,
-        )
-        .ok()?;
+        let case = self.made_of(self.file.clone(), &self.files).ok()?;
         let set = case.on_other_blocks(2.0).ok()?;
         let set: Vec<String> = set.iter().map(ToString::to_string).collect();
-        let text = self.file.to_toml().ok()?;
-        let finer = Case::parse(&text, &self.name, &self.folder, &set).ok()?;
-        Self::new(&finer, &self.folder, wish, self.most).ok()
+        let finer = CaseFile::parse(&self.file.to_toml().ok()?, &self.name, &set).ok()?;
+        Self::new(&self.made_of(finer, &self.files).ok()?, wish, self.most).ok()
+    }
+
+    /// The case of a file.
+    fn made_of(&self, file: CaseFile, in_memory: &FilesInMemory) -> Result<Case, CaseError> {
+        let files = Files {
+            folder: Path::new(""),
+            in_memory: Some(in_memory),
+        };
+        Case::to_run_with(file, &self.name, files, &mut |_| true, Ranks::ALONE)
     }
 
     fn step_and_end(&self, fidelity: Fidelity) -> [f64; 2] {
@@ -178,17 +182,15 @@ impl Subject {
         file.time.step = TimeStep::Number(step);
         file.time.duration = RunTime::Star(AutoOr::Number(end));
         file.friction.seed = self.seed + surface;
-        let mut in_memory = FilesInMemory::new();
-        if let Some(texture) = texture {
-            file.texture.push(masked(MASK));
-            let columns = file.slider.blocks[0] as usize;
-            in_memory.insert(MASK.to_owned(), npy_of_mask(columns, texture).into());
-        }
-        let files = Files {
-            folder: &self.folder,
-            in_memory: Some(&in_memory),
+        let Some(texture) = texture else {
+            return self.made_of(file, &self.files);
         };
-        Case::to_run_with(file, &self.name, files, &mut |_| true, Ranks::ALONE)
+        file.texture.push(masked(MASK));
+        let columns = file.slider.blocks[0] as usize;
+        // Copies of the case stand in a folder of their own, where no file has the name of the mask.
+        let mut files = self.files.clone();
+        files.insert(MASK.to_owned(), npy_of_mask(columns, texture).into());
+        self.made_of(file, &files)
     }
 }
 
@@ -399,7 +401,7 @@ mod tests {
 
     fn subject(text: &str) -> Subject {
         let case = Case::parse(text, "case", "", &[]).unwrap();
-        Subject::new(&case, Path::new(""), &Wish::Least(Quantity::StaticFriction), 10.0).unwrap()
+        Subject::new(&case, &Wish::Least(Quantity::StaticFriction), 10.0).unwrap()
     }
 
     /// Bars that a search once placed so that mu* ripples at 0.5005, just above the level of sliding, before it rises on to 0.59: not the

@@ -268,8 +268,6 @@ impl DesignFile {
             let sentence = "a curve is that of one case: leave out `cases`".to_owned();
             return Err(self.error("cases", sentence).into());
         }
-        let folder = self.base.folder.as_path();
-        let cases: Vec<(&Case, &Path)> = cases.iter().map(|case| (case, folder)).collect();
         let mut design = Design::new(&cases, wish, keys.judge_by == JudgeBy::Worst, limits, keys.start)?;
         for (k, textures) in keys.starts.iter().enumerate() {
             let textured = self.textured("starts", textures)?;

@@ -25,7 +25,6 @@ mod stages;
 mod verdict;
 mod wish;
 
-use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
@@ -78,21 +77,23 @@ pub struct Outcome {
 }
 
 impl Design {
-    /// A design for some cases, whose files stand relative to the folder beside each; `is_worst` asks for the worst case, in place of the
-    /// mean over them.
+    /// A design for some cases, at least one, all on the same blocks; `is_worst` asks for the worst case, in place of the mean over them.
     ///
     /// # Errors
-    /// When a case cannot be run for as long as the search needs.
+    /// When a case cannot be run for as long as the search needs, or a file of it is no longer what it was made of.
+    ///
+    /// # Panics
+    /// Without a case.
     pub fn new(
-        cases: &[(&Case, &Path)],
+        cases: &[Case],
         wish: Wish,
         is_worst: bool,
         limits: Limits,
         start: u64,
     ) -> Result<Self, StudyError> {
-        let subject = |(case, folder): &(&Case, &Path)| Subject::new(case, folder, &wish, limits.coverage[1]);
+        let subject = |case| Subject::new(case, &wish, limits.coverage[1]);
         let subjects = cases.iter().map(subject).collect::<Result<Vec<_>, _>>()?;
-        let grid = Grid::of(cases[0].0);
+        let grid = Grid::of(&cases[0]);
         Ok(Self {
             evaluator: Evaluator {
                 subjects,
