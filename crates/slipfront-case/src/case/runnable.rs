@@ -17,7 +17,7 @@ use super::model::{self, TextureReport};
 use super::output::Output;
 use super::ranks::Ranks;
 use super::textures;
-use super::time_plan::{TimePlan, load_factor};
+use super::time_plan::{TimePlan, auto_onset_end, load_factor};
 use crate::arrays::Slab;
 use crate::case_file::{CaseError, CaseFile};
 use crate::same::expect_same;
@@ -60,15 +60,18 @@ pub struct Expected {
     pub first_slip_star: f64,
     /// [`Model::onset_estimate`], the earliest and the latest t*.
     pub onset_star: [f64; 2],
+    /// t* up to which the largest mu* is static friction: twice that of the onset, and more where only some blocks touch or adhesion delays it.
+    pub onset_end_star: f64,
 }
 
 impl Expected {
-    fn of(file: &CaseFile, model: &Model, ranks: &dyn Communicator) -> Self {
+    fn of(file: &CaseFile, scales: &Scales, model: &Model, ranks: &dyn Communicator) -> Self {
         Self {
             steady_level: model.steady_level(ranks),
             steady_drag: model.steady_drag(ranks),
             first_slip_star: model.first_slip_estimate(ranks),
             onset_star: model.onset_estimate(load_factor(file, model)),
+            onset_end_star: auto_onset_end(file, scales, model),
         }
     }
 }
@@ -214,7 +217,7 @@ impl Case {
             inputs: inputs.files,
             scales,
             groups,
-            expected: Expected::of(&file, &model, ranks.communicator),
+            expected: Expected::of(&file, &scales, &model, ranks.communicator),
             model: Arc::new(model),
             texture,
             time_plan,

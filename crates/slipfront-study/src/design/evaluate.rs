@@ -11,8 +11,8 @@ use slipfront::StopReason;
 use slipfront_case::arrays::npy_of_mask;
 use slipfront_case::case::{Case, Files, FilesInMemory, Ranks};
 use slipfront_case::case_file::{
-    Arrangement, AutoOr, CaseError, CaseFile, Count, DEFAULT_THRESHOLD, Mask, Pattern, RunTime, Shape,
-    Snapshots, Texture, TimeStep,
+    Arrangement, Attached, AttachedEdge, AutoOr, CaseError, CaseFile, Count, DEFAULT_THRESHOLD, Mask,
+    Pattern, RunTime, Shape, Snapshots, Texture, TimeStep,
 };
 use slipfront_run::run_summary::run_summary_unless;
 use slipfront_run::running::{Record, run_unless};
@@ -27,10 +27,11 @@ use crate::statistics::mean;
 /// The step that designs are tried with: it finds reductions in the order of those at a quarter of it, at a third of the cost.
 const COARSE_STEP: f64 = 0.4;
 
-/// The time up to which the largest mu* of a design counts as its static friction, over the latest t* at which a slider with as much
-/// texture as the limits allow is expected to slip (Eq. 12): a block that its own drive spring alone must pull until it slips, without help
-/// of its neighbours, slips at 2.67/2.5 = 1.07 of that time.
-const SEARCHED: f64 = 1.2;
+/// The time up to which the largest mu* of a design counts as its static friction, over that up to which the largest mu* of the slider without
+/// texture does, times the load factor of as much texture as the limits allow. The latter is twice that of the onset (Eq. 12), so that it is
+/// 1.2 times the latest onset that is expected; a block that its own drive spring alone must pull until it slips, without help of its
+/// neighbours, slips at 2.67/2.5 = 1.07 of that.
+const SEARCHED: f64 = 0.6;
 
 /// Multiple of that time up to which verdicts look, so that no design is good only until the search has looked away.
 const JUDGED: f64 = 2.0;
@@ -117,14 +118,15 @@ impl Subject {
             file,
         };
         let bare = subject.case(None, 0, Fidelity::Fine)?;
-        let is_short =
-            !wish.needs_sliding() && bare.file.drive.edge().is_none() && bare.model.drive.program.is_none();
+        // When a drive at some blocks alone makes the others slip is not known before.
+        let is_on_all = bare.file.drive.attached == Attached::At(AttachedEdge::All);
+        let is_short = is_on_all && !wish.needs_sliding() && bare.model.drive.program.is_none();
         if is_short {
             // No window of kinetic friction may begin after the end.
             subject.file.time.kinetic_from_star = AutoOr::Auto;
-            let load_factor = 1.0 / (1.0 - 0.01 * most.min(90.0));
-            let onset = bare.expected.onset_star[1] * load_factor;
-            subject.ends = [SEARCHED, JUDGED * SEARCHED].map(|times| times * onset);
+            let load_factor = 1.0 / (1.0 - 0.01 * most);
+            let onset_end = bare.expected.onset_end_star * load_factor;
+            subject.ends = [SEARCHED, JUDGED * SEARCHED].map(|times| times * onset_end);
         }
         subject.physics = physics(&subject.case(None, 0, Fidelity::Fine)?, None)?;
         Ok(subject)
@@ -438,6 +440,16 @@ mod tests {
         let case = subject.case(None, 3, Fidelity::Coarse).unwrap();
         assert_eq!((case.time_plan.dt_star, case.file.friction.seed), (0.4, 4));
         assert_eq!(case.time_plan.last_step, (searched / 0.4).ceil() as u64);
+        // Adhesion as large as the load delays the onset to twice the time.
+        let adhesive = self::subject(
+            "slider.blocks = [4, 4]\ndrive.v_star = 0.1\nfriction.adhesion = '100 kPa'\nload.pressure = '100 kPa'",
+        );
+        assert!((adhesive.ends[0] / searched - 2.0).abs() < 1e-12);
+        // A drive at an edge pulls as long as the case says.
+        let edge = self::subject(
+            "slider.blocks = [4, 4]\ndrive = { attach = 'left', v_star = 0.1 }\ntime.duration_star = 300",
+        );
+        assert_eq!(edge.ends, [300.0; 2]);
     }
 
     #[test]
