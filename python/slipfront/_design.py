@@ -15,7 +15,7 @@ import numpy.typing as npt
 from . import _slipfront, _toml
 from ._case import Case, CaseLike, as_case
 from ._pickle import sealed
-from ._progress import Bar
+from ._progress import Bar, parted
 from ._simulation import _threads
 from ._study import _as_base
 from ._temporary import TemporaryFolder
@@ -202,8 +202,7 @@ class Design:
         CaseError
             When no texture keeps the limits.
         """
-        watch = progress if callable(progress) else None
-        shown = progress if progress is None or isinstance(progress, bool) else False
+        shown, watch = parted(progress)
         temporary = TemporaryFolder()
         with Bar(shown, None, "run", self.name) as bar:
 

@@ -3,8 +3,17 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Callable
 from types import TracebackType
-from typing import Any
+from typing import Any, TypeVar
+
+
+Watch = TypeVar("Watch", bound=Callable[..., object])
+
+
+def parted(progress: bool | Watch | None) -> tuple[bool | None, Watch | None]:
+    """Whether a bar is shown, None where it depends on the terminal, and the user's function of how far it is, if that was given."""
+    return (False, progress) if callable(progress) else (progress, None)
 
 
 class Bar:

@@ -17,7 +17,7 @@ import numpy.typing as npt
 from . import _dataset, _slipfront
 from ._case import Case, CaseLike, as_case
 from ._pickle import sealed
-from ._progress import Bar
+from ._progress import Bar, parted
 from ._run import Run
 
 if TYPE_CHECKING:
@@ -305,8 +305,7 @@ class Simulation:
             raise RuntimeError(
                 "a run that was changed on its way has no results of one case: read `series` and the fields, and keep `recipe()`"
             )
-        watch = progress if callable(progress) else None
-        shown = progress if progress is None or isinstance(progress, bool) else False
+        shown, watch = parted(progress)
         last = self._case.last_step
         # A short run is over before a bar is worth its while.
         with self._alone as native:

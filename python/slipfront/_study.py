@@ -12,7 +12,7 @@ import numpy as np
 from . import _slipfront, _toml
 from ._case import Case
 from ._pickle import sealed
-from ._progress import Bar
+from ._progress import Bar, parted
 from ._run import Run
 from ._simulation import _threads, run
 from ._tables import frame, read_table
@@ -315,8 +315,7 @@ def executed(
     look: Look | None = None,
 ) -> tuple[Results, dict[tuple[int, int, bool], list[float]]]:
     """Run what the folder of a study lacks, one in memory unless it is given; its results, and the values of own quantities by run."""
-    watch = progress if callable(progress) else None
-    shown = progress if progress is None or isinstance(progress, bool) else False
+    shown, watch = parted(progress)
     temporary = TemporaryFolder()
     with Bar(shown, None, "run", native.name) as bar:
 

@@ -15,7 +15,7 @@ use slipfront_case::case_file::{CaseError as Error, CaseFile};
 use slipfront_run::pictures;
 
 use crate::arrays::borrowed;
-use crate::errors::case_error;
+use crate::errors::{CaseError, case_error};
 use crate::process::detached;
 
 /// How long the engine works between two looks at signals.

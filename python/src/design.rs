@@ -14,9 +14,8 @@ use slipfront_study::design::{
     Bounds, Design as SlipfrontDesign, DesignFile, DesignFolder, Known, OpenSearch, SearchProgress,
 };
 
-use crate::case::LOOK_EVERY;
 use crate::errors::{folder_error, study_error};
-use crate::process::detached;
+use crate::process::{detached, watched};
 
 /// A design: its file, and what it has been asked and told.
 #[pyclass(frozen, module = "slipfront._slipfront")]
@@ -110,7 +109,7 @@ impl Design {
             self.design
                 .losses(textures, surfaces, is_coarse, &mut known, stop)
         };
-        watched(py, threads, evaluate, &mut |_| Ok(()))
+        on_pool(py, threads, evaluate, &mut |_| Ok(()))
     }
 
     /// Searches in a folder, or goes on there, and writes what the design leaves; gives the verdict as a text.
@@ -145,7 +144,7 @@ impl Design {
                 _ => Ok(()),
             }
         };
-        watched(py, threads, search, &mut show)
+        on_pool(py, threads, search, &mut show)
     }
 }
 
@@ -167,7 +166,7 @@ impl Design {
 }
 
 /// Does this work on a pool of so many threads; this one looks for signals and shows what is new. An exception of either ends the work.
-fn watched<T: Send>(
+fn on_pool<T: Send>(
     py: Python<'_>,
     threads: usize,
     work: impl FnOnce(&AtomicBool) -> Result<T, StudyError> + Send,
@@ -177,28 +176,21 @@ fn watched<T: Send>(
     let pool = pool.map_err(folder_error)?;
     let stop = AtomicBool::new(false);
     let mut raised = None;
+    let mut look = || {
+        let shown = Python::attach(|py| py.check_signals().and_then(|()| show(py)));
+        if let Err(error) = shown {
+            raised.get_or_insert(error);
+            stop.store(true, Ordering::Relaxed);
+        }
+    };
     let ended = detached(py, || {
-        std::thread::scope(|scope| {
-            let worker = scope.spawn(|| pool.install(|| work(&stop)));
-            loop {
-                let is_finished = worker.is_finished();
-                let shown = Python::attach(|py| py.check_signals().and_then(|()| show(py)));
-                if let Err(error) = shown {
-                    raised.get_or_insert(error);
-                    stop.store(true, Ordering::Relaxed);
-                }
-                if is_finished {
-                    break worker.join();
-                }
-                std::thread::park_timeout(LOOK_EVERY);
-            }
-        })
+        let ended = watched(|| pool.install(|| work(&stop)), &mut look);
+        look();
+        ended
     })?;
     if let Some(error) = raised {
         return Err(error);
     }
-    match ended {
-        Ok(found) => found.map_err(|error| study_error(py, &error)),
-        Err(_) => Err(PyRuntimeError::new_err("a fault of the program ended the design")),
-    }
+    let ended = ended.ok_or_else(|| PyRuntimeError::new_err("a fault of the program ended the design"))?;
+    ended.map_err(|error| study_error(py, &error))
 }

@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-use std::sync::mpsc::{self, RecvTimeoutError};
 
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
@@ -11,9 +10,9 @@ use slipfront_case::case::Case as SlipfrontCase;
 use slipfront_run::run_summary::run_summary_unless;
 use slipfront_run::summary::summary_json;
 
-use crate::case::{Case, LOOK_EVERY};
+use crate::case::Case;
 use crate::errors::{RunError, folder_error};
-use crate::process::detached;
+use crate::process::{detached, watched};
 
 /// Runs cases, one on each thread at a time, and gives `summary.json` of each in their order. A signal ends all of them. A run that
 /// diverges ends those after it, so that it is always the first one that is told of.
@@ -54,19 +53,4 @@ pub(crate) fn run_summaries(
         Some(ended?.map_err(told))
     });
     summaries.collect()
-}
-
-/// Does this work on another thread, and looks for signals on this one, to which they come; none if the work panicked.
-fn watched<T: Send>(work: impl FnOnce() -> T + Send, mut look: impl FnMut()) -> Option<T> {
-    std::thread::scope(|scope| {
-        let (done, result) = mpsc::channel();
-        let worker = scope.spawn(move || done.send(work()).is_ok());
-        loop {
-            match result.recv_timeout(LOOK_EVERY) {
-                Ok(found) => return Some(found),
-                Err(RecvTimeoutError::Timeout) => look(),
-                Err(RecvTimeoutError::Disconnected) => return worker.join().err().and(None),
-            }
-        }
-    })
 }

@@ -4,9 +4,11 @@
 //! would wait for ever. So whatever may use them goes through here, and is refused in such a child.
 
 use std::sync::atomic::{AtomicU32, Ordering};
+use std::sync::mpsc::{self, RecvTimeoutError};
 
 use pyo3::prelude::*;
 
+use crate::case::LOOK_EVERY;
 use crate::errors::ForkError;
 
 /// The process that was the first to use the engine, which the children that it forks afterwards inherit; 0 before.
@@ -34,4 +36,19 @@ pub(crate) fn check_process() -> PyResult<()> {
 pub(crate) fn detached<T: Send>(py: Python<'_>, work: impl FnOnce() -> T + Send) -> PyResult<T> {
     check_process()?;
     Ok(py.detach(work))
+}
+
+/// Does this work on another thread, and looks for signals on this one, to which they come; none if the work panicked.
+pub(crate) fn watched<T: Send>(work: impl FnOnce() -> T + Send, mut look: impl FnMut()) -> Option<T> {
+    std::thread::scope(|scope| {
+        let (done, result) = mpsc::channel();
+        let worker = scope.spawn(move || done.send(work()).is_ok());
+        loop {
+            match result.recv_timeout(LOOK_EVERY) {
+                Ok(found) => return Some(found),
+                Err(RecvTimeoutError::Timeout) => look(),
+                Err(RecvTimeoutError::Disconnected) => return worker.join().err().and(None),
+            }
+        }
+    })
 }

@@ -16,9 +16,9 @@ use slipfront_study::{
     StudyResults,
 };
 
-use crate::case::{Case, LOOK_EVERY, make};
+use crate::case::{Case, make};
 use crate::errors::{folder_error, study_error};
-use crate::process::detached;
+use crate::process::{detached, watched};
 use crate::record::Record;
 
 /// A study whose every point is a valid case.
@@ -216,25 +216,18 @@ impl Study {
             })
         };
         let results = detached(py, || {
-            std::thread::scope(|scope| {
-                let worker = scope.spawn(execute);
-                // Signals come to the thread that called, and what is shown is shown by it.
-                while !worker.is_finished() {
-                    std::thread::park_timeout(LOOK_EVERY);
-                    shared.show(watch.as_ref());
-                }
-                let results = worker.join();
-                shared.show(watch.as_ref());
-                results
-            })
+            // Signals come to the thread that called, and what is shown is shown by it.
+            let results = watched(execute, || shared.show(watch.as_ref()));
+            shared.show(watch.as_ref());
+            results
         })?;
         if let Some(error) = locked(&shared.raised).take() {
             return Err(error);
         }
         let results = match results {
-            Ok(Ok(results)) => results.map_err(failed)?,
-            Ok(Err(error)) => return Err(folder_error(error)),
-            Err(_) => return Err(PyRuntimeError::new_err("a fault of the program ended the study")),
+            Some(Ok(results)) => results.map_err(failed)?,
+            Some(Err(error)) => return Err(folder_error(error)),
+            None => return Err(PyRuntimeError::new_err("a fault of the program ended the study")),
         };
         detached(py, || self.write(&plan, &results, &opened))?.map_err(failed)?;
         let describe = |(run, reason): (RunKey, &str)| {
