@@ -134,11 +134,11 @@ impl Case {
     ///
     /// ```
     /// use std::path::Path;
+    /// use slipfront_case::arrays::npy_of_mask;
     /// use slipfront_case::case::{Case, Files, FilesInMemory, Ranks};
     /// use slipfront_case::case_file::CaseFile;
     /// let text = "slider.blocks = [2, 2]\ntexture = [{ shape = 'mask', file = 'drawn.npy' }]";
-    /// let header = "{'descr': '|b1', 'fortran_order': False, 'shape': (2, 2)}";
-    /// let drawn = [&b"\x93NUMPY\x01\x00"[..], &[header.len() as u8, 0], header.as_bytes(), &[1, 0, 0, 0]].concat();
+    /// let drawn = npy_of_mask(2, &[true, false, false, false]);
     /// let in_memory = FilesInMemory::from([("drawn.npy".to_owned(), drawn.into())]);
     /// let files = Files { folder: Path::new(""), in_memory: Some(&in_memory) };
     /// let file = CaseFile::parse(text, "case", &[])?;

@@ -28,8 +28,8 @@ pub(super) const KEYS: &[Key] = &[
     key("invert", "false", KeyKind::Switch, "whether all but the inside is textured"),
 ];
 
-/// The pattern in which the shape of a texture is repeated.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+/// The pattern in which the shape of a texture is repeated: by default it is not.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Pattern {
     /// Distance between neighbouring copies.

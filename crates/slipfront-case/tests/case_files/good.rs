@@ -5,8 +5,8 @@ use slipfront::Edges;
 
 use slipfront_case::case::Case;
 use slipfront_case::case_file::{
-    Arrangement, CaseFile, Cavity, CavitySize, Center, Count, Damping, DriveSpeed, KineticFriction, Pattern,
-    RunTime, Shape, Snapshots, Texture,
+    CaseFile, Cavity, CavitySize, Center, Damping, DriveSpeed, KineticFriction, Pattern, RunTime, Shape,
+    Snapshots, Texture,
 };
 
 use super::{files, notes};
@@ -127,13 +127,7 @@ fn a_case_changed_in_code_is_checked_without_a_place() {
             center: Center::Middle,
             rotate: 0.0,
         }),
-        pattern: Pattern {
-            pitch: None,
-            array: Count::Auto,
-            lattice: Arrangement::Square,
-            repeat: None,
-            invert: false,
-        },
+        pattern: Pattern::default(),
     });
     assert!(
         case.check()
