@@ -38,7 +38,7 @@ struct Table {
     ended: Option<usize>,
 }
 
-/// That of a rank at the meetings; it is gone when the rank has ended.
+/// The place of a rank at the meetings; it is gone when the rank has ended.
 #[derive(Debug)]
 struct Seat {
     rank: usize,
