@@ -40,10 +40,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         coverage: [0.0, 10.0],
         feature: 3,
         gap: 3,
-        mirror: [false; 2],
-        copies: [1, 1],
-        forbidden: None,
-        max_features: None,
+        ..Limits::default()
     };
     for start in starts {
         let wish = match wanted {

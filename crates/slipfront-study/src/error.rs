@@ -151,6 +151,16 @@ pub enum StudyError {
     Interrupted,
 }
 
+impl StudyError {
+    /// The error of a picture of this name that cannot be drawn.
+    pub(crate) fn picture(name: &str) -> impl Fn(PictureError) -> Self {
+        move |source| Self::Picture {
+            name: name.to_owned(),
+            source,
+        }
+    }
+}
+
 /// The explanation of recorded runs that do not belong to a study, to be inserted into a sentence.
 pub(crate) fn of_others(runs: usize) -> String {
     match runs {

@@ -1,9 +1,11 @@
 //! Files that a study or a design writes to its results folder.
 
 use std::fs::File;
+use std::io::Write;
 use std::path::Path;
 
 use slipfront_case::disk::{folder_of, found_at, make_folders, write_atomic_with, write_beside};
+use slipfront_plot::Picture;
 use slipfront_run::folder_error::FolderError;
 
 use crate::error::StudyError;
@@ -18,6 +20,16 @@ pub(crate) fn write_in(
     let path = folder.join(name);
     let written = make_folders(folder_of(&path)).and_then(|()| write_atomic_with(&path, fill));
     written.map_err(|source| StudyError::Write { path, source })
+}
+
+/// Writes a picture to a folder in both its formats.
+pub(crate) fn write_picture(folder: &Path, name: &str, picture: &Picture) -> Result<(), StudyError> {
+    write_in(folder, &format!("{name}.svg"), |file| {
+        file.write_all(picture.svg.as_bytes())
+    })?;
+    write_in(folder, &format!("{name}.png"), |file| {
+        file.write_all(&picture.png)
+    })
 }
 
 /// Copies files to a folder, all of them under hidden names first: the name of a copy may be that of another original.

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use crate::anisotropy::anisotropies;
 use crate::error::StudyError;
-use crate::files_in_folder::{copy_in, write_in};
+use crate::files_in_folder::{copy_in, write_in, write_picture};
 use crate::journal::Records;
 use crate::pictures;
 use crate::plan::{Plan, RunKey};
@@ -151,10 +151,7 @@ pub fn write(plan: &Plan, results: &StudyResults, folder: &StudyFolder) -> Resul
     }
     let mut drawn: HashSet<String> = HashSet::new();
     pictures::draw(plan, results, |name, picture| {
-        folder.write(&format!("{name}.svg"), |file| {
-            file.write_all(picture.svg.as_bytes())
-        })?;
-        folder.write(&format!("{name}.png"), |file| file.write_all(&picture.png))?;
+        write_picture(&folder.path, &name, &picture)?;
         drawn.insert(name);
         Ok(())
     })?;

@@ -195,10 +195,7 @@ impl Settings {
 impl StudyFile {
     /// The study with its base case inside and its files beside it, for the results folder.
     pub(crate) fn portable(&self) -> Result<(String, Vec<Copy>), StudyError> {
-        let mut table = toml::Table::from_iter([("base".to_owned(), base_table(&self.base)?.into())]);
-        table.extend(self.table.clone().into_iter().filter(|(key, _)| key != "base"));
-        let copies = input_copies::copy(&mut table, &self.base.folder)?;
-        Ok((portable_text(table)?, copies))
+        portable(&self.base, &self.table)
     }
 
     /// Whether it has anything of a study: an empty file is one, too, and varies nothing.
@@ -224,21 +221,14 @@ impl StudyFile {
 
     /// Loads a study file; a base case that it names stands relative to it.
     pub fn load(path: &Path) -> Result<Self, StudyError> {
-        let text = read_text(path)?;
-        let stem = path.file_stem();
-        let name = stem.map_or_else(|| "study".into(), |stem| stem.to_string_lossy());
-        let folder = path.parent().unwrap_or(Path::new(""));
+        let (text, name, folder) = read_named(path, "study")?;
         Self::parse(&text, &path.display().to_string(), &name, folder)
     }
 
     /// Reads a study file called `file` in messages; a base case that it names stands relative to `folder`.
     pub fn parse(text: &str, file: &str, name: &str, folder: &Path) -> Result<Self, StudyError> {
         let mut source = Source::new(file, text);
-        let root = DeTable::parse(limit_nesting(&source, 0, text)?);
-        let root = root
-            .map_err(|error| syntax_error(&source, 0, &error))?
-            .into_inner();
-        source.note_places(&root);
+        let root = parse_noting_places(&mut source, text)?;
         let mut tables = Tables {
             root,
             source: &source,
@@ -281,8 +271,35 @@ fn refuse_rest(tables: &Tables) -> Result<(), CaseError> {
     Err(tables.source.error_at(key.span(), sentence))
 }
 
+/// The text of a file, its name without the ending, or else `default`, and its folder.
+pub(crate) fn read_named<'p>(path: &'p Path, default: &str) -> Result<(String, String, &'p Path), CaseError> {
+    let text = read_text(path)?;
+    let stem = path.file_stem();
+    let name = stem.map_or_else(|| default.into(), |stem| stem.to_string_lossy());
+    let folder = path.parent().unwrap_or(Path::new(""));
+    Ok((text, name.into_owned(), folder))
+}
+
+/// The tables of a text, the places of whose keys its source knows from then on.
+pub(crate) fn parse_noting_places<'t>(source: &mut Source, text: &'t str) -> Result<DeTable<'t>, CaseError> {
+    let root = DeTable::parse(limit_nesting(source, 0, text)?);
+    let root = root
+        .map_err(|error| syntax_error(source, 0, &error))?
+        .into_inner();
+    source.note_places(&root);
+    Ok(root)
+}
+
+/// The text of a file with its base case inside, and the copies of files that it names beside it.
+pub(crate) fn portable(base: &Base, table: &toml::Table) -> Result<(String, Vec<Copy>), StudyError> {
+    let mut portable = toml::Table::from_iter([("base".to_owned(), base_table(base)?.into())]);
+    portable.extend(table.clone().into_iter().filter(|(key, _)| key != "base"));
+    let copies = input_copies::copy(&mut portable, &base.folder)?;
+    Ok((portable_text(portable)?, copies))
+}
+
 /// The keys of a base case.
-pub(crate) fn base_table(base: &Base) -> Result<toml::Table, CaseError> {
+fn base_table(base: &Base) -> Result<toml::Table, CaseError> {
     let source = Source::new(&base.name, &base.text);
     let table: Result<toml::Table, _> = limit_nesting(&source, 0, &base.text)?.parse();
     table.map_err(|error| syntax_error(&source, 0, &error))

@@ -11,8 +11,8 @@ use slipfront::StopReason;
 use slipfront_case::arrays::npy_of_mask;
 use slipfront_case::case::{Case, Files, FilesInMemory, Ranks};
 use slipfront_case::case_file::{
-    Arrangement, Attached, AttachedEdge, AutoOr, CaseError, CaseFile, Count, DEFAULT_THRESHOLD, Mask,
-    Pattern, RunTime, Shape, Snapshots, Texture, TimeStep,
+    Attached, AttachedEdge, AutoOr, CaseError, CaseFile, DEFAULT_THRESHOLD, Mask, Pattern, RunTime, Shape,
+    Snapshots, Texture, TimeStep,
 };
 use slipfront_run::run_summary::run_summary_unless;
 use slipfront_run::running::{Record, run_unless};
@@ -206,13 +206,7 @@ pub(crate) fn masked(file: &str) -> Texture {
             file: file.to_owned(),
             threshold: DEFAULT_THRESHOLD,
         }),
-        pattern: Pattern {
-            pitch: None,
-            array: Count::Auto,
-            lattice: Arrangement::Square,
-            repeat: None,
-            invert: false,
-        },
+        pattern: Pattern::default(),
     }
 }
 
@@ -288,15 +282,15 @@ impl Evaluator {
         wanted
     }
 
-    /// Makes the runs that are not known yet, on the threads of rayon's pool, and hands them over in the order in which they are wanted;
-    /// how many there were. After a stop, none of them is handed over.
+    /// Makes the runs that are not known yet, on the threads of rayon's pool, and hands them over in the order in which they are wanted.
+    /// After a stop, none of them is handed over.
     pub(crate) fn run(
         &self,
         wanted: &[Wanted],
         known: &mut Known,
         stop: &AtomicBool,
         keep: &mut Keep,
-    ) -> Result<usize, StudyError> {
+    ) -> Result<(), StudyError> {
         let mut asked = HashSet::new();
         let missing: Vec<(RunId, &Wanted)> = wanted
             .iter()
@@ -309,12 +303,11 @@ impl Evaluator {
             .collect();
         let ended = ended?;
         keep(&ended)?;
-        let n = ended.len();
         known.extend(ended);
-        Ok(n)
+        Ok(())
     }
 
-    /// One run; none after a stop, and none within of one that diverges.
+    /// One run: none after a stop, and within that none of a run that diverges.
     fn measure(&self, wanted: &Wanted, stop: &AtomicBool) -> Result<Option<Option<Measured>>, CaseError> {
         let ends = || stop.load(Ordering::Relaxed);
         let texture = wanted.texture.as_ref().map(|texture| texture.as_slice());

@@ -5,12 +5,11 @@ use std::path::Path;
 use serde::Deserialize;
 use slipfront_case::case::{Case, Ranks};
 use slipfront_case::case_file::{
-    CaseError, CaseFile, Override, Place, Source, Tables, limit_nesting, read_text, syntax_error, unknown_key,
+    CaseError, CaseFile, Override, Place, Source, Tables, syntax_error, unknown_key,
 };
 use slipfront_case::quantity::{Force, Length};
 use slipfront_run::measured::{Column, Measure, MeasuredRecord};
 use slipfront_run::pictures::texture_file::textured_blocks;
-use toml::de::DeTable;
 use toml::{Table, Value};
 
 use super::limits::Limits;
@@ -18,8 +17,8 @@ use super::wish::{Quantity, Wish};
 use super::{Design, Grid};
 use crate::axis::overrides;
 use crate::error::StudyError;
-use crate::input_copies::{self, Copy};
-use crate::study_file::{Base, base_table, portable_text, read_base};
+use crate::input_copies::Copy;
+use crate::study_file::{Base, parse_noting_places, portable, read_base, read_named};
 
 /// The tables of a design file.
 const TABLES: [&str; 2] = ["base", "design"];
@@ -150,10 +149,7 @@ impl DesignFile {
     /// # Errors
     /// As [`parse`](Self::parse), and when the file cannot be read.
     pub fn load(path: &Path) -> Result<Self, StudyError> {
-        let text = read_text(path)?;
-        let stem = path.file_stem();
-        let name = stem.map_or_else(|| "design".into(), |stem| stem.to_string_lossy());
-        let folder = path.parent().unwrap_or(Path::new(""));
+        let (text, name, folder) = read_named(path, "design")?;
         Self::parse(&text, &path.display().to_string(), &name, folder)
     }
 
@@ -163,11 +159,7 @@ impl DesignFile {
     /// When it is no TOML, has unknown keys, or values out of their bounds.
     pub fn parse(text: &str, file: &str, name: &str, folder: &Path) -> Result<Self, StudyError> {
         let mut source = Source::new(file, text);
-        let root = DeTable::parse(limit_nesting(&source, 0, text)?);
-        let root = root
-            .map_err(|error| syntax_error(&source, 0, &error))?
-            .into_inner();
-        source.note_places(&root);
+        let root = parse_noting_places(&mut source, text)?;
         let mut tables = Tables {
             root,
             source: &source,
@@ -191,10 +183,7 @@ impl DesignFile {
 
     /// The design with its base case inside and its files beside it, for the results folder.
     pub(crate) fn portable(&self) -> Result<(String, Vec<Copy>), StudyError> {
-        let mut table = Table::from_iter([("base".to_owned(), base_table(&self.base)?.into())]);
-        table.extend(self.table.clone().into_iter().filter(|(key, _)| key != "base"));
-        let copies = input_copies::copy(&mut table, &self.base.folder)?;
-        Ok((portable_text(table)?, copies))
+        portable(&self.base, &self.table)
     }
 
     /// The case in which designs are tried first, with the texture that it has.
@@ -298,7 +287,7 @@ impl DesignFile {
     /// The limits in blocks.
     fn limits(&self, base: &Case, grid: &Grid, percent: f64) -> Result<Limits, CaseError> {
         let keys = &self.keys;
-        let narrowest = grid.size[0].min(grid.size[1]);
+        let narrowest = grid.size()[0].min(grid.size()[1]);
         let width = |[key, in_blocks]: [&str; 2], length: &Option<Length>, blocks: Option<u32>| {
             let of_length = |length: &Length| {
                 // A length that is a whole number of blocks up to rounding must not gain one.
@@ -315,10 +304,11 @@ impl DesignFile {
         };
         let copies = keys.copies.map(|cells| cells as usize);
         for (axis, name) in ["columns", "rows"].into_iter().enumerate() {
-            if copies[axis] == 0 || !grid.size[axis].is_multiple_of(copies[axis]) {
+            if copies[axis] == 0 || !grid.size()[axis].is_multiple_of(copies[axis]) {
                 let sentence = format!(
                     "`copies` must divide the slider: it has {} {name} of blocks, which {} does not divide",
-                    grid.size[axis], copies[axis]
+                    grid.size()[axis],
+                    copies[axis]
                 );
                 return Err(self.error("copies", sentence));
             }

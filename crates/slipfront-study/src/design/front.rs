@@ -1,7 +1,5 @@
 //! A front: what can be had of a wish with how much texture.
 
-use std::io::Write;
-
 use serde::Serialize;
 use slipfront_case::number_format::four_digits;
 use slipfront_plot::{Response, Responses};
@@ -9,7 +7,7 @@ use slipfront_plot::{Response, Responses};
 use super::report::{Report, called, unit};
 use super::{Design, Outcome};
 use crate::error::StudyError;
-use crate::files_in_folder::write_in;
+use crate::files_in_folder::{write_in, write_picture};
 use crate::text_table::table;
 
 /// Table and pictures of a front.
@@ -83,16 +81,7 @@ impl Report<'_> {
             curves: vec![curve],
             ..Responses::default()
         });
-        let picture = picture.map_err(|source| StudyError::Picture {
-            name: FRONT.to_owned(),
-            source,
-        })?;
-        write_in(self.path, &format!("{FRONT}.svg"), |to| {
-            to.write_all(picture.svg.as_bytes())
-        })?;
-        write_in(self.path, &format!("{FRONT}.png"), |to| {
-            to.write_all(&picture.png)
-        })?;
+        write_picture(self.path, FRONT, &picture.map_err(StudyError::picture(FRONT))?)?;
         Ok(format!(
             "\nWith less texture:\n{}",
             table(&["at most", "covers", called(wish), "texture"], &rows)

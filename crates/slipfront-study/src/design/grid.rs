@@ -1,15 +1,14 @@
 //! Sets of blocks, and how narrow they are: openings by squares, on a slider with edges.
 
+use slipfront::Lattice;
 use slipfront::lattice::Edges;
 use slipfront_case::case::Case;
 
 /// The blocks of a slider. Sets of them are row-major, the smallest y first.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Grid {
-    /// Blocks along x and along y.
-    pub size: [usize; 2],
-    /// Whether the last block along an axis is the neighbour of the first.
-    pub periodic: [bool; 2],
+    /// The blocks and their arrangement.
+    pub lattice: Lattice,
     /// Which blocks exist: all, unless the slider has an outline.
     pub exists: Vec<bool>,
 }
@@ -17,13 +16,28 @@ pub struct Grid {
 impl Grid {
     /// The blocks of the slider of a case.
     pub fn of(case: &Case) -> Self {
-        let lattice = &case.model.lattice;
+        let lattice = case.model.lattice;
         let slider = case.model.slider();
         Self {
-            size: [lattice.nx, lattice.ny],
-            periodic: lattice.edges.map(|edges| edges == Edges::Periodic),
+            lattice,
             exists: (0..lattice.n_blocks()).map(|b| slider.exists(b)).collect(),
         }
+    }
+
+    /// Blocks along x and along y.
+    pub fn size(&self) -> [usize; 2] {
+        [self.lattice.nx, self.lattice.ny]
+    }
+
+    /// Whether the last block along an axis is the neighbour of the first.
+    pub(crate) fn is_periodic(&self, axis: usize) -> bool {
+        self.lattice.edges[axis] == Edges::Periodic
+    }
+
+    /// The block at an offset from another, each component -1, 0 or 1; none beyond a free edge.
+    pub(crate) fn neighbour(&self, block: usize, offset: [isize; 2]) -> Option<usize> {
+        let (i, j) = self.lattice.column_row(block);
+        self.lattice.neighbour(i, j, offset)
     }
 
     /// Number of blocks that exist.
@@ -48,7 +62,7 @@ impl Grid {
         if side <= 1 {
             return set.to_vec();
         }
-        if (0..2).any(|axis| side > self.size[axis]) {
+        if (0..2).any(|axis| side > self.size()[axis]) {
             return vec![false; set.len()];
         }
         let mut found = set.to_vec();
@@ -66,7 +80,7 @@ impl Grid {
         if !set.contains(&true) {
             return None;
         }
-        let most = self.size[0].min(self.size[1]);
+        let most = self.size()[0].min(self.size()[1]);
         // A union of squares is one of smaller squares too.
         let (mut low, mut high) = (1, most);
         while low < high {
@@ -93,7 +107,9 @@ impl Grid {
             left[first] = false;
             to_visit.push(first);
             while let Some(block) = to_visit.pop() {
-                for next in self.neighbours(block).into_iter().flatten() {
+                let neighbours =
+                    [[-1, 0], [1, 0], [0, -1], [0, 1]].map(|offset| self.neighbour(block, offset));
+                for next in neighbours.into_iter().flatten() {
                     if std::mem::take(&mut left[next]) {
                         to_visit.push(next);
                     }
@@ -103,34 +119,18 @@ impl Grid {
         pieces
     }
 
-    /// The neighbours of a block along the axes.
-    fn neighbours(&self, block: usize) -> [Option<usize>; 4] {
-        [(0, false), (0, true), (1, false), (1, true)].map(|(axis, is_forward)| {
-            let [stride, n] = [[1, self.size[0]][axis], self.size[axis]];
-            let place = block / stride % n;
-            let wraps = place == if is_forward { n - 1 } else { 0 };
-            match (wraps, is_forward) {
-                (true, _) if !self.periodic[axis] => None,
-                (true, true) => Some(block - (n - 1) * stride),
-                (true, false) => Some(block + (n - 1) * stride),
-                (false, true) => Some(block + stride),
-                (false, false) => Some(block - stride),
-            }
-        })
-    }
-
     /// Replaces every block by whether all of the `side` blocks from it on are in the set, or any of those up to it.
     fn pass(&self, set: &mut [bool], axis: usize, side: usize, pass: Pass) {
-        let n = self.size[axis];
-        let [stride, across] = [[1, self.size[0]][axis], [self.size[0], 1][axis]];
+        let n = self.size()[axis];
+        let [stride, across] = [[1, self.size()[0]][axis], [self.size()[0], 1][axis]];
         let mut line = vec![false; n];
-        for first in (0..self.size[1 - axis]).map(|place| place * across) {
+        for first in (0..self.size()[1 - axis]).map(|place| place * across) {
             for (place, value) in line.iter_mut().enumerate() {
                 *value = set[first + place * stride];
             }
             // How many of the blocks that end here are in the set, one after the other, and how many are not.
             let (mut inside, mut outside) = (0, side);
-            let turns = if self.periodic[axis] { 2 } else { 1 };
+            let turns = if self.is_periodic(axis) { 2 } else { 1 };
             for place in (0..turns * n).map(|place| place % n) {
                 (inside, outside) = if line[place] {
                     (inside + 1, 0)
@@ -146,7 +146,7 @@ impl Grid {
                     Pass::AnyBefore => set[first + place * stride] = outside < side,
                 }
             }
-            if pass == Pass::AllAfter && !self.periodic[axis] {
+            if pass == Pass::AllAfter && !self.is_periodic(axis) {
                 for place in n + 1 - side..n {
                     set[first + place * stride] = false;
                 }
@@ -171,6 +171,15 @@ pub(super) fn count(set: &[bool]) -> usize {
 pub(super) mod tests {
     use super::*;
 
+    /// A grid all of whose blocks exist.
+    pub(in crate::design) fn whole([nx, ny]: [usize; 2], periodic: [bool; 2]) -> Grid {
+        let edges = periodic.map(|is_periodic| if is_periodic { Edges::Periodic } else { Edges::Free });
+        Grid {
+            lattice: Lattice::with_edges(nx, ny, edges),
+            exists: vec![true; nx * ny],
+        }
+    }
+
     /// A grid, and a set drawn with `#`, the largest y first.
     pub(in crate::design) fn drawn(rows: &[&str], periodic: [bool; 2]) -> (Grid, Vec<bool>) {
         let set: Vec<bool> = rows
@@ -178,25 +187,16 @@ pub(super) mod tests {
             .rev()
             .flat_map(|row| row.bytes().map(|byte| byte == b'#'))
             .collect();
-        let size = [rows[0].len(), rows.len()];
-        let exists = vec![true; set.len()];
-        (
-            Grid {
-                size,
-                periodic,
-                exists,
-            },
-            set,
-        )
+        (whole([rows[0].len(), rows.len()], periodic), set)
     }
 
     /// The definition of an opening, square by square.
     fn opened_by_squares(grid: &Grid, set: &[bool], side: usize) -> Vec<bool> {
-        let [nx, ny] = grid.size;
+        let [nx, ny] = grid.size();
         let mut found = vec![false; set.len()];
         for y in 0..ny {
             for x in 0..nx {
-                if (!grid.periodic[0] && x + side > nx) || (!grid.periodic[1] && y + side > ny) {
+                if (!grid.is_periodic(0) && x + side > nx) || (!grid.is_periodic(1) && y + side > ny) {
                     continue;
                 }
                 let square: Vec<usize> = (0..side * side)
@@ -218,11 +218,7 @@ pub(super) mod tests {
         for trial in 0..200 {
             let size = [3 + draws.below(8), 3 + draws.below(8)];
             let n = size[0] * size[1];
-            let grid = Grid {
-                size,
-                periodic: [trial % 2 == 0, trial % 3 == 0],
-                exists: vec![true; n],
-            };
+            let grid = whole(size, [trial % 2 == 0, trial % 3 == 0]);
             let set: Vec<bool> = (0..n).map(|_| draws.uniform() < 0.8).collect();
             for side in 1..=4 {
                 let expected = if side > size[0].min(size[1]) {

@@ -123,18 +123,7 @@ impl Design {
         keep: &mut Keep,
         watch: &mut dyn FnMut(&SearchProgress),
     ) -> Result<Outcome, StudyError> {
-        let grid = &self.evaluator.grid;
-        let mut starts = named(grid, &self.limits);
-        let drawn = self
-            .drawn
-            .iter()
-            .map(|(name, textured)| Named::drawn(grid, name, textured));
-        starts.extend(
-            drawn
-                .filter_map(|named| Some((self.limits.texture(grid, &named.draft)?, named)))
-                .map(|(texture, named)| (named, texture)),
-        );
-        let (starts, textures): (Vec<Named>, Vec<_>) = starts.into_iter().unzip();
+        let (starts, textures) = self.starts();
         let pairs = starts.iter().zip(textures);
         let legal: Vec<Contender> = pairs
             .map(|(named, texture)| Contender {
@@ -181,11 +170,21 @@ impl Design {
         })
     }
 
+    /// The legal patterns with which a search begins, and their textures: the named ones, and masks.
+    fn starts(&self) -> (Vec<Named>, Vec<Vec<bool>>) {
+        let (grid, limits) = (&self.evaluator.grid, &self.limits);
+        let drawn = self.drawn.iter().filter_map(|(name, textured)| {
+            let named = Named::drawn(grid, name, textured);
+            let texture = limits.texture(grid, &named.draft)?;
+            Some((named, texture))
+        });
+        named(grid, limits).into_iter().chain(drawn).unzip()
+    }
+
     /// A search of which somebody else makes the runs.
     pub fn open_search(&self) -> OpenSearch {
-        let grid = self.evaluator.grid.clone();
-        let (starts, _): (Vec<Named>, Vec<_>) = named(&grid, &self.limits).into_iter().unzip();
-        OpenSearch::new(Search::new(grid, self.limits.clone(), self.start, starts))
+        let (grid, limits) = (self.evaluator.grid.clone(), self.limits.clone());
+        OpenSearch::new(Search::new(grid, limits, self.start, self.starts().0))
     }
 
     /// Why a texture is not legal, unless it is.
@@ -198,7 +197,7 @@ impl Design {
 
     /// Blocks along x and along y.
     pub fn size(&self) -> [usize; 2] {
-        self.evaluator.grid.size
+        self.evaluator.grid.size()
     }
 
     /// How far each texture is from the wish, the less the better, as a mean over the first `surfaces` surfaces of the search; with a coarse

@@ -4,7 +4,7 @@ use std::f64::consts::FRAC_PI_2;
 
 use super::grid::{Grid, count};
 use super::limits::Limits;
-use super::patch::{Draft, Form, Patch, growth_of};
+use super::patch::{Draft, Form, Patch};
 
 /// A pattern and its name.
 #[derive(Clone, Debug)]
@@ -20,11 +20,7 @@ impl Named {
     pub(crate) fn drawn(grid: &Grid, name: &str, textured: &[bool]) -> Self {
         Self {
             name: name.to_owned(),
-            draft: Draft {
-                patches: Vec::new(),
-                drawn: Some(growth_of(grid, textured).into()),
-                percent: grid.percent(textured),
-            },
+            draft: Draft::drawn(grid, textured),
         }
     }
 }
@@ -49,7 +45,7 @@ pub(crate) fn named(grid: &Grid, limits: &Limits) -> Vec<(Named, Vec<bool>)> {
 /// Named patterns whose strips and cavities are moved by so many blocks: grooves across and along it (x is the direction of the drive, unless that is
 /// turned), in the middle, in pairs and in threes, one that is tilted, a frame, a cross, and cavities, round and square, one or several.
 fn shifted(grid: &Grid, percent: f64, shift: f64) -> Vec<Named> {
-    let size = grid.size.map(|n| n as f64);
+    let size = grid.size().map(|n| n as f64);
     let strip = |axis: usize, place: f64, angle: f64| {
         let mut center = size.map(|n| 0.5 * n);
         center[axis] = place * size[axis] + shift;

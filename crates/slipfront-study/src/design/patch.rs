@@ -48,11 +48,11 @@ impl Patch {
     /// Lowers the growth of every block to that of this patch.
     fn lower(&self, grid: &Grid, growth: &mut [f64]) {
         let direction = [libm::cos(self.angle), libm::sin(self.angle)];
-        let [nx, ny] = grid.size;
+        let [nx, ny] = grid.size();
         let along = |axis: usize, n: usize| -> Vec<f64> {
             let places = (0..n).map(|place| place as f64 + 0.5 - self.center[axis]);
             let wrapped = |distance: f64| {
-                if grid.periodic[axis] {
+                if grid.is_periodic(axis) {
                     distance - (distance / n as f64).round() * n as f64
                 } else {
                     distance
@@ -87,6 +87,15 @@ pub(crate) struct Draft {
 }
 
 impl Draft {
+    /// A texture that was drawn block by block.
+    pub(crate) fn drawn(grid: &Grid, textured: &[bool]) -> Self {
+        Self {
+            patches: Vec::new(),
+            drawn: Some(growth_of(grid, textured).into()),
+            percent: grid.percent(textured),
+        }
+    }
+
     /// By how much the draft must grow until it holds each block.
     pub(crate) fn growth(&self, grid: &Grid) -> Vec<f64> {
         let n = grid.exists.len();
@@ -103,7 +112,7 @@ impl Draft {
 
 /// By how many blocks a set must grow until it holds each block: the number of steps to it, straight or diagonal; of a block in it, 1 less
 /// the number of steps out of it.
-pub(crate) fn growth_of(grid: &Grid, set: &[bool]) -> Vec<f64> {
+fn growth_of(grid: &Grid, set: &[bool]) -> Vec<f64> {
     let outwards = steps_to(grid, set);
     let inwards = steps_to(grid, &set.iter().map(|is_in| !is_in).collect::<Vec<_>>());
     let pairs = outwards.iter().zip(&inwards);
@@ -114,8 +123,7 @@ pub(crate) fn growth_of(grid: &Grid, set: &[bool]) -> Vec<f64> {
 
 /// Number of steps, straight or diagonal, from every block to a set; as many as the slider has blocks if the set is empty.
 fn steps_to(grid: &Grid, set: &[bool]) -> Vec<f64> {
-    let [nx, ny] = grid.size;
-    let most = (nx * ny) as f64;
+    let most = set.len() as f64;
     let mut steps: Vec<f64> = set.iter().map(|&is_in| if is_in { 0.0 } else { most }).collect();
     let mut reached: Vec<usize> = (0..set.len()).filter(|&block| set[block]).collect();
     let mut distance = 0.0;
@@ -123,19 +131,15 @@ fn steps_to(grid: &Grid, set: &[bool]) -> Vec<f64> {
         distance += 1.0;
         let mut next = Vec::new();
         for block in reached {
-            for [dx, dy] in [-1, 0, 1]
+            for offset in [-1, 0, 1]
                 .into_iter()
                 .flat_map(|dy| [-1, 0, 1].map(|dx| [dx, dy]))
             {
-                let place = |axis: usize, at: usize, step: isize| {
-                    let (n, to) = (grid.size[axis] as isize, at as isize + step);
-                    (grid.periodic[axis] || (0..n).contains(&to)).then(|| to.rem_euclid(n) as usize)
-                };
-                if let (Some(x), Some(y)) = (place(0, block % nx, dx), place(1, block / nx, dy))
-                    && steps[y * nx + x] > distance
+                if let Some(neighbour) = grid.neighbour(block, offset)
+                    && steps[neighbour] > distance
                 {
-                    steps[y * nx + x] = distance;
-                    next.push(y * nx + x);
+                    steps[neighbour] = distance;
+                    next.push(neighbour);
                 }
             }
         }
@@ -147,15 +151,7 @@ fn steps_to(grid: &Grid, set: &[bool]) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    fn grid(size: [usize; 2], periodic: [bool; 2]) -> Grid {
-        let exists = vec![true; size[0] * size[1]];
-        Grid {
-            size,
-            periodic,
-            exists,
-        }
-    }
+    use crate::design::grid::tests::whole;
 
     fn of(patch: Patch, grid: &Grid) -> Vec<f64> {
         let draft = Draft {
@@ -174,7 +170,7 @@ mod tests {
             angle: 0.5 * std::f64::consts::PI,
             form: Form::Rectangle,
         };
-        let growth = of(strip, &grid([5, 4], [false; 2]));
+        let growth = of(strip, &whole([5, 4], [false; 2]));
         for (block, growth) in growth.iter().enumerate() {
             let distance = (block % 5).abs_diff(2) as f64;
             assert_eq!(*growth, distance - 0.5);
@@ -189,7 +185,7 @@ mod tests {
             angle: 0.3,
             form: Form::Ellipse,
         };
-        let growth = of(disc, &grid([8, 8], [true, false]));
+        let growth = of(disc, &whole([8, 8], [true, false]));
         let expected = |x: f64, y: f64| (x * x + y * y).sqrt() - 2.0;
         assert_eq!(growth[7], rounded(expected(1.0, 0.0)));
         assert_eq!(growth[8 * 7], rounded(expected(0.0, 7.0)));
@@ -198,7 +194,7 @@ mod tests {
     /// A drawn set is what has grown by at most 0.
     #[test]
     fn a_drawn_set_comes_back() {
-        let grid = grid([6, 3], [false; 2]);
+        let grid = whole([6, 3], [false; 2]);
         let set: Vec<bool> = (0..18).map(|block| (1..4).contains(&(block % 6))).collect();
         let growth = growth_of(&grid, &set);
         assert_eq!(growth[..6], [1.0, 0.0, -1.0, 0.0, 1.0, 2.0]);

@@ -18,11 +18,11 @@ use super::evaluate::{Fidelity, MASK, masked};
 use super::file::DesignFile;
 use super::judge::Mean;
 use super::stages::Length;
-use super::verdict::{OnFresh, Verdict};
+use super::verdict::{Given, OnFresh, Verdict};
 use super::wish::{Quantity, Wish};
 use super::{Design, Outcome};
 use crate::error::StudyError;
-use crate::files_in_folder::write_in;
+use crate::files_in_folder::{write_in, write_picture};
 use crate::text_table::table;
 
 /// A table of every draft that was tried.
@@ -114,7 +114,7 @@ impl Report<'_> {
 
     /// Writes a mask, and the case that reads it.
     pub(super) fn write_mask(&self, design: &Design, texture: &[bool]) -> Result<(), StudyError> {
-        let [nx, ny] = design.evaluator.grid.size;
+        let [nx, ny] = design.evaluator.grid.size();
         write_in(self.path, MASK, |to| to.write_all(&npy_of_mask(nx, texture)))?;
         let picture = self.path.join(PICTURE);
         write_mask_png(&picture, nx, ny, texture).map_err(TextureFileError::from)?;
@@ -142,7 +142,7 @@ impl Report<'_> {
     /// Curves of the design and of what it is held against, on a fresh surface, and maps of where they slip first.
     fn write_pictures(&self, design: &Design, outcome: &Outcome) -> Result<(), StudyError> {
         let subject = &design.evaluator.subjects[0];
-        let [nx, ny] = design.evaluator.grid.size;
+        let [nx, ny] = design.evaluator.grid.size();
         let (mut curves, mut maps, mut latest) = (Vec::new(), Vec::new(), 0.0_f64);
         for (name, texture) in &outcome.compared {
             let texture = texture.as_ref().map(|texture| texture.as_slice());
@@ -189,14 +189,7 @@ impl Report<'_> {
             ("first_slips", slipfront_plot::field_maps(&maps)),
         ];
         for (name, picture) in pictures {
-            let picture = picture.map_err(|source| StudyError::Picture {
-                name: name.to_owned(),
-                source,
-            })?;
-            write_in(self.path, &format!("{name}.svg"), |to| {
-                to.write_all(picture.svg.as_bytes())
-            })?;
-            write_in(self.path, &format!("{name}.png"), |to| to.write_all(&picture.png))?;
+            write_picture(self.path, name, &picture.map_err(StudyError::picture(name))?)?;
         }
         Ok(())
     }
@@ -291,7 +284,13 @@ fn headline(wish: &Wish, verdict: &Verdict) -> String {
         Wish::Least(_) | Wish::Largest(_) => format!(
             "{} of {of}: {}{} against the slider without texture",
             called(wish),
-            with_half_width(loss, verdict.design.loss_half_width.map(|half| 100.0 * half)),
+            with_half_width(
+                loss,
+                verdict
+                    .design
+                    .loss_half_width
+                    .map(|half| wish.difference_told(half))
+            ),
             unit(wish)
         ),
         Wish::Value(_, wanted) => format!(
@@ -325,11 +324,14 @@ fn headline(wish: &Wish, verdict: &Verdict) -> String {
 /// A value is told as missed when the design is so far from it, %.
 const MISSED_PERCENT: f64 = 0.5;
 
-fn given(quantity: Quantity, given: &super::verdict::Given) -> Option<Mean> {
+fn given(quantity: Quantity, given: &Given) -> Option<Mean> {
     match quantity {
         Quantity::StaticFriction => Some(given.static_friction_star),
         Quantity::KineticFriction => given.kinetic_friction_star,
-        Quantity::FrictionDrop => None,
+        Quantity::FrictionDrop => given.kinetic_friction_star.map(|kinetic| Mean {
+            mean: given.static_friction_star.mean - kinetic.mean,
+            half_width: None,
+        }),
     }
 }
 
@@ -376,28 +378,18 @@ fn loss_cell(wish: &Wish, found: &OnFresh, is_first: bool) -> String {
     }
 }
 
-/// A difference of losses in what they are shown in.
+/// A difference of losses as it is told.
 fn better_cell(wish: &Wish, better: Option<Mean>) -> String {
-    let factor = if matches!(wish, Wish::Curve(_)) {
-        1.0
-    } else {
-        100.0
-    };
     better.map_or("-".to_owned(), |better| {
-        let half_width = better.half_width.map(|half| factor * half);
-        with_half_width(factor * better.mean, half_width)
+        let half_width = better.half_width.map(|half| wish.difference_told(half));
+        with_half_width(wish.difference_told(better.mean), half_width)
     })
 }
 
 fn optimism(wish: &Wish, verdict: &Verdict) -> String {
-    let factor = if matches!(wish, Wish::Curve(_)) {
-        1.0
-    } else {
-        100.0
-    };
     format!(
         "On the surfaces that it was chosen by, the design looked better by {}.",
-        four_digits(factor * verdict.optimism)
+        four_digits(wish.difference_told(verdict.optimism))
     )
 }
 

@@ -15,7 +15,7 @@ use std::sync::Arc;
 use super::grid::Grid;
 use super::limits::Limits;
 use super::named::Named;
-use super::patch::{Draft, Form, Patch, growth_of};
+use super::patch::{Draft, Form, Patch};
 use super::random::Draws;
 
 /// Drafts in a population.
@@ -136,11 +136,7 @@ impl Search {
     pub(crate) fn of_other(&self, texture: Vec<bool>) -> Proposal {
         Proposal {
             origin: "another search".to_owned(),
-            draft: Draft {
-                patches: Vec::new(),
-                drawn: Some(growth_of(&self.grid, &texture).into()),
-                percent: self.grid.percent(&texture),
-            },
+            draft: Draft::drawn(&self.grid, &texture),
             texture: texture.into(),
         }
     }
@@ -206,7 +202,7 @@ impl Search {
     /// A strip or cavity anywhere, mostly along an axis.
     fn random_patch(&mut self) -> Patch {
         let draws = &mut self.draws;
-        let size = self.grid.size.map(|n| n as f64);
+        let size = self.grid.size().map(|n| n as f64);
         let angle = match draws.below(4) {
             0 => 0.0,
             1 => FRAC_PI_2,
@@ -250,13 +246,13 @@ impl Search {
         }
         let which = self.draws.below(n);
         // Steps of a block up to a quarter of the slider, small ones as often as large ones.
-        let side = self.grid.size[0].max(self.grid.size[1]) as f64;
+        let side = self.grid.size()[0].max(self.grid.size()[1]) as f64;
         let step = 0.5 * libm::pow(0.5 * side, self.draws.uniform());
         match self.draws.below(20) {
             0..=5 => {
                 for axis in 0..2 {
                     let moved = draft.patches[which].center[axis] + step * self.draws.normal();
-                    draft.patches[which].center[axis] = moved.clamp(0.0, self.grid.size[axis] as f64);
+                    draft.patches[which].center[axis] = moved.clamp(0.0, self.grid.size()[axis] as f64);
                 }
             }
             6..=8 => {
@@ -285,7 +281,7 @@ impl Search {
             17 if n < MAX_PATCHES => {
                 let mut patch = draft.patches[which].clone();
                 let axis = self.draws.below(2);
-                patch.center[axis] = self.grid.size[axis] as f64 - patch.center[axis];
+                patch.center[axis] = self.grid.size()[axis] as f64 - patch.center[axis];
                 if self.draws.uniform() < 0.5 {
                     patch.angle = -patch.angle;
                 }

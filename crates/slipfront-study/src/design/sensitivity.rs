@@ -1,6 +1,7 @@
 //! What is left of a design when it is not made or used quite as it was designed.
 
 use serde::Serialize;
+use slipfront::Lattice;
 use slipfront_case::case_file::DriveSpeed;
 use slipfront_case::quantity::Speed;
 
@@ -71,7 +72,7 @@ impl Judge<'_> {
                 evaluator: &evaluator,
                 ..*self
             };
-            let size = self.evaluator.grid.size;
+            let size = self.evaluator.grid.size();
             let finer = |contender: &Contender| Contender {
                 name: contender.name.clone(),
                 texture: doubled(size, &contender.texture).into(),
@@ -108,7 +109,7 @@ impl Judge<'_> {
 }
 
 impl Evaluator {
-    /// The same cases at another speed of the drive; none if one of them has a program of speeds.
+    /// These cases at another speed of the drive; none if one of them has a program of speeds.
     fn at_speed(&self, factor: f64) -> Result<Option<Self>, StudyError> {
         let faster = |speed: &DriveSpeed| match speed {
             DriveSpeed::VStar(v_star) => Some(DriveSpeed::VStar(v_star * factor)),
@@ -133,10 +134,10 @@ impl Evaluator {
             .iter()
             .map(|subject| subject.on_finer_blocks(&self.wish))
             .collect();
+        let [nx, ny] = self.grid.size();
         let grid = Grid {
-            size: self.grid.size.map(|n| 2 * n),
-            periodic: self.grid.periodic,
-            exists: doubled(self.grid.size, &self.grid.exists),
+            lattice: Lattice::with_edges(2 * nx, 2 * ny, self.grid.lattice.edges),
+            exists: doubled([nx, ny], &self.grid.exists),
         };
         Some(self.with_subjects(subjects?, grid))
     }
@@ -144,14 +145,8 @@ impl Evaluator {
 
 /// A set that is moved; what leaves a slider with edges is lost.
 fn moved(grid: &Grid, set: &[bool], shift: [isize; 2]) -> Vec<bool> {
-    let [nx, ny] = grid.size.map(|n| n as isize);
     let at = |block: usize| {
-        let place = [block as isize % nx - shift[0], block as isize / nx - shift[1]];
-        let [x, y] = [0, 1].map(|axis| {
-            let n = [nx, ny][axis];
-            (grid.periodic[axis] || (0..n).contains(&place[axis])).then(|| place[axis].rem_euclid(n))
-        });
-        let from = x.zip(y).map(|(x, y)| (y * nx + x) as usize);
+        let from = grid.neighbour(block, shift.map(|step| -step));
         grid.exists[block] && from.is_some_and(|from| set[from])
     };
     (0..set.len()).map(at).collect()
@@ -166,14 +161,11 @@ fn doubled([nx, ny]: [usize; 2], set: &[bool]) -> Vec<bool> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::design::grid::tests::whole;
 
     #[test]
     fn sets_are_moved_and_doubled() {
-        let grid = Grid {
-            size: [3, 2],
-            periodic: [true, false],
-            exists: vec![true; 6],
-        };
+        let grid = whole([3, 2], [true, false]);
         let set = [true, false, false, false, false, true];
         assert_eq!(
             moved(&grid, &set, [1, 0]),

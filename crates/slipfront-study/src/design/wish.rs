@@ -103,10 +103,17 @@ impl Wish {
     /// A loss as it is told: a reduction or a rise in %, the distance from a value in %, or that from a curve.
     pub(crate) fn told(&self, loss: f64) -> f64 {
         match self {
-            Self::Least(_) => 100.0 * (1.0 - loss),
-            Self::Largest(_) => 100.0 * (-loss - 1.0),
-            Self::Value(..) => 100.0 * loss,
-            Self::Curve(_) => loss,
+            Self::Least(_) => self.difference_told(1.0 - loss),
+            Self::Largest(_) => self.difference_told(-loss - 1.0),
+            Self::Value(..) | Self::Curve(_) => self.difference_told(loss),
+        }
+    }
+
+    /// A difference of losses as it is told: in points of %, of a curve as it is.
+    pub(crate) fn difference_told(&self, difference: f64) -> f64 {
+        match self {
+            Self::Curve(_) => difference,
+            _ => 100.0 * difference,
         }
     }
 }
