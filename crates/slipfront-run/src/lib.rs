@@ -29,6 +29,7 @@ pub mod precursors;
 pub mod program;
 pub mod results;
 pub mod resume_command;
+pub mod run_curve;
 pub mod run_folder;
 pub mod run_summary;
 pub mod running;

@@ -9,6 +9,7 @@
 
 mod anisotropy;
 mod axis;
+pub mod calibrate;
 pub mod converge;
 pub mod design;
 mod error;

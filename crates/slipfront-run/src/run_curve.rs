@@ -1,0 +1,99 @@
+//! [`Case`] -> curve: a run of which friction against time and displacement alone is kept, as a fit needs it of many small cases.
+
+use std::sync::Arc;
+
+use slipfront::observe::{Observer, Scheduled};
+use slipfront::{Execution, RunError, Simulation, Snapshot};
+use slipfront_case::case::Case;
+
+use crate::friction_unit::FrictionUnit;
+use crate::measured::Measure;
+
+/// Friction of a run at every step, in the units of a measured record.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RunCurve {
+    /// Time, s.
+    pub time: Vec<f64>,
+    /// How far the drive has moved, m; of a rotation at its largest radius.
+    pub displacement: Vec<f64>,
+    /// mu (Eq. 9).
+    pub coefficient: Vec<f64>,
+    /// Friction of a slider with mu = 1, N; none of a drive that rotates, whose friction is a torque.
+    pub unit_force: Option<f64>,
+}
+
+impl RunCurve {
+    /// Times or displacements, of which a record has one.
+    pub fn along(&self, x: Measure) -> &[f64] {
+        if x == Measure::Displacement {
+            &self.displacement
+        } else {
+            &self.time
+        }
+    }
+}
+
+/// Notes friction, time and path of every step.
+#[derive(Default)]
+struct Tracing {
+    time_star: Vec<f64>,
+    path: Vec<f64>,
+    mu_star: Vec<f64>,
+}
+
+impl Observer for Tracing {
+    fn observe(&mut self, now: &Snapshot) -> Result<(), RunError> {
+        self.time_star.push(now.time_star);
+        self.path.push(now.model.drive.path(now.drive_time_star));
+        self.mu_star.push(now.point.mu_star);
+        Ok(())
+    }
+}
+
+/// Runs a case on one thread up to where its `time` says, and keeps the curve alone; none if `ends` gave it up.
+///
+/// ```
+/// use slipfront_case::case::Case;
+/// use slipfront_run::run_curve::run_curve_unless;
+/// // Blocks that are all alike stick at first, and their springs pull with k* V* t*, times mu_s.
+/// let text = "slider.blocks = [4, 4]\ndrive = { v_star = 0.1, stiffness_star = 0.5 }\ntime.duration_star = 4\n\
+///             friction = { mu_static = 0.6, sigma_static_star = 0 }";
+/// let case = Case::parse(text, "alike", "", &[])?;
+/// let curve = run_curve_unless(&case, &|| false).unwrap()?;
+/// let last = curve.time.len() - 1;
+/// let time_star = curve.time[last] / case.scales.time();
+/// assert!((curve.coefficient[last] - 0.6 * 0.5 * 0.1 * time_star).abs() < 1e-12);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// When the run diverges.
+pub fn run_curve_unless(case: &Case, ends: &dyn Fn() -> bool) -> Option<Result<RunCurve, RunError>> {
+    let plan = &case.time_plan;
+    let mut simulation = Simulation::new(Arc::clone(&case.model), plan.dt_star, None, Execution::default());
+    let mut tracing = Tracing::default();
+    while !ends() {
+        let mut observers = [Scheduled::always(&mut tracing)];
+        match simulation.advance(plan.stop, case.steps_per_poll(), &mut observers) {
+            Ok(None) => {}
+            Ok(Some(_)) => return Some(Ok(in_si_units(case, tracing))),
+            Err(error) => return Some(Err(error)),
+        }
+    }
+    None
+}
+
+fn in_si_units(case: &Case, traced: Tracing) -> RunCurve {
+    let scales = &case.scales;
+    let times = |mut values: Vec<f64>, unit: f64| {
+        values.iter_mut().for_each(|value| *value *= unit);
+        values
+    };
+    let mu_static = scales.mu_static_mean;
+    RunCurve {
+        time: times(traced.time_star, scales.time()),
+        displacement: times(traced.path, scales.displacement()),
+        coefficient: times(traced.mu_star, mu_static),
+        unit_force: FrictionUnit::of(scales, &case.model).force(1.0 / mu_static),
+    }
+}

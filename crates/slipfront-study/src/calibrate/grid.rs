@@ -1,0 +1,161 @@
+//! Equal steps of time or displacement at which a record and the curves of training are compared.
+
+use slipfront_run::measured::{Measure, MeasuredRecord};
+use slipfront_run::run_curve::RunCurve;
+
+use super::summaries::MIN_VALUES;
+
+/// Most values of a curve from which summaries are made: of more, neighbours are averaged.
+const MAX_VALUES: usize = 400;
+
+/// Where friction of one record is known.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Grid {
+    /// Time or displacement.
+    along: Measure,
+    /// Force or coefficient.
+    of: Measure,
+    start: f64,
+    step: f64,
+    /// Values of the record.
+    count: usize,
+}
+
+impl Grid {
+    /// As many equal steps as a record has values, from its first to its last; none of a record that is too short or stands still.
+    pub fn of(record: &MeasuredRecord, along: Measure, of: Measure) -> Option<Self> {
+        let (count, start, end) = (record.x.len(), *record.x.first()?, *record.x.last()?);
+        let step = (end - start) / (count - 1).max(1) as f64;
+        (count >= MIN_VALUES && step > 0.0).then_some(Self {
+            along,
+            of,
+            start,
+            step,
+            count,
+        })
+    }
+
+    /// The last place.
+    pub fn end(&self) -> f64 {
+        self.start + (self.count - 1) as f64 * self.step
+    }
+
+    /// Values that are averaged.
+    fn merged(&self) -> usize {
+        self.count.div_ceil(MAX_VALUES)
+    }
+
+    /// Standard deviation of the noise of an average over that of a value.
+    pub(crate) fn noise_share(&self) -> f64 {
+        1.0 / (self.merged() as f64).sqrt()
+    }
+
+    /// Places of the averages.
+    pub fn places(&self) -> Vec<f64> {
+        let merged = self.merged();
+        let middle = 0.5 * (merged - 1) as f64;
+        (0..self.count / merged)
+            .map(|k| self.start + ((k * merged) as f64 + middle) * self.step)
+            .collect()
+    }
+
+    /// A record in equal steps, of which neighbours are averaged.
+    pub fn record(&self, record: &MeasuredRecord) -> Vec<f64> {
+        self.averages(&record.x, &record.y)
+    }
+
+    /// The curve of a run as a record of it would be; none if the run ends before, or its friction is a torque.
+    pub(crate) fn curve(&self, curve: &RunCurve) -> Option<Vec<f64>> {
+        let x = curve.along(self.along);
+        // What rounding makes of the end of a run is not missed.
+        if *x.last()? < self.end() - 0.5 * self.step {
+            return None;
+        }
+        let mut values = self.averages(x, &curve.coefficient);
+        if self.of == Measure::Force {
+            let unit = curve.unit_force?;
+            values.iter_mut().for_each(|value| *value *= unit);
+        }
+        Some(values)
+    }
+
+    /// Means over neighbours of y at equal steps, interpolated between the places x, which never fall.
+    fn averages(&self, x: &[f64], y: &[f64]) -> Vec<f64> {
+        let mut after = 0;
+        let values: Vec<f64> = (0..self.count)
+            .map(|k| {
+                let place = self.start + k as f64 * self.step;
+                while after + 1 < x.len() && x[after] < place {
+                    after += 1;
+                }
+                let before = after.saturating_sub(1);
+                if x[after] <= place || x[after] == x[before] {
+                    return y[after];
+                }
+                let share = ((place - x[before]) / (x[after] - x[before])).max(0.0);
+                y[before] + share * (y[after] - y[before])
+            })
+            .collect();
+        let merged = self.merged();
+        let means = values.chunks_exact(merged);
+        means
+            .map(|chunk| chunk.iter().sum::<f64>() / merged as f64)
+            .collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn record(count: usize) -> MeasuredRecord {
+        let x: Vec<f64> = (0..count).map(|k| 0.5 * k as f64).collect();
+        let y = x.iter().map(|x| 3.0 * x).collect();
+        MeasuredRecord { x, y }
+    }
+
+    #[test]
+    fn a_record_in_equal_steps_is_itself() {
+        let record = record(50);
+        let grid = Grid::of(&record, Measure::Time, Measure::Coefficient).unwrap();
+        assert_eq!((grid.places(), grid.record(&record)), (record.x, record.y));
+    }
+
+    #[test]
+    fn neighbours_of_a_long_record_are_averaged() {
+        let record = record(1000);
+        let grid = Grid::of(&record, Measure::Time, Measure::Coefficient).unwrap();
+        let (places, values) = (grid.places(), grid.record(&record));
+        assert_eq!((places.len(), places[0], places[1]), (333, 0.5, 2.0));
+        assert!(places.iter().zip(values).all(|(x, y)| (y - 3.0 * x).abs() < 1e-9));
+        assert_eq!(grid.noise_share(), 1.0 / 3.0_f64.sqrt());
+    }
+
+    #[test]
+    fn what_has_no_length_has_no_grid() {
+        let still = MeasuredRecord {
+            x: vec![1.0; 100],
+            y: vec![1.0; 100],
+        };
+        assert_eq!(Grid::of(&still, Measure::Time, Measure::Force), None);
+        assert_eq!(
+            Grid::of(&record(MIN_VALUES - 1), Measure::Time, Measure::Force),
+            None
+        );
+    }
+
+    #[test]
+    fn a_run_that_ends_too_soon_has_no_curve() {
+        let record = record(50);
+        let grid = Grid::of(&record, Measure::Time, Measure::Coefficient).unwrap();
+        let mut run = RunCurve {
+            displacement: record.x.clone(),
+            time: record.x,
+            coefficient: record.y,
+            unit_force: None,
+        };
+        assert!(grid.curve(&run).is_some());
+        run.time.truncate(48);
+        assert_eq!(grid.curve(&run), None);
+    }
+}

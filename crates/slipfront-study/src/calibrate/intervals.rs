@@ -1,0 +1,70 @@
+//! From a prediction and the residuals of training runs to a distribution of the unknown.
+
+use super::regression::{Prediction, Regression};
+
+/// Widths over which training runs count as like a record, in its prediction (of the range) and in the logarithm of its scale.
+const LIKE_VALUE: f64 = 0.15;
+const LIKE_SCALE: f64 = 0.5;
+
+/// Values of an unknown with their weights, in rising order: where it lies in its range, from 0 to 1.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Distribution {
+    values: Vec<f64>,
+    /// Sum of the weights up to every value, of which the last is 1.
+    sums: Vec<f64>,
+}
+
+impl Distribution {
+    /// Residuals that training runs like the record had when they were left out, in units of their scale, around what is predicted of it.
+    ///
+    /// ```text
+    /// u = f + s (u_i - f_i)/s_i   with the weight exp(-(f - f_i)^2/(2 0.15^2) - log^2(s/s_i)/(2 0.5^2))
+    /// ```
+    pub(crate) fn of(regression: &Regression, unknown: &[f64], prediction: Prediction) -> Self {
+        let Prediction { value, scale } = prediction;
+        let value = value.clamp(0.0, 1.0);
+        let runs = unknown
+            .iter()
+            .zip(&regression.predictions)
+            .zip(&regression.scales);
+        let weighted = runs.map(|((u, f), s)| {
+            let f = f.clamp(0.0, 1.0);
+            let (away, wider) = ((value - f) / LIKE_VALUE, libm::log(scale / s) / LIKE_SCALE);
+            let weight = libm::exp(-0.5 * (away * away + wider * wider));
+            ((value + scale * (u - f) / s).clamp(0.0, 1.0), weight)
+        });
+        Self::of_weighted(weighted.collect())
+    }
+
+    fn of_weighted(mut weighted: Vec<(f64, f64)>) -> Self {
+        weighted.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let total: f64 = weighted.iter().map(|(_, weight)| weight).sum();
+        let mut sum = 0.0;
+        let sums = weighted.iter().map(|(_, weight)| {
+            sum += weight / total;
+            sum
+        });
+        let sums = sums.collect();
+        Self {
+            values: weighted.into_iter().map(|(value, _)| value).collect(),
+            sums,
+        }
+    }
+
+    /// The value below which a share of the distribution lies.
+    pub fn quantile(&self, share: f64) -> f64 {
+        let place = self.sums.partition_point(|&sum| sum < share);
+        self.values[place.min(self.values.len() - 1)]
+    }
+
+    /// The interval that holds this share, with as much below as above.
+    pub fn interval(&self, share: f64) -> [f64; 2] {
+        [self.quantile(0.5 - 0.5 * share), self.quantile(0.5 + 0.5 * share)]
+    }
+
+    /// The share of the distribution below a value: a uniform number for the values of records that were made of the prior.
+    pub fn below(&self, value: f64) -> f64 {
+        let place = self.values.partition_point(|&other| other < value);
+        if place == 0 { 0.0 } else { self.sums[place - 1] }
+    }
+}

@@ -1,0 +1,118 @@
+//! Whether the model can have made a record.
+
+use rayon::prelude::*;
+
+use super::dense::squared_distances;
+use super::fit::{Scaling, noisy, summaries_of};
+use super::intervals::Distribution;
+use super::normals::{Stream, normals, share};
+use super::regression::Regression;
+use super::training::Training;
+
+/// Largest drift that is learnt: friction that rises or falls by this share of itself over the record.
+const MAX_DRIFT: f64 = 0.12;
+
+/// How many good records in 1000 each of the two checks refuses.
+const REFUSED_BY_DRIFT: f64 = 0.025;
+const REFUSED_AS_FOREIGN: f64 = 0.01;
+
+/// Runs to which the distance of a record is the mean of.
+const NEAREST: usize = 5;
+
+/// What tells records of the model from others.
+#[derive(Clone, Debug)]
+pub(super) struct Check {
+    drift: Regression,
+    /// The drift of every training run, from 0 for the largest fall to 1 for the largest rise.
+    drifts: Vec<f64>,
+    /// Scaled summaries of the training runs.
+    table: Vec<f64>,
+    /// Distance of a run to the others that few exceed.
+    far: f64,
+}
+
+/// What speaks against a record.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Misfit {
+    /// Drift of friction over the record, as a share of friction: an interval that holds it for all records but 25 in 1000.
+    pub drift: [f64; 2],
+    /// Whether the interval leaves out 0.
+    pub has_drift: bool,
+    /// Distance of the summaries from those of the nearest training runs, over the distance that 10 training runs in 1000 exceed.
+    pub distance: f64,
+}
+
+impl Misfit {
+    /// Whether the model makes records like this: 3.5 % of its own are refused.
+    pub fn is_refused(&self) -> bool {
+        self.has_drift || self.distance > 1.0
+    }
+}
+
+/// A record with a drift: y (1 + drift i/(n - 1)).
+fn drifting(curve: &[f64], drift: f64) -> Vec<f64> {
+    let last = (curve.len() - 1) as f64;
+    let values = curve.iter().enumerate();
+    values.map(|(i, y)| y * (1.0 + drift * i as f64 / last)).collect()
+}
+
+/// The drift at a share of what is learnt.
+fn drift_at(share: f64) -> f64 {
+    MAX_DRIFT * (2.0 * share - 1.0)
+}
+
+impl Check {
+    /// Learns drift from the training runs, each with one of its own; `noise` is that of every record, as a share of friction.
+    pub(super) fn learn(training: &Training, noise: &[f64], scaling: &Scaling, table: &[f64]) -> Self {
+        let runs = training.curves.len();
+        let drifts: Vec<f64> = (0..runs).map(|run| share(Stream::Drift, run)).collect();
+        let rows: Vec<Vec<f64>> = training
+            .curves
+            .par_iter()
+            .enumerate()
+            .map(|(run, curves)| {
+                let records = curves.iter().zip(noise).enumerate();
+                let drifting = records.map(|(record, (curve, &noise))| {
+                    let generated = normals(Stream::DriftNoise, run, record);
+                    noisy(&drifting(curve, drift_at(drifts[run])), noise, generated)
+                });
+                scaling.scaled(&summaries_of(&drifting.collect::<Vec<_>>()))
+            })
+            .collect();
+        let drift = Regression::learn(&rows.concat(), &drifts);
+        let d = table.len() / runs;
+        let distances = squared_distances(table, table, d);
+        let mut nearest: Vec<f64> = distances
+            .chunks_exact(runs)
+            .map(|row| distance(row, NEAREST + 1))
+            .collect();
+        nearest.sort_by(f64::total_cmp);
+        let place = ((1.0 - REFUSED_AS_FOREIGN) * (runs + 1) as f64) as usize;
+        Self {
+            drift,
+            drifts,
+            table: table.to_vec(),
+            far: nearest[place.min(runs - 1)],
+        }
+    }
+
+    /// What speaks against a record with these scaled summaries.
+    pub(super) fn misfit(&self, summaries: &[f64]) -> Misfit {
+        let drift = Distribution::of(&self.drift, &self.drifts, self.drift.predict(summaries));
+        let drift = drift.interval(1.0 - REFUSED_BY_DRIFT).map(drift_at);
+        let row = squared_distances(summaries, &self.table, summaries.len());
+        Misfit {
+            has_drift: drift[0] > 0.0 || drift[1] < 0.0,
+            drift,
+            distance: distance(&row, NEAREST) / self.far,
+        }
+    }
+}
+
+/// Root of the mean of the least squared distances; of a run among all, the first is that to itself.
+fn distance(row: &[f64], nearest: usize) -> f64 {
+    let mut row = row.to_vec();
+    let nearest = nearest.min(row.len());
+    row.select_nth_unstable_by(nearest - 1, f64::total_cmp);
+    (row[..nearest].iter().sum::<f64>() / NEAREST as f64).sqrt()
+}

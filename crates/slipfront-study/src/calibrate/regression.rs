@@ -1,0 +1,378 @@
+//! Regression of one unknown on the summaries of training runs, of which the summaries that matter are found.
+//!
+//! Kernel ridge regression with a Gaussian kernel, whose lengths come from the mean squared slopes of the regression itself: first with the
+//! same length for every summary, then with weights (Radhakrishnan et al., Science 383 (2024) 1461, with a diagonal matrix):
+//!
+//! ```text
+//! f(x) = f_0 + sum_i a_i k(x, x_i),   (K + lambda) a = u - f_0
+//! k(x, x') = exp(-sum_f w_f (x_f - x'_f)^2/(2 h^2)),   w_f ~ mean_i (df/dx_f(x_i))^2
+//! ```
+//!
+//! The prediction of a run by all others, which is what intervals are made of, needs no regression of its own:
+//! `u_i - f_without_i(x_i) = a_i/[(K + lambda)^-1]_ii`.
+
+use super::dense::{Factor, squared_distances};
+
+/// Most runs from which weights and lengths are found.
+const MAX_SEARCHED: usize = 600;
+
+/// Times that the weights are found anew.
+const ROUNDS: usize = 2;
+
+/// Largest residual that counts when lengths are compared, in standard deviations of the unknown: few runs far off decide nothing.
+const MAX_RESIDUAL: f64 = 3.0;
+
+/// A regression of an unknown that explains less of its variance has learnt nothing.
+const LEAST_EXPLAINED: f64 = 0.02;
+
+/// What the lengths are multiples of: `h^2 = 2^spread` medians of the squared distances, `lambda = 10^(ridge/2)`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Trial {
+    spread: i32,
+    ridge: i32,
+}
+
+/// Bounds of the trials.
+const SPREADS: std::ops::RangeInclusive<i32> = -2..=4;
+const RIDGES: std::ops::RangeInclusive<i32> = -12..=0;
+
+/// What training runs tell of an unknown.
+#[derive(Clone, Debug)]
+pub(crate) struct Regression {
+    /// Mean of the unknown over the training runs.
+    mean: f64,
+    /// What every summary is multiplied by; empty if the summaries tell nothing.
+    lengths: Vec<f64>,
+    /// The summaries of the training runs, multiplied.
+    points: Vec<f64>,
+    coefficients: Vec<f64>,
+    /// The kernel is raised to this power where residuals are averaged over runs nearby.
+    power: i32,
+    /// What every run is predicted to be by all others.
+    pub(crate) predictions: Vec<f64>,
+    /// Root mean square of the residuals near every run, itself left out.
+    pub(crate) scales: Vec<f64>,
+    /// Squares of the residuals.
+    squares: Vec<f64>,
+}
+
+/// What is predicted of a record.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Prediction {
+    pub(crate) value: f64,
+    /// Root mean square of the residuals of training runs nearby.
+    pub(crate) scale: f64,
+}
+
+impl Regression {
+    /// Learns an unknown from `unknown.len()` rows of summaries.
+    pub(crate) fn learn(summaries: &[f64], unknown: &[f64]) -> Self {
+        let (n, d) = (unknown.len(), summaries.len() / unknown.len());
+        let mean = unknown.iter().sum::<f64>() / n as f64;
+        let targets: Vec<f64> = unknown.iter().map(|u| u - mean).collect();
+        let searched = n.min(MAX_SEARCHED);
+        let Some(lengths) = lengths(&summaries[..searched * d], &targets[..searched], d) else {
+            return Self::nothing(mean, &targets);
+        };
+        let points = multiplied(summaries, &lengths.multipliers);
+        let kernel = kernel(&points, &points, d);
+        let Some(fit) = Fit::of(kernel.clone(), &targets, lengths.ridge) else {
+            return Self::nothing(mean, &targets);
+        };
+        let squares: Vec<f64> = fit.residuals.iter().map(|e| e * e).collect();
+        let (power, scales) = scales(&kernel, &squares);
+        let predictions = unknown.iter().zip(&fit.residuals).map(|(u, e)| u - e).collect();
+        Self {
+            mean,
+            lengths: lengths.multipliers,
+            points,
+            coefficients: fit.coefficients,
+            power,
+            predictions,
+            scales,
+            squares,
+        }
+    }
+
+    /// Summaries that tell nothing: the mean is predicted.
+    fn nothing(mean: f64, targets: &[f64]) -> Self {
+        let squares: Vec<f64> = targets.iter().map(|target| target * target).collect();
+        let scale = (squares.iter().sum::<f64>() / squares.len() as f64).sqrt();
+        Self {
+            mean,
+            lengths: Vec::new(),
+            points: Vec::new(),
+            coefficients: Vec::new(),
+            power: 1,
+            predictions: vec![mean; targets.len()],
+            scales: vec![scale; targets.len()],
+            squares,
+        }
+    }
+
+    /// How much every training run is like a record to this regression and to another: the product of their kernels.
+    pub(crate) fn likeness(&self, summaries: &[f64], other: &Self) -> Vec<f64> {
+        let own = |of: &Self| {
+            if of.lengths.is_empty() {
+                return vec![1.0; of.predictions.len()];
+            }
+            kernel(&multiplied(summaries, &of.lengths), &of.points, of.lengths.len())
+        };
+        own(self).iter().zip(own(other)).map(|(a, b)| a * b).collect()
+    }
+
+    /// The prediction for these summaries of a record.
+    pub(crate) fn predict(&self, summaries: &[f64]) -> Prediction {
+        if self.lengths.is_empty() {
+            return Prediction {
+                value: self.mean,
+                scale: self.scales[0],
+            };
+        }
+        let point = multiplied(summaries, &self.lengths);
+        let kernel = kernel(&point, &self.points, self.lengths.len());
+        let sum: f64 = kernel.iter().zip(&self.coefficients).map(|(k, a)| k * a).sum();
+        Prediction {
+            value: self.mean + sum,
+            scale: scale(&kernel, &self.squares, self.power, mean(&self.squares), None),
+        }
+    }
+}
+
+fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len() as f64
+}
+
+/// Rows of summaries, of which each is multiplied by its length.
+fn multiplied(summaries: &[f64], lengths: &[f64]) -> Vec<f64> {
+    let rows = summaries.chunks_exact(lengths.len());
+    rows.flat_map(|row| row.iter().zip(lengths).map(|(x, length)| x * length))
+        .collect()
+}
+
+/// `exp(-|x - x'|^2/2)`.
+fn kernel(points: &[f64], others: &[f64], d: usize) -> Vec<f64> {
+    let mut kernel = squared_distances(points, others, d);
+    for value in &mut kernel {
+        *value = libm::exp(-0.5 * *value);
+    }
+    kernel
+}
+
+/// A regression, and what it leaves of every run that it has not seen.
+struct Fit {
+    coefficients: Vec<f64>,
+    residuals: Vec<f64>,
+}
+
+impl Fit {
+    fn of(mut kernel: Vec<f64>, targets: &[f64], ridge: f64) -> Option<Self> {
+        let n = targets.len();
+        for i in 0..n {
+            kernel[i * n + i] += ridge;
+        }
+        let factor = Factor::of(kernel, n)?;
+        let mut coefficients = targets.to_vec();
+        factor.solve(&mut coefficients);
+        let inverse = factor.inverse_diagonal();
+        let residuals = coefficients.iter().zip(inverse).map(|(a, d)| a / d).collect();
+        Some(Self {
+            coefficients,
+            residuals,
+        })
+    }
+
+    /// Mean square of the residuals, each of at most `bound`.
+    fn error(&self, bound: f64) -> f64 {
+        let squares = self.residuals.iter().map(|e| {
+            let e = e.abs().min(bound);
+            e * e
+        });
+        squares.sum::<f64>() / self.residuals.len() as f64
+    }
+}
+
+/// What the kernel of an unknown is made of.
+struct Lengths {
+    multipliers: Vec<f64>,
+    ridge: f64,
+}
+
+/// Finds weights, lengths and ridge from some runs; none if no summaries tell of the unknown.
+fn lengths(summaries: &[f64], targets: &[f64], d: usize) -> Option<Lengths> {
+    let n = targets.len();
+    let variance = targets.iter().map(|target| target * target).sum::<f64>() / n as f64;
+    let bound = MAX_RESIDUAL * variance.sqrt();
+    let mut weights = vec![1.0; d];
+    let mut trial = Trial { spread: 2, ridge: -4 };
+    let mut found = None;
+    for round in 0..=ROUNDS {
+        let points = multiplied(summaries, &weights);
+        let distances = squared_distances(&points, &points, d);
+        let median = median(&distances);
+        if median <= 0.0 {
+            return None;
+        }
+        let fit = |trial: Trial| {
+            let unit = 1.0 / (libm::exp2(f64::from(trial.spread)) * median);
+            let kernel: Vec<f64> = distances
+                .iter()
+                .map(|square| libm::exp(-0.5 * unit * square))
+                .collect();
+            let fit = Fit::of(kernel.clone(), targets, ridge(trial));
+            fit.map(|fit| (fit.error(bound), fit, kernel, unit))
+        };
+        let (best, (error, fit, kernel, unit)) = search(trial, &fit)?;
+        trial = best;
+        let multipliers: Vec<f64> = weights.iter().map(|weight| weight * unit.sqrt()).collect();
+        // Slopes of what was not learnt would be noise.
+        if round == 0 && error > (1.0 - LEAST_EXPLAINED) * variance {
+            return None;
+        }
+        if round < ROUNDS {
+            weights = slopes(&kernel, &fit.coefficients, summaries, &multipliers);
+        }
+        found = Some(Lengths {
+            multipliers,
+            ridge: ridge(trial),
+        });
+    }
+    found
+}
+
+fn ridge(trial: Trial) -> f64 {
+    libm::pow(10.0, 0.5 * f64::from(trial.ridge))
+}
+
+/// The trial with the least error of its neighbourhood, from `start` on; none if no trial has a fit.
+fn search<T>(
+    start: Trial,
+    fit: &dyn Fn(Trial) -> Option<(f64, Fit, Vec<f64>, T)>,
+) -> Option<(Trial, (f64, Fit, Vec<f64>, T))> {
+    let mut tried = vec![start];
+    let mut best = fit(start).map(|fit| (start, fit));
+    let mut centre = start;
+    loop {
+        let steps = [
+            (0, 2),
+            (0, -2),
+            (1, 0),
+            (-1, 0),
+            (1, 2),
+            (-1, -2),
+            (0, 1),
+            (0, -1),
+        ];
+        let mut improved = false;
+        for (spread, ridge) in steps {
+            let next = Trial {
+                spread: centre.spread + spread,
+                ridge: centre.ridge + ridge,
+            };
+            let is_known = tried.contains(&next);
+            if is_known || !SPREADS.contains(&next.spread) || !RIDGES.contains(&next.ridge) {
+                continue;
+            }
+            tried.push(next);
+            let Some(found) = fit(next) else {
+                continue;
+            };
+            // A gain of a part in 500 is not worth further trials.
+            if best.as_ref().is_none_or(|(_, best)| found.0 < 0.998 * best.0) {
+                best = Some((next, found));
+                centre = next;
+                improved = true;
+                break;
+            }
+        }
+        if !improved {
+            return best;
+        }
+    }
+}
+
+/// Root mean square of the slope of the regression along every summary over the runs, the largest of which is 1.
+///
+/// ```text
+/// df/dx_f(x_i) = sum_j a_j k_ij (x_jf - x_if) w_f/h^2
+/// ```
+fn slopes(kernel: &[f64], coefficients: &[f64], summaries: &[f64], multipliers: &[f64]) -> Vec<f64> {
+    let (n, d) = (coefficients.len(), multipliers.len());
+    let mut sums = vec![0.0; d];
+    for i in 0..n {
+        let mut slope = vec![0.0; d];
+        let mut total = 0.0;
+        for j in 0..n {
+            let share = coefficients[j] * kernel[i * n + j];
+            total += share;
+            for (slope, x) in slope.iter_mut().zip(&summaries[j * d..(j + 1) * d]) {
+                *slope += share * x;
+            }
+        }
+        for (f, sum) in sums.iter_mut().enumerate() {
+            let slope = (slope[f] - total * summaries[i * d + f]) * multipliers[f] * multipliers[f];
+            *sum += slope * slope;
+        }
+    }
+    let largest = sums.iter().copied().fold(0.0, f64::max);
+    sums.iter().map(|sum| (sum / largest).sqrt()).collect()
+}
+
+/// The median of numbers.
+fn median(values: &[f64]) -> f64 {
+    let mut values = values.to_vec();
+    let middle = values.len() / 2;
+    *values.select_nth_unstable_by(middle, f64::total_cmp).1
+}
+
+/// Powers of the kernel among which the scale of residuals is looked for.
+const POWERS: [i32; 4] = [1, 4, 16, 64];
+
+/// How many runs the mean of all residuals counts for where few are near.
+const PRIOR_RUNS: f64 = 5.0;
+
+/// A power of a kernel that is a power of two or of four.
+fn raised(value: f64, power: i32) -> f64 {
+    let mut raised = value;
+    let mut done = 1;
+    while done < power {
+        raised *= raised;
+        done *= 2;
+    }
+    raised
+}
+
+/// Root mean square of residuals, weighted by the kernel, without that of run `left_out`.
+fn scale(kernel: &[f64], squares: &[f64], power: i32, mean: f64, left_out: Option<usize>) -> f64 {
+    let (mut sum, mut total) = (PRIOR_RUNS * mean, PRIOR_RUNS);
+    for (j, (&k, square)) in kernel.iter().zip(squares).enumerate() {
+        if Some(j) == left_out {
+            continue;
+        }
+        let weight = raised(k, power);
+        sum += weight * square;
+        total += weight;
+    }
+    (sum / total).sqrt()
+}
+
+/// The power under which residuals are most likely as normal deviates, and the scale near every run.
+fn scales(kernel: &[f64], squares: &[f64]) -> (i32, Vec<f64>) {
+    let n = squares.len();
+    let all = mean(squares);
+    let mut best: Option<(f64, i32, Vec<f64>)> = None;
+    for power in POWERS {
+        let scales: Vec<f64> = (0..n)
+            .map(|i| scale(&kernel[i * n..(i + 1) * n], squares, power, all, Some(i)))
+            .collect();
+        let costs = scales.iter().zip(squares).map(|(scale, square)| {
+            let variance = scale * scale;
+            libm::log(variance) + square / variance
+        });
+        let cost = costs.sum::<f64>();
+        if best.as_ref().is_none_or(|(least, ..)| cost < *least) {
+            best = Some((cost, power, scales));
+        }
+    }
+    best.map_or((1, Vec::new()), |(_, power, scales)| (power, scales))
+}

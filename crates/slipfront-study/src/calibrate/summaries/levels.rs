@@ -1,0 +1,41 @@
+//! Levels of friction over the record.
+//!
+//! ```text
+//! log m                        mean of the second half
+//! mean of y_(p+a-5..p+a+5)/m   a = 10, 20, 30, 45, 60, 90, 130 behind the first peak, in 400ths of the record
+//! mean of an eighth/m          the third to the eighth eighth of the record
+//! ```
+
+use super::{Curve, log, mean};
+
+pub(super) fn summaries(curve: &Curve) -> Vec<f64> {
+    let (y, m) = (curve.y, curve.level);
+    let (n, half) = (y.len(), curve.of_400(5));
+    let mut found = vec![log(m)];
+    for behind in [10, 20, 30, 45, 60, 90, 130] {
+        let middle = (curve.peak + curve.of_400(behind)).min(n - 1);
+        let near = &y[middle.saturating_sub(half)..(middle + half + 1).min(n)];
+        found.push(mean(near) / m);
+    }
+    found.extend((2..8).map(|k| mean(&y[k * n / 8..(k + 1) * n / 8]) / m));
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::tests::ramp_and_fall;
+    use super::*;
+
+    #[test]
+    fn a_fall_to_rest_has_levels() {
+        let y = ramp_and_fall();
+        let found = summaries(&Curve::new(&y));
+        // From 105 to 115, and from 115 to 125, friction falls by 1/40 each to 1/2 at 120; then it rests.
+        assert!((found[0] - 0.5_f64.ln()).abs() < 1e-12);
+        assert!((found[1] - 0.75 / 0.5).abs() < 1e-12);
+        assert!((found[2] - (0.5 + 15.0 / 40.0 / 11.0) / 0.5).abs() < 1e-12);
+        assert!(found[3..8].iter().all(|level| (level - 1.0).abs() < 1e-12));
+        // The third eighth, 100 to 149.
+        assert!((found[8] - (0.5 + 210.0 / 40.0 / 50.0) / 0.5).abs() < 1e-12);
+    }
+}

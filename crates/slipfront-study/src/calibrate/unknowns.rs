@@ -1,0 +1,159 @@
+//! What a calibration looks for: numeric keys of the case, each with a range.
+
+use slipfront_case::case_file::Override;
+
+/// A key of the case whose value is looked for within a range, in which all values are alike likely before there is a record.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Unknown {
+    key: String,
+    from: f64,
+    to: f64,
+    unit: Option<String>,
+    is_logarithmic: bool,
+}
+
+/// Why a range is none.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
+pub enum UnknownError {
+    #[error("the range of `{key}` goes from {from} to {to}: give two finite numbers, the smaller one first")]
+    Order { key: String, from: f64, to: f64 },
+    #[error("the range of `{key}` begins at {from}: a range on a logarithmic scale begins above 0")]
+    Logarithm { key: String, from: f64 },
+    #[error("`friction.seed` numbers the surfaces that training draws: it is no unknown")]
+    Seed,
+}
+
+impl Unknown {
+    /// Values of `key` between `from` and `to`, alike likely, or alike likely in their logarithm.
+    ///
+    /// # Errors
+    /// When the range is empty or not finite, begins at or below 0 on a logarithmic scale, or is one of seeds.
+    pub fn new(key: &str, from: f64, to: f64, is_logarithmic: bool) -> Result<Self, UnknownError> {
+        let key = key.to_owned();
+        if key == "friction.seed" {
+            return Err(UnknownError::Seed);
+        }
+        if !(from < to && from.is_finite() && to.is_finite()) {
+            return Err(UnknownError::Order { key, from, to });
+        }
+        if is_logarithmic && from <= 0.0 {
+            return Err(UnknownError::Logarithm { key, from });
+        }
+        Ok(Self {
+            key,
+            from,
+            to,
+            unit: None,
+            is_logarithmic,
+        })
+    }
+
+    /// This unknown, with values that are written with a unit, such as `um`.
+    #[must_use]
+    pub fn in_unit(self, unit: &str) -> Self {
+        Self {
+            unit: Some(unit.to_owned()),
+            ..self
+        }
+    }
+
+    /// The key.
+    pub fn key(&self) -> &str {
+        &self.key
+    }
+
+    /// The value at a share of the range: `from + share (to - from)`, or `from (to/from)^share` on a logarithmic scale.
+    ///
+    /// ```
+    /// use slipfront_study::calibrate::Unknown;
+    /// let damping = Unknown::new("slider.omega_star", 0.01, 1.0, true)?;
+    /// assert!((damping.at(0.5) - 0.1).abs() < 1e-15 && (damping.share_of(0.1) - 0.5).abs() < 1e-15);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn at(&self, share: f64) -> f64 {
+        if self.is_logarithmic {
+            self.from * libm::exp(share * libm::log(self.to / self.from))
+        } else {
+            self.from + share * (self.to - self.from)
+        }
+    }
+
+    /// Where a value stands in the range, from 0 to 1.
+    pub fn share_of(&self, value: f64) -> f64 {
+        if self.is_logarithmic {
+            libm::log(value / self.from) / libm::log(self.to / self.from)
+        } else {
+            (value - self.from) / (self.to - self.from)
+        }
+    }
+
+    /// What sets the key to the value at a share of the range.
+    pub fn set_to(&self, share: f64) -> Override {
+        let value = self.at(share);
+        let value = match &self.unit {
+            Some(unit) => toml::Value::from(format!("{value} {unit}")),
+            None => toml::Value::from(value),
+        };
+        Override::new(&self.key, &value)
+    }
+}
+
+/// Shares of the ranges of `count` unknowns in training run `run`: points that fill the ranges evenly, for any number of runs.
+///
+/// ```text
+/// share_j = frac(1/2 + (run + 1) g^-(j + 1)),   g^(count + 1) = g + 1
+/// ```
+///
+/// The sequence is Roberts' R_d, a Kronecker sequence of the generalized golden ratio g.
+pub fn design_point(run: usize, count: usize) -> Vec<f64> {
+    let mut golden = 2.0;
+    for _ in 0..64 {
+        golden = libm::pow(1.0 + golden, 1.0 / (count as f64 + 1.0));
+    }
+    let step = |j: usize| libm::pow(golden, -(j as f64 + 1.0));
+    (0..count)
+        .map(|j| (0.5 + (run as f64 + 1.0) * step(j)).fract())
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ranges_that_are_none_are_refused() {
+        let refused = |from, to, log| {
+            Unknown::new("friction.r_star", from, to, log)
+                .unwrap_err()
+                .to_string()
+        };
+        assert!(refused(0.9, 0.3, false).contains("from 0.9 to 0.3"));
+        assert!(refused(f64::NAN, 0.3, false).contains("NaN"));
+        assert!(refused(0.0, 0.3, true).contains("begins at 0"));
+        assert!(Unknown::new("friction.seed", 1.0, 2.0, false).is_err());
+    }
+
+    #[test]
+    fn a_share_sets_the_key() {
+        let unknown = Unknown::new("friction.r_star", 0.25, 0.75, false).unwrap();
+        assert_eq!(unknown.set_to(0.5).to_string(), "friction.r_star=0.5");
+        let length = Unknown::new("friction.correlation_length", 1.0, 3.0, false).unwrap();
+        assert_eq!(
+            length.in_unit("um").set_to(0.5).value(),
+            toml::Value::from("2 um")
+        );
+    }
+
+    /// One dimension is the golden ratio's sequence; every one has a mean of 1/2, to the discrepancy log(n)/n.
+    #[test]
+    fn design_points_fill_the_ranges() {
+        let ratio = (5.0_f64.sqrt() - 1.0) / 2.0;
+        assert!((design_point(0, 1)[0] - (0.5 + ratio).fract()).abs() < 1e-14);
+        let n = 1000;
+        for j in 0..6 {
+            let mean = (0..n).map(|run| design_point(run, 6)[j]).sum::<f64>() / f64::from(n as u32);
+            assert!((mean - 0.5).abs() < 0.007, "{j} {mean}");
+        }
+    }
+}
