@@ -2,7 +2,7 @@
 //!
 //! Every sum runs in the order of its index, so that results have the same bits for any width of vectors.
 
-use fearless_simd::{Level, Simd, dispatch};
+use fearless_simd::{Level, Simd, SimdBase, dispatch, f64x8};
 
 /// Columns that are computed together: two vectors of AVX2, one of AVX-512.
 const PANEL: usize = 8;
@@ -20,18 +20,17 @@ pub(crate) struct Factor {
 
 /// Sums over k of `a[row][k] b[k][column]` of a tile of the product of two matrices.
 #[inline(always)]
-fn tile(a: [&[f64]; ROWS], b: &[[f64; PANEL]]) -> [[f64; PANEL]; ROWS] {
-    let mut sums = [[0.0; PANEL]; ROWS];
-    let a = a.map(|row| &row[..b.len()]);
-    for (k, b) in b.iter().enumerate() {
-        for (sums, row) in sums.iter_mut().zip(a) {
-            let factor = row[k];
-            for (sum, b) in sums.iter_mut().zip(b) {
-                *sum += factor * b;
-            }
-        }
+fn tile<S: Simd>(simd: S, a: [&[f64]; ROWS], b: &[[f64; PANEL]]) -> [[f64; PANEL]; ROWS] {
+    let mut sums = [f64x8::splat(simd, 0.0); ROWS];
+    let [a0, a1, a2, a3] = a.map(|row| &row[..b.len()]);
+    for ((((b, a0), a1), a2), a3) in b.iter().zip(a0).zip(a1).zip(a2).zip(a3) {
+        let b = f64x8::load_array_ref(simd, b);
+        sums[0] = sums[0] + f64x8::splat(simd, *a0) * b;
+        sums[1] = sums[1] + f64x8::splat(simd, *a1) * b;
+        sums[2] = sums[2] + f64x8::splat(simd, *a2) * b;
+        sums[3] = sums[3] + f64x8::splat(simd, *a3) * b;
     }
-    sums
+    sums.map(Into::into)
 }
 
 /// Rows of a matrix from `first` on, from column `from` on; behind the last row it is repeated.
@@ -54,13 +53,13 @@ impl Factor {
         let mut factor = Self { n, rows: matrix };
         let is_positive = dispatch!(Level::new(), simd => simd.vectorize(
             #[inline(always)]
-            || factor.factorize()
+            || factor.factorize(simd)
         ));
         is_positive.then_some(factor)
     }
 
     #[inline(always)]
-    fn factorize(&mut self) -> bool {
+    fn factorize<S: Simd>(&mut self, simd: S) -> bool {
         let n = self.n;
         let mut panel = Vec::with_capacity(n);
         for first in (0..n).step_by(PANEL) {
@@ -75,29 +74,30 @@ impl Factor {
                     }
                 })
             }));
+            // The factor of the panel's own rows, column after column.
+            let mut own = [[0.0; PANEL]; PANEL];
             for group in (first..n).step_by(ROWS) {
-                let sums = tile(rows_from(&self.rows, n, group, 0), &panel);
+                let sums = tile(simd, rows_from(&self.rows, n, group, 0), &panel);
                 for (row, sums) in (group..n).zip(sums) {
                     let place = row * n + first;
-                    for (value, sum) in self.rows[place..place + width].iter_mut().zip(sums) {
-                        *value -= sum;
+                    let values = &mut self.rows[place..place + width];
+                    let last = (row - first).min(width - 1);
+                    for column in 0..=last {
+                        let mut rest = values[column] - sums[column];
+                        for k in 0..column {
+                            rest -= values[k] * own[column][k];
+                        }
+                        values[column] = if row != first + column {
+                            rest / own[column][column]
+                        } else if rest > 0.0 {
+                            rest.sqrt()
+                        } else {
+                            return false;
+                        };
                     }
-                }
-            }
-            for column in first..first + width {
-                for row in column..n {
-                    let products =
-                        (first..column).map(|k| self.rows[row * n + k] * self.rows[column * n + k]);
-                    let rest = self.rows[row * n + column] - products.sum::<f64>();
-                    let is_diagonal = row == column;
-                    if is_diagonal && rest.is_nan() || is_diagonal && rest <= 0.0 {
-                        return false;
+                    if row < first + width {
+                        own[row - first][..=last].copy_from_slice(&values[..=last]);
                     }
-                    self.rows[row * n + column] = if is_diagonal {
-                        rest.sqrt()
-                    } else {
-                        rest / self.rows[column * n + column]
-                    };
                 }
             }
         }
@@ -125,12 +125,12 @@ impl Factor {
     pub(crate) fn inverse_diagonal(&self) -> Vec<f64> {
         dispatch!(Level::new(), simd => simd.vectorize(
             #[inline(always)]
-            || self.squares_of_columns()
+            || self.squares_of_columns(simd)
         ))
     }
 
     #[inline(always)]
-    fn squares_of_columns(&self) -> Vec<f64> {
+    fn squares_of_columns<S: Simd>(&self, simd: S) -> Vec<f64> {
         let n = self.n;
         let mut diagonal = Vec::with_capacity(n);
         let mut columns: Vec<[f64; PANEL]> = Vec::with_capacity(n);
@@ -138,7 +138,7 @@ impl Factor {
             columns.clear();
             let mut squares = [0.0; PANEL];
             for group in (first..n).step_by(ROWS) {
-                let sums = tile(rows_from(&self.rows, n, group, first), &columns);
+                let sums = tile(simd, rows_from(&self.rows, n, group, first), &columns);
                 for (row, mut sums) in (group..n).zip(sums) {
                     let line = &self.rows[row * n..row * n + row + 1];
                     for k in group..row {
@@ -166,12 +166,12 @@ impl Factor {
 pub(crate) fn squared_distances(points: &[f64], others: &[f64], d: usize) -> Vec<f64> {
     dispatch!(Level::new(), simd => simd.vectorize(
         #[inline(always)]
-        || distances(points, others, d)
+        || distances(simd, points, others, d)
     ))
 }
 
 #[inline(always)]
-fn distances(points: &[f64], others: &[f64], d: usize) -> Vec<f64> {
+fn distances<S: Simd>(simd: S, points: &[f64], others: &[f64], d: usize) -> Vec<f64> {
     let (n, m) = (points.len() / d, others.len() / d);
     let square = |point: &[f64]| point.iter().map(|x| x * x).sum::<f64>();
     let squares: Vec<f64> = others.chunks_exact(d).map(square).collect();
@@ -186,7 +186,7 @@ fn distances(points: &[f64], others: &[f64], d: usize) -> Vec<f64> {
                 let row = (group + k).min(n - 1) * d;
                 &points[row..row + d]
             });
-            let products = tile(rows, &panel);
+            let products = tile(simd, rows, &panel);
             for (k, row) in (group..n.min(group + ROWS)).enumerate() {
                 let own = square(&points[row * d..row * d + d]);
                 for column in 0..width {

@@ -14,7 +14,7 @@
 use super::dense::{Factor, squared_distances};
 
 /// Most runs from which weights and lengths are found.
-const MAX_SEARCHED: usize = 600;
+const MAX_SEARCHED: usize = 800;
 
 /// Times that the weights are found anew.
 const ROUNDS: usize = 2;
@@ -75,7 +75,7 @@ impl Regression {
             return Self::nothing(mean, &targets);
         };
         let points = multiplied(summaries, &lengths.multipliers);
-        let kernel = kernel(&points, &points, d);
+        let kernel = kernel_of_all(&points, d);
         let Some(fit) = Fit::of(kernel.clone(), &targets, lengths.ridge) else {
             return Self::nothing(mean, &targets);
         };
@@ -159,6 +159,24 @@ fn kernel(points: &[f64], others: &[f64], d: usize) -> Vec<f64> {
     kernel
 }
 
+/// The kernel of every pair of points.
+fn kernel_of_all(points: &[f64], d: usize) -> Vec<f64> {
+    let distances = squared_distances(points, points, d);
+    exponentials(distances, points.len() / d, 1.0)
+}
+
+/// `exp(-unit square/2)` of the elements of a symmetric matrix of n rows.
+fn exponentials(mut squares: Vec<f64>, n: usize, unit: f64) -> Vec<f64> {
+    for i in 0..n {
+        for j in 0..=i {
+            let value = libm::exp(-0.5 * unit * squares[i * n + j]);
+            squares[i * n + j] = value;
+            squares[j * n + i] = value;
+        }
+    }
+    squares
+}
+
 /// A regression, and what it leaves of every run that it has not seen.
 struct Fit {
     coefficients: Vec<f64>,
@@ -215,10 +233,7 @@ fn lengths(summaries: &[f64], targets: &[f64], d: usize) -> Option<Lengths> {
         }
         let fit = |trial: Trial| {
             let unit = 1.0 / (libm::exp2(f64::from(trial.spread)) * median);
-            let kernel: Vec<f64> = distances
-                .iter()
-                .map(|square| libm::exp(-0.5 * unit * square))
-                .collect();
+            let kernel = exponentials(distances.clone(), n, unit);
             let fit = Fit::of(kernel.clone(), targets, ridge(trial));
             fit.map(|fit| (fit.error(bound), fit, kernel, unit))
         };
@@ -277,7 +292,7 @@ fn search<T>(
             let Some(found) = fit(next) else {
                 continue;
             };
-            // A gain of a part in 500 is not worth further trials.
+            // A smaller gain is not worth further trials.
             if best.as_ref().is_none_or(|(_, best)| found.0 < 0.998 * best.0) {
                 best = Some((next, found));
                 centre = next;

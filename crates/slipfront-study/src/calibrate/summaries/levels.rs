@@ -2,7 +2,8 @@
 //!
 //! ```text
 //! log m                        mean of the second half
-//! mean of y_(p+a-5..p+a+5)/m   a = 10, 20, 30, 45, 60, 90, 130 behind the first peak, in 400ths of the record
+//! s3_(p+a)/m                   a = -20 to 50 behind the first peak, in 400ths of the record
+//! mean of y_(p+a-5..p+a+5)/m   a = 60, 90, 130
 //! mean of an eighth/m          the third to the eighth eighth of the record
 //! ```
 
@@ -12,7 +13,13 @@ pub(super) fn summaries(curve: &Curve) -> Vec<f64> {
     let (y, m) = (curve.y, curve.level);
     let (n, half) = (y.len(), curve.of_400(5));
     let mut found = vec![log(m)];
-    for behind in [10, 20, 30, 45, 60, 90, 130] {
+    for before in [20, 10, 5, 2] {
+        found.push(curve.s3[curve.peak.saturating_sub(curve.of_400(before))] / m);
+    }
+    for behind in [2, 4, 6, 8, 10, 13, 16, 20, 25, 30, 40, 50] {
+        found.push(curve.s3[(curve.peak + curve.of_400(behind)).min(n - 1)] / m);
+    }
+    for behind in [60, 90, 130] {
         let middle = (curve.peak + curve.of_400(behind)).min(n - 1);
         let near = &y[middle.saturating_sub(half)..(middle + half + 1).min(n)];
         found.push(mean(near) / m);

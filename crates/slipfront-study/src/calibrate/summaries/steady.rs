@@ -9,10 +9,11 @@
 //! log max(-f)/m, log max(f)/m  f: differences of its running mean over 3 of 400
 //! sum e_i e_(i+L)/sum e_i^2    autocorrelation, L = 1, 2, 3, 5, 8, 12, 16, 20, 25, 30, 40 of 400
 //! mean e^3/sd^3, log mean e^4/sd^4
+//! log of the mean of |E_k|^2/m^2   of bands of k; E_k: Fourier coefficients of e under a window of Hann
 //! quantiles of s3/m            at 0.02, 0.1, 0.9, 0.98
 //! ```
 
-use super::{Curve, deviation, log, mean, quantiles, running_mean};
+use super::{Curve, LEAST, deviation, log, mean, quantiles, running_mean};
 
 pub(super) fn summaries(curve: &Curve) -> Vec<f64> {
     let m = curve.level;
@@ -42,8 +43,41 @@ pub(super) fn summaries(curve: &Curve) -> Vec<f64> {
         moment(&e, cube) / cube(scatter),
         log(moment(&e, |e| e * cube(e)) / (scatter * cube(scatter))),
     ]);
+    found.extend(bands(&e, m));
     found.extend(quantiles(smooth, [0.02, 0.1, 0.9, 0.98]).map(|value| value / m));
     found
+}
+
+/// First frequencies of the bands of the spectrum, in periods over the half of the record.
+const BANDS: [usize; 11] = [1, 3, 5, 7, 9, 12, 16, 22, 30, 45, 70];
+
+/// Logarithm of the mean power in every band but the last, which ends the one before it.
+fn bands(e: &[f64], m: f64) -> Vec<f64> {
+    let n = e.len();
+    let turn = std::f64::consts::TAU / n as f64;
+    let (cosines, sines): (Vec<f64>, Vec<f64>) = (0..n)
+        .map(|i| turn * i as f64)
+        .map(|x| (libm::cos(x), libm::sin(x)))
+        .unzip();
+    let windowed: Vec<f64> = e
+        .iter()
+        .zip(&cosines)
+        .map(|(e, c)| e * (0.5 - 0.5 * c) / m)
+        .collect();
+    let power = |k: usize| {
+        let (mut re, mut im) = (0.0, 0.0);
+        let mut place = 0;
+        for e in &windowed {
+            re += e * cosines[place];
+            im += e * sines[place];
+            place = (place + k) % n;
+        }
+        (re * re + im * im) / n as f64
+    };
+    let bands = BANDS
+        .windows(2)
+        .map(|band| (band[0]..band[1]).map(power).sum::<f64>() / (band[1] - band[0]) as f64);
+    bands.map(|mean| libm::log(mean + LEAST * LEAST)).collect()
 }
 
 fn cube(value: f64) -> f64 {
