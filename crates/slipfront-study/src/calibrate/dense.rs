@@ -83,11 +83,13 @@ impl Factor {
                     let values = &mut self.rows[place..place + width];
                     let last = (row - first).min(width - 1);
                     for column in 0..=last {
+                        let is_diagonal = row == first + column;
                         let mut rest = values[column] - sums[column];
                         for k in 0..column {
-                            rest -= values[k] * own[column][k];
+                            let other = if is_diagonal { values[k] } else { own[column][k] };
+                            rest -= values[k] * other;
                         }
-                        values[column] = if row != first + column {
+                        values[column] = if !is_diagonal {
                             rest / own[column][column]
                         } else if rest > 0.0 {
                             rest.sqrt()

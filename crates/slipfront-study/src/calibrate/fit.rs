@@ -207,3 +207,86 @@ impl Calibration {
         pairs
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::unknowns::design_point;
+    use super::*;
+    use slipfront_run::measured::{Measure, MeasuredRecord};
+
+    /// A slope and a level that the slope leads to, both known, and a number that no curve shows.
+    fn curve(point: &[f64]) -> Vec<f64> {
+        let (slope, level) = (0.02 + 0.03 * point[0], 0.5 + 0.5 * point[1]);
+        (0..100).map(|i| (slope * f64::from(i)).min(level)).collect()
+    }
+
+    fn training(runs: usize) -> Training {
+        let points: Vec<Vec<f64>> = (0..runs).map(|run| design_point(run, 3)).collect();
+        let curves = points.iter().map(|point| vec![curve(point)]).collect();
+        Training { points, curves }
+    }
+
+    fn grid() -> Grid {
+        let x: Vec<f64> = (0..100).map(f64::from).collect();
+        let record = MeasuredRecord { y: x.clone(), x };
+        Grid::of(&record, Measure::Time, Measure::Coefficient).unwrap()
+    }
+
+    fn calibration() -> Calibration {
+        Calibration::new(&training(300), &[&grid()], 0.01)
+    }
+
+    #[test]
+    fn what_a_curve_shows_is_found_and_what_it_does_not_is_told() {
+        let calibration = calibration();
+        let point = [0.3, 0.6, 0.5];
+        let record = noisy(&curve(&point), 0.01, normals(Stream::Noise, 1000, 0));
+        let fit = calibration.fit(&[record]);
+        assert_eq!(fit.undetermined, [2]);
+        for (distribution, truth) in fit.distributions.iter().zip(point).take(2) {
+            // The interval of 99 % of both: a hundredth of the range would be missed by 1 % of noise over 100 values.
+            let [low, high] = distribution.interval(0.99);
+            assert!(
+                low <= truth && truth <= high && high - low < 0.1,
+                "{low} {truth} {high}"
+            );
+        }
+        assert!(fit.pairs.is_empty());
+        assert!(!fit.misfit.is_refused(), "{:?}", fit.misfit);
+    }
+
+    #[test]
+    fn records_that_drift_or_are_of_another_kind_are_refused() {
+        let calibration = calibration();
+        let plain = curve(&[0.3, 0.6, 0.5]);
+        let noise = || normals(Stream::Noise, 1000, 0);
+        let drifting: Vec<f64> = plain
+            .iter()
+            .zip(0..)
+            .map(|(y, i)| y * (1.0 + 0.1 * f64::from(i) / 99.0))
+            .collect();
+        let drift = calibration.fit(&[noisy(&drifting, 0.01, noise())]).misfit;
+        assert!(drift.has_drift && drift.drift[0] > 0.0, "{drift:?}");
+        let swings: Vec<f64> = plain
+            .iter()
+            .zip(0..)
+            .map(|(y, i)| y * (1.0 + 0.3 * f64::from(i % 7 - 3) / 3.0))
+            .collect();
+        let foreign = calibration.fit(&[noisy(&swings, 0.01, noise())]).misfit;
+        assert!(foreign.distance > 1.0, "{foreign:?}");
+    }
+
+    #[test]
+    fn threads_do_not_change_a_bit() {
+        let fit = |threads: usize| {
+            let pool = rayon::ThreadPoolBuilder::new()
+                .num_threads(threads)
+                .build()
+                .unwrap();
+            pool.install(|| {
+                Calibration::new(&training(120), &[&grid()], 0.05).fit(&[curve(&[0.2, 0.7, 0.1])])
+            })
+        };
+        assert_eq!(fit(1), fit(3));
+    }
+}

@@ -68,3 +68,57 @@ impl Distribution {
         if place == 0 { 0.0 } else { self.sums[place - 1] }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::normals::{Stream, normals};
+    use super::super::unknowns::design_point;
+    use super::*;
+
+    #[test]
+    fn quantiles_of_weighted_values() {
+        let one = Distribution::of_weighted(vec![(0.5, 1.0), (0.1, 2.0), (0.9, 1.0)]);
+        assert_eq!(
+            [0.2, 0.5, 0.6, 1.0].map(|share| one.quantile(share)),
+            [0.1, 0.1, 0.5, 0.9]
+        );
+        assert_eq!(
+            [0.0, 0.1, 0.2, 0.9, 1.0].map(|value| one.below(value)),
+            [0.0, 0.0, 0.5, 0.75, 1.0]
+        );
+        assert_eq!(one.interval(0.9), [0.1, 0.9]);
+    }
+
+    /// A summary that is the unknown with normal noise, whose deviation grows from 0.02 to 0.12 over the range.
+    #[test]
+    fn intervals_hold_the_truth_as_often_as_they_say() {
+        let truth = |run: usize| design_point(run, 1)[0];
+        let summary = |run: usize| {
+            let noise = normals(Stream::Noise, run, 0).next().unwrap();
+            truth(run) - 0.5 + (0.02 + 0.1 * truth(run)) * noise
+        };
+        let training = 400;
+        let table: Vec<f64> = (0..training).map(summary).collect();
+        let truths: Vec<f64> = (0..training).map(truth).collect();
+        let regression = Regression::learn(&table, &truths);
+        let (mut held, mut all) = ([0.0; 2], [0.0; 2]);
+        for run in training..training + 1000 {
+            let prediction = regression.predict(&[summary(run)]);
+            let [low, high] = Distribution::of(&regression, &truths, prediction).interval(0.9);
+            let half = usize::from(truth(run) > 0.5);
+            all[half] += 1.0;
+            held[half] += f64::from(u8::from((low..=high).contains(&truth(run))));
+        }
+        // Two and a half standard deviations of coverage: 0.3/sqrt(1000) of records and as much again, 0.3/sqrt(400), of training.
+        let coverage = (held[0] + held[1]) / 1000.0;
+        assert!(
+            (coverage - 0.9).abs() < 2.5 * 0.3 * (1.0_f64 / 1000.0 + 1.0 / 400.0).sqrt(),
+            "{coverage}"
+        );
+        // The noise of the upper half is thrice that of the lower, and each has intervals of its own.
+        assert!(
+            held[0] / all[0] > 0.84 && held[1] / all[1] > 0.84,
+            "{held:?} {all:?}"
+        );
+    }
+}

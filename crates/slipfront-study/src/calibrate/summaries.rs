@@ -151,7 +151,8 @@ mod tests {
         assert_eq!(first_peak(&[0.0, 1.0, 2.0], 0.1), 2);
         let y = ramp_and_fall();
         let curve = Curve::new(&y);
-        assert_eq!((curve.peak, curve.level), (100, 0.5));
+        // The mean over five is largest one before the peak, since the fall is faster than the rise.
+        assert_eq!((curve.peak, curve.level), (99, 0.5));
     }
 
     #[test]

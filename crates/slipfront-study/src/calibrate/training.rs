@@ -193,3 +193,78 @@ impl Training {
         Some(training)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use slipfront_run::measured::{Measure, MeasuredRecord};
+
+    use super::*;
+    use crate::study_file::StudyFile;
+
+    /// Two speeds of a small slider, along the path of the drive, of so many units of length.
+    fn set_up(range: [f64; 2], path: f64) -> SetUp {
+        let text = "base.slider.blocks = [6, 6]\nbase.time.duration_star = 60\nbase.drive.v_star = 0.1";
+        let base = StudyFile::parse(text, "base", "base", Path::new(""))
+            .unwrap()
+            .base;
+        let unknowns = vec![Unknown::new("friction.r_star", range[0], range[1], false).unwrap()];
+        let case = base.parse().unwrap().with(&[]).unwrap();
+        let unit = Case::new(case, "", Path::new(""), &mut |_| true, Ranks::ALONE)
+            .unwrap()
+            .scales
+            .displacement();
+        let conditions = [0.1, 0.2].map(|speed| {
+            let x: Vec<f64> = (0..50).map(|k| path * unit * f64::from(k) / 49.0).collect();
+            let record = MeasuredRecord { y: x.clone(), x };
+            Conditions {
+                overrides: vec![Override::new("drive.v_star", &toml::Value::from(speed))],
+                grid: Grid::of(&record, Measure::Displacement, Measure::Force).unwrap(),
+            }
+        });
+        SetUp {
+            base,
+            unknowns,
+            conditions: conditions.into(),
+        }
+    }
+
+    fn trained(set_up: &SetUp, threads: usize) -> Result<Training, TrainingError> {
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .unwrap();
+        pool.install(|| Training::run(set_up, 6, &|| false)).unwrap()
+    }
+
+    #[test]
+    fn threads_and_keeping_do_not_change_a_bit() {
+        let set_up = set_up([0.4, 0.8], 5.0);
+        let one = trained(&set_up, 1).unwrap();
+        assert_eq!(one, trained(&set_up, 3).unwrap());
+        assert_eq!(one.curves[0].len(), 2);
+        assert!(one.curves[0] != one.curves[1] && one.curves[0][0] != one.curves[0][1]);
+        let bytes = one.to_bytes();
+        assert_eq!(Training::from_bytes(&bytes), Some(one));
+        assert_eq!(Training::from_bytes(&bytes[8..]), None);
+        assert_eq!(Training::from_bytes(&bytes[..bytes.len() - 1]), None);
+        assert_eq!(Training::from_bytes(&[]), None);
+    }
+
+    #[test]
+    fn what_cannot_be_run_is_told_with_its_unknowns() {
+        let told = |range, path| trained(&set_up(range, path), 1).unwrap_err().to_string();
+        assert!(told([0.5, 1.0], 50.0).contains("the run ends before record 1 does"));
+        let out_of_bounds = told([-3.0, -2.0], 5.0);
+        assert!(
+            out_of_bounds.starts_with("the unknowns friction.r_star=-2."),
+            "{out_of_bounds}"
+        );
+    }
+
+    #[test]
+    fn a_training_is_given_up_when_it_is_told_so() {
+        assert!(Training::run(&set_up([0.4, 0.8], 5.0), 6, &|| true).is_none());
+    }
+}

@@ -66,11 +66,11 @@ mod tests {
         let found = summaries(&Curve::new(&y));
         let near = |k: usize, value: f64| assert!((found[k] - value).abs() < 1e-12, "{k} {found:?}");
         near(0, 1.0);
-        // The mean of three values is 1/2 from value 121 on, one behind the end of the fall.
-        near(1, (22.0_f64 / 400.0).ln());
-        near(2, 0.479_f64.ln());
-        // 1 - 10.42/40 is the middle, (0.979 + 0.5)/2.
-        near(3, (12.0_f64 / 400.0).ln());
+        // The mean of three values is 1/2 from value 121 on, one behind the end of the fall and 22 behind value 99.
+        near(1, (23.0_f64 / 400.0).ln());
+        near(2, 0.483_f64.ln());
+        // The middle, (0.983 + 0.5)/2, is 1 - 10.34/40.
+        near(3, (13.0_f64 / 400.0).ln());
         near(4, 10.0_f64.ln());
         near(5, super::super::LEAST.ln());
         near(6, 1.0);

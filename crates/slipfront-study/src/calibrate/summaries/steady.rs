@@ -117,5 +117,21 @@ mod tests {
         near(14, 198.0 / 200.0);
         near(24, 0.0);
         near(25, 0.0);
+        // Hann's window takes nothing of so fast an alternation to slow periods.
+        (26..36).for_each(|k| near(k, 2.0 * super::super::LEAST.ln()));
+    }
+
+    /// A swing of 8 periods over the half of the record, of amplitude 0.1: three Fourier coefficients, n/4 and n/8 twice, of its amplitude.
+    #[test]
+    fn a_swing_is_in_its_band() {
+        let y: Vec<f64> = (0..400)
+            .map(|i| 1.0 + 0.1 * libm::sin(std::f64::consts::TAU * 8.0 * f64::from(i) / 200.0))
+            .collect();
+        let found = summaries(&Curve::new(&y));
+        let n = 200.0_f64;
+        let band = |squares: f64, width: f64| (0.01 * squares * n / width).ln();
+        // Of the periods 7 and 8, and of 9 to 11.
+        assert!((found[29] - band(1.0 / 64.0 + 1.0 / 16.0 * 1.0 / 4.0 * 4.0, 2.0)).abs() < 1.0);
+        assert!(found[29] > found[28] + 5.0 && found[29] > found[31] + 5.0);
     }
 }
