@@ -24,7 +24,7 @@ use slipfront_study::{Base, StudyFile};
 const VALUES: usize = 399;
 
 /// Seeds of the surfaces of records; those of training runs are small.
-const FIRST_SEED: u64 = 1_000_000_000;
+const FIRST_SEED: u64 = 3_000_000_000;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().collect();
@@ -195,13 +195,13 @@ fn unit_interval(state: &mut u64) -> f64 {
 
 /// Where the unknowns of a record lie in their ranges.
 fn uniform(record: usize, count: usize) -> Vec<f64> {
-    let mut state = (record as u64 + 1).wrapping_mul(0xD134_2543_DE82_EF95);
+    let mut state = (record as u64 + 1).wrapping_mul(0xAEF1_7502_108E_F2D9);
     (0..count).map(|_| unit_interval(&mut state)).collect()
 }
 
 /// A record with noise of a share of its mean, and a drift of a share of friction over it.
 fn noisy(curve: &[f64], noise: f64, drift: f64, record: usize) -> Vec<f64> {
-    let mut state = (record as u64 + 7).wrapping_mul(0xA076_1D64_78BD_642F) ^ noise.to_bits();
+    let mut state = (record as u64 + 7).wrapping_mul(0xE703_7ED1_A0B4_28DB) ^ noise.to_bits();
     let deviation = noise * curve.iter().sum::<f64>() / curve.len() as f64;
     let last = (curve.len() - 1) as f64;
     let values = curve.iter().enumerate();

@@ -25,10 +25,10 @@ fn tile<S: Simd>(simd: S, a: [&[f64]; ROWS], b: &[[f64; PANEL]]) -> [[f64; PANEL
     let [a0, a1, a2, a3] = a.map(|row| &row[..b.len()]);
     for ((((b, a0), a1), a2), a3) in b.iter().zip(a0).zip(a1).zip(a2).zip(a3) {
         let b = f64x8::load_array_ref(simd, b);
-        sums[0] = sums[0] + f64x8::splat(simd, *a0) * b;
-        sums[1] = sums[1] + f64x8::splat(simd, *a1) * b;
-        sums[2] = sums[2] + f64x8::splat(simd, *a2) * b;
-        sums[3] = sums[3] + f64x8::splat(simd, *a3) * b;
+        sums[0] += f64x8::splat(simd, *a0) * b;
+        sums[1] += f64x8::splat(simd, *a1) * b;
+        sums[2] += f64x8::splat(simd, *a2) * b;
+        sums[3] += f64x8::splat(simd, *a3) * b;
     }
     sums.map(Into::into)
 }

@@ -14,7 +14,7 @@
 use super::dense::{Factor, squared_distances};
 
 /// Most runs from which weights and lengths are found.
-const MAX_SEARCHED: usize = 1000;
+const MAX_SEARCHED: usize = 800;
 
 /// Times that the weights are found anew.
 const ROUNDS: usize = 2;
@@ -32,21 +32,21 @@ struct Trial {
     ridge: i32,
 }
 
-/// Steps between trials, in spread and ridge; the last are too fine for weights that are found anew.
+/// Steps between trials, in spread and ridge: a kernel of twice the spread needs less of a ridge for the same regression.
 const STEPS: [(i32, i32); 8] = [
+    (1, -1),
+    (-1, 1),
     (0, 2),
     (0, -2),
     (1, 0),
     (-1, 0),
-    (1, 2),
-    (-1, -2),
     (0, 1),
     (0, -1),
 ];
 
 /// Bounds of the trials.
-const SPREADS: std::ops::RangeInclusive<i32> = -2..=4;
-const RIDGES: std::ops::RangeInclusive<i32> = -12..=0;
+const SPREADS: std::ops::RangeInclusive<i32> = -2..=7;
+const RIDGES: std::ops::RangeInclusive<i32> = -14..=0;
 
 /// What training runs tell of an unknown.
 #[derive(Clone, Debug)]
@@ -235,7 +235,7 @@ fn lengths(summaries: &[f64], targets: &[f64], d: usize) -> Option<Lengths> {
     let bound = MAX_RESIDUAL * variance.sqrt();
     let mut weights = vec![1.0; d];
     let mut trial = Trial { spread: 2, ridge: -4 };
-    let mut found = None;
+    let mut found: Option<(f64, Lengths)> = None;
     for round in 0..=ROUNDS {
         let points = multiplied(summaries, &weights);
         let distances = squared_distances(&points, &points, d);
@@ -247,65 +247,71 @@ fn lengths(summaries: &[f64], targets: &[f64], d: usize) -> Option<Lengths> {
             let unit = 1.0 / (libm::exp2(f64::from(trial.spread)) * median);
             let kernel = exponentials(distances.clone(), n, unit);
             let fit = Fit::of(kernel.clone(), targets, ridge(trial));
-            fit.map(|fit| (fit.error(bound), fit, kernel, unit))
+            fit.map(|fit| Tried {
+                trial,
+                error: fit.error(bound),
+                coefficients: fit.coefficients,
+                kernel,
+                unit,
+            })
         };
-        let steps = if round < ROUNDS { &STEPS[..4] } else { &STEPS[..] };
-        let (best, (error, fit, kernel, unit)) = search(trial, steps, &fit)?;
-        trial = best;
-        let multipliers: Vec<f64> = weights.iter().map(|weight| weight * unit.sqrt()).collect();
+        let best = search(trial, &fit)?;
+        trial = best.trial;
+        let multipliers: Vec<f64> = weights.iter().map(|weight| weight * best.unit.sqrt()).collect();
         // Slopes of what was not learnt would be noise.
-        if round == 0 && error > (1.0 - LEAST_EXPLAINED) * variance {
+        if round == 0 && best.error > (1.0 - LEAST_EXPLAINED) * variance {
             return None;
         }
         if round < ROUNDS {
-            weights = slopes(&kernel, &fit.coefficients, summaries, &multipliers);
+            weights = slopes(&best.kernel, &best.coefficients, summaries, &multipliers);
         }
-        found = Some(Lengths {
-            multipliers,
-            ridge: ridge(trial),
-        });
+        // Slopes are found with errors of their own, so that a round may be worse than the one before.
+        if found.as_ref().is_none_or(|(least, _)| best.error < *least) {
+            let ridge = ridge(trial);
+            found = Some((best.error, Lengths { multipliers, ridge }));
+        }
     }
-    found
+    found.map(|(_, lengths)| lengths)
 }
 
 fn ridge(trial: Trial) -> f64 {
     libm::pow(10.0, 0.5 * f64::from(trial.ridge))
 }
 
-/// The trial with the least error of its neighbourhood, from `start` on; none if no trial has a fit.
-fn search<T>(
-    start: Trial,
-    steps: &[(i32, i32)],
-    fit: &dyn Fn(Trial) -> Option<(f64, Fit, Vec<f64>, T)>,
-) -> Option<(Trial, (f64, Fit, Vec<f64>, T))> {
+/// A trial and its regression.
+struct Tried {
+    trial: Trial,
+    /// Mean square of its residuals.
+    error: f64,
+    coefficients: Vec<f64>,
+    kernel: Vec<f64>,
+    /// 1/h^2.
+    unit: f64,
+}
+
+/// The trial with the least error of its neighbourhood, from `start` on; none if `start` has no regression.
+fn search(start: Trial, fit: &dyn Fn(Trial) -> Option<Tried>) -> Option<Tried> {
     let mut tried = vec![start];
-    let mut best = fit(start).map(|fit| (start, fit));
-    let mut centre = start;
+    let mut best = fit(start)?;
     loop {
-        let mut improved = false;
-        for &(spread, ridge) in steps {
+        let around = best.trial;
+        for (spread, ridge) in STEPS {
             let next = Trial {
-                spread: centre.spread + spread,
-                ridge: centre.ridge + ridge,
+                spread: around.spread + spread,
+                ridge: around.ridge + ridge,
             };
-            let is_known = tried.contains(&next);
-            if is_known || !SPREADS.contains(&next.spread) || !RIDGES.contains(&next.ridge) {
+            if tried.contains(&next) || !SPREADS.contains(&next.spread) || !RIDGES.contains(&next.ridge) {
                 continue;
             }
             tried.push(next);
-            let Some(found) = fit(next) else {
-                continue;
-            };
             // A smaller gain is not worth further trials.
-            if best.as_ref().is_none_or(|(_, best)| found.0 < 0.997 * best.0) {
-                best = Some((next, found));
-                centre = next;
-                improved = true;
+            if let Some(found) = fit(next).filter(|found| found.error < 0.997 * best.error) {
+                best = found;
                 break;
             }
         }
-        if !improved {
-            return best;
+        if best.trial == around {
+            return Some(best);
         }
     }
 }

@@ -140,7 +140,7 @@ mod tests {
     /// A ramp to 1 at value 100 of 400, a fall to 1/2 within 20, and rest.
     pub(super) fn ramp_and_fall() -> Vec<f64> {
         (0..400)
-            .map(|i| f64::from(i))
+            .map(f64::from)
             .map(|i| (i / 100.0).min((1.0 - (i - 100.0) / 40.0).max(0.5)))
             .collect()
     }
