@@ -89,6 +89,10 @@ pub struct MeasuredRecord {
     pub x: Vec<f64>,
     /// Forces or coefficients.
     pub y: Vec<f64>,
+    /// Whether the first are times or displacements.
+    pub along: Measure,
+    /// Whether the second are forces or coefficients.
+    pub of: Measure,
 }
 
 impl Measure {
@@ -121,10 +125,11 @@ impl Measure {
 impl MeasuredRecord {
     /// Reads two columns of a table whose fields are separated by commas, semicolons, tabs or blanks; where it is not commas,
     /// numbers may have decimal commas. Lines that begin with `#`, and those without a number in one of the columns, count as none.
+    /// The first column is along times or displacements; the second has forces, or coefficients if its unit is 1.
     ///
     /// # Errors
     /// When the table cannot be read, has not these columns, or has something else than numbers in them; when no unit is known.
-    pub fn read(path: &Path, columns: [&Column; 2], measures: [Measure; 2]) -> Result<Self, MeasuredError> {
+    pub fn read(path: &Path, columns: [&Column; 2], along: Measure) -> Result<Self, MeasuredError> {
         let failed = |source: csv::Error| MeasuredError::Read {
             path: path.to_owned(),
             source,
@@ -139,6 +144,8 @@ impl MeasuredRecord {
         let mut record = Self {
             x: Vec::new(),
             y: Vec::new(),
+            along,
+            of: Measure::Force,
         };
         let mut row = ByteRecord::new();
         let mut is_first = true;
@@ -158,10 +165,17 @@ impl MeasuredRecord {
                     .iter()
                     .any(|field| !field.is_empty() && number(field).is_none());
                 let names = if has_names { &fields[..] } else { &[] };
-                for (k, axis) in ["x", "y"].into_iter().enumerate() {
-                    places[k] = place(path, columns[k], names, fields.len())?;
-                    factors[k] = factor(path, columns[k], names.get(places[k]), measures[k], axis)?;
+                for (k, column) in columns.into_iter().enumerate() {
+                    places[k] = place(path, column, names, fields.len())?;
                 }
+                let [x, y] = places.map(|place| names.get(place));
+                if unit_of(columns[1], y) == Some("1") {
+                    record.of = Measure::Coefficient;
+                }
+                factors = [
+                    factor(path, columns[0], x, along, "x")?,
+                    factor(path, columns[1], y, record.of, "y")?,
+                ];
                 if has_names {
                     continue;
                 }
@@ -250,6 +264,12 @@ fn split_unit(name: &str) -> (&str, Option<&str>) {
     }
 }
 
+/// The unit of a column: that which is given, or that in its header.
+fn unit_of<'a>(column: &'a Column, header: Option<&'a String>) -> Option<&'a str> {
+    let in_header = || split_unit(header?).1;
+    column.unit.as_deref().or_else(in_header)
+}
+
 /// The size of the unit of a column in SI units.
 fn factor(
     path: &Path,
@@ -266,10 +286,7 @@ fn factor(
             why: error.to_string(),
         });
     }
-    if measure == Measure::Coefficient {
-        return Ok(1.0);
-    }
-    let unit = header.and_then(|header| split_unit(header).1);
+    let unit = unit_of(column, header);
     // Units of names are written small: force_n, time_ms. Where case decides, as between mN and MN, the unit has to be given.
     let as_written = |unit: &str| measure.factor(unit).ok();
     let of_name = |unit: &str| match (measure, unit) {
@@ -305,7 +322,7 @@ mod tests {
             name: names[k].to_owned(),
             unit: units[k].map(str::to_owned),
         });
-        MeasuredRecord::read(&path, [&x, &y], [Measure::Time, Measure::Force])
+        MeasuredRecord::read(&path, [&x, &y], Measure::Time)
     }
 
     #[rstest]
@@ -324,6 +341,14 @@ mod tests {
     fn units_may_be_given() {
         let record = read("0 500\n2 1000\n", ["1", "2"], [Some("ms"), Some("mN")]).unwrap();
         assert_eq!((record.x, record.y), (vec![0.0, 0.002], vec![0.5, 1.0]));
+    }
+
+    #[rstest]
+    #[case::header("t (s),mu (1)\n0,0.5\n2,1\n", None)]
+    #[case::given("t (s),mu\n0,0.5\n2,1\n", Some("1"))]
+    fn the_unit_1_is_that_of_a_coefficient(#[case] text: &str, #[case] unit: Option<&str>) {
+        let record = read(text, ["t", "mu"], [None, unit]).unwrap();
+        assert_eq!((record.of, record.y), (Measure::Coefficient, vec![0.5, 1.0]));
     }
 
     #[rstest]

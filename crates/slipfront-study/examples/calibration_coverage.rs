@@ -108,8 +108,13 @@ fn set_up() -> Result<(SetUp, f64), Box<dyn Error>> {
         Unknown::new("drive.stiffness_star", 0.2625, 0.525, true)?,
     ];
     let x: Vec<f64> = (0..VALUES).map(|k| k as f64 * time).collect();
-    let record = MeasuredRecord { y: x.clone(), x };
-    let grid = Grid::of(&record, Measure::Time, Measure::Coefficient).ok_or("no grid")?;
+    let record = MeasuredRecord {
+        y: x.clone(),
+        x,
+        along: Measure::Time,
+        of: Measure::Coefficient,
+    };
+    let grid = Grid::of(&record).ok_or("no grid")?;
     let conditions = vec![Conditions {
         overrides: Vec::<Override>::new(),
         grid,

@@ -53,7 +53,7 @@ pub(crate) struct PlotCommand {
     /// Its column of times, or of displacements with `--against displacement`: name or number from 1
     #[arg(long, value_name = "COLUMN", requires = "data")]
     x: Option<String>,
-    /// Its column of forces, or of coefficients with `--y-unit 1`
+    /// Its column of forces, or of coefficients if its unit is 1
     #[arg(long, value_name = "COLUMN", requires = "data")]
     y: Option<String>,
     /// Unit of the former [default: that in its header]
@@ -214,40 +214,30 @@ impl PlotCommand {
         drawn.map_err(Failure::input)
     }
 
-    fn measures(&self) -> [Measure; 2] {
-        let x = match self.against() {
-            Some(Against::Displacement) => Measure::Displacement,
-            Some(Against::Time) | None => Measure::Time,
-        };
-        let y = match self.y_unit.as_deref() {
-            Some("1") => Measure::Coefficient,
-            _ => Measure::Force,
-        };
-        [x, y]
-    }
-
     fn measured(&self, path: &Path) -> Result<OverlaidRecord, MeasuredError> {
         let column = |name: &Option<String>, unit: &Option<String>| Column {
             name: name.clone().unwrap_or_default(),
             unit: unit.clone(),
         };
         let (x, y) = (column(&self.x, &self.x_unit), column(&self.y, &self.y_unit));
-        let mut record = MeasuredRecord::read(path, [&x, &y], self.measures())?;
+        let along = match self.against() {
+            Some(Against::Displacement) => Measure::Displacement,
+            Some(Against::Time) | None => Measure::Time,
+        };
+        let mut record = MeasuredRecord::read(path, [&x, &y], along)?;
         for y in &mut record.y {
             *y = self.y_factor * *y + self.y_offset;
         }
-        let [_, measure] = self.measures();
         Ok(OverlaidRecord {
             label: path.display().to_string(),
             record,
-            measure,
             shift: self.shift,
         })
     }
 
     /// How a measured record fits each run.
     fn fit_report(&self, fit: &Fit, data: &Path) -> String {
-        let [x, y] = self.measures().map(Measure::unit);
+        let [x, y] = fit.measures.map(Measure::unit);
         let quantity = |value: f64, unit: &str| match unit {
             "1" => four_digits(value),
             unit => with_si_prefix(value, unit),

@@ -42,8 +42,6 @@ pub struct OverlaidRecord {
     pub label: String,
     /// Times or displacements, with forces or coefficients.
     pub record: MeasuredRecord,
-    /// Which of the latter.
-    pub measure: Measure,
     /// What is added to its times or displacements, in SI units; none for what makes it fit the first run best.
     pub shift: Option<f64>,
 }
@@ -51,6 +49,8 @@ pub struct OverlaidRecord {
 /// How a measured record fits, in SI units.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fit {
+    /// What the record counts along, and of what.
+    pub measures: [Measure; 2],
     /// What was added to its times or displacements.
     pub shift: f64,
     /// Root mean square of what it differs by from each run, over the points that lie within it; none if there are none.
@@ -124,10 +124,10 @@ pub fn overlay_measured(
     measured: &OverlaidRecord,
 ) -> Result<Overlay, RunPictureError> {
     let runs = DrawnRun::read_all(folders)?;
-    let scale = in_si(&runs, against, measured.measure)?;
+    let scale = in_si(&runs, against, measured.record.of)?;
     let mut curves = scale.curves(&runs);
     let [along, up] = scale.prefixes;
-    let MeasuredRecord { x, y } = &measured.record;
+    let MeasuredRecord { x, y, .. } = &measured.record;
     let first = (&curves[0].x[..], &curves[0].friction[..]);
     let scaled = (
         x.iter().map(|x| x / along).collect::<Vec<_>>(),
@@ -142,6 +142,7 @@ pub fn overlay_measured(
         misfit.map(|misfit| up * misfit)
     });
     let fit = Fit {
+        measures: [measured.record.along, measured.record.of],
         shift: along * shift,
         misfits: misfits.collect(),
     };

@@ -228,8 +228,13 @@ mod tests {
 
     fn grid() -> Grid {
         let x: Vec<f64> = (0..100).map(f64::from).collect();
-        let record = MeasuredRecord { y: x.clone(), x };
-        Grid::of(&record, Measure::Time, Measure::Coefficient).unwrap()
+        let record = MeasuredRecord {
+            y: x.clone(),
+            x,
+            along: Measure::Time,
+            of: Measure::Coefficient,
+        };
+        Grid::of(&record).unwrap()
     }
 
     fn calibration() -> Calibration {

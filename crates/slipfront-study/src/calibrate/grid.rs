@@ -23,12 +23,12 @@ pub struct Grid {
 
 impl Grid {
     /// As many equal steps as a record has values, from its first to its last; none of a record that is too short or stands still.
-    pub fn of(record: &MeasuredRecord, along: Measure, of: Measure) -> Option<Self> {
+    pub fn of(record: &MeasuredRecord) -> Option<Self> {
         let (count, start, end) = (record.x.len(), *record.x.first()?, *record.x.last()?);
         let step = (end - start) / (count - 1).max(1) as f64;
         (count >= MIN_VALUES && step > 0.0).then_some(Self {
-            along,
-            of,
+            along: record.along,
+            of: record.of,
             start,
             step,
             count,
@@ -111,20 +111,25 @@ mod tests {
     fn record(count: usize) -> MeasuredRecord {
         let x: Vec<f64> = (0..count).map(|k| 0.5 * k as f64).collect();
         let y = x.iter().map(|x| 3.0 * x).collect();
-        MeasuredRecord { x, y }
+        MeasuredRecord {
+            x,
+            y,
+            along: Measure::Time,
+            of: Measure::Coefficient,
+        }
     }
 
     #[test]
     fn a_record_in_equal_steps_is_itself() {
         let record = record(50);
-        let grid = Grid::of(&record, Measure::Time, Measure::Coefficient).unwrap();
+        let grid = Grid::of(&record).unwrap();
         assert_eq!((grid.places(), grid.record(&record)), (record.x, record.y));
     }
 
     #[test]
     fn neighbours_of_a_long_record_are_averaged() {
         let record = record(1000);
-        let grid = Grid::of(&record, Measure::Time, Measure::Coefficient).unwrap();
+        let grid = Grid::of(&record).unwrap();
         let (places, values) = (grid.places(), grid.record(&record));
         assert_eq!((places.len(), places[0], places[1]), (333, 0.5, 2.0));
         assert!(places.iter().zip(values).all(|(x, y)| (y - 3.0 * x).abs() < 1e-9));
@@ -136,18 +141,17 @@ mod tests {
         let still = MeasuredRecord {
             x: vec![1.0; 100],
             y: vec![1.0; 100],
+            along: Measure::Time,
+            of: Measure::Force,
         };
-        assert_eq!(Grid::of(&still, Measure::Time, Measure::Force), None);
-        assert_eq!(
-            Grid::of(&record(MIN_VALUES - 1), Measure::Time, Measure::Force),
-            None
-        );
+        assert_eq!(Grid::of(&still), None);
+        assert_eq!(Grid::of(&record(MIN_VALUES - 1)), None);
     }
 
     #[test]
     fn a_run_that_ends_too_soon_has_no_curve() {
         let record = record(50);
-        let grid = Grid::of(&record, Measure::Time, Measure::Coefficient).unwrap();
+        let grid = Grid::of(&record).unwrap();
         let mut run = RunCurve {
             displacement: record.x.clone(),
             time: record.x,

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use super::dense::squared_distances;
 use super::fit::{Scaling, noisy, summaries_of};
 use super::intervals::Distribution;
-use super::normals::{Stream, normals, share};
+use super::normals::{Stream, draws, normals};
 use super::regression::Regression;
 use super::training::Training;
 
@@ -65,7 +65,9 @@ impl Check {
     /// Learns drift from the training runs, each with one of its own; `noise` is that of every record, as a share of friction.
     pub(super) fn learn(training: &Training, noise: &[f64], scaling: &Scaling, table: &[f64]) -> Self {
         let runs = training.curves.len();
-        let drifts: Vec<f64> = (0..runs).map(|run| share(Stream::Drift, run)).collect();
+        let drifts: Vec<f64> = (0..runs)
+            .map(|run| draws(Stream::Drift, run, 0).uniform())
+            .collect();
         let rows: Vec<Vec<f64>> = training
             .curves
             .par_iter()

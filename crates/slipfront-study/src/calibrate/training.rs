@@ -217,10 +217,15 @@ mod tests {
             .displacement();
         let conditions = [0.1, 0.2].map(|speed| {
             let x: Vec<f64> = (0..50).map(|k| path * unit * f64::from(k) / 49.0).collect();
-            let record = MeasuredRecord { y: x.clone(), x };
+            let record = MeasuredRecord {
+                y: x.clone(),
+                x,
+                along: Measure::Displacement,
+                of: Measure::Force,
+            };
             Conditions {
                 overrides: vec![Override::new("drive.v_star", &toml::Value::from(speed))],
-                grid: Grid::of(&record, Measure::Displacement, Measure::Force).unwrap(),
+                grid: Grid::of(&record).unwrap(),
             }
         });
         SetUp {

@@ -8,7 +8,7 @@ use slipfront_case::case_file::{
     CaseError, CaseFile, Override, Place, Source, Tables, syntax_error, unknown_key,
 };
 use slipfront_case::quantity::{Force, Length};
-use slipfront_run::measured::{Column, Measure, MeasuredRecord};
+use slipfront_run::measured::Measure;
 use slipfront_run::pictures::texture_file::textured_blocks;
 use toml::{Table, Value};
 
@@ -18,6 +18,7 @@ use super::{Design, Grid};
 use crate::axis::overrides;
 use crate::error::StudyError;
 use crate::input_copies::Copy;
+use crate::measured_columns::MeasuredColumns;
 use crate::study_file::{Base, parse_noting_places, portable, read_base, read_named};
 
 /// The tables of a design file.
@@ -400,21 +401,12 @@ impl DesignFile {
 
     /// The curve of a table as mu* at times t* of the drive.
     fn curve(&self, keys: &CurveKeys, base: &Case, load: f64) -> Result<Wish, StudyError> {
-        let column = |name: &str, unit: &Option<String>| Column {
-            name: name.to_owned(),
-            unit: unit.clone(),
-        };
-        let measure = if keys.y_unit.as_deref().is_some_and(|unit| unit != "1") {
-            Measure::Force
-        } else {
-            Measure::Coefficient
-        };
         let path = self.base.folder.join(&keys.file);
-        let columns = [&column(&keys.x, &keys.x_unit), &column(&keys.y, &keys.y_unit)];
-        let record = MeasuredRecord::read(&path, columns, [Measure::Displacement, measure]);
-        let record = record.map_err(|error| self.error("wish.curve", error.to_string()))?;
+        let columns = MeasuredColumns::new([&keys.x, &keys.y], [&keys.x_unit, &keys.y_unit]);
+        let record = columns.read(&path, Measure::Displacement);
+        let record = record.map_err(|sentence| self.error("wish.curve", sentence))?;
         let mu_s = base.scales.mu_static_mean;
-        let unit = if measure == Measure::Force {
+        let unit = if record.of == Measure::Force {
             load * mu_s
         } else {
             mu_s

@@ -214,7 +214,7 @@ pub(super) mod tests {
 
     #[test]
     fn an_opening_is_the_union_of_its_squares() {
-        let mut draws = crate::design::random::Draws::new(3);
+        let mut draws = crate::draws::Draws::new(3);
         for trial in 0..200 {
             let size = [3 + draws.below(8), 3 + draws.below(8)];
             let n = size[0] * size[1];

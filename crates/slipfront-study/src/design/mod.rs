@@ -17,7 +17,6 @@ mod limits;
 mod named;
 mod open_search;
 mod patch;
-mod random;
 mod report;
 mod search;
 mod sensitivity;

@@ -16,7 +16,7 @@ use super::grid::Grid;
 use super::limits::Limits;
 use super::named::Named;
 use super::patch::{Draft, Form, Patch};
-use super::random::Draws;
+use crate::draws::Draws;
 
 /// Drafts in a population.
 const POPULATION: usize = 24;

@@ -1,4 +1,4 @@
-//! Numbers that a search draws: the bits of a start number, alike on every machine.
+//! Random numbers of searches and calibrations, alike on every machine.
 
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
@@ -10,8 +10,15 @@ pub(crate) struct Draws(ChaCha8Rng);
 impl Draws {
     /// The stream of a start number.
     pub(crate) fn new(start: u64) -> Self {
+        Self::of([start, 0, 0, 0])
+    }
+
+    /// The stream of four numbers that name it.
+    pub(crate) fn of(name: [u64; 4]) -> Self {
         let mut key = [0; 32];
-        key[..8].copy_from_slice(&start.to_le_bytes());
+        for (bytes, number) in key.chunks_exact_mut(8).zip(name) {
+            bytes.copy_from_slice(&number.to_le_bytes());
+        }
         Self(ChaCha8Rng::from_seed(key))
     }
 

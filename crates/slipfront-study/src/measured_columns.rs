@@ -1,0 +1,44 @@
+//! The columns of a measured record, as the files of designs and calibrations name them.
+
+use std::path::Path;
+
+use slipfront_run::measured::{Column, Measure, MeasuredError, MeasuredRecord};
+
+/// Columns of a table, by their names or numbers, and their units where the header has none.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct MeasuredColumns {
+    /// Times, or displacements of the drive.
+    pub(crate) x: Column,
+    /// Forces, or coefficients if their unit is 1.
+    pub(crate) y: Column,
+}
+
+impl MeasuredColumns {
+    pub(crate) fn new([x, y]: [&str; 2], [x_unit, y_unit]: [&Option<String>; 2]) -> Self {
+        let column = |name: &str, unit: &Option<String>| Column {
+            name: name.to_owned(),
+            unit: unit.clone(),
+        };
+        Self {
+            x: column(x, x_unit),
+            y: column(y, y_unit),
+        }
+    }
+
+    /// The record in a table.
+    ///
+    /// # Errors
+    /// Why it is none, as a sentence.
+    pub(crate) fn read(&self, path: &Path, along: Measure) -> Result<MeasuredRecord, String> {
+        let read = MeasuredRecord::read(path, [&self.x, &self.y], along);
+        read.map_err(|error| match error {
+            MeasuredError::NoUnit {
+                column, axis, example, ..
+            } => format!(
+                "nothing tells the unit of column `{column}` of {}: give it as a key, such as {axis}_unit = \"{example}\"",
+                path.display()
+            ),
+            error => error.to_string(),
+        })
+    }
+}
