@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use slipfront::observe::{Observer, Scheduled};
-use slipfront::{Execution, RunError, Simulation, Snapshot};
+use slipfront::{Execution, RunError, Simulation, Snapshot, Stop};
 use slipfront_case::case::Case;
 
 use crate::friction_unit::FrictionUnit;
@@ -50,37 +50,56 @@ impl Observer for Tracing {
     }
 }
 
-/// Runs a case on one thread up to where its `time` says, and keeps the curve alone; none if `ends` gave it up.
+/// Runs a case on one thread up to a time or a displacement, whatever its `time` says, and keeps the curve alone; none if `ends` gave it up.
+/// Where a program of speeds decides how far the drive comes, the case says when the run ends.
 ///
 /// ```
 /// use slipfront_case::case::Case;
+/// use slipfront_run::measured::Measure;
 /// use slipfront_run::run_curve::run_curve_unless;
 /// // Blocks that are all alike stick at first, and their springs pull with k* V* t*, times mu_s.
-/// let text = "slider.blocks = [4, 4]\ndrive = { v_star = 0.1, stiffness_star = 0.5 }\ntime.duration_star = 4\n\
+/// let text = "slider.blocks = [4, 4]\ndrive = { v_star = 0.1, stiffness_star = 0.5 }\n\
 ///             friction = { mu_static = 0.6, sigma_static_star = 0 }";
 /// let case = Case::parse(text, "alike", "", &[])?;
-/// let curve = run_curve_unless(&case, &|| false).unwrap()?;
+/// let curve = run_curve_unless(&case, Measure::Time, 4.0 * case.scales.time(), &|| false).unwrap()?;
 /// let last = curve.time.len() - 1;
 /// let time_star = curve.time[last] / case.scales.time();
+/// assert!((4.0..4.3).contains(&time_star));
 /// assert!((curve.coefficient[last] - 0.6 * 0.5 * 0.1 * time_star).abs() < 1e-12);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///
 /// # Errors
 /// When the run diverges.
-pub fn run_curve_unless(case: &Case, ends: &dyn Fn() -> bool) -> Option<Result<RunCurve, RunError>> {
-    let plan = &case.time_plan;
-    let mut simulation = Simulation::new(Arc::clone(&case.model), plan.dt_star, None, Execution::default());
+pub fn run_curve_unless(
+    case: &Case,
+    along: Measure,
+    end: f64,
+    ends: &dyn Fn() -> bool,
+) -> Option<Result<RunCurve, RunError>> {
+    let dt_star = case.time_plan.dt_star;
+    let stop = Stop::at_step((end_star(case, along, end) / dt_star).ceil() as u64 + 1);
+    let mut simulation = Simulation::new(Arc::clone(&case.model), dt_star, None, Execution::default());
     let mut tracing = Tracing::default();
     while !ends() {
         let mut observers = [Scheduled::always(&mut tracing)];
-        match simulation.advance(plan.stop, case.steps_per_poll(), &mut observers) {
+        match simulation.advance(stop, case.steps_per_poll(), &mut observers) {
             Ok(None) => {}
             Ok(Some(_)) => return Some(Ok(in_si_units(case, tracing))),
             Err(error) => return Some(Err(error)),
         }
     }
     None
+}
+
+/// The t* of the drive at a time or at a displacement of it.
+fn end_star(case: &Case, along: Measure, end: f64) -> f64 {
+    let drive = &case.model.drive;
+    match (along, &drive.program) {
+        (Measure::Displacement, None) => end / (drive.v_star * case.scales.displacement()),
+        (Measure::Displacement, Some(_)) => case.time_plan.end_star(),
+        _ => end / case.scales.time(),
+    }
 }
 
 fn in_si_units(case: &Case, traced: Tracing) -> RunCurve {

@@ -7,17 +7,18 @@
 //! So many training runs and so many records of 30 x 30 blocks with six unknowns, over surfaces that training has not drawn, at 1 % and 5 %
 //! of noise. Prints for every unknown: the share of records whose interval of 90 % holds the truth, in all and in each quarter of the range;
 //! the median width of the interval over 0.9 of the range; the probability that the ranks of the truth are uniform (Kolmogorov and
-//! Smirnov). Then the share of records that the check refuses, as they are and with a drift of 5 %, and processor times. A third argument
-//! names a folder in which runs are kept between calls.
+//! Smirnov). Then the share of records that the check refuses, as they are and with a drift, and processor times.
 
+use std::collections::HashMap;
 use std::error::Error;
 use std::path::Path;
+use std::sync::atomic::AtomicBool;
 
 use rayon::prelude::*;
 use slipfront_case::case::Case;
 use slipfront_case::case_file::Override;
 use slipfront_run::measured::{Measure, MeasuredRecord};
-use slipfront_study::calibrate::{Calibration, Conditions, Fit, Grid, SetUp, Training, Unknown};
+use slipfront_study::calibrate::{Calibration, Conditions, Curves, Estimate, Grid, SetUp, Training, Unknown};
 use slipfront_study::{Base, StudyFile};
 
 /// Values of a record, one per t*.
@@ -31,25 +32,25 @@ fn main() -> Result<(), Box<dyn Error>> {
     let number = |k: usize| -> Result<usize, Box<dyn Error>> {
         Ok(arguments
             .get(k)
-            .ok_or("usage: calibration_coverage RUNS RECORDS [FOLDER]")?
+            .ok_or("usage: calibration_coverage RUNS RECORDS")?
             .parse()?)
     };
     let (runs, records) = (number(1)?, number(2)?);
-    let folder = arguments.get(3).map(Path::new);
     let (set_up, unit) = set_up()?;
     let began = processor_seconds()?;
-    let training = kept(folder, &format!("training-{runs}"), || training(&set_up, runs))?;
+    let go_on = AtomicBool::new(false);
+    let training = Training::run(&set_up, runs, HashMap::new(), &mut |_| Ok(()), &go_on)?;
     let trained = processor_seconds()? - began;
     println!("training: {runs} runs in {trained:.1} s of processor time");
     let truths: Vec<Vec<f64>> = (0..records)
         .map(|record| uniform(record, set_up.unknowns.len()))
         .collect();
-    let curves: Vec<Vec<f64>> = records_of(&set_up, &truths, folder)?;
+    let curves: Vec<Vec<f64>> = records_of(&set_up, &truths)?;
     println!("{records} records made; a unit of time is {unit:.3e} s");
-    let grids: Vec<&Grid> = set_up
+    let grids: Vec<Grid> = set_up
         .conditions
         .iter()
-        .map(|conditions| &conditions.grid)
+        .map(|conditions| conditions.grid.clone())
         .collect();
     for noise in [0.01, 0.05] {
         let began = processor_seconds()?;
@@ -59,9 +60,9 @@ fn main() -> Result<(), Box<dyn Error>> {
             "\nnoise {noise}: learning took {learnt:.1} s of processor time, training and learning {:.1} s",
             trained + learnt
         );
-        let fits = |drift: f64| -> Vec<Fit> {
+        let fits = |drift: f64| -> Vec<Estimate> {
             let all = curves.par_iter().enumerate();
-            all.map(|(record, curve)| calibration.fit(&[noisy(curve, noise, drift, record)]))
+            all.map(|(record, curve)| calibration.estimate(&[noisy(curve, noise, drift, record)]))
                 .collect()
         };
         let began = processor_seconds()?;
@@ -69,8 +70,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         let fitted = processor_seconds()? - began;
         println!("a fit takes {:.4} s of processor time", fitted / records as f64);
         report(&set_up.unknowns, &truths, &good);
-        let refused = |fits: &[Fit]| {
-            let share = |is: &dyn Fn(&Fit) -> bool| {
+        let refused = |fits: &[Estimate]| {
+            let share = |is: &dyn Fn(&Estimate) -> bool| {
                 100.0 * fits.iter().filter(|fit| is(fit)).count() as f64 / fits.len() as f64
             };
             let (all, drift, far) = (
@@ -124,65 +125,22 @@ fn set_up() -> Result<(SetUp, f64), Box<dyn Error>> {
             base,
             unknowns,
             conditions,
+            is_finer: false,
         },
         time,
     ))
 }
 
-fn training(set_up: &SetUp, runs: usize) -> Result<Training, Box<dyn Error>> {
-    Ok(Training::run(set_up, runs, &|| false).ok_or("given up")??)
-}
-
-/// A training from its file in the folder, or made and left there.
-fn kept(
-    folder: Option<&Path>,
-    name: &str,
-    make: impl Fn() -> Result<Training, Box<dyn Error>>,
-) -> Result<Training, Box<dyn Error>> {
-    let Some(folder) = folder else {
-        return make();
-    };
-    let path = folder.join(name);
-    if let Some(training) = std::fs::read(&path)
-        .ok()
-        .and_then(|bytes| Training::from_bytes(&bytes))
-    {
-        return Ok(training);
-    }
-    let training = make()?;
-    std::fs::write(path, training.to_bytes())?;
-    Ok(training)
-}
-
 /// Friction without noise of records over surfaces of their own.
-fn records_of(
-    set_up: &SetUp,
-    truths: &[Vec<f64>],
-    folder: Option<&Path>,
-) -> Result<Vec<Vec<f64>>, Box<dyn Error>> {
-    let path = folder.map(|folder| folder.join(format!("records-{}", truths.len())));
-    let words = path.as_ref().and_then(|path| std::fs::read(path).ok());
-    if let Some(bytes) = words {
-        let numbers: Vec<f64> = bytes
-            .as_chunks()
-            .0
-            .iter()
-            .map(|word| f64::from_le_bytes(*word))
-            .collect();
-        return Ok(numbers.chunks_exact(VALUES).map(<[f64]>::to_vec).collect());
-    }
-    let curves: Option<Vec<_>> = truths
+fn records_of(set_up: &SetUp, truths: &[Vec<f64>]) -> Result<Vec<Vec<f64>>, Box<dyn Error>> {
+    let go_on = AtomicBool::new(false);
+    let curves: Vec<_> = truths
         .par_iter()
         .enumerate()
-        .map(|(record, truth)| set_up.curves(truth, FIRST_SEED + record as u64, &|| false))
+        .map(|(record, truth)| set_up.curves(truth, FIRST_SEED + record as u64, &go_on))
         .collect();
-    let curves: Result<Vec<_>, _> = curves.ok_or("given up")?.into_iter().collect();
-    let curves: Vec<Vec<f64>> = curves?.into_iter().flatten().collect();
-    if let Some(path) = path {
-        let bytes: Vec<u8> = curves.iter().flatten().flat_map(|y| y.to_le_bytes()).collect();
-        std::fs::write(path, bytes)?;
-    }
-    Ok(curves)
+    let curves: Option<Vec<Curves>> = curves.into_iter().collect::<Result<_, _>>()?;
+    Ok(curves.ok_or("given up")?.into_iter().flatten().collect())
 }
 
 /// Pseudorandom bits (SplitMix64), which have nothing to do with those of training.
@@ -219,7 +177,7 @@ fn noisy(curve: &[f64], noise: f64, drift: f64, record: usize) -> Vec<f64> {
         .collect()
 }
 
-fn report(unknowns: &[Unknown], truths: &[Vec<f64>], fits: &[Fit]) {
+fn report(unknowns: &[Unknown], truths: &[Vec<f64>], fits: &[Estimate]) {
     println!(
         "{:28} cover  by quarter of the range   width/0.9   uniform ranks   undetermined",
         "unknown"

@@ -14,6 +14,8 @@ use slipfront_run::pictures::error::RunPictureError;
 use slipfront_run::pictures::texture_file::TextureFileError;
 use slipfront_run::program;
 
+use crate::calibrate::TrainingError;
+
 /// A study that cannot be used, or had to stop.
 #[derive(Debug, Error)]
 #[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
@@ -62,14 +64,14 @@ pub enum StudyError {
     },
     #[error(transparent)]
     Folder(#[from] FolderError),
-    #[error("the folder {path} holds other things than a study: choose another with --out")]
-    NotAStudy { path: PathBuf },
-    #[error("the folder {path} holds other things than a design: choose another with --out")]
-    NotADesign { path: PathBuf },
+    #[error("the folder {path} holds other things than a {what}: choose another with --out")]
+    OtherThings { what: &'static str, path: PathBuf },
     #[error(
-        "the folder {path} holds another design, or this one before it was changed: choose another with --out"
+        "the folder {path} holds another {what}, or this one before it was changed: choose another with --out"
     )]
-    OtherDesign { path: PathBuf },
+    Changed { what: &'static str, path: PathBuf },
+    #[error(transparent)]
+    Training(#[from] TrainingError),
     #[error("cannot write the texture: {0}")]
     Texture(#[from] TextureFileError),
     #[error("another study is running in {path}: wait for it, or choose another folder with --out")]

@@ -48,7 +48,8 @@ impl StudyFolder {
         // A folder of `slipfront paper` has records and no study file.
         let is_of_figures = path.join(FIGURE_CACHE).is_dir() && !is_study(path);
         if (!used && !empty) || is_of_figures {
-            return Err(StudyError::NotAStudy {
+            return Err(StudyError::OtherThings {
+                what: "study",
                 path: path.to_owned(),
             });
         }

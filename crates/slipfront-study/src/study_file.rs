@@ -12,8 +12,8 @@ use crate::error::StudyError;
 use crate::input_copies::{self, Copy};
 use crate::summary_values::{REDUCTION, is_column, known};
 use slipfront_case::case_file::{
-    CASE_TABLES, CaseError, ParsedCase, STUDY_TABLES, Source, Tables, header_below, limit_nesting, names_of,
-    read_text, syntax_error, unknown_case_table, unknown_key,
+    CASE_TABLES, CaseError, ParsedCase, Place, STUDY_TABLES, Source, Tables, header_below, limit_nesting,
+    names_of, read_text, syntax_error, unknown_case_table, unknown_key,
 };
 
 /// A study file.
@@ -288,6 +288,17 @@ pub(crate) fn parse_noting_places<'t>(source: &mut Source, text: &'t str) -> Res
         .into_inner();
     source.note_places(&root);
     Ok(root)
+}
+
+/// An error about a case that a key of a file makes, at the place of the key.
+pub(crate) fn found_at(source: &Source, key: &str, error: CaseError) -> CaseError {
+    match error {
+        CaseError::Invalid(invalid) => match invalid.place {
+            Some(Place::Override(given)) => source.error(key, format!("`{given}`: {}", invalid.sentence)),
+            _ => CaseError::Invalid(invalid),
+        },
+        error => error,
+    }
 }
 
 /// The text of a file with its base case inside, and the copies of files that it names beside it.

@@ -1,5 +1,5 @@
 //! Holds the folder of a study against the tables and pictures that its records give, with what its meshes found where it tells that, and
-//! the folders of the runs that it kept against their manifests; and that of a design against what its runs give.
+//! the folders of the runs that it kept against their manifests; and that of a design or a calibration against what its runs give.
 
 use std::collections::HashSet;
 use std::io::ErrorKind;
@@ -16,6 +16,7 @@ use slipfront_run::verify::{
 };
 use thiserror::Error;
 
+use crate::calibrate::{CalibrationFolder, TRAINING, is_calibration, is_finished};
 use crate::converge::{is_written, write_meshes};
 use crate::design::{Bounds, DesignFile, DesignFolder, JOURNAL, is_design, search_of};
 use crate::error::{StudyError, of_others};
@@ -40,8 +41,8 @@ pub enum VerifyStudyError {
         runs: usize,
         others: usize,
     },
-    #[error("the design in {path} was not finished: run it again to go on with it, and verify it then")]
-    UnfinishedDesign { path: PathBuf },
+    #[error("the {what} in {path} was not finished: run it again to go on with it, and verify it then")]
+    UnfinishedSearch { what: &'static str, path: PathBuf },
     #[error(transparent)]
     Study(#[from] StudyError),
     #[error(transparent)]
@@ -61,53 +62,81 @@ pub fn verify(folder: &Path) -> Result<Verdict, VerifyStudyError> {
         verify_study(folder)
     } else if is_design(folder) {
         verify_design(folder)
+    } else if is_calibration(folder) {
+        verify_calibration(folder)
     } else {
         Ok(verify_run(&inspect(folder)?)?)
     }
 }
 
-/// Finds a design again from the runs in its journal, and holds the folder against what it leaves. Runs that the journal lacks are made.
+/// Finds a design again from the runs in its journal, and holds the folder against what it leaves.
 fn verify_design(folder: &Path) -> Result<Verdict, VerifyStudyError> {
-    let mut verdict = Verdict::default();
     let Some(search) = search_of(folder)? else {
-        let path = folder.to_owned();
-        return Err(VerifyStudyError::UnfinishedDesign { path });
+        let (what, path) = ("design", folder.to_owned());
+        return Err(VerifyStudyError::UnfinishedSearch { what, path });
     };
     if search.is_cut_short {
-        verdict.what =
-            "a design whose search --time has cut short: which drafts were tried depends on the machine"
-                .to_owned();
-        verdict
-            .notes
-            .push("its files were not derived again from its runs".to_owned());
-        return Ok(verdict);
+        let what =
+            "a design whose search --time has cut short: which drafts were tried depends on the machine";
+        return Ok(Verdict {
+            what: what.to_owned(),
+            notes: vec!["its files were not derived again from its runs".to_owned()],
+            ..Verdict::default()
+        });
     }
+    verify_from_runs(folder, "design", JOURNAL, |temporary| {
+        let file = DesignFile::load(&folder.join("design.toml"))?;
+        let mut again = DesignFolder::open(temporary, &file)?;
+        let kept = again.n_kept();
+        let bounds = Bounds {
+            runs: search.runs,
+            share_of_time: &|| 0.0,
+            stop: &AtomicBool::new(false),
+        };
+        again.find(&bounds, &mut |_| {})?;
+        Ok([kept, again.n_kept()])
+    })
+}
+
+/// Calibrates again from the runs in the journal, and holds the folder against what that leaves.
+fn verify_calibration(folder: &Path) -> Result<Verdict, VerifyStudyError> {
+    if !is_finished(folder) {
+        let (what, path) = ("calibration", folder.to_owned());
+        return Err(VerifyStudyError::UnfinishedSearch { what, path });
+    }
+    verify_from_runs(folder, "calibration", TRAINING, |temporary| {
+        let mut again = CalibrationFolder::again(folder, temporary)?;
+        let kept = again.n_kept();
+        again.find(&AtomicBool::new(false), &mut |_| {})?;
+        Ok([kept, again.n_kept()])
+    })
+}
+
+/// Holds a folder against what the runs in its journal leave when `again` finds it in another folder, and tells how many runs it had there
+/// before and after: runs that the journal lacks are made.
+fn verify_from_runs(
+    folder: &Path,
+    what: &str,
+    journal: &str,
+    again: impl FnOnce(&Path) -> Result<[usize; 2], StudyError>,
+) -> Result<Verdict, VerifyStudyError> {
+    let mut verdict = Verdict::default();
     let temporary = TemporaryFolder::new(folder).map_err(VerifyError::Temporary)?;
-    let journal = temporary.path().join(JOURNAL);
-    std::fs::copy(folder.join(JOURNAL), journal).map_err(VerifyError::Temporary)?;
-    let file = DesignFile::load(&folder.join("design.toml"))?;
-    let mut again = DesignFolder::open(temporary.path(), &file)?;
-    let kept = again.n_kept();
-    let bounds = Bounds {
-        runs: search.runs,
-        share_of_time: &|| 0.0,
-        stop: &AtomicBool::new(false),
-    };
-    again.find(&bounds, &mut |_| {})?;
-    let made = again.n_kept() - kept;
-    if made > 0 {
-        let sentence = format!("{} not in the journal, and made again", are(made, "run"));
+    std::fs::copy(folder.join(journal), temporary.path().join(journal)).map_err(VerifyError::Temporary)?;
+    let [kept, all] = again(temporary.path())?;
+    if all > kept {
+        let sentence = format!("{} not in the journal, and made again", are(all - kept, "run"));
         verdict.notes.push(sentence);
     }
     let mut files = files_below(temporary.path(), "").map_err(VerifyError::Temporary)?;
-    files.retain(|file| file.name != JOURNAL);
+    files.retain(|file| file.name != journal);
     verdict.differences = differences(&files, folder, "follow from its runs");
     let is_left = |name: &str| name.rsplit('/').next().is_some_and(is_unfinished);
     let known = files.iter().map(|file| file.name.as_str());
     verdict
         .notes
-        .extend(unlisted_files(folder, &known.chain([JOURNAL]).collect(), is_left));
-    verdict.what = format!("a design as its {} give it", count(kept, "recorded run"));
+        .extend(unlisted_files(folder, &known.chain([journal]).collect(), is_left));
+    verdict.what = format!("a {what} as its {} give it", count(kept, "recorded run"));
     Ok(verdict)
 }
 

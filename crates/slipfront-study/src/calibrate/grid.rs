@@ -35,6 +35,26 @@ impl Grid {
         })
     }
 
+    /// What places are.
+    pub(crate) fn along(&self) -> Measure {
+        self.along
+    }
+
+    /// What is known there.
+    pub(crate) fn friction(&self) -> Measure {
+        self.of
+    }
+
+    /// This grid over the same path of a drive that takes so many times as long for it; displacements stay.
+    pub(crate) fn slower(&self, times: f64) -> Self {
+        let times = if self.along == Measure::Time { times } else { 1.0 };
+        Self {
+            start: times * self.start,
+            step: times * self.step,
+            ..self.clone()
+        }
+    }
+
     /// The last place.
     pub fn end(&self) -> f64 {
         self.start + (self.count - 1) as f64 * self.step

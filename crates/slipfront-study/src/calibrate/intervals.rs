@@ -2,10 +2,6 @@
 
 use super::regression::{Prediction, Regression};
 
-/// Widths over which training runs count as like a record, in its prediction (of the range) and in the logarithm of its scale.
-const LIKE_VALUE: f64 = 0.15;
-const LIKE_SCALE: f64 = 0.5;
-
 /// Values of an unknown with their weights, in rising order: where it lies in its range, from 0 to 1.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Distribution {
@@ -21,17 +17,9 @@ impl Distribution {
     /// u = f + s (u_i - f_i)/s_i   with the weight exp(-(f - f_i)^2/(2 0.15^2) - log^2(s/s_i)/(2 0.5^2))
     /// ```
     pub(crate) fn of(regression: &Regression, unknown: &[f64], prediction: Prediction) -> Self {
-        let Prediction { value, scale } = prediction;
-        let value = value.clamp(0.0, 1.0);
-        let runs = unknown
-            .iter()
-            .zip(&regression.predictions)
-            .zip(&regression.scales);
-        let weighted = runs.map(|((u, f), s)| {
-            let f = f.clamp(0.0, 1.0);
-            let (away, wider) = ((value - f) / LIKE_VALUE, libm::log(scale / s) / LIKE_SCALE);
-            let weight = libm::exp(-0.5 * (away * away + wider * wider));
-            ((value + scale * (u - f) / s).clamp(0.0, 1.0), weight)
+        let weighted = unknown.iter().enumerate().map(|(run, &truth)| {
+            let weight = libm::exp(-0.5 * regression.distance(run, &prediction));
+            (regression.moved(run, truth, &prediction), weight)
         });
         Self::of_weighted(weighted.collect())
     }

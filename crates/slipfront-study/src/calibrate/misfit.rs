@@ -1,9 +1,10 @@
 //! Whether the model can have made a record.
 
 use rayon::prelude::*;
+use serde::Serialize;
 
+use super::calibration::{Scaling, noisy, summaries_of};
 use super::dense::squared_distances;
-use super::fit::{Scaling, noisy, summaries_of};
 use super::intervals::Distribution;
 use super::normals::{Stream, draws, normals};
 use super::regression::Regression;
@@ -32,7 +33,7 @@ pub(super) struct Check {
 }
 
 /// What speaks against a record.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Misfit {
     /// Drift of friction over the record, as a share of friction: an interval that holds it for all records but 25 in 1000.
     pub drift: [f64; 2],

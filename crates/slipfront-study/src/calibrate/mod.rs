@@ -1,27 +1,37 @@
 //! Calibration: unknown keys of a case from measured records, with intervals that hold what they promise.
 //!
 //! ```text
-//! SetUp -> Training (curves of runs over the ranges) -> Calibration (what their summaries tell) -> Fit (of records)
+//! CalibrationFile, records -> SetUp -> Training (curves of runs over the ranges) -> Calibration (what their summaries tell) -> Estimate
 //! ```
 //!
 //! Least squares on the curve fails where friction sticks and slips, since the phases of that are chance. Here every curve becomes
 //! [`summaries`], every unknown is [predicted](regression) from them, and [intervals] are those that hold the truth for runs that the
 //! prediction has not seen.
 
+mod calibration;
 mod dense;
-mod fit;
+mod file;
+mod findings;
+mod folder;
 mod grid;
 mod intervals;
 mod misfit;
 mod normals;
+mod predicted;
 mod regression;
+mod report;
+mod set_up;
 mod summaries;
 mod training;
 mod unknowns;
 
-pub use fit::{Calibration, Fit, Pair};
+pub use calibration::{Calibration, Estimate, Pair};
+pub use file::{CalibrationFile, CalibrationKeys};
+pub use folder::{CalibrationFolder, CalibrationProgress, CalibrationStage, is_calibration};
+pub(crate) use folder::{TRAINING, is_finished};
 pub use grid::Grid;
 pub use intervals::Distribution;
 pub use misfit::Misfit;
-pub use training::{Conditions, SetUp, Training, TrainingError};
+pub use set_up::{Conditions, Curves, SetUp, TrainingError};
+pub use training::{KeepRuns, Training, TrainingRun};
 pub use unknowns::{Unknown, UnknownError, design_point};

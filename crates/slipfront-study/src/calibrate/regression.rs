@@ -76,6 +76,43 @@ pub(crate) struct Prediction {
     pub(crate) scale: f64,
 }
 
+/// Widths over which training runs count as like a record, in its prediction (of the range) and in the logarithm of its scale.
+const LIKE_VALUE: f64 = 0.15;
+const LIKE_SCALE: f64 = 0.5;
+
+impl Prediction {
+    /// The value, within the range.
+    fn bounded(self) -> f64 {
+        self.value.clamp(0.0, 1.0)
+    }
+}
+
+impl Regression {
+    /// What a training run is predicted to be by all others.
+    pub(crate) fn left_out(&self, run: usize) -> Prediction {
+        Prediction {
+            value: self.predictions[run],
+            scale: self.scales[run],
+        }
+    }
+
+    /// Squared distance of a training run from a record, `(f - f_i)^2/0.15^2 + log^2(s/s_i)/0.5^2`.
+    pub(crate) fn distance(&self, run: usize, record: &Prediction) -> f64 {
+        let other = self.left_out(run);
+        let away = (record.bounded() - other.bounded()) / LIKE_VALUE;
+        let wider = libm::log(record.scale / other.scale) / LIKE_SCALE;
+        away * away + wider * wider
+    }
+
+    /// The residual of a training run, of which this is the truth, in units of its scale around what is predicted of a record:
+    /// `f + s (u_i - f_i)/s_i`.
+    pub(crate) fn moved(&self, run: usize, truth: f64, record: &Prediction) -> f64 {
+        let other = self.left_out(run);
+        let residual = (truth - other.bounded()) / other.scale;
+        (record.bounded() + record.scale * residual).clamp(0.0, 1.0)
+    }
+}
+
 impl Regression {
     /// Learns an unknown from `unknown.len()` rows of summaries.
     pub(crate) fn learn(summaries: &[f64], unknown: &[f64]) -> Self {

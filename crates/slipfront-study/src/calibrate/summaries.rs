@@ -122,7 +122,7 @@ fn log(ratio: f64) -> f64 {
 }
 
 /// Quantiles of values, between which it is interpolated.
-fn quantiles<const N: usize>(values: &[f64], shares: [f64; N]) -> [f64; N] {
+pub(super) fn quantiles<const N: usize>(values: &[f64], shares: [f64; N]) -> [f64; N] {
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);
     shares.map(|share| {

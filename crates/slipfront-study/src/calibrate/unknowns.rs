@@ -63,6 +63,11 @@ impl Unknown {
         &self.key
     }
 
+    /// Its unit, if its values have one.
+    pub fn unit(&self) -> Option<&str> {
+        self.unit.as_deref()
+    }
+
     /// The value at a share of the range: `from + share (to - from)`, or `from (to/from)^share` on a logarithmic scale.
     ///
     /// ```

@@ -4,9 +4,7 @@ use std::path::Path;
 
 use serde::Deserialize;
 use slipfront_case::case::{Case, Ranks};
-use slipfront_case::case_file::{
-    CaseError, CaseFile, Override, Place, Source, Tables, syntax_error, unknown_key,
-};
+use slipfront_case::case_file::{CaseError, CaseFile, Override, Source, Tables, syntax_error, unknown_key};
 use slipfront_case::quantity::{Force, Length};
 use slipfront_run::measured::Measure;
 use slipfront_run::pictures::texture_file::textured_blocks;
@@ -19,7 +17,7 @@ use crate::axis::overrides;
 use crate::error::StudyError;
 use crate::input_copies::Copy;
 use crate::measured_columns::MeasuredColumns;
-use crate::study_file::{Base, parse_noting_places, portable, read_base, read_named};
+use crate::study_file::{Base, found_at, parse_noting_places, portable, read_base, read_named};
 
 /// The tables of a design file.
 const TABLES: [&str; 2] = ["base", "design"];
@@ -276,13 +274,7 @@ impl DesignFile {
 
     /// An error about a case that a key of `[design]` makes, at the place of the key.
     fn found_in(&self, key: &str, error: CaseError) -> CaseError {
-        match error {
-            CaseError::Invalid(invalid) => match invalid.place {
-                Some(Place::Override(given)) => self.error(key, format!("`{given}`: {}", invalid.sentence)),
-                _ => CaseError::Invalid(invalid),
-            },
-            error => error,
-        }
+        found_at(&self.source, &format!("design.{key}"), error)
     }
 
     /// The limits in blocks.

@@ -52,14 +52,16 @@ impl DesignFolder {
         make_folders(path).map_err(FolderError::unwritable(path))?;
         let used = path.join(JOURNAL).exists();
         if !used && !is_empty(path).map_err(FolderError::unwritable(path))? {
-            return Err(StudyError::NotADesign {
+            return Err(StudyError::OtherThings {
+                what: "design",
                 path: path.to_owned(),
             });
         }
         let (text, copies) = file.portable()?;
         let before = read_limited(&path.join(DESIGN), TEXT_MAX_BYTES).ok();
         if before.is_some_and(|before| before != text.as_bytes()) {
-            return Err(StudyError::OtherDesign {
+            return Err(StudyError::Changed {
+                what: "design",
                 path: path.to_owned(),
             });
         }

@@ -6,7 +6,7 @@ use super::grid::Grid;
 use super::intervals::Distribution;
 use super::misfit::{Check, Misfit};
 use super::normals::{Stream, normals};
-use super::regression::Regression;
+use super::regression::{Prediction, Regression};
 use super::summaries::summaries;
 use super::training::Training;
 
@@ -38,7 +38,7 @@ pub struct Pair {
 
 /// What records tell.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Fit {
+pub struct Estimate {
     /// Where every unknown lies in its range.
     pub distributions: Vec<Distribution>,
     /// Numbers of the unknowns that are not told.
@@ -47,7 +47,13 @@ pub struct Fit {
     pub pairs: Vec<Pair>,
     /// Whether the model can have made the records.
     pub misfit: Misfit,
+    /// How alike the records are every training run, in what is told of the unknowns; all together 1.
+    likeness: Vec<f64>,
+    predictions: Vec<Prediction>,
 }
+
+/// Training runs that count at the least where records are likened to them.
+const LIKE_AT_LEAST: f64 = 50.0;
 
 /// Means and standard deviations that bring summaries to one scale.
 #[derive(Clone, Debug)]
@@ -109,7 +115,7 @@ pub(super) fn summaries_of(curves: &[Vec<f64>]) -> Vec<f64> {
 impl Calibration {
     /// Learns from a training what records with white noise tell, whose standard deviation is this share of the mean friction of the record.
     /// `grids` are those of the set-up.
-    pub fn new(training: &Training, grids: &[&Grid], noise: f64) -> Self {
+    pub fn new(training: &Training, grids: &[Grid], noise: f64) -> Self {
         let shares: Vec<f64> = grids.iter().map(|grid| noise * grid.noise_share()).collect();
         let rows: Vec<Vec<f64>> = training
             .curves
@@ -147,7 +153,7 @@ impl Calibration {
     }
 
     /// What records tell, each as its [`Grid::record`].
-    pub fn fit(&self, records: &[Vec<f64>]) -> Fit {
+    pub fn estimate(&self, records: &[Vec<f64>]) -> Estimate {
         let summaries = self.scaling.scaled(&summaries_of(records));
         let predictions: Vec<_> = self
             .regressions
@@ -166,12 +172,84 @@ impl Calibration {
             })
             .collect();
         let undetermined = (0..widths.len()).filter(|&j| widths[j] > UNDETERMINED).collect();
-        Fit {
+        Estimate {
             pairs: self.pairs(&summaries, &widths),
             distributions,
             undetermined,
             misfit: self.check.misfit(&summaries),
+            likeness: self.likeness(&predictions),
+            predictions,
         }
+    }
+
+    /// How alike a record with these predictions is every training run: a product of normal weights, as wide as leaves enough runs.
+    fn likeness(&self, predictions: &[Prediction]) -> Vec<f64> {
+        let runs = self.truths.first().map_or(0, Vec::len);
+        let distance = |run: usize| -> f64 {
+            let all = self.regressions.iter().zip(predictions);
+            all.map(|(regression, prediction)| regression.distance(run, prediction))
+                .sum()
+        };
+        let distances: Vec<f64> = (0..runs).map(distance).collect();
+        let nearest = distances.iter().copied().fold(f64::INFINITY, f64::min);
+        let mut width = 1.0;
+        loop {
+            let weights: Vec<f64> = distances
+                .iter()
+                .map(|distance| libm::exp(-0.5 * (distance - nearest) / width))
+                .collect();
+            let sum: f64 = weights.iter().sum();
+            let squares: f64 = weights.iter().map(|weight| weight * weight).sum();
+            if sum * sum / squares >= LIKE_AT_LEAST.min(0.5 * runs as f64) {
+                return weights.iter().map(|weight| weight / sum).collect();
+            }
+            width *= 2.0;
+        }
+    }
+
+    /// So many points of the ranges, drawn from what is told of all unknowns together: residuals of whole training runs, around what is
+    /// predicted of the records.
+    pub fn sample(&self, estimate: &Estimate, count: usize) -> Vec<Vec<f64>> {
+        let mut sum = 0.0;
+        let sums: Vec<f64> = estimate
+            .likeness
+            .iter()
+            .map(|weight| {
+                sum += weight;
+                sum
+            })
+            .collect();
+        let point = |k: usize| {
+            let place = (k as f64 + 0.5) / count as f64;
+            let run = sums.partition_point(|&sum| sum < place).min(sums.len() - 1);
+            let all = self
+                .regressions
+                .iter()
+                .zip(&self.truths)
+                .zip(&estimate.predictions);
+            all.map(|((regression, truth), prediction)| regression.moved(run, truth[run], prediction))
+                .collect()
+        };
+        (0..count).map(point).collect()
+    }
+
+    /// Widths of the intervals of 90 % that records like these have, for every unknown, as a share of its range: the mean over training runs
+    /// that are left out.
+    pub(crate) fn widths(&self, of: &Estimate) -> Vec<f64> {
+        let all: Vec<_> = self.regressions.iter().zip(&self.truths).collect();
+        all.par_iter()
+            .map(|(regression, truth)| {
+                let mut alike: Vec<usize> = (0..truth.len()).collect();
+                alike.sort_by(|&a, &b| of.likeness[b].total_cmp(&of.likeness[a]));
+                alike.truncate(LIKE_AT_LEAST as usize);
+                let widths = alike.iter().map(|&run| {
+                    let [low, high] =
+                        Distribution::of(regression, truth, regression.left_out(run)).interval(0.9);
+                    high - low
+                });
+                widths.sum::<f64>() / alike.len() as f64
+            })
+            .collect()
     }
 
     /// Pairs of unknowns whose errors go together in training runs like the record.
@@ -238,7 +316,7 @@ mod tests {
     }
 
     fn calibration() -> Calibration {
-        Calibration::new(&training(300), &[&grid()], 0.01)
+        Calibration::new(&training(300), &[grid()], 0.01)
     }
 
     #[test]
@@ -246,7 +324,7 @@ mod tests {
         let calibration = calibration();
         let point = [0.3, 0.6, 0.5];
         let record = noisy(&curve(&point), 0.01, normals(Stream::Noise, 1000, 0));
-        let fit = calibration.fit(&[record]);
+        let fit = calibration.estimate(&[record]);
         assert_eq!(fit.undetermined, [2]);
         for (distribution, truth) in fit.distributions.iter().zip(point).take(2) {
             // The interval of 99 % of both: a hundredth of the range would be missed by 1 % of noise over 100 values.
@@ -270,14 +348,14 @@ mod tests {
             .zip(0..)
             .map(|(y, i)| y * (1.0 + 0.1 * f64::from(i) / 99.0))
             .collect();
-        let drift = calibration.fit(&[noisy(&drifting, 0.01, noise())]).misfit;
+        let drift = calibration.estimate(&[noisy(&drifting, 0.01, noise())]).misfit;
         assert!(drift.has_drift && drift.drift[0] > 0.0, "{drift:?}");
         let swings: Vec<f64> = plain
             .iter()
             .zip(0..)
             .map(|(y, i)| y * (1.0 + 0.3 * f64::from(i % 7 - 3) / 3.0))
             .collect();
-        let foreign = calibration.fit(&[noisy(&swings, 0.01, noise())]).misfit;
+        let foreign = calibration.estimate(&[noisy(&swings, 0.01, noise())]).misfit;
         assert!(foreign.distance > 1.0, "{foreign:?}");
     }
 
@@ -289,7 +367,7 @@ mod tests {
                 .build()
                 .unwrap();
             pool.install(|| {
-                Calibration::new(&training(120), &[&grid()], 0.05).fit(&[curve(&[0.2, 0.7, 0.1])])
+                Calibration::new(&training(120), &[grid()], 0.05).estimate(&[curve(&[0.2, 0.7, 0.1])])
             })
         };
         assert_eq!(fit(1), fit(3));

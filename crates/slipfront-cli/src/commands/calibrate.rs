@@ -1,0 +1,91 @@
+//! `slipfront calibrate`: the keys of a case that measured records tell.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use slipfront_case::number_format::count;
+use slipfront_study::StudyError;
+use slipfront_study::calibrate::{CalibrationFile, CalibrationFolder};
+
+use crate::failure::Failure;
+use crate::print::print_message;
+use crate::print_stderr::print_stderr;
+use crate::progress::calibrate::CalibrateProgress;
+use crate::signals::Signals;
+use crate::threads::{count_from_one, set_threads};
+use crate::wrap::for_stderr;
+
+/// Find the values of keys that measured records of friction tell, with intervals that hold them
+#[derive(Args)]
+#[command(after_help = "Examples:
+  slipfront calibrate cases/calibrations/sliding.toml cases/calibrations/sliding.csv
+  slipfront calibrate cases/calibrations/sliding.toml cases/calibrations/sliding.csv --training results/training -o results/first
+
+Stopped in any way, the same command goes on where it was. The folder holds the intervals, a picture of each record beside the
+calibrated model, and a case with the medians.")]
+pub(crate) struct CalibrateCommand {
+    /// Calibration file
+    #[arg(value_name = "CALIBRATION.toml")]
+    calibration: PathBuf,
+    /// Records: tables of text (.csv), in the order of `calibrate.records`
+    #[arg(required = true, value_name = "RECORD")]
+    records: Vec<PathBuf>,
+    /// Folder for the results [default: results/ and the name of the calibration]
+    #[arg(short, long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Folder that keeps training runs, which calibrations of other records then have in common [default: that of the results]
+    #[arg(long, value_name = "DIR")]
+    training: Option<PathBuf>,
+    /// Most runs at once [default: one per core]; results do not depend on it
+    #[arg(long, value_name = "N", value_parser = count_from_one)]
+    threads: Option<u16>,
+    /// Show neither progress nor what was found
+    #[arg(short, long)]
+    quiet: bool,
+}
+
+impl CalibrateCommand {
+    pub(crate) fn execute(self) -> Result<(), Failure> {
+        set_threads(self.threads)?;
+        let file = CalibrationFile::load(&self.calibration).map_err(Failure::input)?;
+        let out = self.out.unwrap_or_else(|| Path::new("results").join(&file.name));
+        let folder = CalibrationFolder::open(&out, self.training.as_deref(), &file, &self.records);
+        let mut folder = folder.map_err(Failure::input)?;
+        let signals = Signals::catch().map_err(Failure::running)?;
+        if !self.quiet {
+            print_notes(&folder);
+        }
+        let mut progress = CalibrateProgress::new(self.quiet);
+        let found = folder.find(&signals.stop, &mut |now| progress.show(now));
+        progress.finish();
+        let text = found.map_err(|error| match error {
+            StudyError::Interrupted => {
+                let sentence = "stopped by a signal: the same command goes on from there";
+                Failure::stopped(&signals, anyhow::anyhow!(sentence))
+            }
+            StudyError::Training(error) => Failure::input(error),
+            error => Failure::running(error),
+        })?;
+        if !self.quiet {
+            print_message(&format!("{text}\n{}\n", folder.path().display()));
+        }
+        Ok(())
+    }
+}
+
+/// Prints what the user must know of a folder that has been used before.
+fn print_notes(folder: &CalibrationFolder) {
+    let note = |sentence: &str| print_stderr(&for_stderr(&format!("note: {sentence}")));
+    if folder.damaged > 0 {
+        note(&format!(
+            "the journal has {}, passed over: its runs count as not made",
+            count(folder.damaged, "damaged line")
+        ));
+    }
+    if folder.n_kept() > 0 {
+        note(&format!(
+            "the folder holds {} of an earlier call, which are not repeated",
+            count(folder.n_kept(), "run")
+        ));
+    }
+}
