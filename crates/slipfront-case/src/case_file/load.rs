@@ -49,11 +49,18 @@ pub fn read_text(path: &Path) -> Result<String, CaseError> {
 const MAX_ENTRIES: usize = 10_000;
 
 /// The file that a missing one was probably meant to be: one of a similar name, or with the ending .toml, in the same folder,
-/// or else in its folder `cases`, `cases/studies` or `cases/designs`.
+/// or else in its folder `cases`, `cases/studies`, `cases/designs` or `cases/calibrations`.
 fn similar_file(path: &Path) -> Option<PathBuf> {
     let folder = path.parent().unwrap_or(Path::new(""));
     let stem = path.file_name()?.to_str()?.trim_end_matches(".toml");
-    let within = ["", "cases", "cases/studies", "cases/designs"].map(|inner| folder.join(inner));
+    let within = [
+        "",
+        "cases",
+        "cases/studies",
+        "cases/designs",
+        "cases/calibrations",
+    ]
+    .map(|inner| folder.join(inner));
     within.iter().find_map(|folder| {
         let listed = if folder.as_os_str().is_empty() {
             Path::new(".")

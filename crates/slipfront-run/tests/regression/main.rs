@@ -28,7 +28,7 @@ use slipfront_run::summary::Summary;
 const TOLERANCE: f64 = 1e-9;
 
 /// Folders of other tests, and of files that are not single cases.
-const ELSEWHERE: [&str; 3] = ["designs", "paper", "studies"];
+const ELSEWHERE: [&str; 4] = ["calibrations", "designs", "paper", "studies"];
 
 /// The pinned results of one case.
 #[derive(Clone, Copy, Debug, Deserialize)]
