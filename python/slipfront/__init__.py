@@ -6,6 +6,7 @@
 0.73
 """
 
+from ._calibrate import Calibration, CalibrationResults, Interval
 from ._case import Case, CaseError
 from ._cite import cite
 from ._converge import Convergence, QuantityOnMeshes, converge
@@ -18,6 +19,8 @@ from ._slipfront import ForkError, RunError, __version__
 from ._study import Study, StudyResults, study
 
 __all__ = [
+    "Calibration",
+    "CalibrationResults",
     "Case",
     "CaseError",
     "Convergence",
@@ -26,6 +29,7 @@ __all__ = [
     "FolderError",
     "ForkError",
     "InterruptedRun",
+    "Interval",
     "Largest",
     "Least",
     "PaperResults",

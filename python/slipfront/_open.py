@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from . import _slipfront
 from ._case import Case
 from ._converge import Convergence
+from ._calibrate import CalibrationResults
 from ._design import DesignResults
 from ._pickle import sealed
 from ._run import FolderSource, Run
@@ -113,20 +114,21 @@ def _open_as(kind: type[Results], called: str, folder: str | os.PathLike[str], v
     raise _slipfront.FolderError(f"{folder} is not the folder of {called} but holds {found!r}{remedy}")
 
 
-def open(folder: str | os.PathLike[str], *, verify: bool = True) -> Run | InterruptedRun | StudyResults | DesignResults | PaperResults:
+def open(folder: str | os.PathLike[str], *, verify: bool = True) -> Run | InterruptedRun | StudyResults | DesignResults | CalibrationResults | PaperResults:
     """Read a folder of the command; where it is known what it holds, `open_run` and `open_study` tell a type checker.
 
     Parameters
     ----------
     folder
-        That of a run, of a run that was stopped, of a study, of `slipfront converge`, of `slipfront design`, or of `slipfront paper`.
+        That of a run, of a run that was stopped, of a study, of `slipfront converge`, of `slipfront design`, of `slipfront calibrate`, or of
+        `slipfront paper`.
     verify
         Hold what stands there against what was written. Of an interrupted run its checkpoint is always verified; that of the paper
         has nothing to be held against.
 
     Returns
     -------
-    Run, InterruptedRun, StudyResults, DesignResults, PaperResults, or of a folder of `slipfront converge` a Convergence
+    Run, InterruptedRun, StudyResults, DesignResults, CalibrationResults, PaperResults, or of a folder of `slipfront converge` a Convergence
 
     Raises
     ------
@@ -143,14 +145,16 @@ def open(folder: str | os.PathLike[str], *, verify: bool = True) -> Run | Interr
         return InterruptedRun(path, case, Simulation._of(case, running, None))
     if kind == "paper" and (path / "claims.csv").exists():
         return PaperResults(path)
-    if kind not in ("run", "study", "meshes", "design"):
-        raise _slipfront.FolderError(f"{path} is not the folder of a run, of a study, of a design, or of a paper that is finished: name one with a case.toml, a study.toml, a design.json or a claims.csv")
+    if kind not in ("run", "study", "meshes", "design", "calibration"):
+        raise _slipfront.FolderError(f"{path} is not the folder of a run, of a study, of a design, of a calibration, or of a paper that is finished: name one with a case.toml, a study.toml, a design.json, a calibration.json or a claims.csv")
     if verify:
         _slipfront.verify(path)
     if kind == "study":
         return StudyResults.read(path)
     if kind == "design":
         return DesignResults.read(path, path)
+    if kind == "calibration":
+        return CalibrationResults.read(path, path)
     if kind == "meshes":
         return Convergence.read(path)
     native, read = _slipfront.read_run(path)

@@ -158,6 +158,25 @@ class Design:
     ) -> str: ...
 
 @final
+class Calibration:
+    @staticmethod
+    def parse(text: str, name: str, folder: Path) -> Calibration: ...
+    @staticmethod
+    def load(path: Path) -> Calibration: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def columns(self) -> list[str]: ...
+    def execute(
+        self,
+        folder: Path,
+        training: Path | None,
+        records: list[Path],
+        threads: int,
+        watch: Callable[[int, int], object] | None,
+    ) -> str: ...
+
+@final
 class TemporaryParent:
     def __new__(cls) -> TemporaryParent: ...
     @property

@@ -2,11 +2,10 @@
 
 use std::borrow::Cow;
 use std::path::PathBuf;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::AtomicBool;
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
-use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use pyo3::pybacked::PyBackedBytes;
 use slipfront_study::StudyError;
@@ -14,8 +13,8 @@ use slipfront_study::design::{
     Bounds, Design as SlipfrontDesign, DesignFile, DesignFolder, Known, OpenSearch, SearchProgress,
 };
 
-use crate::errors::{folder_error, study_error};
-use crate::process::{detached, watched};
+use crate::errors::study_error;
+use crate::process::{detached, on_pool};
 
 /// A design: its file, and what it has been asked and told.
 #[pyclass(frozen, module = "slipfront._slipfront")]
@@ -163,34 +162,4 @@ impl Design {
         })?;
         made.map_err(|error| study_error(py, &error))
     }
-}
-
-/// Does this work on a pool of so many threads; this one looks for signals and shows what is new. An exception of either ends the work.
-fn on_pool<T: Send>(
-    py: Python<'_>,
-    threads: usize,
-    work: impl FnOnce(&AtomicBool) -> Result<T, StudyError> + Send,
-    show: &mut (dyn FnMut(Python<'_>) -> PyResult<()> + Send),
-) -> PyResult<T> {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-    let pool = pool.map_err(folder_error)?;
-    let stop = AtomicBool::new(false);
-    let mut raised = None;
-    let mut look = || {
-        let shown = Python::attach(|py| py.check_signals().and_then(|()| show(py)));
-        if let Err(error) = shown {
-            raised.get_or_insert(error);
-            stop.store(true, Ordering::Relaxed);
-        }
-    };
-    let ended = detached(py, || {
-        let ended = watched(|| pool.install(|| work(&stop)), &mut look);
-        look();
-        ended
-    })?;
-    if let Some(error) = raised {
-        return Err(error);
-    }
-    let ended = ended.ok_or_else(|| PyRuntimeError::new_err("a fault of the program ended the design"))?;
-    ended.map_err(|error| study_error(py, &error))
 }

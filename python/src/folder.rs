@@ -17,6 +17,7 @@ use slipfront_run::run_folder::inspection::Contents;
 use slipfront_run::running::Running;
 use slipfront_run::verify::inspect;
 use slipfront_run::{fields, precursors, series, summary};
+use slipfront_study::calibrate::is_calibration;
 use slipfront_study::converge::is_written;
 use slipfront_study::design::is_design;
 use slipfront_study::study_of;
@@ -54,6 +55,9 @@ pub(crate) fn kind_of(folder: PathBuf) -> PyResult<Option<&'static str>> {
     }
     if is_design(&folder) && folder.join("design.json").exists() {
         return Ok(Some("design"));
+    }
+    if is_calibration(&folder) && folder.join("calibration.json").exists() {
+        return Ok(Some("calibration"));
     }
     if folder.join(FIGURE_CACHE).is_dir() {
         return Ok(Some("paper"));

@@ -9,6 +9,7 @@
 )]
 
 mod arrays;
+mod calibrate;
 mod case;
 mod design;
 mod errors;
@@ -49,6 +50,7 @@ fn _slipfront(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<record::Record>()?;
     module.add_class::<study::Study>()?;
     module.add_class::<design::Design>()?;
+    module.add_class::<calibrate::Calibration>()?;
     module.add_class::<folder::TemporaryParent>()?;
     module.add_function(wrap_pyfunction!(map::run_summaries, module)?)?;
     module.add_function(wrap_pyfunction!(folder::kind_of, module)?)?;

@@ -3,13 +3,15 @@
 //! Its pool of threads does not come along when a process forks, and locks that other threads hold stay locked: a child that used them
 //! would wait for ever. So whatever may use them goes through here, and is refused in such a child.
 
-use std::sync::atomic::{AtomicU32, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::sync::mpsc::{self, RecvTimeoutError};
 
+use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
+use slipfront_study::StudyError;
 
 use crate::case::LOOK_EVERY;
-use crate::errors::ForkError;
+use crate::errors::{ForkError, folder_error, study_error};
 
 /// The process that was the first to use the engine, which the children that it forks afterwards inherit; 0 before.
 static FIRST: AtomicU32 = AtomicU32::new(0);
@@ -51,4 +53,34 @@ pub(crate) fn watched<T: Send>(work: impl FnOnce() -> T + Send, mut look: impl F
             }
         }
     })
+}
+
+/// Does this work on a pool of so many threads; this one looks for signals and shows what is new. An exception of either ends the work.
+pub(crate) fn on_pool<T: Send>(
+    py: Python<'_>,
+    threads: usize,
+    work: impl FnOnce(&AtomicBool) -> Result<T, StudyError> + Send,
+    show: &mut (dyn FnMut(Python<'_>) -> PyResult<()> + Send),
+) -> PyResult<T> {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+    let pool = pool.map_err(folder_error)?;
+    let stop = AtomicBool::new(false);
+    let mut raised = None;
+    let mut look = || {
+        let shown = Python::attach(|py| py.check_signals().and_then(|()| show(py)));
+        if let Err(error) = shown {
+            raised.get_or_insert(error);
+            stop.store(true, Ordering::Relaxed);
+        }
+    };
+    let ended = detached(py, || {
+        let ended = watched(|| pool.install(|| work(&stop)), &mut look);
+        look();
+        ended
+    })?;
+    if let Some(error) = raised {
+        return Err(error);
+    }
+    let ended = ended.ok_or_else(|| PyRuntimeError::new_err("a fault of the program ended the work"))?;
+    ended.map_err(|error| study_error(py, &error))
 }

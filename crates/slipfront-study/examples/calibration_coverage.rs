@@ -1,13 +1,14 @@
 //! Coverage, width and cost of the intervals of a calibration, on synthetic records.
 //!
 //! ```console
-//! $ cargo run --release -p slipfront-study --example calibration_coverage -- 2000 1000
+//! $ cargo run --release -p slipfront-study --example calibration_coverage -- 1000 1000 5000
 //! ```
 //!
 //! So many training runs and so many records of 30 x 30 blocks with six unknowns, over surfaces that training has not drawn, at 1 % and 5 %
 //! of noise. Prints for every unknown: the share of records whose interval of 90 % holds the truth, in all and in each quarter of the range;
 //! the median width of the interval over 0.9 of the range; the probability that the ranks of the truth are uniform (Kolmogorov and
-//! Smirnov). Then the share of records that the check refuses, as they are and with a drift, and processor times.
+//! Smirnov). Then the share of records that the check refuses, as they are and with a drift, and processor times. The third number is that of
+//! the first record: other numbers are other records.
 
 use std::collections::HashMap;
 use std::error::Error;
@@ -32,20 +33,20 @@ fn main() -> Result<(), Box<dyn Error>> {
     let number = |k: usize| -> Result<usize, Box<dyn Error>> {
         Ok(arguments
             .get(k)
-            .ok_or("usage: calibration_coverage RUNS RECORDS")?
+            .ok_or("usage: calibration_coverage RUNS RECORDS FIRST")?
             .parse()?)
     };
-    let (runs, records) = (number(1)?, number(2)?);
+    let (runs, records, first) = (number(1)?, number(2)?, number(3)?);
     let (set_up, unit) = set_up()?;
     let began = processor_seconds()?;
     let go_on = AtomicBool::new(false);
     let training = Training::run(&set_up, runs, HashMap::new(), &mut |_| Ok(()), &go_on)?;
     let trained = processor_seconds()? - began;
     println!("training: {runs} runs in {trained:.1} s of processor time");
-    let truths: Vec<Vec<f64>> = (0..records)
+    let truths: Vec<Vec<f64>> = (first..first + records)
         .map(|record| uniform(record, set_up.unknowns.len()))
         .collect();
-    let curves: Vec<Vec<f64>> = records_of(&set_up, &truths)?;
+    let curves: Vec<Vec<f64>> = records_of(&set_up, &truths, first)?;
     println!("{records} records made; a unit of time is {unit:.3e} s");
     let grids: Vec<Grid> = set_up
         .conditions
@@ -62,7 +63,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         );
         let fits = |drift: f64| -> Vec<Estimate> {
             let all = curves.par_iter().enumerate();
-            all.map(|(record, curve)| calibration.estimate(&[noisy(curve, noise, drift, record)]))
+            all.map(|(record, curve)| calibration.estimate(&[noisy(curve, noise, drift, first + record)]))
                 .collect()
         };
         let began = processor_seconds()?;
@@ -132,12 +133,12 @@ fn set_up() -> Result<(SetUp, f64), Box<dyn Error>> {
 }
 
 /// Friction without noise of records over surfaces of their own.
-fn records_of(set_up: &SetUp, truths: &[Vec<f64>]) -> Result<Vec<Vec<f64>>, Box<dyn Error>> {
+fn records_of(set_up: &SetUp, truths: &[Vec<f64>], first: usize) -> Result<Vec<Vec<f64>>, Box<dyn Error>> {
     let go_on = AtomicBool::new(false);
     let curves: Vec<_> = truths
         .par_iter()
         .enumerate()
-        .map(|(record, truth)| set_up.curves(truth, FIRST_SEED + record as u64, &go_on))
+        .map(|(record, truth)| set_up.curves(truth, FIRST_SEED + (first + record) as u64, &go_on))
         .collect();
     let curves: Option<Vec<Curves>> = curves.into_iter().collect::<Result<_, _>>()?;
     Ok(curves.ok_or("given up")?.into_iter().flatten().collect())

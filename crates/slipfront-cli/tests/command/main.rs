@@ -8,6 +8,7 @@ mod support;
 
 mod attach_file;
 mod broken;
+mod calibrate;
 #[cfg(unix)]
 mod checkpoints;
 mod converge;

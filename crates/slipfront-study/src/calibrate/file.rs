@@ -124,6 +124,13 @@ pub(crate) struct GivenRecord {
     pub(crate) grid: Grid,
 }
 
+impl CalibrationKeys {
+    /// The columns of records, as the file names them.
+    pub fn columns(&self) -> [&str; 2] {
+        [&self.x, &self.y]
+    }
+}
+
 impl CalibrationFile {
     /// Loads a calibration file; a base case that it names stands relative to it.
     ///
@@ -255,7 +262,7 @@ impl CalibrationFile {
             return Err(self.error("records", sentence).into());
         }
         let keys = &self.keys;
-        let columns = MeasuredColumns::new([&keys.x, &keys.y], [&keys.x_unit, &keys.y_unit]);
+        let columns = MeasuredColumns::new(keys.columns(), [&keys.x_unit, &keys.y_unit]);
         let along = match keys.against {
             Against::Time => Measure::Time,
             Against::Displacement => Measure::Displacement,

@@ -1,0 +1,115 @@
+//! What measured records tell of a case.
+
+use crate::support::process::{send, stderr, stdout, wait_for};
+use crate::support::workspace::Workspace;
+
+const FIT: &str = "[base]\nslider.blocks = [6, 6]\ndrive.v_star = 0.1\ntime.step = 0.4\n\
+    [calibrate]\nx = 'time_s'\ny = 'friction_force_n'\nnoise = 0.01\nruns = 100\nfiner_runs = 0\n\
+    unknowns = { 'friction.mu_static' = [0.3, 0.9], 'drive.stiffness_star' = [0.3, 0.9] }\n";
+
+/// A folder with a calibration file, and the series of a run as a record.
+fn workspace() -> Workspace {
+    let workspace = Workspace::new();
+    workspace.write("fit.toml", FIT);
+    workspace.write(
+        "truth.toml",
+        "slider.blocks = [6, 6]\ndrive.v_star = 0.1\ntime = { step = 0.4, duration_star = 120 }\noutput.series = 1\n",
+    );
+    workspace.succeed("run truth.toml -o truth --no-pictures --quiet");
+    workspace.write("record.csv", workspace.read("truth/series.csv"));
+    workspace
+}
+
+/// What is said is what was written, the case runs, and the files are those of any other call and of `verify`.
+#[test]
+fn a_calibration_is_told_and_found_again() {
+    let workspace = workspace();
+    let said = workspace.succeed("calibrate fit.toml record.csv -o found --threads 1");
+    let text = workspace.read_text("found/calibration.txt");
+    assert!(
+        said.starts_with(&text) && said.trim_end().ends_with("found"),
+        "{said}"
+    );
+    assert!(text.contains("drive.stiffness_star"), "{text}");
+    workspace.succeed("run found/case.toml -o run --no-pictures --quiet");
+    workspace.succeed("calibrate found/calibration.toml found/record-1.csv -o twice --threads 2 --quiet");
+    let others = |folder: &str| {
+        let mut files = workspace.files(folder);
+        files.retain(|name, _| name != "training.jsonl");
+        files
+    };
+    assert!(others("found") == others("twice"));
+    let said = workspace.succeed("verify twice");
+    assert!(
+        said.contains("a calibration as its 100 recorded runs give it"),
+        "{said}"
+    );
+    workspace.write(
+        "found/posterior.csv",
+        workspace.read_text("found/posterior.csv").replacen("0.", "1.", 1),
+    );
+    let differs = workspace.output("verify found");
+    assert!(differs.status.code() == Some(1) && stdout(&differs).contains("posterior.csv differs"));
+    // Once more nothing is run, and nothing changes.
+    let before = workspace.files("twice");
+    workspace.succeed("calibrate fit.toml record.csv -o twice --quiet");
+    assert!(workspace.files("twice") == before);
+}
+
+/// Runs are kept where the next record at the same times finds them.
+#[test]
+fn another_record_needs_no_runs() {
+    let workspace = workspace();
+    workspace.succeed("calibrate fit.toml record.csv -o one --training runs --quiet");
+    let runs = workspace.read("runs/training.jsonl");
+    workspace.write(
+        "other.csv",
+        workspace.read_text("record.csv").replace("e-6,", "e-6 ,"),
+    );
+    let output = workspace.output("calibrate fit.toml other.csv -o two --training runs");
+    assert!(
+        output.status.success() && stderr(&output).contains("holds 100 runs"),
+        "{}",
+        stderr(&output)
+    );
+    assert!(workspace.read("runs/training.jsonl") == runs);
+    let said = workspace.fail("calibrate fit.toml other.csv -o one", 2);
+    assert!(said.contains("holds another calibration"), "{said}");
+}
+
+#[test]
+fn folders_of_others_are_left_alone() {
+    let workspace = workspace();
+    workspace.write("mine/notes.txt", "kept");
+    let said = workspace.fail("calibrate fit.toml record.csv -o mine", 2);
+    assert!(said.contains("holds other things than a calibration"), "{said}");
+    let said = workspace.fail("calibrate fit.toml missing.csv -o new", 2);
+    assert!(said.contains("missing.csv") && !workspace.exists("new"), "{said}");
+    let said = workspace.fail(
+        "calibrate fit.toml record.csv record.csv mine/notes.txt -o new",
+        2,
+    );
+    assert!(said.contains("notes.txt") && !workspace.exists("new"), "{said}");
+}
+
+/// What was run is kept, and the same command goes on.
+#[cfg(unix)]
+#[test]
+fn a_signal_keeps_what_was_run() {
+    let workspace = workspace();
+    workspace.write("long.toml", FIT.replace("runs = 100\n", "runs = 10000\n"));
+    let child = workspace.start("calibrate long.toml record.csv -o found");
+    let has_runs =
+        || workspace.exists("found/training.jsonl") && !workspace.read("found/training.jsonl").is_empty();
+    wait_for("some runs", has_runs);
+    send(&child, "-INT");
+    let output = child.wait_with_output().unwrap();
+    assert!(
+        !output.status.success() && stderr(&output).contains("the same command goes on"),
+        "{}",
+        stderr(&output)
+    );
+    assert!(!workspace.exists("found/calibration.json"));
+    let said = workspace.fail("verify found", 2);
+    assert!(said.contains("was not finished"), "{said}");
+}

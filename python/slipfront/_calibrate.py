@@ -1,0 +1,258 @@
+"""From measured records to the keys of a case."""
+
+from __future__ import annotations
+
+import csv
+import dataclasses
+import json
+import os
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import Any, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _slipfront, _toml
+from ._case import Case, CaseLike, as_case
+from ._pickle import sealed
+from ._progress import Bar, parted
+from ._simulation import _threads
+from ._study import _as_base
+from ._temporary import TemporaryFolder
+
+Record: TypeAlias = str | os.PathLike[str] | Mapping[str, npt.ArrayLike]
+"""A record: the path of a table of text, or its columns by their names."""
+
+Range: TypeAlias = Sequence[float] | Sequence[str] | Mapping[str, Any]
+"""Both ends of a range, as numbers or texts with a unit, or ``{"from": 0.03, "to": 0.5, "scale": "log"}``."""
+
+
+@dataclasses.dataclass(frozen=True)
+class Interval:
+    """What records tell of a key.
+
+    Attributes
+    ----------
+    median
+        As likely too small as too large.
+    low, high
+        Ends of the interval that holds the value with 90 %.
+    unit
+        Unit of the numbers, if they have one.
+    is_determined
+        Whether the records tell it.
+    belongs_to_block
+        Whether it leaves the interval on blocks of half the size, so that it is no value of the material.
+    """
+
+    median: float
+    low: float
+    high: float
+    unit: str | None
+    is_determined: bool
+    belongs_to_block: bool
+
+
+class Calibration:
+    """The keys of a case that are not known, and what is known of records.
+
+    Parameters
+    ----------
+    case
+        The case, a dictionary of its tables or the path of its file; or the path of a calibration file, with which nothing else is given.
+    unknowns
+        The keys that are looked for, each with its range.
+    noise
+        Standard deviation of the noise of a record, as a share of its mean friction.
+    x, y
+        Columns of records: times or displacements, and forces, or coefficients if their unit is 1. Names end in the unit, or `x_unit` and
+        `y_unit` tell it.
+    keys
+        Further keys of the table ``[calibrate]``, such as ``against``, ``runs``, ``finer_runs`` or ``next``.
+
+    Examples
+    --------
+    >>> slider = {"slider": {"blocks": [6, 6]}, "drive": {"v_star": 0.1}, "time": {"step": 0.4}}
+    >>> measured = run({**slider, "output": {"series": 1}}, progress=False).series
+    >>> unknowns = {"friction.mu_static": (0.3, 0.9), "drive.stiffness_star": (0.3, 0.9)}
+    >>> calibration = Calibration(slider, unknowns, noise=0.01, runs=100, finer_runs=0)
+    >>> record = {"time_s": measured["time_s"], "force_n": measured["friction_force_n"]}
+    >>> fit = calibration.fit(record, progress=False)
+    >>> fit.intervals["drive.stiffness_star"].is_determined
+    True
+    """
+
+    def __init__(
+        self,
+        case: CaseLike,
+        unknowns: Mapping[str, Range] | None = None,
+        *,
+        noise: float | None = None,
+        x: str = "time_s",
+        y: str = "force_n",
+        name: str | None = None,
+        **keys: Any,
+    ) -> None:
+        # Runs of records at the same times are made once.
+        self._training = TemporaryFolder()
+        if unknowns is None or noise is None:
+            if unknowns is not None or noise is not None or keys or not isinstance(case, (str, os.PathLike)):
+                raise ValueError("give a case with `unknowns` and `noise`, or the path of a calibration file alone")
+            self._native = _slipfront.Calibration.load(Path(case))
+            return
+        case = as_case(case)
+        arrays = _toml.Arrays(case._native.arrays)
+        ranges = {key: dict(ends) if isinstance(ends, Mapping) else list(ends) for key, ends in unknowns.items()}
+        lines = {"unknowns": ranges, "noise": noise, "x": x, "y": y, **keys}
+        text = "[calibrate]\n" + "".join(
+            f"{key} = {_toml.value(given, arrays, f'calibrate.{key}')}\n" for key, given in lines.items() if given is not None
+        )
+        # Its runs read arrays from files, which stand as long as it may have some to do.
+        text, self._arrays = arrays.on_disk(text + _as_base(case))
+        self._native = _slipfront.Calibration.parse(text, name or f"{case.name}-calibration", Path())
+
+    @property
+    def name(self) -> str:
+        """What the calibration is called."""
+        return self._native.name
+
+    def fit(
+        self,
+        *records: Record,
+        folder: str | os.PathLike[str] | None = None,
+        training: str | os.PathLike[str] | None = None,
+        progress: bool | Callable[[int, int], object] | None = None,
+        threads: int | None = None,
+    ) -> CalibrationResults:
+        """Find what records tell of the unknowns.
+
+        Parameters
+        ----------
+        records
+            One record, or several in the order of ``records`` of the calibration.
+        folder
+            A folder of results, in which a call that was stopped goes on, and which has the bytes of `slipfront calibrate`; in memory unless
+            it is given.
+        training
+            A folder that keeps training runs, which fits of other records at the same times then have in common. In memory, fits of this
+            object have them in common.
+        progress
+            True for a bar, False for none, None for one in terminals and notebooks, or a function of the numbers of runs that are done and
+            of all.
+        threads
+            Runs at once, one per core unless given. Results do not depend on it.
+
+        Raises
+        ------
+        CaseError
+            When a record cannot be read, or the ranges leave the bounds of the case.
+        """
+        shown, watch = parted(progress)
+        temporary = TemporaryFolder()
+        paths = [self._path(record, temporary.path / f"given-{number}.csv") for number, record in enumerate(records)]
+        path = temporary.path / self.name if folder is None else Path(folder)
+        if training is None and folder is None:
+            training = self._training.path
+        with Bar(shown, None, "run", self.name) as bar:
+
+            def show(done: int, total: int) -> None:
+                if watch is not None:
+                    watch(done, total)
+                bar.show(done, total)
+
+            kept = None if training is None else Path(training)
+            self._native.execute(path, kept, paths, _threads(threads), show)
+            return CalibrationResults.read(path, None if folder is None else path)
+
+    def _path(self, record: Record, path: Path) -> Path:
+        """Where a record stands; one that is given as columns is written there."""
+        if isinstance(record, (str, os.PathLike)):
+            return Path(record)
+        names = [name for name in self._native.columns if name in record]
+        if len(names) < 2:
+            raise ValueError(f"a record has the columns {' and '.join(self._native.columns)}, not {', '.join(record)}")
+        columns = [np.asarray(record[name], dtype=np.float64).tolist() for name in names]
+        with path.open("w", newline="", encoding="utf-8") as file:
+            table = csv.writer(file)
+            table.writerow(names)
+            table.writerows(zip(*columns, strict=True))
+        return path
+
+    def __repr__(self) -> str:
+        return f"Calibration({self.name})"
+
+
+class CalibrationResults:
+    """What records tell.
+
+    Attributes
+    ----------
+    folder
+        Where it stands; None in memory.
+    intervals
+        Of every key, what the records tell of it.
+    posterior
+        Of every key, values that are drawn from what the records tell of all keys together.
+    text
+        What was found, as the command prints it.
+    """
+
+    def __init__(self, folder: Path | None, found: dict[str, Any], posterior: dict[str, npt.NDArray[np.float64]], text: str) -> None:
+        self.folder, self.posterior, self.text = folder, posterior, text
+        self._found = found
+        self.intervals = {
+            told["key"]: Interval(
+                told["median"],
+                *told["interval"],
+                unit=told["unit"],
+                is_determined=told["is_determined"],
+                belongs_to_block=told["belongs_to_block"],
+            )
+            for told in found["unknowns"]
+        }
+
+    @classmethod
+    def read(cls, folder: Path, kept: Path | None) -> CalibrationResults:
+        """What stands in a folder, which is kept as `kept` or gone afterwards."""
+        found = json.loads((folder / "calibration.json").read_bytes())
+        points = np.loadtxt(folder / "posterior.csv", delimiter=",", skiprows=1, ndmin=2)
+        posterior = {told["key"]: points[:, number] for number, told in enumerate(found["unknowns"])}
+        return cls(kept, found, posterior, (folder / "calibration.txt").read_text(encoding="utf-8"))
+
+    @property
+    def undetermined(self) -> list[str]:
+        """Keys that the records do not tell."""
+        return [key for key, interval in self.intervals.items() if not interval.is_determined]
+
+    @property
+    def pairs(self) -> list[tuple[str, str, float]]:
+        """Keys that are told only together, and the correlation of their errors."""
+        return [(*pair["keys"], pair["correlation"]) for pair in self._found["pairs"]]
+
+    @property
+    def is_refused(self) -> bool:
+        """Whether the model cannot have made the records: then the intervals promise nothing."""
+        return bool(self._found["is_refused"])
+
+    @property
+    def misfit(self) -> dict[str, Any]:
+        """What speaks against the records: an interval of their drift as a share of friction, and how far they are from the training runs."""
+        return dict(self._found["misfit"])
+
+    @property
+    def case(self) -> Case:
+        """The case with the medians, in its folder; in memory, `Case.replace` sets the keys."""
+        if self.folder is None:
+            raise LookupError("a calibration in memory has no case file: set the keys with Case.replace")
+        return Case.load(self.folder / "case.toml")
+
+    def to_dict(self) -> dict[str, Any]:
+        """The content of `calibration.json`."""
+        return dict(json.loads(json.dumps(self._found)))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return sealed(type(self), self.folder, self._found, self.posterior, self.text)
+
+    def __repr__(self) -> str:
+        return self.text.rstrip()

@@ -1,0 +1,85 @@
+//! Calibrations: keys of a case from measured records.
+
+use std::path::PathBuf;
+use std::sync::atomic::AtomicBool;
+use std::sync::{Mutex, PoisonError};
+
+use pyo3::prelude::*;
+use slipfront_study::StudyError;
+use slipfront_study::calibrate::{CalibrationFile, CalibrationFolder, CalibrationProgress};
+
+use crate::errors::study_error;
+use crate::process::{detached, on_pool};
+
+/// A calibration file.
+#[pyclass(frozen, module = "slipfront._slipfront")]
+pub(crate) struct Calibration {
+    file: CalibrationFile,
+}
+
+#[pymethods]
+impl Calibration {
+    /// The calibration of a text that is called `name`; the files it names stand relative to a folder.
+    #[staticmethod]
+    fn parse(py: Python<'_>, text: &str, name: &str, folder: PathBuf) -> PyResult<Self> {
+        Self::of(py, || CalibrationFile::parse(text, name, name, &folder))
+    }
+
+    #[staticmethod]
+    fn load(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
+        Self::of(py, || CalibrationFile::load(&path))
+    }
+
+    #[getter]
+    fn name(&self) -> &str {
+        &self.file.name
+    }
+
+    /// The columns of records.
+    #[getter]
+    fn columns(&self) -> [&str; 2] {
+        self.file.keys.columns()
+    }
+
+    /// Calibrates in a folder, or goes on there, and gives what was found as a text.
+    fn execute(
+        &self,
+        py: Python<'_>,
+        folder: PathBuf,
+        training: Option<PathBuf>,
+        records: Vec<PathBuf>,
+        threads: usize,
+        watch: Option<Py<PyAny>>,
+    ) -> PyResult<String> {
+        let opened = detached(py, || {
+            CalibrationFolder::open(&folder, training.as_deref(), &self.file, &records)
+        })?;
+        let mut opened = opened.map_err(|error| study_error(py, &error))?;
+        let progress: Mutex<Option<CalibrationProgress>> = Mutex::new(None);
+        let find = |stop: &AtomicBool| {
+            opened.find(stop, &mut |now| {
+                *progress.lock().unwrap_or_else(PoisonError::into_inner) = Some(*now);
+            })
+        };
+        let mut show = |py: Python<'_>| {
+            let now = progress.lock().unwrap_or_else(PoisonError::into_inner).take();
+            match (&watch, now) {
+                (Some(watch), Some(now)) => watch.call1(py, (now.runs, now.of)).map(drop),
+                _ => Ok(()),
+            }
+        };
+        on_pool(py, threads, find, &mut show)
+    }
+}
+
+impl Calibration {
+    fn of(
+        py: Python<'_>,
+        read: impl FnOnce() -> Result<CalibrationFile, StudyError> + Send,
+    ) -> PyResult<Self> {
+        let file = detached(py, read)?;
+        Ok(Self {
+            file: file.map_err(|error| study_error(py, &error))?,
+        })
+    }
+}
