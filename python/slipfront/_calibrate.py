@@ -73,8 +73,9 @@ class Calibration:
 
     Examples
     --------
+    >>> import slipfront
     >>> slider = {"slider": {"blocks": [6, 6]}, "drive": {"v_star": 0.1}, "time": {"step": 0.4}}
-    >>> measured = run({**slider, "output": {"series": 1}}, progress=False).series
+    >>> measured = slipfront.run({**slider, "output": {"series": 1}}, progress=False).series
     >>> unknowns = {"friction.mu_static": (0.3, 0.9), "drive.stiffness_star": (0.3, 0.9)}
     >>> calibration = Calibration(slider, unknowns, noise=0.01, runs=100, finer_runs=0)
     >>> record = {"time_s": measured["time_s"], "force_n": measured["friction_force_n"]}
@@ -203,8 +204,9 @@ class CalibrationResults:
         self._found = found
         self.intervals = {
             told["key"]: Interval(
-                told["median"],
-                *told["interval"],
+                median=told["median"],
+                low=told["interval"][0],
+                high=told["interval"][1],
                 unit=told["unit"],
                 is_determined=told["is_determined"],
                 belongs_to_block=told["belongs_to_block"],

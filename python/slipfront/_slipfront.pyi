@@ -9,6 +9,7 @@ import numpy.typing as npt
 
 __all__ = [
     "IN_MEMORY",
+    "Calibration",
     "Case",
     "CaseError",
     "Design",

@@ -110,7 +110,7 @@ enum Number {
 }
 
 fn default_runs() -> u32 {
-    1000
+    1500
 }
 
 fn default_finer_runs() -> u32 {

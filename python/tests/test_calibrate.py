@@ -1,0 +1,82 @@
+"""Calibrations in Python."""
+
+import json
+import pickle
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import slipfront as sf
+
+SLIDER: dict[str, Any] = {"slider": {"blocks": [6, 6]}, "drive": {"v_star": 0.1}, "time": {"step": 0.4, "duration_star": 120}}
+UNKNOWNS = {"friction.mu_static": (0.3, 0.9), "drive.stiffness_star": (0.3, 0.9)}
+
+
+def calibration(**keys: Any) -> sf.Calibration:
+    return sf.Calibration(SLIDER, UNKNOWNS, noise=0.01, **{"runs": 100, "finer_runs": 0, **keys})
+
+
+def record(seed: int = 3) -> dict[str, np.ndarray[Any, np.dtype[np.float64]]]:
+    """Friction of the slider, with noise."""
+    case = sf.Case(SLIDER).replace({"friction.seed": seed, "drive.stiffness_star": 0.7, "output.series": 1})
+    series = sf.run(case, progress=False).series
+    force = np.asarray(series["friction_force_n"])
+    noise = np.random.default_rng(seed).normal(0, 0.01 * force.mean(), len(force))
+    return {"time_s": np.asarray(series["time_s"]), "force_n": force + noise}
+
+
+def test_a_calibration_has_the_bytes_of_the_command(tmp_path: Path) -> None:
+    shown: list[tuple[int, int]] = []
+    measured = record()
+    fit = calibration().fit(measured, folder=tmp_path / "one", progress=lambda *now: shown.append(now), threads=2)
+    assert shown and shown[-1] == (100, 100)
+    (tmp_path / "fit.toml").write_bytes((tmp_path / "one/calibration.toml").read_bytes())
+    command = [sys.executable, "-m", "slipfront", "calibrate", "fit.toml", "one/record-1.csv", "-o", "two", "--quiet", "--threads", "1"]
+    subprocess.run(command, cwd=tmp_path, check=True)
+    for name in ("calibration.json", "posterior.csv", "band-1.csv", "band-1.png", "case.toml", "record-1.csv"):
+        assert (tmp_path / "one" / name).read_bytes() == (tmp_path / "two" / name).read_bytes(), name
+    assert fit.to_dict() == json.loads((tmp_path / "two/calibration.json").read_text())
+    stiffness = fit.intervals["drive.stiffness_star"]
+    assert stiffness.low < 0.7 < stiffness.high and stiffness.low < stiffness.median < stiffness.high
+    assert fit.case["drive.stiffness_star"] == stiffness.median
+    assert "drive.stiffness_star" not in fit.undetermined and not fit.is_refused
+    assert fit.misfit["distance"] < 1 and fit.pairs == []
+    assert fit.posterior["drive.stiffness_star"].shape == (400,)
+    opened = sf.open(tmp_path / "one")
+    assert isinstance(opened, sf.CalibrationResults) and opened.to_dict() == fit.to_dict()
+    (tmp_path / "two/case.toml").write_text((tmp_path / "two/case.toml").read_text() + "\n")
+    with pytest.raises(sf.FolderError, match=r"case\.toml differs"):
+        sf.open(tmp_path / "two")
+
+
+def test_records_in_memory_share_their_runs() -> None:
+    made = calibration()
+    first = made.fit(record(), progress=False)
+    shown: list[tuple[int, int]] = []
+    again = made.fit(record(), progress=lambda *now: shown.append(now))
+    assert again.to_dict() == first.to_dict()
+    assert all(now == (0, 0) for now in shown)
+    with pytest.raises(LookupError, match="in memory"):
+        _ = again.case
+    copied = pickle.loads(pickle.dumps(again))
+    assert repr(copied) == repr(again) and copied.intervals == again.intervals
+
+
+def test_what_is_wrong_is_said(tmp_path: Path) -> None:
+    with pytest.raises(ValueError, match="path of a calibration file alone"):
+        sf.Calibration(SLIDER, UNKNOWNS)
+    with pytest.raises(sf.CaseError, match="noise"):
+        sf.Calibration(SLIDER, UNKNOWNS, noise=2)
+    with pytest.raises(sf.CaseError, match="did you mean `runs`"):
+        calibration(rums=3)
+    with pytest.raises(ValueError, match="columns time_s and force_n, not time_s"):
+        calibration().fit({"time_s": [1, 2, 3]})
+    with pytest.raises(sf.CaseError, match="has 3 values"):
+        calibration().fit({"time_s": [1, 2, 3], "force_n": [1, 2, 3]})
+    with pytest.raises(sf.CaseError, match="unknown key"):
+        sf.Calibration(SLIDER, {"friction.mu_sttic": (0.3, 0.9)}, noise=0.01).fit(record())
+    with pytest.raises(sf.CaseError, match="drive"):
+        calibration(next=[{"drive": {"v_star": -1}}]).fit(record(), folder=tmp_path / "found")
