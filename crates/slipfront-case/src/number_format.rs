@@ -114,6 +114,11 @@ pub fn si_prefix(value: f64) -> (f64, &'static str) {
     (1000f64.powf(step), PREFIXES[(step + 6.0) as usize])
 }
 
+/// A prefix of a unit as pictures print it.
+pub fn in_print(prefix: &'static str) -> &'static str {
+    if prefix == "u" { "\u{b5}" } else { prefix }
+}
+
 /// A number of things: 1 block, 2 blocks.
 pub fn count(number: usize, thing: &str) -> String {
     let ending = if number == 1 { "" } else { "s" };

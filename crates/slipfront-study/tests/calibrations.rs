@@ -13,6 +13,7 @@ use slipfront_run::measured::Measure;
 use slipfront_run::run_curve::run_curve_unless;
 use slipfront_study::StudyError;
 use slipfront_study::calibrate::{CalibrationFile, CalibrationFolder, CalibrationStage};
+use slipfront_study::design::DesignFile;
 
 /// A small slider, of which two keys are looked for.
 const BASE: &str = "[base]\nslider.blocks = [6, 6]\ndrive.v_star = 0.1\ntime.step = 0.4\n";
@@ -95,6 +96,26 @@ fn calibration_files_are_true() {
         }
     }
     assert!(seen >= 3, "only {seen} examples");
+    // The texture that is asked for stands on what a calibration leaves.
+    let folder = tempfile::tempdir().unwrap();
+    let results = folder.path().join("results/sliding");
+    fs::create_dir_all(&results).unwrap();
+    fs::write(
+        results.join("case.toml"),
+        "slider.blocks = [30, 30]\nfriction.mu_static = 0.55\n",
+    )
+    .unwrap();
+    let guide = fs::read_to_string(root().join("docs/guide/calibrate.md")).unwrap();
+    let block = guide
+        .split("```toml design\n")
+        .nth(1)
+        .unwrap()
+        .split("```")
+        .next()
+        .unwrap();
+    let design = DesignFile::parse(block, "texture.toml", "texture", folder.path())
+        .unwrap_or_else(|error| panic!("{error}"));
+    design.design().unwrap_or_else(|error| panic!("{error}"));
     let folder = tempfile::tempdir().unwrap();
     let example = CalibrationFile::load(&root().join("cases/calibrations/sliding.toml")).unwrap();
     CalibrationFolder::open(folder.path(), None, &example, &[record])

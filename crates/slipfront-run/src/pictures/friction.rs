@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use slipfront_case::case_file::Motion;
-use slipfront_case::number_format::si_prefix;
+use slipfront_case::number_format::{in_print, si_prefix};
 use slipfront_plot::{self as plot, FrictionAxes, FrictionCurve, Instant, KineticLine, Picture};
 
 use super::error::RunPictureError;
@@ -384,11 +384,6 @@ fn dimensionless(
         prefixes: [1.0; 2],
     };
     Ok((scale, note.map(str::to_owned)))
-}
-
-/// A prefix of a unit as it is printed.
-pub(super) fn in_print(prefix: &'static str) -> &'static str {
-    if prefix == "u" { "\u{b5}" } else { prefix }
 }
 
 /// Axes of newtons, or of coefficients, and of seconds or metres, with the prefixes that suit the largest numbers.

@@ -7,12 +7,11 @@ use slipfront::observe::Field;
 use slipfront_case::case::{MAX_MAPS, mapped_field, scales};
 use slipfront_case::case_file::{CaseFile, Motion};
 use slipfront_case::field_info::field_info;
-use slipfront_case::number_format::si_prefix;
+use slipfront_case::number_format::{in_print, si_prefix};
 use slipfront_plot::{self as plot, CellMeans, Picture, StressMap, StressMaps};
 
 use super::error::RunPictureError;
 use super::files::case_of;
-use super::friction::in_print;
 use crate::fields::{self, FieldFrame, Reduction};
 use crate::names::{FIELDS, SERIES};
 use crate::series::{self, SeriesRow};

@@ -3,7 +3,7 @@
 use std::io::Write;
 use std::path::Path;
 
-use slipfront_case::number_format::{count, four_digits, si_prefix};
+use slipfront_case::number_format::{count, four_digits, in_print, si_prefix};
 use slipfront_case::text::{COLUMNS, wrapped};
 use slipfront_plot::{Picture, PictureError, Response, Responses};
 use slipfront_run::measured::Measure;
@@ -152,7 +152,7 @@ fn picture(
     let [x_title, y_title] = [0, 1].map(|axis| {
         title(
             measures[axis],
-            &format!("{}{}", prefix(axis).1, measures[axis].unit()),
+            &format!("{}{}", in_print(prefix(axis).1), measures[axis].unit()),
         )
     });
     slipfront_plot::response(&Responses {
