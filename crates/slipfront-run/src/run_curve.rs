@@ -77,8 +77,8 @@ pub fn run_curve_unless(
     end: f64,
     ends: &dyn Fn() -> bool,
 ) -> Option<Result<RunCurve, RunError>> {
+    let stop = Stop::at_step(steps_to(case, along, end));
     let dt_star = case.time_plan.dt_star;
-    let stop = Stop::at_step((end_star(case, along, end) / dt_star).ceil() as u64 + 1);
     let mut simulation = Simulation::new(Arc::clone(&case.model), dt_star, None, Execution::default());
     let mut tracing = Tracing::default();
     while !ends() {
@@ -92,14 +92,15 @@ pub fn run_curve_unless(
     None
 }
 
-/// The t* of the drive at a time or at a displacement of it.
-fn end_star(case: &Case, along: Measure, end: f64) -> f64 {
+/// Steps that [`run_curve_unless`] takes.
+pub fn steps_to(case: &Case, along: Measure, end: f64) -> u64 {
     let drive = &case.model.drive;
-    match (along, &drive.program) {
+    let end_star = match (along, &drive.program) {
         (Measure::Displacement, None) => end / (drive.v_star * case.scales.displacement()),
         (Measure::Displacement, Some(_)) => case.time_plan.end_star(),
         _ => end / case.scales.time(),
-    }
+    };
+    (end_star / case.time_plan.dt_star).ceil() as u64 + 1
 }
 
 fn in_si_units(case: &Case, traced: Tracing) -> RunCurve {

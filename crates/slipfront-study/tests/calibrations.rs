@@ -334,6 +334,16 @@ fn what_cannot_be_calibrated_is_refused() {
             "y = 'force_n'\nrecords = [{ set = {} }, { set = {} }]",
             "one file for each",
         ),
+        (
+            "x = 'time_s'",
+            "x = 'time_s'\nx_unit = 's'\ny_unit = 'N'\nagainst = 'displacement'",
+            "unit",
+        ),
+        (
+            "time.step = 0.4",
+            "time.step = 1e-6",
+            "more than 10000000: a step lasts",
+        ),
         ("[calibrate]", "[other]\n[calibrate]", "other"),
     ] {
         let error = refused(from, to);

@@ -3,8 +3,11 @@
 use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
+use slipfront_case::case::Case;
 use slipfront_case::case_file::{CaseError, Override, Source, Tables, syntax_error, unknown_key};
+use slipfront_case::number_format::{are, with_si_prefix};
 use slipfront_run::measured::{Measure, MeasuredRecord};
+use slipfront_run::run_curve::steps_to;
 use toml::{Table, Value};
 
 use super::grid::Grid;
@@ -21,7 +24,10 @@ use crate::study_file::{Base, found_at, parse_noting_places, portable, read_base
 const TABLES: [&str; 2] = ["base", "calibrate"];
 
 /// Fewest and most runs of a training: fewer leave intervals of 90 % to chance, more are a system of equations that memory is too small for.
-const RUNS: [u32; 2] = [100, 10_000];
+const RUNS: [u32; 2] = [100, 5000];
+
+/// Most steps of a run that a record may ask for: a thousand runs of as many take days.
+const MAX_STEPS: u64 = 10_000_000;
 
 /// A calibration file.
 #[derive(Clone, Debug)]
@@ -256,8 +262,8 @@ impl CalibrationFile {
         if paths.is_empty() || (expected > 0 && expected != paths.len()) {
             let sentence = format!(
                 "the file tells how {} measured, and {} given: name one file for each, in their order",
-                slipfront_case::number_format::are(expected.max(1), "record"),
-                slipfront_case::number_format::are(paths.len(), "record"),
+                are(expected.max(1), "record"),
+                are(paths.len(), "record"),
             );
             return Err(self.error("records", sentence).into());
         }
@@ -302,11 +308,25 @@ impl CalibrationFile {
                     let mut shares = middle.clone();
                     shares[unknown] = end;
                     let case = set_up.case(&shares, 0, conditions);
-                    case.map_err(|error| self.found_in("unknowns", error))?;
+                    let case = case.map_err(|error| self.found_in("unknowns", error))?;
+                    let steps = steps_to(&case, conditions.grid.along(), conditions.grid.end());
+                    if steps > MAX_STEPS {
+                        return Err(self.too_long(&case, steps).into());
+                    }
                 }
             }
         }
         Ok(set_up)
+    }
+
+    /// The error of a record that takes too many steps.
+    fn too_long(&self, case: &Case, steps: u64) -> CaseError {
+        let sentence = format!(
+            "a record takes {steps} steps of the case, more than {MAX_STEPS}: a step lasts {}. Records of rigs that move so slowly are compared \
+             against displacement, with a drive that is held while blocks slide: `against = \"displacement\"` and `drive.loading = \"held\"`",
+            with_si_prefix(case.time_plan.dt_star * case.scales.time(), "s")
+        );
+        self.error("x", sentence)
     }
 
     /// Keys in which a record differs from the case.

@@ -10,7 +10,7 @@ use slipfront_case::disk::{TEXT_MAX_BYTES, is_empty, make_folders, read_limited}
 use slipfront_run::folder_error::FolderError;
 
 use super::calibration::{Calibration, Estimate};
-use super::file::{CalibrationFile, GivenRecord};
+use super::file::{CalibrationFile, CalibrationKeys, GivenRecord};
 use super::findings::{Findings, Further, OnFinerBlocks, Told, ToldTogether};
 use super::grid::Grid;
 use super::predicted::{PREDICTED, bands};
@@ -64,6 +64,47 @@ pub struct CalibrationProgress {
     pub runs: usize,
     /// All runs of this call.
     pub of: usize,
+}
+
+/// Runs of a calibration on their way.
+struct Work<'a> {
+    stop: &'a AtomicBool,
+    watch: &'a mut dyn FnMut(&CalibrationProgress),
+    ended: usize,
+    of: usize,
+}
+
+impl Work<'_> {
+    /// Shows that so many more runs have ended.
+    fn show(&mut self, stage: CalibrationStage, runs: usize) {
+        self.ended += runs;
+        (self.watch)(&CalibrationProgress {
+            stage,
+            runs: self.ended,
+            of: self.of,
+        });
+    }
+}
+
+/// Records, and what a training tells of them.
+struct Calibrated {
+    curves: Vec<Vec<f64>>,
+    calibration: Calibration,
+    estimate: Estimate,
+}
+
+impl Calibrated {
+    fn of(training: &Training, set_up: &SetUp, records: &[GivenRecord], noise: f64) -> Self {
+        let curves = records.iter().map(|record| record.grid.record(&record.measured));
+        let curves: Vec<Vec<f64>> = curves.collect();
+        let calibration = Calibration::new(training, &set_up.grids(), noise);
+        let estimate = calibration.estimate(&curves);
+        Self {
+            curves,
+            calibration,
+            estimate,
+        }
+    }
 }
 
 /// A results folder, with the runs that were kept in it.
@@ -208,88 +249,44 @@ impl CalibrationFolder {
     ) -> Result<String, StudyError> {
         let keys = self.file.keys.clone();
         let set_up = self.set_up.clone();
-        let (runs, finer_runs) = (keys.runs as usize, keys.finer_runs as usize);
-        let finer = self.finer();
-        let further = self.further(&keys.next)?;
-        let mut all = self.n_missing(&set_up, runs)?;
-        if let Ok(Some(finer)) = &finer {
-            all += self.n_missing(finer, finer_runs)?;
-        }
-        for (_, further) in &further {
-            all += self.n_missing(further, runs)?;
-        }
-        let mut ended = 0;
-        let mut train = |folder: &mut Self, stage, set_up: &SetUp, runs| {
-            folder.train(set_up, runs, stop, &mut |new| {
-                ended += new;
-                watch(&CalibrationProgress {
-                    stage,
-                    runs: ended,
-                    of: all,
-                });
-            })
+        let (finer, further) = (self.finer(), self.further(&keys.next)?);
+        let mut work = Work {
+            stop,
+            watch,
+            ended: 0,
+            of: self.n_missing(&finer, &further)?,
         };
-        let training = train(self, CalibrationStage::Training, &set_up, runs)?;
-        let grids: Vec<Grid> = set_up.conditions.iter().map(|one| one.grid.clone()).collect();
-        let calibration = Calibration::new(&training, &grids, keys.noise);
-        let curves: Vec<Vec<f64>> = self
-            .records
-            .iter()
-            .map(|record| record.grid.record(&record.measured))
-            .collect();
-        let estimate = calibration.estimate(&curves);
-        let mut unknowns: Vec<Told> = set_up
-            .unknowns
-            .iter()
-            .enumerate()
-            .map(|(number, unknown)| Told::of(unknown, &estimate, number))
+        let training = self.train(&mut work, CalibrationStage::Training, &set_up, keys.runs)?;
+        let told = Calibrated::of(&training, &set_up, &self.records, keys.noise);
+        let estimate = &told.estimate;
+        let unknowns = set_up.unknowns.iter().enumerate();
+        let mut unknowns: Vec<Told> = unknowns
+            .map(|(number, unknown)| Told::of(unknown, estimate, number))
             .collect();
         let finer = match finer {
             Ok(Some(finer)) => {
-                let training = train(self, CalibrationStage::FinerBlocks, &finer, finer_runs)?;
-                let there = Calibration::new(&training, &grids, keys.noise).estimate(&curves);
-                for ((told, unknown), found) in
-                    unknowns.iter_mut().zip(&finer.unknowns).zip(&there.distributions)
-                {
+                let training =
+                    self.train(&mut work, CalibrationStage::FinerBlocks, &finer, keys.finer_runs)?;
+                let there = Calibrated::of(&training, &finer, &self.records, keys.noise).estimate;
+                let found = finer.unknowns.iter().zip(&there.distributions);
+                for (told, (unknown, found)) in unknowns.iter_mut().zip(found) {
                     told.hold_against(unknown, found);
                 }
-                OnFinerBlocks::Runs(finer_runs)
+                OnFinerBlocks::Runs(keys.finer_runs as usize)
             }
             Ok(None) => OnFinerBlocks::NotAskedFor,
             Err(reason) => OnFinerBlocks::Impossible(reason),
         };
-        let widths = calibration.widths(&estimate);
-        let mut next = Vec::new();
-        for (name, further) in further {
-            let more = train(self, CalibrationStage::Further, &further, runs)?;
-            let mut grids = grids.clone();
-            grids.push(further.conditions[0].grid.clone());
-            let with = Calibration::new(&training.clone().with(more), &grids, keys.noise).widths(&estimate);
-            next.push(Further {
-                set: name,
-                narrowed_to: with
-                    .iter()
-                    .zip(&widths)
-                    .map(|(with, without)| with / without)
-                    .collect(),
-            });
-        }
-        let bands = bands(
-            &set_up,
-            &calibration.sample(&estimate, PREDICTED),
-            keys.noise,
-            stop,
-        )?;
+        let next = self.weigh(&mut work, further, &training, &told)?;
+        let sample = |points| told.calibration.sample(estimate, points);
+        let bands = bands(&set_up, &sample(PREDICTED), keys.noise, stop)?;
+        let within = bands.iter().zip(&told.curves);
         let findings = Findings {
-            runs,
+            runs: keys.runs as usize,
             noise: keys.noise,
-            pairs: pairs(&set_up, &estimate),
+            pairs: pairs(&set_up, estimate),
             is_refused: estimate.misfit.is_refused(),
-            within_band_percent: bands
-                .iter()
-                .zip(&curves)
-                .map(|(band, curve)| band.holds_percent(curve))
-                .collect(),
+            within_band_percent: within.map(|(band, curve)| band.holds_percent(curve)).collect(),
             misfit: estimate.misfit.clone(),
             unknowns,
             finer,
@@ -301,7 +298,36 @@ impl CalibrationFolder {
             set_up: &set_up,
             findings: &findings,
         };
-        report.write(&curves, &bands, &calibration.sample(&estimate, SAMPLE))
+        report.write(&told.curves, &bands, &sample(SAMPLE))
+    }
+
+    /// Trains with each of the further experiments beside the records, and tells how much narrower the intervals are.
+    fn weigh(
+        &mut self,
+        work: &mut Work,
+        further: Vec<(String, SetUp)>,
+        training: &Training,
+        told: &Calibrated,
+    ) -> Result<Vec<Further>, StudyError> {
+        let CalibrationKeys { runs, noise, .. } = self.file.keys;
+        let grids: Vec<Grid> = self.set_up.grids();
+        let widths = told.calibration.widths(&told.estimate);
+        let mut weighed = Vec::new();
+        for (set, further) in further {
+            let more = self.train(work, CalibrationStage::Further, &further, runs)?;
+            let grids = [grids.clone(), further.grids()].concat();
+            let with = Calibration::new(&training.clone().with(more), &grids, noise);
+            let with = with.widths(&told.estimate);
+            weighed.push(Further {
+                set,
+                narrowed_to: with
+                    .iter()
+                    .zip(&widths)
+                    .map(|(with, without)| with / without)
+                    .collect(),
+            });
+        }
+        Ok(weighed)
     }
 
     /// The set-up on blocks of half the size; none if the file does not ask for it, or a reason why there is none.
@@ -347,19 +373,20 @@ impl CalibrationFolder {
         next.iter().map(set_up).collect()
     }
 
-    /// Trains, or goes on where an earlier call was; `watch` is given the number of runs that have just ended.
+    /// Trains, or goes on where an earlier call was.
     fn train(
         &mut self,
+        work: &mut Work,
+        stage: CalibrationStage,
         set_up: &SetUp,
-        runs: usize,
-        stop: &AtomicBool,
-        watch: &mut dyn FnMut(usize),
+        runs: u32,
     ) -> Result<Training, StudyError> {
+        let runs = runs as usize;
         let id = set_up.identity()?;
         let of_set_up: HashMap<usize, Curves> = (0..runs)
             .filter_map(|run| Some((run, self.known.get(&(id.clone(), run))?.clone())))
             .collect();
-        watch(0);
+        work.show(stage, 0);
         let Self {
             shared,
             journal,
@@ -367,6 +394,7 @@ impl CalibrationFolder {
             ..
         } = self;
         let journal = shared.as_mut().unwrap_or(journal);
+        let stop = work.stop;
         let mut keep = |made: &[TrainingRun]| {
             let lines: Vec<u8> = made
                 .iter()
@@ -379,18 +407,28 @@ impl CalibrationFolder {
                 .collect();
             journal.append(&lines)?;
             known.extend(made.iter().map(|run| ((id.clone(), run.run), run.curves.clone())));
-            watch(made.len());
+            work.show(stage, made.len());
             Ok(())
         };
         Training::run(set_up, runs, of_set_up, &mut keep, stop)
     }
 
-    /// How many of so many training runs are not known yet.
-    fn n_missing(&self, set_up: &SetUp, runs: usize) -> Result<usize, StudyError> {
-        let id = set_up.identity()?;
-        Ok((0..runs)
-            .filter(|&run| !self.known.contains_key(&(id.clone(), run)))
-            .count())
+    /// Runs of all set-ups that are not known yet.
+    fn n_missing(
+        &self,
+        finer: &Result<Option<SetUp>, String>,
+        further: &[(String, SetUp)],
+    ) -> Result<usize, StudyError> {
+        let CalibrationKeys { runs, finer_runs, .. } = self.file.keys;
+        let finer = finer.iter().flatten().map(|finer| (finer, finer_runs));
+        let further = further.iter().map(|(_, further)| (further, runs));
+        let all = std::iter::once((&self.set_up, runs)).chain(finer).chain(further);
+        let missing = all.map(|(set_up, runs)| {
+            let id = set_up.identity()?;
+            let is_missing = |run: &usize| !self.known.contains_key(&(id.clone(), *run));
+            Ok((0..runs as usize).filter(is_missing).count())
+        });
+        missing.sum()
     }
 }
 

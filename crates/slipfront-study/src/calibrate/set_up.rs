@@ -60,6 +60,11 @@ impl SetUp {
         values.map(|(unknown, &share)| unknown.set_to(share)).collect()
     }
 
+    /// The grids of the records.
+    pub(crate) fn grids(&self) -> Vec<Grid> {
+        self.conditions.iter().map(|one| one.grid.clone()).collect()
+    }
+
     /// The middle of all ranges, as shares.
     pub(crate) fn middle(&self) -> Vec<f64> {
         vec![0.5; self.unknowns.len()]
