@@ -323,8 +323,8 @@ mod tests {
     fn what_a_curve_shows_is_found_and_what_it_does_not_is_told() {
         let calibration = calibration();
         let point = [0.3, 0.6, 0.5];
-        let record = noisy(&curve(&point), 0.01, normals(Stream::Noise, 1000, 0));
-        let fit = calibration.estimate(&[record]);
+        let record = |number| noisy(&curve(&point), 0.01, normals(Stream::Noise, 1000, number));
+        let fit = calibration.estimate(&[record(0)]);
         assert_eq!(fit.undetermined, [2]);
         for (distribution, truth) in fit.distributions.iter().zip(point).take(2) {
             // The interval of 99 % of both: a hundredth of the range would be missed by 1 % of noise over 100 values.
@@ -335,7 +335,9 @@ mod tests {
             );
         }
         assert!(fit.pairs.is_empty());
-        assert!(!fit.misfit.is_refused(), "{:?}", fit.misfit);
+        // Of good records 3.5 % are refused: more than four of twenty would be one time in a thousand.
+        let refused = (0..20).filter(|&number| calibration.estimate(&[record(number)]).misfit.is_refused());
+        assert!(refused.count() <= 4);
     }
 
     #[test]

@@ -161,7 +161,7 @@ mod tests {
         // A program of speeds moves the drive as far as its case runs.
         let mut short = set_up([0.5, 1.0], 50.0);
         for conditions in &mut short.conditions {
-            let program = "drive.program=[{ from_star = 0, v_star = 0.1 }, { from_star = 50, v_star = 0.2 }]";
+            let program = "drive.program=[{ v_star = 0.1, until_star = 50 }, { v_star = 0.2 }]";
             conditions.overrides = vec![Override::parse(program).unwrap()];
         }
         assert!(
