@@ -5,7 +5,7 @@
 //! ```
 //!
 //! Least squares on the curve fails where friction sticks and slips, since the phases of that are chance. Here every curve becomes
-//! [`summaries`], every unknown is [predicted](regression) from them, and [intervals] are those that hold the truth for runs that the
+//! `summaries`, every unknown is predicted from them by `regression`, and `intervals` are those that hold the truth for runs that the
 //! prediction has not seen.
 
 mod calibration;
