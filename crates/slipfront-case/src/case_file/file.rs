@@ -302,7 +302,10 @@ impl<'t> ParsedCase<'t> {
             source: Source::default(),
         };
         // The first in the file, not the first of the alphabet.
-        if let Some(key) = tables.root.keys().min_by_key(|key| key.span().start) {
+        let first = || tables.root.keys().min_by_key(|key| key.span().start);
+        // A design file may begin with the tables of a study file.
+        let of_design = || tables.root.keys().find(|key| *key.get_ref() == keys::DESIGN);
+        if let Some(key) = of_design().or_else(first) {
             return Err(source.error_at(key.span(), keys::unknown_table(key.get_ref())));
         }
         case.source = source;

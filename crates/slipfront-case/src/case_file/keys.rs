@@ -20,6 +20,9 @@ pub const TABLES: [&str; 7] = ["slider", "load", "drive", "friction", "texture",
 /// The names of the tables of a study file.
 pub const STUDY_TABLES: [&str; 3] = ["base", "study", "axes"];
 
+/// The table that a design file alone has.
+pub(super) const DESIGN: &str = "design";
+
 /// A table's header as it stands in the file.
 pub(super) fn header(table: &str) -> String {
     header_below("", table)
@@ -115,6 +118,11 @@ pub fn unknown_table(key: &str) -> String {
     if STUDY_TABLES.contains(&key) {
         return format!(
             "`{key}` belongs in a study file, which `slipfront study` runs: this is read as a case file"
+        );
+    }
+    if key == DESIGN {
+        return format!(
+            "`{key}` belongs in a design file, which `slipfront design` runs: this is read as a case file"
         );
     }
     let list = TABLES.map(header).join(", ");

@@ -28,6 +28,10 @@ fn bad_cases_are_refused_with_a_remedy() {
             &["belongs in a study file", "`slipfront study`"],
         ),
         (
+            "[base]\nslider.blocks = [9, 9]\n[design]\ncoverage = [0, 10]\n",
+            &["belongs in a design file", "`slipfront design`", "bad.toml:3:"],
+        ),
+        (
             "[[texture]]\nshape = 'mask'\nfile = 'none.png'\n",
             &["none.png", "relative to the case file"],
         ),
