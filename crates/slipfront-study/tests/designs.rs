@@ -276,11 +276,45 @@ fn a_base_may_name_files() {
     let written: serde_json::Value =
         serde_json::from_slice(&fs::read(out.join("design.json")).unwrap()).unwrap();
     assert_eq!(written["design"]["loss"], found.verdict.design.loss);
+    // Finer blocks have no coefficients.
+    let [left_out] = found.verdict.sensitivity.left_out.as_slice() else {
+        panic!("{:?}", found.verdict.sensitivity);
+    };
+    assert_eq!(left_out.change, "blocks of half the size");
+    assert!(
+        left_out.why.starts_with("`friction.mu_static_field`"),
+        "{left_out:?}"
+    );
+    let told = fs::read_to_string(out.join("design.txt")).unwrap();
+    assert!(
+        told.contains("note: nothing is known of blocks of half the size: `friction.mu_static_field`"),
+        "{told}"
+    );
     drop(opened);
     let design = file.design().unwrap();
     fs::write(folder.path().join("mu.csv"), field(0.5)).unwrap();
     let again = run(&design, 20).verdict;
     assert_eq!(again.design, found.verdict.design, "it keeps what it was made of");
+}
+
+/// What a program of speeds leaves out is told.
+#[test]
+fn a_program_of_speeds_has_no_other_speed() {
+    let base = "[base]\nslider.blocks = [8, 8]\ndrive.program = [{ v_star = 0.1, until_star = 40 }, { v_star = 0.05 }]\n\
+                time.duration_star = 80\n[design]\n";
+    let file = file_of(base, "wish = { least = 'static_friction' }\ncoverage = [0, 25]");
+    let sensitivity = run(&file.design().unwrap(), 10).verdict.sensitivity;
+    let left_out: Vec<[&str; 2]> = sensitivity
+        .left_out
+        .iter()
+        .map(|left_out| [left_out.change.as_str(), &left_out.why])
+        .collect();
+    let why = "the drive has a program of speeds";
+    assert_eq!(
+        left_out,
+        [["a third of the speed", why], ["three times the speed", why]]
+    );
+    assert_eq!(sensitivity.changed.len(), 5);
 }
 
 #[test]

@@ -144,13 +144,16 @@ impl Subject {
         Self::new(&self.made_of(file, &self.files)?, wish, self.most)
     }
 
-    /// The case on blocks of half the size; none if it cannot be put there.
-    pub(crate) fn on_finer_blocks(&self, wish: &Wish) -> Option<Self> {
-        let case = self.made_of(self.file.clone(), &self.files).ok()?;
-        let set = case.on_other_blocks(2.0).ok()?;
+    /// The case on blocks of half the size.
+    ///
+    /// # Errors
+    /// When it cannot be put there.
+    pub(crate) fn on_finer_blocks(&self, wish: &Wish) -> Result<Self, CaseError> {
+        let case = self.made_of(self.file.clone(), &self.files)?;
+        let set = case.on_other_blocks(2.0)?;
         let set: Vec<String> = set.iter().map(ToString::to_string).collect();
-        let finer = CaseFile::parse(&self.file.to_toml().ok()?, &self.name, &set).ok()?;
-        Self::new(&self.made_of(finer, &self.files).ok()?, wish, self.most).ok()
+        let finer = CaseFile::parse(&self.file.to_toml()?, &self.name, &set)?;
+        Self::new(&self.made_of(finer, &self.files)?, wish, self.most)
     }
 
     /// The case of a file.

@@ -239,6 +239,12 @@ fn in_words(design: &Design, verdict: &Verdict, as_meshed: &AsMeshed, case: &Cas
     }
     text += ".\n\nUnder changes:\n";
     text += &under_changes(wish, verdict);
+    for left_out in &verdict.sensitivity.left_out {
+        text += &note(
+            &format!("nothing is known of {}: {}", left_out.change, left_out.why),
+            COLUMNS,
+        );
+    }
     let lengths = case.file.lengths_of_a_block();
     if !lengths.is_empty() {
         let names: Vec<String> = lengths.iter().map(ToString::to_string).collect();
@@ -397,6 +403,7 @@ fn under_changes(wish: &Wish, verdict: &Verdict) -> String {
     let header = ["change", called(wish), "better than the best named by"];
     let rows: Vec<Vec<String>> = verdict
         .sensitivity
+        .changed
         .iter()
         .map(|changed| {
             vec![

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 use slipfront::Lattice;
-use slipfront_case::case_file::DriveSpeed;
+use slipfront_case::case_file::{CaseError, DriveSpeed};
 use slipfront_case::quantity::Speed;
 
 use super::evaluate::{Evaluator, Keep, Known};
@@ -27,6 +27,37 @@ pub struct Changed {
     pub better_by: Option<Mean>,
 }
 
+/// A change under which a design could not be looked at.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct LeftOut {
+    /// The change.
+    pub change: String,
+    /// Why, in a sentence without a full stop.
+    pub why: String,
+}
+
+/// A design under changes.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Sensitivity {
+    /// The changes that were looked at.
+    pub changed: Vec<Changed>,
+    /// The others.
+    pub left_out: Vec<LeftOut>,
+}
+
+impl Sensitivity {
+    fn leave_out(&mut self, change: &str, error: &CaseError) {
+        let why = match error {
+            CaseError::Invalid(invalid) => invalid.sentence.clone(),
+            error => error.to_string(),
+        };
+        self.left_out.push(LeftOut {
+            change: change.to_owned(),
+            why,
+        });
+    }
+}
+
 /// Changes of the texture itself: misplaced by one block to every side, what leaves a slider with edges lost.
 const SHIFTS: [(&str, [isize; 2]); 4] = [
     ("one block towards +x", [1, 0]),
@@ -49,39 +80,47 @@ impl Judge<'_> {
         other: Option<&Contender>,
         known: &mut Known,
         keep: &mut Keep,
-    ) -> Result<Vec<Changed>, StudyError> {
-        let mut changed = Vec::new();
+    ) -> Result<Sensitivity, StudyError> {
+        let mut found = Sensitivity::default();
         for (change, shift) in SHIFTS {
             let shifted = Contender {
                 name: design.name.clone(),
                 texture: moved(&self.evaluator.grid, &design.texture, shift).into(),
             };
-            changed.push(self.under(change, &shifted, other, known, keep)?);
+            let changed = self.under(change, &shifted, other, known, keep)?;
+            found.changed.push(changed);
         }
         for (change, factor) in SPEEDS {
-            if let Some(evaluator) = self.evaluator.at_speed(factor)? {
-                let judge = Judge {
-                    evaluator: &evaluator,
-                    ..*self
-                };
-                changed.push(judge.under(change, design, other, known, keep)?);
+            match self.evaluator.at_speed(factor) {
+                Ok(evaluator) => {
+                    let judge = self.with(&evaluator);
+                    let changed = judge.under(change, design, other, known, keep)?;
+                    found.changed.push(changed);
+                }
+                Err(error) => found.leave_out(change, &error),
             }
         }
-        if let Some(evaluator) = self.evaluator.on_finer_blocks() {
-            let judge = Judge {
-                evaluator: &evaluator,
-                ..*self
-            };
-            let size = self.evaluator.grid.size();
-            let finer = |contender: &Contender| Contender {
-                name: contender.name.clone(),
-                texture: doubled(size, &contender.texture).into(),
-            };
-            let change = "blocks of half the size";
-            let (design, other) = (finer(design), other.map(finer));
-            changed.push(judge.under(change, &design, other.as_ref(), known, keep)?);
+        let change = "blocks of half the size";
+        match self.evaluator.on_finer_blocks() {
+            Ok(evaluator) => {
+                let size = self.evaluator.grid.size();
+                let finer = |contender: &Contender| Contender {
+                    name: contender.name.clone(),
+                    texture: doubled(size, &contender.texture).into(),
+                };
+                let (design, other) = (finer(design), other.map(finer));
+                let judge = self.with(&evaluator);
+                let changed = judge.under(change, &design, other.as_ref(), known, keep)?;
+                found.changed.push(changed);
+            }
+            Err(error) => found.leave_out(change, &error),
         }
-        Ok(changed)
+        Ok(found)
+    }
+
+    /// A judge of other cases.
+    fn with<'a>(&'a self, evaluator: &'a Evaluator) -> Judge<'a> {
+        Judge { evaluator, ..*self }
     }
 
     /// A texture beside another under a change.
@@ -109,37 +148,39 @@ impl Judge<'_> {
 }
 
 impl Evaluator {
-    /// These cases at another speed of the drive; none if one of them has a program of speeds.
-    fn at_speed(&self, factor: f64) -> Result<Option<Self>, StudyError> {
+    /// These cases at another speed of the drive.
+    ///
+    /// # Errors
+    /// When one of them has a program of speeds, or cannot be run at that speed.
+    fn at_speed(&self, factor: f64) -> Result<Self, CaseError> {
         let faster = |speed: &DriveSpeed| match speed {
-            DriveSpeed::VStar(v_star) => Some(DriveSpeed::VStar(v_star * factor)),
-            DriveSpeed::Speed(speed) => Some(DriveSpeed::Speed(Speed::from_si(speed.si() * factor))),
-            DriveSpeed::Program(_) => None,
+            DriveSpeed::VStar(v_star) => Ok(DriveSpeed::VStar(v_star * factor)),
+            DriveSpeed::Speed(speed) => Ok(DriveSpeed::Speed(Speed::from_si(speed.si() * factor))),
+            DriveSpeed::Program(_) => Err(CaseError::invalid(None, "the drive has a program of speeds")),
         };
-        let mut subjects = Vec::new();
-        for subject in &self.subjects {
-            let Some(speed) = faster(&subject.file().drive.speed) else {
-                return Ok(None);
-            };
-            subjects.push(subject.with(|file| file.drive.speed = speed, &self.wish)?);
-        }
-        Ok(Some(self.with_subjects(subjects, self.grid.clone())))
+        let subjects = self.subjects.iter().map(|subject| {
+            let speed = faster(&subject.file().drive.speed)?;
+            subject.with(|file| file.drive.speed = speed, &self.wish)
+        });
+        Ok(self.with_subjects(subjects.collect::<Result<_, _>>()?, self.grid.clone()))
     }
 
-    /// The cases on blocks of half the size, as [`Case::on_other_blocks`](slipfront_case::case::Case::on_other_blocks) puts them there; none if
-    /// one of them cannot be.
-    fn on_finer_blocks(&self) -> Option<Self> {
-        let subjects: Option<Vec<_>> = self
+    /// The cases on blocks of half the size, as [`Case::on_other_blocks`](slipfront_case::case::Case::on_other_blocks) puts them there.
+    ///
+    /// # Errors
+    /// When one of them cannot be put there.
+    pub(super) fn on_finer_blocks(&self) -> Result<Self, CaseError> {
+        let subjects = self
             .subjects
             .iter()
-            .map(|subject| subject.on_finer_blocks(&self.wish))
-            .collect();
+            .map(|subject| subject.on_finer_blocks(&self.wish));
+        let subjects = subjects.collect::<Result<_, _>>()?;
         let [nx, ny] = self.grid.size();
         let grid = Grid {
             lattice: Lattice::with_edges(2 * nx, 2 * ny, self.grid.lattice.edges),
             exists: doubled([nx, ny], &self.grid.exists),
         };
-        Some(self.with_subjects(subjects?, grid))
+        Ok(self.with_subjects(subjects, grid))
     }
 }
 

@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use super::evaluate::{Evaluator, Fidelity, Keep, Known, Wanted};
 use super::judge::{COMPARED, Contender, JUDGED, Judge, Mean, Surfaces};
-use super::sensitivity::{self, Changed};
+use super::sensitivity::{self, Sensitivity};
 use super::wish::Measured;
 use crate::error::StudyError;
 
@@ -62,7 +62,7 @@ pub struct Verdict {
     /// The loss on fresh surfaces less that on the surfaces that the search chose by.
     pub optimism: f64,
     /// The design under changes of itself, of the speed and of the mesh, beside the best named pattern.
-    pub sensitivity: Vec<Changed>,
+    pub sensitivity: Sensitivity,
 }
 
 /// The winner, and what it was held against.
