@@ -121,7 +121,10 @@ impl Subject {
         // When a drive at some blocks alone makes the others slip is not known before.
         let is_on_all = bare.file.drive.attached == Attached::At(AttachedEdge::All);
         let is_short = is_on_all && !wish.needs_sliding() && bare.model.drive.program.is_none();
-        if is_short {
+        if let Wish::Curve(points) = wish {
+            let last = points.last().map_or(whole, |&[time, _]| time);
+            (subject.file.time.kinetic_from_star, subject.ends) = (AutoOr::Auto, [last; 2]);
+        } else if is_short {
             // No window of kinetic friction may begin after the end.
             subject.file.time.kinetic_from_star = AutoOr::Auto;
             let load_factor = 1.0 / (1.0 - 0.01 * most);
@@ -446,6 +449,10 @@ mod tests {
             "slider.blocks = [4, 4]\ndrive = { attach = 'left', v_star = 0.1 }\ntime.duration_star = 300",
         );
         assert_eq!(edge.ends, [300.0; 2]);
+        // A curve is followed to its end, however long the case is.
+        let case = Case::parse("slider.blocks = [4, 4]", "case", "", &[]).unwrap();
+        let curve = Wish::Curve(vec![[0.0, 0.0], [500.0, 0.5]]);
+        assert_eq!(Subject::new(&case, &curve, 10.0).unwrap().ends, [500.0; 2]);
     }
 
     #[test]
