@@ -71,7 +71,7 @@ impl DesignCommand {
         if !self.quiet {
             print_notes(&folder);
         }
-        let mut progress = DesignProgress::new(self.quiet);
+        let mut progress = DesignProgress::new(self.quiet, folder.n_kept());
         let found = folder.find(&bounds, &mut |now| progress.show(now));
         progress.finish();
         let text = found.map_err(|error| match error {

@@ -8,26 +8,36 @@ use slipfront_study::design::{DesignStage, SearchProgress};
 use super::display::{ProgressDisplay, time_left};
 
 /// Shows how far a design has come.
-pub(crate) struct DesignProgress(ProgressDisplay);
+pub(crate) struct DesignProgress {
+    display: ProgressDisplay,
+    /// Runs of earlier calls.
+    before: usize,
+}
 
 impl DesignProgress {
-    pub(crate) fn new(quiet: bool) -> Self {
-        Self(ProgressDisplay::new("{wide_bar} {msg}", quiet))
+    /// Of a design of which some runs were made by earlier calls.
+    pub(crate) fn new(quiet: bool, before: usize) -> Self {
+        Self {
+            display: ProgressDisplay::new("{wide_bar} {msg}", quiet),
+            before,
+        }
     }
 
     pub(crate) fn show(&mut self, now: &SearchProgress) {
         let (done, total) = (now.runs as u64, now.of as u64);
-        self.0.show(done.min(total), total, |passed| text(now, passed));
+        let here = now.known.saturating_sub(self.before);
+        self.display
+            .show(done.min(total), total, |passed| text(now, here, passed));
     }
 
     pub(crate) fn finish(&self) {
-        self.0.finish();
+        self.display.finish();
     }
 }
 
-/// Runs done, what is left, what is being done, and the best so far.
-fn text(now: &SearchProgress, passed: Duration) -> String {
-    let left = time_left(now.of.saturating_sub(now.runs) as u64, now.runs as u64, passed);
+/// Runs done, the time left as that of the runs made `here` tells it, what is being done, and the best so far.
+fn text(now: &SearchProgress, here: usize, passed: Duration) -> String {
+    let left = time_left(now.of.saturating_sub(now.runs) as u64, here as u64, passed);
     let stage = match now.stage {
         DesignStage::Exploring => "one surface",
         DesignStage::Refining => "several surfaces",
@@ -46,18 +56,23 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_best_so_far_is_shown() {
+    fn the_best_so_far_and_the_time_left_are_shown() {
         let now = SearchProgress {
             runs: 50,
             of: 100,
+            known: 45,
             stage: DesignStage::Exploring,
             best: 31.25,
             best_texture: None,
         };
-        let text = text(&now, Duration::from_secs(10));
-        assert!(
-            text.starts_with("50 of 100 runs") && text.ends_with("one surface  best 31.25"),
-            "{text}"
+        // Five of the runs were made in these ten seconds, the others by an earlier call.
+        assert_eq!(
+            text(&now, 5, Duration::from_secs(9)),
+            "50 of 100 runs  90 seconds left  one surface  best 31.25"
+        );
+        assert_eq!(
+            text(&now, 0, Duration::from_secs(9)),
+            "50 of 100 runs  one surface  best 31.25"
         );
     }
 }

@@ -45,7 +45,7 @@ pub use self::grid::Grid;
 pub use self::judge::Mean;
 pub use self::limits::{Illegal, Limits};
 pub use self::open_search::OpenSearch;
-pub use self::sensitivity::Changed;
+pub use self::sensitivity::{Changed, LeftOut, Sensitivity};
 pub use self::stages::{Bounds, DesignStage, SearchProgress};
 pub use self::verdict::{Given, OnFresh, Verdict};
 pub use self::wish::{Measured, Quantity, Wish};
@@ -141,7 +141,7 @@ impl Design {
                 texture,
             })
             .collect();
-        let mut judged_runs = 0;
+        let (searched_runs, mut judged_runs) = (known.len(), 0);
         let mut keep = |runs: &[(RunId, Option<Measured>)]| {
             keep(runs)?;
             judged_runs += runs.len();

@@ -52,6 +52,8 @@ pub struct SearchProgress {
     pub runs: usize,
     /// Runs that the search has, or that the verdict takes at the most.
     pub of: usize,
+    /// Runs that are known, those of earlier calls among them.
+    pub known: usize,
     /// What is done.
     pub stage: DesignStage,
     /// What the best draft of this stage gives, as the report tells it; NaN if there is none.
@@ -186,15 +188,16 @@ impl<'a> Stages<'a> {
         }));
         let has_any = !found.is_empty();
         self.search.tell(&found);
-        watch(&self.progress(bounds, is_refined));
+        watch(&self.progress(bounds, known, is_refined));
         Ok(has_any)
     }
 
-    fn progress(&self, bounds: &Bounds, is_refined: bool) -> SearchProgress {
+    fn progress(&self, bounds: &Bounds, known: &Known, is_refined: bool) -> SearchProgress {
         let best = self.search.best().first();
         SearchProgress {
             runs: self.runs,
             of: bounds.runs,
+            known: known.len(),
             stage: if is_refined {
                 DesignStage::Refining
             } else {
