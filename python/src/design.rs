@@ -121,14 +121,18 @@ impl Design {
         threads: usize,
         watch: Option<Py<PyAny>>,
     ) -> PyResult<String> {
-        let opened = detached(py, || DesignFolder::open(&folder, &self.file))?;
+        let runs = runs.unwrap_or(self.file.keys.runs as usize);
+        let opened = detached(py, || {
+            self.file.check_memory(runs, threads)?;
+            DesignFolder::open(&folder, &self.file)
+        })?;
         let mut opened = opened.map_err(|error| study_error(py, &error))?;
         let progress: Mutex<Option<SearchProgress>> = Mutex::new(None);
         let began = Instant::now();
         let search = |stop: &AtomicBool| {
             let share_of_time = || seconds.map_or(0.0, |most| began.elapsed().as_secs_f64() / most);
             let bounds = Bounds {
-                runs: runs.unwrap_or(opened.file.keys.runs as usize),
+                runs,
                 share_of_time: &share_of_time,
                 stop,
             };

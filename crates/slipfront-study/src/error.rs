@@ -49,6 +49,11 @@ pub enum StudyError {
         available: String,
     },
     #[error(
+        "a run of the design takes about {needed} of memory where {available} are available to this process: lower \
+        `slider.blocks`"
+    )]
+    DesignMemory { needed: String, available: String },
+    #[error(
         "the tables and pictures of the study take about {needed} of memory where {available} are available to this \
         process: give it more, in a queue for example with `--mem`"
     )]

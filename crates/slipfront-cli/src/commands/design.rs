@@ -49,10 +49,11 @@ pub(crate) struct DesignCommand {
 
 impl DesignCommand {
     pub(crate) fn execute(self) -> Result<(), Failure> {
-        set_threads(self.threads)?;
+        let threads = set_threads(self.threads)?;
         let file = DesignFile::load(&self.design).map_err(Failure::input)?;
-        // An invalid design leaves no folder.
-        file.design().map_err(Failure::input)?;
+        let runs = self.runs.unwrap_or(file.keys.runs) as usize;
+        // A design that is invalid, or has no memory, leaves no folder.
+        file.check_memory(runs, threads).map_err(Failure::input)?;
         if self.time.is_some() && !file.keys.front.is_empty() {
             let sentence = "a search that is cut short by --time has no time for a front: give --runs, or leave out `design.front`";
             return Err(Failure::input(anyhow::anyhow!(sentence)));
@@ -64,7 +65,7 @@ impl DesignCommand {
         let most = self.time.map(|time| time.as_secs_f64());
         let share_of_time = || most.map_or(0.0, |most| began.elapsed().as_secs_f64() / most);
         let bounds = Bounds {
-            runs: self.runs.unwrap_or(file.keys.runs) as usize,
+            runs,
             share_of_time: &share_of_time,
             stop: &signals.stop,
         };

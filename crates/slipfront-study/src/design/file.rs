@@ -220,6 +220,16 @@ impl DesignFile {
         self.design_up_to(self.keys.coverage[1])
     }
 
+    /// Refuses a design that has no memory for as many runs at once, or is not valid; so many runs are those of its search.
+    ///
+    /// # Errors
+    /// As [`design`](Self::design), and with the number of runs at once that there is memory for.
+    pub fn check_memory(&self, runs: usize, threads: usize) -> Result<(), StudyError> {
+        // Every design of a front keeps what it has tried until all are written.
+        let drafts = runs.saturating_mul(1 + self.keys.front.len());
+        self.design()?.check_memory(drafts, threads)
+    }
+
     /// The designs of a front: every coverage in `front`, with the design that may cover no more.
     ///
     /// # Errors

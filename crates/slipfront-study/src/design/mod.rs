@@ -148,6 +148,7 @@ impl Design {
             watch(&SearchProgress {
                 runs: judged_runs,
                 of: Judge::most_runs(&self.evaluator),
+                known: searched_runs + judged_runs,
                 stage: DesignStage::Judging,
                 best: f64::NAN,
                 best_texture: None,
