@@ -49,8 +49,8 @@ pub enum StudyError {
         available: String,
     },
     #[error(
-        "a run of the design takes about {needed} of memory where {available} are available to this process: lower \
-        `slider.blocks`"
+        "the design takes about {needed} of memory where {available} are available to this process, one run at a time: \
+        lower `slider.blocks` or `design.runs`"
     )]
     DesignMemory { needed: String, available: String },
     #[error(

@@ -121,7 +121,7 @@ mod tests {
         ));
         let said = found.compare(2, found.of(1) - 1.0).unwrap_err().to_string();
         assert!(
-            said.starts_with("a run of the design") && said.contains("lower `slider.blocks`"),
+            said.starts_with("the design takes") && said.contains("lower `slider.blocks` or `design.runs`"),
             "{said}"
         );
     }
