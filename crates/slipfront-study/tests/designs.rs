@@ -5,6 +5,7 @@
 
 use std::fs;
 use std::path::Path;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use slipfront_study::StudyError;
@@ -204,6 +205,34 @@ fn the_design_is_not_worse_than_named_patterns() {
     assert!(named.verdict.is_named, "{:?}", named.verdict);
     assert!(named.verdict.design.loss >= found(LEAST, 300).verdict.design.loss);
     assert!(named.verdict.optimism.abs() < 0.05);
+}
+
+/// A search without a verdict finds what a run judges, and on fresh surfaces a texture gives what the verdict says.
+#[test]
+fn a_search_alone_finds_what_is_judged() {
+    let design = file_of(SMOOTH, LEAST).design().unwrap();
+    let stop = AtomicBool::new(false);
+    let mut tried = 0;
+    let best = design
+        .search(&bounds(150, &stop), &mut |now| tried = now.textures)
+        .unwrap();
+    // Every texture takes a run, and so does the slider without.
+    assert!((50..150).contains(&tried), "{tried}");
+    let outcome = run(&design, 150);
+    let fresh = |design: &Design, texture: &Arc<Vec<bool>>| {
+        let losses = design.losses_on_fresh(std::slice::from_ref(texture), 3, &stop);
+        losses.unwrap().remove(0)
+    };
+    // Surfaces do not differ: there is one.
+    assert_eq!(fresh(&design, &outcome.texture), [outcome.verdict.design.loss]);
+    assert!(best.iter().all(|texture| design.check(texture).is_ok()));
+    assert!(design.seconds_per_texture().unwrap() > 0.0);
+    // Where they differ, each has its own loss.
+    let losses = fresh(&file(LEAST).design().unwrap(), &best[0]);
+    assert!(losses.len() == 3 && losses[0] != losses[1], "{losses:?}");
+    stop.store(true, Ordering::Relaxed);
+    let stopped = design.search(&bounds(150, &stop), &mut |_| {});
+    assert!(matches!(stopped, Err(StudyError::Interrupted)));
 }
 
 #[test]

@@ -61,6 +61,7 @@ mod tests {
             runs: 50,
             of: 100,
             known: 45,
+            textures: 20,
             stage: DesignStage::Exploring,
             best: 31.25,
             best_texture: None,

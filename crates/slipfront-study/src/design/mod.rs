@@ -29,6 +29,8 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use slipfront_case::case::Case;
+use slipfront_case::case_file::CaseError;
+use slipfront_run::estimate_cost::seconds_per_step;
 
 use self::evaluate::{Evaluator, Fidelity, Subject};
 use self::judge::{Contender, Judge};
@@ -134,6 +136,7 @@ impl Design {
         let groove = legal.iter().find(|named| named.name == GROOVE);
         let mut stages = Stages::new(&self.evaluator, self.limits.clone(), self.start, starts);
         let best = stages.run(bounds, known, keep, watch)?;
+        let textures = stages.n_textures();
         let searched: Vec<Contender> = best
             .into_iter()
             .map(|texture| Contender {
@@ -149,6 +152,7 @@ impl Design {
                 runs: judged_runs,
                 of: Judge::most_runs(&self.evaluator),
                 known: searched_runs + judged_runs,
+                textures,
                 stage: DesignStage::Judging,
                 best: f64::NAN,
                 best_texture: None,
@@ -169,6 +173,24 @@ impl Design {
             length: stages.length(bounds),
             tried: stages.tried,
         })
+    }
+
+    /// Searches without a verdict; the best textures on the surfaces of the search, the best first.
+    ///
+    /// # Errors
+    /// When the limits leave no texture, when runs cannot be made, and after a stop.
+    pub fn search(
+        &self,
+        bounds: &Bounds,
+        watch: &mut dyn FnMut(&SearchProgress),
+    ) -> Result<Vec<Arc<Vec<bool>>>, StudyError> {
+        let starts = self.starts().0;
+        let mut stages = Stages::new(&self.evaluator, self.limits.clone(), self.start, starts);
+        let best = stages.run(bounds, &mut Known::new(), &mut |_| Ok(()), watch)?;
+        if best.is_empty() {
+            return Err(StudyError::NoDesign);
+        }
+        Ok(best)
     }
 
     /// The legal patterns with which a search begins, and their textures: the named ones, and masks.
@@ -224,5 +246,49 @@ impl Design {
         self.evaluator.run(&wanted, known, stop, &mut |_| Ok(()))?;
         let loss = |texture| self.evaluator.loss(texture, 0..surfaces, fidelity, known);
         Ok(textures.iter().map(loss).collect())
+    }
+
+    /// How far each texture is from the wish, the less the better, on each of `surfaces` surfaces that the search has not seen, or on one
+    /// where they do not differ; as a verdict looks.
+    ///
+    /// # Errors
+    /// When runs cannot be made, and after a stop.
+    pub fn losses_on_fresh(
+        &self,
+        textures: &[Arc<Vec<bool>>],
+        surfaces: u64,
+        stop: &AtomicBool,
+    ) -> Result<Vec<Vec<f64>>, StudyError> {
+        let surfaces = if self.evaluator.scatters() {
+            Stages::UNSEEN..Stages::UNSEEN + surfaces
+        } else {
+            0..1
+        };
+        let mut known = Known::new();
+        let wanted = self
+            .evaluator
+            .wanted(textures, surfaces.clone(), Fidelity::Verdict);
+        self.evaluator.run(&wanted, &mut known, stop, &mut |_| Ok(()))?;
+        let losses = |texture: &Arc<Vec<bool>>| {
+            let loss = |surface| {
+                self.evaluator
+                    .loss(texture, surface..surface + 1, Fidelity::Verdict, &known)
+            };
+            surfaces.clone().map(loss).collect()
+        };
+        Ok(textures.iter().map(losses).collect())
+    }
+
+    /// Seconds in which a texture is tried once, with a coarse step, on one thread of this machine: no run takes longer.
+    ///
+    /// # Errors
+    /// When a case cannot be made.
+    pub fn seconds_per_texture(&self) -> Result<f64, StudyError> {
+        let seconds = |subject: &Subject| {
+            let case = subject.case(None, 0, Fidelity::Coarse)?;
+            Ok(case.time_plan.last_step as f64 * seconds_per_step(&case))
+        };
+        let all: Result<f64, CaseError> = self.evaluator.subjects.iter().map(seconds).sum();
+        Ok(all?)
     }
 }

@@ -146,6 +146,11 @@ impl Search {
         &self.best
     }
 
+    /// Textures that were asked for.
+    pub(crate) fn n_asked(&self) -> usize {
+        self.seen.len()
+    }
+
     /// Forgets all losses, since those told from now on are others; what was asked for is not asked for again.
     pub(crate) fn begin_again(&mut self) {
         self.best.clear();

@@ -54,6 +54,8 @@ pub struct SearchProgress {
     pub of: usize,
     /// Runs that are known, those of earlier calls among them.
     pub known: usize,
+    /// Textures that the search has tried.
+    pub textures: usize,
     /// What is done.
     pub stage: DesignStage,
     /// What the best draft of this stage gives, as the report tells it; NaN if there is none.
@@ -147,6 +149,11 @@ impl<'a> Stages<'a> {
         is_within
     }
 
+    /// Textures that were tried.
+    pub(crate) fn n_textures(&self) -> usize {
+        self.search.n_asked()
+    }
+
     /// The length of the search.
     pub(crate) fn length(&self, bounds: &Bounds) -> Length {
         Length {
@@ -198,6 +205,7 @@ impl<'a> Stages<'a> {
             runs: self.runs,
             of: bounds.runs,
             known: known.len(),
+            textures: self.n_textures(),
             stage: if is_refined {
                 DesignStage::Refining
             } else {
