@@ -15,6 +15,7 @@ mod connections;
 mod controls;
 mod document;
 mod files;
+mod find;
 mod guard;
 mod history;
 mod live;

@@ -50,6 +50,10 @@ pub(crate) enum Request {
     Step { count: u64 },
     /// Static friction over several seeds; 0 stops it.
     Repeat { seeds: u64 },
+    /// A texture with less static friction than that of the present case.
+    Find { gesture: u64 },
+    /// Ends the search for a texture; the best so far counts.
+    FindStop,
     /// The present case from rest, into a run folder of this name.
     Save { name: String },
     /// Stops saving the run of this name.
@@ -77,6 +81,8 @@ impl Request {
             Self::View(_) => "view",
             Self::Step { .. } => "step",
             Self::Repeat { .. } => "repeat",
+            Self::Find { .. } => "find",
+            Self::FindStop => "find_stop",
             Self::Save { .. } => "save",
             Self::SaveStop { .. } => "save_stop",
             Self::Export => "export",
@@ -118,6 +124,8 @@ pub(crate) enum Reply<'a> {
     Numbers(Box<NumbersReply>),
     Probe(ProbeReply),
     Repeated(RepeatedReply),
+    Finding(FindingReply),
+    Found(FoundReply),
     /// All runs that are being saved, from whichever page.
     Saving {
         under_way: Vec<SavingEntry>,
@@ -193,6 +201,16 @@ pub(crate) struct CaseReply<'a> {
     pub(crate) warnings: Vec<String>,
     /// The one of the warnings that blocks are too coarse for the outlines of the texture.
     pub(crate) too_coarse: Option<String>,
+    pub(crate) search: SearchLimits,
+}
+
+/// What a search for a better texture may find.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub(crate) struct SearchLimits {
+    /// Smallest width of a feature and of a gap.
+    pub(crate) width_blocks: usize,
+    /// Largest share of the slider that is textured, %.
+    pub(crate) most_percent: f64,
 }
 
 /// Units of the dimensionless quantities.
@@ -274,6 +292,49 @@ pub(crate) struct RepeatedReply {
     pub(crate) without: Option<Estimate>,
     /// How many of the runs had no transition.
     pub(crate) without_transition: usize,
+}
+
+/// How far the search for a better texture is.
+#[derive(Debug, Serialize)]
+pub(crate) struct FindingReply {
+    pub(crate) seconds: f64,
+    pub(crate) of_seconds: f64,
+    /// Textures that were tried.
+    pub(crate) textures: usize,
+    /// Whether the best is compared with what is painted, on surfaces that the search has not seen.
+    pub(crate) compares: bool,
+    /// Change of static friction by the best so far against no texture, %, on the surfaces of the search.
+    pub(crate) best_percent: Option<f64>,
+    /// Strips of blocks of the best so far: the row, the first column and the one after the last.
+    pub(crate) best_texture: Vec<[usize; 3]>,
+}
+
+/// What came of a search for a better texture.
+#[derive(Debug, Serialize)]
+pub(crate) struct FoundReply {
+    pub(crate) outcome: FoundOutcome,
+    /// Textures that were tried.
+    pub(crate) textures: usize,
+    /// Surfaces that the search has not seen, on which the best and what was painted were compared.
+    pub(crate) surfaces: usize,
+    /// Change of static friction by the best against no texture, %.
+    pub(crate) best: Option<Estimate>,
+    /// Change of static friction by what was painted against no texture, %.
+    pub(crate) painted: Option<Estimate>,
+}
+
+/// What became of the painted texture after a search.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum FoundOutcome {
+    /// The best of the search has taken its place.
+    Replaced,
+    /// It stays, since nothing better was found.
+    Kept,
+    /// It was changed by hand before the search had ended.
+    GivenUp,
+    /// It stays, since the search has failed, as a sentence before has told.
+    Failed,
 }
 
 /// A mean and the half width of its interval.

@@ -1,5 +1,5 @@
 // Types of the page beside those of the protocol. Browsers are not given this file.
-import { CaseKeys, Field, RecordedReply, Replies, Requests, ViewChange } from './protocol';
+import { CaseKeys, Field, FindingReply, RecordedReply, Replies, Requests, ViewChange } from './protocol';
 
 /** A request as it is sent. */
 export type Request = { [Name in keyof Requests]: { do: Name } & Requests[Name] }[keyof Requests];
@@ -47,8 +47,10 @@ export interface LessonPlace {
 export type Words = Record<string, string | number>;
 
 /** What the store holds: what the server tells, and what the page decides itself. */
-export interface Topics extends Omit<Replies, 'recorded'> {
+export interface Topics extends Omit<Replies, 'recorded' | 'finding'> {
   recorded: RecordedReply | null;
+  /** The search that is under way. */
+  finding: FindingReply | null;
   picture: FieldPicture;
   kymograph: KymographPicture;
   connected: { yes: boolean; ended?: boolean; reason?: string };
@@ -129,6 +131,8 @@ export interface Elements {
   'lesson-next': HTMLButtonElement;
   'after-rest': HTMLInputElement;
   'after-go-on': HTMLInputElement;
+  find: HTMLButtonElement;
+  'find-progress': HTMLProgressElement;
   presets: HTMLDialogElement;
   'presets-search': HTMLInputElement;
   lessons: HTMLDialogElement;

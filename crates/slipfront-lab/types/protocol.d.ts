@@ -53,6 +53,8 @@ export interface Requests {
   view: ViewChange;
   step: StepRequest;
   repeat: RepeatRequest;
+  find: FindRequest;
+  find_stop: NoKeys;
   save: SaveRequest;
   save_stop: SaveRequest;
   export: NoKeys;
@@ -120,6 +122,11 @@ export interface RepeatRequest {
   seeds: number;
 }
 
+/** A texture with less static friction than that of the present case. */
+export interface FindRequest {
+  gesture: number;
+}
+
 export interface SaveRequest {
   name: string;
 }
@@ -137,6 +144,8 @@ export interface Replies {
   numbers: NumbersReply;
   probe: ProbeReply;
   repeated: RepeatedReply;
+  finding: FindingReply;
+  found: FoundReply;
   saving: SavingReply;
   saved: SavedReply;
   exported: ExportedReply;
@@ -212,6 +221,15 @@ export interface CaseReply {
   warnings: string[];
   /** The one of the warnings that blocks are too coarse for the outlines of the texture. */
   too_coarse: string | null;
+  search: SearchLimits;
+}
+
+/** What a search for a better texture may find. */
+export interface SearchLimits {
+  /** Smallest width of a feature and of a gap. */
+  width_blocks: number;
+  /** Largest share of the slider that is textured, %. */
+  most_percent: number;
 }
 
 /** The outlines of one texture, in blocks. */
@@ -306,6 +324,36 @@ export interface RepeatedReply {
   without: Estimate | null;
   /** How many of the runs had no transition. */
   without_transition: number;
+}
+
+/** How far the search for a better texture is. */
+export interface FindingReply {
+  seconds: number;
+  of_seconds: number;
+  /** Textures that were tried. */
+  textures: number;
+  /** Whether the best is compared with what is painted, on surfaces that the search has not seen. */
+  compares: boolean;
+  /** Change of static friction by the best so far against no texture, %, on the surfaces of the search. */
+  best_percent: number | null;
+  /** Strips of blocks of the best so far: the row, the first column and the one after the last. */
+  best_texture: number[][];
+}
+
+/** What became of the painted texture after a search. */
+export type FoundOutcome = 'replaced' | 'kept' | 'given_up' | 'failed';
+
+/** What came of a search for a better texture. */
+export interface FoundReply {
+  outcome: FoundOutcome;
+  /** Textures that were tried. */
+  textures: number;
+  /** Surfaces that the search has not seen, on which the best and what was painted were compared. */
+  surfaces: number;
+  /** Change of static friction by the best against no texture, %. */
+  best: Estimate | null;
+  /** Change of static friction by what was painted against no texture, %. */
+  painted: Estimate | null;
 }
 
 /** A mean and the half width of its interval. */

@@ -14,10 +14,10 @@ use crate::controls::{self, CONTROLS};
 use crate::document::Document;
 use crate::picture::DisplayedField;
 use crate::protocol::{
-    CaseReply, CurveReply, Estimate, NumbersReply, PeakReply, PresetEntry, ProbeReply, RepeatedReply, Reply,
-    Request, SavingEntry, Units,
+    CaseReply, CurveReply, Estimate, FindingReply, FoundOutcome, FoundReply, NumbersReply, PeakReply,
+    PresetEntry, ProbeReply, RepeatedReply, Reply, Request, SavingEntry, Units,
 };
-use crate::shapes;
+use crate::{find, shapes};
 
 fn declarations() -> Declarations {
     Declarations::parse(include_str!("../../types/protocol.d.ts"))
@@ -153,6 +153,7 @@ fn each_reply(check: &mut impl FnMut(&Reply)) {
             mesh: "the block decides".to_owned(),
             warnings: vec!["a warning".to_owned()],
             too_coarse,
+            search: find::limits(&case),
         })));
     }
     for recorded in [None, Some(&[0.5][..])] {
@@ -232,6 +233,34 @@ fn each_reply(check: &mut impl FnMut(&Reply)) {
                 with: estimate,
                 without: estimate,
                 without_transition: 0,
+            }));
+        }
+    }
+    for half_width in [None, Some(0.5)] {
+        let estimate = Some(Estimate {
+            mean: -30.0,
+            half_width,
+        });
+        check(&Reply::Finding(FindingReply {
+            seconds: 1.0,
+            of_seconds: 60.0,
+            textures: 32,
+            compares: false,
+            best_percent: half_width,
+            best_texture: vec![[0, 1, 4]],
+        }));
+        for outcome in [
+            FoundOutcome::Replaced,
+            FoundOutcome::Kept,
+            FoundOutcome::GivenUp,
+            FoundOutcome::Failed,
+        ] {
+            check(&Reply::Found(FoundReply {
+                outcome,
+                textures: 32,
+                surfaces: 8,
+                best: estimate.filter(|_| outcome == FoundOutcome::Kept),
+                painted: estimate.filter(|_| outcome == FoundOutcome::Kept),
             }));
         }
     }

@@ -11,6 +11,7 @@ pub(super) struct Clock {
     pub(super) numbers: Instant,
     pub(super) probe: Instant,
     pub(super) kymograph: Instant,
+    pub(super) search: Instant,
     /// Steps that are due, with a fraction, and when they were counted last.
     pub(super) due: f64,
     last_call: Instant,
@@ -29,6 +30,7 @@ impl Clock {
             numbers: long_ago,
             probe: long_ago,
             kymograph: long_ago,
+            search: long_ago,
             due: 0.0,
             last_call: now,
             counted_from: now,

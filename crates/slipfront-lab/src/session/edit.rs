@@ -51,6 +51,7 @@ impl Session {
         };
         // Whether it can be run is known before anything is given up.
         let case = Arc::new(document.case_to_show().map_err(|error| error.to_string())?);
+        self.give_up_search();
         (self.edited, self.mask) = (None, None);
         (self.repeating, self.shown_recording) = (None, None);
         self.history = Some(History::new(document));
@@ -141,6 +142,7 @@ impl Session {
     ) -> Result<(), String> {
         self.apply_edits();
         if self.history.as_mut().is_some_and(go) {
+            self.give_up_search();
             self.run_present_case(why, self.view.after_change == AfterChange::Rest)
         } else {
             Ok(())
@@ -159,8 +161,9 @@ impl Session {
             return;
         };
         let made = self.document().map(|document| {
-            let nx = self.live.as_ref().map_or(1, |live| live.case().model.lattice.nx);
-            document.with_mask(&mask, nx).map_err(|error| error.to_string())
+            document
+                .with_mask(&mask, self.columns())
+                .map_err(|error| error.to_string())
         });
         match made.and_then(|made| made) {
             Ok(document) => {
@@ -181,26 +184,32 @@ impl Session {
     /// Runs the edited case, or sends why it cannot be run.
     fn apply_edited_document(&mut self) {
         let Some(PendingEdit {
-            mut document,
+            document,
             gesture,
             of,
         }) = self.edited.take()
         else {
             return;
         };
-        let from_rest = self.view.after_change == AfterChange::Rest;
-        let made = document.case_to_show().map_err(|error| error.to_string());
-        let begun = made.and_then(|case| {
-            document.drop_unnamed_files().map_err(|error| error.to_string())?;
-            if let Some(history) = &mut self.history {
-                history.change(document, gesture);
-            }
-            self.start_run(&Arc::new(case), "change", from_rest)
-        });
-        if let Err(sentence) = begun {
+        if let Err(sentence) = self.run_edited(document, gesture) {
             self.outbox.reply(&Reply::Refused { of, sentence });
             // The page shows what it has asked for, which is not what holds.
             self.send_case("refused");
         }
+    }
+
+    /// Makes a changed case the present one, and runs it.
+    ///
+    /// # Errors
+    /// A sentence, if it cannot be run; then the present case stays.
+    pub(super) fn run_edited(&mut self, mut document: Document, gesture: u64) -> Result<(), String> {
+        let from_rest = self.view.after_change == AfterChange::Rest;
+        let case = document.case_to_show().map_err(|error| error.to_string())?;
+        document.drop_unnamed_files().map_err(|error| error.to_string())?;
+        self.give_up_search();
+        if let Some(history) = &mut self.history {
+            history.change(document, gesture);
+        }
+        self.start_run(&Arc::new(case), "change", from_rest)
     }
 }

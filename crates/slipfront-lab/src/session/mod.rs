@@ -3,6 +3,7 @@
 mod brush;
 mod clock;
 mod edit;
+mod find;
 mod offline;
 mod requests;
 mod serve;

@@ -48,6 +48,7 @@ impl OfflineSession {
             serde_json::from_str(message).map_err(|error| format!("not a request: {error}"))?;
         self.session.handle(request);
         self.session.apply_edits();
+        self.session.follow_search();
         self.session.run_until_next_picture();
         Ok(self.outbox.take_replies())
     }

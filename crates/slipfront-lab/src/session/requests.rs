@@ -62,6 +62,11 @@ impl Session {
                 Ok(())
             }
             Request::Repeat { seeds } => self.repeat(seeds),
+            Request::Find { gesture } => self.find(gesture),
+            Request::FindStop => {
+                self.stop_search();
+                Ok(())
+            }
             Request::Save { name } => self.save(&name),
             Request::SaveStop { name } => {
                 self.setting.saves.stop(&name);

@@ -15,6 +15,9 @@ use crate::outbox::Outbox;
 use crate::protocol::{Reply, Request};
 use crate::replay;
 
+/// Time between two looks after a search while nothing moves.
+const SEARCH_INTERVAL: Duration = Duration::from_millis(100);
+
 /// Serves a page until it is gone. A defect of the simulation ends its run, not the session.
 pub(crate) fn serve(
     setting: &Arc<Setting>,
@@ -51,13 +54,18 @@ impl Session {
 
     fn serve(&mut self, requests: &Receiver<Request>) {
         loop {
-            let first = if self.is_idle() {
-                requests.recv().map_err(|_| RecvTimeoutError::Disconnected)
+            let is_idle = self.is_idle();
+            let first = if is_idle {
+                self.next_while_idle(requests)
             } else {
                 requests.recv_timeout(self.time_to_wait())
             };
             match first {
                 Ok(request) => self.handle_when_room(request),
+                Err(RecvTimeoutError::Timeout) if is_idle => {
+                    self.follow_search();
+                    continue;
+                }
                 Err(RecvTimeoutError::Timeout) => {}
                 Err(RecvTimeoutError::Disconnected) => return,
             }
@@ -65,7 +73,17 @@ impl Session {
                 self.handle_when_room(request);
             }
             self.apply_edits();
+            self.follow_search();
             self.run_until_next_picture();
+        }
+    }
+
+    /// Waits for the next request while nothing moves: until there is one, or until it is time to look after a search.
+    fn next_while_idle(&self, requests: &Receiver<Request>) -> Result<Request, RecvTimeoutError> {
+        if self.search.is_some() {
+            requests.recv_timeout(SEARCH_INTERVAL)
+        } else {
+            requests.recv().map_err(|_| RecvTimeoutError::Disconnected)
         }
     }
 

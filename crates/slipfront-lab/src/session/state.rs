@@ -3,10 +3,12 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::mpsc::Sender;
+use std::time::Duration;
 
 use super::clock::Clock;
 use crate::background::BackgroundTask;
 use crate::document::Document;
+use crate::find::{SEARCH_TIME, TextureSearch};
 use crate::history::History;
 use crate::live::LiveRun;
 use crate::opening::Start;
@@ -61,6 +63,9 @@ pub(super) struct Session {
     /// Steps that were asked for one by one.
     pub(super) single_steps: u64,
     pub(super) repeating: Option<BackgroundTask>,
+    /// The search for a better texture, and how long one may look.
+    pub(super) search: Option<TextureSearch>,
+    pub(super) search_time: Duration,
     /// What is to be sent with the next points.
     pub(super) pending: PendingUpdates,
 }
@@ -95,6 +100,8 @@ impl Session {
             clock: Clock::new(),
             single_steps: 0,
             repeating: None,
+            search: None,
+            search_time: SEARCH_TIME,
             pending: PendingUpdates::default(),
         }
     }
@@ -103,6 +110,11 @@ impl Session {
     pub(super) fn count_ended(&self) -> usize {
         let runs = self.live.iter().chain(self.twin.as_ref().map(|twin| &twin.live));
         runs.filter(|run| run.ended.is_some()).count()
+    }
+
+    /// Number of blocks along x.
+    pub(super) fn columns(&self) -> usize {
+        self.live.as_ref().map_or(1, |live| live.case().model.lattice.nx)
     }
 
     /// The case as it is edited up to now.

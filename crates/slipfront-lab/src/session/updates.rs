@@ -10,7 +10,7 @@ use super::state::{PendingUpdates, Session};
 use crate::live::CurvePoints;
 use crate::picture::{self, PictureFrame};
 use crate::protocol::{CaseReply, CurveReply, NumbersReply, ProbeReply, Reply, Units};
-use crate::{controls, shapes};
+use crate::{controls, find, shapes};
 
 /// Time between two reports of numbers, two of the block under the pointer, and two kymographs.
 const NUMBERS_INTERVAL: Duration = Duration::from_millis(200);
@@ -62,6 +62,7 @@ impl Session {
             mesh: case.deciding_length(),
             warnings: case.warnings(),
             too_coarse: case.too_coarse(),
+            search: find::limits(case),
         };
         self.outbox.reply(&Reply::Case(Box::new(reply)));
     }

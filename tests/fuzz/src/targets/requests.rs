@@ -22,11 +22,11 @@ pub(crate) const REQUESTS: Target = Target {
     files: &[],
     dictionary: Some("requests.dict"),
     max_bytes: 2048,
-    // Six runs of the 18 MB that opening 12 x 9 blocks was measured to take: the case and its twin, those of the case before until they
-    // have ended, one that is saved and one repeated. A message holds its text several times, and its tables take some tens of bytes a
-    // value.
+    // Eight runs of the 18 MB that opening 12 x 9 blocks was measured to take: the case and its twin, those of the case before until they
+    // have ended, one that is saved, one repeated, and two of a search. A message holds its text several times, and its tables take some
+    // tens of bytes a value.
     memory: Memory {
-        bytes: 6 * 18_000_000,
+        bytes: 8 * 18_000_000,
         per_byte: 2048,
     },
     mutations: 150,
@@ -184,7 +184,10 @@ fn message(choices: &mut Choices) -> String {
         8 => {
             json!({ "do": "image", "png": image(choices), "threshold": number(choices), "gesture": gesture })
         }
-        9 => json!({ "do": choices.one_of(&["undo", "redo", "rest", "export"]) }),
+        9 => match choices.one_of(&["undo", "redo", "rest", "export", "find", "find_stop"]) {
+            "find" => json!({ "do": "find", "gesture": gesture }),
+            other => json!({ "do": other }),
+        },
         10 => {
             json!({ "do": "view", choices.one_of(&["pace", "frames_per_second", "twin", "field", "probe", "after_change"]): view(choices) })
         }
