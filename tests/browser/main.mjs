@@ -4,6 +4,7 @@ import { endAll } from './page.mjs';
 import './opening.mjs';
 import './controls.mjs';
 import './texture.mjs';
+import './find.mjs';
 import './keep.mjs';
 import './replay.mjs';
 import './lessons.mjs';

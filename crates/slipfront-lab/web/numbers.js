@@ -26,6 +26,9 @@ function fill(id, rows) {
   }
 }
 
+/** A mean with the half width of its interval, if it has one. @param {Estimate|null} sample */
+export const estimate = (sample, digits = 3) => (sample === null || sample.half_width === null ? fixed(sample?.mean, digits) : `${fixed(sample.mean, digits)} \u00b1 ${fixed(sample.half_width, digits)}`);
+
 /** A peak, with a tilde while it may still rise. @param {PeakReply|null} peak @param {'t_star'|'mu_star'} key */
 const peakValue = (peak, key, digits = 3) => (peak ? `${peak.certain ? '' : '\u2248 '}${fixed(peak[key], digits)}` : '\u2013');
 
@@ -98,10 +101,9 @@ function showRepeated({ done, of, finished, change_percent: change, with: textur
   find('repeat-progress').value = done;
   find('repeat').textContent = say(finished ? 'repeat' : 'repeat_stop');
   find('repeat').dataset.busy = finished ? '' : 'yes';
-  const both = (/** @type {Estimate|null} */ sample, digits = 3) => (sample === null || sample.half_width === null ? fixed(sample?.mean, digits) : `${fixed(sample.mean, digits)} \u00b1 ${fixed(sample.half_width, digits)}`);
   const text = change
-    ? say('repeated_change', { change: both(change, 1), with: both(textured), without: both(without), done })
-    : textured ? say('repeated_plain', { with: both(textured), done }) : say('repeated_none', { done, of });
+    ? say('repeated_change', { change: estimate(change, 1), with: estimate(textured), without: estimate(without), done })
+    : textured ? say('repeated_plain', { with: estimate(textured), done }) : say('repeated_none', { done, of });
   find('repeated').textContent = creeping ? `${text} ${say('repeated_creeping', { creeping })}` : text;
   if (finished) announce(text);
 }

@@ -78,9 +78,20 @@ function drawCursor(context, camera, point) {
   strokeTwice(context, 1.5);
 }
 
+/** The best texture of a search that is under way. @param {CanvasRenderingContext2D} context @param {import('./camera.js').Camera} camera */
+function drawFinding(context, camera) {
+  context.fillStyle = colour('finding');
+  for (const [row, from, to] of state.finding?.best_texture ?? []) {
+    const [left, top] = camera.toPixels([from, row + 1]);
+    const [right, bottom] = camera.toPixels([to, row]);
+    context.fillRect(left, top, right - left, bottom - top);
+  }
+}
+
 /** The part of the frame that is drawn on, [left, top, right, bottom] in pixels. @param {import('./camera.js').Camera} camera @param {Pointers} pointers */
 function extent(camera, { ring, cursor }) {
   const points = (state.case?.shapes ?? []).flatMap((shape) => shape.outlines.flat()).map((point) => camera.toPixels(point));
+  points.push(...(state.finding?.best_texture ?? []).flatMap(([row, from, to]) => [camera.toPixels([from, row]), camera.toPixels([to, row + 1])]));
   if (cursor) points.push(camera.toPixels(cursor));
   if (ring) {
     const [x, y] = camera.toPixels(ring.point);
@@ -110,6 +121,7 @@ export function drawOverlay(canvas, camera, ratio, pointers) {
   canvas.height = Math.round((bottom - top) * ratio);
   const context = /** @type {CanvasRenderingContext2D} */ (canvas.getContext('2d'));
   context.setTransform(ratio, 0, 0, ratio, -left * ratio, -top * ratio);
+  drawFinding(context, camera);
   drawShapes(context, camera);
   if (pointers.ring) drawRing(context, camera, pointers.ring);
   if (pointers.cursor) drawCursor(context, camera, pointers.cursor);
