@@ -278,7 +278,7 @@ mod tests {
             change(&mut limits);
             let grid = whole([nx, ny], [k % 2 == 1, false]);
             let starts = || {
-                named(&grid, &limits)
+                named(&grid, &limits, &|| false)
                     .into_iter()
                     .map(|(named, _)| named)
                     .collect()
@@ -286,7 +286,7 @@ mod tests {
             let mut twins = [0; 2].map(|_| Search::new(grid.clone(), limits.clone(), 5, starts()));
             let mut seen = std::collections::HashSet::new();
             for _ in 0..4 {
-                let [asked, again] = twins.each_mut().map(|search| search.ask(24));
+                let [asked, again] = twins.each_mut().map(|search| search.ask(24, &|| false));
                 assert!(!asked.is_empty(), "{limits:?}");
                 for (one, other) in asked.iter().zip(&again) {
                     assert_eq!(one.texture, other.texture);

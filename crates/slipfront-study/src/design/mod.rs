@@ -26,11 +26,10 @@ mod verdict;
 mod wish;
 
 use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use slipfront_case::case::Case;
 use slipfront_case::case_file::CaseError;
-use slipfront_run::estimate_cost::seconds_per_step;
 
 use self::evaluate::{Evaluator, Fidelity, Subject};
 use self::judge::{Contender, Judge};
@@ -125,7 +124,7 @@ impl Design {
         keep: &mut Keep,
         watch: &mut dyn FnMut(&SearchProgress),
     ) -> Result<Outcome, StudyError> {
-        let (starts, textures) = self.starts();
+        let (starts, textures) = self.starts(&|| bounds.stop.load(Ordering::Relaxed));
         let pairs = starts.iter().zip(textures);
         let legal: Vec<Contender> = pairs
             .map(|(named, texture)| Contender {
@@ -184,7 +183,7 @@ impl Design {
         bounds: &Bounds,
         watch: &mut dyn FnMut(&SearchProgress),
     ) -> Result<Vec<Arc<Vec<bool>>>, StudyError> {
-        let starts = self.starts().0;
+        let starts = self.starts(&|| bounds.stop.load(Ordering::Relaxed)).0;
         let mut stages = Stages::new(&self.evaluator, self.limits.clone(), self.start, starts);
         let best = stages.run(bounds, &mut Known::new(), &mut |_| Ok(()), watch)?;
         if best.is_empty() {
@@ -193,21 +192,21 @@ impl Design {
         Ok(best)
     }
 
-    /// The legal patterns with which a search begins, and their textures: the named ones, and masks.
-    fn starts(&self) -> (Vec<Named>, Vec<Vec<bool>>) {
+    /// The legal patterns with which a search begins, and their textures: the named ones, and masks; fewer once `ends` says so.
+    fn starts(&self, ends: &dyn Fn() -> bool) -> (Vec<Named>, Vec<Vec<bool>>) {
         let (grid, limits) = (&self.evaluator.grid, &self.limits);
         let drawn = self.drawn.iter().filter_map(|(name, textured)| {
             let named = Named::drawn(grid, name, textured);
             let texture = limits.texture(grid, &named.draft)?;
             Some((named, texture))
         });
-        named(grid, limits).into_iter().chain(drawn).unzip()
+        named(grid, limits, ends).into_iter().chain(drawn).unzip()
     }
 
     /// A search of which somebody else makes the runs.
     pub fn open_search(&self) -> OpenSearch {
         let (grid, limits) = (self.evaluator.grid.clone(), self.limits.clone());
-        OpenSearch::new(Search::new(grid, limits, self.start, self.starts().0))
+        OpenSearch::new(Search::new(grid, limits, self.start, self.starts(&|| false).0))
     }
 
     /// Why a texture is not legal, unless it is.
@@ -279,16 +278,15 @@ impl Design {
         Ok(textures.iter().map(losses).collect())
     }
 
-    /// Seconds in which a texture is tried once, with a coarse step, on one thread of this machine: no run takes longer.
+    /// Block-steps in which a texture is tried at first, on one surface with a coarse step.
     ///
     /// # Errors
     /// When a case cannot be made.
-    pub fn seconds_per_texture(&self) -> Result<f64, StudyError> {
-        let seconds = |subject: &Subject| {
-            let case = subject.case(None, 0, Fidelity::Coarse)?;
-            Ok(case.time_plan.last_step as f64 * seconds_per_step(&case))
-        };
-        let all: Result<f64, CaseError> = self.evaluator.subjects.iter().map(seconds).sum();
+    pub fn block_steps_per_texture(&self) -> Result<f64, StudyError> {
+        let subjects = self.evaluator.subjects.iter();
+        let all: Result<f64, CaseError> = subjects
+            .map(|subject| Ok(subject.case(None, 0, Fidelity::Coarse)?.block_steps()))
+            .sum();
         Ok(all?)
     }
 }

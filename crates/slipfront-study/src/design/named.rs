@@ -28,8 +28,8 @@ impl Named {
 /// The pattern that others are held against first.
 pub(crate) const GROOVE: &str = "groove across";
 
-/// Named patterns that are legal, each with its texture, which covers as much as the limits allow.
-pub(crate) fn named(grid: &Grid, limits: &Limits) -> Vec<(Named, Vec<bool>)> {
+/// Named patterns that are legal, each with its texture, which covers as much as the limits allow; fewer once `ends` says so.
+pub(crate) fn named(grid: &Grid, limits: &Limits, ends: &dyn Fn() -> bool) -> Vec<(Named, Vec<bool>)> {
     let percent = limits.coverage[1];
     // A strip whose middle is that of a block has an odd number of blocks across, and one whose middle is an edge an even number.
     let [edges, middles] = [0.0, 0.5].map(|shift| shifted(grid, percent, shift));
@@ -39,7 +39,8 @@ pub(crate) fn named(grid: &Grid, limits: &Limits) -> Vec<(Named, Vec<bool>)> {
         both.max_by_key(|(texture, _)| count(texture))
             .map(|(texture, named)| (named, texture))
     };
-    edges.into_iter().zip(middles).filter_map(larger).collect()
+    let pairs = edges.into_iter().zip(middles).take_while(|_| !ends());
+    pairs.filter_map(larger).collect()
 }
 
 /// Named patterns whose strips and cavities are moved by so many blocks: grooves across and along it (x is the direction of the drive, unless that is

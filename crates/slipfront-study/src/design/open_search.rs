@@ -23,7 +23,7 @@ impl OpenSearch {
 
     /// Up to `n` textures that were not asked for before; fewer where the limits leave few.
     pub fn ask(&mut self, n: usize) -> Vec<Arc<Vec<bool>>> {
-        let proposals = self.search.ask(n);
+        let proposals = self.search.ask(n, &|| false);
         let textures = proposals
             .iter()
             .map(|proposal| Arc::clone(&proposal.texture))

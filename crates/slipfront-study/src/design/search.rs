@@ -89,11 +89,12 @@ impl Search {
         }
     }
 
-    /// Up to `n` textures that were not asked for before; fewer where the limits leave few, and none where they leave none.
-    pub(crate) fn ask(&mut self, n: usize) -> Vec<Proposal> {
+    /// Up to `n` textures that were not asked for before; fewer where the limits leave few or once `ends` says so, and none where they
+    /// leave none.
+    pub(crate) fn ask(&mut self, n: usize, ends: &dyn Fn() -> bool) -> Vec<Proposal> {
         let mut asked = Vec::new();
         for _ in 0..n * TRIES {
-            if asked.len() == n {
+            if asked.len() == n || ends() {
                 break;
             }
             let (origin, draft) = self.draft();

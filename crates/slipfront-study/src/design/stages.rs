@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use serde::{Deserialize, Serialize};
 
@@ -121,7 +121,7 @@ impl<'a> Stages<'a> {
     ) -> Result<Vec<Arc<Vec<bool>>>, StudyError> {
         let explored = (EXPLORED * bounds.runs as f64) as usize;
         while self.runs < explored && self.is_within(bounds, EXPLORED) {
-            let proposals = self.search.ask(BATCH);
+            let proposals = self.ask(BATCH, bounds)?;
             if !self.try_out(proposals, false, bounds, known, keep, watch)? {
                 break;
             }
@@ -135,11 +135,21 @@ impl<'a> Stages<'a> {
         self.search.begin_again();
         let mut goes_on = self.try_out(best, true, bounds, known, keep, watch)?;
         while goes_on && self.runs < bounds.runs && self.is_within(bounds, 1.0) {
-            let proposals = self.search.ask(BATCH / 2);
+            let proposals = self.ask(BATCH / 2, bounds)?;
             goes_on = self.try_out(proposals, true, bounds, known, keep, watch)?;
         }
         let best = self.search.best().iter();
         Ok(best.map(|found| Arc::clone(&found.proposal.texture)).collect())
+    }
+
+    /// Textures to try, unless everything ends: on a large lattice they take seconds to be drawn.
+    fn ask(&mut self, n: usize, bounds: &Bounds) -> Result<Vec<Proposal>, StudyError> {
+        let ends = || bounds.stop.load(Ordering::Relaxed);
+        let asked = self.search.ask(n, &ends);
+        if ends() {
+            return Err(StudyError::Interrupted);
+        }
+        Ok(asked)
     }
 
     /// Whether less than this share of the time has passed.
