@@ -4,7 +4,7 @@ import test from 'node:test';
 import { open, PLAIN, say, SMALL, until } from './page.mjs';
 
 /** What a number reads like on the page. */
-const shown = (value, digits = 1) => value.toFixed(digits).replace('-', '\u2212');
+const shown = (value) => value.toFixed(2).replace('-', '\u2212');
 const estimate = ({ mean, half_width: half }) => `${shown(mean)} \u00b1 ${shown(half)}`;
 
 test('a search shows its best, and once it is stopped replaces what is painted; undo brings that back', async (t) => {

@@ -6,6 +6,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 use slipfront_case::case::Case;
+use slipfront_case::number_format::count;
 use slipfront_run::pictures::texture_file::textured_blocks;
 use slipfront_study::design::{Bounds, Design, Limits, Quantity, Wish};
 use slipfront_study::{Sample, StudyError};
@@ -28,9 +29,9 @@ const PLAIN_PERCENT: f64 = 10.0;
 /// Largest coverage, %, where less than this is painted.
 const LEAST_PERCENT: f64 = 3.0;
 
-/// Textures that there must be time for in the first of the two stages of a search, which has this share of the time.
-const MIN_TEXTURES: f64 = 200.0;
-const FIRST_STAGE: f64 = 0.7;
+/// Most block-steps in which a texture is tried, for each thread: with some 1e8 of them in a second, there is time for several hundred
+/// textures in a minute, and for a comparison of the best in less than another one.
+const MAX_BLOCK_STEPS: f64 = 1e7;
 
 /// Surfaces on which what was found is compared with what is painted; the search has seen none of them.
 const FRESH_SURFACES: u64 = 8;
@@ -217,14 +218,16 @@ fn refuse_narrow(design: &Design) -> Result<(), String> {
 
 /// Refuses a slider of which too few textures can be tried in the time.
 fn refuse_large(design: &Design, bounds: &SearchBounds) -> Result<(), String> {
-    let seconds = design.seconds_per_texture().map_err(|error| error.to_string())?;
-    let time = FIRST_STAGE * SEARCH_TIME.as_secs_f64() * bounds.threads as f64;
-    if seconds * MIN_TEXTURES > time {
+    let needed = design
+        .block_steps_per_texture()
+        .map_err(|error| error.to_string())?;
+    let most = MAX_BLOCK_STEPS * bounds.threads as f64;
+    if needed > most {
         return Err(format!(
-            "the slider is too large for a search of a minute: to try a texture takes up to {seconds:.2} s here, where at most {:.2} s \
-             leave time for {MIN_TEXTURES} textures; take fewer blocks or a faster drive, or `slipfront design`, which takes as long as \
-             it needs",
-            time / MIN_TEXTURES
+            "the slider is too large for a search of a minute: to try a texture takes {needed:.2e} block-steps, where at most {most:.0e} \
+             leave time for some hundred textures on {}; take fewer blocks or a faster drive, or `slipfront design`, which takes as \
+             long as it needs",
+            count(bounds.threads, "thread")
         ));
     }
     Ok(())
@@ -264,8 +267,8 @@ fn find(
         Err(StudyError::Interrupted) => best,
         Err(StudyError::NoDesign) => {
             return Err(format!(
-                "the slider has no room for a texture whose features and gaps are {WIDTH} blocks wide and which covers as little as that of \
-                 the search may"
+                "no texture whose features and gaps are {WIDTH} blocks wide covers as little of this slider as a search may: paint \
+                 more, or take more blocks"
             ));
         }
         Err(error) => return Err(error.to_string()),

@@ -44,7 +44,7 @@ function show({ outcome, textures, surfaces, best, painted }) {
   if (outcome === 'given_up') notice(say('found_given_up'));
   if (outcome === 'given_up' || outcome === 'failed') return;
   const where = surfaces > 1 ? say('found_fresh', { surfaces }) : say('found_alike');
-  const text = say(`found_${outcome}${painted ? '' : '_plain'}`, { best: estimate(best, 1), painted: estimate(painted, 1), textures, on: where });
+  const text = say(`found_${outcome}${painted ? '' : '_plain'}`, { best: estimate(best, 2), painted: estimate(painted, 2), textures, on: where });
   find('found').textContent = text;
   announce(text);
 }

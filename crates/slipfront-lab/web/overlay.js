@@ -82,8 +82,9 @@ function drawCursor(context, camera, point) {
 function drawFinding(context, camera) {
   context.fillStyle = colour('finding');
   for (const [row, from, to] of state.finding?.best_texture ?? []) {
-    const [left, top] = camera.toPixels([from, row + 1]);
-    const [right, bottom] = camera.toPixels([to, row]);
+    // On whole pixels, since strips that share one show a line between them.
+    const [left, top] = camera.toPixels([from, row + 1]).map(Math.round);
+    const [right, bottom] = camera.toPixels([to, row]).map(Math.round);
     context.fillRect(left, top, right - left, bottom - top);
   }
 }

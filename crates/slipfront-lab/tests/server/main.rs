@@ -4,6 +4,7 @@
 mod attacks;
 mod doors;
 mod files;
+mod find;
 mod laboratory;
 mod page;
 mod pages;
