@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::Arc;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use numpy::{Element, PyArray2};
 use pyo3::prelude::*;
@@ -16,10 +16,7 @@ use slipfront_run::pictures;
 
 use crate::arrays::borrowed;
 use crate::errors::{CaseError, case_error};
-use crate::process::detached;
-
-/// How long the engine works between two looks at signals.
-pub(crate) const LOOK_EVERY: Duration = Duration::from_millis(50);
+use crate::process::{LOOK_EVERY, detached};
 
 /// A case that can be run; it never changes.
 #[pyclass(frozen, module = "slipfront._slipfront")]

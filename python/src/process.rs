@@ -5,13 +5,16 @@
 
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::sync::mpsc::{self, RecvTimeoutError};
+use std::time::Duration;
 
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use slipfront_study::StudyError;
 
-use crate::case::LOOK_EVERY;
 use crate::errors::{ForkError, folder_error, study_error};
+
+/// How long the engine works between two looks at signals.
+pub(crate) const LOOK_EVERY: Duration = Duration::from_millis(50);
 
 /// The process that was the first to use the engine, which the children that it forks afterwards inherit; 0 before.
 static FIRST: AtomicU32 = AtomicU32::new(0);

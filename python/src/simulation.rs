@@ -20,9 +20,9 @@ use slipfront_run::series::SeriesRow;
 use slipfront_run::{clock, program};
 
 use crate::arrays::{rows, stacked};
-use crate::case::{Case, LOOK_EVERY};
+use crate::case::Case;
 use crate::errors::{CaseError, RunError};
-use crate::process::{check_process, detached};
+use crate::process::{LOOK_EVERY, check_process, detached};
 use crate::record::{Record, series};
 
 /// A run in progress. Two threads cannot use one at once.

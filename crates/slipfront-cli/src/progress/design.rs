@@ -66,13 +66,13 @@ mod tests {
             best: 31.25,
             best_texture: None,
         };
-        // Five of the runs were made in these ten seconds, the others by an earlier call.
+        // Five of the runs were made in these four seconds, the others by an earlier call.
         assert_eq!(
-            text(&now, 5, Duration::from_secs(9)),
-            "50 of 100 runs  90 seconds left  one surface  best 31.25"
+            text(&now, 5, Duration::from_secs(4)),
+            "50 of 100 runs  40 seconds left  one surface  best 31.25"
         );
         assert_eq!(
-            text(&now, 0, Duration::from_secs(9)),
+            text(&now, 0, Duration::from_secs(4)),
             "50 of 100 runs  one surface  best 31.25"
         );
     }

@@ -97,7 +97,7 @@ fn folders_of_others_are_left_alone() {
 #[test]
 fn a_signal_keeps_what_was_run() {
     let workspace = workspace();
-    workspace.write("long.toml", FIT.replace("runs = 100\n", "runs = 10000\n"));
+    workspace.write("long.toml", FIT.replace("runs = 100\n", "runs = 5000\n"));
     let child = workspace.start("calibrate long.toml record.csv -o found");
     let has_runs =
         || workspace.exists("found/training.jsonl") && !workspace.read("found/training.jsonl").is_empty();

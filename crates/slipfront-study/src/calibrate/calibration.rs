@@ -5,9 +5,9 @@ use rayon::prelude::*;
 use super::grid::Grid;
 use super::intervals::Distribution;
 use super::misfit::{Check, Misfit};
-use super::normals::{Stream, normals};
+use super::normals::{Stream, noisy, normals};
 use super::regression::{Prediction, Regression};
-use super::summaries::summaries;
+use super::scaling::{Scaling, summaries_of};
 use super::training::Training;
 
 /// An interval of 90 % that is wider, as a share of the range, says that the record does not tell the unknown.
@@ -54,63 +54,6 @@ pub struct Estimate {
 
 /// Training runs that count at the least where records are likened to them.
 const LIKE_AT_LEAST: f64 = 50.0;
-
-/// Means and standard deviations that bring summaries to one scale.
-#[derive(Clone, Debug)]
-pub(super) struct Scaling {
-    means: Vec<f64>,
-    deviations: Vec<f64>,
-}
-
-/// Summaries count no farther from their mean, in standard deviations: a record outside of the training is not extrapolated to.
-const MAX_AWAY: f64 = 4.0;
-
-impl Scaling {
-    fn of(rows: &[Vec<f64>]) -> Self {
-        let n = rows.len() as f64;
-        let d = rows.first().map_or(0, Vec::len);
-        let mean = |f: usize| rows.iter().map(|row| row[f]).sum::<f64>() / n;
-        let means: Vec<f64> = (0..d).map(mean).collect();
-        let deviation = |f: usize| {
-            let squares: f64 = rows
-                .iter()
-                .map(|row| (row[f] - means[f]) * (row[f] - means[f]))
-                .sum();
-            (squares / n).sqrt()
-        };
-        let deviations = (0..d).map(deviation).collect();
-        Self { means, deviations }
-    }
-
-    /// Summaries in standard deviations from their mean; 0 of those that never differ.
-    pub(super) fn scaled(&self, row: &[f64]) -> Vec<f64> {
-        let columns = row.iter().zip(&self.means).zip(&self.deviations);
-        columns
-            .map(|((value, mean), &deviation)| {
-                if deviation > 0.0 {
-                    ((value - mean) / deviation).clamp(-MAX_AWAY, MAX_AWAY)
-                } else {
-                    0.0
-                }
-            })
-            .collect()
-    }
-}
-
-/// Friction with noise of this share of its mean.
-pub(super) fn noisy(curve: &[f64], noise: f64, normals: impl Iterator<Item = f64>) -> Vec<f64> {
-    let deviation = noise * curve.iter().sum::<f64>().abs() / curve.len() as f64;
-    curve
-        .iter()
-        .zip(normals)
-        .map(|(y, z)| y + deviation * z)
-        .collect()
-}
-
-/// Summaries of several records in a row.
-pub(super) fn summaries_of(curves: &[Vec<f64>]) -> Vec<f64> {
-    curves.iter().flat_map(|curve| summaries(curve)).collect()
-}
 
 impl Calibration {
     /// Learns from a training what records with white noise tell, whose standard deviation is this share of the mean friction of the record.

@@ -3,11 +3,11 @@
 use rayon::prelude::*;
 use serde::Serialize;
 
-use super::calibration::{Scaling, noisy, summaries_of};
 use super::dense::squared_distances;
 use super::intervals::Distribution;
-use super::normals::{Stream, draws, normals};
+use super::normals::{Stream, draws, noisy, normals};
 use super::regression::Regression;
+use super::scaling::{Scaling, summaries_of};
 use super::training::Training;
 
 /// Largest drift that is learnt: friction that rises or falls by this share of itself over the record.

@@ -20,6 +20,7 @@ mod normals;
 mod predicted;
 mod regression;
 mod report;
+mod scaling;
 mod set_up;
 mod summaries;
 mod training;

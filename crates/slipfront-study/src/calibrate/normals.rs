@@ -26,3 +26,13 @@ pub(crate) fn normals(stream: Stream, run: usize, record: usize) -> impl Iterato
     let mut draws = draws(stream, run, record);
     std::iter::repeat_with(move || draws.normal())
 }
+
+/// Friction with noise of this share of its mean.
+pub(crate) fn noisy(curve: &[f64], noise: f64, normals: impl Iterator<Item = f64>) -> Vec<f64> {
+    let deviation = noise * curve.iter().sum::<f64>().abs() / curve.len() as f64;
+    curve
+        .iter()
+        .zip(normals)
+        .map(|(y, z)| y + deviation * z)
+        .collect()
+}

@@ -4,8 +4,7 @@ use std::sync::atomic::AtomicBool;
 
 use rayon::prelude::*;
 
-use super::calibration::noisy;
-use super::normals::{Stream, normals};
+use super::normals::{Stream, noisy, normals};
 use super::set_up::{Curves, SetUp, TrainingError};
 use super::summaries::quantiles;
 use crate::error::StudyError;
