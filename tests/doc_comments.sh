@@ -32,7 +32,7 @@ comments() {
 }
 
 pronoun='(It|Its|They|Their|Them|This|These|Those|That|Such|Others?|Same|Whose|Likewise|Also|What)'
-pronoun+='|(Whether|When|Where|Why|How|If|While) (it|they|this|these|those|that|its|their|such)'
+pronoun+='|(Whether|When|Where|Why|How|If|While) (it|they|those|its|their|(this|these|that|such) (is|are|can|has|have|was|were|may|must|will|does))'
 leaning='The same( of|[.,:;]| as| in| for| by| with| into)|(That|Those|Ones|All|None|Nothing|Both) of|(One|Ones) (that|which)|As (that|those)|Of '
 found=0
 while IFS= read -r comment; do
