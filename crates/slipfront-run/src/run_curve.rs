@@ -52,7 +52,7 @@ impl Observer for Tracing {
 }
 
 /// Runs a case on one thread up to a time or a displacement, whatever its `time` says, and keeps only the curve; none if
-/// `ends` gave it up.
+/// `ends` gave it up. Where a program of speeds decides how far the drive comes, the case sets the end of the run.
 ///
 /// ```
 /// use slipfront_case::case::Case;
