@@ -10,11 +10,15 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 if [ $# -eq 0 ]; then
-  set -- '*.rs'
+  set -- '*.rs' 'python/*.py'
 fi
 
-# Comments of Rust, as `file:line: text` with the lines of each joined; without examples in code and the headings of sections.
+# Comments of Rust, as `file:line: text` with the lines of each joined; without examples in code and the headings of sections. The first
+# lines of docstrings of Python likewise.
 comments() {
+  git ls-files --cached --others --exclude-standard -- "$@" | grep '\.py$' | while read -r file; do
+    [ ! -f "$file" ] || awk -v file="$file" 'sub(/^ *"""/, "") && $0 != "" { sub(/"""$/, ""); print file ":" NR ": " $0 }' "$file"
+  done
   git ls-files --cached --others --exclude-standard -- "$@" | grep '\.rs$' | while read -r file; do
     [ ! -f "$file" ] || awk -v file="$file" '
       function flush() { if (text != "") print file ":" first ":" text; text = ""; code = 0 }

@@ -56,7 +56,7 @@ pub struct Paper {
     pub results: Vec<ClaimResult>,
     /// Results of the same claims in the same order with the paper's time step; empty in the reduced version.
     pub results_by_paper_step: Vec<ClaimResult>,
-    /// Whether these are results of the reduced version.
+    /// Whether the figures are of the reduced version.
     pub reduced: bool,
 }
 
