@@ -1,31 +1,90 @@
-//! Work beside the session, in a thread of its own.
+//! Work beside a session, in a thread of its own.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::Sender;
+use std::sync::mpsc::{Receiver, Sender, TryRecvError, channel};
 use std::thread;
+use std::time::{Duration, Instant};
+
+use slipfront_session::{Event, Task, Work, Worker};
 
 /// Work in a thread of its own, which is asked to stop when this is dropped.
-pub(crate) struct BackgroundTask(Arc<AtomicBool>);
+pub(crate) struct BackgroundTask {
+    stop: Arc<AtomicBool>,
+    /// What the work tells; closed once it has ended.
+    events: Receiver<Event>,
+    is_lost: bool,
+}
 
 impl BackgroundTask {
-    /// Begins work in a thread, which holds `working` and looks now and then whether it shall stop.
-    pub(crate) fn spawn(
-        working: &Sender<()>,
-        work: impl FnOnce(&AtomicBool) + Send + 'static,
-    ) -> std::io::Result<Self> {
+    /// Begins work in a thread, which holds `working`, on so many threads.
+    ///
+    /// # Errors
+    /// A sentence, if the system refuses threads.
+    pub(crate) fn begin(work: Work, threads: usize, working: &Sender<()>) -> Result<Self, String> {
+        // A pool of its own: steps of the run that is shown would wait in that of all others until whole runs have ended.
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+        let pool = pool.map_err(|error| format!("the system refuses threads for the work: {error}"))?;
         let stop = Arc::new(AtomicBool::new(false));
-        let (stops, working) = (Arc::clone(&stop), working.clone());
-        thread::Builder::new().spawn(move || {
-            work(&stops);
-            drop(working);
-        })?;
-        Ok(Self(stop))
+        let (tells, events) = channel();
+        let worker = ThreadWorker {
+            tells,
+            stop: Arc::clone(&stop),
+            began: Instant::now(),
+        };
+        let working = working.clone();
+        let begun = thread::Builder::new().spawn(move || {
+            pool.install(|| work.run(&worker));
+            drop((pool, working));
+        });
+        begun.map_err(|error| format!("the system refuses a thread for the work: {error}"))?;
+        Ok(Self {
+            stop,
+            events,
+            is_lost: false,
+        })
+    }
+}
+
+impl Task for BackgroundTask {
+    fn next_event(&mut self) -> Option<Event> {
+        match self.events.try_recv() {
+            Ok(event) => Some(event),
+            Err(TryRecvError::Empty) => None,
+            // Nobody asks any more after the last event of work that was done.
+            Err(TryRecvError::Disconnected) if self.is_lost => None,
+            Err(TryRecvError::Disconnected) => {
+                self.is_lost = true;
+                Some(Event::lost())
+            }
+        }
     }
 }
 
 impl Drop for BackgroundTask {
     fn drop(&mut self) {
-        self.0.store(true, Ordering::Relaxed);
+        self.stop.store(true, Ordering::Relaxed);
+    }
+}
+
+/// A thread that works.
+struct ThreadWorker {
+    tells: Sender<Event>,
+    stop: Arc<AtomicBool>,
+    began: Instant,
+}
+
+impl Worker for ThreadWorker {
+    fn tell(&self, event: Event) {
+        // Nobody listens any more after the end of the session.
+        let _ = self.tells.send(event);
+    }
+
+    fn stop(&self) -> &AtomicBool {
+        &self.stop
+    }
+
+    fn now(&self) -> Duration {
+        self.began.elapsed()
     }
 }

@@ -1,58 +1,23 @@
-//! The files of a case, and their names.
+//! The files of a case on the disk.
 
 use std::io::Read;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
-use slipfront_case::disk::{open_limited, read_limited};
+use slipfront_case::case_file::{CaseError, read_text};
+use slipfront_case::disk::open_limited;
 use slipfront_case::text::{display_path, shell_quoted};
-use slipfront_case::unfinished::TemporaryFolder;
-use tempfile::TempDir;
+use slipfront_session::{Document, MAX_FILES};
 
-/// Most bytes of all files of a case.
-pub(crate) const MAX_FILES: u64 = 64 << 20;
-
-/// A file of a case, in a temporary folder of its own that is removed with it. The cases that name the file share it.
-#[derive(Debug)]
-pub(crate) struct TemporaryFile {
-    folder: TempDir,
-    /// The folder of temporary files of this process, which must outlive the one in it.
-    _parent: Arc<TemporaryFolder>,
-    name: String,
-    /// Length of the file, bytes.
-    pub(crate) bytes: usize,
-}
-
-impl TemporaryFile {
-    /// Writes a file under a plain name.
-    pub(crate) fn new(name: &str, contents: &[u8]) -> std::io::Result<Self> {
-        let parent = TemporaryFolder::shared()?;
-        let folder = tempfile::tempdir_in(parent.path())?;
-        std::fs::write(folder.path().join(name), contents)?;
-        Ok(Self {
-            folder,
-            _parent: parent,
-            name: name.to_owned(),
-            bytes: contents.len(),
-        })
-    }
-
-    /// Reads the contents of the file.
-    pub(crate) fn read(&self) -> std::io::Result<Vec<u8>> {
-        read_limited(&self.folder.path().join(&self.name), MAX_FILES)
-    }
-
-    /// The path of the file from the folder of temporary files.
-    pub(crate) fn path(&self) -> String {
-        let folder = self.folder.path();
-        let folder = folder.strip_prefix(temporary()).unwrap_or(folder);
-        format!("{}/{}", folder.display(), self.name)
-    }
-}
-
-/// The folder of temporary files.
-pub(crate) fn temporary() -> PathBuf {
-    std::env::temp_dir()
+/// The case of a file, with the files that stand in its folder or in those that are `allowed`.
+///
+/// # Errors
+/// When it is no case, a file cannot be read or lies elsewhere, or there is too much of it.
+pub(crate) fn document(path: &Path, name: &str, allowed: &[PathBuf]) -> Result<Document, CaseError> {
+    let text = read_text(path)?;
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let reach = ReadableFolders::new(folder, "the case", allowed);
+    let reach = reach.map_err(|sentence| CaseError::invalid(None, sentence))?;
+    Document::new(name, &text, |file| reach.read(file))
 }
 
 /// The folders in which files of the disk may be read: one, and those that the user allows. What leads out of them, by its name
@@ -138,38 +103,11 @@ fn is_at(_opened: &std::fs::File, path: &Path) -> bool {
     path.canonicalize().is_ok_and(|found| found == path)
 }
 
-/// Characters that stand for themselves in names of files on every system.
-fn is_plain(c: char) -> bool {
-    c.is_alphanumeric() || "_-. ()+".contains(c)
-}
-
-/// Whether this is a name within a folder, and not a path that may lead out of it.
-pub(crate) fn is_plain_name(name: &str) -> bool {
-    !name.is_empty() && name.len() <= 100 && !name.starts_with('.') && name.chars().all(is_plain)
-}
-
-/// The name of a file as a plain one.
-pub(crate) fn plain_name(path: &str) -> String {
-    let name = path.rsplit(['/', '\\']).next().unwrap_or_default();
-    let name = name.trim_start_matches('.').chars();
-    name.map(|c| if is_plain(c) { c } else { '_' }).collect()
-}
-
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use tempfile::TempDir;
 
-    #[test]
-    fn names_stay_within_their_folder() {
-        for path in ["a/../b.png", "..\\b.png", "/b.png", "b.png", ".b.png"] {
-            assert_eq!(plain_name(path), "b.png", "{path}");
-        }
-        assert_eq!(plain_name("C:b*.png"), "C_b_.png");
-        assert!(is_plain_name("run (2)") && is_plain_name("M\u{fc}nchen-1.0"));
-        for name in ["", ".", "..", "a/b", "a\\b", "C:b", ".hidden", "a\nb"] {
-            assert!(!is_plain_name(name), "{name:?}");
-        }
-    }
+    use super::*;
 
     /// A folder `case` with a file, one beside it, and links from the first into the second.
     #[cfg(unix)]

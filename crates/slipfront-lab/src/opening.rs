@@ -3,9 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use slipfront_case::case_file::CaseError;
+use slipfront_session::Document;
 
-use crate::document::Document;
-use crate::replay;
+use crate::{files, replay};
 
 /// What the page shows first.
 #[derive(Default)]
@@ -35,12 +35,12 @@ impl Start {
     pub fn of(path: &Path, allow_files: &[PathBuf]) -> Result<Self, OpeningError> {
         let refused = |error: CaseError| OpeningError(error.to_string());
         if path.is_dir() {
-            let (document, _) = replay::read(path, allow_files).map_err(OpeningError)?;
-            document.case_to_show().map_err(refused)?;
+            let opened = replay::read(path, allow_files).map_err(OpeningError)?;
+            opened.document.case_to_show().map_err(refused)?;
             return Ok(Self(StartSource::Folder(path.to_owned())));
         }
         let name = path.file_stem().unwrap_or_default().to_string_lossy();
-        let document = Document::load(path, &name, allow_files).map_err(refused)?;
+        let document = files::document(path, &name, allow_files).map_err(refused)?;
         document.case_to_show().map_err(refused)?;
         Ok(Self(StartSource::Case(Box::new(document))))
     }

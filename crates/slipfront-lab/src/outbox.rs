@@ -6,8 +6,6 @@ use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 use axum::body::Bytes;
 use tokio::sync::Notify;
 
-use crate::protocol::Reply;
-
 /// Replies that may wait before the run does.
 const MAX_WAITING_REPLIES: usize = 64;
 
@@ -44,11 +42,9 @@ impl Outbox {
         self.waiting.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Adds a reply to those that wait.
-    pub(crate) fn reply(&self, reply: &Reply) {
-        // Texts and finite or infinite numbers, which become null: nothing that JSON does not have.
-        let text = serde_json::to_string(reply).expect("replies are JSON");
-        self.waiting().replies.push_back(text);
+    /// Adds a reply, which is JSON, to those that wait.
+    pub(crate) fn reply(&self, reply: String) {
+        self.waiting().replies.push_back(reply);
         self.filled.notify_one();
     }
 
@@ -132,11 +128,7 @@ mod tests {
             let sentence = "x".repeat(MAX_WAITING_BYTES / 2);
             for number in 0..6 {
                 filled.wait_for_room();
-                let sentence = sentence.clone();
-                filled.reply(&Reply::Refused {
-                    of: "export",
-                    sentence,
-                });
+                filled.reply(sentence.clone());
                 done.send(number).unwrap();
             }
         });

@@ -1,12 +1,11 @@
 //! Cases to choose from: those of the folder `cases/`, and those behind the figures of the paper.
 
-use include_dir::{Dir, include_dir};
-use slipfront_case::case_file::CaseError;
-use slipfront_case::text::truncated;
-use toml::{Table, Value};
+use std::collections::BTreeMap;
 
-use crate::document::Document;
-use crate::protocol::PresetEntry;
+use include_dir::{Dir, include_dir};
+use slipfront_case::case_file::CaseFile;
+use slipfront_session::{Document, Preset, Presets};
+use toml::{Table, Value};
 
 static CASES: Dir = include_dir!("$CARGO_MANIFEST_DIR/cases");
 
@@ -14,12 +13,12 @@ static CASES: Dir = include_dir!("$CARGO_MANIFEST_DIR/cases");
 ///
 /// # Errors
 /// A sentence, if the case cannot be made.
-pub(crate) fn opening() -> Result<Document, String> {
+pub(crate) fn opening(presets: &Presets) -> Result<Document, String> {
     let blocks = Value::Array(vec![Value::Integer(100); 2]);
-    document("circle")?.with([("slider.blocks".to_owned(), Some(blocks))])
+    presets
+        .document("circle")?
+        .with([("slider.blocks".to_owned(), Some(blocks))])
 }
-
-const PAPER: &str = "paper/";
 
 /// Names and texts of the cases of the folder.
 fn cases() -> impl Iterator<Item = (&'static str, &'static str)> {
@@ -34,19 +33,41 @@ fn figures() -> impl Iterator<Item = (&'static str, &'static str)> {
     slipfront_paper::cases().filter(|(name, _)| name.starts_with("fig") || name.starts_with("table"))
 }
 
-/// The list of all cases to choose from.
-pub(crate) fn entries() -> Vec<PresetEntry> {
-    let entry = |group, prefix: &'static str| {
-        move |(name, text): (&str, &str)| PresetEntry {
-            name: format!("{prefix}{name}"),
-            group,
-            title: title(text),
-        }
-    };
-    let mut all: Vec<_> = cases().map(entry("cases", "")).collect();
+/// All cases to choose from.
+pub(crate) fn all() -> Presets {
+    let mut all: Vec<_> = cases().map(|(name, text)| case(name, text)).collect();
     all.sort_by(|one, other| one.name.cmp(&other.name));
-    all.extend(figures().map(entry("paper", PAPER)));
-    all
+    all.extend(figures().map(|(name, text)| figure(name, text)));
+    Presets(all)
+}
+
+/// A case of the folder, with the files beside it that it names.
+fn case(name: &str, text: &str) -> Preset {
+    // What is wrong with a case is told when it is chosen.
+    let mut case = CaseFile::parse(text, name, &[]).unwrap_or_default();
+    let files = case.files_mut().0.filter_map(|file| {
+        let found = CASES.get_file(&*file.name)?;
+        Some((file.name.clone(), found.contents().to_vec()))
+    });
+    let files = files.collect();
+    Preset {
+        name: name.to_owned(),
+        group: "cases".to_owned(),
+        title: title(text),
+        toml: text.to_owned(),
+        files,
+    }
+}
+
+/// A case of the paper.
+fn figure(name: &str, text: &str) -> Preset {
+    Preset {
+        name: format!("paper/{name}"),
+        group: "paper".to_owned(),
+        title: title(text),
+        toml: case_of_study(text),
+        files: BTreeMap::new(),
+    }
 }
 
 /// The first sentence of the comment with which a case begins.
@@ -61,36 +82,12 @@ fn title(text: &str) -> String {
     sentence.unwrap_or(&comment).trim_end_matches('.').to_owned()
 }
 
-/// A case by its name.
-///
-/// # Errors
-/// A sentence, if there is none of that name or it cannot be made.
-pub(crate) fn document(name: &str) -> Result<Document, String> {
-    let sentence = |error: CaseError| error.to_string();
-    if let Some(figure) = name.strip_prefix(PAPER) {
-        let (_, text) = figures()
-            .find(|(known, _)| *known == figure)
-            .ok_or_else(|| unknown(name))?;
-        let none = |_: &str| Err("there is no such file".to_owned());
-        return Document::new(figure, &case_of_study(text)?, none).map_err(sentence);
-    }
-    let (_, text) = cases()
-        .find(|(known, _)| *known == name)
-        .ok_or_else(|| unknown(name))?;
-    let read = |file: &str| {
-        let found = CASES.get_file(file).ok_or("there is no such file")?;
-        Ok(found.contents().to_vec())
-    };
-    Document::new(name, text, read).map_err(sentence)
-}
-
-fn unknown(name: &str) -> String {
-    format!("there is no case `{}`", truncated(name))
-}
-
 /// The case of a file of the paper: as a whole, or the base of its study. The run goes on to its end, to be seen.
-fn case_of_study(text: &str) -> Result<String, String> {
-    let mut table: Table = text.parse().map_err(|error| format!("{error}"))?;
+fn case_of_study(text: &str) -> String {
+    // What is wrong with a case is told when it is chosen.
+    let Ok(mut table) = text.parse::<Table>() else {
+        return text.to_owned();
+    };
     let mut case = match table.remove("base") {
         Some(Value::Table(base)) => base,
         _ => table,
@@ -98,5 +95,5 @@ fn case_of_study(text: &str) -> Result<String, String> {
     if let Some(Value::Table(time)) = case.get_mut("time") {
         time.remove("stop");
     }
-    Ok(case.to_string())
+    case.to_string()
 }

@@ -2,27 +2,16 @@
 
 use std::path::{Path, PathBuf};
 
-use slipfront::observe::Field;
 use slipfront_case::text::{display_path, truncated};
-use slipfront_run::fields::{FieldsData, read_fields};
+use slipfront_run::fields::read_fields;
 use slipfront_run::names::{CASE, FIELDS, MANIFEST, SERIES, SUMMARY};
 use slipfront_run::{series, summary, verify};
+use slipfront_session::{Opened, RecordedRun, is_plain_name};
 
-use crate::document::Document;
-use crate::files::{ReadableFolders, is_plain_name};
-use crate::picture::{DisplayedField, lengths};
+use crate::files::{self, ReadableFolders};
 
 /// Largest file of fields whose snapshots are shown, in bytes.
 const MAX_FIELDS: u64 = 32 << 20;
-
-/// A run that was read from its folder.
-pub(crate) struct RecordedRun {
-    pub(crate) time_star: Vec<f64>,
-    pub(crate) mu_star: Vec<f64>,
-    /// The snapshots of the run, unless they are too large, or of fewer blocks than the lattice has.
-    pub(crate) snapshots: Option<FieldsData>,
-    contact_stress_max_pa: f32,
-}
 
 /// Names of the complete runs among the results.
 pub(crate) fn folders(results: &Path) -> Vec<String> {
@@ -55,7 +44,7 @@ pub(crate) fn folder(results: &Path, name: &str, allowed: &[PathBuf]) -> Result<
 ///
 /// # Errors
 /// A sentence, if it is none, or was changed since it was written, or one of its files lies elsewhere and not where it is `allowed`.
-pub(crate) fn read(folder: &Path, allowed: &[PathBuf]) -> Result<(Document, RecordedRun), String> {
+pub(crate) fn read(folder: &Path, allowed: &[PathBuf]) -> Result<Opened, String> {
     /// Any error as its sentence.
     fn sentence(error: impl std::fmt::Display) -> String {
         error.to_string()
@@ -73,7 +62,7 @@ pub(crate) fn read(folder: &Path, allowed: &[PathBuf]) -> Result<(Document, Reco
     verify::expect_as_written(&run, |_| true).map_err(sentence)?;
     let canonical = folder.canonicalize().unwrap_or_else(|_| folder.to_owned());
     let name = canonical.file_name().unwrap_or_default().to_string_lossy();
-    let document = Document::load(&folder.join(CASE), &name, allowed).map_err(sentence)?;
+    let document = files::document(&folder.join(CASE), &name, allowed).map_err(sentence)?;
     let summary = summary::read_summary(folder).map_err(sentence)?;
     let rows = series::read_csv(&folder.join(SERIES)).map_err(sentence)?;
     let fields = folder.join(FIELDS);
@@ -92,39 +81,8 @@ pub(crate) fn read(folder: &Path, allowed: &[PathBuf]) -> Result<(Document, Reco
         mu_star: rows.iter().map(|row| row.mu_star).collect(),
         snapshots: snapshots.filter(|snapshots| snapshots.stride == 1 && !snapshots.frames.is_empty()),
     };
-    Ok((document, recorded))
-}
-
-impl RecordedRun {
-    /// The values of a recorded field in the unit in which it is shown; none if it was not recorded.
-    pub(crate) fn values(&self, index: usize, shown: DisplayedField) -> Option<Vec<f32>> {
-        let of = self.snapshots.as_ref()?;
-        let frame = of.frames.get(index)?;
-        let recorded = |field: Field| {
-            let place = of.names.iter().position(|name| *name == field)?;
-            Some(frame.values[place].clone())
-        };
-        let length = |x: Field, y: Field| {
-            let (mut x, y) = (recorded(x)?, recorded(y)?);
-            lengths(&mut x, &y);
-            Some(x)
-        };
-        match shown {
-            // It is recorded over its largest value.
-            DisplayedField::ContactStress => {
-                let mut stress = recorded(Field::ContactStress)?;
-                stress
-                    .iter_mut()
-                    .for_each(|star| *star *= self.contact_stress_max_pa);
-                Some(stress)
-            }
-            DisplayedField::Traction => recorded(Field::Traction),
-            DisplayedField::Sliding => recorded(Field::Sliding),
-            DisplayedField::Displacement => length(Field::DisplacementX, Field::DisplacementY),
-            DisplayedField::Speed => length(Field::VelocityX, Field::VelocityY),
-            DisplayedField::FirstSlip => {
-                Some(of.first_slip_time_star.iter().map(|time| *time as f32).collect())
-            }
-        }
-    }
+    Ok(Opened {
+        document,
+        recorded: Some(recorded),
+    })
 }

@@ -14,9 +14,7 @@ use slipfront_run::pictures;
 use slipfront_run::results;
 use slipfront_run::run_folder::RunFolder;
 use slipfront_run::running::Running;
-
-use crate::document::Document;
-use crate::files::is_plain_name;
+use slipfront_session::{Document, is_plain_name};
 
 /// Time from one report of the progress to the next.
 const REPORT_INTERVAL: Duration = Duration::from_millis(200);

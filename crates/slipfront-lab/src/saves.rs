@@ -8,10 +8,9 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
 use std::thread;
 
 use slipfront_case::text::display_path;
+use slipfront_session::{Document, refused, saved, saving};
 
-use crate::document::Document;
 use crate::outbox::Outbox;
-use crate::protocol::{Reply, SavingEntry};
 use crate::{replay, save};
 
 /// Most runs that are saved at once.
@@ -51,18 +50,12 @@ impl ActiveSaves {
     /// Sends all pages the list of runs that are being saved.
     fn notify_pages(&mut self) {
         for page in self.pages() {
-            page.reply(&self.reply());
+            page.reply(self.reply());
         }
     }
 
-    fn reply(&self) -> Reply<'_> {
-        let entry = |one: &ActiveSave| SavingEntry {
-            name: one.name.clone(),
-            share: one.share,
-        };
-        Reply::Saving {
-            under_way: self.under_way.iter().map(entry).collect(),
-        }
+    fn reply(&self) -> String {
+        saving(self.under_way.iter().map(|one| (&*one.name, one.share)))
     }
 }
 
@@ -84,7 +77,7 @@ impl Saves {
     pub(crate) fn add_page(&self, page: &Arc<Outbox>) {
         let mut list = self.list();
         list.pages.push(Arc::downgrade(page));
-        page.reply(&list.reply());
+        page.reply(list.reply());
     }
 
     /// Begins to save a run of a case, in a thread that holds `working`, into a folder of the results of this name.
@@ -171,18 +164,17 @@ impl Saves {
         // Not while the list is locked, since a terminal may hold up what is printed.
         (self.print)(&sentence);
         let reply = match outcome {
-            Ok(true) => Some(Reply::Saved {
-                name,
-                folder,
-                folders: out.parent().map(replay::folders).unwrap_or_default(),
-            }),
+            Ok(true) => {
+                let folders = out.parent().map(replay::folders).unwrap_or_default();
+                Some(saved(name, &folder, &folders))
+            }
             Ok(false) => None,
-            Err(_) => Some(Reply::Refused { of: "save", sentence }),
+            Err(_) => Some(refused("save", sentence)),
         };
         let mut list = self.list();
         list.under_way.retain(|one| one.name != name);
         for page in list.pages() {
-            reply.iter().for_each(|reply| page.reply(reply));
+            reply.iter().for_each(|reply| page.reply(reply.clone()));
         }
         list.notify_pages();
     }

@@ -14,9 +14,9 @@ use axum::routing::get;
 use tokio::sync::{Semaphore, watch};
 use tokio::time::timeout;
 
+use crate::host::Setting;
 use crate::opening::Start;
 use crate::saves::Saves;
-use crate::session::Setting;
 use crate::socket::{MAX_PAGES, Shared};
 use crate::start_page::StartPage;
 use crate::token::Token;
@@ -93,7 +93,7 @@ impl Laboratory {
                 allow_files: options.allow_files,
                 saves: Arc::new(Saves::new(options.print)),
                 threads: options.threads,
-                presets: presets::entries(),
+                presets: presets::all(),
             }),
             patience: options.patience,
         })

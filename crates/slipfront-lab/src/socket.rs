@@ -1,7 +1,8 @@
 //! The connection with one page.
 
+use std::rc::Rc;
 use std::sync::Arc;
-use std::sync::mpsc::{Sender, SyncSender, TrySendError, sync_channel};
+use std::sync::mpsc::{Receiver, Sender, SyncSender, TrySendError, sync_channel};
 use std::thread;
 use std::time::Duration;
 
@@ -10,14 +11,20 @@ use axum::extract::{Path, State};
 use axum::http::{HeaderMap, StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use serde_json::json;
+use slipfront_case::text::display_path;
+use slipfront_session::{Host, MAX_MESSAGE, Message as Request, hello};
 use tokio::sync::{Semaphore, watch};
 use tokio::time::{sleep, timeout};
 
+use crate::host::{PageHost, Setting};
 use crate::outbox::{Outbox, Outgoing};
-use crate::protocol::{MAX_MESSAGE, PROTOCOL, Request};
-use crate::session::{self, Setting};
+use crate::replay;
+use crate::serve;
 use crate::start_page::StartPage;
 use crate::token::{Caller, Token};
+
+/// The subprotocol of this version.
+const PROTOCOL: &str = "slipfront.lab.v2";
 
 /// Most pages at once.
 pub(crate) const MAX_PAGES: usize = 4;
@@ -102,20 +109,34 @@ fn proof_for(headers: &HeaderMap, token: &Token) -> Option<String> {
 async fn serve(mut to_page: ToPage, shared: &Shared) {
     let outbox = Arc::new(Outbox::default());
     let (requests, waiting) = sync_channel(MAX_WAITING_REQUESTS);
-    let (setting, filled, working) = (
-        Arc::clone(&shared.setting),
-        Arc::clone(&outbox),
-        shared.working.clone(),
-    );
-    let begun = thread::Builder::new().name("session".to_owned()).spawn(move || {
-        session::serve(&setting, &filled, &waiting, &working);
-    });
+    let host = PageHost {
+        setting: Arc::clone(&shared.setting),
+        outbox: Arc::clone(&outbox),
+        working: shared.working.clone(),
+    };
+    let begun = thread::Builder::new()
+        .name("session".to_owned())
+        .spawn(move || begin(host, &waiting));
     if begun.is_err() {
         let sentence = "the system refuses a thread for the simulation";
         return to_page.close(close_code::ERROR, sentence).await;
     }
     forward(&mut to_page, &outbox, &requests, shared.ends.clone()).await;
     outbox.close();
+}
+
+/// Tells a page what it can choose from, and serves it until it is gone.
+fn begin(host: PageHost, waiting: &Receiver<Request>) {
+    let (setting, outbox) = (&host.setting, Arc::clone(&host.outbox));
+    let results = &setting.results;
+    outbox.reply(hello(
+        &setting.presets,
+        &replay::folders(results),
+        &display_path(results),
+    ));
+    setting.saves.add_page(&outbox);
+    let host: Rc<dyn Host> = Rc::new(host);
+    serve::serve(&host, &outbox, waiting);
 }
 
 /// Passes on what page and session have for each other, until one of them is gone or the server ends.
@@ -146,12 +167,9 @@ async fn forward(
                 }
             }
             message = to_page.socket.recv(), if kept.is_none() => match message {
-                Some(Ok(Message::Text(text))) => match serde_json::from_str(&text) {
+                Some(Ok(Message::Text(text))) => match Request::parse(&text) {
                     Ok(request) => kept = Some(request),
-                    Err(error) => {
-                        let sentence = format!("not a request: {error}");
-                        return to_page.close(close_code::POLICY, &sentence).await;
-                    }
+                    Err(sentence) => return to_page.close(close_code::POLICY, &sentence).await,
                 },
                 Some(Ok(Message::Binary(_))) => {
                     return to_page.close(close_code::POLICY, "requests are texts").await;

@@ -254,18 +254,29 @@ fn the_address_is_not_printed_into_a_file_that_others_can_read() {
     }
 }
 
-/// The temporary folder of a killed laboratory is removed by the next one.
+/// The temporary folder of the start page of a killed laboratory is removed by the next one.
 #[test]
 fn what_a_killed_one_left_is_removed_by_the_next() {
-    let workspace = Workspace::masked();
-    let in_temporary = || std::fs::read_dir(workspace.path("temporary")).unwrap().count();
+    let desktop = Desktop::new();
+    let in_temporary = || fs::read_dir(desktop.0.path("tmp")).unwrap().count();
     for (signal, left) in [("-KILL", 1), ("-KILL", 1), ("-TERM", 0)] {
-        let (mut child, _) = open(&workspace, "lab --no-open masked.toml");
+        let (mut child, _) = start(&mut desktop.process("lab"));
+        desktop.0.wait_for("opened");
         assert_eq!(in_temporary(), 1);
         send(&child, signal);
         child.wait().unwrap();
         assert_eq!(in_temporary(), left, "{signal}");
+        desktop.0.remove("opened");
     }
+}
+
+#[test]
+fn the_files_of_a_case_are_kept_in_memory() {
+    let workspace = Workspace::masked();
+    let (child, _) = open(&workspace, "lab --no-open masked.toml");
+    assert_eq!(fs::read_dir(workspace.path("temporary")).unwrap().count(), 0);
+    send(&child, "-TERM");
+    assert_eq!(ended(child).status.code(), Some(0));
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! Static friction with and without texture over several seeds, in a thread of its own.
+//! Static friction with and without texture over several seeds.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -10,34 +10,31 @@ use slipfront_study::Sample;
 use toml::Value;
 
 use crate::document::Document;
-use crate::outbox::Outbox;
-use crate::protocol::{Estimate, RepeatedReply, Reply};
+use crate::event::{Event, EventKind, Worker};
+use crate::protocol::{Estimate, RepeatedReply};
 
 /// Confidence of the intervals.
 const CONFIDENCE: f64 = 0.95;
 
 /// Runs the case, and if it has texture the same without, with the seeds from 1 on, each to the end of its first peak. Runs without a
 /// transition have no static friction: they are counted, and neither a mean nor a change has them.
-pub(crate) fn repeat(document: &Document, seeds: u64, outbox: &Outbox, stop: &AtomicBool) {
+pub(crate) fn repeat(document: &Document, seeds: u64, worker: &dyn Worker) {
     let twin = document.has_texture().then(|| document.without_texture());
     let documents: Vec<&Document> = [document].into_iter().chain(&twin).collect();
     let mut found: Vec<Vec<Option<f64>>> = vec![Vec::new(); documents.len()];
     for seed in 1..=seeds {
         for (document, found) in documents.iter().zip(&mut found) {
-            match static_friction(document, seed, stop) {
+            match static_friction(document, seed, worker.stop()) {
                 Ok(Some(friction)) => found.push(friction),
                 Ok(None) => return,
-                Err(sentence) => {
-                    let of = "repeat";
-                    return outbox.reply(&Reply::Refused { of, sentence });
-                }
+                Err(sentence) => return worker.tell(Event(EventKind::NotRepeated(sentence))),
             }
         }
         let without = found.get(1).map_or(&[][..], Vec::as_slice);
         let pairs = found[0].iter().zip(without);
         let changes = pairs.map(|(one, other)| Some(100.0 * ((*one)? / (*other)? - 1.0)));
         let changes: Vec<Option<f64>> = changes.collect();
-        outbox.reply(&Reply::Repeated(RepeatedReply {
+        worker.tell(Event(EventKind::Repeated(RepeatedReply {
             done: seed,
             of: seeds,
             finished: seed == seeds,
@@ -45,7 +42,7 @@ pub(crate) fn repeat(document: &Document, seeds: u64, outbox: &Outbox, stop: &At
             with: estimate(&found[0]),
             without: estimate(without),
             without_transition: found.iter().flatten().filter(|found| found.is_none()).count(),
-        }));
+        })));
     }
 }
 

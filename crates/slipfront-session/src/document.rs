@@ -2,37 +2,30 @@
 
 use std::collections::BTreeMap;
 use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 
-use slipfront_case::case::{Case, Ranks};
+use slipfront_case::case::{Case, Files, FilesInMemory, Ranks};
 use slipfront_case::case_file::{CaseError, CaseFile, partners_of, parts_of};
 use slipfront_case::text::truncated;
 use toml::{Table, Value};
 
-use crate::files::{MAX_FILES, ReadableFolders, TemporaryFile, plain_name, temporary};
+use crate::names::{MAX_FILES, plain_name};
 
 /// Most blocks of a case: such that the run, its twin and the pictures stay within the memory of a small machine.
-pub(crate) const MAX_BLOCKS: usize = 1 << 19;
+pub const MAX_BLOCKS: usize = 1 << 19;
 
 /// Name of the image that holds a painted texture.
 const PAINTED: &str = "texture.png";
 
 /// A case that is edited. Copies share their files.
 #[derive(Clone, Debug)]
-pub(crate) struct Document {
+pub struct Document {
     /// Name of the case.
-    pub(crate) name: String,
+    pub name: String,
     keys: Table,
-    /// The files that the case names, by their plain names.
-    files: BTreeMap<String, Arc<TemporaryFile>>,
-}
-
-/// A file of a case, in a folder of its own.
-fn temporary_file(name: &str, contents: &[u8]) -> Result<Arc<TemporaryFile>, CaseError> {
-    let file = TemporaryFile::new(name, contents);
-    file.map(Arc::new)
-        .map_err(|error| case_error(format!("{name} cannot be written to a temporary folder: {error}")))
+    /// Contents of the files that the case names, by their plain names.
+    files: BTreeMap<String, Arc<[u8]>>,
 }
 
 /// A sentence as the error of a case.
@@ -45,7 +38,7 @@ impl Document {
     ///
     /// # Errors
     /// When it is no case, or a file cannot be read, or there is too much of it.
-    pub(crate) fn new(
+    pub fn new(
         name: &str,
         text: &str,
         read: impl Fn(&str) -> Result<Vec<u8>, String>,
@@ -80,20 +73,9 @@ impl Document {
             keys,
             files: contents
                 .into_iter()
-                .map(|(name, contents)| Ok((name.clone(), temporary_file(&name, &contents)?)))
-                .collect::<Result<_, CaseError>>()?,
+                .map(|(name, contents)| (name, contents.into()))
+                .collect(),
         })
-    }
-
-    /// The case of a file, with the files that stand in its folder or in those that are `allowed`.
-    ///
-    /// # Errors
-    /// When it is no case, a file cannot be read or lies elsewhere, or there is too much of it.
-    pub(crate) fn load(path: &Path, name: &str, allowed: &[PathBuf]) -> Result<Self, CaseError> {
-        let text = slipfront_case::case_file::read_text(path)?;
-        let folder = path.parent().unwrap_or(Path::new(""));
-        let reach = ReadableFolders::new(folder, "the case", allowed).map_err(case_error)?;
-        Self::new(name, &text, |file| reach.read(file))
     }
 
     /// The case as a text.
@@ -101,8 +83,8 @@ impl Document {
         self.keys.to_string()
     }
 
-    /// The files that the case names, by their plain names.
-    pub(crate) fn files(&self) -> &BTreeMap<String, Arc<TemporaryFile>> {
+    /// Contents of the files that the case names, by their plain names.
+    pub(crate) fn files(&self) -> &BTreeMap<String, Arc<[u8]>> {
         &self.files
     }
 
@@ -138,10 +120,7 @@ impl Document {
     ///
     /// # Errors
     /// A sentence, if a key has no place in the case.
-    pub(crate) fn with(
-        &self,
-        changes: impl IntoIterator<Item = (String, Option<Value>)>,
-    ) -> Result<Self, String> {
+    pub fn with(&self, changes: impl IntoIterator<Item = (String, Option<Value>)>) -> Result<Self, String> {
         let mut changed = self.clone();
         for (key, value) in changes {
             match value {
@@ -158,7 +137,7 @@ impl Document {
     /// A copy of the case with an image in place of its textures.
     ///
     /// # Errors
-    /// When it cannot be written, or is no case without the image either.
+    /// When it is no case without the image either.
     pub(crate) fn with_image(&self, png: &[u8], threshold: f64) -> Result<Self, CaseError> {
         let mut painted = self.without_texture();
         painted.drop_unnamed_files()?;
@@ -172,7 +151,7 @@ impl Document {
         if threshold != slipfront_case::case_file::DEFAULT_THRESHOLD {
             texture.insert("threshold".to_owned(), threshold.into());
         }
-        painted.files.insert(name.clone(), temporary_file(&name, png)?);
+        painted.files.insert(name.clone(), png.into());
         painted
             .keys
             .insert("texture".to_owned(), Value::Array(vec![texture.into()]));
@@ -210,7 +189,7 @@ impl Document {
     ///
     /// # Errors
     /// When the keys are no case that can be run, or it has more than [`MAX_BLOCKS`] blocks.
-    pub(crate) fn case(&self) -> Result<Case, CaseError> {
+    pub fn case(&self) -> Result<Case, CaseError> {
         self.build(&[])
     }
 
@@ -218,7 +197,7 @@ impl Document {
     ///
     /// # Errors
     /// When the keys are no case that can be run, or it has more than [`MAX_BLOCKS`] blocks.
-    pub(crate) fn case_to_show(&self) -> Result<Case, CaseError> {
+    pub fn case_to_show(&self) -> Result<Case, CaseError> {
         self.build(&[
             "output.fields=[\"sliding\"]",
             "output.snapshots=\"auto\"",
@@ -234,7 +213,7 @@ impl Document {
     fn build(&self, overrides: &[&str]) -> Result<Case, CaseError> {
         let overrides: Vec<String> = overrides.iter().map(|&text| text.to_owned()).collect();
         let mut file = CaseFile::parse(&self.toml(), &self.name, &overrides)?;
-        self.find_files(&mut file)?;
+        self.expect_own_files(&mut file)?;
         let [nx, ny] = file.slider.blocks.map(|count| count as usize);
         if nx.saturating_mul(ny) > MAX_BLOCKS {
             let sentence = format!(
@@ -242,24 +221,30 @@ impl Document {
             );
             return Err(file.source.error("slider.blocks", sentence));
         }
-        Case::to_run(file, &self.name, &temporary(), &mut |_| true, Ranks::ALONE)
+        let files = self.files.iter();
+        let in_memory: FilesInMemory = files
+            .map(|(name, contents)| (name.clone(), Arc::clone(contents)))
+            .collect();
+        let files = Files {
+            folder: Path::new(""),
+            in_memory: Some(&in_memory),
+        };
+        Case::to_run_with(file, &self.name, files, &mut |_| true, Ranks::ALONE)
     }
 
-    /// Names the files where they are kept; refuses one that does not belong to the case, wherever that may be: keys may come
-    /// from anybody's link.
-    fn find_files(&self, case: &mut CaseFile) -> Result<(), CaseError> {
-        let (named, source) = case.files_mut();
-        for file in named {
-            let Some(kept) = self.files.get(file.name.as_str()) else {
+    /// Refuses a file that does not belong to the case, wherever that may be: keys may come from anybody's link.
+    fn expect_own_files(&self, case: &mut CaseFile) -> Result<(), CaseError> {
+        let (mut named, source) = case.files_mut();
+        match named.find(|file| !self.files.contains_key(file.name.as_str())) {
+            Some(foreign) => {
                 let sentence = format!(
                     "{} cannot be read: it is not one of the files of the case",
-                    file.name
+                    foreign.name
                 );
-                return Err(source.error(&file.key, sentence));
-            };
-            *file.name = kept.path();
+                Err(source.error(&foreign.key, sentence))
+            }
+            None => Ok(()),
         }
-        Ok(())
     }
 }
 
@@ -422,7 +407,7 @@ mod tests {
             painted
                 .files()
                 .iter()
-                .map(|(name, file)| (name.as_str(), file.read().unwrap()))
+                .map(|(name, contents)| (name.as_str(), contents.to_vec()))
                 .eq(files)
         );
         assert_eq!(

@@ -1,24 +1,19 @@
 //! What a page asks for.
 
-use std::sync::Arc;
-
 use super::state::Session;
-use crate::background::BackgroundTask;
-use crate::files::TemporaryFile;
 use crate::history::History;
-use crate::protocol::{Reply, Request};
-use crate::repeat::repeat;
+use crate::protocol::{Message, Reply, Request};
 use crate::{base64, zip};
 
-/// Most seeds of a repetition.
-const MAX_SEEDS: u64 = 32;
-
 impl Session {
-    /// Does what a request asks for, and tells the page if it is refused.
-    pub(super) fn handle(&mut self, request: Request) {
+    /// Does what a message asks for, and tells the page if it is refused. Changes of the case are run when the session next
+    /// [works](Self::work).
+    pub fn handle(&mut self, message: Message) {
+        let Message(request) = message;
+        self.clock.disturb_slice();
         let of = request.name();
         if let Err(sentence) = self.perform(request) {
-            self.outbox.reply(&Reply::Refused { of, sentence });
+            self.host.reply(Reply::Refused { of, sentence }.json());
         }
     }
 
@@ -69,7 +64,7 @@ impl Session {
             }
             Request::Save { name } => self.save(&name),
             Request::SaveStop { name } => {
-                self.setting.saves.stop(&name);
+                self.host.stop_saving(&name);
                 Ok(())
             }
             Request::Export => self.export(),
@@ -79,57 +74,30 @@ impl Session {
                 self.pending.redraw = true;
                 Ok(())
             }
-            #[cfg(test)]
-            Request::Panic => panic!("a defect that a test asks for"),
         }
-    }
-
-    fn repeat(&mut self, seeds: u64) -> Result<(), String> {
-        self.repeating = None;
-        if seeds == 0 {
-            return Ok(());
-        }
-        if !(2..=MAX_SEEDS).contains(&seeds) {
-            return Err(format!(
-                "{seeds} seeds were asked for, where there may be 2 to {MAX_SEEDS}"
-            ));
-        }
-        self.apply_edits();
-        let (document, outbox) = (self.document()?.clone(), Arc::clone(&self.outbox));
-        let work = BackgroundTask::spawn(&self.working, move |stop| repeat(&document, seeds, &outbox, stop));
-        self.repeating = Some(work.map_err(|error| error.to_string())?);
-        Ok(())
     }
 
     fn save(&mut self, name: &str) -> Result<(), String> {
         self.apply_edits();
-        let (document, setting) = (self.document()?.clone(), &self.setting);
-        setting
-            .saves
-            .begin(document, name, &setting.results, setting.threads, &self.working)
+        self.host.save(self.document()?.clone(), name)
     }
 
     fn export(&mut self) -> Result<(), String> {
         self.apply_edits();
         let document = self.document()?;
         let toml = document.toml();
-        let read = |(name, file): (&String, &Arc<TemporaryFile>)| match file.read() {
-            Ok(contents) => Ok((name.clone(), contents)),
-            Err(error) => Err(format!(
-                "{name} cannot be read from the temporary folder any more: {error}"
-            )),
-        };
-        let files: Vec<(String, Vec<u8>)> = document.files().iter().map(read).collect::<Result<_, _>>()?;
-        let files = files
+        let files = document
+            .files()
             .iter()
-            .map(|(name, contents)| (name.as_str(), contents.as_slice()));
+            .map(|(name, contents)| (name.as_str(), &**contents));
         let all = [("case.toml", toml.as_bytes())].into_iter().chain(files.clone());
         let archive = zip::archive(all).map_err(|error| format!("the archive cannot be made: {error}"))?;
-        self.outbox.reply(&Reply::Exported {
+        let exported = Reply::Exported {
             toml: &toml,
             files: files.map(|(name, bytes)| (name, base64::encode(bytes))).collect(),
             zip: base64::encode(&archive),
-        });
+        };
+        self.host.reply(exported.json());
         Ok(())
     }
 }

@@ -1,6 +1,5 @@
 //! A field of all blocks as a picture of one byte per block.
 
-use axum::body::Bytes;
 use serde::Deserialize;
 use slipfront::Snapshot;
 use slipfront::observe::{Field, Kymograph};
@@ -65,7 +64,7 @@ impl Painter {
         scales: &Scales,
         origin: Option<&[[f32; 2]]>,
         shown: DisplayedField,
-    ) -> Bytes {
+    ) -> Vec<u8> {
         let lattice = &now.model.lattice;
         let surface = &now.model.surface;
         let n_blocks = surface.n_blocks();
@@ -131,7 +130,7 @@ impl Painter {
         shown: DisplayedField,
         values: &[f32],
         exists: Option<&[bool]>,
-    ) -> Bytes {
+    ) -> Vec<u8> {
         let [low, high] = self.scale(shown, values);
         self.number = self.number.wrapping_add(1);
         let mut bytes = Vec::with_capacity(36 + values.len());
@@ -176,7 +175,7 @@ impl Painter {
         {
             *pixel = NO_BLOCK;
         }
-        bytes.into()
+        bytes
     }
 
     /// The values of the first and the last colour.
@@ -230,7 +229,7 @@ pub(crate) fn kymograph(
     bins: &PositionBins,
     dt_star: f64,
     before_star: f64,
-) -> Option<Bytes> {
+) -> Option<Vec<u8>> {
     let rows: Vec<(f64, Vec<f32>)> = of.rows().collect();
     let (first, last) = (rows.first()?.0, rows.last()?.0);
     let mut bytes = vec![KYMOGRAPH, 0, 0, 0];
@@ -248,5 +247,5 @@ pub(crate) fn kymograph(
         }
     };
     bytes.extend(rows.iter().flat_map(|(_, shares)| shares).map(byte));
-    Some(bytes.into())
+    Some(bytes)
 }

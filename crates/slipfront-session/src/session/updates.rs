@@ -10,7 +10,7 @@ use super::state::{PendingUpdates, Session};
 use crate::live::CurvePoints;
 use crate::picture::{self, PictureFrame};
 use crate::protocol::{CaseReply, CurveReply, NumbersReply, ProbeReply, Reply, Units};
-use crate::{controls, find, shapes};
+use crate::{controls, search, shapes};
 
 /// Time between two reports of numbers, two of the block under the pointer, and two kymographs.
 const NUMBERS_INTERVAL: Duration = Duration::from_millis(200);
@@ -29,7 +29,7 @@ impl Session {
             name: &document.name,
             toml: document.toml(),
             files: document.files().keys().map(String::as_str).collect(),
-            link_files_bytes: document.files().values().map(|file| file.bytes).sum(),
+            link_files_bytes: document.files().values().map(|file| file.len()).sum(),
             blocks: [lattice.nx, lattice.ny],
             block_size_m: scales.block_size,
             n_blocks: case.model.n_blocks(),
@@ -62,13 +62,13 @@ impl Session {
             mesh: case.deciding_length(),
             warnings: case.warnings(),
             too_coarse: case.too_coarse(),
-            search: find::limits(case),
+            search: search::limits(case),
         };
-        self.outbox.reply(&Reply::Case(Box::new(reply)));
+        self.host.reply(Reply::Case(Box::new(reply)).json());
     }
 
     /// Sends what is new: curve, picture, numbers.
-    pub(super) fn send_updates(&mut self) {
+    pub(super) fn send_updates(&mut self, now: Duration) {
         let ends = self.count_ended();
         let Some(live) = &mut self.live else { return };
         let ended_now = ends != self.pending.ends_sent;
@@ -85,7 +85,7 @@ impl Session {
             || !points.time_star.is_empty()
             || !twin.time_star.is_empty()
         {
-            self.outbox.reply(&Reply::Curve(CurveReply {
+            let curve = Reply::Curve(CurveReply {
                 leg: live.leg,
                 from_rest: self.pending.from_rest,
                 t: points.time_star,
@@ -96,7 +96,8 @@ impl Session {
                 twin_mu: twin.mu_star,
                 recorded_t: recorded.map(|recorded| &*recorded.time_star),
                 recorded_mu: recorded.map(|recorded| &*recorded.mu_star),
-            }));
+            });
+            self.host.reply(curve.json());
         }
         let redraw = self.pending.redraw;
         self.pending = PendingUpdates {
@@ -104,13 +105,14 @@ impl Session {
             ..PendingUpdates::default()
         };
         self.send_picture();
-        if redraw | ended_now | is_due(&mut self.clock.numbers, NUMBERS_INTERVAL) {
-            self.send_numbers();
+        if redraw | ended_now | is_due(&mut self.clock.numbers, NUMBERS_INTERVAL, now) {
+            self.send_numbers(now);
         }
-        if redraw | ended_now | is_due(&mut self.clock.probe, PROBE_INTERVAL) {
+        if redraw | ended_now | is_due(&mut self.clock.probe, PROBE_INTERVAL, now) {
             self.send_probe();
         }
-        if self.view.kymograph && (redraw | ended_now | is_due(&mut self.clock.kymograph, KYMOGRAPH_INTERVAL))
+        if self.view.kymograph
+            && (redraw | ended_now | is_due(&mut self.clock.kymograph, KYMOGRAPH_INTERVAL, now))
         {
             self.send_kymograph();
         }
@@ -152,11 +154,11 @@ impl Session {
                     .paint_snapshot(&now, &case.scales, live.origin(), shown)
             }
         };
-        self.outbox.picture(picture);
+        self.host.picture(picture);
     }
 
     /// Sends the numbers of the run at this instant.
-    fn send_numbers(&mut self) {
+    fn send_numbers(&mut self, at: Duration) {
         let Some(live) = &self.live else { return };
         let now = live.running().snapshot();
         let (peak, twin_peak) = (live.peak(), self.twin.as_ref().and_then(|twin| twin.live.peak()));
@@ -183,11 +185,11 @@ impl Session {
             change_percent,
             kinetic: live.running().kinetic().map(|kinetic| kinetic.mu_star),
             instants: instants.collect(),
-            steps_per_second: self.clock.steps_per_second(),
+            steps_per_second: self.clock.steps_per_second(at),
             ended: live.ended.is_some(),
             summary,
         };
-        self.outbox.reply(&Reply::Numbers(Box::new(reply)));
+        self.host.reply(Reply::Numbers(Box::new(reply)).json());
     }
 
     /// Sends what the block under the pointer has.
@@ -208,7 +210,7 @@ impl Session {
         let unit = case.scales.displacement();
         let [x, y] = block.displacement.map(|u| u * unit);
         let first_slip = now.first_slip_time_star()[b];
-        self.outbox.reply(&Reply::Probe(ProbeReply {
+        let probe = Reply::Probe(ProbeReply {
             block: [i, j],
             exists: case.model.slider().exists(b),
             textured,
@@ -224,7 +226,8 @@ impl Session {
             displacement_m: (x + from_x).hypot(y + from_y),
             speed_m_s: block.velocity[0].hypot(block.velocity[1]) * case.scales.speed(),
             first_slip_star: (!first_slip.is_nan()).then_some(first_slip),
-        }));
+        });
+        self.host.reply(probe.json());
     }
 
     /// Sends the kymograph of this leg.
@@ -238,7 +241,7 @@ impl Session {
             case.time_plan.dt_star,
             live.time_before_star(),
         ) {
-            self.outbox.kymograph(picture);
+            self.host.kymograph(picture);
         }
     }
 }

@@ -1,35 +1,18 @@
 //! What a session holds.
 
-use std::path::PathBuf;
+use std::rc::Rc;
 use std::sync::Arc;
-use std::sync::mpsc::Sender;
 use std::time::Duration;
 
 use super::clock::Clock;
-use crate::background::BackgroundTask;
 use crate::document::Document;
-use crate::find::{SEARCH_TIME, TextureSearch};
+use crate::event::Tried;
 use crate::history::History;
+use crate::host::{Host, Task};
 use crate::live::LiveRun;
-use crate::opening::Start;
-use crate::outbox::Outbox;
 use crate::picture::Painter;
-use crate::protocol::PresetEntry;
-use crate::replay::RecordedRun;
-use crate::saves::Saves;
+use crate::recorded::RecordedRun;
 use crate::view::View;
-
-/// What all sessions share.
-pub(crate) struct Setting {
-    pub(crate) start: Start,
-    /// The folder of results.
-    pub(crate) results: PathBuf,
-    /// Other folders in which files that cases name may lie.
-    pub(crate) allow_files: Vec<PathBuf>,
-    pub(crate) saves: Arc<Saves>,
-    pub(crate) threads: usize,
-    pub(crate) presets: Vec<PresetEntry>,
-}
 
 /// The run of the slider without texture, and the text of its case.
 pub(super) struct Twin {
@@ -44,11 +27,26 @@ pub(super) struct PendingEdit {
     pub(super) of: &'static str,
 }
 
-pub(super) struct Session {
-    pub(super) setting: Arc<Setting>,
-    /// Held by every thread as long as it works.
-    pub(super) working: Sender<()>,
-    pub(super) outbox: Arc<Outbox>,
+/// A search for a better texture, and then the comparison of what it has found with what is painted.
+pub(super) struct TextureSearch {
+    /// The gesture of the page that asked for it.
+    pub(super) gesture: u64,
+    /// When it was looked after first.
+    pub(super) began: Option<Duration>,
+    /// How long it has taken up to now.
+    pub(super) elapsed: Duration,
+    /// Whether the page has asked to end it.
+    pub(super) is_enough: bool,
+    /// The search, or the comparison.
+    pub(super) task: Box<dyn Task>,
+    pub(super) tried: Tried,
+    /// What is compared; none while textures are tried.
+    pub(super) compared: Option<Arc<Vec<bool>>>,
+}
+
+/// A case that is edited, its run, and what a page is shown of them.
+pub struct Session {
+    pub(super) host: Rc<dyn Host>,
     pub(super) view: View,
     pub(super) history: Option<History>,
     pub(super) edited: Option<PendingEdit>,
@@ -60,12 +58,13 @@ pub(super) struct Session {
     pub(super) shown_recording: Option<usize>,
     pub(super) painter: Painter,
     pub(super) clock: Clock,
+    /// Whether steps are being taken that are due before the next picture.
+    pub(super) is_stepping: bool,
     /// Steps that were asked for one by one.
     pub(super) single_steps: u64,
-    pub(super) repeating: Option<BackgroundTask>,
-    /// The search for a better texture, and how long one may look.
+    /// Static friction over seeds, while it is being found.
+    pub(super) repeating: Option<Box<dyn Task>>,
     pub(super) search: Option<TextureSearch>,
-    pub(super) search_time: Duration,
     /// What is to be sent with the next points.
     pub(super) pending: PendingUpdates,
 }
@@ -83,11 +82,10 @@ pub(super) struct PendingUpdates {
 }
 
 impl Session {
-    pub(super) fn new(setting: &Arc<Setting>, outbox: &Arc<Outbox>, working: &Sender<()>) -> Self {
+    /// A session in which no case is open yet.
+    pub fn new(host: Rc<dyn Host>) -> Self {
         Self {
-            setting: Arc::clone(setting),
-            working: working.clone(),
-            outbox: Arc::clone(outbox),
+            host,
             view: View::default(),
             history: None,
             edited: None,
@@ -97,11 +95,11 @@ impl Session {
             recorded: None,
             shown_recording: None,
             painter: Painter::default(),
-            clock: Clock::new(),
+            clock: Clock::default(),
+            is_stepping: false,
             single_steps: 0,
             repeating: None,
             search: None,
-            search_time: SEARCH_TIME,
             pending: PendingUpdates::default(),
         }
     }
@@ -123,5 +121,10 @@ impl Session {
         edited
             .or(self.history.as_ref().map(History::present))
             .ok_or_else(|| "no case is open yet".to_owned())
+    }
+
+    /// Whether there are edits that are not run yet.
+    pub(super) fn has_edits(&self) -> bool {
+        self.edited.is_some() || self.mask.is_some()
     }
 }

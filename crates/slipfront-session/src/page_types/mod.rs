@@ -1,4 +1,4 @@
-//! Holds `types/protocol.d.ts`, which the page is written against, against `protocol.rs`: requests as the page may send them are read,
+//! Holds `types/protocol.d.ts` of slipfront-lab, which the page is written against, against `protocol.rs`: requests as the page may send them are read,
 //! and replies have the keys and values that the page expects.
 
 mod declarations;
@@ -17,10 +17,10 @@ use crate::protocol::{
     CaseReply, CurveReply, Estimate, FindingReply, FoundOutcome, FoundReply, NumbersReply, PeakReply,
     PresetEntry, ProbeReply, RepeatedReply, Reply, Request, SavingEntry, Units,
 };
-use crate::{find, shapes};
+use crate::{search, shapes};
 
 fn declarations() -> Declarations {
-    Declarations::parse(include_str!("../../types/protocol.d.ts"))
+    Declarations::parse(include_str!("../../../slipfront-lab/types/protocol.d.ts"))
 }
 
 /// The names in marks at the end of an error of serde: what it expected.
@@ -83,11 +83,9 @@ fn check_request(declared: &Declarations, request: &str, place: &[&str], interfa
 fn requests_are_read_as_the_page_sends_them() {
     let declared = declarations();
     let requests = &declared.interface("Requests").keys;
-    let mut known = expected(serde_json::from_value::<Request>(
+    let known = expected(serde_json::from_value::<Request>(
         json!({ "do": "no such request" }),
     ));
-    // A defect that another test asks for.
-    known.remove("panic");
     assert_eq!(known, names(requests.keys()));
     for (name, key) in requests {
         let Type::Named(interface) = &key.holds else {
@@ -108,15 +106,15 @@ fn each_reply(check: &mut impl FnMut(&Reply)) {
     let document = Document::new("case", text, |_| Err("there is no file".to_owned())).unwrap();
     let case = document.case().unwrap();
     let presets = [PresetEntry {
-        name: "circle".to_owned(),
+        name: "circle",
         group: "cases",
-        title: "A circle".to_owned(),
+        title: "A circle",
     }];
     check(&Reply::Hello {
         version: "1",
         presets: &presets,
-        folders: vec!["run".to_owned()],
-        results: "results".to_owned(),
+        folders: &["run".to_owned()],
+        results: "results",
         max_blocks: 1,
         controls: &CONTROLS,
     });
@@ -153,7 +151,7 @@ fn each_reply(check: &mut impl FnMut(&Reply)) {
             mesh: "the block decides".to_owned(),
             warnings: vec!["a warning".to_owned()],
             too_coarse,
-            search: find::limits(&case),
+            search: search::limits(&case),
         })));
     }
     for recorded in [None, Some(&[0.5][..])] {
@@ -266,14 +264,14 @@ fn each_reply(check: &mut impl FnMut(&Reply)) {
     }
     check(&Reply::Saving {
         under_way: vec![SavingEntry {
-            name: "run".to_owned(),
+            name: "run",
             share: 0.5,
         }],
     });
     check(&Reply::Saved {
         name: "run",
-        folder: "results/run".to_owned(),
-        folders: vec!["run".to_owned()],
+        folder: "results/run",
+        folders: &["run".to_owned()],
     });
     check(&Reply::Exported {
         toml: "",
@@ -364,5 +362,8 @@ fn fields_have_the_numbers_of_pictures() {
         })
         .collect();
     let list = format!("FIELDS = [{}];", names.join(", "));
-    assert!(include_str!("../../web/frames.js").contains(&list), "{list}");
+    assert!(
+        include_str!("../../../slipfront-lab/web/frames.js").contains(&list),
+        "{list}"
+    );
 }

@@ -4,7 +4,7 @@ use std::collections::HashSet;
 use std::sync::Arc;
 
 use crate::document::Document;
-use crate::files::MAX_FILES;
+use crate::names::MAX_FILES;
 
 /// Most steps back.
 const MAX_STEPS: usize = 100;
@@ -57,7 +57,7 @@ impl History {
         let mut counted = HashSet::new();
         let files = all().flat_map(|document| document.files().values());
         let files = files.filter(|file| counted.insert(Arc::as_ptr(file)));
-        let in_files: usize = files.map(|file| file.bytes).sum();
+        let in_files: usize = files.map(|file| file.len()).sum();
         in_files + all().map(Document::bytes_of_keys).sum::<usize>()
     }
 
@@ -92,41 +92,39 @@ impl History {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::Weak;
+
     use super::*;
 
-    /// How many files of the cases there are on the disk, out of some.
-    fn count_of_files(of: &[String]) -> usize {
-        let folder = crate::files::temporary();
-        of.iter().filter(|path| folder.join(path).exists()).count()
+    /// How many files of the cases are kept, out of some.
+    fn count_of_kept(of: &[Weak<[u8]>]) -> usize {
+        of.iter().filter(|file| file.strong_count() > 0).count()
     }
 
     #[test]
-    fn images_of_many_changes_are_bounded_together_and_files_that_no_case_names_are_removed() {
+    fn images_of_many_changes_are_bounded_together_and_files_that_no_case_names_are_dropped() {
         const IMAGE: usize = 3_900_000;
         let text = "slider.blocks = [2, 2]\nfriction.mu_static_field = 'mu.csv'\n";
         let first = Document::new("case", text, |_| Ok(b"1,1\n1,1\n".to_vec())).unwrap();
         let mut history = History::new(first);
-        let mut paths = Vec::new();
+        let mut images = Vec::new();
         for number in 0..60 {
             let image = history.present().with_image(&vec![number; IMAGE], 0.5).unwrap();
-            paths.extend(image.files().get("texture.png").map(|file| file.path()));
+            images.extend(image.files().get("texture.png").map(Arc::downgrade));
             history.change(image, u64::from(number));
             assert!(history.bytes() <= MAX_BYTES);
-            // What it does not depend on is not written again.
-            let shared = history.present().files()["mu.csv"].path();
-            assert_eq!(shared, history.before[0].files()["mu.csv"].path());
+            // What it does not depend on is not copied.
+            let shared = &history.present().files()["mu.csv"];
+            assert!(Arc::ptr_eq(shared, &history.before[0].files()["mu.csv"]));
         }
-        assert_eq!(paths.len(), 60);
-        assert_eq!(count_of_files(&paths), MAX_BYTES / IMAGE);
+        assert_eq!(images.len(), 60);
+        assert_eq!(count_of_kept(&images), MAX_BYTES / IMAGE);
         while history.undo() {}
         assert_eq!(history.undone.len(), MAX_BYTES / IMAGE - 1);
         while history.redo() {}
-        assert_eq!(
-            history.present().files()["texture.png"].read().unwrap(),
-            [59; IMAGE]
-        );
+        assert_eq!(*history.present().files()["texture.png"], [59; IMAGE]);
         drop(history);
-        assert_eq!(count_of_files(&paths), 0);
+        assert_eq!(count_of_kept(&images), 0);
     }
 
     /// Cases without files have keys, which may be as long as a message.

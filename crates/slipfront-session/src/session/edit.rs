@@ -8,47 +8,17 @@ use toml::Value;
 
 use super::brush::stroke;
 use super::state::{PendingEdit, Session};
+use crate::base64;
 use crate::document::Document;
-use crate::files::is_plain_name;
 use crate::history::History;
-use crate::opening::StartSource;
+use crate::host::Opened;
+use crate::names::is_plain_name;
 use crate::protocol::{Reply, Source};
-use crate::replay::{self, RecordedRun};
 use crate::view::AfterChange;
-use crate::{base64, presets};
 
 impl Session {
     pub(super) fn open(&mut self, source: Source) -> Result<(), String> {
-        let mut recorded = None;
-        let document = if let Some(name) = source.preset {
-            presets::document(&name)?
-        } else if let Some(name) = source.folder {
-            let (document, found) = self.recorded_run(&name)?;
-            recorded = Some(found);
-            document
-        } else if let Some(toml) = source.toml {
-            let name = source.name.filter(|name| is_plain_name(name));
-            let name = name.unwrap_or_else(|| "case".to_owned());
-            let mut files = BTreeMap::new();
-            for (name, text) in source.files {
-                files.insert(name, base64::decode(&text)?);
-            }
-            let read = |name: &str| {
-                let missing = || "it is not one of the files that came with the case".to_owned();
-                files.get(name).cloned().ok_or_else(missing)
-            };
-            Document::new(&name, &toml, read).map_err(|error| error.to_string())?
-        } else {
-            match &self.setting.start.0 {
-                StartSource::Preset => presets::opening()?,
-                StartSource::Case(document) => Document::clone(document),
-                StartSource::Folder(path) => {
-                    let (document, found) = replay::read(path, &self.setting.allow_files)?;
-                    recorded = Some(found);
-                    document
-                }
-            }
-        };
+        let Opened { document, recorded } = self.opened(source)?;
         // Whether it can be run is known before anything is given up.
         let case = Arc::new(document.case_to_show().map_err(|error| error.to_string())?);
         self.give_up_search();
@@ -64,15 +34,34 @@ impl Session {
             .and_then(|recorded| recorded.snapshots.as_ref())
         {
             let times_star = snapshots.frames.iter().map(|frame| frame.time_star).collect();
-            self.outbox.reply(&Reply::Recorded { times_star });
+            self.host.reply(Reply::Recorded { times_star }.json());
         }
         Ok(())
     }
 
-    /// The run of this name among the results.
-    fn recorded_run(&self, name: &str) -> Result<(Document, RecordedRun), String> {
-        let allowed = &self.setting.allow_files;
-        replay::read(&replay::folder(&self.setting.results, name, allowed)?, allowed)
+    /// The case that a source names.
+    fn opened(&self, source: Source) -> Result<Opened, String> {
+        if let Some(name) = source.preset {
+            return self.host.preset(&name).map(Opened::from);
+        }
+        if let Some(name) = source.folder {
+            return self.host.recorded_run(&name);
+        }
+        let Some(toml) = source.toml else {
+            return self.host.opening();
+        };
+        let name = source.name.filter(|name| is_plain_name(name));
+        let name = name.unwrap_or_else(|| "case".to_owned());
+        let mut files = BTreeMap::new();
+        for (name, text) in source.files {
+            files.insert(name, base64::decode(&text)?);
+        }
+        let read = |name: &str| {
+            let missing = || "it is not one of the files that came with the case".to_owned();
+            files.get(name).cloned().ok_or_else(missing)
+        };
+        let document = Document::new(&name, &toml, read);
+        document.map(Opened::from).map_err(|error| error.to_string())
     }
 
     pub(super) fn set(
@@ -174,10 +163,10 @@ impl Session {
                 });
                 self.apply_edited_document();
             }
-            Err(sentence) => self.outbox.reply(&Reply::Refused {
-                of: "paint",
-                sentence,
-            }),
+            Err(sentence) => {
+                let of = "paint";
+                self.host.reply(Reply::Refused { of, sentence }.json());
+            }
         }
     }
 
@@ -192,7 +181,7 @@ impl Session {
             return;
         };
         if let Err(sentence) = self.run_edited(document, gesture) {
-            self.outbox.reply(&Reply::Refused { of, sentence });
+            self.host.reply(Reply::Refused { of, sentence }.json());
             // The page shows what it has asked for, which is not what holds.
             self.send_case("refused");
         }

@@ -30,7 +30,7 @@ impl Session {
             _ => false,
         };
         if !went_on {
-            self.live = Some(LiveRun::from_rest(case, self.setting.threads));
+            self.live = Some(LiveRun::from_rest(case, self.host.threads()));
             self.painter.reset_scale();
             self.clock.due = 0.0;
         }
@@ -67,7 +67,7 @@ impl Session {
             _ => false,
         };
         if !went_on {
-            let live = LiveRun::from_rest(&case, self.setting.threads);
+            let live = LiveRun::from_rest(&case, self.host.threads());
             self.twin = Some(Twin { live, toml });
             self.pending.twin_reset = true;
         }

@@ -1,4 +1,4 @@
-//! What the page and the server say to each other: requests as JSON, replies as JSON, pictures as bytes.
+//! What the page and a session say to each other: requests as JSON, replies as JSON, pictures as bytes.
 //!
 //! The page is written against the types of `types/protocol.d.ts`, which a test holds against those here.
 
@@ -11,11 +11,25 @@ use crate::controls::{Control, ControlValue};
 use crate::shapes::ShapeOutlines;
 use crate::view::ViewChange;
 
-/// The subprotocol of this version.
-pub(crate) const PROTOCOL: &str = "slipfront.lab.v2";
-
 /// Longest message of the page, in bytes: an image of the texture.
-pub(crate) const MAX_MESSAGE: usize = 8 << 20;
+pub const MAX_MESSAGE: usize = 8 << 20;
+
+/// A message of the page: what it asks for.
+#[derive(Debug)]
+pub struct Message(pub(crate) Request);
+
+impl Message {
+    /// Reads a message, which is JSON.
+    ///
+    /// # Errors
+    /// A sentence, if it is no request.
+    pub fn parse(text: &str) -> Result<Self, String> {
+        let request = serde_json::from_str(text);
+        request
+            .map(Self)
+            .map_err(|error| format!("not a request: {error}"))
+    }
+}
 
 /// What the page asks for.
 #[derive(Debug, Deserialize)]
@@ -62,9 +76,6 @@ pub(crate) enum Request {
     Export,
     /// A recorded snapshot in place of the live field, or the live field again.
     FramesOf { index: Option<usize> },
-    /// A defect of the simulation.
-    #[cfg(test)]
-    Panic,
 }
 
 impl Request {
@@ -87,8 +98,6 @@ impl Request {
             Self::SaveStop { .. } => "save_stop",
             Self::Export => "export",
             Self::FramesOf { .. } => "frames_of",
-            #[cfg(test)]
-            Self::Panic => "panic",
         }
     }
 }
@@ -107,15 +116,15 @@ pub(crate) struct Source {
     pub(crate) files: BTreeMap<String, String>,
 }
 
-/// What the server tells.
+/// What a session tells.
 #[derive(Debug, Serialize)]
 #[serde(tag = "is", rename_all = "snake_case")]
 pub(crate) enum Reply<'a> {
     Hello {
         version: &'static str,
-        presets: &'a [PresetEntry],
-        folders: Vec<String>,
-        results: String,
+        presets: &'a [PresetEntry<'a>],
+        folders: &'a [String],
+        results: &'a str,
         max_blocks: usize,
         controls: &'static [Control],
     },
@@ -128,12 +137,12 @@ pub(crate) enum Reply<'a> {
     Found(FoundReply),
     /// All runs that are being saved, from whichever page.
     Saving {
-        under_way: Vec<SavingEntry>,
+        under_way: Vec<SavingEntry<'a>>,
     },
     Saved {
         name: &'a str,
-        folder: String,
-        folders: Vec<String>,
+        folder: &'a str,
+        folders: &'a [String],
     },
     Exported {
         toml: &'a str,
@@ -155,19 +164,27 @@ pub(crate) enum Reply<'a> {
     },
 }
 
+impl Reply<'_> {
+    /// The reply as JSON.
+    pub(crate) fn json(&self) -> String {
+        // Texts and finite or infinite numbers, which become null: nothing that JSON does not have.
+        serde_json::to_string(self).expect("replies are JSON")
+    }
+}
+
 /// A run that is being saved, and the share of it that is done.
 #[derive(Debug, Serialize)]
-pub(crate) struct SavingEntry {
-    pub(crate) name: String,
+pub(crate) struct SavingEntry<'a> {
+    pub(crate) name: &'a str,
     pub(crate) share: f64,
 }
 
 /// A case to choose.
 #[derive(Debug, Serialize)]
-pub(crate) struct PresetEntry {
-    pub(crate) name: String,
-    pub(crate) group: &'static str,
-    pub(crate) title: String,
+pub(crate) struct PresetEntry<'a> {
+    pub(crate) name: &'a str,
+    pub(crate) group: &'a str,
+    pub(crate) title: &'a str,
 }
 
 /// The case that is shown.

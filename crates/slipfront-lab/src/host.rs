@@ -1,0 +1,88 @@
+//! The host of a session: its page behind a connection, threads and folders of this machine.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::mpsc::Sender;
+
+use slipfront_session::{Document, Host, Opened, Presets, Task, Work};
+
+use crate::background::BackgroundTask;
+use crate::opening::{Start, StartSource};
+use crate::outbox::Outbox;
+use crate::saves::Saves;
+use crate::{presets, replay};
+
+/// What all sessions share.
+pub(crate) struct Setting {
+    pub(crate) start: Start,
+    /// The folder of results.
+    pub(crate) results: PathBuf,
+    /// Other folders in which files that cases name may lie.
+    pub(crate) allow_files: Vec<PathBuf>,
+    pub(crate) saves: Arc<Saves>,
+    pub(crate) threads: usize,
+    pub(crate) presets: Presets,
+}
+
+/// The host of the session of one page.
+pub(crate) struct PageHost {
+    pub(crate) setting: Arc<Setting>,
+    pub(crate) outbox: Arc<Outbox>,
+    /// Held by every thread as long as it works.
+    pub(crate) working: Sender<()>,
+}
+
+impl Host for PageHost {
+    fn reply(&self, reply: String) {
+        self.outbox.reply(reply);
+    }
+
+    fn picture(&self, picture: Vec<u8>) {
+        self.outbox.picture(picture.into());
+    }
+
+    fn kymograph(&self, kymograph: Vec<u8>) {
+        self.outbox.kymograph(kymograph.into());
+    }
+
+    fn is_full(&self) -> bool {
+        self.outbox.is_full()
+    }
+
+    fn threads(&self) -> usize {
+        self.setting.threads
+    }
+
+    fn opening(&self) -> Result<Opened, String> {
+        match &self.setting.start.0 {
+            StartSource::Preset => presets::opening(&self.setting.presets).map(Opened::from),
+            StartSource::Case(document) => Ok(Document::clone(document).into()),
+            StartSource::Folder(path) => replay::read(path, &self.setting.allow_files),
+        }
+    }
+
+    fn preset(&self, name: &str) -> Result<Document, String> {
+        self.setting.presets.document(name)
+    }
+
+    fn recorded_run(&self, name: &str) -> Result<Opened, String> {
+        let allowed = &self.setting.allow_files;
+        replay::read(&replay::folder(&self.setting.results, name, allowed)?, allowed)
+    }
+
+    fn begin(&self, work: Work) -> Result<Box<dyn Task>, String> {
+        let task = BackgroundTask::begin(work, self.setting.threads, &self.working)?;
+        Ok(Box::new(task))
+    }
+
+    fn save(&self, document: Document, name: &str) -> Result<(), String> {
+        let setting = &self.setting;
+        setting
+            .saves
+            .begin(document, name, &setting.results, setting.threads, &self.working)
+    }
+
+    fn stop_saving(&self, name: &str) {
+        self.setting.saves.stop(name);
+    }
+}

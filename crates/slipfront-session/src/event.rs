@@ -1,0 +1,70 @@
+//! What work beside a session tells it, and who does such work.
+
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+use std::time::Duration;
+
+use crate::protocol::{Estimate, RepeatedReply};
+
+/// Whoever does work beside a session: it passes on what the work tells, and tells it the time and whether it shall stop.
+pub trait Worker {
+    /// Passes on what the work tells.
+    fn tell(&self, event: Event);
+
+    /// Whether the work shall stop: nobody listens to it any more.
+    fn stop(&self) -> &AtomicBool;
+
+    /// The time since some instant.
+    fn now(&self) -> Duration;
+}
+
+/// What work beside a session tells it.
+#[derive(Debug)]
+pub struct Event(pub(crate) EventKind);
+
+impl Event {
+    /// Tells that the work has ended by a defect of its own.
+    pub fn lost() -> Self {
+        Self(EventKind::Lost)
+    }
+}
+
+#[derive(Debug)]
+pub(crate) enum EventKind {
+    /// Static friction over the seeds up to now.
+    Repeated(RepeatedReply),
+    /// Why static friction over seeds cannot be found.
+    NotRepeated(String),
+    /// How far a search is.
+    Tried(Tried),
+    /// The best texture of a search, or why there is none.
+    Searched(Result<Arc<Vec<bool>>, String>),
+    /// The best texture beside what is painted, or why they cannot be compared.
+    Compared(Result<Comparison, String>),
+    /// The work has ended by a defect of its own.
+    Lost,
+}
+
+/// How far a search is.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Tried {
+    /// Textures that were tried.
+    pub(crate) textures: usize,
+    /// Change of static friction by the best of them, %.
+    pub(crate) best_percent: Option<f64>,
+    /// Its textured blocks.
+    pub(crate) best_texture: Option<Arc<Vec<bool>>>,
+}
+
+/// What was found beside what is painted, on surfaces that the search has not seen.
+#[derive(Debug)]
+pub(crate) struct Comparison {
+    /// Number of the surfaces.
+    pub(crate) surfaces: usize,
+    /// Change of static friction against the slider without texture, %.
+    pub(crate) best: Option<Estimate>,
+    /// What is painted changes of it, %; none where nothing is painted.
+    pub(crate) painted: Option<Estimate>,
+    /// Whether what was found is better than what is painted, by more than the scatter over surfaces.
+    pub(crate) is_better: bool,
+}

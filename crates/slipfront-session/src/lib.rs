@@ -1,0 +1,45 @@
+//! A session of the laboratory: a case that is edited, its run beside that of the slider without texture, and what is shown of them.
+//!
+//! ```text
+//! page -- Message -->  Session  -- replies as JSON, pictures as bytes --> Host
+//!                      work(now) -> when to call again
+//! ```
+//!
+//! A session knows no file, thread, socket or clock. Its [`Host`] tells it the time, hands it the messages of the page, passes on what it
+//! says, and does what it may not: work beside it, saving, folders.
+
+mod base64;
+mod controls;
+mod document;
+mod event;
+mod history;
+mod host;
+mod live;
+mod names;
+#[cfg(test)]
+mod page_types;
+mod picture;
+mod presets;
+mod protocol;
+mod recorded;
+mod repeat;
+mod replies;
+mod search;
+mod session;
+mod shapes;
+#[cfg(test)]
+mod testing;
+mod view;
+mod work;
+mod zip;
+
+pub use document::{Document, MAX_BLOCKS};
+pub use event::{Event, Worker};
+pub use host::{Host, Opened, Task};
+pub use names::{MAX_FILES, is_plain_name};
+pub use presets::{Preset, Presets};
+pub use protocol::{MAX_MESSAGE, Message};
+pub use recorded::RecordedRun;
+pub use replies::{failed, hello, refused, saved, saving};
+pub use session::Session;
+pub use work::Work;

@@ -1,0 +1,57 @@
+//! Cases to choose from, which the host of a session has.
+
+use std::collections::BTreeMap;
+
+use slipfront_case::text::truncated;
+
+use crate::document::Document;
+use crate::protocol::PresetEntry;
+
+/// A case to choose.
+#[derive(Clone, Debug)]
+pub struct Preset {
+    /// The name by which it is chosen.
+    pub name: String,
+    /// The group of the list in which it stands: `cases` or `paper`.
+    pub group: String,
+    /// What it shows, in a sentence.
+    pub title: String,
+    /// The case as a text.
+    pub toml: String,
+    /// Contents of the files that the text names.
+    pub files: BTreeMap<String, Vec<u8>>,
+}
+
+/// Cases to choose from, in the order of the list.
+#[derive(Clone, Debug, Default)]
+pub struct Presets(pub Vec<Preset>);
+
+impl Presets {
+    /// Gives a case by its name.
+    ///
+    /// # Errors
+    /// A sentence, if there is none of that name or it cannot be made.
+    pub fn document(&self, name: &str) -> Result<Document, String> {
+        let found = self.0.iter().find(|preset| preset.name == name);
+        let preset = found.ok_or_else(|| format!("there is no case `{}`", truncated(name)))?;
+        let read = |file: &str| {
+            let contents = preset.files.get(file).cloned();
+            contents.ok_or_else(|| "there is no such file".to_owned())
+        };
+        // Of a name in a group, such as `paper/fig03`, the case has the last part.
+        let plain = name.rsplit('/').next().unwrap_or(name);
+        Document::new(plain, &preset.toml, read).map_err(|error| error.to_string())
+    }
+
+    /// The list that the page shows.
+    pub(crate) fn entries(&self) -> Vec<PresetEntry<'_>> {
+        fn entry(preset: &Preset) -> PresetEntry<'_> {
+            PresetEntry {
+                name: &preset.name,
+                group: &preset.group,
+                title: &preset.title,
+            }
+        }
+        self.0.iter().map(entry).collect()
+    }
+}

@@ -1,0 +1,52 @@
+//! A run that was recorded before: its curve and its snapshots.
+
+use slipfront::observe::Field;
+use slipfront_run::fields::FieldsData;
+
+use crate::picture::{DisplayedField, lengths};
+
+/// A run that was recorded before.
+pub struct RecordedRun {
+    /// t* of the drive at the points of its curve.
+    pub time_star: Vec<f64>,
+    /// mu* at the points of its curve.
+    pub mu_star: Vec<f64>,
+    /// The snapshots of the run, unless they are too large, or of fewer blocks than the lattice has.
+    pub snapshots: Option<FieldsData>,
+    /// Largest contact stress, Pa, by which the recorded one is divided; NaN if it is not known.
+    pub contact_stress_max_pa: f32,
+}
+
+impl RecordedRun {
+    /// The values of a recorded field in the unit in which it is shown; none if it was not recorded.
+    pub(crate) fn values(&self, index: usize, shown: DisplayedField) -> Option<Vec<f32>> {
+        let of = self.snapshots.as_ref()?;
+        let frame = of.frames.get(index)?;
+        let recorded = |field: Field| {
+            let place = of.names.iter().position(|name| *name == field)?;
+            Some(frame.values[place].clone())
+        };
+        let length = |x: Field, y: Field| {
+            let (mut x, y) = (recorded(x)?, recorded(y)?);
+            lengths(&mut x, &y);
+            Some(x)
+        };
+        match shown {
+            // It is recorded over its largest value.
+            DisplayedField::ContactStress => {
+                let mut stress = recorded(Field::ContactStress)?;
+                stress
+                    .iter_mut()
+                    .for_each(|star| *star *= self.contact_stress_max_pa);
+                Some(stress)
+            }
+            DisplayedField::Traction => recorded(Field::Traction),
+            DisplayedField::Sliding => recorded(Field::Sliding),
+            DisplayedField::Displacement => length(Field::DisplacementX, Field::DisplacementY),
+            DisplayedField::Speed => length(Field::VelocityX, Field::VelocityY),
+            DisplayedField::FirstSlip => {
+                Some(of.first_slip_time_star.iter().map(|time| *time as f32).collect())
+            }
+        }
+    }
+}

@@ -1,0 +1,218 @@
+//! A search for a texture with less static friction than the painted one.
+
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+use std::time::Duration;
+
+use slipfront_case::case::Case;
+use slipfront_case::number_format::count;
+use slipfront_run::pictures::texture_file::textured_blocks;
+use slipfront_study::design::{Bounds, Design, Limits, Quantity, Wish};
+use slipfront_study::{Sample, StudyError};
+
+use crate::document::Document;
+use crate::event::{Comparison, Event, EventKind, Tried, Worker};
+use crate::protocol::{Estimate, SearchLimits};
+
+/// How long a search looks for textures.
+pub(crate) const SEARCH_TIME: Duration = Duration::from_secs(60);
+
+/// Most runs of a search: as many as a design has unless its file says otherwise.
+const MAX_RUNS: usize = 10_000;
+
+/// Smallest width of a feature and of a gap, in blocks: what a laser writes has round corners, which three blocks can show.
+const WIDTH: usize = 3;
+
+/// Largest coverage, %, where nothing is painted.
+const PLAIN_PERCENT: f64 = 10.0;
+
+/// Largest coverage, %, where less than this is painted.
+const LEAST_PERCENT: f64 = 3.0;
+
+/// Most block-steps in which a texture is tried, for each thread: with some 1e8 of them in a second, there is time for several hundred
+/// textures in a minute, and for a comparison of the best in less than another one.
+const MAX_BLOCK_STEPS: f64 = 1e7;
+
+/// Surfaces on which what was found is compared with what is painted; the search has seen none of them.
+const FRESH_SURFACES: u64 = 8;
+
+/// Confidence of the intervals.
+const CONFIDENCE: f64 = 0.95;
+
+/// What a search for a case may find.
+pub(crate) fn limits(case: &Case) -> SearchLimits {
+    let painted = case.texture.meshed_percent;
+    SearchLimits {
+        width_blocks: WIDTH,
+        most_percent: if painted > 0.0 {
+            painted.max(LEAST_PERCENT)
+        } else {
+            PLAIN_PERCENT
+        },
+    }
+}
+
+/// Refuses a case whose slider is too narrow or too large for a search on so many threads.
+///
+/// # Errors
+/// A sentence that tells which.
+pub(crate) fn check(case: &Case, threads: usize) -> Result<(), String> {
+    let (design, _) = design(case).map_err(|error| error.to_string())?;
+    refuse_narrow(&design)?;
+    refuse_large(&design, threads)
+}
+
+/// The design that a search is for, and the painted blocks, if there are any.
+fn design(case: &Case) -> Result<(Design, Option<Vec<bool>>), StudyError> {
+    let allowed = limits(case);
+    let limits = Limits {
+        coverage: [0.0, allowed.most_percent],
+        feature: allowed.width_blocks,
+        gap: allowed.width_blocks,
+        ..Limits::default()
+    };
+    let wish = Wish::Least(Quantity::StaticFriction);
+    let mut design = Design::new(std::slice::from_ref(case), wish, false, limits, 1)?;
+    let painted = Some(textured_blocks(case)).filter(|painted| painted.contains(&true));
+    if let Some(painted) = &painted {
+        design.begin_with("painted".to_owned(), painted.clone());
+    }
+    Ok((design, painted))
+}
+
+/// Refuses a slider that has no room for a feature.
+fn refuse_narrow(design: &Design) -> Result<(), String> {
+    let [nx, ny] = design.size();
+    if nx.min(ny) < WIDTH {
+        return Err(format!(
+            "the slider has {nx} x {ny} blocks, where the narrowest feature that is searched for has {WIDTH}: take more blocks"
+        ));
+    }
+    Ok(())
+}
+
+/// Refuses a slider of which so many threads can try too few textures in the time.
+fn refuse_large(design: &Design, threads: usize) -> Result<(), String> {
+    let needed = design
+        .block_steps_per_texture()
+        .map_err(|error| error.to_string())?;
+    let most = MAX_BLOCK_STEPS * threads as f64;
+    if needed > most {
+        return Err(format!(
+            "the slider is too large for a search of a minute: to try a texture takes {needed:.2e} block-steps, where at most {most:.0e} \
+             leave time for some hundred textures on {}; take fewer blocks or a faster drive, or `slipfront design`, which takes as \
+             long as it needs",
+            count(threads, "thread")
+        ));
+    }
+    Ok(())
+}
+
+/// The design that a search for a document is for, and the painted blocks, if there are any.
+fn design_for(document: &Document) -> Result<(Design, Option<Vec<bool>>), String> {
+    let case = document.case_to_show().map_err(|error| error.to_string())?;
+    design(&case).map_err(|error| error.to_string())
+}
+
+/// Searches for [`SEARCH_TIME`]; the best texture.
+///
+/// # Errors
+/// A sentence, if there is none, or the search was stopped.
+pub(crate) fn search(document: &Document, worker: &dyn Worker) -> Result<Arc<Vec<bool>>, String> {
+    let began = worker.now();
+    let (design, _) = design_for(document)?;
+    let bounds = Bounds {
+        runs: MAX_RUNS,
+        share_of_time: &|| (worker.now() - began).as_secs_f64() / SEARCH_TIME.as_secs_f64(),
+        stop: worker.stop(),
+    };
+    let searched = design.search(&bounds, &mut |now| {
+        worker.tell(Event(EventKind::Tried(Tried {
+            textures: now.textures,
+            best_percent: now.best_texture.is_some().then_some(-now.best),
+            best_texture: now.best_texture.clone(),
+        })));
+    });
+    let best = searched.map_err(|error| match error {
+        StudyError::NoDesign => format!(
+            "no texture whose features and gaps are {WIDTH} blocks wide covers as little of this slider as a search may: paint more, or \
+             take more blocks"
+        ),
+        error => error.to_string(),
+    })?;
+    best.into_iter().next().ok_or_else(|| NOTHING_TRIED.to_owned())
+}
+
+/// Why a search that was stopped at once has found nothing.
+pub(crate) const NOTHING_TRIED: &str =
+    "the search was stopped before it had tried a texture: nothing has changed";
+
+/// Compares what was found with what is painted, on surfaces that the search has not seen.
+///
+/// # Errors
+/// A sentence, if runs cannot be made, or the comparison was stopped.
+pub(crate) fn compare(
+    document: &Document,
+    best: &Arc<Vec<bool>>,
+    stop: &AtomicBool,
+) -> Result<Comparison, String> {
+    let (design, painted) = design_for(document)?;
+    let both: Vec<Arc<Vec<bool>>> = [Arc::clone(best)]
+        .into_iter()
+        .chain(painted.map(Arc::new))
+        .collect();
+    let losses = design.losses_on_fresh(&both, FRESH_SURFACES, stop);
+    let losses = losses.map_err(|error| error.to_string())?;
+    let changes = |losses: &Vec<f64>| {
+        let changes: Vec<f64> = losses.iter().map(|loss| 100.0 * (loss - 1.0)).collect();
+        estimate(&changes)
+    };
+    // Without texture nothing changes.
+    let gain = |(surface, loss): (usize, &f64)| losses.get(1).map_or(1.0, |painted| painted[surface]) - loss;
+    let gain: Vec<f64> = losses[0].iter().enumerate().map(gain).collect();
+    Ok(Comparison {
+        surfaces: losses[0].len(),
+        best: changes(&losses[0]),
+        painted: losses.get(1).and_then(changes),
+        is_better: estimate(&gain).is_some_and(|gain| gain.mean - gain.half_width.unwrap_or(0.0) > 0.0),
+    })
+}
+
+fn estimate(values: &[f64]) -> Option<Estimate> {
+    let sample = Sample::of(values, CONFIDENCE)?;
+    Some(Estimate {
+        mean: sample.mean,
+        half_width: sample.half_width,
+    })
+}
+
+/// The strips of blocks of a texture along x: the row, the first column, and the one after the last.
+pub(crate) fn strips(texture: &[bool], columns: usize) -> Vec<[usize; 3]> {
+    let mut strips: Vec<[usize; 3]> = Vec::new();
+    for block in (0..texture.len()).filter(|&block| texture[block]) {
+        let [row, column] = [block / columns, block % columns];
+        match strips.last_mut() {
+            Some([last_row, _, end]) if *last_row == row && *end == column => *end += 1,
+            _ => strips.push([row, column, column + 1]),
+        }
+    }
+    strips
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn strips_hold_every_block_of_a_texture() {
+        let texture: Vec<bool> = "##.# .... ...# #..#"
+            .bytes()
+            .filter(|byte| *byte != b' ')
+            .map(|byte| byte == b'#')
+            .collect();
+        assert_eq!(
+            strips(&texture, 4),
+            [[0, 0, 2], [0, 3, 4], [2, 3, 4], [3, 0, 1], [3, 3, 4]]
+        );
+    }
+}

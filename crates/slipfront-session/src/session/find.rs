@@ -1,0 +1,195 @@
+//! A search for a texture that is better than the painted one: begun, followed, and made the texture of the case.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use super::clock::is_due;
+use super::state::{Session, TextureSearch};
+use crate::event::{Comparison, EventKind, Tried};
+use crate::protocol::{FindingReply, FoundOutcome, FoundReply, Reply};
+use crate::search::{self, NOTHING_TRIED, SEARCH_TIME};
+use crate::work::Work;
+
+/// Time between two reports of how far a search is.
+const REPORT_INTERVAL: Duration = Duration::from_millis(250);
+
+/// What came of a search: the best texture, and it beside what is painted; or why there is none.
+type Outcome = Result<(Arc<Vec<bool>>, Comparison), String>;
+
+impl Session {
+    /// Begins to search for a texture that is better than the painted one.
+    pub(super) fn find(&mut self, gesture: u64) -> Result<(), String> {
+        if self.search.is_some() {
+            return Err(
+                "a texture is being searched for already: wait until that is done, or stop it".to_owned(),
+            );
+        }
+        self.apply_edits();
+        let document = self.document()?.clone();
+        let case = document.case_to_show().map_err(|error| error.to_string())?;
+        search::check(&case, self.host.threads())?;
+        self.search = Some(TextureSearch {
+            gesture,
+            began: None,
+            elapsed: Duration::ZERO,
+            is_enough: false,
+            task: self.host.begin(Work::search(document))?,
+            tried: Tried::default(),
+            compared: None,
+        });
+        self.send_search();
+        Ok(())
+    }
+
+    /// Ends the search, if there is one; its best so far counts.
+    pub(super) fn stop_search(&mut self) {
+        if let Some(search) = &mut self.search {
+            search.is_enough = true;
+        }
+    }
+
+    /// Gives up the search, if there is one, since its case is no longer the present one.
+    pub(super) fn give_up_search(&mut self) {
+        if self.search.take().is_some() {
+            let given_up = FoundReply::without(FoundOutcome::GivenUp);
+            self.host.reply(Reply::Found(given_up).json());
+        }
+    }
+
+    /// Tells how far the search is, or what came of it: a texture that is better takes the place of the painted one.
+    pub(super) fn follow_search(&mut self, now: Duration) {
+        let Some(search) = &mut self.search else { return };
+        let began = *search.began.get_or_insert(now);
+        search.elapsed = now.saturating_sub(began);
+        let Some(outcome) = self.outcome_of_search() else {
+            if is_due(&mut self.clock.search, REPORT_INTERVAL, now) && !self.host.is_full() {
+                self.send_search();
+            }
+            return;
+        };
+        let ended = self.search.take();
+        let found = outcome.and_then(|(best, comparison)| {
+            let (gesture, textures) = ended.map_or((0, 0), |search| (search.gesture, search.tried.textures));
+            if comparison.is_better {
+                self.adopt(&best, gesture)?;
+            }
+            Ok(FoundReply::of(&comparison, textures))
+        });
+        let found = found.unwrap_or_else(|sentence| {
+            let of = "find";
+            self.host.reply(Reply::Refused { of, sentence }.json());
+            FoundReply::without(FoundOutcome::Failed)
+        });
+        self.host.reply(Reply::Found(found).json());
+    }
+
+    /// What came of the search, once it has ended. What it has found is compared first, once textures are no longer tried.
+    fn outcome_of_search(&mut self) -> Option<Outcome> {
+        let search = self.search.as_mut()?;
+        let mut searched = None;
+        while let Some(event) = search.task.next_event() {
+            match event.0 {
+                EventKind::Tried(tried) => search.note(tried),
+                EventKind::Searched(found) => searched = Some(found),
+                EventKind::Compared(Ok(comparison)) => {
+                    let best = search.compared.take()?;
+                    return Some(Ok((best, comparison)));
+                }
+                EventKind::Compared(Err(sentence)) => return Some(Err(sentence)),
+                _ => {
+                    let sentence = "the search failed by a defect of its own, which the terminal tells";
+                    return Some(Err(sentence.to_owned()));
+                }
+            }
+        }
+        if search.compared.is_some() {
+            return None;
+        }
+        if searched.is_none() && (search.is_enough || search.elapsed >= SEARCH_TIME) {
+            let best = search.tried.best_texture.clone();
+            searched = Some(best.ok_or_else(|| NOTHING_TRIED.to_owned()));
+        }
+        self.compare(searched?).err().map(Err)
+    }
+
+    /// Ends the search, and begins to compare what it has found with what is painted.
+    ///
+    /// # Errors
+    /// A sentence, if it has found nothing, or the system refuses.
+    fn compare(&mut self, searched: Result<Arc<Vec<bool>>, String>) -> Result<(), String> {
+        let best = searched?;
+        let document = self.document()?.clone();
+        let task = self.host.begin(Work::compare(document, Arc::clone(&best)))?;
+        if let Some(search) = &mut self.search {
+            search.task = task;
+            search.compared = Some(best);
+        }
+        self.send_search();
+        Ok(())
+    }
+
+    /// Makes what was found the texture of the case, and runs it.
+    fn adopt(&mut self, texture: &[bool], gesture: u64) -> Result<(), String> {
+        let columns = self.columns();
+        let document = self.document()?.with_mask(texture, columns);
+        self.run_edited(document.map_err(|error| error.to_string())?, gesture)
+    }
+
+    fn send_search(&self) {
+        if let Some(search) = &self.search {
+            let finding = search.progress(self.columns());
+            self.host.reply(Reply::Finding(finding).json());
+        }
+    }
+}
+
+impl TextureSearch {
+    /// Notes how far the search is.
+    fn note(&mut self, tried: Tried) {
+        self.tried.textures = tried.textures;
+        if tried.best_texture.is_some() {
+            self.tried = tried;
+        }
+    }
+
+    /// How far the search is; `columns` is the number of blocks along x.
+    fn progress(&self, columns: usize) -> FindingReply {
+        let texture = self.tried.best_texture.as_deref();
+        FindingReply {
+            seconds: self.elapsed.min(SEARCH_TIME).as_secs_f64(),
+            of_seconds: SEARCH_TIME.as_secs_f64(),
+            textures: self.tried.textures,
+            compares: self.compared.is_some(),
+            best_percent: self.tried.best_percent,
+            best_texture: texture.map_or(Vec::new(), |texture| search::strips(texture, columns)),
+        }
+    }
+}
+
+impl FoundReply {
+    /// A search that has compared nothing.
+    fn without(outcome: FoundOutcome) -> Self {
+        Self {
+            outcome,
+            textures: 0,
+            surfaces: 0,
+            best: None,
+            painted: None,
+        }
+    }
+
+    /// What came of a search that has tried so many textures.
+    fn of(comparison: &Comparison, textures: usize) -> Self {
+        Self {
+            outcome: if comparison.is_better {
+                FoundOutcome::Replaced
+            } else {
+                FoundOutcome::Kept
+            },
+            textures,
+            surfaces: comparison.surfaces,
+            best: comparison.best,
+            painted: comparison.painted,
+        }
+    }
+}

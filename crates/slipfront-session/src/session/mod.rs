@@ -1,0 +1,17 @@
+//! A session: a case that is edited, and its run, which goes on only while somebody looks.
+
+mod brush;
+mod clock;
+mod edit;
+mod find;
+mod repeat;
+mod requests;
+mod start;
+mod state;
+mod steps;
+#[cfg(test)]
+mod tests;
+mod updates;
+mod work;
+
+pub use state::Session;

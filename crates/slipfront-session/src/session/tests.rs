@@ -1,0 +1,341 @@
+//! Sessions without threads: what is due when, and the search for a better texture.
+
+use std::time::Duration;
+
+use serde_json::{Value, json};
+
+use crate::testing::Tried;
+
+const PLAIN: &str = "slider.blocks = [20, 20]\ndrive.v_star = 0.1\n";
+
+/// Looks after work more often than any needs that is done.
+const MOST_LOOKS: usize = 10_000;
+
+impl Tried {
+    /// Begins a search, and gives the sentence if it is refused.
+    fn find(&mut self) -> Option<String> {
+        let replies = self.ask(json!({ "do": "find", "gesture": 1000 }));
+        let refused = replies.iter().find(|reply| reply["is"] == "refused");
+        refused.map(|reply| reply["sentence"].as_str().unwrap().to_owned())
+    }
+
+    /// Works up to the first reply of this name for which this holds; all replies until then.
+    fn follow(&mut self, is: &str, holds: impl Fn(&Value) -> bool) -> Vec<Value> {
+        let mut all = Vec::new();
+        for _ in 0..MOST_LOOKS {
+            self.now += Duration::from_millis(250);
+            self.work();
+            all.extend(self.replies());
+            if let Some(end) = all.iter().position(|reply| reply["is"] == is && holds(reply)) {
+                all.truncate(end + 1);
+                return all;
+            }
+        }
+        panic!("no {is} came after {all:?}");
+    }
+
+    /// What came of the search.
+    fn found(&mut self) -> Value {
+        self.follow("found", |_| true).pop().unwrap()
+    }
+
+    fn textured(&self) -> Vec<bool> {
+        let live = self.session.live.as_ref().unwrap();
+        live.case().model.surface.textured.clone()
+    }
+
+    fn step(&self) -> u64 {
+        self.session.live.as_ref().unwrap().step()
+    }
+}
+
+fn number(value: &Value) -> f64 {
+    value.as_f64().unwrap_or_else(|| panic!("{value} is no number"))
+}
+
+/// How many replies have this name.
+fn count(replies: &[Value], is: &str) -> usize {
+    replies.iter().filter(|reply| reply["is"] == is).count()
+}
+
+#[test]
+fn nothing_is_due_before_a_case_is_open_and_while_nothing_moves() {
+    let mut tried = Tried::new();
+    assert_eq!(tried.work(), None);
+    tried.ask(json!({ "do": "open", "source": { "toml": PLAIN } }));
+    assert!(tried.work().is_some());
+    tried.ask(json!({ "do": "view", "paused": true }));
+    tried.work();
+    assert_eq!(tried.work(), None);
+    let step = tried.step();
+    tried.ask(json!({ "do": "step", "count": 7 }));
+    assert_eq!((tried.step(), tried.work()), (step + 7, None));
+    // A page that nobody looks at does not go on, and one that reads nothing gets nothing.
+    tried.ask(json!({ "do": "view", "paused": false, "visible": false }));
+    assert_eq!(tried.work(), None);
+    tried.host.is_full.set(true);
+    tried.ask(json!({ "do": "view", "visible": true }));
+    let due = tried.work().unwrap();
+    assert!(due > tried.now, "it asks at once, for ever");
+    assert_eq!(tried.step(), step + 7);
+}
+
+/// With 25 t* in a second and steps of 1 ms, a second has 25 / dt* steps, and a picture comes every 1/60 s.
+#[test]
+fn steps_keep_the_pace_and_pictures_their_rate() {
+    let mut tried = Tried::new();
+    tried.ask(json!({ "do": "open", "source": { "toml": PLAIN } }));
+    let dt_star = tried.session.live.as_ref().unwrap().case().time_plan.dt_star;
+    let began = Duration::from_secs(1);
+    tried.work_until(began, Duration::from_millis(1));
+    let (before, pictures) = (tried.step(), tried.host.pictures.take().len());
+    assert!(pictures > 30, "{pictures}");
+    tried.work_until(2 * began, Duration::from_millis(1));
+    let steps = tried.step() - before;
+    // A picture's worth more or less at either end.
+    let due = 25.0 / dt_star;
+    assert!(
+        (steps as f64 - due).abs() <= due / 30.0,
+        "{steps} steps in a second, where {due} are due"
+    );
+    let pictures = tried.host.pictures.take().len();
+    assert!((55..=60).contains(&pictures), "{pictures}");
+}
+
+/// A page that asks for the case at every movement of the pointer has it made once for each picture.
+#[test]
+fn changes_between_two_pictures_are_run_once() {
+    let mut tried = Tried::new();
+    tried.ask(json!({ "do": "view", "pace": 0 }));
+    tried.ask(json!({ "do": "open", "source": { "toml": PLAIN } }));
+    let mut replies = Vec::new();
+    for number in 0..100 {
+        tried.now += Duration::from_millis(1);
+        let keys = json!({ "friction.r_star": 0.3 + 0.001 * f64::from(number) });
+        replies.extend(tried.ask(json!({ "do": "set", "keys": keys, "gesture": 1 })));
+    }
+    let cases = count(&replies, "case");
+    assert!((5..=8).contains(&cases), "{cases} cases in 100 ms");
+    tried.work_until(tried.now + Duration::from_millis(40), Duration::from_millis(1));
+    let live = tried.session.live.as_ref().unwrap();
+    assert_eq!(live.case().groups.r_star, 0.3 + 0.001 * 99.0);
+    // One gesture is undone at once.
+    tried.ask(json!({ "do": "undo" }));
+    let live = tried.session.live.as_ref().unwrap();
+    assert_eq!(live.case().groups.r_star, 0.5);
+}
+
+/// The end of the run and of its twin is told once each, and then nothing is due.
+#[test]
+fn a_run_and_its_twin_go_to_their_ends() {
+    let mut tried = Tried::new();
+    tried.ask(json!({ "do": "view", "pace": 0 }));
+    let toml = "slider.blocks = [6, 6]\ndrive.v_star = 0.1\n[[texture]]\nshape = 'cavity'\ncoverage = 10\n";
+    tried.ask(json!({ "do": "open", "source": { "toml": toml } }));
+    tried.work_until(Duration::from_secs(600), Duration::from_millis(2));
+    assert_eq!(tried.work(), None);
+    let replies = tried.replies();
+    let last = replies
+        .iter()
+        .rev()
+        .find(|reply| reply["is"] == "numbers")
+        .unwrap();
+    assert_eq!(last["ended"], true);
+    assert!(!last["summary"].is_null());
+    assert!(number(&last["change_percent"]) < 0.0, "{last}");
+}
+
+#[test]
+fn static_friction_over_seeds_is_told_seed_by_seed_and_saving_is_left_to_the_host() {
+    let mut tried = Tried::with(PLAIN);
+    let mut replies = tried.ask(json!({ "do": "repeat", "seeds": 3 }));
+    replies.extend(tried.follow("repeated", |reply| reply["finished"] == true));
+    let done: Vec<_> = replies
+        .iter()
+        .filter(|reply| reply["is"] == "repeated")
+        .map(|reply| reply["done"].as_u64().unwrap())
+        .collect();
+    assert_eq!(done, [1, 2, 3]);
+    assert!(tried.session.repeating.is_none());
+    for seeds in [1, 33] {
+        let said = tried.ask(json!({ "do": "repeat", "seeds": seeds }));
+        assert_eq!(count(&said, "refused"), 1, "{said:?}");
+    }
+    tried.ask(json!({ "do": "save", "name": "run" }));
+    tried.ask(json!({ "do": "save_stop", "name": "run" }));
+    assert_eq!(
+        (tried.host.saves.take(), tried.host.stops.take()),
+        (vec!["run".to_owned()], vec!["run".to_owned()])
+    );
+}
+
+#[test]
+fn the_best_of_a_stopped_search_replaces_the_painted_texture_and_undo_brings_it_back() {
+    let mut tried = Tried::with(PLAIN);
+    // A single row: no texture that a search would try.
+    tried.ask(json!({
+        "do": "paint", "points": [[0.5, 0.5], [4.5, 0.5]], "radius": 0.3, "textured": true, "gesture": 1,
+    }));
+    let painted = tried.textured();
+    assert_eq!(painted.iter().filter(|block| **block).count(), 5);
+    assert_eq!(tried.find(), None);
+    let said = tried.find().unwrap();
+    assert!(said.contains("is being searched for already"), "{said}");
+    let seen = tried.follow("finding", |reply| !reply["best_percent"].is_null());
+    let seen = seen.last().unwrap();
+    assert!(
+        number(&seen["textures"]) > 0.0 && number(&seen["best_percent"]) < 0.0,
+        "{seen}"
+    );
+    assert!(!seen["best_texture"].as_array().unwrap().is_empty());
+    assert_eq!(tried.textured(), painted);
+    let mut replies = tried.ask(json!({ "do": "find_stop" }));
+    replies.extend(tried.follow("found", |_| true));
+    assert!(
+        replies
+            .iter()
+            .any(|reply| reply["is"] == "finding" && reply["compares"] == true)
+    );
+    let found = replies.last().unwrap();
+    let case = replies.iter().find(|reply| reply["is"] == "case").unwrap();
+    assert_eq!(found["outcome"], "replaced", "{found}");
+    assert!(
+        number(&found["best"]["mean"]) < number(&found["painted"]["mean"]),
+        "{found}"
+    );
+    assert!(
+        number(&found["best"]["half_width"]) > 0.0 && found["surfaces"] == 8,
+        "{found}"
+    );
+    assert_eq!((&case["is"], &case["why"]), (&json!("case"), &json!("change")));
+    // 3 % are the most where less is painted.
+    let percent = number(&case["texture_percent"]);
+    assert!(percent > 1.25 && percent <= 3.0, "{percent}");
+    assert_ne!(tried.textured(), painted);
+    tried.ask(json!({ "do": "undo" }));
+    assert_eq!(tried.textured(), painted);
+    tried.ask(json!({ "do": "redo" }));
+    assert_ne!(tried.textured(), painted);
+}
+
+/// The search of this host tells its best and does not end.
+#[test]
+fn a_search_ends_when_its_time_is_over() {
+    let mut tried = Tried::with(PLAIN);
+    tried.host.is_endless.set(true);
+    assert_eq!(tried.find(), None);
+    let began = tried.now;
+    let found = tried.found();
+    assert!(tried.now - began >= Duration::from_secs(60));
+    // Nothing was painted.
+    assert!(
+        found["outcome"] == "replaced" && found["painted"].is_null(),
+        "{found}"
+    );
+    assert!(number(&found["best"]["mean"]) < -1.0, "{found}");
+}
+
+/// There is room for one square in three places, of which a first search finds the best.
+#[test]
+fn a_texture_that_nothing_is_better_than_stays() {
+    let mut tried = Tried::with("slider.blocks = [9, 3]\ndrive.v_star = 0.1\n");
+    tried.ask(json!({
+        "do": "paint", "points": [[1.5, 1.5]], "radius": 1.6, "textured": true, "gesture": 1,
+    }));
+    assert_eq!(tried.textured().iter().filter(|block| **block).count(), 9);
+    assert_eq!(tried.find(), None);
+    tried.found();
+    let best = tried.textured();
+    assert_eq!(tried.find(), None);
+    let replies = tried.follow("found", |_| true);
+    assert!(replies.iter().all(|reply| reply["is"] != "case"), "{replies:?}");
+    let found = replies.last().unwrap();
+    assert_eq!(found["outcome"], "kept", "{found}");
+    assert_eq!(found["best"], found["painted"]);
+    assert_eq!(tried.textured(), best);
+}
+
+#[test]
+fn a_change_by_hand_gives_a_search_up() {
+    for change in [
+        json!({ "do": "set", "keys": { "friction.r_star": 0.4 }, "gesture": 2 }),
+        json!({ "do": "paint", "points": [[5, 5]], "radius": 2, "textured": true, "gesture": 3 }),
+        json!({ "do": "undo" }),
+        json!({ "do": "open", "source": { "toml": PLAIN } }),
+    ] {
+        let mut tried = Tried::with(PLAIN);
+        tried.ask(json!({ "do": "set", "keys": { "friction.r_star": 0.3 }, "gesture": 1 }));
+        assert_eq!(tried.find(), None);
+        // What changes nothing leaves it alone.
+        for other in [
+            json!({ "do": "rest" }),
+            json!({ "do": "redo" }),
+            json!({ "do": "view", "pace": 3 }),
+        ] {
+            tried.ask(other);
+        }
+        tried.ask(json!({ "do": "set", "keys": { "friction.r_star": -1 }, "gesture": 1 }));
+        assert!(tried.session.search.is_some());
+        let replies = tried.ask(change.clone());
+        assert!(tried.session.search.is_none(), "{change}");
+        let found = replies.iter().find(|reply| reply["is"] == "found").unwrap();
+        assert_eq!(found["outcome"], "given_up");
+    }
+}
+
+#[test]
+fn what_cannot_be_searched_for_is_refused_with_the_reason() {
+    let said = Tried::new().find().unwrap();
+    assert_eq!(said, "no case is open yet");
+    for (case, reason) in [
+        (
+            "slider.blocks = [1, 2]",
+            "the slider has 1 x 2 blocks, where the narrowest feature",
+        ),
+        (
+            "slider.blocks = [700, 700]\ndrive.v_star = 0.001",
+            "the slider is too large for a search of a minute: to try a texture takes",
+        ),
+    ] {
+        let said = Tried::with(case).find().unwrap();
+        assert!(said.starts_with(reason), "{said}");
+    }
+    // Known once it is looked for.
+    let mut narrow = Tried::with("slider.blocks = [7, 3]\ndrive.v_star = 0.1");
+    assert_eq!(narrow.find(), None);
+    let replies = narrow.follow("found", |found| found["outcome"] == "failed");
+    let refused = replies.iter().find(|reply| reply["is"] == "refused").unwrap();
+    let said = refused["sentence"].as_str().unwrap();
+    assert!(
+        said.starts_with("no texture whose features and gaps are 3 blocks wide covers as little"),
+        "{said}"
+    );
+}
+
+/// A search that is stopped before it has told anything.
+#[test]
+fn a_search_that_is_stopped_at_once_has_found_nothing() {
+    let mut tried = Tried::with(PLAIN);
+    tried
+        .session
+        .handle(crate::protocol::Message::parse(&json!({ "do": "find", "gesture": 5 }).to_string()).unwrap());
+    let search = tried.session.search.as_mut().unwrap();
+    // What it has told up to now is not looked at.
+    search.task = Box::new(Silent);
+    let replies = tried.ask(json!({ "do": "find_stop" }));
+    let refused = replies.iter().find(|reply| reply["is"] == "refused").unwrap();
+    assert_eq!(
+        refused["sentence"],
+        "the search was stopped before it had tried a texture: nothing has changed"
+    );
+    assert_eq!(count(&replies, "found"), 1);
+}
+
+/// Work that tells nothing.
+struct Silent;
+
+impl crate::host::Task for Silent {
+    fn next_event(&mut self) -> Option<crate::event::Event> {
+        None
+    }
+}

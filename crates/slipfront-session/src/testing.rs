@@ -1,0 +1,185 @@
+//! A session for tests, without threads: its host does work when it is begun, and its clock goes on when it is told to.
+
+use std::cell::{Cell, RefCell};
+use std::collections::VecDeque;
+use std::rc::Rc;
+use std::sync::atomic::AtomicBool;
+use std::time::Duration;
+
+use serde_json::Value;
+
+use crate::document::Document;
+use crate::event::{Event, EventKind, Worker};
+use crate::host::{Host, Opened, Task};
+use crate::presets::Presets;
+use crate::protocol::Message;
+use crate::session::Session;
+use crate::work::Work;
+
+/// Time that passes for work between two looks at its clock.
+const TICK: Duration = Duration::from_secs(3);
+
+/// What a session has said and asked its host for.
+#[derive(Default)]
+pub(crate) struct TestHost {
+    replies: RefCell<Vec<String>>,
+    pub(crate) pictures: RefCell<Vec<Vec<u8>>>,
+    pub(crate) is_full: Cell<bool>,
+    /// Names of the runs that were to be saved, and of those that were to be stopped.
+    pub(crate) saves: RefCell<Vec<String>>,
+    pub(crate) stops: RefCell<Vec<String>>,
+    /// Whether searches go on for ever.
+    pub(crate) is_endless: Cell<bool>,
+}
+
+impl Host for TestHost {
+    fn reply(&self, reply: String) {
+        self.replies.borrow_mut().push(reply);
+    }
+
+    fn picture(&self, picture: Vec<u8>) {
+        self.pictures.borrow_mut().push(picture);
+    }
+
+    fn kymograph(&self, kymograph: Vec<u8>) {
+        self.pictures.borrow_mut().push(kymograph);
+    }
+
+    fn is_full(&self) -> bool {
+        self.is_full.get()
+    }
+
+    fn threads(&self) -> usize {
+        1
+    }
+
+    fn opening(&self) -> Result<Opened, String> {
+        let document = Document::new("opening", "", |_| Err("there is none".to_owned()));
+        document.map(Opened::from).map_err(|error| error.to_string())
+    }
+
+    fn preset(&self, name: &str) -> Result<Document, String> {
+        Presets::default().document(name)
+    }
+
+    fn recorded_run(&self, name: &str) -> Result<Opened, String> {
+        Err(format!("{name} is not here"))
+    }
+
+    fn begin(&self, work: Work) -> Result<Box<dyn Task>, String> {
+        let worker = TestWorker::default();
+        work.run(&worker);
+        let mut events = worker.events.into_inner();
+        if self.is_endless.get() {
+            events.retain(|event| !matches!(event.0, EventKind::Searched(_)));
+        }
+        Ok(Box::new(TestTask {
+            events,
+            is_next: false,
+        }))
+    }
+
+    fn save(&self, _document: Document, name: &str) -> Result<(), String> {
+        self.saves.borrow_mut().push(name.to_owned());
+        Ok(())
+    }
+
+    fn stop_saving(&self, name: &str) {
+        self.stops.borrow_mut().push(name.to_owned());
+    }
+}
+
+/// Work that was done, of which every other look shows the next thing.
+struct TestTask {
+    events: VecDeque<Event>,
+    is_next: bool,
+}
+
+impl Task for TestTask {
+    fn next_event(&mut self) -> Option<Event> {
+        self.is_next = !self.is_next;
+        self.is_next.then(|| self.events.pop_front()).flatten()
+    }
+}
+
+#[derive(Default)]
+struct TestWorker {
+    events: RefCell<VecDeque<Event>>,
+    stop: AtomicBool,
+    now: Cell<Duration>,
+}
+
+impl Worker for TestWorker {
+    fn tell(&self, event: Event) {
+        self.events.borrow_mut().push_back(event);
+    }
+
+    fn stop(&self) -> &AtomicBool {
+        &self.stop
+    }
+
+    fn now(&self) -> Duration {
+        self.now.set(self.now.get() + TICK);
+        self.now.get()
+    }
+}
+
+/// A session of a test, and the time by its clock.
+pub(crate) struct Tried {
+    pub(crate) session: Session,
+    pub(crate) host: Rc<TestHost>,
+    pub(crate) now: Duration,
+}
+
+impl Tried {
+    /// A session in which no case is open.
+    pub(crate) fn new() -> Self {
+        let host = Rc::new(TestHost::default());
+        Self {
+            session: Session::new(Rc::clone(&host) as Rc<dyn Host>),
+            host,
+            now: Duration::ZERO,
+        }
+    }
+
+    /// A session with a case that is paused.
+    pub(crate) fn with(case: &str) -> Self {
+        let mut tried = Self::new();
+        tried.ask(serde_json::json!({ "do": "view", "paused": true }));
+        tried.ask(serde_json::json!({ "do": "open", "source": { "toml": case } }));
+        tried
+    }
+
+    /// Hands over a request, and works once.
+    pub(crate) fn ask(&mut self, request: Value) -> Vec<Value> {
+        self.session
+            .handle(Message(serde_json::from_value(request).unwrap()));
+        self.work();
+        self.replies()
+    }
+
+    /// Works once; when there is something to do next.
+    pub(crate) fn work(&mut self) -> Option<Duration> {
+        self.session.work(self.now)
+    }
+
+    /// Works up to a time, on each call for so long.
+    pub(crate) fn work_until(&mut self, end: Duration, each: Duration) {
+        while let Some(due) = self.work()
+            && due <= end
+        {
+            self.now = if due > self.now { due } else { self.now + each };
+            if self.now > end {
+                break;
+            }
+        }
+    }
+
+    pub(crate) fn replies(&self) -> Vec<Value> {
+        let replies = self.host.replies.take();
+        replies
+            .iter()
+            .map(|text| serde_json::from_str(text).unwrap())
+            .collect()
+    }
+}

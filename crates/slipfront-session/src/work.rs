@@ -1,0 +1,61 @@
+//! Work beside a session: what is to be done, wherever its host has it done.
+
+use std::sync::Arc;
+
+use crate::document::Document;
+use crate::event::{Event, EventKind, Worker};
+use crate::repeat::repeat;
+use crate::search;
+
+/// Work beside a session. It tells what it finds by [`Event`]s.
+#[derive(Debug)]
+pub struct Work {
+    document: Document,
+    kind: WorkKind,
+}
+
+#[derive(Debug)]
+enum WorkKind {
+    /// Static friction over this number of seeds.
+    Repeat(u64),
+    /// A texture with less static friction than the painted one.
+    Search,
+    /// What a search has found beside what is painted.
+    Compare(Arc<Vec<bool>>),
+}
+
+impl Work {
+    /// Finds static friction of a case over this number of seeds.
+    pub(crate) fn repeat(document: Document, seeds: u64) -> Self {
+        let kind = WorkKind::Repeat(seeds);
+        Self { document, kind }
+    }
+
+    /// Searches for a texture with less static friction than that of a case.
+    pub(crate) fn search(document: Document) -> Self {
+        let kind = WorkKind::Search;
+        Self { document, kind }
+    }
+
+    /// Compares a texture with that of a case, on surfaces that a search has not seen.
+    pub(crate) fn compare(document: Document, best: Arc<Vec<bool>>) -> Self {
+        let kind = WorkKind::Compare(best);
+        Self { document, kind }
+    }
+
+    /// Does the work, until it is done or the worker is to stop.
+    pub fn run(&self, worker: &dyn Worker) {
+        let document = &self.document;
+        match &self.kind {
+            WorkKind::Repeat(seeds) => repeat(document, *seeds, worker),
+            WorkKind::Search => {
+                let searched = search::search(document, worker);
+                worker.tell(Event(EventKind::Searched(searched)));
+            }
+            WorkKind::Compare(best) => {
+                let compared = search::compare(document, best, worker.stop());
+                worker.tell(Event(EventKind::Compared(compared)));
+            }
+        }
+    }
+}
