@@ -11,6 +11,7 @@ import './lessons.mjs';
 import './keyboard.mjs';
 import './accessibility.mjs';
 import './connection.mjs';
+import './alone.mjs';
 import './appearance.mjs';
 
 after(endAll);

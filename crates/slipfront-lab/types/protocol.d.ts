@@ -158,7 +158,8 @@ export interface HelloReply {
   version: string;
   presets: PresetEntry[];
   folders: string[];
-  results: string;
+  /** The folder of results; null where there is no disk. */
+  results: string | null;
   max_blocks: number;
   controls: Control[];
 }
