@@ -5,6 +5,7 @@ import './opening.mjs';
 import './controls.mjs';
 import './texture.mjs';
 import './find.mjs';
+import './guidance.mjs';
 import './keep.mjs';
 import './replay.mjs';
 import './lessons.mjs';

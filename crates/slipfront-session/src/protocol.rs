@@ -205,6 +205,8 @@ pub(crate) struct CaseReply<'a> {
     pub(crate) dt_star: f64,
     pub(crate) duration_star: f64,
     pub(crate) kinetic_from_star: f64,
+    /// Direction of the drive, degrees from x towards y; none if it turns the slider.
+    pub(crate) drive_degrees: Option<f64>,
     pub(crate) steady_level: f64,
     pub(crate) can_undo: bool,
     pub(crate) can_redo: bool,

@@ -142,6 +142,7 @@ fn each_reply(check: &mut impl FnMut(&Reply)) {
             dt_star: 0.1,
             duration_star: 400.0,
             kinetic_from_star,
+            drive_degrees: too_coarse.is_none().then_some(30.0),
             steady_level: 0.5,
             can_undo: true,
             can_redo: false,
