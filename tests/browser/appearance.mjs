@@ -27,7 +27,6 @@ for (const [name, colorScheme] of [['phone', 'light'], ['notebook', 'light'], ['
     const lab = await open(t, { toml: SMALL, viewport: SIZES[name], colorScheme });
     await lab.find('#field').selectOption('first_slip');
     await lab.runToEnd();
-    await lab.press('pause');
     await lab.page.mouse.move(0, 0);
     await lab.page.evaluate(() => document.activeElement.blur());
     const file = `${name}-${colorScheme}.png`;

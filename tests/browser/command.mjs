@@ -1,6 +1,7 @@
 // The command `slipfront`, and the laboratories that it starts.
 import { execFile, spawn } from 'node:child_process';
-import { mkdirSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
+import { existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { createServer } from 'node:http';
 import path from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { promisify } from 'node:util';
@@ -52,6 +53,26 @@ async function start(options, env) {
     return ended;
   };
   return { address, stop: () => end('SIGTERM'), kill: () => end('SIGKILL') };
+}
+
+const TYPES = { '.html': 'text/html', '.js': 'text/javascript', '.css': 'text/css', '.json': 'application/json', '.wasm': 'application/wasm' };
+
+/** Serves an exported laboratory, not at the root of its server; returns its address, which a case can follow, and what stops it. */
+export async function serveExported() {
+  const folder = path.join(WORK, 'exported');
+  await slipfront('lab', '--export', folder);
+  const server = createServer(({ url }, response) => {
+    const name = decodeURI(url.split('?')[0]).replace(/^\/some\/where\//, '');
+    const file = path.join(folder, name === '' ? 'index.html' : name);
+    if (!url.startsWith('/some/where/') || !existsSync(file)) return response.writeHead(404).end();
+    response.writeHead(200, { 'content-type': TYPES[path.extname(file)] ?? 'text/plain' }).end(readFileSync(file));
+  });
+  await new Promise((resolve) => server.listen(0, '127.0.0.1', resolve));
+  const stop = () => {
+    server.closeAllConnections();
+    return new Promise((resolve) => server.close(resolve));
+  };
+  return { address: `http://127.0.0.1:${server.address().port}/some/where/#`, folder, stop };
 }
 
 /** A case as part of an address, as the page makes it. */

@@ -7,7 +7,7 @@ import path from 'node:path';
 import test from 'node:test';
 import { pathToFileURL } from 'node:url';
 import { startLaboratory, startOnDesktop } from './command.mjs';
-import { open, say, sleep, SMALL, until, untilSame } from './page.mjs';
+import { onServer, open, say, sleep, SMALL, until, untilSame } from './page.mjs';
 
 /** Another user's program on the port of a laboratory that has ended: it notes what it is asked, and shows a page of its own. `prove`
  * gives what it answers when it is asked for a proof. It takes connections, and says there what the server would. */
@@ -48,7 +48,7 @@ const setHidden = (lab, hidden) => lab.page.evaluate((value) => {
   document.dispatchEvent(new Event('visibilitychange'));
 }, hidden);
 
-test('a page that is not seen gets nothing', async (t) => {
+test('a page that is not seen gets nothing', onServer, async (t) => {
   const lab = await open(t, { calm: false });
   await until(() => lab.last.numbers?.step > 3, 'a run that goes on');
   await setHidden(lab, true);
@@ -59,7 +59,7 @@ test('a page that is not seen gets nothing', async (t) => {
   await until(() => lab.last.numbers.step > step, 'a run that goes on again');
 });
 
-test('the browser is led to the page by a file, which is gone then', async (t) => {
+test('the browser is led to the page by a file, which is gone then', onServer, async (t) => {
   const one = await startOnDesktop();
   t.after(one.stop);
   await until(() => existsSync(one.opened), 'a browser that is started');
@@ -74,7 +74,7 @@ test('the browser is led to the page by a file, which is gone then', async (t) =
   assert.equal(lab.page.url(), 'about:blank');
 });
 
-test('a page whose server was stopped says so, and asks nobody on its port any more', async (t) => {
+test('a page whose server was stopped says so, and asks nobody on its port any more', onServer, async (t) => {
   const one = await startLaboratory();
   const lab = await open(t, { toml: SMALL, address: one.address });
   await one.stop();
@@ -87,7 +87,7 @@ test('a page whose server was stopped says so, and asks nobody on its port any m
   assert.equal(await lab.page.evaluate(() => sessionStorage.getItem('key')), null);
 });
 
-test('a page gives nothing to another user who takes the port of a server that was killed', async (t) => {
+test('a page gives nothing to another user who takes the port of a server that was killed', onServer, async (t) => {
   const one = await startLaboratory();
   const lab = await open(t, { toml: SMALL, address: one.address });
   const token = new URL(one.address).hash.match(/token=(\w+)/)[1];
@@ -110,7 +110,7 @@ test('a page gives nothing to another user who takes the port of a server that w
   assert.ok(!kept.includes(token), kept);
 });
 
-test('a server that knows the nonce and not the token is no server', async (t) => {
+test('a server that knows the nonce and not the token is no server', onServer, async (t) => {
   const one = await startLaboratory();
   const lab = await open(t, { toml: SMALL, address: one.address });
   const [tab, key] = await lab.page.evaluate(() => ['tab', 'key'].map((name) => sessionStorage.getItem(name)));
@@ -130,7 +130,7 @@ test('a server that knows the nonce and not the token is no server', async (t) =
   assert.ok(!stranger.heard.includes(key));
 });
 
-test('the address that a new server prints opens the page again in the same tab', async (t) => {
+test('the address that a new server prints opens the page again in the same tab', onServer, async (t) => {
   const one = await startLaboratory();
   const lab = await open(t, { toml: SMALL, address: one.address });
   await one.stop();
@@ -145,14 +145,14 @@ test('the address that a new server prints opens the page again in the same tab'
   assert.doesNotMatch(lab.page.url(), /token/);
 });
 
-test('a page loaded anew connects again', async (t) => {
+test('a page loaded anew connects again', onServer, async (t) => {
   const lab = await open(t, { toml: SMALL });
   const hellos = lab.count.hello;
   await lab.page.reload();
   await until(() => lab.count.hello > hellos, 'a connection');
 });
 
-test('a page that loses its connection connects again, and shows the case it had', async (t) => {
+test('a page that loses its connection connects again, and shows the case it had', onServer, async (t) => {
   const lab = await open(t, { toml: SMALL });
   await lab.find('#control-speed').fill('0.05');
   const { toml } = await lab.after(() => lab.find('#control-speed').press('Enter'), 'case');

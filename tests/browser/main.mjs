@@ -5,12 +5,14 @@ import './opening.mjs';
 import './controls.mjs';
 import './texture.mjs';
 import './find.mjs';
+import './guidance.mjs';
 import './keep.mjs';
 import './replay.mjs';
 import './lessons.mjs';
 import './keyboard.mjs';
 import './accessibility.mjs';
 import './connection.mjs';
+import './alone.mjs';
 import './appearance.mjs';
 
 after(endAll);

@@ -5,7 +5,7 @@ import { readFile } from 'node:fs/promises';
 import path from 'node:path';
 import { chromium } from 'playwright-core';
 import { PNG } from 'pngjs';
-import { link, ROOT, startLaboratory } from './command.mjs';
+import { link, ROOT, serveExported, startLaboratory } from './command.mjs';
 
 const WEB = path.join(ROOT, 'crates/slipfront-lab/web');
 
@@ -67,7 +67,13 @@ export const browser = await chromium.launch({
   args: ['--no-sandbox', '--disable-quic', '--no-first-run', '--disable-background-networking', '--disable-component-update', '--disable-sync',
     '--disable-gpu', '--enable-unsafe-swiftshader', '--force-color-profile=srgb', '--font-render-hinting=none'],
 });
-export const laboratory = await startLaboratory();
+/** Whether the page has no server, and its session in a Worker. */
+export const IS_ALONE = process.env.CHANNEL === 'worker';
+/** For a test of what a page without a server has not. */
+export const onServer = { skip: IS_ALONE && 'needs a server' };
+/** For a test of a page without a server. */
+export const withoutServer = { skip: !IS_ALONE && 'needs a page without a server' };
+export const laboratory = await (IS_ALONE ? serveExported() : startLaboratory());
 
 /** Ends the browser and the laboratory. */
 export const endAll = () => Promise.all([browser.close(), laboratory.stop()]);
@@ -83,6 +89,43 @@ function parse(bytes) {
   if (bytes[0] === 2) return ['kymograph', { rows: bytes.readUInt32LE(4), bins: bytes.readUInt32LE(8) }];
   const [recorded, step, t] = [bytes.readUInt16LE(2) & 1, bytes.readUInt32LE(8), bytes.readFloatLE(12)];
   return ['picture', { field: bytes[1], recorded: recorded === 1, step, t, values: bytes.subarray(36) }];
+}
+
+/** Lets a page tell with `handled()` each message of its session in a Worker that it has handled, and with `said()` what it has sent there. */
+function tellHandledOfWorker(delay) {
+  const told = ['reply', 'picture', 'kymograph'];
+  const base64 = (buffer) => btoa(new Uint8Array(buffer).reduce((text, byte) => text + String.fromCharCode(byte), ''));
+  window.workers = [];
+  window.Worker = class extends Worker {
+    constructor(...values) {
+      super(...values);
+      window.workers.push(this);
+    }
+
+    postMessage(message, ...rest) {
+      if (message.do === 'handle') window.said(message.text);
+      super.postMessage(message, ...rest);
+    }
+
+    set onmessage(handle) {
+      const events = [];
+      let due = 0;
+      const next = () => {
+        const event = events.shift();
+        const { is, data } = event.data;
+        // It is read before the page may give it on.
+        const payload = typeof data === 'string' ? { text: data } : { base64: base64(data) };
+        handle.call(this, event);
+        if (told.includes(is)) window.handled(payload);
+      };
+      super.onmessage = (event) => {
+        events.push(event);
+        due = Math.max(due, performance.now() + delay * Math.random());
+        if (delay > 0) setTimeout(next, due - performance.now());
+        else next();
+      };
+    }
+  };
 }
 
 /** Lets a page tell with `handled()` each message of its newest socket that it has handled. */
@@ -121,6 +164,8 @@ export class Lab {
   sockets = 0;
   /** Whether it is left without a server. */
   alone = false;
+  /** Whether a test breaks its Worker. */
+  breaks = false;
   faults = [];
 
   constructor(page, address) {
@@ -144,14 +189,21 @@ export class Lab {
 
   /** Opens the page at its address. */
   async load(address) {
-    await this.page.exposeFunction('handled', () => this.hear(this.arrived.shift()));
-    await this.page.addInitScript(tellHandled, DELAY_MS);
+    if (IS_ALONE) {
+      await this.page.exposeFunction('handled', ({ text, base64 }) => this.hear(text ?? Buffer.from(base64, 'base64')));
+      await this.page.exposeFunction('said', (text) => this.sent.push(JSON.parse(text)));
+      await this.page.addInitScript(tellHandledOfWorker, DELAY_MS);
+    } else {
+      await this.page.exposeFunction('handled', () => this.hear(this.arrived.shift()));
+      await this.page.addInitScript(tellHandled, DELAY_MS);
+    }
     await this.page.goto(address);
   }
 
   /** Software graphics are slow to read back, which Chromium tells as a warning; a lost connection is told only where a test makes it so. */
   mayFail(text) {
-    return /GPU stall due to ReadPixels|GL Driver Message/.test(text) || (this.alone && /WebSocket connection|net::ERR_CONNECTION_REFUSED/.test(text));
+    return /GPU stall due to ReadPixels|GL Driver Message/.test(text) || (this.alone && /WebSocket connection|net::ERR_CONNECTION_REFUSED/.test(text))
+      || (this.breaks && /TypeError: ASKED/.test(text));
   }
 
   hear(payload) {

@@ -4,9 +4,9 @@ import { writeFileSync } from 'node:fs';
 import path from 'node:path';
 import test from 'node:test';
 import { RESULTS, slipfront, WORK } from './command.mjs';
-import { open, say, SMALL, until } from './page.mjs';
+import { onServer, open, say, SMALL, until } from './page.mjs';
 
-test('a recorded run is shown with its curve and its snapshots', async (t) => {
+test('a recorded run is shown with its curve and its snapshots', onServer, async (t) => {
   const file = path.join(WORK, 'recorded.toml');
   writeFileSync(file, `${SMALL}\n[output]\nsnapshots = [20, 60, 90]\n`);
   await slipfront('run', file, '--quiet', '--out', path.join(RESULTS, 'recorded'));

@@ -2,8 +2,10 @@
 // Nothing else should work on the machine meanwhile, and the command should be a release build:
 //
 //     SLIPFRONT=target/release/slipfront node tests/browser/speed.mjs
-import { browser, endAll, sleep } from './page.mjs';
-import { link, startLaboratory } from './command.mjs';
+//
+// With CHANNEL=worker the page has no server, and its simulation is WebAssembly.
+import { browser, endAll, IS_ALONE, sleep } from './page.mjs';
+import { link, serveExported, startLaboratory } from './command.mjs';
 
 const SECONDS = 6;
 
@@ -15,14 +17,25 @@ function watch() {
     counts.drawn += 1;
     return drawArrays.apply(this, values);
   };
+  const listeners = new Set();
+  const hear = (data) => {
+    if (typeof data !== 'string') counts.arrived += 1;
+    else if (JSON.parse(data).is === 'numbers') counts.step = JSON.parse(data).step;
+    for (const listen of listeners) listen(data);
+  };
+  window.connection = { listeners, send: () => {} };
   window.WebSocket = class extends WebSocket {
     constructor(...values) {
       super(...values);
-      window.connection = this;
-      this.addEventListener('message', ({ data }) => {
-        if (typeof data !== 'string') counts.arrived += 1;
-        else if (JSON.parse(data).is === 'numbers') counts.step = JSON.parse(data).step;
-      });
+      window.connection.send = (text) => this.send(text);
+      this.addEventListener('message', ({ data }) => hear(data));
+    }
+  };
+  window.Worker = class extends Worker {
+    constructor(...values) {
+      super(...values);
+      window.connection.send = (text) => this.postMessage({ do: 'handle', text });
+      this.addEventListener('message', ({ data: { is, data } }) => ['reply', 'picture', 'kymograph'].includes(is) && hear(data));
     }
   };
 }
@@ -34,14 +47,14 @@ async function lags() {
     const began = performance.now();
     await new Promise((resolve) => {
       let changed = false;
-      const hear = ({ data }) => {
+      const hear = (data) => {
         if (typeof data === 'string') changed ||= JSON.parse(data).why === 'change';
         else if (changed) {
-          window.connection.removeEventListener('message', hear);
+          window.connection.listeners.delete(hear);
           requestAnimationFrame(resolve);
         }
       };
-      window.connection.addEventListener('message', hear);
+      window.connection.listeners.add(hear);
       const at = [20 + 10 * stroke, 20];
       window.connection.send(JSON.stringify({ do: 'paint', points: [at], radius: 4, textured: true, gesture: 1000 + stroke }));
     });
@@ -53,7 +66,7 @@ async function lags() {
 
 for (const blocks of [256, 512]) {
   const toml = `slider.blocks = [${blocks}, ${blocks}]\ntime.duration_star = 1e5\n[[texture]]\nshape = "cavity"\ncoverage = 10\n`;
-  const laboratory = await startLaboratory();
+  const laboratory = await (IS_ALONE ? serveExported() : startLaboratory());
   const page = await browser.newPage({ viewport: { width: 1280, height: 800 } });
   await page.addInitScript(watch);
   await page.goto(`${laboratory.address}&case=${link(toml)}`);

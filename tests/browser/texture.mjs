@@ -27,7 +27,6 @@ async function summaryOf({ name, contents }) {
 test('a cavity that is painted lowers static friction, to the number of the command', async (t) => {
   const lab = await open(t, { toml: PLAIN });
   const smooth = (await lab.runToEnd()).summary.static_friction_star;
-  await lab.press('pause');
   await lab.press('tool-brush');
   await lab.find('#brush-size').fill('3');
   // Three rows of ten blocks, and three blocks beyond each end.

@@ -10,8 +10,9 @@ use std::io::{Error, Result};
 use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError, Weak};
 
-use gethostname::gethostname;
 use tempfile::{Builder, NamedTempFile, TempDir};
+
+use crate::machine::host_name;
 
 /// The beginning of every hidden name.
 const BEGINNING: &str = ".slipfront-";
@@ -86,7 +87,7 @@ impl TemporaryFolder {
     fn of_target(target: &[u8]) -> Result<Self> {
         let parent = std::env::temp_dir();
         // Machines may share the folder, and not know of each other's locks.
-        let host = gethostname();
+        let host = host_name();
         let beginning = beginning_for(&[host.as_encoded_bytes(), b"\0", target].concat());
         let make = || {
             let folder = builder(&beginning, 0o700).tempdir_in(&parent)?;

@@ -2,7 +2,7 @@
 
 use axum::http::{StatusCode, Uri, header};
 use axum::response::{IntoResponse, Response};
-use include_dir::{Dir, include_dir};
+use include_dir::{Dir, File, include_dir};
 
 static WEB: Dir = include_dir!("$CARGO_MANIFEST_DIR/web");
 
@@ -16,6 +16,18 @@ fn content_type(path: &str) -> &'static str {
         Some("svg") => "image/svg+xml",
         _ => "text/plain; charset=utf-8",
     }
+}
+
+/// All files of the page, by their paths.
+pub(crate) fn all() -> impl Iterator<Item = (String, &'static [u8])> {
+    let mut folders = vec![&WEB];
+    let mut files = Vec::new();
+    while let Some(folder) = folders.pop() {
+        folders.extend(folder.dirs());
+        files.extend(folder.files());
+    }
+    let with_name = |file: &'static File| Some((file.path().to_str()?.to_owned(), file.contents()));
+    files.into_iter().filter_map(with_name)
 }
 
 /// The file that an address names.

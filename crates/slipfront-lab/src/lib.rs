@@ -12,6 +12,7 @@
 mod assets;
 mod background;
 mod connections;
+mod export;
 mod files;
 mod guard;
 mod host;
@@ -28,6 +29,7 @@ mod socket;
 mod start_page;
 mod token;
 
+pub use export::{ExportError, MODULE, export_folder, export_single, find_module};
 pub use offline::OfflineSession;
 pub use opening::{OpeningError, Start};
 pub use server::{Laboratory, Patience, ServerOptions};

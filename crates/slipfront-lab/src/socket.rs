@@ -132,7 +132,7 @@ fn begin(host: PageHost, waiting: &Receiver<Request>) {
     outbox.reply(hello(
         &setting.presets,
         &replay::folders(results),
-        &display_path(results),
+        Some(&display_path(results)),
     ));
     setting.saves.add_page(&outbox);
     let host: Rc<dyn Host> = Rc::new(host);

@@ -158,7 +158,8 @@ export interface HelloReply {
   version: string;
   presets: PresetEntry[];
   folders: string[];
-  results: string;
+  /** The folder of results; null where there is no disk. */
+  results: string | null;
   max_blocks: number;
   controls: Control[];
 }
@@ -208,6 +209,8 @@ export interface CaseReply {
   duration_star: number;
   /** Null before the peak that it is counted from. */
   kinetic_from_star: number | null;
+  /** Direction of the drive, degrees from x towards y; null if it turns the slider. */
+  drive_degrees: number | null;
   steady_level: number;
   can_undo: boolean;
   can_redo: boolean;

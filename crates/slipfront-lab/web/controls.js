@@ -2,6 +2,7 @@
 // Sliders and number fields of the quantities that the server offers, each in both forms: dimensionless and with its unit.
 import { change, gradual } from './edit.js';
 import { find, make, rewrite } from './element.js';
+import { notice } from './notices.js';
 import { number, quantity, typed } from './quantity.js';
 import { on, state } from './store.js';
 import { say } from './text.js';
@@ -50,6 +51,9 @@ function row(control) {
   return { control, element, slider, field, other };
 }
 
+/** Whether a number with a unit was typed, which the case understands. @param {string} text */
+const hasUnit = (text) => /^\s*[-+]?[\d.]+(e[-+]?\d+)?\s*[a-z\u00b5\u03bc%\u00b0][\w/^\u00b5\u03bc]*\s*$/i.test(text);
+
 /** @param {ReturnType<typeof row>} made */
 function listen({ control, slider, field }) {
   /** @type {ReturnType<typeof gradual>|null} */
@@ -68,8 +72,14 @@ function listen({ control, slider, field }) {
   field.addEventListener('change', () => {
     delete field.dataset.typing;
     const value = typed(field.value);
-    if (value === null) show();
-    else change(keysFor(control, value));
+    if (value !== null) change(keysFor(control, value));
+    else if (control.si_key !== null && hasUnit(field.value)) change({ [control.si_key]: field.value.trim() });
+    else {
+      const { unit } = control;
+      const example = control.si_key === null ? '' : say('not_a_number_example', { unit });
+      notice(say('not_a_number', { name: say(`control_${control.id}`), text: field.value, example }), { topic: 'refused' });
+      show();
+    }
   });
 }
 

@@ -18,7 +18,7 @@ async function copyLink() {
   const { toml, files } = await exported();
   const link = await makeLink({ name: name(), toml, files });
   if (link === null) return notice(say('link_too_long'));
-  const address = `${location.origin}${location.pathname}#case=${link}`;
+  const address = `${location.href.replace(/#.*/, '')}#case=${link}`;
   history.replaceState(null, '', `#case=${link}`);
   try {
     await navigator.clipboard.writeText(address);
@@ -104,5 +104,8 @@ export function startKeep() {
   find('save-form').addEventListener('submit', save);
   on('saving', showSaving);
   on('saved', showSaved);
-  on('hello', ({ results }) => (find('save-where').textContent = say('save_where', { results })));
+  on('hello', ({ results }) => {
+    find('save-where').textContent = results === null ? say('save_zip') : say('save_where', { results });
+    if (results === null) find('save-label').textContent = say('save_name_zip');
+  });
 }

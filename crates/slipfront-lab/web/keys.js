@@ -55,7 +55,7 @@ function pageKey(event) {
     return key === 'z' || key === 'y';
   }
   if (event.altKey) return false;
-  if (key === ' ') setView({ paused: !state.view.paused });
+  if (key === ' ') find('pause').click();
   else if (key === 'n') send({ do: 'step', count: 1 });
   else if (key === 'r') send({ do: 'rest' });
   else if (key === '?') find('help').showModal();

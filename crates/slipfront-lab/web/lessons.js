@@ -1,6 +1,7 @@
 // @ts-check
 // Lessons: a text beside the running simulation, with buttons that change it. Their structure stands in lessons.json, their words
 // in lessons.en.json, every number of a text in lesson_numbers.json.
+import { jsonOf, textOf } from './assets.js';
 import { change } from './edit.js';
 import { find, make, onPress } from './element.js';
 import { notice } from './notices.js';
@@ -20,9 +21,6 @@ let numbers = {};
 
 /** The lesson of this id. @param {string} wanted */
 const lessonOf = (wanted) => /** @type {Lesson} */ (lessons.find(({ id }) => id === wanted));
-
-/** @param {string} file */
-const load = async (file) => (await fetch(file)).json();
 
 /** A text with its numbers, which no line break parts from their units. @param {string} text */
 const withNumbers = (text) => text.replace(/\{(\w+)\}/g, (whole, id) => numbers[id]?.says.replaceAll(' ', '\u00a0') ?? whole);
@@ -53,9 +51,8 @@ function buttons(step, labels) {
 
 /** Loads the case of a step and sets the view. @param {LessonStep} step */
 async function prepare(step) {
-  const answer = await fetch(step.case);
-  if (!answer.ok) return notice(say('lesson_missing', { file: step.case }));
-  const toml = await answer.text();
+  const toml = await textOf(step.case);
+  if (toml === null) return notice(say('lesson_missing', { file: step.case }));
   setView({ twin: false, after_change: 'rest', paused: startsPaused, ...step.view });
   open({ name: step.case.replace(/^.*\/|\.toml$/g, ''), toml, files: {} });
 }
@@ -112,7 +109,7 @@ export async function startLessons() {
   onPress('lesson-next', () => turnPage(1));
   onPress('lesson-close', () => put('lesson', null));
   try {
-    [lessons, words, numbers] = await Promise.all(['lessons.json', `lessons.${say('language')}.json`, 'lesson_numbers.json'].map(load));
+    [lessons, words, numbers] = await Promise.all(['lessons.json', `lessons.${say('language')}.json`, 'lesson_numbers.json'].map(jsonOf));
     list();
   } catch {
     find('open-lessons').hidden = true;

@@ -1,5 +1,6 @@
 // @ts-check
 // Sentences for the reader: what was refused, what failed, whether there is a connection. They can be dismissed and are read out.
+import { isAlone } from './assets.js';
 import { atMost, find, make } from './element.js';
 import { fixed } from './quantity.js';
 import { on, put, state } from './store.js';
@@ -34,7 +35,7 @@ let lost = '';
 function showConnection({ yes, ended, reason }) {
   document.body.classList.toggle('alone', !yes);
   const before = lost;
-  lost = yes ? '' : ended ? say('ended') : reason ? say('lost_because', { reason }) : say('lost');
+  lost = yes ? '' : ended ? say(isAlone ? 'worker_lost' : 'ended') : reason ? say('lost_because', { reason }) : say('lost');
   if (yes) withdraw('connection');
   // It is tried again and again, but the same is told once.
   else if (lost !== before) notice(lost, { topic: 'connection', serious: true });

@@ -3,7 +3,7 @@
 import { camera, redraw } from './field.js';
 import { find } from './element.js';
 
-/** @typedef {{begin(point: number[], event: PointerEvent): boolean, move(point: number[]): void, end(): void, cancel(): void, hover(point: number[]|null): void}} Hand `begin` tells whether the tool takes the drag; else it pans */
+/** @typedef {{begin(point: number[], event: PointerEvent): boolean, move(point: number[]): void, end(): void, cancel(): void, hover(point: number[]|null): void, leave(): void}} Hand `begin` tells whether the tool takes the drag; else it pans */
 
 /** @param {PointerEvent|WheelEvent} event */
 function pixel(event) {
@@ -66,7 +66,11 @@ export function startPointer(hand) {
   };
   frame.addEventListener('pointerup', up);
   frame.addEventListener('pointercancel', up);
-  frame.addEventListener('pointerleave', () => hand.hover(null));
+  frame.addEventListener('pointerleave', (/** @type {PointerEvent} */ event) => {
+    hand.hover(null);
+    // What a finger has touched is read after it was lifted.
+    if (event.pointerType !== 'touch') hand.leave();
+  });
   frame.addEventListener('wheel', (/** @type {WheelEvent} */ event) => {
     event.preventDefault();
     camera.enlarge(1.0015 ** -event.deltaY, pixel(event));

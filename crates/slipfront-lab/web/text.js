@@ -1,5 +1,6 @@
 // @ts-check
 // The words of the page: all of them stand in en.json.
+import { jsonOf } from './assets.js';
 
 /** @import { Words } from '../types/page' */
 
@@ -8,7 +9,7 @@ let words = {};
 
 /** Loads the words; everything else begins after that. */
 export async function loadText() {
-  words = await (await fetch('en.json')).json();
+  words = await jsonOf('en.json');
   document.documentElement.lang = words.language;
 }
 

@@ -141,19 +141,19 @@ function placing(from) {
   };
 }
 
-const probeSoon = (() => {
-  /** @type {number[]|null} */
-  let block = null;
-  const soon = atMost(() => setView({ probe: block }), PROBE_SPACING_MS);
-  return (/** @type {number[]} */ point) => {
-    const at = point.map(Math.floor);
-    const { blocks } = state.case ?? { blocks: [0, 0] };
-    if (at.some((value, axis) => value < 0 || value >= blocks[axis])) return;
-    if (block && at[0] === block[0] && at[1] === block[1]) return;
-    block = at;
-    soon();
-  };
-})();
+/** The block that is probed. @type {number[]|null} */
+let probed = null;
+const tellProbed = atMost(() => setView({ probe: probed }), PROBE_SPACING_MS);
+
+/** @param {number[]} point */
+function probeSoon(point) {
+  const at = point.map(Math.floor);
+  const { blocks } = state.case ?? { blocks: [0, 0] };
+  if (at.some((value, axis) => value < 0 || value >= blocks[axis])) return;
+  if (probed && at[0] === probed[0] && at[1] === probed[1]) return;
+  probed = at;
+  tellProbed();
+}
 
 /** @type {{move(point: number[]): void, end(): void}|null} */
 let doing = null;
@@ -186,6 +186,12 @@ export const hand = {
     if (point) probeSoon(point);
     if (!doing || paints()) pointers.ring = point && paints() ? { point, radius: radius() } : null;
     redraw();
+  },
+  leave() {
+    // The cursor of the keyboard stays where it is.
+    if (!probed || pointers.cursor) return;
+    probed = null;
+    tellProbed();
   },
 };
 

@@ -21,8 +21,9 @@ const placeOf = (pace) => (pace === 0 ? LAST : Math.round(10 * Math.log10(pace /
 
 function showView() {
   const { paused, pace, after_change: after } = state.view;
-  find('pause').textContent = say(paused ? 'play' : 'pause');
-  find('step').disabled = !paused;
+  const ended = find('pause').disabled;
+  find('pause').textContent = say(ended ? 'ended_button' : paused ? 'play' : 'pause');
+  find('step').disabled = !paused || ended;
   find('pace').value = String(placeOf(pace));
   const text = pace === 0 ? say('pace_fastest') : say('pace_value', { pace: number(pace) });
   find('pace-value').textContent = text;
@@ -36,6 +37,13 @@ function showEffect() {
   find('after-go-on').disabled = memory;
   const key = memory ? 'effect_memory' : state.view.after_change === 'rest' ? 'effect_rest' : 'effect_go_on';
   find('effect').textContent = say(key);
+}
+
+/** A run that has ended neither goes on nor stops. @param {boolean} ended */
+function showEnd(ended) {
+  if (find('pause').disabled === ended) return;
+  find('pause').disabled = ended;
+  showView();
 }
 
 /** @param {CaseReply} shown */
@@ -60,6 +68,7 @@ export function startTransport() {
   document.addEventListener('visibilitychange', () => setView({ visible: !document.hidden }));
   on('view', showView);
   on('case', showCase);
+  on('numbers', ({ ended }) => showEnd(ended));
   showView();
   if (startsPaused) notice(say('starts_paused'));
 }

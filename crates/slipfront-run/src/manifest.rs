@@ -15,6 +15,7 @@ use crate::resume_command::resume_command;
 use crate::{clock, program};
 use slipfront_case::case::{Case, Input};
 use slipfront_case::disk::{TEXT_MAX_BYTES, json, open_regular, read_limited};
+use slipfront_case::machine::host_name;
 use slipfront_case::text::{single_line, truncated};
 
 /// The last key of a manifest in its file. The checksum, its value, is the hash of all bytes before it.
@@ -117,7 +118,7 @@ impl Manifest {
             kernel: Kernel::default().for_model(&case.model).name().to_owned(),
             simd_width: simd_width().to_owned(),
             threads,
-            host: gethostname::gethostname().to_string_lossy().into_owned(),
+            host: host_name().to_string_lossy().into_owned(),
             platform: format!("{} {}", std::env::consts::OS, std::env::consts::ARCH),
             started: started.to_string(),
             finished: finished.to_string(),

@@ -1,6 +1,7 @@
 //! Writes the files of a run from its [`Record`].
 
 use std::borrow::Cow;
+use std::io::Cursor;
 use std::path::Path;
 
 use slipfront::Outline;
@@ -31,20 +32,59 @@ pub fn write(case: &Case, record: &mut Record, folder: &mut RunFolder) -> Result
 
 /// Summary, series, kymograph and events, the first results of a run, by one of its ranks.
 pub fn write_tables(case: &Case, record: &Record, folder: &mut RunFolder) -> Result<(), ResultsError> {
-    folder.write(SUMMARY, &disk::json(&record.summary))?;
+    each_table(case, record, |name, contents| Ok(folder.write(name, contents)?))
+}
+
+/// Hands over the first results of a run, each with its name.
+fn each_table(
+    case: &Case,
+    record: &Record,
+    mut take: impl FnMut(&str, &[u8]) -> Result<(), ResultsError>,
+) -> Result<(), ResultsError> {
+    take(SUMMARY, &disk::json(&record.summary))?;
     let rows = record
         .rows
         .iter()
         .map(|row| SeriesRow::new(row, &case.scales, &case.model));
-    folder.write(SERIES, &series::to_csv(rows)?)?;
-    folder.write(KYMOGRAPH, &fields::kymograph_bytes(&record.kymograph, case))?;
+    take(SERIES, &series::to_csv(rows)?)?;
+    take(KYMOGRAPH, &fields::kymograph_bytes(&record.kymograph, case))?;
     match &record.precursors {
-        Some(precursors) => Ok(folder.write(
+        Some(precursors) => take(
             PRECURSORS,
             &precursors::to_csv(precursors.events(), &case.scales)?,
-        )?),
+        ),
         None => Ok(()),
     }
+}
+
+/// The files of a run on one rank, by their names in its folder, with the bytes that they have there: the case and the files that it reads,
+/// tables and fields, which are moved out of the record.
+///
+/// # Errors
+/// When a file that the case reads is no longer what the case was made of.
+pub fn in_memory(case: &Case, record: &mut Record) -> Result<Vec<(String, Vec<u8>)>, ResultsError> {
+    let mut files = vec![(CASE.to_owned(), case.file.to_toml()?.into_bytes())];
+    for input in &case.inputs {
+        files.push((input.name.clone(), input.read_again()?.to_vec()));
+    }
+    each_table(case, record, |name, contents| {
+        files.push((name.to_owned(), contents.to_vec()));
+        Ok(())
+    })?;
+    let fields = with_fields(case, record, |file| {
+        let mut bytes = Cursor::new(Vec::new());
+        let writer = fields::FieldsWriter::new(Path::new(FIELDS), file)?;
+        let written = writer
+            .create(&mut bytes)
+            .and_then(|()| writer.write_rows(&mut bytes));
+        written.map_err(|source| FieldsError::Write {
+            path: FIELDS.into(),
+            source,
+        })?;
+        Ok(bytes.into_inner())
+    })?;
+    files.push((FIELDS.to_owned(), fields));
+    Ok(files)
 }
 
 /// Writes the case and copies of the files that it reads: enough to run it again.
@@ -110,6 +150,22 @@ pub fn write_fields(
     out: &Path,
     communicator: &dyn Communicator,
 ) -> Result<Option<TempPath>, FieldsError> {
+    with_fields(case, record, |file| {
+        fields::write_fields(
+            &Unfinished::of(out).temporary(),
+            &out.join(FIELDS),
+            file,
+            communicator,
+        )
+    })
+}
+
+/// Hands over the fields of the rows that this rank holds, which are moved out of the record.
+fn with_fields<T>(
+    case: &Case,
+    record: &mut Record,
+    write: impl FnOnce(&FieldsFile) -> Result<T, FieldsError>,
+) -> Result<T, FieldsError> {
     let (textured, [mu_static, mu_kinetic]) = surface_of(case);
     let names = &case.output.fields;
     let scale = record.contact_stress_max;
@@ -117,7 +173,7 @@ pub fn write_fields(
         .into_iter()
         .map(|(label, frame)| FieldFrame::in_si_units(frame, label, names, &case.scales, scale))
         .collect();
-    let file = FieldsFile {
+    write(&FieldsFile {
         nx: case.model.lattice.nx,
         ny: case.model.lattice.ny,
         rows: case.model.rows.clone(),
@@ -132,13 +188,7 @@ pub fn write_fields(
             first_slip_time_star: &record.first_slip_time_star,
         },
         frames: &frames,
-    };
-    fields::write_fields(
-        &Unfinished::of(out).temporary(),
-        &out.join(FIELDS),
-        &file,
-        communicator,
-    )
+    })
 }
 
 #[cfg(test)]

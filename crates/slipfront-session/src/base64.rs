@@ -16,3 +16,33 @@ pub(crate) fn decode(text: &str) -> Result<Vec<u8>, String> {
         .decode(text)
         .map_err(|error| format!("a file of the message is not Base64 ({error})"))
 }
+
+/// Files by their names, in Base64.
+pub(crate) mod files {
+    use std::collections::BTreeMap;
+
+    use serde::de::Error as _;
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    pub(crate) fn serialize<S: Serializer>(
+        files: &BTreeMap<String, Vec<u8>>,
+        to: S,
+    ) -> Result<S::Ok, S::Error> {
+        let files: BTreeMap<&String, String> = files
+            .iter()
+            .map(|(name, contents)| (name, super::encode(contents)))
+            .collect();
+        files.serialize(to)
+    }
+
+    pub(crate) fn deserialize<'de, D: Deserializer<'de>>(
+        from: D,
+    ) -> Result<BTreeMap<String, Vec<u8>>, D::Error> {
+        let files: BTreeMap<String, String> = Deserialize::deserialize(from)?;
+        let contents = files.into_iter().map(|(name, text)| {
+            let contents = super::decode(&text).map_err(D::Error::custom)?;
+            Ok((name, contents))
+        });
+        contents.collect()
+    }
+}

@@ -5,12 +5,15 @@ use std::io::Write;
 use std::path::Path;
 use std::sync::Arc;
 
+use serde::{Deserialize, Serialize};
 use slipfront_case::case::{Case, Files, FilesInMemory, Ranks};
 use slipfront_case::case_file::{CaseError, CaseFile, partners_of, parts_of};
 use slipfront_case::text::truncated;
 use toml::{Table, Value};
 
-use crate::names::{MAX_FILES, plain_name};
+use crate::base64;
+use crate::names::{MAX_FILES, is_plain_name, plain_name};
+use crate::protocol::Source;
 
 /// Most blocks of a case: such that the run, its twin and the pictures stay within the memory of a small machine.
 pub const MAX_BLOCKS: usize = 1 << 19;
@@ -18,8 +21,9 @@ pub const MAX_BLOCKS: usize = 1 << 19;
 /// Name of the image that holds a painted texture.
 const PAINTED: &str = "texture.png";
 
-/// A case that is edited. Copies share their files.
-#[derive(Clone, Debug)]
+/// A case that is edited. Copies share their files. It can be sent as JSON, as the source of an `open` request that opens it.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(try_from = "Source", into = "Source")]
 pub struct Document {
     /// Name of the case.
     pub name: String,
@@ -31,6 +35,40 @@ pub struct Document {
 /// A sentence as the error of a case.
 fn case_error(sentence: String) -> CaseError {
     CaseFile::default().source.error("", sentence)
+}
+
+impl From<Document> for Source {
+    fn from(document: Document) -> Self {
+        let files = document.files.iter();
+        Self {
+            toml: Some(document.toml()),
+            files: files
+                .map(|(name, contents)| (name.clone(), base64::encode(contents)))
+                .collect(),
+            name: Some(document.name),
+            ..Self::default()
+        }
+    }
+}
+
+impl TryFrom<Source> for Document {
+    type Error = String;
+
+    /// The case of a source that has its text.
+    fn try_from(source: Source) -> Result<Self, String> {
+        let toml = source.toml.ok_or("the source of a case has no text")?;
+        let name = source.name.filter(|name| is_plain_name(name));
+        let name = name.unwrap_or_else(|| "case".to_owned());
+        let mut files = BTreeMap::new();
+        for (name, text) in source.files {
+            files.insert(name, base64::decode(&text)?);
+        }
+        let read = |name: &str| {
+            let missing = || "it is not one of the files that came with the case".to_owned();
+            files.get(name).cloned().ok_or_else(missing)
+        };
+        Self::new(&name, &toml, read).map_err(|error| error.to_string())
+    }
 }
 
 impl Document {

@@ -1,8 +1,11 @@
 //! What work beside a session tells it, and who does such work.
 
+use std::ops::Deref;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
+
+use serde::{Deserialize, Serialize};
 
 use crate::protocol::{Estimate, RepeatedReply};
 
@@ -18,8 +21,8 @@ pub trait Worker {
     fn now(&self) -> Duration;
 }
 
-/// What work beside a session tells it.
-#[derive(Debug)]
+/// What work beside a session tells it. It can be sent as JSON.
+#[derive(Debug, Serialize, Deserialize)]
 pub struct Event(pub(crate) EventKind);
 
 impl Event {
@@ -29,7 +32,7 @@ impl Event {
     }
 }
 
-#[derive(Debug)]
+#[derive(Debug, Serialize, Deserialize)]
 pub(crate) enum EventKind {
     /// Static friction over the seeds up to now.
     Repeated(RepeatedReply),
@@ -38,26 +41,52 @@ pub(crate) enum EventKind {
     /// How far a search is.
     Tried(Tried),
     /// The best texture of a search, or why there is none.
-    Searched(Result<Arc<Vec<bool>>, String>),
+    Searched(Result<Mask, String>),
     /// The best texture beside what is painted, or why they cannot be compared.
     Compared(Result<Comparison, String>),
     /// The work has ended by a defect of its own.
     Lost,
 }
 
+/// Textured blocks. They are sent as a text of a digit for each block.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(from = "String", into = "String")]
+pub(crate) struct Mask(pub(crate) Arc<Vec<bool>>);
+
+impl Deref for Mask {
+    type Target = [bool];
+
+    fn deref(&self) -> &[bool] {
+        &self.0
+    }
+}
+
+impl From<String> for Mask {
+    fn from(digits: String) -> Self {
+        Self(Arc::new(digits.bytes().map(|digit| digit == b'1').collect()))
+    }
+}
+
+impl From<Mask> for String {
+    fn from(mask: Mask) -> Self {
+        let digit = |textured: &bool| if *textured { '1' } else { '0' };
+        mask.iter().map(digit).collect()
+    }
+}
+
 /// How far a search is.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(crate) struct Tried {
     /// Textures that were tried.
     pub(crate) textures: usize,
     /// Change of static friction by the best of them, %.
     pub(crate) best_percent: Option<f64>,
     /// Its textured blocks.
-    pub(crate) best_texture: Option<Arc<Vec<bool>>>,
+    pub(crate) best_texture: Option<Mask>,
 }
 
 /// What was found beside what is painted, on surfaces that the search has not seen.
-#[derive(Debug)]
+#[derive(Debug, Serialize, Deserialize)]
 pub(crate) struct Comparison {
     /// Number of the surfaces.
     pub(crate) surfaces: usize,

@@ -8,6 +8,7 @@
 //! A session knows no file, thread, socket or clock. Its [`Host`] tells it the time, hands it the messages of the page, passes on what it
 //! says, and does what it may not: work beside it, saving, folders.
 
+mod archive;
 mod base64;
 mod controls;
 mod document;
@@ -33,6 +34,7 @@ mod view;
 mod work;
 mod zip;
 
+pub use archive::run_archive;
 pub use document::{Document, MAX_BLOCKS};
 pub use event::{Event, Worker};
 pub use host::{Host, Opened, Task};

@@ -2,13 +2,15 @@
 
 use std::collections::BTreeMap;
 
+use serde::{Deserialize, Serialize};
 use slipfront_case::text::truncated;
 
+use crate::base64;
 use crate::document::Document;
 use crate::protocol::PresetEntry;
 
 /// A case to choose.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Preset {
     /// The name by which it is chosen.
     pub name: String,
@@ -19,11 +21,12 @@ pub struct Preset {
     /// The case as a text.
     pub toml: String,
     /// Contents of the files that the text names.
+    #[serde(with = "base64::files")]
     pub files: BTreeMap<String, Vec<u8>>,
 }
 
-/// Cases to choose from, in the order of the list.
-#[derive(Clone, Debug, Default)]
+/// Cases to choose from, in the order of the list. They can be sent as JSON.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct Presets(pub Vec<Preset>);
 
 impl Presets {

@@ -103,7 +103,7 @@ impl Request {
 }
 
 /// Where a case is taken from: if nothing is given, the case with which the laboratory was started.
-#[derive(Debug, Default, Deserialize)]
+#[derive(Debug, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Source {
     pub(crate) preset: Option<String>,
@@ -124,7 +124,7 @@ pub(crate) enum Reply<'a> {
         version: &'static str,
         presets: &'a [PresetEntry<'a>],
         folders: &'a [String],
-        results: &'a str,
+        results: Option<&'a str>,
         max_blocks: usize,
         controls: &'static [Control],
     },
@@ -205,6 +205,8 @@ pub(crate) struct CaseReply<'a> {
     pub(crate) dt_star: f64,
     pub(crate) duration_star: f64,
     pub(crate) kinetic_from_star: f64,
+    /// Direction of the drive, degrees from x towards y; none if it turns the slider.
+    pub(crate) drive_degrees: Option<f64>,
     pub(crate) steady_level: f64,
     pub(crate) can_undo: bool,
     pub(crate) can_redo: bool,
@@ -299,7 +301,7 @@ pub(crate) struct ProbeReply {
 }
 
 /// Static friction over several seeds.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, Deserialize)]
 pub(crate) struct RepeatedReply {
     pub(crate) done: u64,
     pub(crate) of: u64,
@@ -355,7 +357,7 @@ pub(crate) enum FoundOutcome {
 }
 
 /// A mean and the half width of its interval.
-#[derive(Clone, Copy, Debug, Serialize)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(crate) struct Estimate {
     pub(crate) mean: f64,
     pub(crate) half_width: Option<f64>,

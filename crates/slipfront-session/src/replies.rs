@@ -8,8 +8,8 @@ use crate::presets::Presets;
 use crate::protocol::{Reply, SavingEntry};
 
 /// The first reply to a page, with what it can choose from: cases, names of the runs that were recorded, and the folder `results` of
-/// these.
-pub fn hello(presets: &Presets, folders: &[String], results: &str) -> String {
+/// these, if there is one.
+pub fn hello(presets: &Presets, folders: &[String], results: Option<&str>) -> String {
     let hello = Reply::Hello {
         version: VERSION,
         presets: &presets.entries(),

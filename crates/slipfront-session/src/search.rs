@@ -11,7 +11,7 @@ use slipfront_study::design::{Bounds, Design, Limits, Quantity, Wish};
 use slipfront_study::{Sample, StudyError};
 
 use crate::document::Document;
-use crate::event::{Comparison, Event, EventKind, Tried, Worker};
+use crate::event::{Comparison, Event, EventKind, Mask, Tried, Worker};
 use crate::protocol::{Estimate, SearchLimits};
 
 /// How long a search looks for textures.
@@ -118,7 +118,7 @@ fn design_for(document: &Document) -> Result<(Design, Option<Vec<bool>>), String
 ///
 /// # Errors
 /// A sentence, if there is none, or the search was stopped.
-pub(crate) fn search(document: &Document, worker: &dyn Worker) -> Result<Arc<Vec<bool>>, String> {
+pub(crate) fn search(document: &Document, worker: &dyn Worker) -> Result<Mask, String> {
     let began = worker.now();
     let (design, _) = design_for(document)?;
     let bounds = Bounds {
@@ -130,7 +130,7 @@ pub(crate) fn search(document: &Document, worker: &dyn Worker) -> Result<Arc<Vec
         worker.tell(Event(EventKind::Tried(Tried {
             textures: now.textures,
             best_percent: now.best_texture.is_some().then_some(-now.best),
-            best_texture: now.best_texture.clone(),
+            best_texture: now.best_texture.clone().map(Mask),
         })));
     });
     let best = searched.map_err(|error| match error {
@@ -140,7 +140,10 @@ pub(crate) fn search(document: &Document, worker: &dyn Worker) -> Result<Arc<Vec
         ),
         error => error.to_string(),
     })?;
-    best.into_iter().next().ok_or_else(|| NOTHING_TRIED.to_owned())
+    best.into_iter()
+        .next()
+        .map(Mask)
+        .ok_or_else(|| NOTHING_TRIED.to_owned())
 }
 
 /// Why a search that was stopped at once has found nothing.
@@ -151,13 +154,9 @@ pub(crate) const NOTHING_TRIED: &str =
 ///
 /// # Errors
 /// A sentence, if runs cannot be made, or the comparison was stopped.
-pub(crate) fn compare(
-    document: &Document,
-    best: &Arc<Vec<bool>>,
-    stop: &AtomicBool,
-) -> Result<Comparison, String> {
+pub(crate) fn compare(document: &Document, best: &Mask, stop: &AtomicBool) -> Result<Comparison, String> {
     let (design, painted) = design_for(document)?;
-    let both: Vec<Arc<Vec<bool>>> = [Arc::clone(best)]
+    let both: Vec<Arc<Vec<bool>>> = [Arc::clone(&best.0)]
         .into_iter()
         .chain(painted.map(Arc::new))
         .collect();

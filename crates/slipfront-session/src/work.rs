@@ -1,27 +1,27 @@
 //! Work beside a session: what is to be done, wherever its host has it done.
 
-use std::sync::Arc;
+use serde::{Deserialize, Serialize};
 
 use crate::document::Document;
-use crate::event::{Event, EventKind, Worker};
+use crate::event::{Event, EventKind, Mask, Worker};
 use crate::repeat::repeat;
 use crate::search;
 
-/// Work beside a session. It tells what it finds by [`Event`]s.
-#[derive(Debug)]
+/// Work beside a session. It tells what it finds by [`Event`]s, and can be sent as JSON.
+#[derive(Debug, Serialize, Deserialize)]
 pub struct Work {
     document: Document,
     kind: WorkKind,
 }
 
-#[derive(Debug)]
+#[derive(Debug, Serialize, Deserialize)]
 enum WorkKind {
     /// Static friction over this number of seeds.
     Repeat(u64),
     /// A texture with less static friction than the painted one.
     Search,
     /// What a search has found beside what is painted.
-    Compare(Arc<Vec<bool>>),
+    Compare(Mask),
 }
 
 impl Work {
@@ -38,7 +38,7 @@ impl Work {
     }
 
     /// Compares a texture with that of a case, on surfaces that a search has not seen.
-    pub(crate) fn compare(document: Document, best: Arc<Vec<bool>>) -> Self {
+    pub(crate) fn compare(document: Document, best: Mask) -> Self {
         let kind = WorkKind::Compare(best);
         Self { document, kind }
     }

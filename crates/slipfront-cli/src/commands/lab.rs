@@ -4,7 +4,8 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use clap::Args;
-use slipfront_lab::{Laboratory, Patience, ServerOptions, Start};
+use slipfront_case::text::display_path;
+use slipfront_lab::{Laboratory, Patience, ServerOptions, Start, export_folder, export_single, find_module};
 
 use crate::browser;
 use crate::failure::Failure;
@@ -21,6 +22,7 @@ use crate::wrap::for_stderr;
   slipfront lab cases/groove_across.toml                 a case of yours
   slipfront lab results/circle                           a run again, beside what it recorded
   slipfront lab mine/a.toml --allow-files shared         a case that names files in another folder
+  slipfront lab --single slipfront.html                  one file that opens without this program, and without a network
   slipfront lab 'http://127.0.0.1:4000/#case=q1Yqyc_NUbJSSinKLEvVK4svLkksUrBVMNAzjMlT0lFKy8xJLVayqq6tBQA'
                                                          the case of a link that was copied there
 
@@ -45,6 +47,12 @@ pub(crate) struct LabCommand {
     /// Most threads of a run [default: one per core but one, which the browser has]
     #[arg(long, value_name = "N", value_parser = count_from_one)]
     threads: Option<u16>,
+    /// Write the laboratory as a folder that any web server can serve, and open nothing
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["single", "port", "no_open", "threads", "results"])]
+    export: Option<PathBuf>,
+    /// Write the laboratory as one file that a browser opens from the disk, and open nothing
+    #[arg(long, value_name = "FILE.html", conflicts_with_all = ["port", "no_open", "threads", "results"])]
+    single: Option<PathBuf>,
 }
 
 /// Beginning of the part of a link that holds the case.
@@ -66,6 +74,9 @@ impl LabCommand {
             }
             _ => Start::default(),
         };
+        if self.export.is_some() || self.single.is_some() {
+            return self.export(&start);
+        }
         refuse_readable_output()?;
         let signals = Signals::catch().map_err(Failure::running)?;
         let laboratory = Laboratory::bind(ServerOptions {
@@ -93,6 +104,35 @@ impl LabCommand {
         }
         laboratory.serve(stopped(&signals)).map_err(Failure::running)
     }
+}
+
+impl LabCommand {
+    /// Writes the laboratory as a folder or as one file.
+    fn export(&self, start: &Start) -> Result<(), Failure> {
+        let module = find_module(&places_of_module()).map_err(Failure::input)?;
+        if let Some(out) = &self.export {
+            export_folder(start, &module, out).map_err(Failure::input)?;
+            print_message(&format!(
+                "The laboratory is written to {}: give the folder to a web server, such as `python3 -m http.server`.\n",
+                display_path(out)
+            ));
+        }
+        if let Some(out) = &self.single {
+            export_single(start, &module, out).map_err(Failure::input)?;
+            print_message(&format!(
+                "The laboratory is written to {}: open it in a browser.\n",
+                display_path(out)
+            ));
+        }
+        Ok(())
+    }
+}
+
+/// Folders in which the session as WebAssembly may stand: beside this program, and above that in `target/` of a checkout.
+fn places_of_module() -> Vec<PathBuf> {
+    let program = std::env::current_exe().and_then(|program| program.canonicalize());
+    let program = program.unwrap_or_default();
+    program.ancestors().skip(1).take(2).map(Path::to_owned).collect()
 }
 
 /// Starts the browser on a page that leads to the address, which is not in the arguments: every user of the machine can read

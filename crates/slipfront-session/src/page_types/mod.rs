@@ -110,14 +110,16 @@ fn each_reply(check: &mut impl FnMut(&Reply)) {
         group: "cases",
         title: "A circle",
     }];
-    check(&Reply::Hello {
-        version: "1",
-        presets: &presets,
-        folders: &["run".to_owned()],
-        results: "results",
-        max_blocks: 1,
-        controls: &CONTROLS,
-    });
+    for results in [None, Some("results")] {
+        check(&Reply::Hello {
+            version: "1",
+            presets: &presets,
+            folders: &["run".to_owned()],
+            results,
+            max_blocks: 1,
+            controls: &CONTROLS,
+        });
+    }
     for (kinetic_from_star, too_coarse) in [(1.0, None), (f64::INFINITY, Some("too coarse".to_owned()))] {
         check(&Reply::Case(Box::new(CaseReply {
             name: "case",
@@ -140,6 +142,7 @@ fn each_reply(check: &mut impl FnMut(&Reply)) {
             dt_star: 0.1,
             duration_star: 400.0,
             kinetic_from_star,
+            drive_degrees: too_coarse.is_none().then_some(30.0),
             steady_level: 0.5,
             can_undo: true,
             can_redo: false,

@@ -1,6 +1,5 @@
 //! Changes of the case.
 
-use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use slipfront_case::text::truncated;
@@ -12,7 +11,6 @@ use crate::base64;
 use crate::document::Document;
 use crate::history::History;
 use crate::host::Opened;
-use crate::names::is_plain_name;
 use crate::protocol::{Reply, Source};
 use crate::view::AfterChange;
 
@@ -47,21 +45,10 @@ impl Session {
         if let Some(name) = source.folder {
             return self.host.recorded_run(&name);
         }
-        let Some(toml) = source.toml else {
+        if source.toml.is_none() {
             return self.host.opening();
-        };
-        let name = source.name.filter(|name| is_plain_name(name));
-        let name = name.unwrap_or_else(|| "case".to_owned());
-        let mut files = BTreeMap::new();
-        for (name, text) in source.files {
-            files.insert(name, base64::decode(&text)?);
         }
-        let read = |name: &str| {
-            let missing = || "it is not one of the files that came with the case".to_owned();
-            files.get(name).cloned().ok_or_else(missing)
-        };
-        let document = Document::new(&name, &toml, read);
-        document.map(Opened::from).map_err(|error| error.to_string())
+        Document::try_from(source).map(Opened::from)
     }
 
     pub(super) fn set(

@@ -1,11 +1,10 @@
 //! A search for a texture that is better than the painted one: begun, followed, and made the texture of the case.
 
-use std::sync::Arc;
 use std::time::Duration;
 
 use super::clock::is_due;
 use super::state::{Session, TextureSearch};
-use crate::event::{Comparison, EventKind, Tried};
+use crate::event::{Comparison, EventKind, Mask, Tried};
 use crate::protocol::{FindingReply, FoundOutcome, FoundReply, Reply};
 use crate::search::{self, NOTHING_TRIED, SEARCH_TIME};
 use crate::work::Work;
@@ -14,7 +13,7 @@ use crate::work::Work;
 const REPORT_INTERVAL: Duration = Duration::from_millis(250);
 
 /// What came of a search: the best texture, and it beside what is painted; or why there is none.
-type Outcome = Result<(Arc<Vec<bool>>, Comparison), String>;
+type Outcome = Result<(Mask, Comparison), String>;
 
 impl Session {
     /// Begins to search for a texture that is better than the painted one.
@@ -116,10 +115,10 @@ impl Session {
     ///
     /// # Errors
     /// A sentence, if it has found nothing, or the system refuses.
-    fn compare(&mut self, searched: Result<Arc<Vec<bool>>, String>) -> Result<(), String> {
+    fn compare(&mut self, searched: Result<Mask, String>) -> Result<(), String> {
         let best = searched?;
         let document = self.document()?.clone();
-        let task = self.host.begin(Work::compare(document, Arc::clone(&best)))?;
+        let task = self.host.begin(Work::compare(document, best.clone()))?;
         if let Some(search) = &mut self.search {
             search.task = task;
             search.compared = Some(best);

@@ -1,12 +1,11 @@
 //! What a session holds.
 
 use std::rc::Rc;
-use std::sync::Arc;
 use std::time::Duration;
 
 use super::clock::Clock;
 use crate::document::Document;
-use crate::event::Tried;
+use crate::event::{Mask, Tried};
 use crate::history::History;
 use crate::host::{Host, Task};
 use crate::live::LiveRun;
@@ -41,7 +40,7 @@ pub(super) struct TextureSearch {
     pub(super) task: Box<dyn Task>,
     pub(super) tried: Tried,
     /// What is compared; none while textures are tried.
-    pub(super) compared: Option<Arc<Vec<bool>>>,
+    pub(super) compared: Option<Mask>,
 }
 
 /// A case that is edited, its run, and what a page is shown of them.

@@ -40,6 +40,7 @@ impl Session {
         if self.view.paused {
             self.is_stepping = false;
             live.advance(std::mem::take(&mut self.single_steps))?;
+            // It is asked only when there were steps, or there is something to draw.
             self.pending.redraw = true;
             return Ok(());
         }

@@ -70,6 +70,14 @@ fn nothing_is_due_before_a_case_is_open_and_while_nothing_moves() {
     let step = tried.step();
     tried.ask(json!({ "do": "step", "count": 7 }));
     assert_eq!((tried.step(), tried.work()), (step + 7, None));
+    // Asking again changes nothing.
+    let pictures = tried.host.pictures.take().len();
+    tried.now += Duration::from_secs(1);
+    assert_eq!(
+        (tried.work(), tried.host.pictures.take().len()),
+        (None, 0),
+        "after {pictures}"
+    );
     // A page that nobody looks at does not go on, and one that reads nothing gets nothing.
     tried.ask(json!({ "do": "view", "paused": false, "visible": false }));
     assert_eq!(tried.work(), None);
@@ -134,6 +142,9 @@ fn a_run_and_its_twin_go_to_their_ends() {
     tried.ask(json!({ "do": "open", "source": { "toml": toml } }));
     tried.work_until(Duration::from_secs(600), Duration::from_millis(2));
     assert_eq!(tried.work(), None);
+    tried.host.pictures.take();
+    tried.now += Duration::from_secs(1);
+    assert_eq!((tried.work(), tried.host.pictures.take().len()), (None, 0));
     let replies = tried.replies();
     let last = replies
         .iter()

@@ -3,6 +3,7 @@
 use std::time::Duration;
 
 use slipfront::PositionBins;
+use slipfront_case::case_file::Motion;
 use slipfront_run::summary::summary_json;
 
 use super::clock::is_due;
@@ -51,6 +52,8 @@ impl Session {
                     .kinetic
                     .time_star(&peak, case.model.loading_speed())
             },
+            drive_degrees: (case.file.drive.motion == Motion::Translation)
+                .then_some(case.file.drive.direction),
             steady_level: case.expected.steady_level,
             can_undo: history.can_undo(),
             can_redo: history.can_redo(),

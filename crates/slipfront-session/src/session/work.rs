@@ -21,7 +21,10 @@ impl Session {
         }
         self.follow_repetition();
         self.follow_search(now);
-        self.run_until_next_picture(now);
+        // A host may ask more often than anything moves.
+        if !self.is_idle() {
+            self.run_until_next_picture(now);
+        }
         if is_changed {
             self.clock.disturb_slice();
         }
@@ -35,8 +38,11 @@ impl Session {
         if self.is_idle() {
             return None;
         }
+        if self.host.is_full() {
+            return Some(now + self.picture_period());
+        }
         let is_due = self.is_stepping || self.pending.redraw || self.clock.due >= 1.0 || self.has_edits();
-        if is_due && !self.host.is_full() {
+        if is_due {
             return Some(now);
         }
         Some(now.max(self.clock.picture + self.picture_period()))

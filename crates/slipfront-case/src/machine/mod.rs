@@ -1,8 +1,16 @@
 //! Free memory and disk space of this machine, and its identity.
 
-use std::path::Path;
+#[cfg(feature = "disk")]
+mod of_system;
+#[cfg(not(feature = "disk"))]
+mod without_disk;
 
 use crate::same::words_of;
+
+#[cfg(feature = "disk")]
+pub use self::of_system::{free_disk, host_name};
+#[cfg(not(feature = "disk"))]
+pub use self::without_disk::{free_disk, host_name};
 
 /// A number that stands for the name of this machine.
 pub fn machine_number() -> i64 {
@@ -94,11 +102,4 @@ pub fn can_be_had(bytes: f64) -> bool {
     // Memory that nobody looks at need not be asked for, as far as the compiler is concerned.
     std::hint::black_box(&mut all);
     reserved.is_ok()
-}
-
-/// Bytes that are free on the disk of a folder, which need not exist yet. `None` if the system does not say.
-pub fn free_disk(folder: &Path) -> Option<f64> {
-    let whole = std::path::absolute(folder).ok()?;
-    let there = whole.ancestors().find(|path| path.is_dir())?;
-    Some(fs4::available_space(there).ok()? as f64)
 }

@@ -1,0 +1,358 @@
+//! The laboratory without a server: its page, and the session as WebAssembly, as a folder for any web server or as one file.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use base64::Engine as _;
+use base64::prelude::BASE64_STANDARD;
+use serde::Serialize;
+use sha2::{Digest, Sha256};
+use slipfront_case::disk::{is_empty, make_folders, write_atomic};
+use slipfront_case::text::display_path;
+use slipfront_session::{Document, Presets};
+
+use crate::opening::{Start, StartSource};
+use crate::{assets, presets};
+
+/// The name of the session as WebAssembly, beside the program and in an exported folder.
+pub const MODULE: &str = "slipfront.wasm";
+
+/// What the session begins with.
+const BEGINNING: &str = "start.json";
+
+/// What the page of an exported folder may do: take files from its own folder, and compile the module.
+const POLICY_OF_FOLDER: &str = include_str!("../export/folder.policy");
+
+/// What a page of one file may do: run its loader, show its styles, and what the loader makes of its files.
+const POLICY_OF_SINGLE: &str = include_str!("../export/single.policy");
+
+/// The manifest by which a browser offers to keep the page like a program.
+const MANIFEST: &str = r##"{
+  "name": "slipfront laboratory",
+  "short_name": "slipfront",
+  "start_url": "./",
+  "scope": "./",
+  "display": "standalone",
+  "background_color": "#ffffff",
+  "theme_color": "#2a6f97"
+}
+"##;
+
+/// Why the laboratory cannot be exported.
+#[derive(Debug, thiserror::Error)]
+pub enum ExportError {
+    /// The module was not built.
+    #[error(
+        "the simulation as WebAssembly, {MODULE}, is not in {}: build it by crates/slipfront-wasm/build.sh of the sources, and export again",
+        places(.0)
+    )]
+    NoModule(Vec<PathBuf>),
+    /// A module that is none.
+    #[error("{} is no module of WebAssembly: build it anew by crates/slipfront-wasm/build.sh of the sources", display_path(.0))]
+    NotModule(PathBuf),
+    /// A run folder needs a server that reads it.
+    #[error("a folder of a run cannot be exported: name the case.toml in it")]
+    Folder,
+    /// The case cannot be made.
+    #[error("{0}")]
+    Case(String),
+    /// A folder that is not empty, and was not exported.
+    #[error("{} holds other things than an exported laboratory: name another folder", display_path(.0))]
+    OtherThings(PathBuf),
+    /// The system refuses.
+    #[error("{} cannot be written: {source}", display_path(path))]
+    Write {
+        /// What cannot be written.
+        path: PathBuf,
+        /// Why.
+        source: std::io::Error,
+    },
+}
+
+/// Folders in a sentence of where nothing is.
+fn places(folders: &[PathBuf]) -> String {
+    let folders: Vec<String> = folders.iter().map(|folder| display_path(folder)).collect();
+    folders.join(" or in ")
+}
+
+/// Presets, and the case with which the page opens.
+#[derive(Serialize)]
+struct Beginning<'a> {
+    presets: &'a Presets,
+    opening: &'a Document,
+}
+
+/// All that a page without a server is made of.
+struct Parts {
+    /// Files of the page by their names.
+    files: BTreeMap<String, Vec<u8>>,
+    module: Vec<u8>,
+}
+
+/// Finds the module, in the first of some folders that has it.
+///
+/// # Errors
+/// When none has it, or it is none.
+pub fn find_module(folders: &[PathBuf]) -> Result<PathBuf, ExportError> {
+    let paths = folders.iter().map(|folder| folder.join(MODULE));
+    let found = paths.into_iter().find(|path| path.is_file());
+    found.ok_or_else(|| ExportError::NoModule(folders.to_vec()))
+}
+
+impl Parts {
+    fn new(start: &Start, module: &Path) -> Result<Self, ExportError> {
+        let presets = presets::all();
+        let opening = match &start.0 {
+            StartSource::Preset => presets::opening(&presets).map_err(ExportError::Case)?,
+            StartSource::Case(document) => Document::clone(document),
+            StartSource::Folder(_) => return Err(ExportError::Folder),
+        };
+        let contents = fs::read(module).map_err(|source| ExportError::Write {
+            path: module.to_owned(),
+            source,
+        })?;
+        if !contents.starts_with(b"\0asm") {
+            return Err(ExportError::NotModule(module.to_owned()));
+        }
+        let mut files: BTreeMap<String, Vec<u8>> = assets::all()
+            .map(|(name, contents)| (name, contents.to_vec()))
+            .collect();
+        let beginning = Beginning {
+            presets: &presets,
+            opening: &opening,
+        };
+        let beginning =
+            serde_json::to_vec(&beginning).map_err(|error| ExportError::Case(error.to_string()))?;
+        files.insert(BEGINNING.to_owned(), beginning);
+        Ok(Self {
+            files,
+            module: contents,
+        })
+    }
+
+    /// A file of the page as a text.
+    fn text(&self, name: &str) -> String {
+        let contents = self.files.get(name).map(Vec::as_slice).unwrap_or_default();
+        String::from_utf8_lossy(contents).into_owned()
+    }
+
+    /// The page, which says that it has no server, with a policy and more in its head.
+    fn page(&self, policy: &str, more: &str) -> String {
+        let policy = policy.trim_end();
+        let head = format!(
+            "<meta charset=\"utf-8\">\n<meta http-equiv=\"Content-Security-Policy\" content=\"{policy}\">\n{more}"
+        );
+        self.text("index.html")
+            .replacen("<html>", "<html data-channel=\"worker\">", 1)
+            .replacen("<meta charset=\"utf-8\">\n", &head, 1)
+    }
+}
+
+/// Writes the laboratory as a folder that any web server can serve: a page that opens with a case of the start, and asks for nothing outside
+/// of the folder.
+///
+/// # Errors
+/// When the module is none, the folder holds other things, or the system refuses.
+pub fn export_folder(start: &Start, module: &Path, out: &Path) -> Result<(), ExportError> {
+    let write = |path: &Path, contents: &[u8]| {
+        let folder = path.parent().map_or(Ok(()), make_folders);
+        let written = folder.and_then(|()| write_atomic(path, contents));
+        written.map_err(|source| ExportError::Write {
+            path: path.to_owned(),
+            source,
+        })
+    };
+    let is_free = !out.exists() || out.join(MODULE).is_file() || is_empty(out).unwrap_or(false);
+    if !is_free {
+        return Err(ExportError::OtherThings(out.to_owned()));
+    }
+    let mut parts = Parts::new(start, module)?;
+    let page = parts.page(
+        POLICY_OF_FOLDER,
+        "<link rel=\"manifest\" href=\"manifest.webmanifest\">\n",
+    );
+    parts.files.insert("index.html".to_owned(), page.into_bytes());
+    parts.files.insert(MODULE.to_owned(), parts.module.clone());
+    parts
+        .files
+        .insert("manifest.webmanifest".to_owned(), MANIFEST.as_bytes().to_vec());
+    let service_worker = service_worker(&parts.files);
+    for (name, contents) in &parts.files {
+        write(&out.join(name), contents)?;
+    }
+    write(&out.join("service_worker.js"), service_worker.as_bytes())
+}
+
+/// The script that keeps these files in the browser, under a name that follows from their contents.
+fn service_worker(files: &BTreeMap<String, Vec<u8>>) -> String {
+    let mut hasher = Sha256::new();
+    for (name, contents) in files {
+        hasher.update(name.as_bytes());
+        hasher.update((contents.len() as u64).to_le_bytes());
+        hasher.update(contents);
+    }
+    let hash = hasher.finalize();
+    let digits: String = hash.iter().take(8).map(|byte| format!("{byte:02x}")).collect();
+    // The address of the folder is that of the page.
+    let names = ["./"].into_iter().chain(files.keys().map(String::as_str));
+    let names: Vec<String> = names.map(|name| format!("'{name}'")).collect();
+    include_str!("../export/service_worker.js")
+        .replacen("'FILES'", &names.join(", "), 1)
+        .replacen("'CACHE'", &format!("'slipfront-{digits}'"), 1)
+}
+
+/// Writes the laboratory as one file, which opens from the disk: a page that opens with a case of the start, and asks for nothing.
+///
+/// # Errors
+/// When the module is none, or the system refuses.
+pub fn export_single(start: &Start, module: &Path, out: &Path) -> Result<(), ExportError> {
+    let parts = Parts::new(start, module)?;
+    let styles = ["vendor/uPlot.min.css", "style.css"].map(|name| parts.text(name));
+    let loader = include_str!("../export/single.js");
+    let hash = |text: &str| format!("'sha256-{}'", BASE64_STANDARD.encode(Sha256::digest(text)));
+    let policy = POLICY_OF_SINGLE.replacen("LOADER", &hash(loader), 1).replacen(
+        "STYLES",
+        &styles.each_ref().map(|style| hash(style)).join(" "),
+        1,
+    );
+    let mut page = parts.page(&policy, "");
+    for (name, style) in ["vendor/uPlot.min.css", "style.css"].iter().zip(&styles) {
+        let link = format!("<link rel=\"stylesheet\" href=\"{name}\">");
+        page = page.replacen(&link, &format!("<style>{style}</style>"), 1);
+    }
+    let script = format!(
+        "<script type=\"application/json\" id=\"files\">{}</script>\n",
+        files_within(&parts)
+    );
+    // Behind all elements, since it is not a module and would not wait for them.
+    page = page
+        .replacen("<script type=\"module\" src=\"main.js\"></script>\n", "", 1)
+        .replacen(
+            "</body>",
+            &format!("{script}<script>{loader}</script>\n</body>"),
+            1,
+        );
+    write_atomic(out, page.as_bytes()).map_err(|source| ExportError::Write {
+        path: out.to_owned(),
+        source,
+    })
+}
+
+/// The files that a page of one file asks for, as JSON within a script: texts, and the module in Base64.
+fn files_within(parts: &Parts) -> String {
+    let is_asked_for =
+        |name: &str| name != "index.html" && !name.ends_with(".css") && !name.ends_with(".LICENSE");
+    let mut files: BTreeMap<&str, String> = parts
+        .files
+        .keys()
+        .filter(|name| is_asked_for(name))
+        .map(|name| (name.as_str(), parts.text(name)))
+        .collect();
+    files.insert(MODULE, BASE64_STANDARD.encode(&parts.module));
+    // Texts: serialisation cannot fail. What would end the script is written otherwise.
+    serde_json::to_string(&files)
+        .unwrap_or_default()
+        .replace("</", "<\\/")
+        .replace("<!--", "<\\u0021--")
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use tempfile::TempDir;
+
+    use super::*;
+
+    /// A folder with what begins like a module.
+    fn with_module() -> (TempDir, PathBuf) {
+        let folder = tempfile::tempdir().unwrap();
+        let module = folder.path().join(MODULE);
+        fs::write(&module, b"\0asm\x01\0\0\0").unwrap();
+        (folder, module)
+    }
+
+    #[test]
+    fn a_folder_has_all_files_of_the_page_and_asks_for_no_other() {
+        let (folder, module) = with_module();
+        let out = folder.path().join("lab");
+        export_folder(&Start::default(), &module, &out).unwrap();
+        let page = fs::read_to_string(out.join("index.html")).unwrap();
+        assert!(
+            page.contains("<html data-channel=\"worker\">") && page.contains(POLICY_OF_FOLDER.trim_end())
+        );
+        assert!(!page.contains("http:") && !page.contains("https:"), "{page}");
+        let kept = fs::read_to_string(out.join("service_worker.js")).unwrap();
+        for (name, contents) in assets::all() {
+            let written = fs::read(out.join(&name)).unwrap();
+            assert!(name == "index.html" || written == contents, "{name}");
+            assert!(kept.contains(&format!("'{name}'")), "{name}");
+        }
+        let beginning: serde_json::Value =
+            serde_json::from_slice(&fs::read(out.join(BEGINNING)).unwrap()).unwrap();
+        assert_eq!(beginning["opening"]["name"], "circle");
+        assert!(beginning["presets"].as_array().unwrap().len() > 30);
+        // The same files have the same bytes and the same name in the browser; others have another.
+        let again = folder.path().join("again");
+        export_folder(&Start::default(), &module, &again).unwrap();
+        assert_eq!(kept, fs::read_to_string(again.join("service_worker.js")).unwrap());
+        fs::write(&module, b"\0asm\x01\0\0\0\0").unwrap();
+        export_folder(&Start::default(), &module, &again).unwrap();
+        assert_ne!(kept, fs::read_to_string(again.join("service_worker.js")).unwrap());
+    }
+
+    #[test]
+    fn one_file_holds_the_files_that_its_page_asks_for() {
+        let (folder, module) = with_module();
+        let out = folder.path().join("lab.html");
+        export_single(&Start::default(), &module, &out).unwrap();
+        let page = fs::read_to_string(&out).unwrap();
+        assert!(!page.contains("<link rel=\"stylesheet\"") && !page.contains("src=\"main.js\""));
+        let (_, within) = page.split_once("id=\"files\">").unwrap();
+        let (within, loader) = within.split_once("</script>").unwrap();
+        let files: BTreeMap<String, String> = serde_json::from_str(within).unwrap();
+        assert_eq!(files[MODULE], BASE64_STANDARD.encode(b"\0asm\x01\0\0\0"));
+        let asked: BTreeSet<&str> = files.keys().map(String::as_str).collect();
+        for name in [
+            "main.js",
+            "lab_worker.js",
+            "en.json",
+            "vendor/uPlot.esm.js",
+            BEGINNING,
+        ] {
+            assert!(asked.contains(name), "{name}");
+        }
+        // The script that runs is the one that the policy allows.
+        let loader = loader
+            .split_once("<script>")
+            .unwrap()
+            .1
+            .split_once("</script>")
+            .unwrap()
+            .0;
+        let hash = BASE64_STANDARD.encode(Sha256::digest(loader));
+        assert!(page.contains(&format!("'sha256-{hash}'")));
+    }
+
+    #[test]
+    fn what_cannot_be_exported_is_refused_with_the_remedy() {
+        let (folder, module) = with_module();
+        let said = |result: Result<(), ExportError>| result.unwrap_err().to_string();
+        let start = Start::default();
+        let other = folder.path().join("other");
+        fs::create_dir(&other).unwrap();
+        fs::write(other.join("mine"), "mine").unwrap();
+        assert!(said(export_folder(&start, &module, &other)).contains("holds other things"));
+        assert_eq!(fs::read_dir(&other).unwrap().count(), 1);
+        assert!(said(export_single(&start, &other.join("mine"), &other.join("x"))).contains("is no module"));
+        let missing = find_module(&[other.clone(), folder.path().join("none")]).unwrap_err();
+        assert!(
+            missing
+                .to_string()
+                .contains("build it by crates/slipfront-wasm/build.sh"),
+            "{missing}"
+        );
+        assert_eq!(find_module(&[other, folder.path().to_owned()]).unwrap(), module);
+    }
+}

@@ -1,0 +1,28 @@
+// @ts-check
+// The files of the page: beside it, or within it where the page is one file.
+
+/** Whether there is no server: the session runs in a Worker of the page. */
+export const isAlone = document.documentElement.dataset.channel === 'worker';
+
+/** The files within the page, text or Base64, by their names; none where they stand beside it. @type {Record<string, string>|null} */
+const inside = JSON.parse(document.getElementById('files')?.textContent ?? 'null');
+
+/** Whether the page is one file. */
+export const isSingle = inside !== null;
+
+/** The text of a file; null if there is none of this name. @param {string} name @returns {Promise<string|null>} */
+export async function textOf(name) {
+  if (inside) return inside[name] ?? null;
+  const answer = await fetch(name);
+  return answer.ok ? answer.text() : null;
+}
+
+/** A file of JSON. @param {string} name */
+export const jsonOf = async (name) => JSON.parse((await textOf(name)) ?? 'null');
+
+/** The bytes of a file; null if there is none of this name. @param {string} name @returns {Promise<ArrayBuffer|null>} */
+export async function bytesOf(name) {
+  if (inside) return name in inside ? Uint8Array.from(atob(inside[name]), (letter) => letter.charCodeAt(0)).buffer : null;
+  const answer = await fetch(name);
+  return answer.ok ? answer.arrayBuffer() : null;
+}

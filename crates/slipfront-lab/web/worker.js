@@ -1,0 +1,148 @@
+// @ts-check
+// The session in a Worker of this page, as WebAssembly: there is no server and no disk. Work beside it, and runs that are saved, have
+// Workers of their own.
+import { bytesOf, isSingle, textOf } from './assets.js';
+import { download } from './element.js';
+import { receive } from './receive.js';
+import { put } from './store.js';
+import { say } from './text.js';
+
+/** A Worker that has failed is begun anew so often, and no more in this time: what fails again and again would for ever. */
+const MOST_FAILURES = 3;
+const FAILURES_MS = 60_000;
+
+/** A module without a function, of which one instruction is of SIMD. */
+const SIMD = Uint8Array.of(0, 97, 115, 109, 1, 0, 0, 0, 1, 5, 1, 96, 0, 1, 123, 3, 2, 1, 0, 10, 10, 1, 8, 0, 65, 0, 253, 15, 253, 98, 11);
+
+/** @type {WebAssembly.Module|null} */
+let module = null;
+/** Where the script of Workers stands. */
+let script = 'lab_worker.js';
+/** What the session begins with: presets and the opening case. */
+let beginning = '';
+/** @type {Worker|null} */
+let session = null;
+/** Work beside the session, by its number. @type {Map<number, Worker>} */
+const tasks = new Map();
+/** Runs that are being saved, by their names. @type {Map<string, {worker: Worker, share: number}>} */
+const saves = new Map();
+/** When the session has failed. @type {number[]} */
+let failures = [];
+
+/** @typedef {{is: string, number: number, data: any}} Said */
+
+/** Begins a Worker. @param {(said: Said, worker: Worker) => void} hear */
+function begin(hear) {
+  const worker = new Worker(script);
+  worker.onmessage = ({ data }) => hear(data, worker);
+  worker.onerror = (event) => {
+    event.preventDefault();
+    hear({ is: 'defect', number: 0, data: event.message ?? '' }, worker);
+  };
+  worker.postMessage({ do: 'begin', module });
+  return worker;
+}
+
+/** Begins work beside the session. @param {number} number @param {string} text */
+function beginTask(number, text) {
+  const worker = begin(({ is, data }) => {
+    if (is === 'event') session?.postMessage({ do: 'hear', number, text: data });
+    else if (is === 'defect' || is === 'refusal') {
+      console.error(data);
+      session?.postMessage({ do: 'lost', number });
+    }
+    if (is !== 'event') endTask(number);
+  });
+  tasks.set(number, worker);
+  worker.postMessage({ do: 'run', text });
+}
+
+/** @param {number} number */
+function endTask(number) {
+  tasks.get(number)?.terminate();
+  tasks.delete(number);
+}
+
+function tellSaving() {
+  const under_way = [...saves].map(([name, { share }]) => ({ name, share }));
+  put('saving', { under_way });
+}
+
+/** Begins to save a run, which is offered as a file at its end. @param {string} text */
+function beginSave(text) {
+  const { name, document } = JSON.parse(text);
+  if (saves.has(name)) return put('refused', { of: 'save', sentence: say('save_taken', { name }) });
+  const worker = begin(({ is, number, data }) => {
+    if (is === 'share') {
+      const save = saves.get(name);
+      if (save) save.share = number / 1e6;
+      return tellSaving();
+    }
+    endSave(name);
+    if (is === 'archive') {
+      download(new Blob([data], { type: 'application/zip' }), `${name}.zip`);
+      put('saved', { name, folder: `${name}.zip`, folders: [] });
+    } else put('refused', { of: 'save', sentence: say('save_failed', { name, sentence: is === 'refusal' ? data : say('worker_ended') }) });
+  });
+  saves.set(name, { worker, share: 0 });
+  worker.postMessage({ do: 'save', text: JSON.stringify(document) });
+  tellSaving();
+}
+
+/** @param {string} name */
+function endSave(name) {
+  saves.get(name)?.worker.terminate();
+  saves.delete(name);
+  tellSaving();
+}
+
+/** What the session says. @param {Said} said @param {Worker} worker */
+function hear({ is, number, data }, worker) {
+  if (worker !== session) return;
+  if (is === 'reply' || is === 'picture' || is === 'kymograph') receive(data);
+  else if (is === 'work') beginTask(number, data);
+  else if (is === 'end') endTask(number);
+  else if (is === 'save') beginSave(data);
+  else if (is === 'stop_saving') endSave(data);
+  else return fail(data);
+  worker.postMessage({ do: 'read', messages: 1, pictures: is === 'picture' || is === 'kymograph' ? 1 : 0 });
+}
+
+/** The session has failed: it begins anew with the case that is shown, unless it fails again and again. @param {string} why */
+function fail(why) {
+  console.error(why);
+  session?.terminate();
+  session = null;
+  for (const number of [...tasks.keys()]) endTask(number);
+  const now = performance.now();
+  failures = [...failures.filter((time) => now - time < FAILURES_MS), now];
+  if (failures.length > MOST_FAILURES) return put('connected', { yes: false, ended: true });
+  put('problem', { key: 'worker_failed' });
+  open();
+}
+
+function open() {
+  session = begin(hear);
+  session.postMessage({ do: 'open', text: beginning });
+}
+
+/** Loads the module and begins the session. */
+export async function connect() {
+  try {
+    if (!WebAssembly.validate(SIMD)) throw new Error(say('no_simd'));
+    const [bytes, texts] = await Promise.all([bytesOf('slipfront.wasm'), textOf('start.json')]);
+    if (!bytes || !texts) throw new Error(say('no_module'));
+    beginning = texts;
+    module = await WebAssembly.compile(bytes).catch(() => {
+      throw new Error(say('no_module'));
+    });
+    if (isSingle) script = URL.createObjectURL(new Blob([(await textOf('lab_worker.js')) ?? ''], { type: 'text/javascript' }));
+    open();
+    put('connected', { yes: true });
+  } catch (error) {
+    put('failed', { sentence: error instanceof Error ? error.message : String(error) });
+  }
+}
+
+/** Sends a message to the session. @param {string} message */
+export const send = (message) => session?.postMessage({ do: 'handle', text: message });

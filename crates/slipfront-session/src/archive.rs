@@ -1,0 +1,44 @@
+//! A run from rest as one archive, with the bytes that `slipfront run` writes.
+
+use std::sync::Arc;
+
+use slipfront::Execution;
+use slipfront_run::results;
+use slipfront_run::running::Running;
+
+use crate::document::Document;
+use crate::zip;
+
+/// Share of a run after which its progress is told again.
+const SHARE: f64 = 0.01;
+
+/// Runs a case from rest to its end, and gives an archive of its files: the case and the files that it reads, summary, series, fields and
+/// kymograph, each with the bytes that `slipfront run` writes. `report_progress` is told the share of the run that is done.
+///
+/// # Errors
+/// A sentence, if the case cannot be run, or the run diverges.
+pub fn run_archive(document: &Document, report_progress: &dyn Fn(f64)) -> Result<Vec<u8>, String> {
+    /// Any error as its sentence.
+    fn sentence(error: impl std::fmt::Display) -> String {
+        error.to_string()
+    }
+    let case = Arc::new(document.case().map_err(sentence)?);
+    let mut running = Running::start(&case, None, Execution::default());
+    let mut told = 0.0;
+    let reason = loop {
+        if let Some(reason) = running.advance(case.steps_per_poll()).map_err(sentence)? {
+            break reason;
+        }
+        let share = running.snapshot().drive_steps as f64 / case.time_plan.last_step as f64;
+        if share >= told + SHARE {
+            told = share;
+            report_progress(share);
+        }
+    };
+    let mut record = running.record(reason);
+    let files = results::in_memory(&case, &mut record).map_err(sentence)?;
+    let files = files
+        .iter()
+        .map(|(name, contents)| (name.as_str(), contents.as_slice()));
+    zip::archive(files).map_err(|error| format!("the archive cannot be made: {error}"))
+}

@@ -1,0 +1,16 @@
+#!/usr/bin/env bash
+# Builds the session of the laboratory as WebAssembly: target/slipfront.wasm, which `slipfront lab --export` and `--single` take.
+#
+#     crates/slipfront-wasm/build.sh
+#
+# Needs rustup, which adds the target wasm32-unknown-unknown where it is missing.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/../.."
+target=wasm32-unknown-unknown
+if ! rustup target list --installed | grep --quiet --line-regexp "$target"; then
+    rustup target add "$target"
+fi
+# Vectors of two doubles: every browser has had them since 2023. A folder of its own, since the program is built with other flags.
+RUSTFLAGS='-C target-feature=+simd128' cargo build --profile wasm --quiet --locked -p slipfront-wasm --lib --target "$target" --target-dir target/wasm
+cp "target/wasm/$target/wasm/slipfront_wasm.wasm" target/slipfront.wasm
+printf 'target/slipfront.wasm has %d bytes\n' "$(stat --format=%s target/slipfront.wasm)"

@@ -1,0 +1,156 @@
+//! What the Worker calls.
+
+use std::cell::RefCell;
+use std::collections::BTreeMap;
+use std::rc::Rc;
+use std::sync::atomic::AtomicBool;
+use std::time::Duration;
+
+use serde::Deserialize;
+use slipfront_session::{
+    Document, Event, Host, Message, Presets, Session, Work, Worker, failed, hello, run_archive,
+};
+
+use crate::bits::bits_of_run;
+use crate::host::WorkerHost;
+use crate::imports::{Saying, clock, duration, tell};
+
+thread_local! {
+    /// Bytes that the Worker has given.
+    static GIVEN: RefCell<Vec<u8>> = const { RefCell::new(Vec::new()) };
+    static PAGE: RefCell<Option<(Session, Rc<WorkerHost>)>> = const { RefCell::new(None) };
+}
+
+/// What the Worker has given, read as JSON.
+fn given<T: for<'de> Deserialize<'de>>() -> Result<T, String> {
+    let bytes = GIVEN.take();
+    serde_json::from_slice(&bytes).map_err(|error| error.to_string())
+}
+
+/// Passes on why something cannot be done.
+fn refuse(done: Result<(), String>) {
+    if let Err(sentence) = done {
+        tell(Saying::Refusal, 0, sentence.as_bytes());
+    }
+}
+
+/// Makes room for so many bytes, which the Worker then fills; gives their place.
+pub(crate) fn room(length: usize) -> *mut u8 {
+    GIVEN.with_borrow_mut(|given| {
+        given.clear();
+        given.resize(length, 0);
+        given.as_mut_ptr()
+    })
+}
+
+/// Lets defects be told. To be called first.
+pub(crate) fn begin() {
+    std::panic::set_hook(Box::new(|defect| {
+        tell(Saying::Defect, 0, defect.to_string().as_bytes());
+    }));
+}
+
+/// What the page begins with.
+#[derive(Deserialize)]
+struct Beginning {
+    presets: Presets,
+    opening: Document,
+}
+
+/// Begins a session, given presets and the case with which the page opens.
+pub(crate) fn open() {
+    refuse(given().map(|Beginning { presets, opening }| {
+        let host = Rc::new(WorkerHost::new(presets, opening));
+        host.reply(hello(host.presets(), &[], None));
+        let session = Session::new(Rc::clone(&host) as Rc<dyn Host>);
+        PAGE.set(Some((session, host)));
+    }));
+}
+
+/// Handles a message of the page.
+pub(crate) fn handle() {
+    let text = String::from_utf8(GIVEN.take()).unwrap_or_default();
+    PAGE.with_borrow_mut(|page| {
+        let Some((session, host)) = page else { return };
+        match Message::parse(&text) {
+            Ok(message) => session.handle(message),
+            Err(sentence) => host.reply(failed(sentence)),
+        }
+    });
+}
+
+/// Does what is due at a time of the Worker, ms, when the page has so many messages still to read; gives the time at which to call again, ms,
+/// which is negative if there is nothing to do before a message.
+pub(crate) fn work(now: f64, unread: u32) -> f64 {
+    PAGE.with_borrow_mut(|page| {
+        let Some((session, host)) = page else { return -1.0 };
+        host.unread.set(unread);
+        let due = session.work(duration(now));
+        due.map_or(-1.0, |due| 1000.0 * due.as_secs_f64())
+    })
+}
+
+/// Hears what work of this number tells.
+pub(crate) fn hear(task: u32) {
+    refuse(given().map(|event: Event| {
+        PAGE.with_borrow(|page| {
+            if let Some((_, host)) = page {
+                host.hear(task, event);
+            }
+        });
+    }));
+}
+
+/// Hears that work of this number has ended by a defect of its own.
+pub(crate) fn hear_lost(task: u32) {
+    PAGE.with_borrow(|page| {
+        if let Some((_, host)) = page {
+            host.hear(task, Event::lost());
+        }
+    });
+}
+
+/// A Worker that does work beside a session. It is ended from outside.
+struct OtherWorker(AtomicBool);
+
+impl Worker for OtherWorker {
+    fn tell(&self, event: Event) {
+        if let Ok(event) = serde_json::to_vec(&event) {
+            tell(Saying::Event, 0, &event);
+        }
+    }
+
+    fn stop(&self) -> &AtomicBool {
+        &self.0
+    }
+
+    fn now(&self) -> Duration {
+        clock()
+    }
+}
+
+/// Does work beside a session, and tells what it finds.
+pub(crate) fn run() {
+    refuse(given().map(|work: Work| work.run(&OtherWorker(AtomicBool::new(false)))));
+}
+
+/// Runs a case from rest, and gives the archive of its files.
+pub(crate) fn save() {
+    let told = |share: f64| tell(Saying::Share, (1e6 * share) as u32, &[]);
+    let archive = given().and_then(|document: Document| run_archive(&document, &told));
+    refuse(archive.map(|archive| tell(Saying::Archive, 0, &archive)));
+}
+
+/// A case as a text, and the files that it names.
+#[derive(Deserialize)]
+struct CaseOfFiles {
+    toml: String,
+    files: BTreeMap<String, Vec<u8>>,
+}
+
+/// Gives the bits of a run after so many steps.
+pub(crate) fn bits(most_steps: u32) {
+    let bits =
+        given().and_then(|case: CaseOfFiles| bits_of_run(&case.toml, &case.files, u64::from(most_steps)));
+    refuse(bits.map(|bits| tell(Saying::Bits, 0, bits.as_bytes())));
+}

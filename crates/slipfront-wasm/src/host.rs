@@ -1,0 +1,139 @@
+//! The host of a session in a Worker: it says everything to the Worker.
+
+use std::cell::{Cell, RefCell};
+use std::collections::{HashMap, VecDeque};
+use std::rc::Rc;
+
+use serde::Serialize;
+use slipfront_session::{Document, Event, Host, Opened, Presets, Task, Work};
+
+use crate::imports::{Saying, tell};
+
+/// Replies that the page may not have read yet before it is given no more than answers.
+const MAX_UNREAD: u32 = 64;
+
+/// What was told of all work, by its number.
+type Told = Rc<RefCell<HashMap<u32, VecDeque<Event>>>>;
+
+/// The host of a session in a Worker.
+pub(crate) struct WorkerHost {
+    presets: Presets,
+    opening: Document,
+    told: Told,
+    n_tasks: Cell<u32>,
+    /// Messages that the page has not read yet.
+    pub(crate) unread: Cell<u32>,
+}
+
+/// A run that is to be saved.
+#[derive(Serialize)]
+struct Saved<'a> {
+    name: &'a str,
+    document: &'a Document,
+}
+
+impl WorkerHost {
+    pub(crate) fn new(presets: Presets, opening: Document) -> Self {
+        Self {
+            presets,
+            opening,
+            told: Told::default(),
+            n_tasks: Cell::new(0),
+            unread: Cell::new(0),
+        }
+    }
+
+    pub(crate) fn presets(&self) -> &Presets {
+        &self.presets
+    }
+
+    /// Notes what work tells, unless nobody waits for it any more.
+    pub(crate) fn hear(&self, task: u32, event: Event) {
+        if let Some(told) = self.told.borrow_mut().get_mut(&task) {
+            told.push_back(event);
+        }
+    }
+}
+
+/// Something as JSON.
+fn json(of: &impl Serialize) -> Vec<u8> {
+    // Structs of texts and numbers: serialisation cannot fail.
+    serde_json::to_vec(of).expect("what is said is JSON")
+}
+
+impl Host for WorkerHost {
+    fn reply(&self, reply: String) {
+        tell(Saying::Reply, 0, reply.as_bytes());
+    }
+
+    fn picture(&self, picture: Vec<u8>) {
+        tell(Saying::Picture, 0, &picture);
+    }
+
+    fn kymograph(&self, kymograph: Vec<u8>) {
+        tell(Saying::Kymograph, 0, &kymograph);
+    }
+
+    fn is_full(&self) -> bool {
+        self.unread.get() >= MAX_UNREAD
+    }
+
+    fn threads(&self) -> usize {
+        1
+    }
+
+    fn opening(&self) -> Result<Opened, String> {
+        Ok(self.opening.clone().into())
+    }
+
+    fn preset(&self, name: &str) -> Result<Document, String> {
+        self.presets.document(name)
+    }
+
+    fn recorded_run(&self, _name: &str) -> Result<Opened, String> {
+        Err("this page has no folder of results".to_owned())
+    }
+
+    fn begin(&self, work: Work) -> Result<Box<dyn Task>, String> {
+        let number = self.n_tasks.get() + 1;
+        self.n_tasks.set(number);
+        self.told.borrow_mut().insert(number, VecDeque::new());
+        tell(Saying::Work, number, &json(&work));
+        let told = Rc::clone(&self.told);
+        Ok(Box::new(WorkerTask { number, told }))
+    }
+
+    fn save(&self, document: Document, name: &str) -> Result<(), String> {
+        if !slipfront_session::is_plain_name(name) {
+            return Err(format!(
+                "{name:?} is no name for a file: take up to 100 letters, digits, blanks and -_.+(), and no dot at the start"
+            ));
+        }
+        let document = &document;
+        tell(Saying::Save, 0, &json(&Saved { name, document }));
+        Ok(())
+    }
+
+    fn stop_saving(&self, name: &str) {
+        tell(Saying::StopSaving, 0, name.as_bytes());
+    }
+}
+
+/// Work that another Worker does.
+struct WorkerTask {
+    number: u32,
+    told: Told,
+}
+
+impl Task for WorkerTask {
+    fn next_event(&mut self) -> Option<Event> {
+        self.told.borrow_mut().get_mut(&self.number)?.pop_front()
+    }
+}
+
+impl Drop for WorkerTask {
+    fn drop(&mut self) {
+        self.told.borrow_mut().remove(&self.number);
+        tell(Saying::End, self.number, &[]);
+    }
+}

@@ -1,0 +1,147 @@
+// Pages without a server: a folder for any web server, and one file.
+import assert from 'node:assert/strict';
+import { copyFileSync, mkdirSync, readdirSync, readFileSync, writeFileSync } from 'node:fs';
+import path from 'node:path';
+import test from 'node:test';
+import { pathToFileURL } from 'node:url';
+import { inflateRawSync } from 'node:zlib';
+import { ROOT, slipfront, WORK } from './command.mjs';
+import { browser, colours, laboratory, open, say, SMALL, until, withoutServer } from './page.mjs';
+
+/** The files of a ZIP archive by their names: stored or deflated, as its central directory lists them. */
+function unzip(bytes) {
+  const files = new Map();
+  let at = bytes.readUInt32LE(bytes.lastIndexOf(Buffer.from('PK\x05\x06', 'latin1')) + 16);
+  while (bytes.readUInt32LE(at) === 0x02014b50) {
+    const [method, packed] = [bytes.readUInt16LE(at + 10), bytes.readUInt32LE(at + 20)];
+    const [name, extra, comment] = [28, 30, 32].map((place) => bytes.readUInt16LE(at + place));
+    const header = bytes.readUInt32LE(at + 42);
+    const begin = header + 30 + bytes.readUInt16LE(header + 26) + bytes.readUInt16LE(header + 28);
+    const contents = bytes.subarray(begin, begin + packed);
+    files.set(bytes.toString('utf8', at + 46, at + 46 + name), method === 0 ? contents : inflateRawSync(contents));
+    at += 46 + name + extra + comment;
+  }
+  return files;
+}
+
+/** Saves the run that is shown; its files. */
+async function saved(lab, name) {
+  await lab.press('open-keep');
+  await lab.find('#save-name').fill(name);
+  const { contents } = await lab.download(() => lab.press('save'));
+  await lab.notice(say('saved', { folder: `${name}.zip` }));
+  return unzip(contents);
+}
+
+/** Displacements and velocities at the instants and at the end too. */
+const ALL_FIELDS = '\n[output]\nfields = ["displacement_x", "displacement_y", "velocity_x", "velocity_y", "contact_stress_star"]\n';
+const CASES = {
+  small: SMALL + ALL_FIELDS,
+  oblique: `${SMALL.replace('[slider]', '[drive]\ndirection = 30\n\n[slider]\nedges = "periodic"')}${ALL_FIELDS}`,
+  ageing: readFileSync(path.join(ROOT, 'cases/ageing.toml'), 'utf8'),
+};
+
+for (const [kept, toml] of Object.entries(CASES)) {
+  test(`a run that is saved without a server has the bytes of the command: ${kept}`, withoutServer, async (t) => {
+    const lab = await open(t, { toml });
+    assert.equal(await lab.text('save-where'), say('save_zip'));
+    const files = await saved(lab, kept);
+    writeFileSync(path.join(WORK, `${kept}.toml`), lab.last.case.toml);
+    const folder = path.join(WORK, 'of the command', kept);
+    await slipfront('run', `${kept}.toml`, '--quiet', '--out', folder);
+    const names = ['case.toml', 'fields.nc', 'kymograph.nc', 'series.csv', 'summary.json'];
+    assert.deepEqual([...files.keys()].sort(), names);
+    for (const name of names) assert.ok(files.get(name).equals(readFileSync(path.join(folder, name))), `${name} differs`);
+    // What the command has beside them are pictures and who made them.
+    const others = readdirSync(folder).filter((name) => !names.includes(name) && !name.startsWith('.'));
+    assert.ok(others.every((name) => /\.(svg|png)$|^manifest\.json$/.test(name)), others.join(' '));
+  });
+}
+
+test('a run that is being saved without a server can be stopped', withoutServer, async (t) => {
+  const lab = await open(t, { toml: SMALL.replace('[20, 20]', '[150, 150]').replace('= 120', '= 1e5') });
+  await lab.press('open-keep');
+  await lab.find('#save-name').fill('long');
+  await lab.press('save');
+  await lab.find('#saving li').waitFor();
+  await lab.find('#saving li button').click();
+  await until(async () => (await lab.find('#saving li').count()) === 0, 'no row');
+  // A name that is none is refused by the session.
+  await lab.press('open-keep');
+  await lab.find('#save-name').fill('a/b');
+  await lab.after(() => lab.press('save'), 'refused', ({ sentence }) => sentence.includes('is no name for a file'));
+});
+
+test('a folder that was opened once opens without its server', withoutServer, async (t) => {
+  const lab = await open(t, { toml: SMALL });
+  await lab.page.evaluate(async () => (await navigator.serviceWorker.ready).active.state);
+  await until(() => lab.page.evaluate(async () => (await caches.keys()).length === 1 && (await (await caches.open((await caches.keys())[0])).keys()).length > 40), 'all files in the cache');
+  await lab.page.context().setOffline(true);
+  const before = lab.count.hello;
+  await lab.page.reload();
+  await until(() => lab.count.hello > before, 'a session without a network');
+  await lab.page.context().setOffline(false);
+});
+
+test('a simulation that fails begins anew with the case that is shown, and is given up when it fails again and again', withoutServer, async (t) => {
+  const lab = await open(t, { toml: SMALL });
+  lab.breaks = true;
+  // What a Worker does not know it fails at.
+  const breakIt = () => lab.page.evaluate(() => window.workers.at(-1).postMessage({ do: 'none' }));
+  await lab.after(breakIt, 'case', ({ why }) => why === 'open');
+  await lab.notice(say('worker_failed'));
+  for (let k = 0; k < 2; k += 1) await lab.after(breakIt, 'case', ({ why }) => why === 'open');
+  await breakIt();
+  await lab.notice(say('worker_lost'));
+  await lab.after(() => lab.page.reload(), 'case');
+});
+
+test('one file opens from the disk, draws, and asks for nothing', withoutServer, async (t) => {
+  const file = path.join(WORK, 'single page.html');
+  await slipfront('lab', '--single', file);
+  const begin = performance.now();
+  const lab = await open(t, { address: `${pathToFileURL(file)}#`, toml: SMALL, calm: false });
+  t.diagnostic(`first picture of one file after ${((performance.now() - begin) / 1000).toFixed(2)} s`);
+  await lab.runToEnd();
+  assert.ok(colours(await lab.find('#canvas').screenshot()) > 16);
+  // Lessons and their cases stand in it.
+  await lab.press('open-lessons');
+  await lab.after(() => lab.find('#lessons-list button').first().click(), 'case');
+  const files = await saved(lab, 'single');
+  assert.ok(files.has('series.csv'));
+});
+
+test('a module that is damaged, and a browser without SIMD, are said in a sentence', withoutServer, async (t) => {
+  const context = await browser.newContext();
+  t.after(() => context.close());
+  const page = await context.newPage();
+  await page.route('**/slipfront.wasm', (route) => route.fulfill({ body: Buffer.from('\0asm damaged', 'latin1'), contentType: 'application/wasm' }));
+  await page.goto(laboratory.address);
+  const told = (sentence) => until(async () => (await page.locator('#notices').textContent()).includes(sentence), sentence);
+  await told(say('no_module'));
+  await page.unroute('**/slipfront.wasm');
+  await page.addInitScript(() => (WebAssembly.validate = () => false));
+  await page.reload();
+  await told(say('no_simd'));
+});
+
+test('the command refuses what it cannot export', withoutServer, async () => {
+  const refused = async (...options) => {
+    const failed = await slipfront('lab', ...options).then(() => null, (error) => error);
+    assert.ok(failed, options.join(' '));
+    return failed.stderr;
+  };
+  const folder = path.join(WORK, 'not exported');
+  mkdirSync(folder);
+  writeFileSync(path.join(folder, 'mine.txt'), 'mine');
+  assert.match(await refused('--export', folder), /holds other things than an exported laboratory/);
+  assert.deepEqual(readdirSync(folder), ['mine.txt']);
+  assert.match(await refused('--single', path.join(WORK, 'x.html'), 'none.toml'), /none\.toml/);
+  // What was exported is replaced.
+  const again = path.join(WORK, 'again exported');
+  await slipfront('lab', '--export', again);
+  copyFileSync(path.join(again, 'index.html'), path.join(again, 'index.old'));
+  await slipfront('lab', '--export', again);
+  assert.equal(readFileSync(path.join(again, 'index.html'), 'utf8'), readFileSync(path.join(again, 'index.old'), 'utf8'));
+  assert.doesNotMatch(readFileSync(path.join(again, 'index.html'), 'utf8'), /https?:/);
+});
