@@ -11,7 +11,7 @@ use slipfront_session::{Event, Task, Work, Worker};
 /// Work in a thread of its own, which is asked to stop when this is dropped.
 pub(crate) struct BackgroundTask {
     stop: Arc<AtomicBool>,
-    /// What the work tells; closed once it has ended.
+    /// Events that the work sends; the channel closes once the work has ended.
     events: Receiver<Event>,
     is_lost: bool,
 }

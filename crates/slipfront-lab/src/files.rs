@@ -24,7 +24,7 @@ pub(crate) fn document(path: &Path, name: &str, allowed: &[PathBuf]) -> Result<D
 /// or by symbolic links, is refused.
 pub(crate) struct ReadableFolders<'a> {
     folder: &'a Path,
-    /// What the folder is called in messages.
+    /// The owner of the folder in messages, such as `the case`.
     of: &'static str,
     /// The folders without symbolic links.
     roots: Vec<PathBuf>,

@@ -1,4 +1,4 @@
-//! What a session needs of whoever holds it.
+//! The interface of a session to its host, which holds the session and connects it with page, folders and threads.
 
 use crate::document::Document;
 use crate::event::Event;
@@ -64,9 +64,9 @@ pub trait Task {
 
 /// A case that is opened.
 pub struct Opened {
-    /// The case.
+    /// The case as a document.
     pub document: Document,
-    /// The run of it that was recorded, if there is one.
+    /// The recorded run of the case, if there is one.
     pub recorded: Option<RecordedRun>,
 }
 

@@ -19,7 +19,7 @@ use crate::work::Work;
 /// Time that passes for work between two looks at its clock.
 const TICK: Duration = Duration::from_secs(3);
 
-/// What a session has said and asked its host for.
+/// A host for tests, which keeps what a session has sent its page and asked its host for.
 #[derive(Default)]
 pub(crate) struct TestHost {
     replies: RefCell<Vec<String>>,

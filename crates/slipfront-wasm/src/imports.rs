@@ -1,8 +1,8 @@
-//! What the Worker gives the module.
+//! Functions and clock that the Worker gives the module.
 
 use std::time::Duration;
 
-/// What the module says.
+/// Kinds of messages from the module to the Worker.
 #[derive(Clone, Copy)]
 #[repr(u32)]
 pub(crate) enum Saying {
@@ -16,7 +16,7 @@ pub(crate) enum Saying {
     Work,
     /// The number of work that is to be ended.
     End,
-    /// What work tells.
+    /// An event of work beside a session, as JSON.
     Event,
     /// A run that is to be saved.
     Save,
@@ -28,7 +28,7 @@ pub(crate) enum Saying {
     Archive,
     /// Bits of a run.
     Bits,
-    /// What is wrong.
+    /// A sentence that says why a call was refused.
     Refusal,
     /// A defect, as the terminal of a program would show it.
     Defect,

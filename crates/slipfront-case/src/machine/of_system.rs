@@ -1,4 +1,4 @@
-//! What the system says of the machine beside its memory.
+//! Name of the machine and free bytes on its disks, as the operating system gives them.
 
 use std::ffi::OsString;
 use std::path::Path;
