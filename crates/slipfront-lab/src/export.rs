@@ -48,13 +48,13 @@ pub enum ExportError {
         places(.0)
     )]
     NoModule(Vec<PathBuf>),
-    /// A module that is none.
+    /// The file of the module holds no WebAssembly.
     #[error("{} is no module of WebAssembly: build it anew by crates/slipfront-wasm/build.sh of the sources", display_path(.0))]
     NotModule(PathBuf),
     /// A run folder needs a server that reads it.
     #[error("a folder of a run cannot be exported: name the case.toml in it")]
     Folder,
-    /// The case cannot be made.
+    /// The case with which the page opens cannot be made.
     #[error("{0}")]
     Case(String),
     /// A folder that is not empty, and was not exported.
@@ -93,7 +93,7 @@ struct Parts {
 /// Finds the module, in the first of some folders that has it.
 ///
 /// # Errors
-/// When none has it, or it is none.
+/// When none of the folders has the module.
 pub fn find_module(folders: &[PathBuf]) -> Result<PathBuf, ExportError> {
     let paths = folders.iter().map(|folder| folder.join(MODULE));
     let found = paths.into_iter().find(|path| path.is_file());

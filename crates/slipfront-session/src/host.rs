@@ -56,7 +56,7 @@ pub trait Host {
     fn stop_saving(&self, name: &str);
 }
 
-/// Work that was begun beside the session. It ends when this is dropped.
+/// Work that was begun beside the session. Dropping the task ends the work.
 pub trait Task {
     /// Gives the next thing that the work tells; none if it has told nothing new.
     fn next_event(&mut self) -> Option<Event>;

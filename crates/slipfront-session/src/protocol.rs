@@ -350,7 +350,7 @@ pub(crate) enum FoundOutcome {
     Replaced,
     /// The painted texture stays, since the search found no better one.
     Kept,
-    /// The painted texture was changed by hand before the search had ended, so that its result was dropped.
+    /// The case was changed before the search had ended, so that the search was given up.
     GivenUp,
     /// The painted texture stays, since the search has failed; a refusal sent before says why.
     Failed,

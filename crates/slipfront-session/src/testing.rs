@@ -89,7 +89,7 @@ impl Host for TestHost {
     }
 }
 
-/// Work that was done, of which every other look shows the next thing.
+/// Finished work, whose next event appears at every other look.
 struct TestTask {
     events: VecDeque<Event>,
     is_next: bool,
@@ -158,7 +158,7 @@ impl Tried {
         self.replies()
     }
 
-    /// Works once; when there is something to do next.
+    /// Works once, and gives the time at which there is something to do next.
     pub(crate) fn work(&mut self) -> Option<Duration> {
         self.session.work(self.now)
     }

@@ -1,4 +1,4 @@
-//! Functions and clock that the Worker gives the module.
+//! Functions that the Worker gives the module: messages to it, and its clock.
 
 use std::time::Duration;
 

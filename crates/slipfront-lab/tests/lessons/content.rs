@@ -31,7 +31,7 @@ pub(crate) struct Step {
     pub(crate) set: Vec<Button>,
 }
 
-/// The view of a step: the field and pace that the page shows.
+/// The view of a step: the field, the pace, and whether the page shows the twin and the kymograph.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct View {

@@ -59,7 +59,7 @@ pub struct Session {
     pub(super) clock: Clock,
     /// Whether steps are being taken that are due before the next picture.
     pub(super) is_stepping: bool,
-    /// Steps that the page has asked for while the run is paused, and that are still to be taken.
+    /// Steps that requests to step a paused run have asked for, and that are still to be taken.
     pub(super) single_steps: u64,
     /// The work that computes static friction over several seeds, while it is under way.
     pub(super) repeating: Option<Box<dyn Task>>,
