@@ -117,7 +117,7 @@ enum Number {
 }
 
 fn default_runs() -> u32 {
-    1500
+    2500
 }
 
 fn default_finer_runs() -> u32 {
