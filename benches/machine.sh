@@ -3,7 +3,7 @@
 #
 #     benches/machine.sh [NAME]
 #
-# NAME is the title of the section, which is written anew where there is one of that name; unless told it is what /proc/cpuinfo says. The whole
+# NAME is the title of the section, which is written anew where there is one of that name; without it, the name in /proc/cpuinfo is taken. The whole
 # takes some twenty minutes, in which the machine should have nothing else to do: the section tells what share others took. Needs the Rust
 # toolchain; gcc, Python 3 and LAMMPS for the other programs, Open MPI and libclang for ranks, valgrind for instruction counts. What is missing
 # is said in the section and left away.
@@ -14,7 +14,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 source benches/common.sh
 
 page=docs/performance.md
-# Vector operations of eight numbers in a step of eight blocks, square root and division aside: docs/performance.md counts them.
+# Vector operations of eight numbers in a step of eight blocks, square root and division aside: docs/kernels.md counts them.
 OPERATIONS=170
 cores=$(nproc)
 field() { awk -F ': *' -v key="$1" '$1 ~ "^" key "[ \t]*$" { print $2; exit }' /proc/cpuinfo; }

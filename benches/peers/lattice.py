@@ -129,7 +129,7 @@ def advance(hold, slide, ux, uy, vx, vy, fx, fy):
 
 @compiled
 def run_numba(hold, slide, steps, ux, uy, vx, vy):
-    """The same in plain loops, compiled."""
+    """The step of the lattice in plain loops, compiled."""
     level = slide.mean() + DAMPING * V_STAR
     peak = (-np.inf, 0, False)
     fx, fy = np.empty_like(ux), np.empty_like(uy)

@@ -1,4 +1,4 @@
-"""What all programs run on, drawn once.
+"""Draws the input of all programs once.
 
     prepare.py SIZE FOLDER
 

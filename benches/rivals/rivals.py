@@ -57,7 +57,7 @@ class Runs:
 
 
 def opened(mask: Mask) -> Mask:
-    """What of a set lies in squares of it that are wide enough; squares end at the edges of the slider."""
+    """The part of a set that squares of the given width within it cover; squares end at the edges of the slider."""
     return np.asarray(scipy.ndimage.binary_opening(mask, np.ones((WIDTH, WIDTH))), dtype=np.bool_)
 
 

@@ -5,7 +5,8 @@ mod hash_sources;
 use std::path::Path;
 use std::process::Command;
 
-/// What decides the numbers of a run, relative to this crate; a change elsewhere in the checkout does not make it another program.
+/// Files that decide the numbers of a run, relative to this crate; a change elsewhere in the checkout does not make it
+/// another program.
 const SOURCES: [&str; 5] = [
     "../slipfront/src",
     "../slipfront-case/src",
@@ -31,7 +32,7 @@ fn main() -> std::io::Result<()> {
     Ok(())
 }
 
-/// The commit, and whether the sources are its; none outside of git.
+/// The commit, and whether the sources are those of the commit; none outside of git.
 fn revision() -> Option<String> {
     // Vendored in another repository, the revision would be that one's.
     git(&["rev-parse", "--show-prefix"]).filter(|prefix| prefix == "crates/slipfront-run/")?;
@@ -41,7 +42,7 @@ fn revision() -> Option<String> {
     Some(format!("{commit}{dirty}"))
 }
 
-/// What git says; none if there is no git, or it fails.
+/// Output of a git command; none if there is no git, or it fails.
 fn git(arguments: &[&str]) -> Option<String> {
     let output = Command::new("git").args(arguments).output().ok()?;
     let said = String::from_utf8(output.stdout).ok()?;

@@ -8,7 +8,7 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// What is hashed, relative to the crate.
+/// Files and folders that are hashed, relative to the crate.
 const SOURCES: [&str; 2] = ["src", "locked-versions.toml"];
 
 /// Sets `SLIPFRONT_SOURCE_HASH` to the BLAKE3 hash of the names and contents of all source files.

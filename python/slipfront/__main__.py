@@ -7,7 +7,7 @@ from ._slipfront import command
 
 
 def main() -> int:
-    """Run the command with the arguments of this process; give its exit status."""
+    """Run the command with the arguments of this process; return its exit status."""
     # The command stops at signals by itself, with checkpoints; Python would only take note of them.
     signal.signal(signal.SIGINT, signal.SIG_DFL)
     return command(["slipfront", *sys.argv[1:]])

@@ -30,7 +30,7 @@ Range: TypeAlias = Sequence[float] | Sequence[str] | Mapping[str, Any]
 
 @dataclasses.dataclass(frozen=True)
 class Interval:
-    """What records tell of a key.
+    """A key of the case as estimated from records.
 
     Attributes
     ----------
@@ -115,7 +115,7 @@ class Calibration:
 
     @property
     def name(self) -> str:
-        """What the calibration is called."""
+        """Name of the calibration."""
         return self._native.name
 
     def fit(
@@ -126,7 +126,7 @@ class Calibration:
         progress: bool | Callable[[int, int], object] | None = None,
         threads: int | None = None,
     ) -> CalibrationResults:
-        """Find what records tell of the unknowns.
+        """Estimate the unknowns from records.
 
         Parameters
         ----------
@@ -167,7 +167,7 @@ class Calibration:
             return CalibrationResults.read(path, None if folder is None else path)
 
     def _path(self, record: Record, path: Path) -> Path:
-        """Where a record stands; one that is given as columns is written there."""
+        """Path of a record; a record that is given as columns is written there."""
         if isinstance(record, (str, os.PathLike)):
             return Path(record)
         names = [name for name in self._native.columns if name in record]
@@ -185,7 +185,7 @@ class Calibration:
 
 
 class CalibrationResults:
-    """What records tell.
+    """Estimates of the unknown keys from records.
 
     Attributes
     ----------
@@ -216,7 +216,7 @@ class CalibrationResults:
 
     @classmethod
     def read(cls, folder: Path, kept: Path | None) -> CalibrationResults:
-        """What stands in a folder, which is kept as `kept` or gone afterwards."""
+        """Results in a folder, which is kept as `kept` or removed afterwards."""
         found = json.loads((folder / "calibration.json").read_bytes())
         points = np.loadtxt(folder / "posterior.csv", delimiter=",", skiprows=1, ndmin=2)
         posterior = {told["key"]: points[:, number] for number, told in enumerate(found["unknowns"])}
@@ -224,12 +224,12 @@ class CalibrationResults:
 
     @property
     def undetermined(self) -> list[str]:
-        """Keys that the records do not tell."""
+        """Keys that the records do not determine."""
         return [key for key, interval in self.intervals.items() if not interval.is_determined]
 
     @property
     def pairs(self) -> list[tuple[str, str, float]]:
-        """Keys that are told only together, and the correlation of their errors."""
+        """Keys that are determined only together, and the correlation of their errors."""
         return [(*pair["keys"], pair["correlation"]) for pair in self._found["pairs"]]
 
     @property
@@ -239,7 +239,7 @@ class CalibrationResults:
 
     @property
     def misfit(self) -> dict[str, Any]:
-        """What speaks against the records: an interval of their drift as a share of friction, and how far they are from the training runs."""
+        """Tests of the records: an interval of their drift as a share of friction, and their distance from the training runs."""
         return dict(self._found["misfit"])
 
     @property

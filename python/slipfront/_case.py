@@ -1,4 +1,4 @@
-"""Cases: what is to be run."""
+"""Cases, which can be run."""
 
 from __future__ import annotations
 
@@ -148,7 +148,7 @@ class Case:
         return cls(tables, name=name)
 
     def replace(self, overrides: Overrides) -> Case:
-        """This case with other values of some keys.
+        """Return the case with other values of some keys.
 
         Examples
         --------
@@ -162,7 +162,7 @@ class Case:
 
     @property
     def name(self) -> str:
-        """What the case and its results are called."""
+        """Name of the case and of its results."""
         return self._native.name
 
     @property
@@ -172,7 +172,7 @@ class Case:
 
     @property
     def last_step(self) -> int:
-        """The step with which a run ends at the latest."""
+        """The last step of a run, unless it ends before."""
         return self._native.last_step
 
     @property
@@ -182,30 +182,30 @@ class Case:
 
     @property
     def warnings(self) -> list[str]:
-        """What a reader should know before trusting the results."""
+        """Warnings that a reader should know before trusting the results."""
         return self._native.warnings
 
     @property
     def textured(self) -> npt.NDArray[np.bool_]:
-        """Whether a block is texture, (N_y, N_x), the lowest row first. It cannot be written to."""
+        """Whether each block is textured, (N_y, N_x), the lowest row first. The array cannot be written to."""
         return self._native.textured
 
     @property
     def mu_static(self) -> npt.NDArray[np.float64]:
-        """Static friction coefficient of every block, (N_y, N_x). It cannot be written to."""
+        """Static friction coefficient of every block, (N_y, N_x). The array cannot be written to."""
         return self._native.mu_static
 
     @property
     def mu_kinetic(self) -> npt.NDArray[np.float64]:
-        """Kinetic friction coefficient of every block, (N_y, N_x). It cannot be written to."""
+        """Kinetic friction coefficient of every block, (N_y, N_x). The array cannot be written to."""
         return self._native.mu_kinetic
 
     def to_toml(self) -> str:
-        """The resolved case with every default, as `case.toml` of its results has it."""
+        """The resolved case with every default, the text of `case.toml` in its results."""
         return self._native.to_toml()
 
     def to_dict(self) -> dict[str, Any]:
-        """The resolved case as `Case` takes it, with every default, files by where they stand, and arrays as they are.
+        """The resolved case as `Case` takes it, with every default, paths of files, and arrays as they are.
 
         Examples
         --------
@@ -242,7 +242,7 @@ class Case:
         return found
 
     def _text(self) -> str:
-        """The resolved case, which names files where they stand or as they are called in memory, and not the copies beside its results."""
+        """The resolved case with the paths of files or their names in memory, in place of the copies beside its results."""
         text = self.to_toml()
         # A file that has changed would make another case than this one in what is not replaced.
         self._native.read_inputs()
@@ -270,7 +270,7 @@ class Case:
         return hash(self.to_toml())
 
     def _hashes(self) -> dict[str, str]:
-        """The hashes of the files that it read, by their names in the resolved case."""
+        """The hashes of the files that the case has read, by their names in the resolved case."""
         return {name: hash_ for name, _, hash_ in self._native.inputs}
 
     def __reduce__(self) -> tuple[Any, ...]:

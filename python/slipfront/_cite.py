@@ -6,7 +6,7 @@ from ._slipfront import __version__
 
 
 def cite() -> str:
-    """What to cite: the program and the paper whose model it implements.
+    """Return the text to cite: the program and the paper whose model it implements.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""One slider on several meshes: how much of a result belongs to the mesh."""
+"""One slider on several meshes: the mesh error of its results."""
 
 from __future__ import annotations
 
@@ -18,18 +18,18 @@ from ._study import Progress, StudyResults, executed, read_tables
 
 @dataclasses.dataclass(frozen=True)
 class QuantityOnMeshes:
-    """A quantity on every mesh, the coarsest first, and what the meshes tell of it."""
+    """A quantity on every mesh, the coarsest first, and its mesh error."""
 
     quantity: str
-    """Its name, as in `summary.json`."""
+    """Name of the quantity, as in `summary.json`."""
     values: tuple[float, ...]
     """Mean over the surfaces of each mesh."""
     scatter: tuple[float | None, ...]
-    """Half width of the interval of each mean, which the scatter over surfaces leaves; None of one surface."""
+    """Half width of the interval of each mean, due to the scatter over surfaces; None for one surface."""
     order: float | None
     """Order of convergence, 1/2 to 2; None unless differences decrease."""
     mesh_error: float | None
-    """Error that the finest mesh leaves; None where no limit is claimed."""
+    """Mesh error of the finest mesh; None where no limit is claimed."""
     sentence: str
     """The value on the finest mesh with its errors, or why no limit is claimed."""
 
@@ -38,7 +38,7 @@ class QuantityOnMeshes:
 
 
 class Convergence(StudyResults):
-    """What several meshes found of one slider, and the tables of the study over them, whose points are the meshes.
+    """Results of one slider on several meshes, and the tables of the study over them, whose points are the meshes.
 
     Attributes
     ----------
@@ -61,7 +61,7 @@ class Convergence(StudyResults):
 
     @classmethod
     def read(cls, folder: Path, failures: Sequence[tuple[str, str]] = ()) -> Convergence:
-        """What stands in a folder."""
+        """The results in a folder."""
         found = json.loads((folder / "convergence.json").read_bytes())
         text = (folder / "convergence.txt").read_text(encoding="utf-8")
         return cls(folder, read_tables(folder), failures, found, text)
@@ -78,7 +78,7 @@ class Convergence(StudyResults):
 
     @property
     def quantities(self) -> dict[str, QuantityOnMeshes]:
-        """The quantities that all meshes have a value of, by their names."""
+        """The quantities of which all meshes have a value, by their names."""
         # Each has a line that begins with its name.
         lines = (line.strip() for line in self.text.splitlines())
         sentences = {line.split(":")[0]: line for line in lines if ": " in line}
@@ -86,7 +86,7 @@ class Convergence(StudyResults):
 
     @property
     def lengths_of_a_block(self) -> list[str]:
-        """Lengths of the material that are those of a block: with any of them every mesh is another material, and no limit is claimed."""
+        """Lengths of the material that equal the length of a block: with any of them every mesh is another material, and no limit is claimed."""
         return list(self._found["lengths_of_a_block"])
 
     def to_dict(self) -> dict[str, Any]:
@@ -94,7 +94,7 @@ class Convergence(StudyResults):
         return dict(json.loads(json.dumps(self._found)))
 
     def to_list(self) -> list[dict[str, Any]]:
-        """A dictionary for each quantity, with what a `QuantityOnMeshes` holds."""
+        """A dictionary for each quantity, with the entries of a `QuantityOnMeshes`."""
         return [dataclasses.asdict(quantity) for quantity in self.quantities.values()]
 
     def _quantity(self, found: dict[str, Any], sentence: str) -> QuantityOnMeshes:
@@ -128,7 +128,7 @@ def converge(
     max_time: str | None = None,
     progress: Progress = None,
 ) -> Convergence:
-    """Run a case on several meshes: what it finds, with an error that says how much of it belongs to the mesh.
+    """Run a case on several meshes: its results with their mesh errors.
 
     The slider, its load, mount, damping, speed and duration stay what they are in metres, seconds and pascals; blocks have twice their
     size, their own, half of it, and so on. Ctrl-C ends it with a `KeyboardInterrupt`, an exception in `progress` with that.

@@ -68,7 +68,7 @@ def table(columns: dict[str, Any], index: str = "time_star") -> xr.Dataset:
 
 
 def fields(arrays: dict[str, Any]) -> xr.Dataset:
-    """What `fields.nc` holds."""
+    """The content of `fields.nc`."""
     instants, time_star = arrays["instants"], arrays["instants"]["time_star"]
     plane = ("y", "x")
 
@@ -98,7 +98,7 @@ def fields(arrays: dict[str, Any]) -> xr.Dataset:
 
 
 def kymograph(arrays: dict[str, Any], time_unit_s: float) -> xr.Dataset:
-    """What `kymograph.nc` holds."""
+    """The content of `kymograph.nc`."""
     time_star = arrays["time_star"]
     share = {"units": "1", "long_name": "share of the blocks in contact that slide"}
     coordinates: dict[str, Any] = {

@@ -1,4 +1,4 @@
-"""From a wish to a texture: the search for the mask that gives the friction that is wished for."""
+"""From a wish to a texture: the search for the mask with the wished friction."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ Mask: TypeAlias = npt.NDArray[np.bool_]
 
 @dataclasses.dataclass(frozen=True)
 class Least:
-    """The wish for as little of a quantity as there can be: `static_friction`, `kinetic_friction` or `friction_drop`."""
+    """The wish for the least value of a quantity: `static_friction`, `kinetic_friction` or `friction_drop`."""
 
     quantity: str
 
@@ -36,7 +36,7 @@ class Least:
 
 @dataclasses.dataclass(frozen=True)
 class Largest:
-    """The wish for as much of a quantity as there can be: `static_friction`, `kinetic_friction` or `friction_drop`."""
+    """The wish for the largest value of a quantity: `static_friction`, `kinetic_friction` or `friction_drop`."""
 
     quantity: str
 
@@ -122,11 +122,11 @@ class Design:
 
     @property
     def name(self) -> str:
-        """What the design is called."""
+        """Name of the design."""
         return self._native.name
 
     def illegal(self, mask: npt.ArrayLike) -> str | None:
-        """Why a texture breaks a limit; None if it keeps all."""
+        """Reason for which a texture breaks a limit; None if it keeps all."""
         return self._native.illegal(self._bytes(mask))
 
     def ask(self, n: int) -> list[Mask]:
@@ -134,7 +134,7 @@ class Design:
         return [self._mask(texture) for texture in self._native.ask(n)]
 
     def tell(self, masks: Iterable[npt.ArrayLike], losses: Sequence[float]) -> None:
-        """Tell how good textures are, the less the better: what was asked for, and what was found elsewhere."""
+        """Tell the losses of textures, the less the better: of textures that were asked for, and of others."""
         texts = [self._bytes(mask) for mask in masks]
         if len(texts) != len(losses):
             raise ValueError(f"there are {len(texts)} masks and {len(losses)} losses: give one for each")
@@ -142,7 +142,7 @@ class Design:
 
     @property
     def best(self) -> tuple[Mask, float]:
-        """The best texture that was told of, and its loss."""
+        """The best texture with a known loss, and its loss."""
         found = self._native.best()
         if found is None:
             raise LookupError("nothing was told yet")
@@ -151,7 +151,7 @@ class Design:
     def evaluate(
         self, masks: Iterable[npt.ArrayLike], *, surfaces: int = 1, coarse: bool = True, threads: int | None = None
     ) -> list[float]:
-        """How far textures are from the wish, the less the better; infinite for one that breaks a limit.
+        """Losses of textures, distances from the wish; infinite for one that breaks a limit.
 
         Of a wish for the least or the largest it is the ratio to the slider without texture, or that with its sign changed; of a value
         the relative distance from it; of a curve the root of the mean square of the differences of mu*.
@@ -232,7 +232,7 @@ class Design:
 
 
 class DesignResults:
-    """What a design leaves.
+    """Results of a design.
 
     Attributes
     ----------
@@ -250,7 +250,7 @@ class DesignResults:
 
     @classmethod
     def read(cls, folder: Path, kept: Path | None) -> DesignResults:
-        """What stands in a folder, which is kept as `kept` or gone afterwards."""
+        """Results in a folder, which is kept as `kept` or removed afterwards."""
         mask = np.load(folder / "mask.npy")
         found = json.loads((folder / "design.json").read_bytes())
         text = (folder / "design.txt").read_text(encoding="utf-8")
@@ -270,7 +270,7 @@ class DesignResults:
 
     @property
     def loss(self) -> float:
-        """How far the design is from the wish on fresh surfaces, as `Design.evaluate` tells it."""
+        """Loss of the design on fresh surfaces, as `Design.evaluate` returns it."""
         return float(self._found["design"]["loss"])
 
     @property
@@ -281,7 +281,7 @@ class DesignResults:
 
     @property
     def is_named(self) -> bool:
-        """Whether it is a named pattern, since nothing that was searched for is better."""
+        """Whether the design is a named pattern, because no searched texture is better."""
         return bool(self._found["is_named"])
 
     def to_dict(self) -> dict[str, Any]:

@@ -11,7 +11,7 @@ from ._case import Case, CaseError, CaseLike, as_case
 from ._simulation import _threads
 
 def map(cases: Iterable[CaseLike], threads: int | None = None) -> list[dict[str, Any]]:
-    """Run cases, and give the numbers of each.
+    """Run cases, and return the numbers of each.
 
     Every run has one thread, and ends where its `time.stop` says. No file is written. All cases are in memory until the last run ends, and
     of each run its numbers alone: `run` gives the curve and the fields of one of them. Other threads of Python go on meanwhile. Ctrl-C ends

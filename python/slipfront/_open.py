@@ -24,7 +24,7 @@ Results = TypeVar("Results", Run, StudyResults)
 
 
 class InterruptedRun:
-    """The folder of a run that was stopped. It is only read: `slipfront run --resume` goes on in it.
+    """The folder of a run that was stopped, to be read: `slipfront run --resume` goes on in it.
 
     Attributes
     ----------
@@ -58,7 +58,7 @@ class PaperResults:
 
     @property
     def claims(self) -> pd.DataFrame:
-        """A row for each claim of the paper: what was measured, its interval, the criterion, the verdict."""
+        """A row for each claim of the paper: the measured number, its interval, the criterion, the verdict."""
         return frame(read_table(self.folder / "claims.csv"))
 
     @property
@@ -115,7 +115,7 @@ def _open_as(kind: type[Results], called: str, folder: str | os.PathLike[str], v
 
 
 def open(folder: str | os.PathLike[str], *, verify: bool = True) -> Run | InterruptedRun | StudyResults | DesignResults | CalibrationResults | PaperResults:
-    """Read a folder of the command; where it is known what it holds, `open_run` and `open_study` tell a type checker.
+    """Read a folder of the command; where its kind is known, `open_run` and `open_study` tell a type checker.
 
     Parameters
     ----------
@@ -162,4 +162,4 @@ def open(folder: str | os.PathLike[str], *, verify: bool = True) -> Run | Interr
 
 
 class MissingFolderError(_slipfront.FolderError, FileNotFoundError):
-    """A folder that is not there."""
+    """Error: a folder is missing."""

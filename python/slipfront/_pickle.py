@@ -13,7 +13,7 @@ from . import _slipfront
 
 
 def sealed(make: Callable[..., object], *state: Any) -> tuple[Callable[[bytes], object], tuple[bytes]]:
-    """What `__reduce__` gives of an object that `make` makes of its state: one function, and all else in bytes with their checksum."""
+    """The result of `__reduce__` for an object that `make` makes from its state: one function, and all else in bytes with their checksum."""
     contents = pickle.dumps((make, state), pickle.HIGHEST_PROTOCOL)
     return _unsealed, (_slipfront.with_checksum(contents),)
 

@@ -30,7 +30,7 @@ _STYLE = {
 
 
 class Drawn(Protocol):
-    """What of a run is drawn."""
+    """Parts of a run that are drawn."""
 
     @property
     def case(self) -> Case: ...
@@ -45,7 +45,7 @@ class Drawn(Protocol):
 
 
 def plot(run: Drawn, kind: str, ax: Axes | None, *, instant: str | int = -1, label: str | None = None) -> Axes:
-    """Draw a run; `Run.plot` says what."""
+    """Draw a run, as described at `Run.plot`."""
     if kind == "friction":
         return drawn(partial(_friction, run, label), 0.75, ax)
     if kind == "kymograph":
@@ -103,7 +103,7 @@ def _kymograph(run: Drawn, ax: Axes) -> None:
 
 
 def _ends(centres: npt.NDArray[np.float64]) -> tuple[float, float]:
-    """Where equal intervals around these centres begin and end."""
+    """Ends of equal intervals around these centres."""
     half = 0.5 * (centres[-1] - centres[0]) / max(len(centres) - 1, 1)
     return float(centres[0] - half), float(centres[-1] + half)
 
@@ -150,7 +150,7 @@ def _field(run: Drawn, name: str, instant: str | int) -> tuple[npt.NDArray[Any],
 
 
 def plot_points(points: dict[str, list[Any]], quantity: str, ax: Axes | None, over: str | None) -> Axes:
-    """Draw the means of a quantity over an axis of a study; `StudyResults.plot` says more."""
+    """Draw the means of a quantity over an axis of a study, as described at `StudyResults.plot`."""
     columns = list(points)
     axes = [name for name in columns[columns.index("point") + 1 : columns.index("quantity")] if name != "texture_percent"]
     rows = [dict(zip(columns, cells, strict=True)) for cells in zip(*points.values(), strict=True)]

@@ -1,4 +1,4 @@
-"""How far a run or a study is, as it is shown."""
+"""Display of the progress of a run or a study."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ Watch = TypeVar("Watch", bound=Callable[..., object])
 
 
 def parted(progress: bool | Watch | None) -> tuple[bool | None, Watch | None]:
-    """Whether a bar is shown, None where it depends on the terminal, and the user's function of how far it is, if that was given."""
+    """Whether a bar is shown, None where the terminal decides, and the user's function of the progress, if one was given."""
     return (False, progress) if callable(progress) else (progress, None)
 
 
@@ -50,7 +50,7 @@ class Bar:
             self._bar = tqdm(total=total, unit=unit, desc=title, unit_scale=unit == "step", leave=False, delay=1)
 
     def show(self, done: int, total: int | None = None, said: str = "") -> None:
-        """Show how much is done, of how much if that has changed, and a few words."""
+        """Show the amount done, the total if it has changed, and a few words."""
         self._total = self._total if total is None else total
         if self._bar is not None:
             self._bar.total = self._total

@@ -1,4 +1,4 @@
-"""Runs: what a case has given."""
+"""Runs: results of cases."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 class Source(Protocol):
-    """Where the numbers of a run come from: memory, or the folder in which it was written."""
+    """Source of the numbers of a run: memory, or its folder."""
 
     def summary(self) -> str: ...
     def series(self) -> dict[str, Any]: ...
@@ -69,7 +69,7 @@ class FolderSource:
 
 
 class Run:
-    """What a run has given: numbers, curve, fields, the slip front.
+    """Results of a run: numbers, curve, fields, the slip front.
 
     Numbers with a star are dimensionless (Eq. 11). All that `summary.json` holds is in `summary`; the most asked for are attributes.
 
@@ -90,7 +90,7 @@ class Run:
 
     @property
     def folder(self) -> Path | None:
-        """The folder that it was read from or saved to."""
+        """The folder from which the run was read, or to which it was saved."""
         return self._folder
 
     @property
@@ -105,7 +105,7 @@ class Run:
 
     @property
     def static_friction(self) -> float:
-        """mu_s, the same as a coefficient F_T/F_N."""
+        """mu_s, the static friction coefficient F_T/F_N."""
         return float(self.summary["static_friction"])
 
     @property
@@ -120,17 +120,17 @@ class Run:
 
     @property
     def kinetic_friction(self) -> float | None:
-        """mu_k, the same as a coefficient F_T/F_N."""
+        """mu_k, the kinetic friction coefficient F_T/F_N."""
         return self._optional("kinetic_friction")
 
     @property
     def onset_time_star(self) -> float:
-        """t_s*, when mu* has its first peak."""
+        """t_s*, the time of the first peak of mu*."""
         return float(self.summary["onset_time_star"])
 
     @property
     def onset_time_s(self) -> float:
-        """The same in s."""
+        """t_s, the time of the first peak, s."""
         return float(self.summary["onset_time_s"])
 
     @property
@@ -140,7 +140,7 @@ class Run:
 
     @property
     def first_slip_time_s(self) -> float | None:
-        """The same in s."""
+        """Time of the first slip of a block in contact, s; None if none slipped."""
         return self._optional("first_slip_time_s")
 
     @property
@@ -171,17 +171,17 @@ class Run:
 
     @property
     def front_speed_m_s(self) -> float | None:
-        """The same in m/s."""
+        """Median speed of the slip front, m/s; None where it passes less than half of the windows."""
         return self._optional("front_speed_m_s")
 
     @property
     def front_duration_star(self) -> float | None:
-        """t* from 5 to 95 % of the first slips."""
+        """Duration from 5 to 95 % of the first slips, t*."""
         return self._optional("front_duration_star")
 
     @property
     def front_duration_s(self) -> float | None:
-        """The same in s."""
+        """Duration from 5 to 95 % of the first slips, s."""
         return self._optional("front_duration_s")
 
     @property
@@ -201,7 +201,7 @@ class Run:
 
     @property
     def warnings(self) -> list[str]:
-        """What a reader should know before trusting the numbers."""
+        """Warnings that a reader should know before trusting the numbers."""
         return [str(warning) for warning in self.summary["warnings"]]
 
     @property
@@ -211,7 +211,7 @@ class Run:
 
     @property
     def fields(self) -> xr.Dataset:
-        """Fields at the snapshots, (time, y, x) in SI units, and what never changes, (y, x): what `fields.nc` holds."""
+        """Fields at the snapshots, (time, y, x) in SI units, and constant arrays, (y, x): the content of `fields.nc`."""
         return self._fields.copy()
 
     @property
@@ -221,17 +221,17 @@ class Run:
 
     @property
     def precursors(self) -> xr.Dataset | None:
-        """The events of slip of a slider driven at an edge; None of others."""
+        """The events of slip of a slider driven at an edge; None for other sliders."""
         return None if self._precursors is None else self._precursors.copy()
 
     @property
     def texture(self) -> npt.NDArray[np.bool_]:
-        """Whether a block is texture, (N_y, N_x), the lowest row first."""
+        """Whether each block is textured, (N_y, N_x), the lowest row first."""
         return self._case.textured
 
     @property
     def front(self) -> npt.NDArray[np.float64]:
-        """t* of the first slip of every block that the fields keep, (y, x); NaN where a block never slid. It cannot be written to."""
+        """t* of the first slip of every block that the fields keep, (y, x); NaN where a block never slid. The array cannot be written to."""
         return _dataset.read_only(self._arrays["first_slip_time_star"])
 
     def save(self, folder: str | os.PathLike[str], *, force: bool = False) -> Path:

@@ -142,7 +142,7 @@ class Simulation:
 
     @property
     def ended(self) -> bool:
-        """Whether the case says that the run ends here: it goes on after a change, for example of ``time.duration_star``."""
+        """Whether the run ends here by its case; it goes on after a change, for example of ``time.duration_star``."""
         return self._ended is not None
 
     @property
@@ -168,7 +168,7 @@ class Simulation:
 
     @property
     def mu_lateral_star(self) -> float:
-        """The same across the drive."""
+        """Friction across the drive at this instant, over the load and mu_s."""
         return self._point[2]
 
     @property
@@ -183,14 +183,14 @@ class Simulation:
 
     @property
     def displacement(self) -> npt.NDArray[np.float64]:
-        """Displacements of the blocks from rest along x and y, m, (2, N_y, N_x). They cannot be written to."""
+        """Displacements of the blocks from rest along x and y, m, (2, N_y, N_x). The array cannot be written to."""
         with self._alone as native:
             moved, _ = native.motion()
         return _dataset.read_only(moved * self._case.numbers["displacement_unit_m"] + self._origin)
 
     @property
     def velocity(self) -> npt.NDArray[np.float64]:
-        """Velocities of the blocks half a step later, m/s, (2, N_y, N_x). They cannot be written to."""
+        """Velocities of the blocks half a step later, m/s, (2, N_y, N_x). The array cannot be written to."""
         with self._alone as native:
             _, velocity = native.motion()
         return _dataset.read_only(velocity * self._case.numbers["speed_unit_m_s"])
@@ -294,7 +294,7 @@ class Simulation:
             self.step(min(every, left))
 
     def run(self, progress: Progress = None) -> Run:
-        """Run to the end and give the results; the simulation is then used up.
+        """Run to the end and return the results; the simulation is then used up.
 
         Parameters
         ----------
@@ -357,7 +357,7 @@ class Simulation:
 
     @property
     def textured(self) -> npt.NDArray[np.bool_]:
-        """Whether a block is texture, (N_y, N_x). Setting it is a `change`: a new leg with this texture."""
+        """Whether each block is textured, (N_y, N_x). Setting the property is a `change`: a new leg with this texture."""
         return self._case.textured
 
     @textured.setter
@@ -368,7 +368,7 @@ class Simulation:
         self.change({"texture": [{"shape": "mask", "file": wanted}] if wanted.any() else []})
 
     def recipe(self) -> list[tuple[str, int]]:
-        """What makes this state again: the resolved case of every leg, and how many steps it took.
+        """Recipe of this state: the resolved case of every leg, and the number of its steps.
 
         The last leg is the present one. Every change takes the step that was begun to its end.
         """
@@ -377,7 +377,7 @@ class Simulation:
         return [*((case.to_toml(), steps) for case, steps in self._legs), (self._case.to_toml(), now)]
 
     def checkpoint(self) -> bytes:
-        """All that `resume` needs to go on with the same bits."""
+        """State from which `resume` goes on with the same bits."""
         with self._alone as native:
             return native.checkpoint()
 

@@ -30,7 +30,7 @@ Progress: TypeAlias = bool | Callable[[int, int, int], object] | None
 failed ones."""
 
 Look: TypeAlias = Callable[[_slipfront.Case, _slipfront.Record, tuple[int, int, bool]], list[float]]
-"""What gives the values of own quantities of a run: of its case, its record, and its point, replicate and whether it is the reference."""
+"""A function that returns the values of own quantities of a run, from its case, its record, and its point, replicate and whether it is the reference."""
 
 Results = TypeVar("Results", bound="StudyResults")
 
@@ -90,7 +90,7 @@ class Study:
 
     @property
     def name(self) -> str:
-        """What the study is called."""
+        """Name of the study."""
         return self._native.name
 
     @property
@@ -105,7 +105,7 @@ class Study:
 
     @property
     def warnings(self) -> list[str]:
-        """What a reader should know of the cases of the points before trusting the results, the first of each kind."""
+        """Warnings about the cases of the points that a reader should know before trusting the results, the first of each kind."""
         return [
             f"{sentence} (at {'the point' if points == 1 else f'{points} points, the first'} {first})"
             for sentence, points, first in self._native.warnings
@@ -137,7 +137,7 @@ class Study:
         threads: int | None = None,
         quantities: Quantities | None = None,
     ) -> StudyResults:
-        """Run what the folder lacks.
+        """Make the runs that the folder lacks.
 
         Parameters
         ----------
@@ -208,7 +208,7 @@ def study(
     progress: Progress = None,
     threads: int | None = None,
 ) -> StudyResults:
-    """Run the study of a study file; `Study.run` says more.
+    """Run the study of a study file, as described at `Study.run`.
 
     Parameters
     ----------
@@ -269,7 +269,7 @@ class StudyResults:
 
     @property
     def anisotropy(self) -> pd.DataFrame | None:
-        """How friction depends on the direction of the drive, of a study over directions."""
+        """Dependence of friction on the direction of the drive, for a study over directions."""
         table = self._tables.get("anisotropy")
         return None if table is None else frame(table)
 
@@ -314,7 +314,7 @@ def executed(
     threads: int | None,
     look: Look | None = None,
 ) -> tuple[Results, dict[tuple[int, int, bool], list[float]]]:
-    """Run what the folder of a study lacks, one in memory unless it is given; its results, and the values of own quantities by run."""
+    """Make the runs that the folder of a study lacks, a temporary one unless it is given; return its results, and the values of own quantities by run."""
     shown, watch = parted(progress)
     temporary = TemporaryFolder()
     with Bar(shown, None, "run", native.name) as bar:

@@ -1,4 +1,4 @@
-"""Folders of files that stand as long as something may read them."""
+"""Folders of files that exist as long as they may be read."""
 
 import os
 import shutil

@@ -21,7 +21,7 @@ _IN_QUOTES = json.JSONEncoder(ensure_ascii=False).encode
 
 
 IN_MEMORY = _slipfront.IN_MEMORY
-"""How the names of files begin that are in memory; a number and the key that was given the array follow."""
+"""Beginning of the names of files in memory; a number and the key that was given the array follow."""
 
 
 class Arrays:
@@ -44,7 +44,7 @@ class Arrays:
         self._folder = next(folder for folder in folders if not any(name.startswith(folder) for name in self.contents))
 
     def add(self, array: np.ndarray[Any, Any], of: str) -> str:
-        """Add the array that a key is given and return the name of its file, which errors tell as that of the key."""
+        """Add the array that a key is given and return the name of its file, which errors replace by the key."""
         if np.ma.is_masked(array):
             # What is masked is not known: NaN, which the case refuses where it cannot do without.
             array = np.ma.filled(array.astype(np.float64), np.nan)
@@ -57,7 +57,7 @@ class Arrays:
         return name
 
     def on_disk(self, text: str) -> tuple[str, TemporaryFolder | None]:
-        """A text that names files on the disk in their place, and the folder that holds these; none if there is no array."""
+        """A text with files on the disk in place of the arrays, and the folder that holds these; none if there is no array."""
         if not self.contents:
             return text, None
         folder = TemporaryFolder()

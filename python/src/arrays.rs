@@ -4,7 +4,7 @@ use numpy::ndarray::ArrayView2;
 use numpy::{Element, IntoPyArray, PyArray2, PyArray3, PyArrayMethods};
 use pyo3::prelude::*;
 
-/// Numbers that are handed over, not copied, as an array with rows of `columns`.
+/// Numbers as an array with rows of `columns`, handed over without a copy.
 pub(crate) fn rows<T: Element>(
     py: Python<'_>,
     values: Vec<T>,
@@ -14,7 +14,7 @@ pub(crate) fn rows<T: Element>(
     values.into_pyarray(py).reshape([count, columns])
 }
 
-/// The same of several arrays of equal size, one after the other.
+/// Numbers of several arrays of equal size as one array, one after the other.
 pub(crate) fn stacked<'py, T: Element + Copy>(
     py: Python<'py>,
     arrays: &[&[T]],
@@ -24,7 +24,7 @@ pub(crate) fn stacked<'py, T: Element + Copy>(
     arrays.concat().into_pyarray(py).reshape(shape)
 }
 
-/// Numbers of `owner`, which never change as long as it lives, as an array that cannot be written to: nothing is copied.
+/// Numbers of `owner`, which never change as long as it lives, as a read-only array without a copy.
 #[allow(unsafe_code, reason = "numpy cannot know how long memory of others lives")]
 pub(crate) fn borrowed<'py, T: Element>(
     owner: Bound<'py, PyAny>,

@@ -19,7 +19,7 @@ pub(crate) struct Calibration {
 
 #[pymethods]
 impl Calibration {
-    /// The calibration of a text that is called `name`; the files it names stand relative to a folder.
+    /// The calibration of a text called `name`; the files it names stand relative to a folder.
     #[staticmethod]
     fn parse(py: Python<'_>, text: &str, name: &str, folder: PathBuf) -> PyResult<Self> {
         Self::of(py, || CalibrationFile::parse(text, name, name, &folder))
@@ -41,7 +41,7 @@ impl Calibration {
         self.file.keys.columns()
     }
 
-    /// Calibrates in a folder, or goes on there, and gives what was found as a text.
+    /// Calibrates in a folder, or goes on there, and returns the findings as a text.
     fn execute(
         &self,
         py: Python<'_>,

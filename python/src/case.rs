@@ -18,12 +18,12 @@ use crate::arrays::borrowed;
 use crate::errors::{CaseError, case_error};
 use crate::process::{LOOK_EVERY, detached};
 
-/// A case that can be run; it never changes.
+/// A case that can be run, which never changes.
 #[pyclass(frozen, module = "slipfront._slipfront")]
 pub(crate) struct Case(pub(crate) Arc<SlipfrontCase>);
 
-/// Makes a case while other threads of Python go on, refused if a run of it has no memory, unless that is [small](Budget::SMALL); `make`
-/// is given what watches its texture. A signal ends it.
+/// Makes a case while other threads of Python go on, refused if a run of it has no memory, unless that memory is
+/// [small](Budget::SMALL); `make` gets the function that watches its texture. A signal ends the work.
 pub(crate) fn make(
     py: Python<'_>,
     make: impl FnOnce(&mut dyn FnMut(f64) -> bool) -> Result<SlipfrontCase, Error> + Send,
@@ -61,7 +61,7 @@ fn in_memory(arrays: &Arrays) -> FilesInMemory {
         .collect()
 }
 
-/// Numbers of the surface of a case, which are not copied.
+/// Numbers of the surface of a case, without a copy.
 fn of_surface<'py, T: Element>(
     case: &Bound<'py, Case>,
     values: impl Fn(&Surface) -> &[T],
@@ -81,7 +81,7 @@ impl Case {
         })
     }
 
-    /// The case of a text that is called `name`; the files it names are arrays in memory, or stand relative to a folder.
+    /// The case of a text called `name`; the files it names are arrays in memory, or stand relative to a folder.
     #[staticmethod]
     fn parse(
         py: Python<'_>,
@@ -118,7 +118,7 @@ impl Case {
         serde_json::to_string(&self.0.file).map_err(|error| CaseError::new_err(error.to_string()))
     }
 
-    /// The files that it reads: the name of each in the resolved case, where it stands or the name that it has in memory, and the hash of
+    /// The files that the case reads: the name of each in the resolved case, its path or its name in memory, and the hash of
     /// its contents.
     #[getter]
     fn inputs(&self) -> Vec<(String, PathBuf, String)> {
@@ -146,8 +146,8 @@ impl Case {
         Ok(files)
     }
 
-    /// The contents of the files that it reads, by their names in the resolved case; an error if one is no longer what the case was
-    /// made of.
+    /// The contents of the files that the case reads, by their names in the resolved case; an error if one has changed since
+    /// the case was made.
     fn read_inputs<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let files = PyDict::new(py);
         for input in &self.0.inputs {

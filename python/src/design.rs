@@ -16,7 +16,7 @@ use slipfront_study::design::{
 use crate::errors::study_error;
 use crate::process::{detached, on_pool};
 
-/// A design: its file, and what it has been asked and told.
+/// A design: its file, and the textures that were asked for and told.
 #[pyclass(frozen, module = "slipfront._slipfront")]
 pub(crate) struct Design {
     file: DesignFile,
@@ -42,7 +42,7 @@ fn bytes(texture: &[bool]) -> Cow<'static, [u8]> {
 
 #[pymethods]
 impl Design {
-    /// The design of a text that is called `name`; the files it names stand relative to a folder.
+    /// The design of a text called `name`; the files it names stand relative to a folder.
     #[staticmethod]
     fn parse(py: Python<'_>, text: &str, name: &str, folder: PathBuf) -> PyResult<Self> {
         Self::of(py, || DesignFile::parse(text, name, name, &folder))
@@ -64,7 +64,7 @@ impl Design {
         self.design.size()
     }
 
-    /// Why a texture is not legal; none if it is.
+    /// Reason for which a texture is not legal; none if it is.
     fn illegal(&self, mask: PyBackedBytes) -> Option<String> {
         let [mask] = sets(&[mask]).try_into().ok()?;
         self.design.check(&mask).err().map(|error| error.to_string())
@@ -87,13 +87,13 @@ impl Design {
         })
     }
 
-    /// The best texture that was told of, and its loss.
+    /// The best texture with a known loss, and its loss.
     fn best(&self) -> Option<(Cow<'static, [u8]>, f64)> {
         let search = self.search.lock().unwrap_or_else(PoisonError::into_inner);
         search.best().map(|(texture, loss)| (bytes(&texture), loss))
     }
 
-    /// How far textures are from the wish on some surfaces.
+    /// Losses of textures, distances from the wish, on some surfaces.
     fn losses(
         &self,
         py: Python<'_>,
@@ -111,7 +111,7 @@ impl Design {
         on_pool(py, threads, evaluate, &mut |_| Ok(()))
     }
 
-    /// Searches in a folder, or goes on there, and writes what the design leaves; gives the verdict as a text.
+    /// Searches in a folder, or goes on there, and writes the results of the design; returns the verdict as a text.
     fn execute(
         &self,
         py: Python<'_>,

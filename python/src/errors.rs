@@ -29,7 +29,7 @@ create_exception!(
     "A folder of results that cannot be read or written, or is not as it was written."
 );
 
-/// What the command calls its options, and what Python has in their place.
+/// Options of the command, and their counterparts in Python.
 const OPTIONS: [(&str, &str); 9] = [
     ("another --set", "another override"),
     ("--set ", ""),
@@ -42,7 +42,7 @@ const OPTIONS: [(&str, &str); 9] = [
     ("--threads", "`threads`"),
 ];
 
-/// How the names of files begin that are arrays in memory: a number and the key that was given the array follow.
+/// Beginning of the names of files that are arrays in memory; a number and the key that was given the array follow.
 pub(crate) const IN_MEMORY: &str = "memory:/";
 
 /// The sentence of an error in the words of Python: arguments in place of options, keys in place of files in memory.
@@ -86,7 +86,7 @@ pub(crate) fn case_error(py: Python<'_>, error: &Error) -> PyErr {
     set.err().unwrap_or(raised)
 }
 
-/// Whether the file of a case or of a study is not there.
+/// Whether the error is that the file of a case or of a study is missing.
 fn is_missing(error: &Error) -> bool {
     match error {
         Error::Misspelt { .. } => true,

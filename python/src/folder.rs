@@ -29,7 +29,7 @@ use crate::process::detached;
 use crate::record;
 use crate::simulation::Simulation;
 
-/// The folder in which the temporary folders of this process stand; it goes with the last that refers to it.
+/// The folder of the temporary folders of this process; it is removed with the last reference to it.
 #[pyclass(frozen, module = "slipfront._slipfront")]
 pub(crate) struct TemporaryParent(Arc<TemporaryFolder>);
 
@@ -46,7 +46,8 @@ impl TemporaryParent {
     }
 }
 
-/// What a folder is: `run`, `interrupted`, `study`, `meshes` of a study that tells what its meshes found, `design`, `paper`, or none of these.
+/// Kind of a folder: `run`, `interrupted`, `study`, `meshes` of a study that tells what its meshes found, `design`, `paper`,
+/// or none of these.
 #[pyfunction]
 pub(crate) fn kind_of(folder: PathBuf) -> PyResult<Option<&'static str>> {
     if has_records(&folder) {
@@ -70,7 +71,7 @@ pub(crate) fn kind_of(folder: PathBuf) -> PyResult<Option<&'static str>> {
     })
 }
 
-/// Holds a folder against its manifest, or against its records.
+/// Compares a folder with its manifest, or with its records.
 #[pyfunction]
 pub(crate) fn verify(py: Python<'_>, folder: PathBuf) -> PyResult<()> {
     let verdict = detached(py, || verify_folder(&folder))?.map_err(folder_error)?;
@@ -102,7 +103,7 @@ fn case_of(py: Python<'_>, folder: &Path, file: CaseFile) -> PyResult<Case> {
     })
 }
 
-/// A complete run as it stands in its folder: its case, and what `Record` gives of a run of this process.
+/// A complete run in its folder: its case, and the content of a `Record`.
 #[pyfunction]
 pub(crate) fn read_run<'py>(py: Python<'py>, folder: PathBuf) -> PyResult<(Case, Bound<'py, PyDict>)> {
     let run = inspect(&folder).map_err(folder_error)?;
@@ -128,7 +129,7 @@ pub(crate) fn read_run<'py>(py: Python<'py>, folder: PathBuf) -> PyResult<(Case,
     Ok((case, read))
 }
 
-/// The case of an interrupted run, and the run as it goes on from its latest checkpoint, or from its start if it has none.
+/// The case of an interrupted run, and the run continued from its latest checkpoint, or from its start if it has none.
 #[pyfunction]
 pub(crate) fn interrupted(py: Python<'_>, folder: PathBuf, threads: usize) -> PyResult<(Case, Simulation)> {
     let run = inspect(&folder).map_err(folder_error)?;

@@ -1,7 +1,7 @@
-//! The native part of the Python module `slipfront`: cases, simulations, what they leave, studies and the command.
+//! The native part of the Python module `slipfront`: cases, simulations and their results, studies and the command.
 //!
-//! Its names are for the Python files beside it in the package, which give them their public form. While the engine works, other
-//! threads of Python go on; signals are looked at between two calls, or every 50 ms within one.
+//! The Python files beside it in the package give its names their public form. While the engine works, other threads of
+//! Python go on; signals are checked between two calls, or every 50 ms within one.
 
 #![expect(
     clippy::needless_pass_by_value,
@@ -25,8 +25,8 @@ use std::ffi::OsString;
 
 use pyo3::prelude::*;
 
-/// Runs the command with these arguments, the first of which is the name of the program, and gives its exit status. It belongs to a
-/// process of its own.
+/// Runs the command with these arguments, the first of which is the name of the program, and returns its exit status. The
+/// command needs a process of its own.
 #[pyfunction]
 fn command(py: Python<'_>, arguments: Vec<OsString>) -> PyResult<u8> {
     process::detached(py, || slipfront_cli::main(arguments))

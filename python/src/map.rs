@@ -1,4 +1,4 @@
-//! Many runs at once, of which the numbers alone are kept.
+//! Many runs at once, of which only the numbers are kept.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -14,8 +14,8 @@ use crate::case::Case;
 use crate::errors::{RunError, folder_error};
 use crate::process::{detached, watched};
 
-/// Runs cases, one on each thread at a time, and gives `summary.json` of each in their order. A signal ends all of them. A run that
-/// diverges ends those after it, so that it is always the first one that is told of.
+/// Runs cases, one on each thread at a time, and returns `summary.json` of each in their order. A signal ends all of them. A
+/// run that diverges ends those after it, so that the error is always that of the first.
 #[pyfunction]
 pub(crate) fn run_summaries(
     py: Python<'_>,

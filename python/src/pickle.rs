@@ -4,7 +4,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 use slipfront_run::checksum;
 
-/// What the checksum of a pickle is made of before its contents, so that nothing else with a checksum is taken for one.
+/// Context of the checksum of a pickle, so that no other contents with a checksum are taken for a pickle.
 const CONTEXT: &[u8] = b"slipfront pickle";
 
 /// Contents with their checksum.
@@ -13,7 +13,7 @@ pub(crate) fn with_checksum<'py>(py: Python<'py>, contents: &[u8]) -> Bound<'py,
     PyBytes::new(py, &checksum::with_checksum(CONTEXT, contents))
 }
 
-/// The contents behind which their checksum stands; none if it does not fit.
+/// The contents before their checksum; none if it does not fit.
 #[pyfunction]
 pub(crate) fn verified<'py>(py: Python<'py>, sealed: &[u8]) -> Option<Bound<'py, PyBytes>> {
     checksum::verified(CONTEXT, sealed).map(|contents| PyBytes::new(py, contents))

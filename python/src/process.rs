@@ -1,7 +1,7 @@
 //! The process whose threads the engine uses.
 //!
-//! Its pool of threads does not come along when a process forks, and locks that other threads hold stay locked: a child that used them
-//! would wait for ever. So whatever may use them goes through here, and is refused in such a child.
+//! Its pool of threads does not come along when a process forks, and locks that other threads hold stay locked: a child that
+//! used them would wait for ever. All uses of them go through this file, and are refused in such a child.
 
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::sync::mpsc::{self, RecvTimeoutError};
@@ -13,7 +13,7 @@ use slipfront_study::StudyError;
 
 use crate::errors::{ForkError, folder_error, study_error};
 
-/// How long the engine works between two looks at signals.
+/// Time that the engine works between two checks for signals.
 pub(crate) const LOOK_EVERY: Duration = Duration::from_millis(50);
 
 /// The process that was the first to use the engine, which the children that it forks afterwards inherit; 0 before.
@@ -43,7 +43,7 @@ pub(crate) fn detached<T: Send>(py: Python<'_>, work: impl FnOnce() -> T + Send)
     Ok(py.detach(work))
 }
 
-/// Does this work on another thread, and looks for signals on this one, to which they come; none if the work panicked.
+/// Does `work` on another thread, and checks for signals on this one, to which they come; none if the work panicked.
 pub(crate) fn watched<T: Send>(work: impl FnOnce() -> T + Send, mut look: impl FnMut()) -> Option<T> {
     std::thread::scope(|scope| {
         let (done, result) = mpsc::channel();
@@ -58,7 +58,8 @@ pub(crate) fn watched<T: Send>(work: impl FnOnce() -> T + Send, mut look: impl F
     })
 }
 
-/// Does this work on a pool of so many threads; this one looks for signals and shows what is new. An exception of either ends the work.
+/// Does `work` on a pool of threads; this thread checks for signals and shows progress. An exception of either ends the
+/// work.
 pub(crate) fn on_pool<T: Send>(
     py: Python<'_>,
     threads: usize,

@@ -1,4 +1,4 @@
-//! What a run leaves.
+//! Results of a run.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -21,7 +21,7 @@ use crate::arrays::{rows, stacked};
 use crate::errors::folder_error;
 use crate::process::detached;
 
-/// What a run of this process leaves.
+/// Results of a run of this process.
 #[pyclass(frozen, module = "slipfront._slipfront")]
 pub(crate) struct Record {
     pub(crate) case: Arc<SlipfrontCase>,
@@ -32,7 +32,7 @@ pub(crate) struct Record {
 
 #[pymethods]
 impl Record {
-    /// `summary.json`.
+    /// Content of `summary.json`.
     fn summary(&self) -> String {
         summary_json(&self.record.summary)
     }
@@ -56,7 +56,7 @@ impl Record {
         kymograph(py, KymographData::of(&self.record.kymograph, &self.case))
     }
 
-    /// The columns of `precursors.csv`, of a run that has one.
+    /// The columns of `precursors.csv`, for a run that has one.
     fn precursors<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyDict>>> {
         let events = self.record.precursors.as_ref();
         let rows = events.map(|events| precursors::rows(events.events(), &self.case.scales));
@@ -88,7 +88,7 @@ pub(crate) fn series<'py>(py: Python<'py>, rows: &[SeriesRow]) -> PyResult<Bound
     Ok(columns)
 }
 
-/// The events of slip of a slider driven at an edge: columns, with NaN for what was not found.
+/// The events of slip of a slider driven at an edge: columns, with NaN for missing numbers.
 pub(crate) fn precursors_of<'py>(py: Python<'py>, rows: &[PrecursorRow]) -> PyResult<Bound<'py, PyDict>> {
     let columns = PyDict::new(py);
     for (name, values) in precursors::columns(rows) {

@@ -25,10 +25,10 @@ use crate::errors::{CaseError, RunError};
 use crate::process::{LOOK_EVERY, check_process, detached};
 use crate::record::{Record, series};
 
-/// A run in progress. Two threads cannot use one at once.
+/// A run in progress, which only one thread can use at a time.
 #[pyclass(module = "slipfront._slipfront")]
 pub(crate) struct Simulation {
-    /// None once the run was taken as a record.
+    /// The run; none once it was taken as a record.
     running: Option<Running>,
     started: jiff::Timestamp,
 }
@@ -37,7 +37,8 @@ pub(crate) struct Simulation {
 const LENGTH_BYTES: usize = 8;
 
 impl Simulation {
-    /// A run that is given, and has recorded the instant at which it stands: a checkpoint is made of an instant that was recorded.
+    /// A simulation of a run that has recorded the instant at which it stands: a checkpoint is made of an instant that was
+    /// recorded.
     pub(crate) fn of(mut running: Running) -> PyResult<Self> {
         running.advance(0).map_err(run_error)?;
         Ok(Self {
@@ -62,7 +63,7 @@ fn vectors<'py>(
     stacked(py, &[&x, &y], [lattice.ny, lattice.nx])
 }
 
-/// What a checkpoint is valid for: the build of the program, whose numbers it goes on with, and the case.
+/// Context of a checkpoint: the build of the program, whose numbers it goes on with, and the case.
 fn context(case: &SlipfrontCase) -> Vec<u8> {
     [program::this_build(), &hash_of(case)].concat().into_bytes()
 }
@@ -85,7 +86,7 @@ impl Simulation {
         })?)
     }
 
-    /// The run that goes on under another case, the steps of this one and how long they have taken in s, and where the drive stands
+    /// The run that goes on under another case; the steps of this run and their duration in s; and the position of the drive
     /// over each block, x and y in m.
     #[allow(clippy::type_complexity, reason = "a tuple of Python, which has no name")]
     fn change<'py>(
@@ -101,7 +102,8 @@ impl Simulation {
         Ok((Self::of(leg.running)?, leg.steps, leg.time_s, drive))
     }
 
-    /// At most `steps` steps, for 50 ms or a little longer; how many were taken, and whether the run has ended: `end`, `onset` or none.
+    /// Takes at most `steps` steps, for 50 ms or a little longer; returns their number, and whether the run has ended:
+    /// `end`, `onset` or none.
     fn advance(&mut self, py: Python<'_>, steps: u64) -> PyResult<(u64, Option<&'static str>)> {
         let running = self.running.as_mut().ok_or_else(ended)?;
         let first = running.snapshot().step;
@@ -136,7 +138,7 @@ impl Simulation {
         Ok(self.running()?.snapshot().step)
     }
 
-    /// t*, mu*, the same across the drive, N* in %.
+    /// Time t*, mu* along and across the drive, N* in %.
     #[getter]
     fn point(&self) -> PyResult<[f64; 4]> {
         let now = self.running()?.snapshot();
@@ -189,7 +191,7 @@ impl Simulation {
         series(py, &rows)
     }
 
-    /// All that the run needs to go on with the same bits.
+    /// State from which the run goes on with the same bits.
     fn checkpoint<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
         let running = self.running()?;
         let state = postcard::to_stdvec(&running.state());
@@ -242,7 +244,7 @@ impl Simulation {
         Self::of(running)
     }
 
-    /// What the run leaves, once it has ended; the simulation is then used up.
+    /// Results of the run, once it has ended; the simulation is then used up.
     fn record(&mut self, py: Python<'_>, reason: &str) -> PyResult<Record> {
         let running = self.running.take().ok_or_else(ended)?;
         let reason = match reason {

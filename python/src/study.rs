@@ -26,12 +26,12 @@ use crate::record::Record;
 pub(crate) struct Study {
     file: StudyFile,
     plan: Plan,
-    /// Whether its points are meshes of one slider, of which results tell what differs.
+    /// Whether the points are meshes of one slider, which results compare.
     is_of_meshes: bool,
 }
 
-/// Values of the user's own quantities: of a run, the number of its point in the whole study, its replicate, and whether it is the
-/// reference, in the order of their names.
+/// Values of the user's own quantities, in the order of their names, by run: the number of its point in the whole study, its
+/// replicate, and whether it is the reference.
 type OwnValues = BTreeMap<(usize, usize, bool), Vec<f64>>;
 
 impl Study {
@@ -48,7 +48,7 @@ impl Study {
         planned.map_err(|error| study_error(py, &error))
     }
 
-    /// Writes tables and pictures, and what meshes found.
+    /// Writes tables and pictures, and the comparison of meshes.
     fn write(&self, plan: &Plan, results: &StudyResults, folder: &StudyFolder) -> Result<(), StudyError> {
         if self.is_of_meshes {
             converge::write(plan, results, folder).map(drop)
@@ -70,7 +70,7 @@ impl Study {
         Self::of(py, || StudyFile::load(&path))
     }
 
-    /// The study of a text that is called `name`; the files it names stand relative to a folder.
+    /// The study of a text called `name`; the files it names stand relative to a folder.
     #[staticmethod]
     fn parse(py: Python<'_>, text: &str, name: &str, folder: PathBuf) -> PyResult<Self> {
         Self::of(py, || StudyFile::parse(text, name, name, &folder))
@@ -94,7 +94,7 @@ impl Study {
         })
     }
 
-    /// Refuses what takes more memory, in GB, or more time, as "30min", than the user allows.
+    /// Refuses a study that takes more memory, in GB, or more time, as "30min", than the user allows.
     fn check_cost(
         &self,
         py: Python<'_>,
@@ -136,7 +136,7 @@ impl Study {
             .collect()
     }
 
-    /// What a reader should know of the cases of the points, each with the number of points and the first of them.
+    /// Warnings about the cases of the points, each with the number of points and the first of them.
     #[getter]
     fn warnings(&self) -> Vec<(String, usize, String)> {
         let plan = &self.plan;
@@ -147,7 +147,7 @@ impl Study {
         told.collect()
     }
 
-    /// Whether its tables have a column of this name.
+    /// Whether the tables have a column of this name.
     fn has_column(&self, name: &str) -> bool {
         let mut axes = self.plan.axes.iter().flat_map(|axis| &axis.columns);
         study::is_column(name) || axes.any(|column| column == name)
@@ -181,9 +181,10 @@ impl Study {
         [vec![("n", values.len() as f64)], found.unwrap_or_default()].concat()
     }
 
-    /// Runs what the folder lacks, and writes tables and pictures there, and what meshes found. `look` is called with the case, the record and the place of
-    /// every run that ends, and gives the values of the user's own quantities; `watch` with the numbers of runs that are done, of all,
-    /// and of failed ones. Gives the values by run, and the reasons of the runs that failed.
+    /// Makes the runs that the folder lacks, and writes tables, pictures and the comparison of meshes there. `look` is
+    /// called with the case, the record and the place of every run that ends, and returns the values of the user's own
+    /// quantities; `watch` is called with the numbers of runs that are done, of all, and of failed ones. Returns the values
+    /// by run, and the reasons of the runs that failed.
     fn execute(
         &self,
         py: Python<'_>,
@@ -248,7 +249,7 @@ fn parse_time(text: &str) -> PyResult<SignedDuration> {
     })
 }
 
-/// What the threads of a study share with the one that called.
+/// State that the threads of a study share with the calling thread.
 #[derive(Default)]
 struct Shared {
     stop: AtomicBool,
@@ -268,7 +269,7 @@ impl Shared {
         self.stop.store(true, Ordering::Relaxed);
     }
 
-    /// Takes the values of the user's own quantities of a run; whether there were any.
+    /// Takes the values of the user's own quantities of a run; returns whether there were any.
     fn look(
         &self,
         look: &Py<PyAny>,
@@ -296,7 +297,7 @@ impl Shared {
         true
     }
 
-    /// Looks for signals, and shows what is new.
+    /// Checks for signals, and shows progress.
     fn show(&self, watch: Option<&Py<PyAny>>) {
         let now = locked(&self.progress).take();
         let shown = Python::attach(|py| {

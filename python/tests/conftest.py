@@ -1,4 +1,4 @@
-"""What the tests share: the repository, from whose root they are run, and small cases."""
+"""Shared parts of the tests: the repository, from whose root they are run, and small cases."""
 
 import signal
 from collections.abc import Iterator

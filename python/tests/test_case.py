@@ -209,7 +209,7 @@ print(os.listdir(os.environ["TMPDIR"]))
 
 
 def test_an_array_is_the_file_of_numpy_with_its_values(tmp_path: Path) -> None:
-    """What is saved has the bytes of a run that reads files, and is a whole case."""
+    """A saved run with arrays has the bytes of a run that reads files, and a whole case."""
     rng = np.random.default_rng(8)
     mask, coefficients = rng.random((10, 12)) < 0.1, rng.uniform(0.8, 1.2, (10, 12))
 

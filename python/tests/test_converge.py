@@ -50,7 +50,7 @@ def files(folder: Path) -> dict[str, bytes]:
 
 
 def converged_by_command(case: Path, folder: Path, *arguments: str) -> dict[str, Any]:
-    """What the command finds, which it writes to a folder."""
+    """Results of the command, which it writes to a folder."""
     ran = command("converge", case, "-o", folder, "--quiet", *arguments)
     assert ran.returncode == 0, ran.stderr
     return dict(json.loads((folder / "convergence.json").read_bytes()))

@@ -31,7 +31,7 @@ def step(simulation):
     return simulation.step(5)
 
 def in_child(work):
-    """What `work` gives in a child, as a word, or the name of its exception; `hung` of one that takes 10 s."""
+    """Result of `work` in a child, as a word, or the name of its exception; `hung` for one that takes 10 s."""
     read, write = os.pipe()
     child = os.fork()
     if child == 0:
@@ -51,7 +51,7 @@ def in_child(work):
 
 
 def script(tmp_path: Path, text: str) -> list[str]:
-    """What a program prints, which must end by itself."""
+    """Output of a program, which must end by itself."""
     path = tmp_path / "program.py"
     path.write_text(PREAMBLE + text)
     done = subprocess.run([sys.executable, path], capture_output=True, text=True, timeout=100, check=False, cwd=tmp_path)

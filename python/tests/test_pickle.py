@@ -145,7 +145,7 @@ def objects(tmp_path_factory: pytest.TempPathFactory) -> dict[str, object]:
 
 
 def test_damage_is_refused_or_changes_nothing(objects: dict[str, object], tmp_path: Path) -> None:
-    """What begins a pickle is not ours: of some damages there, pickle makes a tuple or bytes, which nobody takes for a case or a run."""
+    """The beginning of a pickle is not ours: from some damages there, pickle makes a tuple or bytes, which nobody takes for a case or a run."""
     protocols = {name: [pickle.DEFAULT_PROTOCOL] for name in objects} | {"case": list(range(pickle.HIGHEST_PROTOCOL + 1))}
     for name, of_name in protocols.items():
         for protocol in of_name:
@@ -175,7 +175,7 @@ def test_a_sentence_says_that_a_pickle_is_damaged(objects: dict[str, object]) ->
 
 
 def test_damaged_checkpoints_and_those_of_other_cases_are_refused() -> None:
-    """Of another case of the same shape, it would go on with a curve of two cases."""
+    """A checkpoint of another case of the same shape is refused: it would go on with a curve of two cases."""
     case = sf.Case.from_dict({"slider": {"blocks": [6, 5]}, "time": {"duration_star": 60}})
     simulation = sf.Simulation(case)
     simulation.step(100)

@@ -1,4 +1,4 @@
-"""What is handed out cannot spoil what is handed out next: arrays that are shared cannot be written to, and all else is a copy."""
+"""Results that are handed out cannot spoil later ones: arrays that are shared cannot be written to, and all else is a copy."""
 
 import contextlib
 import functools
@@ -42,7 +42,7 @@ def handed_out(holder: object) -> Iterator[tuple[str, Any]]:
 
 
 def content(value: Any) -> Any:
-    """What stands in a value, to the bit."""
+    """The content of a value, to the bit."""
     if isinstance(value, np.ndarray):
         return value.dtype.str, value.shape, value.tolist() if value.dtype == object else value.tobytes()
     if isinstance(value, xarray.Dataset):

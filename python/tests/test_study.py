@@ -103,7 +103,7 @@ def test_points_levels_and_names_that_are_none_are_told(study: sf.Study, small: 
 
 
 def test_coverages_stand_as_they_are_meshed(small: sf.Case) -> None:
-    """Of 25 columns, 5 % are one and 15 % are three."""
+    """Coverages are drawn as they are meshed: of 25 columns, 5 % are one and 15 % are three."""
     case = small.replace({"slider.blocks": [25, 4], "texture": [{"shape": "groove", "coverage": 5}]})
     study = sf.Study(case, {"texture.0.coverage": [5, 15]}, replicates=2)
     points = study.run(progress=False, quantities={"twice": lambda run: 2 * run.steps}).points

@@ -27,7 +27,7 @@ def value(array, row, column):
 
 
 def known(name, instant, row, column):
-    """What was written for a block."""
+    """The values that were written for a block."""
     if name == "textured":
         return (row + column) % 3 == 0
     if name == "first_slip_time_star":
@@ -87,7 +87,7 @@ def check_vtk(path, nx, ny, written):
 
 
 def check_kymograph(path):
-    """Of the run in fields.rs: 30 columns of 4 blocks of 0.5 um, one of them without contact."""
+    """Checks the run in fields.rs: 30 columns of 4 blocks of 0.5 um, one of them without contact."""
     with xr.open_dataset(path, engine="netcdf4") as data:
         expect("places", data.sizes["place"], 30)
         expect("place", np.round(data.place.values * 1e9), 500.0 * (np.arange(30) + 0.5))

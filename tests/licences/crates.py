@@ -1,4 +1,4 @@
-"""What cargo knows of the crates in a workspace, and what their licence expressions mean."""
+"""Crates of a workspace as cargo lists them, and the meaning of their licence expressions."""
 
 import json
 import re
@@ -24,7 +24,7 @@ def run(main):
 
 
 def cargo(command, manifest, *arguments):
-    """What cargo prints, of the locked versions of the workspace that `manifest` belongs to."""
+    """The output of cargo for the locked versions of the workspace that `manifest` belongs to."""
     line = ["cargo", command, "--quiet", "--locked", "--manifest-path", str(REPOSITORY / manifest), *arguments]
     ran = subprocess.run(line, stdout=subprocess.PIPE, text=True)
     if ran.returncode:

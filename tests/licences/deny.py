@@ -52,7 +52,7 @@ def rules(config):
 
 
 def wrong_licences(package, rule):
-    """What is wrong with the licences of a package."""
+    """Errors in the licences of a package."""
     if not package["license"]:
         return ["declares no licence"]
     allowed = set(rule["allow"])
@@ -68,7 +68,7 @@ def wrong_licences(package, rule):
 
 
 def wrong_bans(package, rule):
-    """What is wrong with the name of a package and with the versions that it asks for."""
+    """Errors in the name of a package and in the versions that it asks for."""
     wrong = [
         f"is banned: {entry.get('reason', 'no reason is given')}" for entry in rule["deny"] if entry["crate"] == package["name"]
     ]
@@ -86,7 +86,7 @@ def wrong_bans(package, rule):
 
 
 def wrong_sources(package, rule):
-    """What is wrong with the place a package comes from: crates of this repository come from no other."""
+    """Errors in the source of a package: crates of this repository come from no other."""
     if package["source"] is None:
         return []
     kind, _, address = package["source"].partition("+")

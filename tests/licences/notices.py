@@ -94,7 +94,7 @@ def read(path):
 
 
 def words(text):
-    """What two texts must have in common to be one: all but blanks, signs and capitals."""
+    """Words of a text in small letters: texts with the same words are one licence."""
     return re.findall(r"\w+", text.lower())
 
 

@@ -14,7 +14,7 @@ pub fn write_atomic(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
     write_atomic_with(path, |file| file.write_all(bytes))
 }
 
-/// Writes a file atomically that need not be in memory as a whole.
+/// Writes a file atomically whose contents need not be in memory as a whole.
 pub fn write_atomic_with(
     path: &Path,
     fill: impl FnOnce(&mut File) -> std::io::Result<()>,
@@ -23,8 +23,8 @@ pub fn write_atomic_with(
     Ok(())
 }
 
-/// Writes a [hidden file](unfinished) in the folder of the file that it is to become, and syncs it. It is removed when dropped,
-/// unless it is renamed (`persist`).
+/// Writes a [hidden file](unfinished) in the folder of the file that it is to become, and syncs it. The hidden file is
+/// removed when dropped, unless it is renamed (`persist`).
 pub fn write_beside(
     path: &Path,
     fill: impl FnOnce(&mut File) -> std::io::Result<()>,
@@ -32,14 +32,14 @@ pub fn write_beside(
     fill_and_sync(unfinished::file_for(folder_of(path), path)?, fill)
 }
 
-/// The folder in which a file is, or is to be.
+/// The folder in which a file is, or will be.
 pub fn folder_of(path: &Path) -> &Path {
     let parent = path.parent().filter(|parent| !parent.as_os_str().is_empty());
     parent.unwrap_or(Path::new("."))
 }
 
-/// Writes a temporary file in a folder that no other process writes to, and syncs it. It is removed when dropped, unless it is
-/// renamed (`persist`).
+/// Writes a temporary file in a folder that no other process writes to, and syncs it. The file is removed when dropped,
+/// unless it is renamed (`persist`).
 pub fn write_temp(
     folder: &Path,
     fill: impl FnOnce(&mut File) -> std::io::Result<()>,
@@ -79,7 +79,7 @@ pub fn is_empty(folder: &Path) -> std::io::Result<bool> {
     Ok(std::fs::read_dir(folder)?.next().transpose()?.is_none())
 }
 
-/// Makes a folder, and those above it, where they are missing.
+/// Makes a folder, and the folders above it, where they are missing.
 pub fn make_folders(path: &Path) -> std::io::Result<()> {
     // Of a folder that is there, but cannot be looked at, the standard library says that it exists.
     match found_behind(path)? {
@@ -133,7 +133,7 @@ pub fn json(value: &impl Serialize) -> Vec<u8> {
     bytes
 }
 
-/// What stands under a path, of a symbolic link the link itself; none if nothing does.
+/// Metadata of a path, for a symbolic link of the link itself; none if nothing is there.
 ///
 /// # Errors
 /// When the system does not say, which must not be taken for nothing.
@@ -141,7 +141,7 @@ pub fn found_at(path: &Path) -> std::io::Result<Option<Metadata>> {
     found(path.symlink_metadata())
 }
 
-/// What a path leads to, through symbolic links; none if nothing is there.
+/// Metadata of the target of a path, through symbolic links; none if nothing is there.
 ///
 /// # Errors
 /// When the system does not say, which must not be taken for nothing.

@@ -2,14 +2,14 @@
 
 use slipfront::observe::Field;
 
-/// What a field is called in case files, result files and pictures.
+/// Names of a field in case files, result files and pictures.
 #[derive(Debug)]
 pub struct FieldInfo {
     /// The field.
     pub field: Field,
-    /// Its name in `output.fields` of a case file and in `fields.nc`.
+    /// Name of the field in `output.fields` of a case file and in `fields.nc`.
     pub name: &'static str,
-    /// The unit of its values in `fields.nc` as the CF conventions write it; `1` for a number without unit.
+    /// Unit of the field's values in `fields.nc` as the CF conventions write it; `1` for a number without unit.
     pub unit: &'static str,
     /// A description for the axis of a picture.
     pub long_name: &'static str,

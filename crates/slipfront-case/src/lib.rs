@@ -1,4 +1,4 @@
-//! Reads what a user writes and makes cases of it that the physics crate [`slipfront`] can run.
+//! Reads the case files of users and makes cases that the physics crate [`slipfront`] can run.
 //!
 //! ```text
 //! text -> CaseFile -> Case (valid by construction)

@@ -24,7 +24,7 @@ pub fn four_digits(value: f64) -> String {
     }
 }
 
-/// A number to four decimal places, or to four digits where it is too small for that.
+/// A number to four decimal places, or to four digits where it is too small for four places.
 pub fn four_places(value: f64) -> String {
     if value != 0.0 && value.abs() < 1e-3 {
         four_digits(value)
@@ -45,9 +45,9 @@ pub fn with_uncertainty(value: f64, uncertainty: Option<f64>) -> String {
     }
 }
 
-/// A value and the half width of its interval, both to the place of the value's third digit, or of the second digit of the half
-/// width where that is coarser; a half width that is smaller than that place to its first digit. Where the larger of both is very small or
-/// large, in a bracket before its power of ten.
+/// A value and the half width of its interval, both to the place of the value's third digit, or of the second digit of the
+/// half width where that is coarser; a half width that is smaller than that place to its first digit. Where the larger of
+/// both is very small or large, both stand in a bracket before the power of ten.
 pub fn with_half_width(value: f64, half: Option<f64>) -> String {
     let Some(half) = half else {
         return four_places(value);
@@ -104,7 +104,7 @@ pub fn with_si_prefix(value: f64, unit: &str) -> String {
     format!("{} {prefix}{unit}", four_digits(value / factor))
 }
 
-/// The SI prefix of a quantity of this size, and by what it multiplies a unit; none of 0 and of what is no number.
+/// The SI prefix of a quantity of this size, and its factor; none for 0 and NaN.
 pub fn si_prefix(value: f64) -> (f64, &'static str) {
     const PREFIXES: [&str; 13] = ["a", "f", "p", "n", "u", "m", "", "k", "M", "G", "T", "P", "E"];
     if !value.is_normal() {

@@ -1,8 +1,8 @@
 //! Physical quantities as a user writes them: a number, a unit, a dimension.
 //!
-//! Every accepted unit is a power of ten of its SI unit. Converting therefore means shifting the decimal exponent of
-//! the number's *text* before it is read, so that the SI value is rounded once, by `f64::from_str`, and is the `f64`
-//! nearest to what was written. Read by the case file; the SI values go to the scales of the model next.
+//! Every accepted unit is a power of ten of its SI unit. Converting therefore means shifting the decimal exponent of the
+//! number's *text* before it is read, so that the SI value is rounded once, by `f64::from_str`, and is the `f64` nearest to
+//! what was written. The case file reads quantities; their SI values go to the scales of the model next.
 
 use std::fmt;
 use std::marker::PhantomData;
@@ -121,7 +121,7 @@ impl fmt::Display for Dimension {
     }
 }
 
-/// Why a text is not a quantity of the wanted dimension.
+/// Reason for which a text is no quantity of the wanted dimension.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
@@ -160,15 +160,15 @@ pub enum QuantityError {
     TooLong { bytes: usize, example: &'static str },
 }
 
-/// What a [`Quantity`] measures: implemented by the markers in [`kind`] only.
+/// The kind of a [`Quantity`]: implemented by the markers in [`kind`] only.
 pub trait Kind: Clone + fmt::Debug + PartialEq {
     /// The dimension of the quantity.
     const DIMENSION: Dimension;
-    /// Its name with its article, for messages.
+    /// Name of the quantity with its article, for messages.
     const NAME: &'static str;
     /// A quantity as it should be written, for messages.
     const EXAMPLE: &'static str;
-    /// Its SI unit, as it can be read back.
+    /// SI unit of the quantity, as it can be read back.
     const SI_UNIT: &'static str;
 }
 
@@ -221,7 +221,7 @@ quantities! {
 
 /// A quantity, with the text it was written as.
 ///
-/// Two quantities are equal when text and value are. Its bounds are those of the key it belongs to, and checked there.
+/// Two quantities are equal when text and value are. Bounds belong to the key of the quantity, and are checked there.
 ///
 /// ```
 /// use slipfront_case::quantity::{Density, Length};
@@ -248,7 +248,7 @@ impl<K: Kind> Quantity<K> {
         self.si
     }
 
-    /// The quantity of that SI value, written with the fewest digits that read back to the same `f64`.
+    /// The quantity of an SI value, written with the fewest digits that read back to the same `f64`.
     ///
     /// A value that is not finite makes a quantity that is refused wherever a case file is checked or read.
     pub fn from_si(si: f64) -> Self {
@@ -370,7 +370,7 @@ impl<K: Kind> Visitor<'_> for QuantityVisitor<K> {
     }
 }
 
-/// A number with its unit as a text has it, of whatever dimension: to compare quantities whose kind is not known.
+/// A number with its unit as a text has it, of any dimension, for comparing quantities whose kind is not known.
 ///
 /// ```
 /// use slipfront_case::quantity::WrittenQuantity;
@@ -385,7 +385,7 @@ pub struct WrittenQuantity<'a> {
 }
 
 impl<'a> WrittenQuantity<'a> {
-    /// The quantity that a text is; none if it is no number with a unit that is read.
+    /// The quantity in a text; none if it is no number with a known unit.
     pub fn read(text: &'a str) -> Option<Self> {
         let number = DecimalText::split(text.trim()).filter(|_| text.len() <= MAX_TEXT)?;
         let unit = number.rest.trim();
@@ -396,14 +396,14 @@ impl<'a> WrittenQuantity<'a> {
         unit.foreign.is_none().then_some(Self { number, unit })
     }
 
-    /// Its unit as it is written; `1/s` for `/s`.
+    /// Unit of the quantity as written; `1/s` for `/s`.
     pub fn unit(&self) -> String {
         let unit = self.number.rest.trim();
         let one = if unit.starts_with('/') { "1" } else { "" };
         format!("{one}{unit}")
     }
 
-    /// Its number in the unit of another quantity, rounded once; none if that is of another dimension.
+    /// Value in the unit of another quantity, rounded once; none if that has another dimension.
     pub fn in_unit_of(&self, other: &Self) -> Option<f64> {
         let is_alike = self.unit.dimension == other.unit.dimension;
         let power = self.unit.power_of_ten - other.unit.power_of_ten;
@@ -466,15 +466,16 @@ fn split_exponent(text: &str) -> Option<(i32, &str)> {
 /// A product of powers of units.
 struct Unit {
     dimension: Dimension,
-    /// Its size in its SI unit is 10^`power_of_ten` times `factor`, which is 1 where every unit in it is accepted.
+    /// Power of ten of the unit's size, which is 10^`power_of_ten` times `factor` SI units; `factor` is 1 where every unit
+    /// in it is accepted.
     power_of_ten: i32,
     factor: f64,
-    /// The first unit in it that is not accepted.
+    /// The first symbol in the unit that is not accepted.
     foreign: Option<String>,
 }
 
 impl Unit {
-    /// Reads the unit of `text`, which is one of a quantity of dimension `wanted`.
+    /// Reads the unit of `text`, a quantity of dimension `wanted`.
     fn read(
         text: &str,
         unit_text: &str,
@@ -590,8 +591,8 @@ fn find_symbol(symbol: &str) -> Option<(Dimension, i32)> {
     })
 }
 
-/// What to write in place of an unknown `symbol` among the `factors` of a unit: the nearest unit that makes the whole one of
-/// the `wanted` dimension, or else what units there are.
+/// Advice on an unknown `symbol` among the `factors` of a unit: the nearest unit with which the whole has the `wanted`
+/// dimension, or else the known units.
 fn advice_on(symbol: &str, factors: &[(&str, i32)], wanted: Dimension, example: &str) -> String {
     if symbol.starts_with(',') {
         return "the decimal sign is a point".to_owned();

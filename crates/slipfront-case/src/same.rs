@@ -1,4 +1,4 @@
-//! What all ranks must have been given alike, held against each other before they need each other.
+//! Inputs that all ranks must have alike, compared before the ranks need each other.
 
 use blake3::OUT_LEN;
 use slipfront::Communicator;
@@ -7,26 +7,26 @@ use thiserror::Error;
 
 use crate::text::truncated;
 
-/// Something of which a rank was given another than rank 0.
+/// A difference between the inputs of a rank and those of rank 0.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error(
     "{name} is {found} on rank {rank} and {expected} on rank 0: start all ranks with the same program, options and files"
 )]
 pub struct Difference {
-    /// What differs.
+    /// Name of the input that differs.
     pub name: String,
-    /// The lowest rank on which it does.
+    /// The lowest rank on which the input differs.
     pub rank: usize,
-    /// What it is there.
+    /// Value of the input on that rank.
     pub found: String,
-    /// What it is on rank 0.
+    /// Value of the input on rank 0.
     pub expected: String,
 }
 
-/// Names of things that all ranks must have alike, each with what it is on this rank.
+/// Names of inputs that all ranks must have alike, each with its value on this rank.
 pub type Given = Vec<(String, String)>;
 
-/// Fails on all ranks, with the same words, if not all of them have been `given` the same. Every rank must ask.
+/// Fails on all ranks, with the same words, unless all have been `given` the same inputs. Every rank must ask.
 ///
 /// ```
 /// use slipfront::Communicator;
@@ -74,12 +74,12 @@ pub fn expect_same(communicator: &dyn Communicator, given: impl FnOnce() -> Give
     })
 }
 
-/// What a rank was given, from the text of it; the text itself if another version has written it otherwise.
+/// Inputs of a rank, from the text of them; the text itself if another version has written it otherwise.
 fn read_given(text: &str) -> Given {
     serde_json::from_str(text).unwrap_or_else(|_| vec![("what it was given".to_owned(), text.to_owned())])
 }
 
-/// A hash as integers, which ranks can tell each other.
+/// A hash as integers, which ranks can exchange.
 pub(crate) fn words_of(hash: &blake3::Hash) -> [i64; OUT_LEN / size_of::<i64>()] {
     let mut words = [0; OUT_LEN / size_of::<i64>()];
     for (word, bytes) in words.iter_mut().zip(hash.as_bytes().as_chunks().0) {
@@ -88,7 +88,7 @@ pub(crate) fn words_of(hash: &blake3::Hash) -> [i64; OUT_LEN / size_of::<i64>()]
     words
 }
 
-/// The word that each rank has, rank 0 first.
+/// The words of all ranks, rank 0 first.
 pub fn of_all(communicator: &dyn Communicator, word: i64) -> Vec<i64> {
     let mut words = vec![0; communicator.size()];
     words[communicator.rank()] = word;

@@ -35,7 +35,7 @@ pub fn note(sentence: &str, columns: usize) -> String {
     format!("{}\n", wrapped(&format!("note: {sentence}"), columns))
 }
 
-/// A line broken between words into lines of at most `columns` characters, if no word is longer. Lines after the first are
+/// Breaks a line between words into lines of at most `columns` characters, if no word is longer. Lines after the first are
 /// indented. A command in backquotes is one word, so that it can be copied.
 pub fn wrapped(line: &str, columns: usize) -> String {
     const INDENT: &str = "\n      ";

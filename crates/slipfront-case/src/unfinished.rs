@@ -1,9 +1,9 @@
-//! Hidden files and folders, which stand as long as a process works on something, and what killed processes have left of them.
+//! Hidden files and folders, which stand as long as a process works on something, and the leftovers of killed processes.
 //!
-//! Their names are derived from what the work is for, its target: `.slipfront-`, 16 digits of a hash of it, `-` and 6 random
-//! letters or digits. The process that makes one holds its lock. Whoever makes the next one for the same target removes those
-//! whose lock is free: their process has ended. Random letters keep two living processes, and other users, out of each other's
-//! way. Where a file system has no locks nothing is removed.
+//! The names are derived from the target of the work: `.slipfront-`, 16 digits of a hash of it, `-` and 6 random letters or
+//! digits. The process that makes one holds its lock. A process that makes the next one for the same target removes those
+//! whose lock is free, because their process has ended. Random letters keep two living processes, and other users, out of
+//! each other's way. Where a file system has no locks nothing is removed.
 
 use std::fs::{DirEntry, File, Metadata, TryLockError};
 use std::io::{Error, Result};
@@ -20,7 +20,8 @@ const BEGINNING: &str = ".slipfront-";
 const DIGITS: usize = 16;
 /// Random letters or digits.
 const RANDOM: usize = 6;
-/// Times that something is made anew, because another process took it for a leftover before it was locked.
+/// Largest number of attempts to make a hidden file anew, because another process took it for a leftover before it was
+/// locked.
 const TRIES: usize = 100;
 
 /// The hidden names of one target but for their random letters.
@@ -28,7 +29,7 @@ fn beginning_for(target: &[u8]) -> String {
     format!("{BEGINNING}{}-", &blake3::hash(target).to_hex()[..DIGITS])
 }
 
-/// Whether this is a hidden name, of any target.
+/// Whether a name is a hidden name, of any target.
 pub fn is_unfinished(name: &str) -> bool {
     let parts = name.strip_prefix(BEGINNING).and_then(|rest| rest.split_once('-'));
     parts.is_some_and(|(hash, random)| {
@@ -38,8 +39,8 @@ pub fn is_unfinished(name: &str) -> bool {
     })
 }
 
-/// Makes an empty file, locked, in the folder of the file that it will be renamed to, and removes what killed processes have
-/// left of such files.
+/// Makes an empty file, locked, in the folder of the file that it will be renamed to, and removes such files that killed
+/// processes have left.
 pub(crate) fn file_for(folder: &Path, path: &Path) -> Result<NamedTempFile> {
     let beginning = beginning_for(path.file_name().unwrap_or_default().as_encoded_bytes());
     clear(folder, &beginning, is_file);
@@ -47,29 +48,31 @@ pub(crate) fn file_for(folder: &Path, path: &Path) -> Result<NamedTempFile> {
     until_locked(make, |file| hold(Some(file.as_file()), file.path()))
 }
 
-/// Removes the files that killed processes have left in a folder, whatever they were to become.
+/// Removes the files that killed processes have left in a folder, for any target.
 pub fn clear_unfinished(folder: &Path) {
     clear(folder, BEGINNING, is_file);
 }
 
-/// A folder in that for temporary files (`TMPDIR`), for this user alone. It is removed with all that it holds when it is dropped.
+/// A folder in the one for temporary files (`TMPDIR`), for this user alone. It is removed with all its contents when it is
+/// dropped.
 #[derive(Debug)]
 pub struct TemporaryFolder {
     // Dropped first: as long as it is removed, it is locked.
     folder: TempDir,
     lock: Option<File>,
-    /// The process that made it.
+    /// The process that made the folder.
     process: u32,
 }
 
 impl TemporaryFolder {
-    /// Makes an empty folder for work on a folder, and removes what killed processes have left of such work on this machine.
+    /// Makes an empty folder for work on a folder, and removes the folders for such work that killed processes have left on
+    /// this machine.
     pub fn new(target: &Path) -> Result<Self> {
         let target = target.canonicalize().unwrap_or_else(|_| target.to_owned());
         Self::of_target(target.as_os_str().as_encoded_bytes())
     }
 
-    /// The folder that all work of this process shares which has no target. It stands as long as somebody holds it.
+    /// The folder for all work of this process that has no target. It exists as long as a part of the program holds it.
     pub fn shared() -> Result<Arc<Self>> {
         static SHARED: Mutex<Weak<TemporaryFolder>> = Mutex::new(Weak::new());
         let mut shared = SHARED.lock().unwrap_or_else(PoisonError::into_inner);
@@ -107,12 +110,12 @@ impl TemporaryFolder {
         Ok(made)
     }
 
-    /// The folder.
+    /// Path of the folder.
     pub fn path(&self) -> &Path {
         self.folder.path()
     }
 
-    /// Whether this process made it, and not the one of which it is a fork, as Python makes them.
+    /// Whether this process made the folder, and not the process of which it is a fork, as Python makes them.
     fn is_own(&self) -> bool {
         self.process == std::process::id()
     }
@@ -124,7 +127,7 @@ impl Drop for TemporaryFolder {
     }
 }
 
-/// What makes temporary files and folders whose names begin so, with this mode.
+/// A builder of temporary files and folders whose names have this beginning, with this mode.
 pub(crate) fn builder<'a>(beginning: &'a str, mode: u32) -> Builder<'a, 'static> {
     let mut builder = Builder::new();
     builder.prefix(beginning).rand_bytes(RANDOM);
@@ -136,7 +139,7 @@ pub(crate) fn builder<'a>(beginning: &'a str, mode: u32) -> Builder<'a, 'static>
     builder
 }
 
-/// The user whose file or folder this is, where systems tell.
+/// The owner of a file or folder, on systems that know it.
 #[cfg(unix)]
 fn owner(found: &Metadata) -> u32 {
     std::os::unix::fs::MetadataExt::uid(found)
@@ -147,7 +150,7 @@ fn owner(_: &Metadata) -> u32 {
     0
 }
 
-/// Makes something, again and again, until it is locked.
+/// Makes a file or folder again and again until it is locked.
 fn until_locked<T>(make: impl Fn() -> Result<T>, is_locked: impl Fn(&T) -> bool) -> Result<T> {
     for _ in 0..TRIES {
         let made = make()?;
@@ -160,14 +163,15 @@ fn until_locked<T>(make: impl Fn() -> Result<T>, is_locked: impl Fn(&T) -> bool)
     ))
 }
 
-/// Locks what was just made; false if another process has taken it for a leftover before. Where there are no locks, none does.
+/// Locks a new file or folder; false if another process has taken it for a leftover before. Where there are no locks, no
+/// process has.
 fn hold(made: Option<&File>, path: &Path) -> bool {
     let is_taken = |made: &File| matches!(made.try_lock(), Err(TryLockError::WouldBlock));
     !made.is_some_and(is_taken) && path.symlink_metadata().is_ok()
 }
 
-/// Removes what killed processes have left in a folder under hidden names that begin so, of the kind that is meant. Errors are
-/// ignored: it does no harm.
+/// Removes the hidden entries of a folder that killed processes have left, of the given kind and beginning of the name.
+/// Errors are ignored: a leftover does no harm.
 fn clear(folder: &Path, beginning: &str, is_meant: impl Fn(&DirEntry) -> bool) {
     for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
         let name = entry.file_name();
@@ -178,7 +182,7 @@ fn clear(folder: &Path, beginning: &str, is_meant: impl Fn(&DirEntry) -> bool) {
     }
 }
 
-/// Whether this is a file, and no link to one.
+/// Whether an entry is a file, rather than a link to one.
 fn is_file(entry: &DirEntry) -> bool {
     entry.metadata().is_ok_and(|found| found.is_file())
 }
@@ -256,7 +260,7 @@ mod tests {
         assert_eq!(names(folder.path()), ["a.png"]);
     }
 
-    /// Many write the same file at once: each is done, the file is one of theirs, and nothing else is left.
+    /// Many processes write one file at once: each succeeds, the file is one of theirs, and nothing else is left.
     #[test]
     fn writers_of_one_file_do_not_disturb_each_other() {
         let folder = tempfile::tempdir().unwrap();
@@ -327,7 +331,7 @@ mod tests {
         assert_eq!(std::fs::read(kept.join("mine")).unwrap(), b"mine");
     }
 
-    /// The hidden name of a file whose own name is as long as names can be is no longer than that.
+    /// The hidden name of a file is no longer than the system allows, even if the name of the file is as long.
     #[test]
     fn a_name_may_be_as_long_as_the_system_allows() {
         let folder = tempfile::tempdir().unwrap();

@@ -1,4 +1,4 @@
-//! Every case in the book is one that can be read: the TOML blocks of README.md and docs/.
+//! Every case in the book can be read: the TOML blocks of README.md and docs/.
 
 use std::path::{Path, PathBuf};
 

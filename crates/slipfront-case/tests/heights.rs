@@ -36,15 +36,15 @@ fn reference() -> Value {
 
 const PIXEL: f64 = 0.5e-6;
 const SIZE: Option<[f64; 2]> = Some([PIXEL; 2]);
-/// The file has its units.
+/// Units of a file that states its own.
 const OWN: HeightMapUnits = HeightMapUnits {
     height: None,
     pixel: None,
 };
 
-/// The map has no symmetry, and lies on the blocks as SurfaceTopography and Gwyddion show it, from whichever file. Heights stored as
-/// 32-bit numbers are good to 2^-24 of 6 um, of 64 bits, as grey levels and in decimals to rounding, as integers to half a step: their
-/// range, less than 6 um, over 2^32 or 2^16.
+/// The map has no symmetry, and lies on the blocks as SurfaceTopography and Gwyddion show it, for every format. Heights
+/// stored as 32-bit numbers are good to 2^-24 of 6 um, of 64 bits, as grey levels and in decimals to rounding, as integers
+/// to half a step: their range, less than 6 um, over 2^32 or 2^16.
 #[rstest]
 #[case("map.npy", HeightMapUnits { height: Some(1.0), pixel: SIZE }, 1e-15)]
 #[case("map_f4_fortran.npy", HeightMapUnits { height: Some(1e-6), pixel: SIZE }, 4e-13)]
@@ -93,7 +93,7 @@ fn every_format_gives_what_numpy_computes(
     }
 }
 
-/// Blocks that cover points in other shares have the mean of equal heights all the same: no plateau is torn by rounding.
+/// Blocks that cover unequal shares of points of equal height have equal means: rounding tears no plateau.
 #[test]
 fn blocks_over_a_plateau_have_its_height() {
     let folder = tempfile::tempdir().unwrap();
@@ -116,7 +116,7 @@ fn blocks_over_a_plateau_have_its_height() {
     );
 }
 
-/// What is wrong, and what to do about it.
+/// A height map that is not fully known is refused with the error and the remedy.
 #[rstest]
 #[case("map.npy", OWN, "does not say how large a pixel is: add `pixel_size`")]
 #[case("map.png", HeightMapUnits { pixel: SIZE, ..OWN }, "does not say which height a value of 1 is: add `height_unit`")]
@@ -545,7 +545,7 @@ fn on_a_disc(texture: &str, ranks: usize) -> Vec<Case> {
     })
 }
 
-/// Of those of the lattice, half would be all that the disc has and more.
+/// Blocks that do not exist have no share: half of the lattice's blocks would be all blocks of the disc and more.
 #[test]
 fn blocks_that_do_not_exist_have_no_share() {
     for ranks in [1, 3] {
@@ -576,7 +576,7 @@ fn blocks_that_do_not_exist_have_no_share() {
     }
 }
 
-/// Less than half a block.
+/// One block touches even for a share of less than half a block.
 #[test]
 fn one_block_touches_at_the_least() {
     let case = case("bearing_percent = 0.1").unwrap();
@@ -620,7 +620,7 @@ fn warnings_of(text: &str, texture: &str) -> String {
     case.warnings().join("\n")
 }
 
-/// Neither clipped nor off the slider, of which a height map knows nothing.
+/// The difference from the asked texture is stated in words of heights, not as clipped or off the slider.
 #[test]
 fn a_texture_that_is_not_as_asked_is_told_in_words_of_heights() {
     let folder = tempfile::tempdir().unwrap();
@@ -680,7 +680,7 @@ fn a_map_is_an_input_like_any_other() {
     assert_eq!(again.inputs[0].hash, input.hash);
 }
 
-/// A file of more pixels for a block than arrays have is no error of a height map; of a mask it is.
+/// A file with more pixels per block than arrays have is an error for a mask, not for a height map.
 #[test]
 fn a_height_map_may_be_finer_than_blocks() {
     let folder = tempfile::tempdir().unwrap();

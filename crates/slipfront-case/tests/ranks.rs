@@ -1,4 +1,4 @@
-//! A case that several ranks make is the one that a process makes alone.
+//! A case that several ranks make equals the case that one process makes.
 
 #![allow(clippy::unwrap_used)] // A helper that cannot do its work fails its test.
 
@@ -71,7 +71,7 @@ fn make(
     Case::to_run(file, "case", folder, watch, ranks)
 }
 
-/// What so many ranks make.
+/// Results of `size` ranks that make a case.
 fn make_on_ranks(size: usize, text: &str, folder: &Path) -> Vec<Result<Case, CaseError>> {
     Threads::run(size, |communicator| {
         let ranks = Ranks {
@@ -133,7 +133,7 @@ fn ranks_make_the_case_that_one_process_makes(#[case] text: &str) {
     }
 }
 
-/// What so many ranks make of the files of a folder, which each of them has in memory.
+/// Results of `size` ranks that make a case from the files of a folder, which each of them has in memory.
 fn make_in_memory(size: usize, text: &str, folder: &Path) -> Vec<Result<Case, CaseError>> {
     let entries = std::fs::read_dir(folder).unwrap().map(Result::unwrap);
     let contents = |entry: std::fs::DirEntry| {
@@ -217,7 +217,7 @@ fn files_in_memory_are_refused_in_the_same_sentences(#[case] text: &str, #[case]
     }
 }
 
-/// Whichever rank finds what is wrong, all say what a process alone says.
+/// All ranks report the error that a process alone reports, whichever rank finds it.
 #[rstest]
 #[case::value("friction.mu_static_field = 'negative.csv'", "has -0.8")]
 #[case::lines("friction.mu_static_field = 'short.csv'", "has 7 lines of numbers")]
@@ -298,7 +298,7 @@ fn a_case_file_is_loaded_by_all_ranks() {
     );
 }
 
-/// Ranks of which the last was given another case all say what it is, and where.
+/// Ranks of which the last was given another case all report the difference and its place.
 #[rstest]
 #[case::seed(
     "friction.seed = 1",
@@ -336,7 +336,7 @@ fn another_case_is_refused_by_all(#[case] text: &str, #[case] other: &str, #[cas
     assert!(made.iter().all(|said| *said == made[0]), "{made:?}");
 }
 
-/// Contents, and not places, are what ranks must have alike.
+/// Ranks must have the same contents of files, not the same places.
 #[test]
 fn another_file_is_refused_by_all() {
     let folders = [(); 3].map(|()| tempfile::tempdir().unwrap());
@@ -378,7 +378,8 @@ fn another_file_is_refused_by_all() {
     }
 }
 
-/// What was read after a change need not be what was hashed before it, on whichever rank it happens.
+/// A file that changes while the case is made is refused, because its contents may differ from the hashed ones, on whichever
+/// rank it happens.
 #[rstest]
 fn a_file_that_changes_while_the_case_is_made_is_refused(#[values(1, 3)] size: usize) {
     let folder = tempfile::tempdir().unwrap();
@@ -418,7 +419,7 @@ fn bytes_read() -> u64 {
     line.unwrap().parse().unwrap()
 }
 
-/// Of ranks on one machine the first reads a file as a whole, and the others the rows that they hold.
+/// The first of the ranks on one machine reads a file as a whole, and the others the rows that they hold.
 #[cfg(target_os = "linux")]
 #[test]
 fn one_rank_of_a_machine_hashes_a_file() {

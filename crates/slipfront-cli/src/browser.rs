@@ -6,7 +6,7 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-/// Why the browser would not show a private temporary file, as a clause; none if nothing is known to be against it.
+/// Reason for which the browser would not show a private temporary file, as a clause; none if none is known.
 pub(crate) fn hindrance() -> Option<String> {
     if !cfg!(target_os = "linux") {
         return None;
@@ -50,7 +50,7 @@ fn command_of(name: &str) -> Option<String> {
     Some(line.to_owned())
 }
 
-/// Whether a command line starts a program in a sandbox: by its words, by where they are links to, or by a script.
+/// Whether a command line starts a program in a sandbox: by its words, by the targets of links, or by a script.
 fn is_sandboxed(line: &str) -> bool {
     let tells = |text: &str| {
         ["/snap/", "/bin/snap", "flatpak"]
@@ -74,7 +74,7 @@ fn find(program: &str) -> Option<PathBuf> {
     candidates.find(|candidate| candidate.is_file())
 }
 
-/// How a script begins; nothing of a program that is none.
+/// Beginning of a script; nothing for a program that is none.
 fn script(path: &Path) -> String {
     let mut start = Vec::new();
     let read = File::open(path).and_then(|file| file.take(4096).read_to_end(&mut start));

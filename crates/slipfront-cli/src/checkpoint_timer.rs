@@ -1,4 +1,4 @@
-//! When the checkpoints of a run are saved: by the clock, when asked for, and when the run is told to stop.
+//! Times at which the checkpoints of a run are saved: by the clock, on request, and when the run is told to stop.
 
 use std::fmt;
 use std::str::FromStr;
@@ -13,7 +13,7 @@ use crate::progress::run::RunProgress;
 use crate::ranks::CommandRanks;
 use crate::signals::Signals;
 
-/// Wall time from one checkpoint to the next; none for no checkpoints at all.
+/// Wall time from one checkpoint to the next; none if no checkpoints are saved.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Interval(Option<Duration>);
 
@@ -49,7 +49,8 @@ impl FromStr for Interval {
     }
 }
 
-/// A checkpoint is followed by at least this many times the time that it took: in the long run they take 1 % at most.
+/// Ratio of the time until the next checkpoint to the time that a checkpoint took, at least: in the long run they take 1 %
+/// at most.
 const RUN_PER_SAVE: u32 = 99;
 
 /// Wall time to the next checkpoint after one that took `cost`.
@@ -137,7 +138,7 @@ impl CheckpointTimer {
         self.ranks.agree(saved.map_err(Failure::running))
     }
 
-    /// Saves a last checkpoint, and says how the run ends.
+    /// Saves a last checkpoint, and returns the failure with which the run ends.
     fn stop(&mut self, signal: i32, running: &Running) -> Failure {
         let (step, last_step) = (running.snapshot().drive_steps, running.case().time_plan.last_step);
         let stopped = format!("stopped by a signal at step {step} of {last_step}");
@@ -163,7 +164,7 @@ impl CheckpointTimer {
         }
     }
 
-    /// The remedy when the disk has refused something.
+    /// The remedy when the disk has refused a checkpoint.
     pub(crate) fn remedy(&self) -> String {
         let command = self.ranks.resume_command(self.checkpoints.folder());
         let from = self

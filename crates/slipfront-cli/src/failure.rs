@@ -1,4 +1,4 @@
-//! Why a command fails, and the exit status that follows.
+//! Reasons for which a command fails, and its exit status.
 
 use slipfront_run::agree::RankFailure;
 
@@ -6,13 +6,13 @@ use crate::print_stderr::print_stderr;
 use crate::signals::Signals;
 use crate::wrap::for_stderr;
 
-/// Why a command failed.
+/// Reason for which a command failed.
 pub(crate) enum Failure {
     /// Bad input or usage: status 2.
     Input(anyhow::Error),
     /// An error while running: status 1.
     Running(anyhow::Error),
-    /// Stopped by a signal of this number: status 128 + number.
+    /// Stopped by the signal with this number: status 128 + number.
     Stopped(i32, anyhow::Error),
 }
 
@@ -38,7 +38,7 @@ impl Failure {
         }
     }
 
-    /// Prints the error to stderr, and gives the exit status.
+    /// Prints the error to stderr, and returns the exit status.
     pub(crate) fn report(self) -> u8 {
         report(&RankFailure::from(self))
     }
@@ -56,7 +56,7 @@ impl From<Failure> for RankFailure {
     }
 }
 
-/// Prints a failure to stderr, and gives the exit status.
+/// Prints a failure to stderr, and returns the exit status.
 pub(crate) fn report(failure: &RankFailure) -> u8 {
     print_stderr(&for_stderr(&format!("error: {failure}")));
     failure.status

@@ -117,9 +117,9 @@ Examples:
     Licences(commands::licences::LicencesCommand),
 }
 
-/// Runs the command with these arguments, the first of which is the name of the program; gives its exit status.
+/// Runs the command with these arguments, the first of which is the name of the program; returns its exit status.
 ///
-/// It belongs to a process of its own: signals are caught and the number of threads is set for the whole process, once.
+/// The command needs a process of its own: signals are caught and the number of threads is set for the whole process, once.
 pub fn main(args: impl IntoIterator<Item = OsString>) -> u8 {
     let command = match Cli::try_parse_from(args) {
         Ok(cli) => cli.command,
@@ -152,7 +152,8 @@ pub fn main(args: impl IntoIterator<Item = OsString>) -> u8 {
     })
 }
 
-/// The same for the command `slipfront-mpi`, of which there is a process for every rank of the communicator.
+/// Runs the command `slipfront-mpi`, of which there is a process for every rank of the communicator; arguments and exit
+/// status as for [`main`].
 pub fn main_on_ranks(args: impl IntoIterator<Item = OsString>, communicator: Arc<dyn Communicator>) -> u8 {
     let ranks = CommandRanks::new("slipfront-mpi", communicator);
     if !ranks.is_first() {
@@ -172,11 +173,11 @@ pub fn main_on_ranks(args: impl IntoIterator<Item = OsString>, communicator: Arc
     })
 }
 
-/// What the arguments of a rank ask for.
+/// Request of the arguments of a rank.
 enum Parsed {
     Run(Box<RunCommand>),
     Licences(commands::licences::LicencesCommand),
-    /// Help or version, which clap gives as an error.
+    /// Help or version, which clap returns as an error.
     Shown(clap::Error),
 }
 
@@ -191,7 +192,7 @@ impl Parsed {
     }
 }
 
-/// What the arguments ask for; it is a failure of all ranks where those of one are wrong.
+/// Request of the arguments; wrong arguments of one rank are a failure of all.
 fn parse_on_rank(args: impl IntoIterator<Item = OsString>) -> Result<Parsed, Failure> {
     match RanksCli::try_parse_from(args) {
         Ok(cli) => Ok(match cli.command {
@@ -220,7 +221,7 @@ fn execute(work: impl FnOnce() -> Result<(), RankFailure>) -> u8 {
     }
 }
 
-/// Prints what was asked for, as help is, or what is wrong with the arguments.
+/// Prints the help that was asked for, or the error of the arguments.
 fn print_usage(error: &clap::Error) -> u8 {
     let printed = error.print();
     // Of a wrong line the status is what matters; help and version are what was asked for.
@@ -230,7 +231,7 @@ fn print_usage(error: &clap::Error) -> u8 {
     }
 }
 
-/// What was meant by a file or folder in the place of the subcommand.
+/// The command that was probably meant by a file or folder in the place of the subcommand.
 fn forgotten_subcommand(error: &clap::Error) -> Option<String> {
     let Some(ContextValue::String(word)) = error.get(ContextKind::InvalidSubcommand) else {
         return None;

@@ -1,4 +1,4 @@
-//! Makes the case of a command, with progress and an ear for signals while its texture is laid over the blocks.
+//! Makes the case of a command, with progress and checks for signals while its texture is laid over the blocks.
 
 use slipfront_case::case::{self, Case, Watch};
 use slipfront_case::case_file::CaseError;
@@ -9,7 +9,8 @@ use crate::progress::mesh::MeshProgress;
 use crate::ranks::CommandRanks;
 use crate::signals::Signals;
 
-/// The case that `make` gives on all ranks, refused if a run of it has no memory; it is handed what watches its texture.
+/// Makes a case with `make` on all ranks, and refuses it if a run of it has no memory; `make` gets the function that watches
+/// its texture.
 pub(crate) fn make_case(
     ranks: &CommandRanks,
     signals: &Signals,

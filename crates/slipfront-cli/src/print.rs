@@ -1,22 +1,22 @@
-//! What the commands print to stdout: there is no other place that does.
+//! Printing to stdout, for all commands.
 
 use std::io::{ErrorKind, Write};
 
 use crate::failure::Failure;
 use crate::print_stderr::is_silent;
 
-/// Prints what the command was called for. It is no failure when the reader has closed the pipe, as `head` does.
+/// Prints the product of a command. A reader that has closed the pipe, as `head` does, is no failure.
 pub(crate) fn print(text: &str) -> Result<(), Failure> {
     expect_printed(write(text))
 }
 
-/// Prints a message of a command whose work are files. A message that cannot be printed is lost: the command goes on and
+/// Prints a message of a command whose product is files. A message that cannot be printed is lost: the command goes on and
 /// ends with the exit status of its work.
 pub(crate) fn print_message(text: &str) {
     let _ = write(text);
 }
 
-/// Fails if what the command was called for could not be printed, for another reason than a closed pipe.
+/// Fails if the product of a command could not be printed, for another reason than a closed pipe.
 pub(crate) fn expect_printed(written: std::io::Result<()>) -> Result<(), Failure> {
     match written {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(Failure::running(anyhow::anyhow!(

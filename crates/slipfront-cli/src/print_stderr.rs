@@ -1,17 +1,17 @@
-//! Messages on stderr, and whether this process says anything at all.
+//! Messages on stderr, unless another process of the command prints for all.
 
 use std::io::Write;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Set where another process of the same command speaks for all.
+/// Flag set where another process of the same command prints for all.
 static IS_SILENT: AtomicBool = AtomicBool::new(false);
 
-/// Nothing more is printed by this process.
+/// Silences this process.
 pub(crate) fn silence() {
     IS_SILENT.store(true, Ordering::Relaxed);
 }
 
-/// Whether another process speaks for this one.
+/// Whether another process prints for this one.
 pub(crate) fn is_silent() -> bool {
     IS_SILENT.load(Ordering::Relaxed)
 }

@@ -1,24 +1,24 @@
-//! Signals, as flags that are looked at now and then.
+//! Signals, as flags that are checked now and then.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use signal_hook::consts::{SIGINT, SIGTERM};
 
-/// Which signals came.
+/// Signals that came.
 #[derive(Clone, Debug)]
 pub(crate) struct Signals {
-    /// Set when one came that stops the program.
+    /// Flag set when a signal came that stops the program.
     pub(crate) stop: Arc<AtomicBool>,
-    /// Those that do, and whether each came; the first of them that did gives the status.
+    /// Signals that stop the program, and whether each came; the first of them that came gives the status.
     stops: Vec<(i32, Arc<AtomicBool>)>,
     usr1: Arc<AtomicBool>,
 }
 
 impl Signals {
-    /// Keeps what queues, users and terminals send from ending the process: SIGINT, SIGTERM, SIGHUP, SIGUSR2 and SIGXCPU stop
-    /// it when it looks, a second one of the first three at once; SIGUSR1 does not stop it. Systems without some of them
-    /// never see those.
+    /// Catches the signals of queues, users and terminals: SIGINT, SIGTERM, SIGHUP, SIGUSR2 and SIGXCPU stop the process at
+    /// its next check, a second one of the first three at once; SIGUSR1 does not stop it. Systems without some of them never
+    /// see those.
     pub(crate) fn catch() -> std::io::Result<Self> {
         let mut signals = Self {
             stop: Arc::default(),
@@ -51,12 +51,12 @@ impl Signals {
         Ok(())
     }
 
-    /// Whether SIGUSR1 came since this was asked last.
+    /// Whether SIGUSR1 came since the last call.
     pub(crate) fn take_usr1(&self) -> bool {
         self.usr1.swap(false, Ordering::SeqCst)
     }
 
-    /// The signal that came, if one did.
+    /// The signal that stops the program, if one came.
     pub(crate) fn stopped(&self) -> Option<i32> {
         let mut stops = self.stops.iter();
         stops
@@ -65,7 +65,7 @@ impl Signals {
     }
 }
 
-/// Makes a write that a limit of the size of files forbids fail with a reason, where the signal of it would end the process
+/// Makes a write that a limit of the size of files forbids fail with a reason, where the signal would end the process
 /// without a word.
 pub(crate) fn ignore_sigxfsz() -> std::io::Result<()> {
     #[cfg(unix)]
@@ -73,7 +73,7 @@ pub(crate) fn ignore_sigxfsz() -> std::io::Result<()> {
     Ok(())
 }
 
-/// SIGHUP, unless it is ignored, as under `nohup`; of systems that do not tell it is left alone.
+/// Number of SIGHUP, unless the signal is ignored, as under `nohup`, or the system does not tell.
 fn hangup() -> Option<i32> {
     const SIGHUP: i32 = 1;
     let status = std::fs::read_to_string("/proc/self/status").ok()?;

@@ -19,15 +19,15 @@ pub(crate) fn count_from_one(text: &str) -> Result<u16, String> {
 }
 
 /// Makes the pool of threads of this process and returns their number: by default one per core, and never more. Where the
-/// system refuses some there are fewer, at least the present one, which is one of them if there are several: so it need not wake
-/// others, nor wait for them to wake it, at every step of a run.
+/// system refuses some there are fewer, at least the present thread. If there are several, the present thread belongs to the
+/// pool, so that it need not wake others at every step of a run, nor wait for them.
 pub(crate) fn set_threads(threads: Option<u16>) -> Result<usize, Failure> {
     let working = start_pool(threads, 0, true)?;
     Ok(working.max(1))
 }
 
-/// The same for a command that runs cases on the pool while the present thread waits for them. For every thread of the pool it
-/// starts `others` beside it.
+/// Makes the pool, as [`set_threads`] does, for a command that runs cases on the pool while the present thread waits for
+/// them. Every thread of the pool starts `others` beside it.
 pub(crate) fn set_worker_threads(threads: Option<u16>, others: usize) -> Result<usize, Failure> {
     match start_pool(threads, others, false)? {
         0 => Err(Failure::running(anyhow::anyhow!(

@@ -2,7 +2,7 @@
 
 use slipfront_case::text::{self, COLUMNS, wrapped};
 
-/// The columns of the terminal that stdout is, or 80 of a file or pipe.
+/// The columns of the terminal that stdout is, or 80 for a file or pipe.
 pub(crate) fn stdout_columns() -> usize {
     columns(terminal_size::terminal_size_of(std::io::stdout())).unwrap_or(COLUMNS)
 }
@@ -22,7 +22,7 @@ pub(crate) fn note(sentence: &str) -> String {
     text::note(sentence, stdout_columns())
 }
 
-/// A text for stderr: lines are broken on a terminal alone, so that programs find sentences whole. A line that begins with a
+/// A text for stderr: lines are broken only on a terminal, so that programs find sentences whole. A line that begins with a
 /// blank is an excerpt of a file, and stays as it is.
 pub(crate) fn for_stderr(text: &str) -> String {
     let Some(columns) = stderr_columns() else {

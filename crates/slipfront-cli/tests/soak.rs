@@ -18,7 +18,7 @@ use std::time::Duration;
 
 use support::workspace::Workspace;
 
-/// What a run took and left.
+/// Time, memory and disk space of a run, and its error of energy.
 struct Soaked {
     steps: u64,
     peak_kib: u64,

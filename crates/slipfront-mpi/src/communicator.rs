@@ -9,13 +9,14 @@ use mpi::topology::{Process, SimpleCommunicator};
 use mpi::traits::{Communicator as _, CommunicatorCollectives, Destination, Source};
 use slipfront::Communicator;
 
-/// What tells a message to the rank below from one to the rank above: of two ranks, each has the other on both sides.
+/// Tag that distinguishes a message to the rank below from one to the rank above: of two ranks, each has the other on both
+/// sides.
 const DOWN: Tag = 0;
 const UP: Tag = 1;
 
 /// The ranks with which this one was started.
 ///
-/// It belongs to the thread that has initialized MPI, on which all of its calls must be made.
+/// The connection belongs to the thread that has initialized MPI, on which all of its calls must be made.
 #[derive(Debug)]
 pub struct MpiCommunicator {
     owner: ThreadId,
@@ -45,7 +46,7 @@ impl MpiCommunicator {
     }
 }
 
-/// The rank that is so many above this one on the ring.
+/// The rank that is `up` ranks above this one on the ring.
 fn neighbour(world: &SimpleCommunicator, up: i32) -> Process<'_> {
     world.process_at_rank((world.rank() + up).rem_euclid(world.size()))
 }

@@ -1,4 +1,4 @@
-//! The command under mpirun: what it writes, prints and leaves behind, whatever ends it.
+//! The command under mpirun: its files and messages, however it ends.
 
 #![allow(clippy::unwrap_used)] // A helper that cannot do its work fails its test.
 
@@ -21,7 +21,7 @@ use crate::support::{mpirun, output, printed, run_plain, run_plain_command};
 const SLOW: &str = "[slider]\nblocks = [120, 100]\nedges = ['periodic', 'free']\n[drive]\nv_star = 0.002\n\
     [time]\nduration_star = 12_000\n";
 
-/// The command on so many ranks, in a folder.
+/// The command on `ranks` ranks, in a folder.
 fn on_ranks(ranks: usize, folder: &TempDir, line: &str) -> Command {
     let mut command = mpirun(ranks, env!("CARGO_BIN_EXE_slipfront-mpi"));
     command.args(line.split_whitespace()).current_dir(folder);
@@ -34,7 +34,7 @@ fn plain_command() {
     run_plain_command();
 }
 
-/// What [`SLOW`] gives by the plain command.
+/// Results of [`SLOW`] by the plain command.
 static SLOW_RESULTS: LazyLock<Files> = LazyLock::new(|| {
     let folder = TempDir::new().unwrap();
     std::fs::write(folder.path().join("slow.toml"), SLOW).unwrap();
@@ -51,14 +51,14 @@ fn wait_for_checkpoint(folder: &Path) {
     }
 }
 
-/// Whom a signal is sent to.
+/// Receiver of a signal.
 #[derive(Clone, Copy)]
 enum Target {
     Mpirun,
     LastRank,
 }
 
-/// Which command goes on with a run.
+/// Command that goes on with a run.
 #[derive(Clone, Copy)]
 enum Resumed {
     OnRanks,
@@ -77,7 +77,7 @@ fn send(signal: &str, target: Target, child: &Child) {
     assert!(kill.unwrap().success(), "{signal} cannot be sent");
 }
 
-/// Usage, help and refusals are the same for every rank, and printed by one.
+/// Usage, help and refusals are equal for every rank, and printed by one.
 #[rstest]
 #[case("run --nonsense", 2, "unexpected argument '--nonsense'")]
 #[case("--help", 0, "byte for byte")]
@@ -184,11 +184,11 @@ fn a_run_on_ranks_writes_the_bytes_of_the_plain_command(#[values(0, 1, 2, 3, 4, 
     }
 }
 
-/// What is said of a run that has saved where it was stopped.
+/// Message of a run that has saved its state where it was stopped.
 const SAVED: &str = "which is saved: `slipfront-mpi run --resume stopped` goes on";
 
-/// mpirun passes on SIGUSR2 as it is; after SIGINT and SIGTERM it sends SIGTERM to the ranks, and has status 1 whatever they say. It
-/// says itself that a rank was killed.
+/// mpirun passes on SIGUSR2 as it is; after SIGINT and SIGTERM it sends SIGTERM to the ranks, and has status 1 whatever
+/// theirs is. mpirun itself reports that a rank was killed.
 #[rstest]
 #[case(Target::Mpirun, "-USR2", 140, SAVED, Resumed::OnRanks)]
 #[case(Target::Mpirun, "-TERM", 1, SAVED, Resumed::Plain)]

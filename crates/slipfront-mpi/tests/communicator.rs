@@ -1,4 +1,4 @@
-//! Ranks talk to each other: what they tell arrives where it belongs, and no rank is left behind by one that gives up.
+//! Ranks talk to each other: messages arrive where they belong, and no rank is left behind by one that gives up.
 
 #![allow(clippy::unwrap_used)] // A helper that cannot do its work fails its test.
 
@@ -34,7 +34,7 @@ fn what_ranks_tell_each_other_is_right(
     assert_eq!(passed, ranks, "{}", printed(&output));
 }
 
-/// The values of a message: who sends it, in which round, upwards or not, and the place in it.
+/// The values of a message, from its sender, its round, its direction and its length.
 fn message(rank: usize, round: usize, upwards: bool, length: usize) -> Vec<f64> {
     let head = (rank * 1000 + round * 10 + usize::from(upwards)) as f64;
     (0..length).map(|k| head + k as f64 / length as f64).collect()

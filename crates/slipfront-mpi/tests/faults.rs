@@ -1,5 +1,5 @@
-//! File-system calls of one rank of two fail or kill it, while it goes on with a run that has a checkpoint: both ranks end, with one
-//! answer, and what they leave goes on to the same bytes.
+//! File-system calls of one rank of two fail or kill it, while it goes on with a run that has a checkpoint: both ranks end,
+//! with one answer, and the run that they leave goes on to the same bytes.
 //!
 //! A few calls are tried; with `SLIPFRONT_TORTURE=long` every one.
 
@@ -41,7 +41,7 @@ fn plain_command() {
     run_plain_command();
 }
 
-/// What [`CASE`] gives by the plain command.
+/// Results of [`CASE`] by the plain command.
 static UNDISTURBED: LazyLock<Files> = LazyLock::new(|| {
     let folder = TempDir::new().unwrap();
     std::fs::write(folder.path().join("case.toml"), CASE).unwrap();
@@ -63,8 +63,8 @@ fn stopped_run() -> TempDir {
     folder
 }
 
-/// Goes on with the run on two ranks. Calls of one of them that concern its folder meet with an action from number `from` to number
-/// `to`, 0 for no end. Gives all of its calls as well.
+/// Goes on with the run on two ranks. Calls of one of them that concern its folder meet with an action from number `from` to
+/// number `to`, 0 for no end. Returns all of its calls as well.
 fn resume_disturbed(folder: &Path, rank: usize, [action, from, to]: [&str; 3]) -> (Output, Vec<String>) {
     let log = folder.join("log");
     let mut command = launcher();

@@ -1,5 +1,5 @@
-//! Ranks that were not given the same: all of them end, with one sentence that says what differs and on which rank, before anything is
-//! written. What need not be the same may differ.
+//! Ranks that were given different inputs: all of them end, with one sentence on the difference and its rank, before
+//! anything is written. Other inputs may differ.
 
 #![allow(clippy::unwrap_used)] // A helper that cannot do its work fails its test.
 
@@ -185,7 +185,7 @@ fn another_command_is_refused(#[case] line: &str, #[case] sentence: &str) {
     assert_refused(folder.path(), [(PROGRAM, RUN), (PROGRAM, line)], &[sentence]);
 }
 
-/// Programs are told apart by their sources, so that any digit of the hash of these makes another one.
+/// Another build is refused: programs differ by the hash of their sources, and any digit of it counts.
 #[test]
 fn another_build_is_refused() {
     let folder = two_places();
@@ -251,7 +251,7 @@ fn copy(from: &Path, to: &Path) {
     assert!(copied.unwrap().success());
 }
 
-/// Machines on which folders of the same name are not the same.
+/// Folders of one name on different machines are not the same.
 #[rstest]
 #[case::other_step("", "the step of the checkpoint is 55 on rank 1 and 50 on rank 0")]
 #[case::other_case("", "`drive.v_star` is 0.2 on rank 1 and 0.1 on rank 0")]
@@ -300,7 +300,7 @@ fn another_folder_is_not_resumed(#[case] change: &str, #[case] sentence: &str) {
     run_plain(&a, "run -q --resume k");
 }
 
-/// Threads, spellings of the folder, names of the case and what is printed: the results are those of a run alone.
+/// Threads, spellings of the folder, names of the case and printed output may differ: the results are those of a run alone.
 #[rstest]
 #[case::threads("run m.toml -q -o ../k --threads 1", "run m.toml -q -o ../k --threads 2")]
 #[case::spelling("run m.toml -q -o ../k", "run m.toml -q -o ABSOLUTE/k")]
@@ -324,7 +324,7 @@ fn what_need_not_be_the_same_may_differ(#[case] line: &str, #[case] other: &str)
     assert_same(&results(&folder.path().join("a/plain")), &found);
 }
 
-/// As they were given the same, with links to one folder in two places.
+/// A run is resumed under two names, by links to one folder in two places.
 #[test]
 fn a_run_is_resumed_under_two_names() {
     let folder = two_places();

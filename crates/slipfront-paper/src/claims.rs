@@ -8,22 +8,22 @@ use crate::embedded_cases::CLAIMS;
 use crate::error::PaperError;
 use crate::number::MeasuredNumber;
 
-/// Why the numbers of claims are not in order.
+/// Text on gaps in the numbers of claims.
 pub(super) const NUMBERING: &str = "A claim keeps its number: 2 and 62 are not used, since the paper does not say what they said, and \
                                     those from 82 on were found later and stand where the text makes them.";
-/// What [`Claim::revised`] tells.
+/// Text on the meaning of [`Claim::revised`].
 pub(super) const REVISED: &str = "\u{201c}Revised\u{201d} tells what of a claim's wording or criterion was settled only after a measurement: such a claim is \
                                   not reproduced as stated, and what is measured now is what does hold of it.";
 
-/// A claim of the paper and how it is judged.
+/// A claim of the paper, and the rule by which it is judged.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Claim {
-    /// Its number.
+    /// Number of the claim.
     pub number: u32,
-    /// Where the paper makes it: section, then figure, table or equation.
+    /// Place in the paper: section, then figure, table or equation.
     pub place: String,
-    /// What it says, in other words than the paper's.
+    /// Content of the claim, in other words than the paper's.
     pub claim: String,
     /// Description of the number that was measured.
     pub measured: String,
@@ -39,21 +39,21 @@ pub struct Claim {
     pub within: [f64; 2],
     /// A second number: where it is out of its bounds, the claim holds only with a condition, which its words name.
     pub condition: Option<Reading>,
-    /// The number that a slip of the print leads to once it is put right: where it is within its bounds, a claim that does not
-    /// hold as printed is a misprint, which its words put right.
+    /// The number that follows when a slip of the print is corrected: where it is within its bounds, a claim that does not
+    /// hold as printed is a misprint, which its words correct.
     pub correction: Option<Reading>,
-    /// The expected verdict. Another one points to a fault of the program or to a change of the model.
+    /// Expected verdict; another one points to a fault of the program or to a change of the model.
     pub expected: ClaimVerdict,
     /// Number of the deviation from the paper's print (D1 to D12) that explains the verdict.
     pub deviation: Option<String>,
     /// A remark for the reader; may be empty.
     #[serde(default)]
     pub remark: String,
-    /// What of its wording or criterion was settled only after which measurement; empty if nothing was. A claim of which something
-    /// was counts as [`ClaimVerdict::NotAsStated`], not as one that holds.
+    /// Part of the claim's wording or criterion that was settled only after a measurement, and that measurement; empty if
+    /// there is none. A claim with such a part counts as [`ClaimVerdict::NotAsStated`], not as one that holds.
     #[serde(default)]
     pub revised: String,
-    /// Whether two surfaces and one time step are enough to judge it.
+    /// Whether two surfaces and one time step are enough to judge the claim.
     #[serde(default = "yes")]
     pub reduced: bool,
 }
@@ -82,15 +82,16 @@ fn yes() -> bool {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ClaimVerdict {
-    /// It holds.
+    /// The claim holds.
     Holds,
-    /// It holds under a condition that the paper does not state.
+    /// The claim holds under a condition that the paper does not state.
     HoldsWithCondition,
-    /// It was not reproduced by the criterion that was fixed before measuring; by one that was settled afterwards something of it holds.
+    /// The claim was not reproduced by the criterion that was fixed before measuring; by one that was settled afterwards a
+    /// part of it holds.
     NotAsStated,
-    /// As printed it does not hold; with a slip of print or algebra put right it does.
+    /// The claim does not hold as printed; with a slip of print or algebra corrected it does.
     Misprint,
-    /// It does not hold.
+    /// The claim does not hold.
     DoesNotHold,
 }
 
@@ -115,7 +116,7 @@ impl ClaimVerdict {
         }
     }
 
-    /// How many claims have the verdict, as a part of a sentence about claims.
+    /// Number of claims with the verdict, as a part of a sentence about claims.
     pub fn counted(self, count: usize) -> String {
         let (one, several) = match self {
             Self::Holds => ("holds", "hold"),
@@ -131,14 +132,14 @@ impl ClaimVerdict {
     }
 }
 
-/// A claim, what was measured, and the verdict.
+/// A claim, its measured number, and the verdict.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ClaimResult {
     /// The claim.
     pub claim: Claim,
     /// The measured number.
     pub number: MeasuredNumber,
-    /// Whether it holds.
+    /// Verdict on the claim.
     pub verdict: ClaimVerdict,
 }
 
@@ -158,7 +159,7 @@ pub fn claims() -> Result<Vec<Claim>, PaperError> {
 }
 
 impl Claim {
-    /// The figure that measures it.
+    /// The figure that measures the claim.
     pub fn figure(&self) -> &str {
         self.quantity.split('.').next().unwrap_or(&self.quantity)
     }
@@ -185,10 +186,9 @@ impl Claim {
         deviation.map_or(String::new(), |deviation| format!(" ({deviation})"))
     }
 
-    /// Judges it by the measured numbers.
+    /// Judges the claim by the measured numbers.
     ///
-    /// # Errors
-    /// [`PaperError::Unmeasured`] when its number is not among them.
+    /// # Errors [`PaperError::Unmeasured`] when the claim's number is not among them.
     pub fn judge(self, numbers: &BTreeMap<String, MeasuredNumber>) -> Result<ClaimResult, PaperError> {
         let measured = |quantity: &String| {
             let number = numbers.get(quantity).copied();
@@ -256,7 +256,7 @@ impl ClaimResult {
     }
 }
 
-/// How many claims have each verdict, as a sentence.
+/// Number of claims with each verdict, as a sentence.
 pub(super) fn tally(verdicts: &[ClaimVerdict]) -> String {
     let counted = ClaimVerdict::ALL
         .map(|verdict| verdict.counted(verdicts.iter().filter(|&&other| other == verdict).count()));

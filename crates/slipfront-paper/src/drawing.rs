@@ -17,7 +17,7 @@ pub enum Drawing {
     Curves(Vec<FrictionCurve>),
     /// Fields over the blocks.
     Maps(FieldMaps),
-    /// Quantities against what was varied.
+    /// Quantities against the varied key.
     Responses(Responses),
     /// Quantities of named variants.
     Bars(BarChart),
@@ -43,10 +43,9 @@ impl Drawing {
         }
     }
 
-    /// Its numbers as CSV. They have as many digits as are needed to read back the same bits.
+    /// Numbers of the picture as CSV, with as many digits as read back to the same bits.
     ///
-    /// # Errors
-    /// When they cannot be written as CSV.
+    /// # Errors When the numbers cannot be written as CSV.
     pub fn csv(&self) -> Result<Vec<u8>, PaperError> {
         let mut table = csv::Writer::from_writer(Vec::new());
         match self {

@@ -8,7 +8,7 @@ use slipfront_plot::PictureError;
 use slipfront_run::folder_error::FolderError;
 use slipfront_study::StudyError;
 
-/// Why the figures could not be run or the report not be written.
+/// Reason for which the figures could not be run or the report not be written.
 #[derive(Debug, Error)]
 #[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
 pub enum PaperError {

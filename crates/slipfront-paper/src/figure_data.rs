@@ -1,4 +1,4 @@
-//! What is measured for a figure: numbers, pictures and tables.
+//! Data of a figure: numbers, pictures and tables.
 
 use std::collections::BTreeMap;
 
@@ -10,24 +10,24 @@ use crate::number::MeasuredNumber;
 /// A table of the report.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Table {
-    /// Name of its file.
+    /// Name of the table's file.
     pub name: String,
-    /// Its caption.
+    /// Caption of the table.
     pub caption: String,
-    /// Names of its columns.
+    /// Names of the table's columns.
     pub header: Vec<String>,
-    /// Its rows.
+    /// Rows of the table.
     pub rows: Vec<Vec<String>>,
 }
 
 /// A picture of a figure.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Panel {
-    /// Name of its files.
+    /// Name of the picture's files.
     pub name: String,
-    /// Its caption.
+    /// Caption of the picture.
     pub caption: String,
-    /// Its contents.
+    /// Contents of the picture.
     pub drawing: Drawing,
 }
 

@@ -12,7 +12,7 @@ const CONFIDENCE: f64 = 0.95;
 pub struct MeasuredNumber {
     /// The value, or the mean over random surfaces.
     pub value: f64,
-    /// The 95 % confidence interval of that mean; none for a single value.
+    /// The 95 % confidence interval of the mean; none for a single value.
     pub interval: Option<[f64; 2]>,
 }
 

@@ -1,4 +1,4 @@
-//! All figures run, and the claims about them judged.
+//! Runs all figures, and judges the claims about them.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -17,12 +17,12 @@ use crate::number::MeasuredNumber;
 use crate::runner::FigureRunner;
 use crate::step_rule::StepRule;
 
-/// How figures are run.
+/// Options for running figures.
 #[derive(Clone, Copy, Debug)]
 pub struct PaperOptions<'a> {
-    /// Figures at once. Their runs are those of rayon's pool, which has as many threads.
+    /// Number of figures at once. Their runs are those of rayon's pool, which has as many threads.
     pub threads: usize,
-    /// Set by a signal: all runs end, and the finished runs of studies stay recorded.
+    /// Flag set by a signal: all runs end, and the finished runs of studies stay recorded.
     pub stop: &'a AtomicBool,
     /// Two random surfaces in place of five, one time step, and only the claims that can be judged by that.
     pub reduced: bool,
@@ -30,18 +30,18 @@ pub struct PaperOptions<'a> {
     pub folder: &'a Path,
 }
 
-/// How many figures are done, and one that is being run.
+/// Progress of the figures: their number, and a figure that is being run.
 #[derive(Clone, Copy, Debug)]
 pub struct Stage<'a> {
     /// Figures done so far, under both step rules together.
     pub done: usize,
     /// Figures to do.
     pub total: usize,
-    /// Place of this figure among them, from 1.
+    /// Number of this figure among them, from 1.
     pub number: usize,
     /// The figure.
     pub figure: &'a Figure,
-    /// Its step rule.
+    /// Step rule of the figure.
     pub step: StepRule,
     /// Progress of the study that the figure is running, if it is running one.
     pub study: Option<&'a study::Progress>,
@@ -56,7 +56,7 @@ pub struct Paper {
     pub results: Vec<ClaimResult>,
     /// Results of the same claims in the same order with the paper's time step; empty in the reduced version.
     pub results_by_paper_step: Vec<ClaimResult>,
-    /// Whether this is the reduced version.
+    /// Whether the figures are of the reduced version.
     pub reduced: bool,
 }
 
@@ -73,7 +73,7 @@ impl Paper {
         })
     }
 
-    /// How many claims have each verdict, as a sentence.
+    /// Number of claims with each verdict, as a sentence.
     pub(super) fn tally(&self) -> String {
         let verdicts: Vec<_> = self.results.iter().map(|result| result.verdict).collect();
         tally(&verdicts)
@@ -131,8 +131,8 @@ pub fn run(
     })
 }
 
-/// What `work` makes of each item, in their order, on the present thread and on others beside it, if the system grants them:
-/// `threads` in all. After an error no further item is begun.
+/// Results of `work` for each item, in their order, on the present thread and on others beside it, if the system grants
+/// them: `threads` in all. After an error no further item is begun.
 fn map_at_once<T: Sync, R: Send + Sync>(
     items: &[T],
     threads: usize,

@@ -1,4 +1,4 @@
-//! A run of a figure, and what is measured on it.
+//! A run of a figure, and measurements on it.
 
 use std::sync::Arc;
 
@@ -50,7 +50,7 @@ pub(super) fn curves(runs: &[FigureRun], label: impl Fn(usize) -> String) -> Dra
     Drawing::Curves(curves.map(|(index, run)| run.curve(&label(index))).collect())
 }
 
-/// What is measured on each of several runs.
+/// Measurements on each of several runs.
 pub(super) fn on_each<T>(
     runs: &[FigureRun],
     measure: impl Fn(&FigureRun) -> Result<T, PaperError>,
@@ -62,7 +62,7 @@ pub(super) fn on_each<T>(
 pub(super) struct FigureRun {
     pub(super) case: Arc<Case>,
     pub(super) record: Record,
-    /// Seconds that it took.
+    /// Seconds that the run took.
     pub(super) wall_time_s: f64,
 }
 
@@ -131,7 +131,7 @@ impl FigureRun {
         value(&a.point) + share.clamp(0.0, 1.0) * (value(&b.point) - value(&a.point))
     }
 
-    /// The largest difference of a quantity from that of another run, over the rows of this run in a window of time.
+    /// The largest difference of a quantity between this and another run, over the rows of this run in a window of time.
     pub(super) fn largest_difference(
         &self,
         other: &FigureRun,
@@ -144,7 +144,7 @@ impl FigureRun {
             .fold(0.0, f64::max)
     }
 
-    /// The largest difference of a quantity from that of any of these runs in a window of time.
+    /// The largest difference of a quantity between this and any of several runs in a window of time.
     pub(super) fn largest_difference_of(
         &self,
         runs: &[FigureRun],

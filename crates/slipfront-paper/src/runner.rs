@@ -24,10 +24,10 @@ use slipfront_study::{FinishedRun, Outcome, Plan, Records, StudyError, StudyFile
 pub(super) struct FigureRunner<'a> {
     /// Finished runs of studies.
     pub(super) records: &'a Records,
-    /// Set by a signal: all runs end.
+    /// Flag set by a signal: all runs end.
     pub(super) stop: &'a AtomicBool,
     pub(super) step: StepRule,
-    /// Two surfaces in place of five.
+    /// Whether there are two surfaces in place of five.
     pub(super) reduced: bool,
     /// Called with the progress of a study after every run of it.
     pub(super) watch: &'a mut dyn FnMut(&study::Progress),
@@ -60,8 +60,8 @@ impl FigureRunner<'_> {
         rayon::scope(|_| run_case(case, self.stop))
     }
 
-    /// Runs a case again that `run` is of, with its fields at the times at which these shares of its blocks have slipped, up to
-    /// the last of these. Maps of it have the scale of the whole run.
+    /// Runs a case again that `run` is of, with its fields at the times at which these shares of its blocks have slipped, up
+    /// to the last of these. Maps of the new run have the scale of the whole run.
     pub(super) fn run_seen_at_shares(
         &self,
         case: Case,
@@ -74,7 +74,7 @@ impl FigureRunner<'_> {
         Ok(again)
     }
 
-    /// A study of this crate, of which nothing is run.
+    /// A study of this crate, without any run.
     pub(super) fn plan(&self, name: &str) -> Result<ParameterSweep, PaperError> {
         let mut file = StudyFile::parse(text_of(name)?, name, name, Path::new(""))?;
         file.base.text = with_step(&file.base.text, self.step)?;
@@ -101,8 +101,9 @@ impl FigureRunner<'_> {
         Ok(ParameterSweep { plan, results })
     }
 
-    /// The same, and the runs of the first `replicates` of its points with their curves and fields, in the order of
-    /// replicates and then of points. Where the study goes to the same end, they are runs of it and not made again.
+    /// A study with its results as from [`study`](Self::study), and the runs of the first `replicates` of its points with
+    /// their curves and fields, in the order of replicates and then of points. Where the study goes to the same end, these
+    /// are runs of it and not made again.
     pub(super) fn study_with_runs(
         &mut self,
         name: &str,

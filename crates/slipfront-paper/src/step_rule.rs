@@ -1,11 +1,11 @@
 //! The two ways in which the time step of the paper's cases is chosen.
 
-/// How the time step is chosen where a case does not say.
+/// Rule by which the time step is chosen where a case does not set it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StepRule {
-    /// `dt* = 0.1`.
+    /// The step `dt* = 0.1`.
     Auto,
-    /// The paper's, `dt* = (2/3) V*` (Eq. 13).
+    /// The paper's step, `dt* = (2/3) V*` (Eq. 13).
     Paper,
 }
 

@@ -1,11 +1,11 @@
-//! A linear or logarithmic axis: values to pixels, and which values it can show.
+//! A linear or logarithmic axis: pixels of values, and the values that the axis can show.
 
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct DrawnAxis {
-    /// The ends, as the axis measures them: values, or their decimal logarithms.
+    /// Ends of the axis as it measures them: values, or their decimal logarithms.
     pub(crate) lo: f64,
     pub(crate) hi: f64,
-    /// The pixels of the ends.
+    /// Pixels of the ends.
     pub(crate) start: f64,
     pub(crate) end: f64,
     pub(crate) is_log: bool,
@@ -22,7 +22,7 @@ impl DrawnAxis {
         Self::between(lo - pad, hi + pad, log)
     }
 
-    /// An axis from `lo` to `hi`, given as it measures them, yet to be placed.
+    /// An axis from `lo` to `hi`, given as the axis measures them, yet to be placed.
     pub(crate) fn between(lo: f64, hi: f64, is_log: bool) -> Self {
         Self {
             lo,
@@ -38,12 +38,12 @@ impl DrawnAxis {
         Self::between(lo, hi, false)
     }
 
-    /// This axis from one pixel to another.
+    /// The axis placed from one pixel to another.
     pub(crate) fn placed(self, start: f64, end: f64) -> Self {
         Self { start, end, ..self }
     }
 
-    /// A value as the axis measures it: itself, or its logarithm.
+    /// A value as the axis measures it: the value itself, or its logarithm.
     pub(crate) fn measure(&self, value: f64) -> f64 {
         measured(value, self.is_log)
     }
@@ -58,7 +58,7 @@ impl DrawnAxis {
         self.at_measured(self.measure(value).clamp(self.lo, self.hi))
     }
 
-    /// The pixel of what the axis measures.
+    /// The pixel of a number as the axis measures it.
     pub(crate) fn at_measured(&self, measured: f64) -> f64 {
         self.start + (measured - self.lo) / (self.hi - self.lo) * (self.end - self.start)
     }
@@ -73,10 +73,10 @@ fn measured(value: f64, log: bool) -> f64 {
     if log { libm::log10(value) } else { value }
 }
 
-/// Larger values are taken as blank: their differences might not be finite.
+/// Limit above which values are taken as blank: their differences might not be finite.
 const MAX_VALUE: f64 = 1e100;
 
-/// Smaller differences are taken as none: their parts might be zero.
+/// Limit below which differences are taken as zero: their parts might be zero.
 const MIN_DIFFERENCE: f64 = 1e-290;
 
 /// True when a value can be placed on an axis.

@@ -16,24 +16,24 @@ use crate::text::Text;
 use crate::ticks::{Direction, MAX_STEPS};
 
 const HEIGHT: f64 = 560.0;
-/// Bars narrower than this make the picture wider.
+/// Width of a bar below which the picture becomes wider.
 const MIN_BAR_WIDTH: f64 = 14.0;
-/// A bar on its own takes this share of its place, bars of a group together this one.
+/// Share of its place that a bar on its own takes, and share that the bars of a group take together.
 const SHARE_ALONE: f64 = 0.6;
 const SHARE_GROUP: f64 = 0.8;
-/// No bar is wider than this.
+/// Largest width of a bar.
 const MAX_BAR_WIDTH: f64 = 130.0;
 
 /// Bars of named variants.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct BarChart {
-    /// What the bars show.
+    /// Quantity that the bars show.
     pub y_title: String,
-    /// What is varied from name to name below the bars; may be empty.
+    /// Quantity that varies from name to name below the bars; may be empty.
     pub x_title: String,
-    /// What is varied within a group, for the legend; may be empty.
+    /// Quantity that varies within a group, for the legend; may be empty.
     pub legend_title: String,
-    /// What the intervals are, below the names; may be empty.
+    /// Meaning of the intervals, below the names; may be empty.
     pub note: String,
     /// The groups, from the left.
     pub groups: Vec<BarGroup>,
@@ -44,22 +44,22 @@ pub struct BarChart {
 pub struct BarGroup {
     /// The group's name; not shown if there is one group only.
     pub label: String,
-    /// Its bars, from the left.
+    /// Bars of the group, from the left.
     pub bars: Vec<Bar>,
 }
 
 /// One bar.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Bar {
-    /// Its name, different from the others' of its group; bars of the same name are coloured alike.
+    /// Name of the bar, different from the others' of its group; bars of one name have one colour.
     pub label: String,
-    /// How high it is; NaN leaves its place free.
+    /// Height of the bar; NaN leaves its place free.
     pub mean: f64,
     /// The lower end of the confidence interval; NaN where there is none.
     pub low: f64,
-    /// The upper end.
+    /// The upper end of the confidence interval; NaN where there is none.
     pub high: f64,
-    /// Whether it is marked by a cross.
+    /// Whether the bar is marked by a cross.
     #[serde(default)]
     pub crossed: bool,
 }
@@ -67,8 +67,8 @@ pub struct Bar {
 /// Draws bars from zero with error bars, as wide as a journal's column (85 mm)
 /// unless there are too many.
 ///
-/// One group is drawn as bars of one colour, each with its name below. Of several groups, each has its name
-/// below, and a legend names the bars.
+/// One group is drawn as bars of one colour, each with its name below. With several groups, each group has its name below,
+/// and a legend names the bars.
 ///
 /// # Errors
 ///
@@ -120,7 +120,7 @@ fn draw_bar(
     middle: f64,
     width: f64,
 ) {
-    /// From the foot of a bar to the cross that marks it.
+    /// Distance from the foot of a bar to the cross that marks it.
     const LIFT: f64 = 14.0;
     if !drawable(bar.mean) {
         if bar.crossed {
@@ -141,7 +141,7 @@ fn draw_bar(
     }
 }
 
-/// y from zero, with all bars and error bars.
+/// The y axis from zero, with all bars and error bars.
 fn value_axis(bars: &[PlacedBar]) -> DrawnAxis {
     let extent = |PlacedBar { bar, .. }: &PlacedBar| {
         let (low, high) = interval(bar.mean, bar.low, bar.high).unwrap_or((bar.mean, bar.mean));
@@ -158,7 +158,7 @@ fn value_axis(bars: &[PlacedBar]) -> DrawnAxis {
     }
 }
 
-/// Which bar stands where.
+/// Places of the bars.
 struct Places<'a> {
     names: Vec<&'a str>,
     legend: Vec<&'a str>,
@@ -167,9 +167,9 @@ struct Places<'a> {
 
 struct PlacedBar<'a> {
     bar: &'a Bar,
-    /// The index of the name below it.
+    /// Index of the name below the bar.
     name: usize,
-    /// How many bars right of the middle of that name's place.
+    /// Number of bars right of the middle of that name's place.
     step: f64,
     colour: Rgb,
 }

@@ -1,4 +1,4 @@
-//! What a picture is drawn on: a list of lines, shapes, texts and images, in the order in which they cover each other.
+//! The canvas of a picture: a list of lines, shapes, texts and images, in the order in which they cover each other.
 
 use crate::color_image::Image;
 use crate::geometry::{Align, Area, CanvasPoint};
@@ -8,7 +8,7 @@ use crate::text::{Text, width};
 pub(crate) struct Canvas {
     pub(crate) width: f64,
     pub(crate) height: f64,
-    /// Images lie below everything else.
+    /// Images, which lie below everything else.
     pub(crate) images: Vec<Image>,
     pub(crate) elements: Vec<Element>,
 }
@@ -17,14 +17,14 @@ pub(crate) struct Canvas {
 pub(crate) struct Element {
     pub(crate) primitive: Primitive,
     pub(crate) colour: Rgb,
-    /// From 0 to 1.
+    /// Opacity from 0 to 1.
     pub(crate) opacity: f64,
 }
 
-/// What can be drawn; areas are filled. An SVG and a PNG are made of nothing else.
+/// Elements that can be drawn; areas are filled. SVG and PNG are made of these alone.
 pub(crate) enum Primitive {
-    /// A line through points, and back to the first one if it is closed. The lengths of dashes and of the gaps after them; none for a
-    /// line without gaps.
+    /// A line through points, and back to the first one if it is closed. `dashes` has the lengths of dashes and of the gaps
+    /// after them; it is empty for a line without gaps.
     Line {
         points: Vec<CanvasPoint>,
         width: f64,

@@ -5,21 +5,21 @@ use crate::geometry::{Align, Area};
 use crate::style::{BLACK, MARGIN, SIZE_LABEL, SIZE_TICK};
 use crate::text::{CAP_HEIGHT, Text};
 
-/// Names are broken into at most so many lines, and stand upright if that is not enough.
+/// Largest number of lines of a name; a name that needs more stands upright.
 const MAX_LINES: usize = 3;
 const LINE: f64 = 1.25 * SIZE_TICK as f64;
-/// Upright names are broken at the first of these lengths if they can, and cut at the last.
+/// Lengths of upright names: they are broken at the first of these if they can, and cut at the last.
 const LENGTHS: [f64; 2] = [320.0, 480.0];
-/// Between the panel and the names.
+/// Distance between the panel and the names.
 const GAP: f64 = 14.0;
-/// Between two names.
+/// Distance between two names.
 const APART: f64 = 16.0;
-/// An upright name's place is no narrower than this.
+/// Least width of the place of an upright name.
 pub(crate) const MIN_SLOT: f64 = 1.35 * SIZE_TICK as f64;
 
 /// Names and the title below them.
 pub(crate) struct CategoryAxis {
-    /// How much room they take below the panel.
+    /// Height of the names and the title below the panel.
     pub(crate) height: f64,
     area: Area,
     /// The lines of every name.

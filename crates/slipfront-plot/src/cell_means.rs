@@ -1,11 +1,10 @@
 //! The means over groups of blocks, by which large lattices are drawn.
 
-/// More blocks than this along a side are averaged in groups.
+/// Largest number of cells along a side; more blocks are averaged in groups.
 const MAX_CELLS: usize = 256;
 
-/// The mean of every cell of a lattice over its blocks that are not NaN, taken while the values come in: what it
-/// takes of memory does not depend on the lattice. A cell is a block, or a group of them where a side has more than
-/// 256.
+/// The mean of every cell of a lattice over its blocks that are not NaN, taken while the values come in, so that the memory
+/// does not depend on the lattice. A cell is a block, or a group of blocks where a side has more than 256.
 ///
 /// ```
 /// let mut means = slipfront_plot::CellMeans::new(512, 1);
@@ -22,12 +21,12 @@ pub struct CellMeans {
 }
 
 impl CellMeans {
-    /// Most cells.
+    /// Largest number of cells.
     pub const MAX_CELLS: usize = MAX_CELLS * MAX_CELLS;
     /// Bytes per cell while values come in.
     pub const BYTES_PER_CELL: usize = size_of::<f64>() + size_of::<u32>();
 
-    /// Nothing yet of a lattice with this many blocks along x and along y.
+    /// Means without values yet, for a lattice with `nx` blocks along x and `ny` along y.
     pub fn new(nx: usize, ny: usize) -> Self {
         let [columns, rows] = Self::cells(nx, ny);
         Self {
@@ -39,7 +38,7 @@ impl CellMeans {
         }
     }
 
-    /// The means of a lattice whose values are all there.
+    /// The means of a lattice whose values are all known.
     pub(crate) fn of(nx: usize, ny: usize, values: impl Iterator<Item = f32>) -> Vec<f32> {
         let mut means = Self::new(nx, ny);
         means.add(values);
@@ -112,7 +111,7 @@ mod tests {
         assert_eq!(means.len(), 256 * 256);
     }
 
-    /// Of sides that 256 does not divide, every block counts once, in the group in which it lies.
+    /// Every block counts once, in the group in which it lies, along sides that 256 does not divide.
     #[test]
     fn groups_differ_by_a_block_at_most_and_miss_none() {
         for blocks in [1, 2, 255, 256, 257, 300, 511, 1000] {

@@ -6,15 +6,15 @@ use crate::geometry::{Align, Area, CanvasPoint};
 use crate::style::{BLACK, SIZE_LABEL};
 use crate::text::Text;
 
-/// Between the numbers and the name.
+/// Distance between the numbers and the name.
 const GAP: f64 = 14.0;
-/// A name above the bar stands so far above it, or above what is written over the map.
+/// Distance of a name above the bar from the bar, or from the text over the map.
 pub(crate) const ABOVE: f64 = 18.0;
 
-/// A colour bar, dark at its foot. Its name reads upwards beside it, or stands above it where it is too short for that.
+/// A colour bar, dark at its foot. The name reads upwards beside the bar, or stands above it where the bar is too short.
 pub(crate) struct ColourBar {
     name: Text,
-    /// The values at its ends.
+    /// Values at the ends of the bar.
     pub(crate) range: [f64; 2],
     height: f64,
 }
@@ -33,7 +33,7 @@ impl ColourBar {
         self.name.width() > self.height
     }
 
-    /// The room that a name above the bar takes.
+    /// Room for a name above the bar.
     pub(crate) fn upper_room(&self) -> f64 {
         if self.is_named_above() {
             ABOVE + f64::from(SIZE_LABEL)
@@ -42,7 +42,7 @@ impl ColourBar {
         }
     }
 
-    /// How wide it is with its numbers and a name beside them.
+    /// Width of the bar with its numbers and a name beside them.
     pub(crate) fn room(&self) -> f64 {
         let numbered = bar_room(self.range, self.height);
         if self.is_named_above() || self.name.width() == 0.0 {
@@ -52,7 +52,7 @@ impl ColourBar {
         }
     }
 
-    /// Draws it with its upper left corner here, and its name, if that is above it, on the line `above`.
+    /// Draws the bar with its upper left corner at `(x, top)`, and its name, if that is above it, on the line `above`.
     pub(crate) fn draw(&self, canvas: &mut Canvas, (x, top): CanvasPoint, above: f64) {
         let area = Area::new(x, top, BAR_WIDTH, self.height);
         colour_bar(canvas, area, self.range);

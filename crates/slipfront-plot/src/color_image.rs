@@ -7,7 +7,7 @@ use crate::style::{BLANK, Rgb, ramp};
 pub(crate) struct Image {
     pub(crate) area: Area,
     pub(crate) columns: usize,
-    /// Row by row, the uppermost first; see [`level`].
+    /// Levels row by row, the uppermost first; see [`level`].
     pub(crate) levels: Vec<u8>,
 }
 

@@ -27,8 +27,9 @@ pub(crate) fn smoothed(values: &[f32], columns: usize, reach: usize) -> Vec<f32>
     values.iter().enumerate().map(mean).collect()
 }
 
-/// The lines on which values, interpolated linearly between the middles of cells, are `level`: each a chain of points in columns and
-/// rows from the middle of the first cell, closed if it ends where it starts. None pass a cell without a value.
+/// The lines on which values, interpolated linearly between the middles of cells, are `level`: each a chain of points in
+/// columns and rows from the middle of the first cell, closed if it ends where it starts. No line passes a cell without a
+/// value.
 pub(crate) fn contours(values: &[f32], columns: usize, level: f64) -> Vec<Vec<CanvasPoint>> {
     let rows = values.len() / columns;
     let value = |column: usize, row: usize| f64::from(values[row * columns + column]);

@@ -1,4 +1,4 @@
-//! A canvas becomes a picture: SVG and PNG.
+//! Conversion of a canvas to a picture: SVG and PNG.
 
 use crate::canvas::Canvas;
 use crate::picture::{Picture, PictureError};
@@ -6,11 +6,11 @@ use crate::png_file;
 use crate::raster;
 use crate::svg;
 
-/// A PNG of more pixels is refused.
+/// Largest number of pixels of a PNG.
 const MAX_PIXELS: f64 = 1e8;
 
 impl Canvas {
-    /// Makes both files.
+    /// Makes the SVG and the PNG of the canvas.
     pub(crate) fn finish(&self) -> Result<Picture, PictureError> {
         let pixels = Some(self).filter(|canvas| canvas.width * canvas.height <= MAX_PIXELS);
         let pixels = pixels.and_then(raster::rgb);

@@ -12,17 +12,17 @@ use crate::style::{MARGIN, SIZE_LABEL, SIZE_TICK, TEXT_WIDTH};
 use crate::text::Text;
 
 const GAP: f64 = 26.0;
-/// A map is no wider than this: 44 mm.
+/// Largest width of a map: 44 mm.
 const MAX_WIDTH: f64 = 520.0;
 
 /// Maps on one colour scale.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct FieldMaps {
-    /// What the values are, beside the colour bar or over it; the letter after an underscore is a subscript.
+    /// Quantity of the values, beside the colour bar or over it; the letter after an underscore is a subscript.
     pub value_title: String,
-    /// The values at the ends of the colour bar; what lies beyond is drawn as they are.
+    /// Values at the ends of the colour bar; values beyond are drawn as the ends.
     pub range: [f64; 2],
-    /// Maps in a row.
+    /// Number of maps in a row.
     pub columns: usize,
     /// The maps, row by row from the upper left.
     pub maps: Vec<FieldMap>,
@@ -31,9 +31,9 @@ pub struct FieldMaps {
 /// One map.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct FieldMap {
-    /// Its name, in the first line over it.
+    /// Name of the map, in the first line over it.
     pub label: String,
-    /// More about it, in the second line; may be empty.
+    /// Further information about the map, in the second line; may be empty.
     pub note: String,
     /// Blocks along x.
     pub nx: usize,

@@ -1,4 +1,4 @@
-//! The font of all pictures, a part of `DejaVu` Sans: widths and outlines of its letters. `font/README.md` says how its
+//! The font of all pictures, a part of `DejaVu` Sans: widths and outlines of its letters. `font/README.md` tells how the
 //! files were made.
 
 use std::collections::HashMap;
@@ -6,11 +6,11 @@ use std::sync::LazyLock;
 
 use tiny_skia::PathBuilder;
 
-/// What an SVG embeds.
+/// Font that an SVG embeds.
 pub(crate) const WOFF2: &[u8] = include_bytes!("font/DejaVuSans-subset.woff2");
-/// What text is measured and drawn with: in each line a character's code, its width and its outline.
+/// Data by which text is measured and drawn: in each line a character's code, its width and its outline.
 const OUTLINES: &str = include_str!("font/outlines.txt");
-/// The font's unit of length: the font size divided by this.
+/// Units of length of the font in the font size.
 const UNITS_PER_EM: f32 = 2048.0;
 
 struct Glyph {
@@ -18,7 +18,7 @@ struct Glyph {
     outline: &'static str,
 }
 
-/// The glyphs by the code of their character, and under `missing` what stands for any other.
+/// The glyphs by the code of their character; `missing` is the glyph for any other.
 static GLYPHS: LazyLock<HashMap<&str, Glyph>> = LazyLock::new(|| {
     let glyph = |line: &'static str| {
         let mut parts = line.splitn(3, ' ');
@@ -33,8 +33,8 @@ fn glyph(character: char) -> Option<&'static Glyph> {
     GLYPHS.get(format!("{:x}", u32::from(character)).as_str())
 }
 
-/// How far `character` moves the pen, over the font size. One that the font lacks, which a viewer of the SVG takes from another
-/// font, is given an em: wide enough for nearly everything, so that nothing collides.
+/// Distance by which `character` moves the pen, over the font size. A character that the font lacks, which a viewer of the
+/// SVG takes from another font, gets an em: wide enough for nearly everything, so that nothing collides.
 pub(crate) fn advance(character: char) -> f64 {
     f64::from(glyph(character).map_or(1.0, |glyph| glyph.width / UNITS_PER_EM))
 }

@@ -10,9 +10,9 @@ use crate::ticks::{Direction, Tick};
 
 /// The room below a panel for numbers and a title.
 pub(crate) const LOWER_ROOM: f64 = TICK_LENGTH + 7.0 + SIZE_TICK as f64 + SIZE_LABEL as f64 + MARGIN;
-/// How wide a colour bar is.
+/// Width of a colour bar.
 pub(crate) const BAR_WIDTH: f64 = 30.0;
-/// It is numbered in at most so many steps.
+/// Largest number of steps of the numbers of a colour bar.
 const BAR_STEPS: usize = 5;
 
 fn widest(ticks: &[Tick]) -> f64 {
@@ -24,7 +24,7 @@ pub(crate) fn left_room(ticks: &[Tick]) -> f64 {
     (MARGIN + f64::from(SIZE_LABEL) + 14.0 + widest(ticks) + TICK_LENGTH + 7.0).round()
 }
 
-/// Where a panel from `left` to `right` must end in a picture of this width, so that no number below it is cut off.
+/// Right end of a panel from `left` to `right` in a picture of this width, such that no number below it is cut off.
 pub(crate) fn right_end(ticks: &[Tick], left: f64, right: f64, width: f64) -> f64 {
     const EDGE: f64 = 4.0;
     let end = |(x, text): &Tick| {
@@ -36,7 +36,7 @@ pub(crate) fn right_end(ticks: &[Tick], left: f64, right: f64, width: f64) -> f6
     ticks.iter().map(end).fold(right, f64::min).floor()
 }
 
-/// Draws the left side of `area`, its title along `edge`, where the room left of it begins.
+/// Draws the left side of `area`, with the title along `edge`, where the room left of the panel begins.
 pub(crate) fn left_side(canvas: &mut Canvas, area: Area, edge: f64, ticks: &[Tick], title: &Text) {
     for (y, text) in ticks {
         canvas.tick_left((area.x, *y), text);
@@ -71,14 +71,14 @@ pub(crate) fn short_ticks(canvas: &mut Canvas, area: Area, direction: Direction,
     }
 }
 
-/// The numbers beside a colour bar over this range: round ones.
+/// Round numbers beside a colour bar over this range.
 fn bar_ticks([lo, hi]: [f64; 2], bottom: f64, top: f64) -> Vec<Tick> {
     DrawnAxis::linear(lo, hi)
         .placed(bottom, top)
         .ticks(Direction::Y, BAR_STEPS)
 }
 
-/// How wide a colour bar of this height is with the numbers beside it.
+/// Width of a colour bar of this height with the numbers beside it.
 pub(crate) fn bar_room(range: [f64; 2], height: f64) -> f64 {
     BAR_WIDTH + TICK_LENGTH + 7.0 + widest(&bar_ticks(range, height, 0.0))
 }

@@ -15,23 +15,23 @@ use crate::style::{
 use crate::text::{Text, number};
 
 const DOT: f64 = 7.0;
-/// Above the panels of one curve, for what is written there.
+/// Height above the panels of one curve for the names written there.
 const ABOVE: f64 = 42.0;
-/// Between two texts there.
+/// Distance between two names above the panels.
 const APART: f64 = 24.0;
-/// The kinetic window's shade.
+/// Colour of the kinetic window.
 const SHADE: Rgb = [0x9a, 0xa5, 0xb1];
 
-/// Most bytes while [`friction`] draws the curve of one run: four of each of 0.9 million pixels, and primitives.
+/// Largest number of bytes while [`friction`] draws the curve of one run: four for each of 0.9 million pixels, and
+/// primitives.
 pub const FRICTION_BYTES: usize = 6 << 20;
 
 /// Draws friction and, below it, N* against time or path, as wide as a journal's column (85 mm).
 ///
-/// One curve is drawn with all it knows: first slip, peak, kinetic window, lettered instants. What a line or a window is called stands
-/// above the panels, where no curve is. Several are
-/// drawn over each other with their peaks, the lettered instants if only one has any, and a legend above. Curves
-/// of more than 4000 points are thinned to the first, last, lowest and highest point of every pixel column, which
-/// shows the same picture.
+/// One curve is drawn with all its marks: first slip, peak, kinetic window, lettered instants. The names of lines and
+/// windows stand above the panels, where no curve is. Several curves are drawn over each other with their peaks, the
+/// lettered instants if only one has any, and a legend above. Curves of more than 4000 points are thinned to the first,
+/// last, lowest and highest point of every pixel column, which shows the same picture.
 ///
 /// # Errors
 ///
@@ -79,7 +79,7 @@ struct FrictionDrawing<'a> {
 }
 
 impl FrictionDrawing<'_> {
-    /// One curve with its marks.
+    /// Draws one curve with its marks.
     fn draw_one(&mut self, curve: &FrictionCurve) {
         let Panels {
             x: across,
@@ -140,7 +140,7 @@ impl FrictionDrawing<'_> {
         }
     }
 
-    /// Several curves, with their peaks.
+    /// Draws several curves, with their peaks.
     fn draw_many(&mut self, curves: &[FrictionCurve]) {
         for (index, curve) in curves.iter().enumerate() {
             self.draw_curve(curve, curve_style(index));
@@ -177,7 +177,7 @@ impl FrictionDrawing<'_> {
         }
     }
 
-    /// Draws friction and N*; labels keep off the former.
+    /// Draws friction and N*; labels keep off the curve of friction.
     fn draw_curve(&mut self, curve: &FrictionCurve, style: CurveStyle) {
         let Panels {
             x: across,
@@ -195,7 +195,7 @@ impl FrictionDrawing<'_> {
         }
     }
 
-    /// Draws the dots of these marks, each with its label, that of the peak first: it is the longest.
+    /// Draws the dots of these marks, each with its label; the label of the peak comes first because it is the longest.
     fn draw_marks(&mut self, marks: &[Mark]) {
         let dots: Vec<CanvasPoint> = marks.iter().map(|mark| mark.at).collect();
         for (x, y) in &dots {
@@ -223,9 +223,9 @@ impl FrictionDrawing<'_> {
 /// A point of a curve that is marked by a dot.
 struct Mark {
     at: CanvasPoint,
-    /// The instants there.
+    /// Letters of the instants at the point.
     letters: Vec<String>,
-    /// Friction there, if it is the peak.
+    /// Friction at the point, if it is the peak.
     peak: Option<f64>,
 }
 
@@ -241,8 +241,8 @@ impl Mark {
     }
 }
 
-/// The peak of a curve, if one is given, and its instants, as far as they lie in the panel. Those whose dots would cover each other are
-/// one mark: their letters could not be told apart.
+/// The peak of a curve, if one is given, and its instants, as far as they lie in the panel. Instants whose dots would cover
+/// each other are one mark, because their letters could not be distinguished.
 fn marks(panels: &Panels, curve: &FrictionCurve, peak: Option<CanvasPoint>) -> Vec<Mark> {
     let mark = |at, letters, peak| Mark { at, letters, peak };
     let peak = peak.and_then(|(x, value)| Some(mark(panels.point((x, value))?, Vec::new(), Some(value))));
@@ -261,7 +261,7 @@ fn marks(panels: &Panels, curve: &FrictionCurve, peak: Option<CanvasPoint>) -> V
     marks
 }
 
-/// The mean and, if known, its uncertainty, with as many digits as that deserves.
+/// The mean and, if known, its uncertainty, with the significant digits.
 fn with_uncertainty(window: &KineticLine) -> String {
     let Some(uncertainty) = window.uncertainty.filter(|&u| u > 0.0 && drawable(u)) else {
         return number(window.mean, 3);

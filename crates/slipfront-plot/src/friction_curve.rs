@@ -1,9 +1,9 @@
-//! What a friction picture knows of a run.
+//! Content of a friction picture: the curves of runs and their marks.
 
 use serde::{Deserialize, Serialize};
 
-/// What the axes of a friction picture count, and what its labels call the marks: texts in which the character after an underscore
-/// is a subscript.
+/// Titles of the axes of a friction picture, and names of the marks: texts in which the character after an underscore is a
+/// subscript.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FrictionAxes {
     /// Title of the horizontal axis.
@@ -14,12 +14,12 @@ pub struct FrictionAxes {
     pub peak: String,
     /// Symbol of kinetic friction.
     pub kinetic: String,
-    /// Unit of both, with the space before it; empty for none.
+    /// Unit of both axes of friction and peak, with the space before it; empty for none.
     pub unit: String,
 }
 
 impl Default for FrictionAxes {
-    /// mu* against t*.
+    /// Titles for mu* against t*.
     fn default() -> Self {
         Self {
             x: "dimensionless time t*".to_owned(),
@@ -34,44 +34,44 @@ impl Default for FrictionAxes {
 /// One run's curve, in the units of the axes.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct FrictionCurve {
-    /// What the legend calls it; shown only beside other curves.
+    /// Name of the curve in the legend; shown only beside other curves.
     pub label: String,
-    /// Time, or path of the drive.
+    /// Abscissae: time, or path of the drive.
     pub x: Vec<f64>,
-    /// Friction there; NaN leaves a gap.
+    /// Friction at each abscissa; NaN leaves a gap.
     pub friction: Vec<f64>,
-    /// N* there, in percent.
+    /// N* at each abscissa, in percent.
     pub sliding_percent: Vec<f64>,
-    /// Where the first block in contact slips.
+    /// Abscissa at which the first block in contact slips.
     pub first_slip: Option<f64>,
-    /// Where the peak is, and friction there.
+    /// Abscissa and friction of the peak.
     pub peak: Option<(f64, f64)>,
     /// The window of kinetic friction.
     pub kinetic: Option<KineticLine>,
-    /// Instants to letter.
+    /// Instants with letters.
     pub instants: Vec<Instant>,
 }
 
 /// Kinetic friction: its mean over a window.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct KineticLine {
-    /// Where the window begins.
+    /// Beginning of the window.
     pub from: f64,
-    /// Where the window ends.
+    /// End of the window.
     pub to: f64,
-    /// The mean.
+    /// Mean over the window.
     pub mean: f64,
-    /// Its standard uncertainty, if known.
+    /// Standard uncertainty of the mean, if known.
     pub uncertainty: Option<f64>,
 }
 
 /// A lettered instant of a curve.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Instant {
-    /// Its letter.
+    /// Letter of the instant.
     pub letter: char,
-    /// Where it is.
+    /// Abscissa of the instant.
     pub x: f64,
-    /// Friction there.
+    /// Friction at the instant.
     pub friction: f64,
 }

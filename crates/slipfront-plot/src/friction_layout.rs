@@ -50,7 +50,7 @@ impl Panels {
         Self { x, mu, sliding }
     }
 
-    /// These panels, further down.
+    /// The panels moved down.
     pub(crate) fn lowered(self, by: f64) -> Self {
         let lowered = |axis: DrawnAxis| axis.placed(axis.start + by, axis.end + by);
         Self {
@@ -71,12 +71,12 @@ impl Panels {
         is_inside.then(|| (self.x.at(x), self.mu.at(mu)))
     }
 
-    /// Where the picture ends.
+    /// Lower end of the picture.
     pub(crate) fn bottom(&self) -> f64 {
         self.sliding.start + LOWER_ROOM
     }
 
-    /// Ticks, numbers and titles.
+    /// Draws ticks, numbers and titles.
     pub(crate) fn draw_axes(&self, canvas: &mut Canvas, axes: &FrictionAxes) {
         let title = Text::math(&axes.friction, SIZE_LABEL);
         left_side(canvas, self.area(&self.mu), 0.0, &mu_ticks(&self.mu), &title);
@@ -97,7 +97,7 @@ impl Panels {
         lower_title(canvas, self.area(&self.sliding), &title);
     }
 
-    /// The panels' edges, over everything that ends on them.
+    /// Draws the panels' edges, over everything that ends on them.
     pub(crate) fn draw_frames(&self, canvas: &mut Canvas) {
         for axis in [&self.mu, &self.sliding] {
             canvas.frame(self.area(axis));

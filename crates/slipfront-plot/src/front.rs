@@ -1,4 +1,5 @@
-//! How slip has spread: when every block has first slipped, and what slides where and when along the drive.
+//! The spread of slip: the time at which every block has first slipped, and the share of sliding blocks along the drive
+//! against time.
 
 use crate::axis::{DrawnAxis, range};
 use crate::canvas::Canvas;
@@ -16,26 +17,26 @@ use crate::style::{MARGIN, RADIUS_MARKER, TEXT_WIDTH, WHITE, WIDTH_FRAME};
 use crate::text::Text;
 use crate::ticks::{Direction, Tick, round_values};
 
-/// Between a panel and its colour bar.
+/// Distance between a panel and its colour bar.
 const GAP: f64 = 30.0;
-/// A map beside the other panel is no wider than this, 44 mm, and no higher, unless the slider is long along y.
+/// Largest width of a map beside the other panel, 44 mm, and largest height, unless the slider is long along y.
 const MAX_SIDE: f64 = 520.0;
 const MAX_SIDE_LONG: f64 = 1000.0;
-/// A slider longer than this along x has its map above the other panel, as wide as the page.
+/// Ratio of length to height above which a slider has its map above the other panel, as wide as the page.
 const MAX_RATIO: f64 = 3.0;
-/// That map is no thinner than this share of its length.
+/// Least height of a map above the other panel, over its length.
 const MIN_RATIO_ABOVE: f64 = 1.0 / 12.0;
-/// The other panel below a map is so high.
+/// Height of the other panel below a map.
 const HEIGHT_BELOW: f64 = 340.0;
-/// Contours in at most so many steps.
+/// Largest number of steps between contours.
 const CONTOUR_STEPS: usize = 8;
-/// Contours are those of means over as many cells around each as make this share of the map.
+/// Share of the map over whose cells means are taken around each cell for the contours.
 const SMOOTHED_SHARE: usize = 64;
-/// Contours are so many times farther apart than cells scatter around these means: nearer ones would show that alone.
+/// Distance of contours over the scatter of cells around these means: nearer contours would show the scatter alone.
 const SCATTERS_APART: f64 = 3.0;
-/// Maps of fewer cells along a side have no contours, which would be mere ticks.
+/// Least number of cells along a side for contours, which would otherwise be mere ticks.
 const MIN_CELLS_OF_CONTOURS: usize = 8;
-/// A number at a panel's upper end stands half beyond it.
+/// Room for the half of a number at a panel's upper end that stands beyond it.
 const TOP: f64 = MARGIN + 8.0;
 
 /// The times at which the blocks of a lattice have first slipped.
@@ -51,27 +52,27 @@ pub struct FrontMap {
     pub textured: Vec<bool>,
     /// Mean t* of the first slip of every [cell](CellMeans), row by row from y = 0; NaN is left blank.
     pub first_slips: Vec<f32>,
-    /// Where slip has nucleated, in metres, the earliest first.
+    /// Places at which slip has nucleated, in metres, the earliest first.
     pub nucleations: Vec<[f64; 2]>,
 }
 
-/// What slides, against place and time.
+/// Share of the sliding blocks against place and time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SpaceTime {
-    /// What the places are; their unit is added.
+    /// Quantity of the places; its unit is added.
     pub place: String,
     /// The first and the last place, in metres.
     pub places: [f64; 2],
     /// The first and the last t*.
     pub times: [f64; 2],
-    /// Places of a row.
+    /// Number of places in a row.
     pub columns: usize,
     /// The share of the blocks that slide, row by row from the earliest; NaN is left blank.
     pub shares: Vec<f32>,
 }
 
-/// Most bytes while [`front`] draws a lattice, in pixels and primitives: at most 1.8 million pixels with the panels beside each other,
-/// and 2.6 million with the map above.
+/// Largest number of bytes while [`front`] draws a lattice, in pixels and primitives: at most 1.8 million pixels with the
+/// panels beside each other, and 2.6 million with the map above.
 pub fn front_bytes(nx: usize, ny: usize) -> usize {
     if is_above(ny as f64 / nx as f64) {
         12 << 20
@@ -85,8 +86,8 @@ fn is_above(ratio: f64) -> bool {
     ratio * MAX_RATIO < 1.0
 }
 
-/// Draws both, as wide as a journal's text (175 mm) or less: the map beside the other panel, or of a long slider above it. Nucleations
-/// are circled, the first filled; the texture is outlined.
+/// Draws the map and the space-time panel, as wide as a journal's text (175 mm) or less: the map beside the other panel, or
+/// above it for a long slider. Nucleations are circled, the first filled; the texture is outlined.
 ///
 /// # Errors
 ///
@@ -121,7 +122,7 @@ fn check(map: &FrontMap, space_time: &SpaceTime) -> Result<(), PictureError> {
 /// A panel with its axes and its colour bar.
 struct FrontPanel {
     area: Area,
-    /// Where the room left of it begins.
+    /// Left end of the room of the panel.
     edge: f64,
     axes: [DrawnAxis; 2],
     bar: ColourBar,
@@ -146,13 +147,13 @@ impl FrontPanel {
             .draw(canvas, (area.right() + GAP, area.y), area.y - ABOVE);
     }
 
-    /// Where its colour bar ends.
+    /// Right end of the colour bar.
     fn right(&self) -> f64 {
         self.area.right() + GAP + self.bar.room()
     }
 }
 
-/// Numbers along a side, fewer along a short one.
+/// Ticks along a side, fewer along a short one.
 fn ticks(axis: DrawnAxis, area: Area, direction: Direction) -> Vec<Tick> {
     let (axis, side) = match direction {
         Direction::X => (axis.placed(area.x, area.right()), area.width),
@@ -161,7 +162,7 @@ fn ticks(axis: DrawnAxis, area: Area, direction: Direction) -> Vec<Tick> {
     axis.ticks(direction, if side < 130.0 { 2 } else { 5 })
 }
 
-/// Where everything is.
+/// Layout of the picture.
 struct FrontLayout {
     width: f64,
     height: f64,
@@ -239,7 +240,7 @@ impl FrontLayout {
     }
 }
 
-/// The range of most times: what slips late, long after the front has passed, would take all colours.
+/// The range of most times: slips long after the front has passed would take all colours.
 fn quantiles(times: &[f32]) -> [f64; 2] {
     let mut sorted: Vec<f32> = times.iter().copied().filter(|time| !time.is_nan()).collect();
     sorted.sort_unstable_by(f32::total_cmp);
@@ -280,7 +281,7 @@ fn draw_map(canvas: &mut Canvas, map: &FrontMap, layout: &FrontLayout) {
     panel.draw_axes(canvas, [x, y]);
 }
 
-/// The levels of the contours of these means of first slips, on a map of so many cells along its shorter side.
+/// The levels of the contours of these means of first slips, on a map with `side` cells along its shorter side.
 fn levels([lo, hi]: [f64; 2], first_slips: &[f32], means: &[f32], side: usize) -> Vec<f64> {
     let deviations = first_slips
         .iter()
@@ -420,7 +421,7 @@ mod tests {
         assert!(!front(&map, &space_time).unwrap().svg.contains("NaN"));
     }
 
-    /// One block that slips long after all others leaves them their colours.
+    /// One block that slips long after all others leaves the others their colours.
     #[test]
     fn late_slips_take_no_colours() {
         let mut times = vec![1.0; 99];

@@ -15,7 +15,7 @@ impl Area {
         Self { x, y, width, height }
     }
 
-    /// x, y, width, height.
+    /// Numbers x, y, width and height of the area.
     pub(crate) fn sides(&self) -> [f64; 4] {
         [self.x, self.y, self.width, self.height]
     }
@@ -38,7 +38,7 @@ impl Area {
     }
 }
 
-/// Where a text lies relative to its point.
+/// Position of a text relative to its point.
 #[derive(Clone, Copy)]
 pub(crate) enum Align {
     Start,
@@ -47,7 +47,7 @@ pub(crate) enum Align {
 }
 
 impl Align {
-    /// How far before the point a text of this width starts.
+    /// Distance by which a text of this width starts before the point.
     pub(crate) fn offset(self, width: f64) -> f64 {
         match self {
             Self::Start => 0.0,

@@ -7,21 +7,20 @@ use gif::{DisposalMethod, Encoder, EncodingError, Frame, Repeat};
 use crate::movie::MOVIE_PIXELS;
 use crate::picture::PictureError;
 
-/// An animated GIF file of pictures of a movie, which begins again when it has ended. Of every picture it has the rectangle in which
-/// that differs from the one before.
+/// An animated GIF file of pictures of a movie, which begins again when it has ended. For every picture the file has the
+/// rectangle in which it differs from the picture before.
 pub struct MovieGif {
     encoder: Encoder<Vec<u8>>,
     /// The pixels of the picture before.
     before: Vec<u8>,
-    /// The colour of no pixel: what is not changed.
+    /// Index of a colour that no pixel has, for pixels that do not change.
     transparent: u8,
 }
 
 impl MovieGif {
     /// A file without pictures, whose pixels have these colours, at most 255.
     ///
-    /// # Errors
-    /// There are more colours.
+    /// # Errors When there are more colours.
     pub fn of(palette: &[[u8; 3]]) -> Result<Self, PictureError> {
         let transparent = palette.len();
         let mut colours = palette.concat();
@@ -36,10 +35,9 @@ impl MovieGif {
         })
     }
 
-    /// Adds a picture that is shown for so many hundredths of a second.
+    /// Adds a picture that is shown for `delay` hundredths of a second.
     ///
-    /// # Errors
-    /// It has another number of pixels.
+    /// # Errors When the picture has another number of pixels.
     pub fn add(&mut self, pixels: Vec<u8>, delay: u16) -> Result<(), PictureError> {
         let [width, height] = MOVIE_PIXELS;
         let [left, top, right, bottom] = if self.before.len() == pixels.len() {
@@ -75,8 +73,7 @@ impl MovieGif {
 
     /// The bytes of the file.
     ///
-    /// # Errors
-    /// None that can be foreseen: it is written to memory.
+    /// # Errors No error can be foreseen, because the file is written to memory.
     pub fn finish(self) -> Result<Vec<u8>, PictureError> {
         Ok(self.encoder.into_inner()?)
     }
@@ -88,7 +85,7 @@ impl From<EncodingError> for PictureError {
     }
 }
 
-/// Left, top, right and bottom of the rectangle of pixels that differ; one pixel where none does.
+/// Left, top, right and bottom of the rectangle of pixels that differ; one pixel where none differs.
 fn changed(before: &[u8], now: &[u8], width: usize) -> [usize; 4] {
     let mut rectangle = [width, before.len() / width, 0, 0];
     for (row, (before, now)) in before
@@ -115,7 +112,7 @@ fn changed(before: &[u8], now: &[u8], width: usize) -> [usize; 4] {
 mod tests {
     use super::*;
 
-    /// What a program shows that reads the file has the colours of the pictures, whatever part of them the file holds.
+    /// A program that reads the file shows the colours of the pictures, whatever part of them the file holds.
     #[test]
     fn what_is_shown_is_what_was_drawn() {
         let palette = [[0, 0, 0], [255, 0, 0], [0, 255, 0]];

@@ -14,15 +14,15 @@ use crate::text::{MINUS, Text, number};
 use crate::ticks::{Direction, MAX_STEPS, Tick, apart};
 
 const HEIGHT: f64 = 560.0;
-/// A number at the bar's upper end stands half beyond it.
+/// Room for the half of a number at the bar's upper end that stands beyond it.
 const TOP: f64 = MARGIN + 8.0;
-/// Between the map and its colour bar.
+/// Distance between the map and its colour bar.
 const GAP: f64 = 30.0;
-/// From the number of a cell to its half width below it.
+/// Distance from the number of a cell to its half width below it.
 const LINE: f64 = 36.0;
-/// Numbers are written in the cells of a map of at most so many columns and rows.
+/// Largest number of columns and rows of a map with numbers in its cells.
 const MAX_NUMBERED: usize = 8;
-/// An axis of more cells is numbered at round values.
+/// Largest number of cells of an axis whose cells are numbered; longer axes are numbered at round values.
 const MAX_NAMED: usize = 12;
 
 /// A map of cells over two axes.
@@ -32,39 +32,39 @@ pub struct HeatMap {
     pub x: HeatAxis,
     /// The axis of the rows.
     pub y: HeatAxis,
-    /// What the values are.
+    /// Quantity of the values.
     pub value_title: String,
     /// One value for every cell: all of the first y, then all of the second; NaN is left grey.
     pub values: Vec<f64>,
     /// The half width of the confidence interval of every value in the same order, NaN where there is none; may be empty.
     pub half_widths: Vec<f64>,
-    /// Which cells are marked by a cross, in the same order; may be empty.
+    /// Marks of cells that get a cross, in the order of the values; may be empty.
     pub crossed: Vec<bool>,
-    /// What the intervals are, below the map; may be empty.
+    /// Meaning of the intervals, below the map; may be empty.
     pub note: String,
 }
 
 /// An axis of a map.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct HeatAxis {
-    /// What the axis is; see [`title`](crate::QuantityLabel::title).
+    /// Quantity of the axis; see [`title`](crate::QuantityLabel::title).
     pub title: String,
-    /// Where its cells are, in any order, all different.
+    /// Values of the cells, in any order, all different.
     pub values: Vec<f64>,
-    /// Whether it is logarithmic; without effect if a value is not positive.
+    /// Whether the axis is logarithmic; without effect if a value is not positive.
     pub log: bool,
 }
 
 /// Draws a map, as wide as a journal's column (85 mm).
 ///
-/// A cell reaches half-way to its neighbours, so uneven values give uneven cells. The colours span the values
-/// and half an interval beyond them, the median one, so that values which differ by less look alike. A map of up to 8 x 8 cells has its numbers in the cells, if they are wide enough. The half width of an interval stands
-/// below the number; where numbers have no room for that, a second map below shows the half widths.
+/// A cell reaches half-way to its neighbours, so uneven values give uneven cells. The colours span the values and half the
+/// median interval beyond them, so that values which differ by less look alike. A map of up to 8 x 8 cells has its numbers
+/// in the cells, if they are wide enough. The half width of an interval stands below the number; where numbers have no room
+/// for that, a second map below shows the half widths.
 ///
 /// # Errors
 ///
-/// An axis without values, with one that is not a number, or with the same one twice; as many values as there
-/// are cells are needed.
+/// An axis without values, with a value that is not a number, or with a value twice; or another number of values than cells.
 pub fn heat_map(map: &HeatMap) -> Result<Picture, PictureError> {
     let (mut x, mut y) = (HeatCells::of(&map.x)?, HeatCells::of(&map.y)?);
     let values = in_order([&x, &y], &map.values)?;
@@ -132,7 +132,7 @@ pub fn heat_map(map: &HeatMap) -> Result<Picture, PictureError> {
     canvas.finish()
 }
 
-/// Values of cells in the order in which they are drawn; NaN in place of what cannot be.
+/// Values of cells in the order in which they are drawn; NaN in place of values that cannot be drawn.
 fn in_order([x, y]: [&HeatCells; 2], values: &[f64]) -> Result<Vec<f64>, PictureError> {
     let (columns, rows) = (x.values.len(), y.values.len());
     if columns.checked_mul(rows) != Some(values.len()) {
@@ -152,7 +152,7 @@ fn in_order([x, y]: [&HeatCells; 2], values: &[f64]) -> Result<Vec<f64>, Picture
 
 /// Draws a cross in the lower left corner of the cells that are not whole.
 fn draw_crosses(canvas: &mut Canvas, [x, y]: [&HeatCells; 2], crossed: &[f64]) {
-    /// From the corner to the middle of the cross.
+    /// Distance from the corner to the middle of the cross.
     const INSET: f64 = 14.0;
     let (edges_x, edges_y, columns) = (x.edges(), y.edges(), x.values.len());
     for cell in (0..crossed.len()).filter(|&cell| crossed[cell] > 0.0) {
@@ -161,7 +161,7 @@ fn draw_crosses(canvas: &mut Canvas, [x, y]: [&HeatCells; 2], crossed: &[f64]) {
     }
 }
 
-/// The median of what is there; zero if there is nothing.
+/// The median of the values that are no NaN; zero if there is none.
 fn median(values: &[f64]) -> f64 {
     let mut sorted: Vec<f64> = values.iter().copied().filter(|value| !value.is_nan()).collect();
     sorted.sort_unstable_by(f64::total_cmp);
@@ -202,7 +202,7 @@ struct HeatCells {
     /// The index of every cell among the axis' values.
     order: Vec<usize>,
     values: Vec<f64>,
-    /// Where the cells meet, as the scale measures it: one more than there are cells.
+    /// Boundaries of the cells, as the scale measures them: one more than there are cells.
     edges: Vec<f64>,
 }
 
@@ -244,13 +244,13 @@ impl HeatCells {
         })
     }
 
-    /// The pixels where the cells meet, in rising order of value.
+    /// The pixels of the cells' boundaries, in rising order of value.
     fn edges(&self) -> Vec<f64> {
         let pixel = |&edge: &f64| self.axis.at_measured(edge).round();
         self.edges.iter().map(pixel).collect()
     }
 
-    /// Numbered and short ticks: the values themselves if they are few and have room, else round ones.
+    /// Numbered and short ticks: the values themselves if they are few and have room, else round values.
     fn ticks(&self, direction: Direction) -> (Vec<Tick>, Vec<f64>) {
         let named = |digits: usize| {
             let written: Option<Vec<String>> = self.values.iter().map(|&v| short(v, digits)).collect();
@@ -268,7 +268,7 @@ impl HeatCells {
     }
 }
 
-/// A value with so many digits that count and no needless zero, unless that is more than 2 % off.
+/// A value with `digits` significant digits and no needless zero, unless it is then more than 2 % off.
 fn short(value: f64, digits: usize) -> Option<String> {
     let rounded = format!("{value:.*e}", digits.saturating_sub(1));
     if (rounded.parse::<f64>().ok()? - value).abs() > 0.02 * value.abs() {
@@ -290,7 +290,7 @@ fn short(value: f64, digits: usize) -> Option<String> {
     Some(format!("{}e{power}", trimmed(mantissa)).replace('-', MINUS))
 }
 
-/// Tells below the colour bar what grey is.
+/// Writes below the colour bar the meaning of grey.
 fn draw_blank(canvas: &mut Canvas, bar: Area) {
     let text = Text::plain("none", SIZE_TICK);
     // Beside the axis' title: a number may reach as far as the bar.
@@ -330,7 +330,7 @@ fn image(area: Area, x: &HeatCells, y: &HeatCells, values: &[f64], range: [f64; 
     }
 }
 
-/// The lines in every cell, its value and its half width if it has one; none if they have no room.
+/// The lines in every cell, its value and its half width if it has one; none if there is no room.
 fn cell_texts(
     x: &HeatCells,
     y: &HeatCells,
@@ -387,7 +387,7 @@ fn plus_minus(half: f64, decimals: usize) -> String {
     format!("\u{b1}{}", number(half, decimals.max(needed)))
 }
 
-/// Writes its lines into every cell.
+/// Writes the lines of every cell into it.
 fn draw_numbers(
     canvas: &mut Canvas,
     [x, y]: [&HeatCells; 2],
@@ -408,7 +408,7 @@ fn draw_numbers(
     }
 }
 
-/// Black or white, whichever stands out more.
+/// Black or white, whichever contrasts more.
 fn readable_on(ground: Rgb) -> Rgb {
     let [red, green, blue] = ground.map(|channel| libm::pow(f64::from(channel) / 255.0, 2.2));
     let luminance = 0.2126 * red + 0.7152 * green + 0.0722 * blue;
@@ -467,7 +467,7 @@ mod tests {
         assert!(!heat_map(&map(6, 9)).unwrap().svg.contains(">17.5</text>"));
     }
 
-    /// Below the numbers where there is room, else on a map of their own; not at all where there are none.
+    /// Half widths stand below the numbers where there is room, else on a map of their own; nowhere if there are none.
     #[test]
     fn half_widths_are_shown_wherever_there_are_some() {
         let svg = |columns: usize, half: f64| {
@@ -492,7 +492,7 @@ mod tests {
         assert_eq!(said, "a map of 2 x 2 cells has 3 values");
     }
 
-    /// What differs by less than the intervals has not all colours.
+    /// Values that differ by less than the intervals do not span all colours.
     #[test]
     fn the_colours_span_the_intervals() {
         let reaches_below = |half: f64| {

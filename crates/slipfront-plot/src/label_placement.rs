@@ -1,11 +1,11 @@
-//! Places labels near what they name, clear of each other and, where there is room, of the curve.
+//! Places labels near the points that they name, clear of each other and, where there is room, of the curve.
 
 use crate::geometry::{Area, CanvasPoint};
 
-/// Labels keep so far from each other.
+/// Least distance between labels.
 const CLEARANCE: f64 = 5.0;
 
-/// Where labels may go, and what is there already.
+/// Area for labels, and the things already there.
 #[derive(Default)]
 pub(crate) struct Placer {
     bounds: Area,
@@ -13,7 +13,7 @@ pub(crate) struct Placer {
     lines: Vec<[CanvasPoint; 2]>,
 }
 
-/// A possible place of a label, and how unwelcome it is: pixels away from the best one.
+/// A possible place of a label, and its cost: pixels away from the best one.
 pub(crate) struct Candidate {
     pub(crate) area: Area,
     pub(crate) penalty: f64,
@@ -56,7 +56,7 @@ impl Placer {
         Some(candidate)
     }
 
-    /// What the candidate costs, or anything above `bound` if it is more than that.
+    /// Cost of the candidate, or any number above `bound` if it costs more than that.
     fn cost(&self, candidate: &Candidate, bound: f64) -> f64 {
         let area = grown(candidate.area, CLEARANCE);
         let mut cost = candidate.penalty;
@@ -87,8 +87,8 @@ impl Placer {
     }
 }
 
-/// Places around `point` for a label of this size, near ones first. Far ones get a leader, and so do those which one of the
-/// other `dots` is as near to: there it would be taken for theirs.
+/// Places around `point` for a label of this size, near ones first. Far places get a leader, and so do places to which one
+/// of the other `dots` is as near, because the label would be taken for that dot's.
 pub(crate) fn around(
     point: CanvasPoint,
     (width, height): (f64, f64),
@@ -203,7 +203,7 @@ mod tests {
         assert!(!crosses([curve[0], curve[1]], &area) && !crosses([curve[1], curve[2]], &area));
     }
 
-    /// Of two dots side by side each label stands nearer to its own, or is joined to it.
+    /// Each label of two dots side by side stands nearer to its own dot, or is joined to it.
     #[test]
     fn a_label_is_not_taken_for_that_of_another_dot() {
         let dots = [(400.0, 300.0), (425.0, 300.0)];

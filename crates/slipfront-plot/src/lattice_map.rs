@@ -9,14 +9,14 @@ use crate::picture::PictureError;
 use crate::style::{BLACK, RADIUS_MARKER, Rgb, SIZE_LABEL, SIZE_TICK, WHITE, WIDTH_MARK};
 use crate::text::Text;
 
-/// A strip is drawn no thinner than this share of its length.
+/// Least thickness of a strip over its length.
 pub(crate) const MIN_RATIO: f64 = 1.0 / 6.0;
-/// An outline is so many times thinner than the stripes that it parts.
+/// Width of a stripe over the width of the outline that parts it.
 const STRIPE_WIDTHS: f64 = 12.0;
-/// The second line over a map stands so far above it, the first one so far.
+/// Heights of the second and the first line over a map.
 const NOTE_ABOVE: f64 = 22.0;
 const LABEL_ABOVE: f64 = 62.0;
-/// The room that both lines take, and that the second one takes.
+/// Room for both lines over a map, and for the second one.
 pub(crate) const TITLE_ROOM: f64 = LABEL_ABOVE + SIZE_LABEL as f64;
 pub(crate) const NOTE_ROOM: f64 = NOTE_ABOVE + SIZE_TICK as f64;
 
@@ -38,7 +38,7 @@ pub(crate) fn check_length(what: &str, found: usize, expected: usize) -> Result<
     })
 }
 
-/// Refuses what is no edge of a block, in metres.
+/// Refuses a number that is no edge of a block, in metres.
 pub(crate) fn check_block_size(block_size: f64) -> Result<(), PictureError> {
     if block_size > 0.0 && block_size < 1e9 {
         return Ok(());
@@ -46,7 +46,7 @@ pub(crate) fn check_block_size(block_size: f64) -> Result<(), PictureError> {
     Err(PictureError::BlockSize(block_size.to_string()))
 }
 
-/// The unit in which a length reads well, and how many of it make a metre.
+/// The unit in which a length reads well, and the number of units in a metre.
 pub(crate) fn unit_of(length: f64) -> (&'static str, f64) {
     match length {
         ..1e-6 => ("nm", 1e9),
@@ -67,7 +67,7 @@ pub(crate) struct Cells {
 }
 
 impl Cells {
-    /// The cells of a lattice of so many blocks, and which of the cells are textured.
+    /// The cells of a lattice of `nx` x `ny` blocks, with marks of those that are textured.
     pub(crate) fn of(nx: usize, ny: usize, textured: &[bool]) -> Self {
         let [columns, rows] = CellMeans::cells(nx, ny);
         Self {
@@ -110,7 +110,7 @@ pub(crate) fn place(area: Area, (x, y): CanvasPoint) -> CanvasPoint {
 
 /// The colour of marks, seen on every colour of the ramp.
 pub(crate) const MARK: Rgb = [0xd5, 0x2b, 0x1e];
-/// The edge of a mark is drawn with so many corners.
+/// Number of corners with which the edge of a mark is drawn.
 const MARK_CORNERS: usize = 24;
 
 /// A circle with a pale rim, seen on every colour of the ramp.

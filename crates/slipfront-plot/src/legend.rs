@@ -7,17 +7,17 @@ use crate::short_names::fitted_names;
 use crate::style::{BLACK, MARGIN, OPACITY_BAR, RADIUS_MARKER, SIZE_TICK, bar_colour, curve_style};
 use crate::text::Text;
 
-/// The names of several curves or bars, and before them what they are values of.
+/// The names of several curves or bars, and before them the quantity of which they are values.
 #[derive(Default)]
 pub(crate) struct Legend {
-    /// How much room it takes above the panels.
+    /// Height of the legend above the panels.
     pub(crate) height: f64,
     title: Text,
     title_at: CanvasPoint,
     entries: Vec<Entry>,
 }
 
-/// What stands before a name.
+/// Sample before a name.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum LegendSample {
     Line,
@@ -36,9 +36,9 @@ struct Entry {
 
 const SAMPLE_WIDTH: f64 = 44.0;
 const ROW: f64 = 44.0;
-/// Between a sample and its name.
+/// Distance between a sample and its name.
 const NAME_GAP: f64 = 10.0;
-/// Between a name and the next sample.
+/// Distance between a name and the next sample.
 const COLUMN_GAP: f64 = 30.0;
 
 impl Legend {

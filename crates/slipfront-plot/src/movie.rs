@@ -23,23 +23,23 @@ use crate::ticks::{Direction, MAX_STEPS};
 
 /// Pixels of a picture along x and along y.
 pub const MOVIE_PIXELS: [usize; 2] = [800, 400];
-/// A picture is drawn so many times as large.
+/// Factor by which a picture is drawn larger.
 const DRAWN: usize = 2;
 const DRAWN_PIXELS: [usize; 2] = [DRAWN * MOVIE_PIXELS[0], DRAWN * MOVIE_PIXELS[1]];
-/// Bytes while a picture is drawn: four of each pixel that is drawn, and one of each that is kept.
+/// Bytes while a picture is drawn: four for each pixel that is drawn, and one for each that is kept.
 pub const MOVIE_PICTURE_BYTES: usize =
     4 * DRAWN_PIXELS[0] * DRAWN_PIXELS[1] + MOVIE_PIXELS[0] * MOVIE_PIXELS[1];
 /// Bytes of a picture in its file (measured: 25 kB where all of a map changes).
 pub const MOVIE_FILE_BYTES: usize = 25_000;
 /// The largest map, as drawn.
 const MAP_SIDE: f64 = 600.0;
-/// Where the map begins.
+/// Left end of the map.
 const MAP_LEFT: f64 = 2.0 * MARGIN;
-/// Where map and curve begin, below two lines of text.
+/// Upper end of map and curve, below two lines of text.
 const TOP: f64 = 110.0;
-/// Where the curve's part begins.
+/// Left end of the curve's part.
 const CURVE_LEFT: f64 = 790.0;
-/// Where the curve ends, above its numbers and title.
+/// Lower end of the curve, above its numbers and title.
 const CURVE_BOTTOM: f64 = 690.0;
 
 /// A movie of a run.
@@ -51,37 +51,37 @@ pub struct Movie {
     pub ny: usize,
     /// True for every [cell](CellMeans) of which most is textured, row by row from y = 0.
     pub textured: Vec<bool>,
-    /// What the field is, over the colour bar; the character after an underscore is a subscript.
+    /// Quantity of the field, over the colour bar; the character after an underscore is a subscript.
     pub title: String,
-    /// The values at the ends of the colour bar; what lies beyond is drawn as they are.
+    /// Values at the ends of the colour bar; values beyond are drawn as the ends.
     pub range: [f64; 2],
     /// The curve against t*.
     pub curve: FrictionCurve,
-    /// Titles of its axes.
+    /// Titles of the curve's axes.
     pub axes: FrictionAxes,
-    /// What is shown, in the order of time.
+    /// Pictures in the order of time.
     pub frames: Vec<MovieFrame>,
 }
 
 /// A picture of a movie.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MovieFrame {
-    /// The letters of the instants A-F that it is, such as "A, B"; may be empty.
+    /// Letters of the instants A-F that the picture shows, such as "A, B"; may be empty.
     pub label: String,
-    /// t*.
+    /// Time t*.
     pub time_star: f64,
-    /// mu*.
+    /// Friction coefficient mu*.
     pub mu_star: f64,
     /// The mean of every [cell](CellMeans), row by row from y = 0; NaN is left blank.
     pub values: Vec<f32>,
 }
 
-/// A movie that can be drawn: where everything is, and its colours.
+/// A movie that can be drawn: its layout and its colours.
 pub struct MoviePictures<'a> {
     movie: &'a Movie,
     cells: Cells,
     colours: Colours,
-    /// What is the same in all pictures.
+    /// Part that is the same in all pictures.
     ground: Pixels,
     map: Area,
     bar: Area,
@@ -235,7 +235,7 @@ impl<'a> MoviePictures<'a> {
         canvas.frame(area);
     }
 
-    /// Where the curve is at the instant that is shown.
+    /// Draws the mark of the curve at the instant that is shown.
     fn draw_mark(&self, canvas: &mut Canvas, frame: &MovieFrame) {
         let area = self.curve_area();
         let now = self.x.clamped(frame.time_star);
@@ -256,7 +256,7 @@ fn no_memory() -> PictureError {
     PictureError::Gif("there is no memory for a picture".to_owned())
 }
 
-/// Where the map is, in the middle of its room: every cell has the same whole number of pixels.
+/// Area of the map, in the middle of its room: every cell has an equal, whole number of pixels.
 fn map_area(nx: usize, ny: usize, cells: [usize; 2]) -> Area {
     let ratio = (ny as f64 / nx as f64).clamp(MIN_RATIO, 1.0 / MIN_RATIO);
     let sides = [MAP_SIDE.min(MAP_SIDE / ratio), MAP_SIDE.min(MAP_SIDE * ratio)];
@@ -297,12 +297,12 @@ mod tests {
         }
     }
 
-    /// The colour of a pixel, and where the map and the curve are, in pixels of the picture.
+    /// Positions of map and curve, in pixels of the picture.
     fn halves(area: Area) -> [usize; 4] {
         area.sides().map(|side| side as usize / DRAWN)
     }
 
-    /// Every block of the map has its own colour, whole pixels of it, and no others between.
+    /// Every block of the map has its own colour in whole pixels, with no others between.
     #[test]
     fn blocks_have_whole_pixels_of_their_colour() {
         let mut movie = movie(100, 100);

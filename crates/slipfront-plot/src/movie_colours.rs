@@ -1,19 +1,19 @@
-//! The colours of a movie, of which there are 256 at the most.
+//! The colours of a movie, at most 256.
 
 use crate::lattice_map::MARK;
 use crate::style::{BLACK, BLANK, CURVES, GREY, Rgb, WHITE, ramp};
 
-/// Colours of the ramp.
+/// Number of colours of the ramp.
 const RAMP: usize = 192;
-/// Steps from a colour of lines and letters to white, by which their edges are smoothed.
+/// Number of steps from a colour of lines and letters to white, by which their edges are smoothed.
 const SHADES: usize = 14;
-/// Bits of a channel by which the nearest colour is looked up.
+/// Number of bits of a channel by which the nearest colour is looked up.
 const BITS: u32 = 5;
 
 /// A palette, and the nearest of its colours.
 pub(crate) struct Colours {
     palette: Vec<Rgb>,
-    /// For the leading bits of red, green and blue.
+    /// Nearest colour for the leading bits of red, green and blue.
     nearest: Vec<u8>,
 }
 
@@ -45,7 +45,8 @@ impl Colours {
     }
 }
 
-/// The colour in the middle of those with these leading bits; the outermost ones stand for themselves, so that white stays white.
+/// The colour in the middle of those with these leading bits; the outermost colours stand for themselves, so that white
+/// stays white.
 fn unpacked(bits: u32) -> Rgb {
     let largest = (1 << BITS) - 1;
     let channel = |k: u32| ((bits >> (BITS * (2 - k)) & largest) * 255 / largest) as u8;

@@ -1,4 +1,4 @@
-//! A line below everything else of a picture, which tells what its intervals are.
+//! A line at the foot of a picture, with the meaning of its intervals.
 
 use crate::canvas::Canvas;
 use crate::geometry::Align;
@@ -7,7 +7,7 @@ use crate::text::Text;
 
 /// A note, centred below the panel.
 pub(crate) struct Note {
-    /// How much room it takes at the foot of the picture.
+    /// Height of the note at the foot of the picture.
     pub(crate) height: f64,
     text: Text,
     middle: f64,

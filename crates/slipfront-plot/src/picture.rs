@@ -1,4 +1,4 @@
-//! A finished picture, and why one could not be made.
+//! A finished picture, and the errors of making one.
 
 /// One picture in both formats, ready to be written to files.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -10,11 +10,11 @@ pub struct Picture {
 }
 
 impl Picture {
-    /// Most bytes while a picture as wide as a column is drawn, pixels and primitives, whatever it shows.
+    /// Largest number of bytes while a picture as wide as a column is drawn, pixels and primitives, whatever it shows.
     pub const COLUMN_BYTES: usize = 7 << 20;
 }
 
-/// Why a picture could not be made.
+/// Error of a picture that could not be made.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
 pub enum PictureError {
@@ -52,7 +52,7 @@ pub enum PictureError {
     Gif(String),
 }
 
-/// Refuses a curve of which a column has not one value for each of its points, which are named by what is `counted`.
+/// Refuses a curve with a column that has not one value for each of its points, which `counted` names.
 pub(crate) fn check_columns(
     label: &str,
     (counted, count): (&'static str, usize),

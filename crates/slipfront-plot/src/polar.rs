@@ -18,25 +18,25 @@ use crate::style::{
 use crate::text::Text;
 use crate::ticks::{Direction, MAX_STEPS};
 
-/// The largest circle.
+/// Radius of the largest circle.
 const RADIUS: f64 = 380.0;
-/// Between that circle and the numbers of the directions.
+/// Distance between that circle and the numbers of the directions.
 const GAP: f64 = 12.0;
-/// From the largest circle to the axis of the radius below it.
+/// Distance from the largest circle to the axis of the radius below it.
 const BELOW: f64 = 64.0;
-/// Between two numbered directions, degrees.
+/// Angle between two numbered directions, degrees.
 const SPOKES: usize = 30;
-/// Two directions are one if they differ by less, degrees.
+/// Difference in degrees below which two directions are one.
 const SAME: f64 = 1e-9;
 
 /// Curves against a direction.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Polar {
-    /// What the radius shows.
+    /// Quantity of the radius.
     pub value_title: String,
-    /// What the curves' labels are values of, for the legend; may be empty.
+    /// Quantity of the curves' labels, for the legend; may be empty.
     pub legend_title: String,
-    /// What the intervals are, below everything; may be empty.
+    /// Meaning of the intervals, below everything; may be empty.
     pub note: String,
     /// The curves; x is the direction, in degrees from the x axis towards the y axis.
     pub curves: Vec<Response>,
@@ -96,9 +96,9 @@ pub fn polar(polar: &Polar) -> Result<Picture, PictureError> {
 
 /// The points of a curve, by rising direction.
 struct Round {
-    /// Neighbours without a gap between them.
+    /// Parts of the curve: neighbours without a gap between them.
     parts: Vec<Vec<RoundPoint>>,
-    /// Whether there is one part that goes all the way round.
+    /// Whether the curve is one part that goes all the way round.
     is_closed: bool,
 }
 
@@ -162,7 +162,7 @@ impl Round {
     }
 }
 
-/// Where directions and values are.
+/// Positions of directions and values.
 struct Ring {
     centre: CanvasPoint,
     radius: DrawnAxis,
@@ -179,7 +179,7 @@ impl Ring {
         (self.centre.0 + radius * cosine, self.centre.1 - radius * sine)
     }
 
-    /// Circles at round values, and every numbered direction; the first two are those of x and y.
+    /// Draws circles at round values, and every numbered direction; the first two are the axes x and y.
     fn draw_grid(&self, canvas: &mut Canvas) {
         let circle = |radius: f64| {
             (0..=180)
@@ -314,7 +314,8 @@ mod tests {
         assert!(Round::of(&twice).is_closed);
     }
 
-    /// 0 degrees is to the right, 90 upwards, and the radius is in proportion to the value.
+    /// Directions and values have their places: 0 degrees is to the right, 90 upwards, and the radius is in proportion to
+    /// the value.
     #[test]
     fn directions_and_values_have_their_places() {
         let ring = Ring {

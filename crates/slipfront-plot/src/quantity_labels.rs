@@ -1,4 +1,4 @@
-//! What a quantity is called along an axis and in a legend.
+//! Names of a quantity along an axis and in a legend.
 
 use crate::font::advance;
 use crate::text::Text;
@@ -6,13 +6,13 @@ use crate::text::Text;
 /// The names of a quantity.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct QuantityLabel<'a> {
-    /// What it is, in words.
+    /// Name of the quantity in words.
     pub words: &'a str,
-    /// Its symbol; empty if it has none. Subscripts are Unicode's subscript letters.
+    /// Symbol of the quantity; empty if it has none. Subscripts are Unicode's subscript letters.
     pub symbol: &'a str,
-    /// Its unit; empty for a number without unit.
+    /// Unit of the quantity; empty for a number without unit.
     pub unit: &'a str,
-    /// The number of its texture, from 1, where there are several.
+    /// Number of the quantity's texture, from 1, where there are several.
     pub texture: Option<usize>,
 }
 

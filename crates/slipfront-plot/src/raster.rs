@@ -1,4 +1,5 @@
-//! A canvas as pixels, drawn by `tiny-skia`. Its features `simd` and `std` are off, so that every machine computes the same bits.
+//! A canvas as pixels, drawn by `tiny-skia`. The features `simd` and `std` of `tiny-skia` are off, so that every machine
+//! computes the same bits.
 
 use tiny_skia::{
     Color, ColorU8, FillRule, LineCap, LineJoin, Paint, Path, PathBuilder, Pixmap, PremultipliedColorU8,
@@ -37,7 +38,7 @@ impl Pixels {
         Some(Self(pixmap))
     }
 
-    /// Draws a canvas over what is there.
+    /// Draws a canvas over the pixels.
     pub(crate) fn draw(&mut self, canvas: &Canvas) {
         for image in &canvas.images {
             draw_image(&mut self.0, image);
@@ -54,7 +55,7 @@ impl Pixels {
     }
 }
 
-/// Draws an element; one without extent leaves no trace.
+/// Draws an element; an element without extent leaves no trace.
 fn draw(pixmap: &mut Pixmap, element: &Element) {
     let [red, green, blue] = element.colour;
     let mut paint = Paint::default();
@@ -131,7 +132,7 @@ fn letters(text: &str, size: f64, at: CanvasPoint, upwards: bool) -> Option<Path
     path.finish()
 }
 
-/// A pixel of an image takes the mean of so many points along each side.
+/// Number of points along each side of a pixel over which the colour of an image is averaged.
 const SAMPLES: usize = 4;
 
 /// Draws an image onto whole pixels. Where cells meet within a pixel, their colours are mixed.
@@ -178,7 +179,7 @@ fn add(sums: &mut [[u16; 3]], row_sums: &[[u16; 3]]) {
     }
 }
 
-/// The mean of the colours of all samples of a pixel, of which this is the sum.
+/// The mean of the colours of all samples of a pixel, from their sum.
 fn mean_colour(sum: &[u16; 3]) -> PremultipliedColorU8 {
     let count = (SAMPLES * SAMPLES) as u16;
     let [red, green, blue] = sum.map(|channel| ((channel + count / 2) / count) as u8);
@@ -308,7 +309,8 @@ mod tests {
         assert_eq!(mixed, [161, 116, 61]);
     }
 
-    /// Cells of every colour, more and fewer of them than pixels: rows of pixels that lie in one row of cells, and that lie in several.
+    /// Every pixel of an image is the mean of its samples, with more and fewer cells than pixels, and rows of pixels that
+    /// lie in one or in several rows of cells.
     #[test]
     fn every_pixel_of_an_image_is_the_mean_of_its_samples() {
         for [columns, rows, width, height] in [[3, 4, 11, 18], [7, 20, 11, 18], [1, 1, 8, 6], [5, 6, 5, 6]] {

@@ -15,23 +15,23 @@ use crate::text::Text;
 use crate::ticks::{Direction, MAX_STEPS};
 
 const HEIGHT: f64 = 560.0;
-/// Between the last number below the panel, half of which may stand beyond it, and the picture's edge.
+/// Distance between the last number below the panel, half of which may stand beyond it, and the picture's edge.
 const RIGHT: f64 = 34.0;
 
 /// Response curves over one axis.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Responses {
-    /// What x is; see [`title`](crate::QuantityLabel::title).
+    /// Quantity of x; see [`title`](crate::QuantityLabel::title).
     pub x_title: String,
     /// Whether x is logarithmic; without effect if an x is not positive.
     pub log_x: bool,
-    /// Whether y is.
+    /// Whether y is logarithmic; without effect if a y is not positive.
     pub log_y: bool,
-    /// What the curves show.
+    /// Quantity that the curves show.
     pub y_title: String,
-    /// What the curves' labels are values of, for the legend; see [`legend`](crate::QuantityLabel::legend).
+    /// Quantity of the curves' labels, for the legend; see [`legend`](crate::QuantityLabel::legend).
     pub legend_title: String,
-    /// What the intervals are, below the panel; may be empty.
+    /// Meaning of the intervals, below the panel; may be empty.
     pub note: String,
     /// The curves.
     pub curves: Vec<Response>,
@@ -40,24 +40,24 @@ pub struct Responses {
 /// One response curve, a point for every value of an axis.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Response {
-    /// What the legend calls it; shown only beside other curves.
+    /// Name of the curve in the legend; shown only beside other curves.
     pub label: String,
-    /// Where its points are, in any order.
+    /// Abscissae of the points, in any order.
     pub x: Vec<f64>,
     /// The mean at every point; NaN leaves a gap.
     pub mean: Vec<f64>,
     /// The lower end of every mean's confidence interval; NaN where there is none.
     pub low: Vec<f64>,
-    /// The upper end.
+    /// The upper end of every mean's confidence interval; NaN where there is none.
     pub high: Vec<f64>,
-    /// Which points are marked by a cross, on their marker or, without a mean, on the lower side; may be empty.
+    /// Marks of points that get a cross, on their marker or, without a mean, on the lower side; may be empty.
     #[serde(default)]
     pub crossed: Vec<bool>,
-    /// Whether it is a formula or a level rather than measured: a line through its points, without markers.
+    /// Whether the curve is a formula or a level rather than measured: a line through its points, without markers.
     pub line: bool,
 }
 
-/// Refuses no curve, and a curve whose columns differ in length; its x are so many of what is `counted`.
+/// Refuses an empty list of curves, and a curve whose columns differ in length; `counted` names its abscissae.
 pub(crate) fn check_curves(curves: &[Response], counted: &'static str) -> Result<(), PictureError> {
     if curves.is_empty() {
         return Err(PictureError::Nothing("curve"));
@@ -74,7 +74,7 @@ pub(crate) fn check_curves(curves: &[Response], counted: &'static str) -> Result
 
 /// Draws means with their confidence bands, as wide as a journal's column (85 mm).
 ///
-/// y starts where the values do, not at zero. A point without neighbours has an error bar in place of a band.
+/// The y axis starts where the values do, not at zero. A point without neighbours has an error bar in place of a band.
 /// Several curves have a legend above, and markers of different shapes.
 ///
 /// # Errors
@@ -144,7 +144,7 @@ impl Response {
     }
 }
 
-/// Everything that y must hold.
+/// All values that the y axis must hold.
 fn values(curve: &Response) -> impl Iterator<Item = f64> {
     [&curve.mean, &curve.low, &curve.high]
         .into_iter()
@@ -197,7 +197,7 @@ fn draw_curves(canvas: &mut Canvas, x: &DrawnAxis, y: &DrawnAxis, curves: &[Resp
 
 /// Draws the marks of points that are not whole.
 fn draw_crosses(canvas: &mut Canvas, area: Area, x: &DrawnAxis, y: &DrawnAxis, curves: &[Response]) {
-    /// Above the lower side, where a cross stands for a point without a mean.
+    /// Height above the lower side of a cross that stands for a point without a mean.
     const LIFT: f64 = 14.0;
     for curve in curves {
         for point in (0..curve.x.len()).filter(|&point| curve.is_crossed(point)) {
@@ -245,7 +245,7 @@ mod tests {
         svg
     }
 
-    /// How many bands there are: nothing else is a polygon through so opaque a fill.
+    /// Number of bands: only they are polygons with so opaque a fill.
     fn bands(svg: &str) -> usize {
         svg.matches("fill-opacity=\"0.2\"").count()
     }
@@ -268,7 +268,7 @@ mod tests {
         }
     }
 
-    /// Its room is added below; what is above stays where it is.
+    /// A note is added below everything, and the rest stays where it is.
     #[test]
     fn a_note_stands_below_everything() {
         let plain = responses(&[curve("", &[(1.0, 0.3), (2.0, 0.5)])], false);

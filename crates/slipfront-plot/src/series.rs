@@ -1,11 +1,11 @@
-//! What a series of values is drawn of: lines with gaps, markers and error bars.
+//! Parts of a drawn series of values: lines with gaps, markers and error bars.
 
 use crate::axis::{DrawnAxis, drawable};
 use crate::canvas::Canvas;
 use crate::geometry::CanvasPoint;
 use crate::style::{BLACK, Rgb, WHITE, WIDTH_MARK};
 
-/// Longer curves are thinned.
+/// Number of points above which curves are thinned.
 const MAX_POINTS: usize = 4000;
 
 /// A curve in pixels: one segment for every stretch without a gap.
@@ -59,9 +59,9 @@ pub(crate) fn marker(canvas: &mut Canvas, index: usize, (x, y): CanvasPoint, rad
     }
 }
 
-/// Draws a cross, the mark of what is not whole.
+/// Draws a cross, the mark of a point that is not whole.
 pub(crate) fn cross(canvas: &mut Canvas, (x, y): CanvasPoint) {
-    /// How far it reaches to each side.
+    /// Length of an arm of the cross.
     const ARM: f64 = 9.0;
     for slope in [ARM, -ARM] {
         canvas.line((x - ARM, y - slope), (x + ARM, y + slope), WIDTH_MARK, BLACK);
@@ -76,7 +76,7 @@ pub(crate) fn interval(mean: f64, low: f64, high: f64) -> Option<(f64, f64)> {
 
 /// Draws an error bar from one pixel of y to another.
 pub(crate) fn error_bar(canvas: &mut Canvas, x: f64, low: f64, high: f64, colour: Rgb) {
-    /// How far the lines across the ends reach to both sides.
+    /// Length of the lines across the ends to each side.
     const CAP: f64 = 9.0;
     canvas.line((x, low), (x, high), WIDTH_MARK, colour);
     for y in [low, high] {

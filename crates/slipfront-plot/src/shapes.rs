@@ -14,9 +14,9 @@ const GAP: f64 = 20.0;
 /// A closed outline.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Shape {
-    /// Its name, below it.
+    /// Name of the outline, below it.
     pub label: String,
-    /// Its corners, y upwards.
+    /// Corners of the outline, y upwards.
     pub points: Vec<[f64; 2]>,
 }
 
@@ -24,7 +24,7 @@ pub struct Shape {
 ///
 /// # Errors
 ///
-/// No outline, or one without extent.
+/// No outline, or an outline without extent.
 pub fn shapes(shapes: &[Shape]) -> Result<Picture, PictureError> {
     let reach = shapes
         .iter()

@@ -2,10 +2,10 @@
 
 use crate::text::Text;
 
-/// Where a name is cut.
+/// Method of cutting a name.
 type Cut = fn(&[char], usize) -> String;
 
-/// So many characters of a name, from its start, its end, or both.
+/// Cuts that keep a number of characters of a name, from its start, its end, or both.
 const CUTS: [Cut; 3] = [
     |name, kept| text(&name[..kept]).trim_end().to_owned() + "\u{2026}",
     |name, kept| "\u{2026}".to_owned() + text(&name[name.len() - kept..]).trim_start(),
@@ -19,7 +19,7 @@ fn text(letters: &[char]) -> String {
     letters.iter().collect()
 }
 
-/// Names no wider than `room`. Those that differ still do where they are cut; if that cannot be, they are numbered.
+/// Names no wider than `room`. Different names differ where they are cut; if that is impossible, they are numbered.
 pub(crate) fn fitted_names(names: &[&str], size: u32, room: f64) -> Vec<Text> {
     let whole: Vec<Vec<char>> = names.iter().map(|name| name.chars().collect()).collect();
     // The same without what all of them start with.
@@ -57,7 +57,7 @@ fn shortened(name: &[char], from: &[char], before: &str, cut: Cut, size: u32, ro
     cuts.find(|cut| fits(cut)).unwrap_or_default()
 }
 
-/// How many characters all names start with.
+/// Number of characters with which all names start.
 fn common(names: &[Vec<char>]) -> usize {
     let Some((first, others)) = names.split_first() else {
         return 0;

@@ -1,4 +1,4 @@
-//! A drawing of what is meant: lines, areas and arrows with names beside them, all on one scale.
+//! A sketch: lines, areas and arrows with names beside them, all on one scale.
 
 use serde::{Deserialize, Serialize};
 
@@ -13,25 +13,25 @@ use crate::text::Text;
 /// Length of an arrow's head, in pixels.
 const HEAD: f64 = 24.0;
 
-/// Lines and names, y upwards; what comes later covers what came before.
+/// Lines and names, y upwards; later ones cover earlier ones.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Sketch {
-    /// Its lines.
+    /// Lines of the sketch.
     pub strokes: Vec<Stroke>,
     /// Names and the points that they are centred on; the character after an underscore is a subscript.
     pub labels: Vec<(String, [f64; 2])>,
 }
 
-/// A line through points, or what it encloses.
+/// A line through points, or the area that it encloses.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Stroke {
-    /// How it is drawn.
+    /// Style of the stroke.
     pub style: StrokeStyle,
-    /// Its points.
+    /// Points of the stroke.
     pub points: Vec<[f64; 2]>,
 }
 
-/// How a stroke is drawn.
+/// Style of a stroke.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum StrokeStyle {
     /// An area with its edge, in the first colour of curves.

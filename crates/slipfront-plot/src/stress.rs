@@ -16,24 +16,24 @@ use crate::text::{Text, number};
 use crate::ticks::{Direction, Tick};
 
 const GAP: f64 = 30.0;
-/// Maps are no wider than this beside each other, 44 mm, and no higher.
+/// Largest width of maps beside each other, 44 mm, and largest height.
 const MAX_WIDTH: f64 = 520.0;
 const MAX_HEIGHT: f64 = 620.0;
-/// A slider is long if it is so many times as long as wide. Along x, two maps stand side by side, or one if it is longer yet; along y,
-/// all stand in one row.
+/// Ratio of length to width above which a slider is long. Along x two of its maps stand side by side, or one if it is longer
+/// yet; along y all stand in one row.
 const LONG: f64 = 3.0;
 const VERY_LONG: f64 = 10.0;
-/// Its map along x is no thinner than this share of its length.
+/// Least thickness of the map of a slider that is long along x, over its length.
 const MIN_RATIO_WIDE: f64 = 1.0 / 12.0;
-/// A side shorter than this has fewer numbers.
+/// Length of a side below which it has fewer numbers.
 const SHORT_SIDE: f64 = 130.0;
 
 /// One map.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StressMap {
-    /// Its letter or name.
+    /// Letter or name of the map.
     pub label: String,
-    /// Its time.
+    /// Time t* of the map.
     pub time_star: f64,
     /// mu* at that time; not written if NaN.
     pub mu_star: f64,
@@ -54,21 +54,21 @@ pub struct StressMaps {
     pub textured: Vec<bool>,
     /// The maps, in the order in which they are drawn.
     pub maps: Vec<StressMap>,
-    /// What their values are, beside the colour bar; the letter after an underscore is a subscript.
+    /// Quantity of the maps' values, beside the colour bar; the letter after an underscore is a subscript.
     pub value_title: String,
-    /// The values at the ends of the colour bar; what lies beyond is drawn as they are.
+    /// Values at the ends of the colour bar; values beyond are drawn as the ends.
     pub range: [f64; 2],
     /// Whether mu* is a torque, of a drive that rotates.
     pub is_torque: bool,
 }
 
-/// Most bytes while [`stress`] draws: four of each of at most 3.6 million pixels. They do not depend on the lattice.
+/// Largest number of bytes while [`stress`] draws: four for each of at most 3.6 million pixels, whatever the lattice.
 pub const STRESS_BYTES: usize = 14 << 20;
 /// Bytes of both files of maps for each cell of a map (measured: 5.4 where every cell has a colour of its own).
 pub const STRESS_FILE_BYTES: usize = 6;
 
 /// Draws the maps, three in a row, at most as wide as a journal's text (175 mm), all on one colour scale, the textured area
-/// outlined. Of a slider that is long along x there are two in a row, or one, and of one that is long along y all.
+/// outlined. A slider that is long along x has two maps in a row, or one; a slider that is long along y has all in one row.
 ///
 /// A slider more than twelve times as long as wide, six times along y, is drawn as if it were that long.
 ///
@@ -111,11 +111,11 @@ fn check(maps: &StressMaps) -> Result<(), PictureError> {
         .try_for_each(|map| check_length(&format!("map `{}`", map.label), map.values.len(), expected))
 }
 
-/// Where everything is.
+/// Layout of the picture.
 struct StressLayout {
     width: f64,
     height: f64,
-    /// Maps in a row.
+    /// Number of maps in a row.
     columns: usize,
     is_wide: bool,
     /// The room left of a map for its axis.
@@ -127,7 +127,7 @@ struct StressLayout {
     sides: [Side; 2],
 }
 
-/// A side of the slider, in its unit.
+/// A side of the slider, with its unit.
 struct Side {
     axis: DrawnAxis,
     title: Text,
@@ -218,7 +218,7 @@ impl StressLayout {
         }
     }
 
-    /// Numbers below the lowest map of every column and left of every row.
+    /// Draws numbers below the lowest map of every column and left of every row.
     fn draw_axes(&self, canvas: &mut Canvas) {
         let [x, y] = &self.sides;
         for (index, &area) in self.areas.iter().enumerate() {

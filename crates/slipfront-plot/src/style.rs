@@ -4,31 +4,31 @@
 pub(crate) const DPI: f64 = 300.0;
 /// Pixels in a millimetre.
 const MM: f64 = DPI / 25.4;
-/// A journal's column, 85 mm.
+/// Width of a journal's column, 85 mm.
 pub(crate) const COLUMN_WIDTH: f64 = 85.0 * MM;
-/// A journal's text, 175 mm.
+/// Width of a journal's text, 175 mm.
 pub(crate) const TEXT_WIDTH: f64 = 175.0 * MM;
 
-/// Titles and labels: 8 pt.
+/// Size of titles and labels: 8 pt.
 pub(crate) const SIZE_LABEL: u32 = 33;
-/// Numbers along an axis: 7 pt.
+/// Size of numbers along an axis: 7 pt.
 pub(crate) const SIZE_TICK: u32 = 29;
 
-/// A curve: 0.9 pt.
+/// Width of a curve: 0.9 pt.
 pub(crate) const WIDTH_CURVE: f64 = 3.75;
-/// A mean or an outline: 0.6 pt.
+/// Width of a mean or an outline: 0.6 pt.
 pub(crate) const WIDTH_MARK: f64 = 2.5;
-/// Frames and ticks: 0.5 pt.
+/// Width of frames and ticks: 0.5 pt.
 pub(crate) const WIDTH_FRAME: f64 = 2.0;
-/// Leaders: 0.35 pt.
+/// Width of leaders: 0.35 pt.
 pub(crate) const WIDTH_LEADER: f64 = 1.5;
-/// How opaque bars are: the error bar in front of a bar must be seen.
+/// Opacity of bars: the error bar in front of a bar must be visible.
 pub(crate) const OPACITY_BAR: f64 = 0.65;
-/// The points of a curve.
+/// Radius of the points of a curve.
 pub(crate) const RADIUS_MARKER: f64 = 8.0;
-/// Between the picture's edge and what is drawn.
+/// Distance between the picture's edge and its content.
 pub(crate) const MARGIN: f64 = 14.0;
-/// How far a tick reaches out of its frame.
+/// Length by which a tick reaches out of its frame.
 pub(crate) const TICK_LENGTH: f64 = 9.0;
 
 /// A colour: red, green, blue.
@@ -37,10 +37,11 @@ pub(crate) type Rgb = [u8; 3];
 pub(crate) const BLACK: Rgb = [0x1a, 0x1a, 0x1a];
 pub(crate) const GREY: Rgb = [0x77, 0x77, 0x77];
 pub(crate) const WHITE: Rgb = [0xff, 0xff, 0xff];
-/// Blocks without a value.
+/// Colour of blocks without a value.
 pub(crate) const BLANK: Rgb = [0xd9, 0xd9, 0xd9];
 
-/// Okabe and Ito's palette, told apart with any colour vision; its yellow is left out, too pale for a line.
+/// Okabe and Ito's palette, distinguishable with any colour vision; its yellow is left out because it is too pale for a
+/// line.
 pub(crate) const CURVES: [Rgb; 7] = [
     [0x00, 0x72, 0xb2],
     [0xd5, 0x5e, 0x00],
@@ -51,18 +52,18 @@ pub(crate) const CURVES: [Rgb; 7] = [
     [0x00, 0x00, 0x00],
 ];
 
-/// How a curve is told from others.
+/// Style that distinguishes a curve from others.
 #[derive(Clone, Copy)]
 pub(crate) struct CurveStyle {
     pub(crate) colour: Rgb,
-    /// The lengths of its dashes and of the gaps after them; none for a whole line.
+    /// Lengths of the curve's dashes and of the gaps after them; empty for a whole line.
     pub(crate) dashes: &'static [f64],
 }
 
-/// What tells curves of one colour apart.
+/// Dashes that distinguish curves of one colour.
 const DASHES: [&[f64]; 4] = [&[], &[20.0, 8.0], &[6.0, 6.0], &[20.0, 6.0, 6.0, 6.0]];
 
-/// The style of curve `index`: those that the palette has no colours for are dashed.
+/// The style of curve `index`: curves beyond the colours of the palette are dashed.
 pub(crate) fn curve_style(index: usize) -> CurveStyle {
     CurveStyle {
         colour: CURVES[index % CURVES.len()],

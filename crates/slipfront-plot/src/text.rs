@@ -1,4 +1,4 @@
-//! Short texts with subscripts, and how wide they are.
+//! Short texts with subscripts, and their widths.
 
 use crate::font::advance;
 use crate::style::{SIZE_LABEL, SIZE_TICK};
@@ -21,13 +21,13 @@ pub(crate) struct Text {
 pub(crate) struct TextRun {
     pub(crate) text: String,
     pub(crate) size: u32,
-    /// How far below the line it stands.
+    /// Distance of the part below the line.
     pub(crate) drop: f64,
 }
 
 impl Text {
-    /// A text taken as it is, for what a user wrote: control characters and doubled spaces, which SVG does
-    /// not keep, are dropped. Unicode's subscript letters, which the font lacks, become small letters.
+    /// A text as it is, for the words of a user: control characters and doubled spaces, which SVG does not keep, are
+    /// dropped. Unicode's subscript letters, which the font lacks, become small letters.
     pub(crate) fn plain(text: &str, size: u32) -> Self {
         let words = text.split(|c: char| c.is_whitespace() || c.is_control());
         let words: Vec<&str> = words.filter(|word| !word.is_empty()).collect();
@@ -110,12 +110,12 @@ impl Text {
         self.runs.iter().map(|run| width(&run.text, run.size)).sum()
     }
 
-    /// How high its capitals are.
+    /// Height of the text's capitals.
     pub(crate) fn height(&self) -> f64 {
         CAP_HEIGHT * f64::from(self.size)
     }
 
-    /// How far its lowest letter reaches below the line.
+    /// Depth of the text's lowest letter below the line.
     pub(crate) fn depth(&self) -> f64 {
         let reach = |run: &TextRun| {
             let letters = ['g', 'j', 'p', 'q', 'y', '\u{3bc}', '(', ')', ','];
@@ -125,7 +125,7 @@ impl Text {
         self.runs.iter().map(reach).fold(0.0, f64::max)
     }
 
-    /// A plain text cut so that it is at most `width` wide, with an ellipsis for what is left out.
+    /// A plain text cut so that it is at most `width` wide, with an ellipsis for the part that is left out.
     pub(crate) fn shortened(text: &str, size: u32, width: f64) -> Self {
         let whole = Self::plain(text, size);
         if whole.width() <= width {
@@ -143,7 +143,7 @@ impl Text {
     }
 }
 
-/// Where a letter stands.
+/// Vertical position of a letter.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Height {
     Line,
@@ -166,7 +166,7 @@ fn subscript(character: char) -> Option<char> {
         .map(|(_, letter)| letter)
 }
 
-/// How wide letters of this size are.
+/// Width of letters of this size.
 pub(crate) fn width(letters: &str, size: u32) -> f64 {
     letters.chars().map(advance).sum::<f64>() * f64::from(size)
 }

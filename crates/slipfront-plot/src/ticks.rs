@@ -7,19 +7,19 @@ use crate::text::{MINUS, Text, number};
 /// A tick: its pixel along the side, and its number.
 pub(crate) type Tick = (f64, Text);
 
-/// Which way an axis runs: numbers need their width along x, their height along y.
+/// Direction of an axis: numbers need their width along x, their height along y.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Direction {
     X,
     Y,
 }
 
-/// How many steps a linear axis is divided into where there is room.
+/// Largest number of steps of a linear axis where there is room.
 pub(crate) const MAX_STEPS: usize = 6;
-/// A number keeps so far from the next one along its side.
+/// Least distance of a number from the next one along the axis.
 const APART_X: f64 = 20.0;
 const APART_Y: f64 = 14.0;
-/// Over more decades than this, short ticks would be too dense.
+/// Number of decades above which short ticks would be too dense.
 const SHORT_TICK_DECADES: f64 = 4.0;
 
 impl DrawnAxis {
@@ -48,7 +48,7 @@ impl DrawnAxis {
         sparsest
     }
 
-    /// The pixels of ticks without a number, which tell that an axis is logarithmic.
+    /// The pixels of ticks without a number, which mark an axis as logarithmic.
     pub(crate) fn short_ticks(&self) -> Vec<f64> {
         if !self.is_log || self.hi - self.lo > SHORT_TICK_DECADES {
             return Vec::new();
@@ -83,7 +83,7 @@ impl DrawnAxis {
         ticks.iter().map(tick).collect()
     }
 
-    /// Digits times powers of ten on the axis, of which only multiples of `every`, and their pixels.
+    /// Digits times powers of ten on the axis, only multiples of `every`, and their pixels.
     fn round_logarithms(&self, digits: &[f64], every: i32) -> Vec<(f64, i32, f64)> {
         let tolerance = 1e-9 * (self.hi - self.lo);
         let (from, to) = (self.lo - tolerance, self.hi + tolerance);
@@ -131,8 +131,8 @@ fn power_of(value: f64) -> f64 {
     libm::log10(value).floor()
 }
 
-/// One of round values that are `step` apart; very large and very small ones as multiples of one power of ten: `0.5e-9`,
-/// `1.0e-9`.
+/// A round value among values that are `step` apart, as text; very large and very small ones as multiples of one power of
+/// ten: `0.5e-9`, `1.0e-9`.
 fn written(value: f64, step: f64, power: f64) -> String {
     let smallest = power_of(step);
     if (-4.0..6.0).contains(&power) {

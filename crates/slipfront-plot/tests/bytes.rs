@@ -1,4 +1,4 @@
-//! One picture of every kind has the same bytes on every machine.
+//! A picture of every kind has the same bytes on every machine.
 //!
 //! The digests change with the look of the pictures, and with the version of the crate that compresses the PNG.
 
@@ -13,7 +13,7 @@ fn digests(picture: &Picture) -> [String; 2] {
     [picture.svg.as_bytes(), &picture.png[..]].map(|bytes| blake3::hash(bytes).to_hex()[..16].to_string())
 }
 
-/// Numbers that look random and come from whole numbers alone.
+/// Numbers that look random and are made from whole numbers alone.
 fn numbers(count: usize) -> Vec<f64> {
     (0..count)
         .map(|index| (index * index * 7919 % 1009) as f64 / 1009.0)

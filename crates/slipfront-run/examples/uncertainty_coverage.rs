@@ -1,13 +1,13 @@
-//! How often the interval of 95 % of mu_k* holds the mean of an infinite run of the same surface.
+//! Share of the 95 % intervals of mu_k* that hold the mean of an infinite run of the same surface.
 //!
 //! ```console
 //! $ cargo run --release -p slipfront-run --example uncertainty_coverage -- 1001 1334
 //! ```
 //!
-//! 25 x 25 blocks in three regimes, a run for each seed: the speed of the paper's runs, ten times its damping, and a third of its speed. The mean
-//! of a run five times as long as its longest window, whose error is as much smaller, stands for that of an infinite one. Prints of
-//! windows of these lengths how many give a standard error, the root mean square of z, which is the deviation over that error, and how many
-//! intervals of +-1.96 errors hold the mean.
+//! 25 x 25 blocks in three regimes, a run for each seed: the speed of the paper's runs, ten times its damping, and a third
+//! of its speed. The mean of a run five times as long as its longest window, whose error is as much smaller, stands for that
+//! of an infinite one. Prints for windows of these lengths the number that give a standard error, the root mean square of z,
+//! which is the deviation over that error, and the number of intervals of +-1.96 errors that hold the mean.
 
 use std::error::Error;
 
@@ -16,13 +16,13 @@ use slipfront::observe::{KineticHistory, KineticStart, Scheduled};
 use slipfront::{Execution, Simulation, Stop};
 use slipfront_case::case::Case;
 
-/// V* and Omega*.
+/// Speed V* and damping Omega* of each regime.
 const REGIMES: [[f64; 2]; 3] = [[0.03, 0.1], [0.03, 1.0], [0.01, 0.1]];
 
-/// V* times the lengths of windows.
+/// Lengths of windows times V*.
 const WINDOWS: [f64; 3] = [40.0, 80.0, 400.0];
 
-/// Deviation over standard error in each window but the last, none of those that give no standard error.
+/// Deviation over standard error in each window but the last; none for windows that give no standard error.
 fn deviations([v_star, omega_star]: [f64; 2], seed: u64) -> Result<Vec<Option<f64>>, String> {
     let text = format!(
         "slider.blocks = [25, 25]\nslider.omega_star = {omega_star}\ndrive.v_star = {v_star}\nfriction.seed = {seed}\n"

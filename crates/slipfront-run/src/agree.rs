@@ -1,4 +1,4 @@
-//! One outcome of all ranks: what fails on one of them has failed on all.
+//! One outcome of all ranks: a failure on one of them is a failure on all.
 //!
 //! A rank that gave up alone would leave the others waiting for it.
 
@@ -8,17 +8,18 @@ use slipfront::Communicator;
 use slipfront::communicator::{lowest_rank, text_of};
 use thiserror::Error;
 
-/// Why ranks gave up, the same on every rank.
+/// Reason for which ranks gave up, equal on every rank.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("{sentence}")]
 pub struct RankFailure {
     /// The exit status of the program.
     pub status: u8,
-    /// What the lowest rank that failed has to say.
+    /// Error of the lowest rank that failed.
     pub sentence: String,
 }
 
-/// What a rank has done if all have done it, else the failure of the lowest rank that failed. Every rank must ask.
+/// Returns the outcome of this rank if all have succeeded, else the failure of the lowest rank that failed. Every rank must
+/// ask.
 ///
 /// ```
 /// use slipfront::communicator::Alone;
@@ -50,7 +51,7 @@ pub fn agree<T>(communicator: &dyn Communicator, outcome: Result<T, RankFailure>
     })
 }
 
-/// [`agree`] on what every rank has read or written by itself.
+/// [Agrees](agree) on the outcome of reading or writing that every rank did by itself.
 pub(crate) fn agree_on_io<T>(communicator: &dyn Communicator, done: io::Result<T>) -> io::Result<T> {
     let mut own = None;
     let done = done.map_err(|error| {

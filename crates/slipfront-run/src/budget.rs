@@ -1,8 +1,10 @@
-//! Memory and disk space that a run needs with its files and pictures, told before it begins and compared with what the machine has.
+//! Memory and disk space that a run needs with its files and pictures, known before it begins and compared with the memory
+//! and disk of the machine.
 //!
-//! The parts of a [`RunBudget`] are the table of what takes how much: the owners of arrays, files and pictures say what a block, a cell, a row or
-//! a picture takes. Memory is that of the largest of three phases: a case is made, it is run and its results are written, its pictures are
-//! drawn. Of several ranks each takes memory for its own rows, and those of a machine share what it has.
+//! The parts of a [`RunBudget`] are a table of causes and their bytes: the owners of arrays, files and pictures state the
+//! bytes of a block, a cell, a row or a picture. Memory is that of the largest of three phases: a case is made, it is run
+//! and its results are written, its pictures are drawn. Each of several ranks takes memory for its own rows, and the ranks
+//! of a machine share its memory.
 
 use std::ops::Range;
 use std::path::Path;
@@ -17,13 +19,13 @@ use crate::fields::{SHARE_BYTES, STATIC_BYTES, WORKING_SHARE_BYTES, record_bytes
 use crate::series::COLUMN_BYTES;
 use crate::{front, precursors, series};
 
-/// A number of a block.
+/// Bytes of a number of a block.
 const NUMBER: f64 = size_of::<f64>() as f64;
 
 /// Bytes of the files of all pictures without those of maps, of the summary and of the manifest (measured: at most 0.7 MB).
 const FILE_BYTES: f64 = 2e6;
 
-/// Bytes that the pictures of a run take.
+/// Bytes of the pictures of a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct PictureBytes {
     /// Bytes of the cells of the lattice while maps are read.
@@ -43,53 +45,53 @@ pub(crate) struct PictureBytes {
 /// Memory and disk space that a run needs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RunBudget {
-    /// What making and stepping the case takes.
+    /// Memory for making and stepping the case.
     case: Budget,
     /// Bytes of a block in a checkpoint.
     saved: f64,
-    /// Blocks of the rows that this process holds that are kept of a field.
+    /// Blocks of this process whose fields are kept.
     cells: f64,
     /// Blocks of the whole lattice.
     all_blocks: f64,
-    /// Blocks of the whole lattice that are kept of a field.
+    /// Blocks of the whole lattice whose fields are kept.
     pub(crate) all_cells: f64,
     pub(crate) frames: f64,
     fields: f64,
     rows: f64,
     /// Bytes of a row in its file.
     row_text: f64,
-    /// Events of slip of a slider that is driven at an edge.
+    /// Number of events of slip of a slider that is driven at an edge.
     events: f64,
-    /// Places times instants of the kymograph.
+    /// Number of places times instants of the kymograph.
     kymograph: f64,
     pub(crate) pictures: PictureBytes,
     /// Whether the run resumes from a checkpoint.
     is_resumed: bool,
 }
 
-/// What takes memory or disk space.
+/// A part of the memory or disk space of a run.
 struct Part {
-    /// Its words are made for a refusal alone, since many small cases are judged.
+    /// Function that makes the words of the cause, called for a refusal alone because many small cases are judged.
     cause: fn(&RunBudget) -> Cause,
     /// Bytes in each [`Phase`].
     bytes: [f64; 5],
 }
 
-/// The phases of a run that take memory, then what takes disk space.
+/// The phases of a run that take memory, then the parts of its disk space.
 #[derive(Clone, Copy, Debug)]
 enum Phase {
     Making,
-    /// What writing files takes for the blocks is less than the kernel's share.
+    /// Running; memory for writing files is less than the kernel's share for the blocks.
     Running,
-    /// Two pictures at once, by the first of several ranks.
+    /// Drawing two pictures at once, by the first of several ranks.
     Drawing,
     Files,
-    /// Blocks, snapshots and rows as they stand in memory, of all ranks.
+    /// A checkpoint: blocks, snapshots and rows as they stand in memory, of all ranks.
     Checkpoint,
 }
 
 impl RunBudget {
-    /// The budget of a run of a case without its pictures, for the rows that this process holds. The budget with them is
+    /// The budget of a run of a case without its pictures, for the rows that this process holds. The budget with pictures is
     /// `pictures::run_budget`.
     pub fn without_pictures(case: &Case) -> Self {
         let (model, output, last_step) = (&case.model, &case.output, case.time_plan.last_step);
@@ -122,7 +124,7 @@ impl RunBudget {
         }
     }
 
-    /// What takes how many bytes in each phase.
+    /// Parts of the memory and disk space, with the bytes of each in each phase.
     fn parts(&self) -> [Part; 5] {
         let (blocks, all_cells, pictures) = (self.case.blocks, self.all_cells, &self.pictures);
         let (frames, fields, rows) = (self.frames, self.fields, self.rows);
@@ -198,7 +200,7 @@ impl RunBudget {
         ]
     }
 
-    /// Bytes of a phase, with those that no key of a case changes.
+    /// Bytes of a phase, including those that no key of a case changes.
     fn total(&self, phase: Phase) -> f64 {
         let counts = Budget::grown(self.kymograph) * Kymograph::COUNT_BYTES as f64;
         let working_shares = self.kymograph * WORKING_SHARE_BYTES as f64;
@@ -222,7 +224,7 @@ impl RunBudget {
         most.unwrap_or(Phase::Running)
     }
 
-    /// Bytes of a rank in a phase, with what the first of several has of the others' blocks.
+    /// Bytes of a rank in a phase; the first of several also holds numbers of the others' blocks.
     fn of_rank(&self, phase: Phase) -> f64 {
         let gathered = match (phase, self.case.is_shared) {
             (Phase::Running, true) => front::bytes_of_shared(self.all_blocks),
@@ -231,7 +233,7 @@ impl RunBudget {
         PROGRAM + Budget::resident(self.total(phase) + gathered)
     }
 
-    /// Bytes of all ranks of this machine in a phase. While one draws, the others have at most what they ran with.
+    /// Bytes of all ranks of this machine in a phase. While one draws, the others have at most the bytes of running.
     fn on_node(&self, phase: Phase) -> f64 {
         let others = match phase {
             Phase::Drawing => Phase::Running,
@@ -240,12 +242,12 @@ impl RunBudget {
         self.of_rank(phase) + (self.case.ranks_on_node - 1.0) * self.of_rank(others)
     }
 
-    /// Memory of a run with its files and pictures, in bytes; of each rank if there are several.
+    /// Memory of a run with its files and pictures, in bytes; memory of each rank if there are several.
     pub fn memory(&self) -> f64 {
         self.of_rank(self.largest(true))
     }
 
-    /// Memory of one of several runs at once, each on one thread, in bytes; of one that writes no files if not `writes`.
+    /// Memory of one of several runs at once, each on one thread, in bytes; `writes` tells whether it writes files.
     pub fn memory_beside_others(&self, writes: bool) -> f64 {
         let mut on_one_thread = *self;
         on_one_thread.case.bands = 0.0;
@@ -258,7 +260,7 @@ impl RunBudget {
         self
     }
 
-    /// Room for the files of a run, in bytes.
+    /// Disk space for the files of a run, in bytes.
     pub fn disk(&self) -> f64 {
         self.total(Phase::Files)
     }
@@ -269,21 +271,22 @@ impl RunBudget {
         snapshots.bytes[Phase::Files as usize]
     }
 
-    /// Room for checkpoints while the run goes on, in bytes: the latest one, the one before it, and one that is being written.
+    /// Disk space for checkpoints while the run goes on, in bytes: the latest one, the one before it, and one that is being
+    /// written.
     pub fn disk_of_checkpoints(&self) -> f64 {
         3.0 * self.total(Phase::Checkpoint)
     }
 
-    /// Refuses a run, or to resume one, that needs more memory than there is; surface and slider are there already, of all ranks.
+    /// Refuses a run, new or resumed, that needs more memory than there is; surface and slider of all ranks are in memory
+    /// already.
     ///
-    /// # Errors
-    /// A sentence with both figures, what most of it is for, and the key to change.
+    /// # Errors A sentence with both figures, the cause of the largest part, and the key to change.
     pub fn check_memory(&self, file: &CaseFile) -> Result<(), CaseError> {
         let made = self.case.blocks * self.case.surface;
         self.compare_memory(file, made, available_memory())
     }
 
-    /// `had` is what each rank has taken of the memory already, `available` what there is beside it.
+    /// Compares the memory of the run: `had` bytes were taken by each rank already, `available` bytes are free beside them.
     fn compare_memory(&self, file: &CaseFile, had: f64, available: Option<f64>) -> Result<(), CaseError> {
         let phase = self.largest(true);
         let (mut cause, bytes) = self.most(phase);
@@ -305,7 +308,7 @@ impl RunBudget {
         self.case.compare(demand, available)
     }
 
-    /// Refuses a run whose files, and checkpoints if it saves any, have no room in `folder`, which need not be there yet.
+    /// Refuses a run whose files, and checkpoints if it saves any, have no room in `folder`, which need not exist yet.
     /// `replaced` is what goes from there before.
     ///
     /// # Errors
@@ -349,7 +352,7 @@ impl RunBudget {
         Err(file.source.error(cause.key, sentence))
     }
 
-    /// What most bytes of a phase are due to, and how many these are.
+    /// Cause of the largest part of the bytes of a phase, and its bytes.
     fn most(&self, phase: Phase) -> (Cause, f64) {
         let bytes_of = |part: &Part| part.bytes[phase as usize];
         let [mut most, others @ ..] = self.parts();
@@ -391,7 +394,7 @@ mod tests {
         }
     }
 
-    /// Why a run with this budget is refused, if it is.
+    /// Reason for which a run with this budget is refused, if it is.
     fn refusal(case: &Case, budget: &RunBudget, had: f64, available: Option<f64>) -> Option<String> {
         let compared = budget.compare_memory(&case.file, had, available);
         compared.err().map(|error| error.to_string())
@@ -427,7 +430,7 @@ mod tests {
         }
     }
 
-    /// Four ranks, two of them on this machine.
+    /// Ranks share the memory of a run: four ranks, two of them on this machine.
     #[test]
     fn ranks_share_what_a_run_takes() {
         let overrides = ["slider.blocks=[2000,2000]", "output.snapshots={every=20}"].map(str::to_owned);
@@ -488,7 +491,7 @@ mod tests {
         );
     }
 
-    /// The case itself is in memory when its run is judged.
+    /// Memory that has been taken already counts as available: the case itself is in memory when its run is judged.
     #[test]
     fn what_has_been_taken_already_counts_as_available() {
         let case = case(&["slider.blocks=[2000,1000]", "output.snapshots=[]"]);

@@ -1,8 +1,8 @@
 //! Checksums (BLAKE3), by which changed and damaged files are noticed.
 //!
-//! A checksummed file is its contents followed by a hash. That of a small file is one of a context and of the contents; the
-//! context is what the contents are valid for, such as a build of the program, and is not written. That of a large file is one
-//! of the hashes of its pieces, which several ranks find together.
+//! A checksummed file is its contents followed by a hash. The hash of a small file is taken over a context and the contents;
+//! the context names the conditions under which the contents are valid, such as a build of the program, and is not written.
+//! The hash of a large file is taken over the hashes of its pieces, which several ranks find together.
 
 use std::io::{ErrorKind, Read, Seek, SeekFrom};
 
@@ -11,7 +11,7 @@ use slipfront::Communicator;
 
 use crate::agree::agree_on_io;
 
-/// Bytes of a piece; the last may be shorter.
+/// Bytes of a piece; the last piece may be shorter.
 const PIECE: u64 = 4 << 20;
 
 /// Pieces whose hashes are in memory at once, in 2 MiB.
@@ -103,7 +103,8 @@ mod tests {
         }
     }
 
-    /// Files that end at, before and behind the end of a piece, held against the hash of the hashes of the pieces.
+    /// Any number of ranks finds the hash of the hashes of the pieces, for files that end at, before and behind the end of a
+    /// piece.
     #[test]
     fn any_number_of_ranks_finds_the_same_hash_of_pieces() {
         let piece = PIECE as usize;

@@ -1,14 +1,14 @@
-//! The time, which goes on whatever is done to the clock of the machine meanwhile.
+//! The time, which is monotonic even if the clock of the machine is changed.
 
 use std::sync::LazyLock;
 use std::time::Instant;
 
 use jiff::Timestamp;
 
-/// When this was asked first in this process: by the clock, and by what only goes on.
+/// Times of the first call in this process, by the clock and by a monotonic clock.
 static FIRST: LazyLock<(Timestamp, Instant)> = LazyLock::new(|| (Timestamp::now(), Instant::now()));
 
-/// The time, which only goes on in this process.
+/// The present time, which is monotonic within this process.
 pub fn now() -> Timestamp {
     let (time, instant) = *FIRST;
     time + instant.elapsed()

@@ -1,14 +1,14 @@
-//! Where the numbers of blocks stand in a checkpoint.
+//! Places of the numbers of blocks in a checkpoint.
 
 use serde::{Deserialize, Serialize};
 
-/// Arrays of one shape, one after the other, each with the numbers of all rows of the lattice. Processes that hold other rows
-/// find their own by this.
+/// Arrays of one shape, one after the other, each with the numbers of all rows of the lattice. Processes that hold some rows
+/// find the places of their own numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Columns {
-    /// How many arrays.
+    /// Number of arrays.
     pub count: u64,
-    /// Rows of each.
+    /// Rows of each array.
     pub rows: u64,
     /// Numbers of a row.
     pub row_length: u64,

@@ -1,4 +1,4 @@
-//! What can go wrong with the results of a run.
+//! Errors of the results of a run.
 
 use std::path::PathBuf;
 
@@ -9,7 +9,7 @@ use thiserror::Error;
 use crate::fields::FieldsError;
 use crate::folder_error::FolderError;
 
-/// What can go wrong with results.
+/// An error of results.
 #[derive(Debug, Error)]
 #[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
 pub enum ResultsError {

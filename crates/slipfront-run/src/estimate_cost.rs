@@ -1,15 +1,15 @@
-//! What a run will cost, from some of its steps.
+//! Estimate of the cost of a run from some of its steps.
 
 use std::time::{Duration, Instant};
 
 use slipfront::{Execution, Simulation};
 use slipfront_case::case::Case;
 
-/// Time that an estimate takes.
+/// Duration of an estimate.
 const ESTIMATE: Duration = Duration::from_millis(100);
 
-/// Seconds that a step of this case takes when every block is looked at: no run takes longer, and one with blocks at rest
-/// is faster.
+/// Seconds that a step of this case takes when every block is computed: no run takes longer, and one with blocks at rest is
+/// faster.
 pub fn seconds_per_step(case: &Case) -> f64 {
     let execution = Execution {
         skips: false,

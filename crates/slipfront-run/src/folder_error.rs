@@ -1,4 +1,4 @@
-//! Why a run folder cannot be used.
+//! Errors of run folders.
 
 use std::path::{Path, PathBuf};
 
@@ -8,7 +8,7 @@ use thiserror::Error;
 use crate::manifest::ManifestError;
 use crate::resume_command::resume_command;
 
-/// What can go wrong with a run folder.
+/// An error of a run folder.
 #[derive(Debug, Error)]
 #[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
 pub enum FolderError {
@@ -71,7 +71,7 @@ pub enum FolderError {
 }
 
 impl FolderError {
-    /// What the system says of a folder that should be written to.
+    /// An error of the system about a folder that should be written to.
     pub fn unwritable(path: &Path) -> impl Fn(std::io::Error) -> Self {
         move |source| Self::Unwritable {
             path: path.to_owned(),
@@ -79,7 +79,7 @@ impl FolderError {
         }
     }
 
-    /// What the system says of a file that should be written.
+    /// An error of the system about a file that should be written.
     pub fn write(path: &Path) -> impl Fn(std::io::Error) -> Self {
         move |source| Self::Write {
             path: path.to_owned(),
@@ -87,7 +87,7 @@ impl FolderError {
         }
     }
 
-    /// What the system says of a file or folder that should be read.
+    /// An error of the system about a file or folder that should be read.
     pub fn read(path: &Path) -> impl Fn(std::io::Error) -> Self {
         move |source| Self::Read {
             path: path.to_owned(),

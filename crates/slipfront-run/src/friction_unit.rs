@@ -1,13 +1,13 @@
-//! What one unit of mu* is in a laboratory.
+//! The unit of mu* in a laboratory.
 
 use slipfront::{Model, Scales};
 
 /// One unit of mu* of a whole slider.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum FrictionUnit {
-    /// A force, N.
+    /// Unit of a force, N.
     Force(f64),
-    /// A torque, N m, of a drive that rotates.
+    /// Unit of a torque, N m, under a drive that rotates.
     Torque(f64),
 }
 
@@ -20,7 +20,7 @@ impl FrictionUnit {
         }
     }
 
-    /// A friction in N; none of a drive that rotates.
+    /// Friction in N; none for a drive that rotates.
     pub(crate) fn force(self, mu_star: f64) -> Option<f64> {
         match self {
             Self::Force(force) => Some(mu_star * force),
@@ -28,7 +28,7 @@ impl FrictionUnit {
         }
     }
 
-    /// A torque in N m; none of a drive that does not rotate.
+    /// Torque in N m; none for a drive that does not rotate.
     pub(crate) fn torque(self, mu_star: f64) -> Option<f64> {
         match self {
             Self::Force(_) => None,

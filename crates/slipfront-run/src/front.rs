@@ -8,23 +8,24 @@ use slipfront::observe::{Front, Quantiles};
 use slipfront::{Edges, Lattice};
 use slipfront_case::case::Case;
 
-/// Most blocks that are looked at: of a larger lattice every n-th of each axis. The first rank holds the times of them all.
+/// Largest number of blocks from which the front is found: of a larger lattice every n-th of each axis is taken. The first
+/// rank holds the times of all of them.
 const MAX_BLOCKS: usize = 1 << 22;
 
-/// Bytes that the first of several ranks takes to find the front of a lattice of so many blocks.
+/// Bytes that the first of several ranks takes to find the front of a lattice of `n_blocks` blocks.
 pub(crate) fn bytes_of_shared(n_blocks: f64) -> f64 {
     let per_block = size_of::<f64>() + Front::BYTES_PER_BLOCK;
     n_blocks.min(MAX_BLOCKS as f64) * per_block as f64
 }
 
-/// Numbers that ranks tell each other at once.
+/// Number of values that ranks exchange at once.
 const PART: usize = 1 << 17;
 
-/// In place of the time of a block without contact.
+/// Marks a block without contact, in place of its time.
 const NO_CONTACT: f64 = f64::INFINITY;
 
-/// The front in units of this model: lengths in blocks, times t*. Of a slider driven at an edge, all but the sites are those of the event
-/// that crosses it.
+/// The front in units of this model: lengths in blocks, times t*. For a slider driven at an edge, all but the sites belong
+/// to the event that crosses it.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct LatticeFront {
     pub(crate) nucleations: Vec<Nucleation>,
@@ -33,17 +34,17 @@ pub(crate) struct LatticeFront {
     pub(crate) duration_star: Option<f64>,
 }
 
-/// Where and when slip has nucleated.
+/// Place and time at which slip has nucleated.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Nucleation {
-    /// The middle of the first block.
+    /// Middle of the first block.
     pub(crate) place: [f64; 2],
     pub(crate) time_star: f64,
 }
 
-/// The front of a run with these first slips of the blocks that this rank holds, on the first rank; none on the others, and none
-/// if nothing has slipped. It passes `during` these t*: of a slider driven at an edge one event alone, since between two of them slip
-/// spreads as fast as the drive loads it. All ranks must call this together.
+/// The front of a run with these first slips of the blocks that this rank holds, on the first rank; none on the others, and
+/// none if nothing has slipped. The front passes `during` these t*: for a slider driven at an edge one event alone, since
+/// between two events slip spreads as fast as the drive loads it. All ranks must call this together.
 pub(crate) fn of_ranks(
     case: &Case,
     first_slips: &[f64],
@@ -170,7 +171,7 @@ mod tests {
     const CASE: &str = "slider.blocks = [37, 29]\ndrive.v_star = 0.1\ntime.stop = 'after_onset'\n\
                         slider.edges = ['periodic', 'free']\n[[texture]]\nshape = 'cavity'\ncoverage = 12";
 
-    /// The summary has the same bits, though no rank holds all blocks.
+    /// Ranks find the front that one rank finds, though no rank holds all blocks.
     #[test]
     fn ranks_find_the_front_that_one_finds() {
         let case = Arc::new(Case::parse(CASE, "case", "", &[]).unwrap());
@@ -224,7 +225,7 @@ mod tests {
         }
     }
 
-    /// A straight front over more blocks than are looked at.
+    /// A straight front over more blocks than the front is found from.
     #[test]
     fn a_large_lattice_is_thinned() {
         let case = Case::parse("slider.blocks = [61, 40]", "case", "", &[]).unwrap();

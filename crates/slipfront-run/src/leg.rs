@@ -8,22 +8,22 @@ use thiserror::Error;
 
 use crate::running::Running;
 
-/// What a [change](Running::change) gives.
+/// Result of a [change](Running::change) of the case.
 pub struct Leg {
-    /// The run under the new case, at its t* = 0.
+    /// The run under the new case, at t* = 0.
     pub running: Running,
     /// Steps of the leg before, with the one that had begun.
     pub steps: u64,
     /// t* of the drive in these steps.
     pub drive_time_star: f64,
-    /// How long they have taken, s.
+    /// Duration of these steps, s.
     pub time_s: f64,
-    /// Where the driven ends of the drive springs stand, block by block, m: what the displacements of the new leg are less than those
-    /// of the leg before.
+    /// Displacement of the driven ends of the drive springs, block by block, m: the difference between displacements of the
+    /// leg before and of the new leg.
     pub drive_m: VectorField,
 }
 
-/// A change that is refused.
+/// Reason for which a change is refused.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
 pub enum ChangeError {
@@ -66,11 +66,11 @@ impl Running {
     /// v' = v W/W'                 with W = P mu_s l/(h sqrt(E rho))
     /// ```
     ///
-    /// where X is the displacement of the driven end over each block, and a prime marks the new case. Scales, load and what is stuck
-    /// follow the new case. This run stays as it is.
+    /// where X is the displacement of the driven end over each block, and a prime marks the new case. Scales, load and the
+    /// state of stuck blocks follow the new case. This run stays as it is.
     ///
-    /// # Errors
-    /// [`ChangeError`] when the cases have other blocks, contacts of one of them remember more than a state tells, or the run diverges.
+    /// # Errors [`ChangeError`] when the cases have other blocks, contacts of one of them remember more than a state holds,
+    /// or the run diverges.
     ///
     /// # Panics
     /// If several ranks share the lattice.
@@ -178,8 +178,8 @@ mod tests {
         values.iter().fold(0.0, |most, value| most.max(value.abs()))
     }
 
-    /// A leg that begins after `steps` under `after` against a run under `case` alone: mu* where it begins, and 200 steps later
-    /// displacements over the largest.
+    /// Compares a leg that begins after `steps` under `after` with a run under `case` alone: difference of mu* at the
+    /// beginning, and of displacements 200 steps later, over the largest.
     fn differences(case: &Arc<Case>, after: &Arc<Case>, steps: u64) -> [f64; 2] {
         let (mut plain, before) = (started(case, steps), started(case, steps - 1));
         let mut leg = before.change(after, 1).unwrap();
@@ -315,7 +315,7 @@ mod tests {
         }
     }
 
-    /// A block that is farther away than the numbers of a load of a thousandth reach.
+    /// A block is farther away than the numbers reach under a load of a thousandth.
     #[test]
     fn numbers_beyond_all_bounds_are_refused() {
         let (case, unloaded) = (case_of(&[]), case_of(&["load.pressure = '100 Pa'"]));

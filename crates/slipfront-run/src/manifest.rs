@@ -1,6 +1,6 @@
-//! `manifest.json`: what was written to a run folder, by which program, when and where.
+//! The file `manifest.json`: the files of a run folder, and the program, time and machine that wrote them.
 //!
-//! It is the only file of a run that another run of the same case does not repeat, and the last to be written.
+//! The manifest is the only file of a run that another run of the same case does not repeat, and the last to be written.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -21,44 +21,44 @@ use slipfront_case::text::{single_line, truncated};
 /// The last key of a manifest in its file. The checksum, its value, is the hash of all bytes before it.
 const CHECKSUM_KEY: &[u8] = b"\"seal\"";
 
-/// What was written, and how it came about. Keys that an earlier version did not write are empty.
+/// The files that were written, and their origin. Keys that an earlier version did not write are empty.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Manifest {
     /// Version of slipfront.
     pub version: String,
-    /// The git commit that it was built from, with `-dirty` if its sources were changed; null outside of git.
+    /// The git commit from which the program was built, with `-dirty` if its sources were changed; null outside of git.
     #[serde(default)]
     pub revision: Option<String>,
-    /// The identity of the build, by which programs that give the same bits are told: see [`program::this_build`].
+    /// The identity of the build, which is equal for programs that give the same bits: see [`program::this_build`].
     #[serde(default)]
     pub build: String,
     /// The kernel that made the steps.
     #[serde(default)]
     pub kernel: String,
-    /// The SIMD width at which it was compiled; results do not depend on it.
+    /// The SIMD width of the kernel; results do not depend on it.
     #[serde(default)]
     pub simd_width: String,
-    /// Threads that it was allowed; results do not depend on them.
+    /// Number of threads that the run was allowed; results do not depend on it.
     pub threads: usize,
     /// Name of the machine.
     pub host: String,
     /// Operating system and processor.
     pub platform: String,
-    /// When the run began, UTC.
+    /// Time at which the run began, UTC.
     pub started: String,
-    /// When its last file was written, UTC.
+    /// Time at which the last file was written, UTC.
     pub finished: String,
-    /// Seconds in between, whatever was done to the clock of the machine meanwhile.
+    /// Seconds from the beginning to the end, by a monotonic clock.
     pub wall_time_s: f64,
-    /// BLAKE3 hash of `case.toml`, by which equal cases are told.
+    /// BLAKE3 hash of `case.toml`; equal cases have equal hashes.
     #[serde(default)]
     pub case_blake3: String,
-    /// Where its random numbers come from.
+    /// Origin of the run's random numbers.
     #[serde(default)]
     pub random: Random,
     /// Every other file of the run.
     pub files: Vec<ManifestFile>,
-    /// BLAKE3 hash of the manifest itself up to this key, which is called `seal` in the file.
+    /// BLAKE3 hash of the manifest itself up to this key, whose name is `seal` in the file.
     #[serde(default, rename = "seal")]
     pub checksum: String,
 }
@@ -66,26 +66,26 @@ pub struct Manifest {
 /// Seed and streams of the random numbers.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Random {
-    /// The generator.
+    /// Name of the generator.
     pub generator: String,
-    /// The seed.
+    /// Seed of the run.
     pub seed: u64,
-    /// The streams by what is drawn from them.
+    /// The streams by the quantity that is drawn from them.
     pub streams: BTreeMap<String, u64>,
 }
 
 /// A file and its checksum.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ManifestFile {
-    /// Path in the folder.
+    /// Path of the file in the folder.
     pub name: String,
-    /// Length.
+    /// Length of the file in bytes.
     pub bytes: u64,
-    /// BLAKE3 hash, hexadecimal.
+    /// BLAKE3 hash of the file, hexadecimal.
     pub blake3: String,
 }
 
-/// A manifest that cannot be used.
+/// Reason for which a manifest cannot be used.
 #[derive(Clone, Debug, Error)]
 #[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
 pub enum ManifestError {
@@ -101,7 +101,7 @@ pub enum ManifestError {
 }
 
 impl Manifest {
-    /// That of a run which ends now and has written these files.
+    /// Manifest of a run that has just finished and has written these files.
     pub(crate) fn of(
         files: Vec<ManifestFile>,
         case: &Case,
@@ -134,7 +134,7 @@ impl Manifest {
         }
     }
 
-    /// Whether the run has drawn its pictures, of which every run has that of the friction.
+    /// Whether the run has drawn its pictures; every run with pictures has the one of friction.
     pub fn has_pictures(&self) -> bool {
         let friction = RunPicture::Friction.files();
         self.files.iter().any(|file| friction.contains(&file.name))
@@ -148,7 +148,7 @@ impl Manifest {
         (self, bytes)
     }
 
-    /// Reads the manifest of a run folder, if it is as it was written.
+    /// Reads the manifest of a run folder, if it is unchanged.
     pub fn read(folder: &Path) -> Result<Self, ManifestError> {
         let path = folder.join(MANIFEST);
         let damaged = |why| ManifestError::Damaged {
@@ -177,7 +177,7 @@ impl Manifest {
         Err(damaged(why.to_owned()))
     }
 
-    /// The program that wrote it, in words.
+    /// The program that wrote the manifest, in words.
     pub fn program(&self) -> String {
         truncated(&program::in_words(&self.version, self.revision.as_deref()))
     }
@@ -207,7 +207,7 @@ impl ManifestFile {
         }
     }
 
-    /// One of this name whose bytes have been hashed.
+    /// An entry for a file of this name whose bytes have been hashed.
     pub(crate) fn hashed(name: &str, hasher: &blake3::Hasher) -> Self {
         Self {
             name: name.to_owned(),

@@ -13,26 +13,26 @@ use thiserror::Error;
 /// A column as a user names it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Column {
-    /// Its name in the header, with or without the unit there, or its number from 1.
+    /// Name of the column in the header, with or without the unit there, or its number from 1.
     pub name: String,
-    /// Its unit, if the header has none or another is meant.
+    /// Unit of the column, if the header has none or another is meant.
     pub unit: Option<String>,
 }
 
-/// What a column counts.
+/// Quantity of a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Measure {
-    /// s.
+    /// Time, s.
     Time,
-    /// m.
+    /// Displacement, m.
     Displacement,
-    /// N.
+    /// Force, N.
     Force,
-    /// 1.
+    /// Friction coefficient, 1.
     Coefficient,
 }
 
-/// Why a table is no record.
+/// Reason for which a table is no record.
 #[derive(Debug, Error)]
 #[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
 pub enum MeasuredError {
@@ -79,7 +79,7 @@ pub enum MeasuredError {
     TooShort { path: PathBuf, found: usize },
 }
 
-/// In the beginning of a table, its header tells what separates its fields.
+/// Number of bytes at the beginning of a table in which the separator is looked for.
 const HEAD_BYTES: u64 = 1 << 16;
 
 /// Two columns in SI units, of which the first never falls.
@@ -89,14 +89,14 @@ pub struct MeasuredRecord {
     pub x: Vec<f64>,
     /// Forces or coefficients.
     pub y: Vec<f64>,
-    /// Whether the first are times or displacements.
+    /// Whether the abscissae are times or displacements.
     pub along: Measure,
-    /// Whether the second are forces or coefficients.
+    /// Whether the ordinates are forces or coefficients.
     pub of: Measure,
 }
 
 impl Measure {
-    /// Its SI unit.
+    /// SI unit of the quantity.
     pub fn unit(self) -> &'static str {
         match self {
             Self::Time => "s",
@@ -123,12 +123,13 @@ impl Measure {
 }
 
 impl MeasuredRecord {
-    /// Reads two columns of a table whose fields are separated by commas, semicolons, tabs or blanks; where it is not commas,
-    /// numbers may have decimal commas. Lines that begin with `#`, and those without a number in one of the columns, count as none.
-    /// The first column is along times or displacements; the second has forces, or coefficients if its unit is 1.
+    /// Reads two columns of a table whose fields are separated by commas, semicolons, tabs or blanks; unless commas
+    /// separate, numbers may have decimal commas. Lines that begin with `#`, and those without a number in one of the
+    /// columns, count as none. The first column is along times or displacements; the second has forces, or coefficients if
+    /// its unit is 1.
     ///
-    /// # Errors
-    /// When the table cannot be read, has not these columns, or has something else than numbers in them; when no unit is known.
+    /// # Errors When the table cannot be read, has not these columns, or holds entries in them that are no numbers; when no
+    /// unit is known.
     pub fn read(path: &Path, columns: [&Column; 2], along: Measure) -> Result<Self, MeasuredError> {
         let failed = |source: csv::Error| MeasuredError::Read {
             path: path.to_owned(),
@@ -224,7 +225,7 @@ fn number(field: &str, separator: u8) -> Option<f64> {
     value.ok().filter(|value: &f64| value.is_finite())
 }
 
-/// Position of a column among so many, whose names these are if they have any.
+/// Position of a column among `n`, which have `names` if the list is not empty.
 fn place(path: &Path, column: &Column, names: &[String], n: usize) -> Result<usize, MeasuredError> {
     let wanted = column.name.to_lowercase();
     let is_named = |name: &String| {
@@ -264,7 +265,7 @@ fn split_unit(name: &str) -> (&str, Option<&str>) {
     }
 }
 
-/// The unit of a column: that which is given, or that in its header.
+/// The unit of a column: the given one, or the one in its header.
 fn unit_of<'a>(column: &'a Column, header: Option<&'a String>) -> Option<&'a str> {
     let in_header = || split_unit(header?).1;
     column.unit.as_deref().or_else(in_header)

@@ -2,7 +2,7 @@
 
 /// The resolved case.
 pub const CASE: &str = "case.toml";
-/// What was written, by which program, when and where; the last file to be written.
+/// The manifest: the files that were written, and the program, time and machine; the last file to be written.
 pub const MANIFEST: &str = "manifest.json";
 /// The numbers of a run.
 pub const SUMMARY: &str = "summary.json";
@@ -10,13 +10,13 @@ pub const SUMMARY: &str = "summary.json";
 pub const SERIES: &str = "series.csv";
 /// The events of slip of a run that is driven at an edge.
 pub const PRECURSORS: &str = "precursors.csv";
-/// What slides against place and time.
+/// The share of sliding blocks against place and time.
 pub const KYMOGRAPH: &str = "kymograph.nc";
 /// The fields of a run, block by block.
 pub const FIELDS: &str = "fields.nc";
 /// The movie of a run, if the case asks for it.
 pub const MOVIE: &str = "movie.gif";
-/// The hidden subfolder of everything that belongs to a run which is not complete.
+/// The hidden subfolder for everything that belongs to a run which is not complete.
 pub const UNFINISHED: &str = ".slipfront";
 /// In the hidden subfolder: the files that the run has finished, which also says that the subfolder is slipfront's.
 pub const JOURNAL: &str = "journal.jsonl";
@@ -26,14 +26,14 @@ pub const TEMPORARY: &str = "tmp";
 pub const CHECKPOINT: &str = "checkpoint.bin";
 /// In the hidden subfolder: the checkpoint before the latest.
 pub const PREVIOUS: &str = "checkpoint-previous.bin";
-/// Results that the figures of the paper are made of, kept between calls of `slipfront paper`.
+/// Results from which the figures of the paper are made, kept between calls of `slipfront paper`.
 pub const FIGURE_CACHE: &str = "found";
 /// The journal of a study: a line for every run that has ended.
 pub const RECORDS: &str = "records.jsonl";
 /// Tables of a study: a row for every run, a row for every quantity at every point, and, where the direction of the drive is varied, a row
 /// for friction over all directions.
 pub const TABLES: [&str; 3] = ["runs.csv", "points.csv", "anisotropy.csv"];
-/// What a study over meshes found: as numbers, and as a text.
+/// Results of a study over meshes: as numbers, and as a text.
 pub const CONVERGENCE: [&str; 2] = ["convergence.json", "convergence.txt"];
 /// Subfolder of the run folders that a study keeps.
 pub const RUNS: &str = "runs";
@@ -47,7 +47,7 @@ pub enum RunPicture {
     Stress,
     /// First slips, and sliding against place and time.
     Front,
-    /// How far events of slip reach under the load.
+    /// The reach of events of slip against the load.
     Precursors,
 }
 
@@ -55,7 +55,7 @@ impl RunPicture {
     /// Every picture of a run.
     pub const ALL: [Self; 4] = [Self::Friction, Self::Stress, Self::Front, Self::Precursors];
 
-    /// Name of its files.
+    /// Name of the picture's files.
     pub fn name(self) -> &'static str {
         match self {
             Self::Friction => "friction",
@@ -65,7 +65,7 @@ impl RunPicture {
         }
     }
 
-    /// What it shows, in words.
+    /// Content of the picture in words.
     pub fn shows(self) -> &'static str {
         match self {
             Self::Friction => "friction and sliding blocks against time",
@@ -75,7 +75,7 @@ impl RunPicture {
         }
     }
 
-    /// Names of its files, with their endings.
+    /// Names of the picture's files, with their endings.
     pub fn files(self) -> [String; 2] {
         ["svg", "png"].map(|ending| format!("{}.{ending}", self.name()))
     }

@@ -1,4 +1,4 @@
-//! `precursors.csv`: the events of slip of a slider that is driven at an edge, one row each.
+//! The file `precursors.csv`: the events of slip of a slider that is driven at an edge, one row each.
 
 use std::path::Path;
 
@@ -15,19 +15,20 @@ use crate::series::{SeriesError, columns_of, finish, read_rows};
 pub struct PrecursorRow {
     /// t* at which the first block in contact slides.
     pub time_star: f64,
-    /// The same in s.
+    /// Time in s at which the first block in contact slides.
     pub time_s: f64,
-    /// How far from the driven edge a block in contact has slid, over the length of the slider: 1 for an event that crosses it.
+    /// Largest distance from the driven edge at which a block in contact has slid, over the length of the slider: 1 for an
+    /// event that crosses it.
     pub length: f64,
     /// mu* when the event begins.
     pub mu_star_before: f64,
-    /// The same as a friction coefficient, F_T/F_N.
+    /// Friction coefficient when the event begins, F_T/F_N.
     pub friction_coefficient_before: f64,
     /// mu* when all blocks in contact are stuck again.
     pub mu_star_after: Option<f64>,
-    /// The same as a friction coefficient, F_T/F_N.
+    /// Friction coefficient when all blocks in contact are stuck again, F_T/F_N.
     pub friction_coefficient_after: Option<f64>,
-    /// t* at which they are.
+    /// t* at which all blocks in contact are stuck again.
     pub until_star: Option<f64>,
 }
 
@@ -55,7 +56,7 @@ pub fn rows(events: &[SlipEvent], scales: &Scales) -> Vec<PrecursorRow> {
         .collect()
 }
 
-/// The columns of a table of events, with NaN for what was not found.
+/// The columns of a table of events, with NaN for missing numbers.
 pub fn columns(rows: &[PrecursorRow]) -> impl Iterator<Item = (&'static str, Vec<f64>)> {
     let all = columns_of! { PrecursorRow:
         time_star time_s length mu_star_before friction_coefficient_before mu_star_after friction_coefficient_after until_star

@@ -1,14 +1,14 @@
-//! Which program this is: for the manifest, and to tell programs apart that may not give the same bits.
+//! The identity of this program: for the manifest, and for distinguishing programs that may not give the same bits.
 
 use std::sync::LazyLock;
 
 /// Version of slipfront.
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");
 
-/// The git commit that it was built from, with `-dirty` if its sources were changed; none outside of a checkout.
+/// The git commit from which the program was built, with `-dirty` if its sources were changed; none outside of a checkout.
 pub const REVISION: Option<&str> = option_env!("SLIPFRONT_REVISION");
 
-/// This program in words.
+/// Name of this program in words.
 pub fn this_program() -> String {
     in_words(VERSION, REVISION)
 }
@@ -22,7 +22,7 @@ pub fn in_words(version: &str, revision: Option<&str>) -> String {
 }
 
 /// The identity of the build: version, and a hash of the sources of slipfront, slipfront-case and slipfront-run and of the
-/// locked versions of what they use. Programs of one identity give the same bits, whichever program they are part of.
+/// locked versions of the crates they use. Programs of one identity give the same bits, whichever program they are part of.
 pub fn this_build() -> &'static str {
     static BUILD: LazyLock<String> = LazyLock::new(|| {
         let hashes = [

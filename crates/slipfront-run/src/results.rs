@@ -1,4 +1,4 @@
-//! [`Record`] -> files.
+//! Writes the files of a run from its [`Record`].
 
 use std::borrow::Cow;
 use std::io::Cursor;
@@ -20,8 +20,8 @@ use crate::run_folder::unfinished::Unfinished;
 use crate::running::Record;
 use crate::series::{self, SeriesRow};
 
-/// Writes the results of a run on one rank to its folder, where the case stands already: what stands in tables, then the fields, which are
-/// moved out of the record. Pictures and the manifest follow.
+/// Writes the results of a run on one rank to its folder, where the case stands already: the tables, then the fields, which
+/// are moved out of the record. Pictures and the manifest follow.
 pub fn write(case: &Case, record: &mut Record, folder: &mut RunFolder) -> Result<(), ResultsError> {
     write_tables(case, record, folder)?;
     match write_fields(case, record, folder.path(), &Alone)? {
@@ -96,7 +96,7 @@ pub fn write_case(case: &Case, folder: &mut RunFolder) -> Result<(), ResultsErro
     Ok(folder.sync()?)
 }
 
-/// Numbers of all blocks, where some of them do not exist with what stands in their place.
+/// Numbers of all blocks, with `outside` in place of the numbers of blocks that do not exist.
 fn within<'a, T: Copy>(values: &'a [T], outline: Option<&Outline>, outside: T) -> Cow<'a, [T]> {
     let Some(outline) = outline else {
         return Cow::Borrowed(values);
@@ -107,7 +107,7 @@ fn within<'a, T: Copy>(values: &'a [T], outline: Option<&Outline>, outside: T) -
         .collect()
 }
 
-/// What never changes, as it is written: where there is texture, the static and the kinetic coefficients.
+/// Constant arrays as they are written: the texture, the static and the kinetic coefficients.
 fn surface_of(case: &Case) -> (Cow<'_, [bool]>, [Cow<'_, [f64]>; 2]) {
     let (surface, outline) = (&case.model.surface, case.model.slider().outline.as_ref());
     let coefficients = [&surface.mu_static, &surface.mu_kinetic];
@@ -117,7 +117,7 @@ fn surface_of(case: &Case) -> (Cow<'_, [bool]>, [Cow<'_, [f64]>; 2]) {
     )
 }
 
-/// What the [fields file](write_fields) of a run on one rank holds.
+/// The content of the [fields file](write_fields) of a run on one rank.
 pub fn fields_of(case: &Case, record: &Record) -> FieldsData {
     let lattice = &case.model.lattice;
     let (textured, [mu_static, mu_kinetic]) = surface_of(case);
@@ -142,8 +142,8 @@ pub fn fields_of(case: &Case, record: &Record) -> FieldsData {
     }
 }
 
-/// Writes the fields to a temporary file of the run in folder `out`, each rank its own rows; the first one has the file. They are
-/// moved out of the record.
+/// Writes the fields to a temporary file of the run in folder `out`, each rank its own rows; the first one has the file. The
+/// fields are moved out of the record.
 pub fn write_fields(
     case: &Case,
     record: &mut Record,
@@ -198,7 +198,7 @@ mod tests {
 
     use super::*;
 
-    /// What does not exist has no values, and is no texture.
+    /// Blocks outside an outline have no values, and are no texture.
     #[test]
     fn blocks_outside_an_outline_have_no_values() {
         let folder = tempfile::tempdir().unwrap();
@@ -236,7 +236,7 @@ mod tests {
         );
     }
 
-    /// A copy holds what the case was made of, or there is none.
+    /// A copy holds the contents from which the case was made, or there is none.
     #[test]
     fn a_file_that_has_changed_since_is_not_copied() {
         let folder = tempfile::tempdir().unwrap();

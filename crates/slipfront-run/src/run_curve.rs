@@ -1,4 +1,5 @@
-//! [`Case`] -> curve: a run of which friction against time and displacement alone is kept, as a fit needs it of many small cases.
+//! Runs a [`Case`] and keeps only the curve of friction against time and displacement, as a fit needs it from many small
+//! cases.
 
 use std::sync::Arc;
 
@@ -14,16 +15,16 @@ use crate::measured::Measure;
 pub struct RunCurve {
     /// Time, s.
     pub time: Vec<f64>,
-    /// How far the drive has moved, m; of a rotation at its largest radius.
+    /// Displacement of the drive, m; for a rotation at its largest radius.
     pub displacement: Vec<f64>,
-    /// mu (Eq. 9).
+    /// Friction coefficient mu (Eq. 9).
     pub coefficient: Vec<f64>,
-    /// Friction of a slider with mu = 1, N; none of a drive that rotates, whose friction is a torque.
+    /// Friction of a slider with mu = 1, N; none for a drive that rotates, whose friction is a torque.
     pub unit_force: Option<f64>,
 }
 
 impl RunCurve {
-    /// Times or displacements, of which a record has one.
+    /// Times or displacements, according to the abscissa of a record.
     pub fn along(&self, x: Measure) -> &[f64] {
         if x == Measure::Displacement {
             &self.displacement
@@ -50,8 +51,8 @@ impl Observer for Tracing {
     }
 }
 
-/// Runs a case on one thread up to a time or a displacement, whatever its `time` says, and keeps the curve alone; none if `ends` gave it up.
-/// Where a program of speeds decides how far the drive comes, the case says when the run ends.
+/// Runs a case on one thread up to a time or a displacement, whatever its `time` says, and keeps only the curve; none if
+/// `ends` gave it up. Where a program of speeds decides how far the drive comes, the case sets the end of the run.
 ///
 /// ```
 /// use slipfront_case::case::Case;
@@ -92,7 +93,7 @@ pub fn run_curve_unless(
     None
 }
 
-/// Steps that [`run_curve_unless`] takes.
+/// Number of steps that [`run_curve_unless`] takes.
 pub fn steps_to(case: &Case, along: Measure, end: f64) -> u64 {
     let drive = &case.model.drive;
     let end_star = match (along, &drive.program) {

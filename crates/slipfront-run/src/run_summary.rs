@@ -1,4 +1,4 @@
-//! [`Case`] -> [`Summary`]: a run of which the numbers alone are kept, as a search and a fit need them of many small cases.
+//! Runs a [`Case`] and keeps only its [`Summary`], as a search and a fit need it from many small cases.
 
 use std::sync::Arc;
 
@@ -10,8 +10,8 @@ use slipfront_case::case::Case;
 use crate::running::{add_front, instants_of};
 use crate::summary::{Summary, SummaryObservers};
 
-/// Runs a case on one thread up to where its `time.stop` says, and gives the numbers of `summary.json` with the bits of
-/// [`running::run`](crate::running::run). Neither curve, fields nor kymograph are recorded, and no file is written.
+/// Runs a case on one thread up to the end that its `time.stop` sets, and returns the numbers of `summary.json` with the
+/// bits of [`running::run`](crate::running::run). Neither curve, fields nor kymograph are recorded, and no file is written.
 ///
 /// ```
 /// use slipfront_case::case::Case;
@@ -34,7 +34,7 @@ pub fn run_summary(case: &Case) -> Result<Summary, RunError> {
     }
 }
 
-/// Runs a case as [`run_summary`] does, as long as `ends` does not say otherwise; none if it was given up.
+/// Runs a case as [`run_summary`] does until `ends` returns true; none if it was given up.
 pub fn run_summary_unless(case: &Case, ends: &dyn Fn() -> bool) -> Option<Result<Summary, RunError>> {
     let plan = &case.time_plan;
     let mut simulation = Simulation::new(Arc::clone(&case.model), plan.dt_star, None, Execution::default());
@@ -72,7 +72,7 @@ mod tests {
     use super::*;
     use crate::running;
 
-    /// Every observer of a run has numbers in the summary of one of these.
+    /// The numbers are those of a run that records all: every observer has numbers in the summary of one of these cases.
     #[test]
     fn the_numbers_are_those_of_a_run_that_records_all() {
         for text in [

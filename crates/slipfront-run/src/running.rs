@@ -1,4 +1,4 @@
-//! [`Case`] -> [`Record`]: one run with all observers that its files need.
+//! Runs a [`Case`] with all observers that its files need, and makes its [`Record`].
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -17,7 +17,7 @@ use crate::front;
 use crate::summary::{Summary, SummaryObservers};
 use slipfront_case::case::{Case, Output, Snapshots};
 
-/// Everything a run leaves behind, in memory.
+/// All results of a run, in memory.
 #[derive(Clone, Debug)]
 pub struct Record {
     /// The numbers.
@@ -26,13 +26,13 @@ pub struct Record {
     pub rows: Vec<CurveRow>,
     /// Events of slip of a slider driven at an edge.
     pub precursors: Option<Precursors>,
-    /// What slides against place along the drive and time.
+    /// Share of sliding blocks against place along the drive and time.
     pub kymograph: Kymograph,
     /// Fields in the order of time, each with the letters of the instants A-F that it shows.
     pub frames: Vec<(String, Frame)>,
-    /// t* of the first slip of every block.
+    /// Times t* of the first slip of every block.
     pub first_slip_time_star: Vec<f64>,
-    /// tau_c^max, in units of `P mu_s`.
+    /// Largest contact stress tau_c^max, in units of `P mu_s`.
     pub contact_stress_max: f64,
 }
 
@@ -54,17 +54,17 @@ pub fn run(case: &Arc<Case>, threads: usize) -> Result<Record, RunError> {
     }
 }
 
-/// A run in progress, with all that its files need of it.
+/// A run in progress, with the observers that its files need.
 pub struct Running {
     case: Arc<Case>,
     simulation: Simulation,
     observers: Observers,
     communicator: Arc<dyn Communicator>,
-    /// At most, each of which has blocks enough.
+    /// Largest number of threads, each of which has enough blocks.
     threads: usize,
 }
 
-/// What a run has recorded up to now.
+/// Recordings of a run up to now.
 #[derive(Debug, Serialize, Deserialize)]
 pub struct Observers {
     summary: SummaryObservers,
@@ -72,14 +72,14 @@ pub struct Observers {
     fields: Fields,
 }
 
-/// The snapshots: at the instants A-F, at times that are given, or both.
+/// The snapshots: at the instants A-F, at given times, or both.
 #[derive(Debug, Serialize, Deserialize)]
 struct Fields {
     instants: Option<Box<Instants>>,
     frames: Option<Frames>,
 }
 
-/// What a run needs to go on later beside the numbers of its blocks, written down as [`Running::state`].
+/// State from which a run goes on later, beside the numbers of its blocks; written as [`Running::state`].
 #[derive(Debug, Serialize, Deserialize)]
 pub struct RunState<O = Observers> {
     simulation: Checkpoint,
@@ -87,13 +87,13 @@ pub struct RunState<O = Observers> {
 }
 
 impl RunState {
-    /// The numbers of blocks that belong to it.
+    /// The numbers of blocks that belong to the state.
     pub fn columns(&self, case: &Case) -> [Columns; 2] {
         self.observers.columns(case)
     }
 }
 
-/// On no more threads than have blocks enough.
+/// Reduces the threads to those that have enough blocks.
 fn on_useful_threads(case: &Case, execution: Execution) -> Execution {
     let per_thread = blocks_per_thread(execution.kernel.for_model(&case.model));
     Execution {
@@ -102,7 +102,8 @@ fn on_useful_threads(case: &Case, execution: Execution) -> Execution {
     }
 }
 
-/// The instants A-F of a run of this case, with these fields of each; none of a run that keeps snapshots at times alone.
+/// The instants A-F of a run of this case, with these fields at each; none for a run that keeps snapshots at given times
+/// alone.
 pub(crate) fn instants_of(case: &Case, fields: Vec<Field>) -> Option<Instants> {
     let (plan, stride) = (&case.time_plan, case.output.stride);
     let has_instants = !matches!(case.output.snapshots, Snapshots::At(_));
@@ -118,7 +119,7 @@ fn selection(output: &Output) -> Selection {
 }
 
 impl Observers {
-    /// Those of a run that begins.
+    /// Observers of a run that begins.
     fn new(case: &Case) -> Self {
         let output = &case.output;
         let has_times = !matches!(output.snapshots, Snapshots::Instants);
@@ -133,7 +134,7 @@ impl Observers {
         }
     }
 
-    /// Whether they can be those of a run of this case at a checkpoint.
+    /// Whether the observers can be those of a run of this case at a checkpoint.
     fn belong_to(&self, case: &Case, checkpoint: &Checkpoint) -> bool {
         let step = checkpoint.step;
         let new = Self::new(case);
@@ -195,7 +196,7 @@ impl Fields {
         instants.chain(frames).collect()
     }
 
-    /// The same frames, to fill them again.
+    /// The frames that are held at present, in a fixed order, to be filled again.
     fn frames_mut(&mut self) -> Vec<&mut Frame> {
         let instants = self
             .instants
@@ -211,20 +212,20 @@ fn own_rows(case: &Case) -> Range<usize> {
     case.model.rows.clone()
 }
 
-/// Those rows among every `stride`-th of the lattice, counted among these.
+/// Rows of fields that this process holds, counted among every `stride`-th row of the lattice.
 fn own_rows_of_fields(case: &Case) -> Range<usize> {
     kept(own_rows(case), case.output.stride)
 }
 
-/// Numbers of a field that are written and read at once.
+/// Number of values of a field that are written and read at once.
 const PART: usize = 1 << 17;
 
 impl Running {
-    /// Begins a run in this state, in which blocks may be displaced and slide, or at rest. It is computed as `execution` says, on no
-    /// more threads than have blocks enough; ranks that share the lattice call this and then the same functions.
+    /// Begins a run in this state, in which blocks may be displaced and slide, or at rest. The run is computed as
+    /// `execution` says, on no more threads than have enough blocks; ranks that share the lattice call this and then the
+    /// same functions.
     ///
-    /// # Panics
-    /// If a number of the state is not finite, or it is that of another number of blocks.
+    /// # Panics If a number of the state is not finite, or the state has another number of blocks.
     pub fn start(case: &Arc<Case>, state: Option<State>, execution: Execution) -> Self {
         let (model, dt_star) = (Arc::clone(&case.model), case.time_plan.dt_star);
         let execution = on_useful_threads(case, execution);
@@ -237,11 +238,10 @@ impl Running {
         }
     }
 
-    /// Goes on with a run where its state was written down; none if the state is not one of this case. `read` is given a place
+    /// Goes on with a run where its state was written down; none if the state is not one of this case. `read` gets a place
     /// in the columns of the state and room for the bytes from there on.
     ///
-    /// # Errors
-    /// Those of `read`.
+    /// # Errors Errors of `read`.
     pub fn resume<E>(
         case: &Arc<Case>,
         state: RunState,
@@ -301,7 +301,8 @@ impl Running {
         }))
     }
 
-    /// At most `steps` steps; why the run ended, if it did. An error says that it diverges. All ranks must call this together.
+    /// Makes at most `steps` steps; returns the reason of the end, if the run ended. An error says that it diverges. All
+    /// ranks must call this together.
     pub fn advance(&mut self, steps: u64) -> Result<Option<StopReason>, RunError> {
         let mut observers = self.observers.scheduled(&self.case.output.snapshots);
         self.simulation
@@ -327,26 +328,27 @@ impl Running {
         &self.observers.summary.curve.rows
     }
 
-    /// What slides against place along the drive and time, up to now.
+    /// Share of sliding blocks against place along the drive and time, up to now.
     pub fn kymograph(&self) -> &Kymograph {
         &self.observers.kymograph
     }
 
-    /// The instants A-F that are known by now and t* of the drive at each, as [`Instants::by_now`]; none of a run that keeps snapshots at times
-    /// alone.
+    /// The instants A-F that are known by now and t* of the drive at each, see [`Instants::by_now`]; none for a run that
+    /// keeps snapshots at given times alone.
     pub fn instants(&self) -> impl Iterator<Item = (char, f64)> {
         let instants = self.observers.fields.instants.iter();
         instants.flat_map(|instants| instants.by_now())
     }
 
-    /// Friction in the kinetic window up to now; none before it begins or if nothing has slipped. All ranks must call this together.
+    /// Friction in the kinetic window up to now; none before it begins or if no block has slipped. All ranks must call this
+    /// together.
     pub fn kinetic(&self) -> Option<Kinetic> {
         let now = self.snapshot();
         now.earliest_first_slip()?;
         self.observers.summary.kinetic(&self.case, &now.peak)
     }
 
-    /// Most threads on which it is computed.
+    /// Largest number of threads on which the run is computed.
     pub fn threads(&self) -> usize {
         self.threads
     }
@@ -366,7 +368,7 @@ impl Running {
         &self.case
     }
 
-    /// What the run needs to go on later beside its [columns](Self::write_columns), to be written down. All ranks must
+    /// State from which the run goes on later, beside its [columns](Self::write_columns), as it is written. All ranks must
     /// call this together.
     pub fn state(&self) -> impl Serialize + '_ {
         RunState {
@@ -380,11 +382,10 @@ impl Running {
         self.observers.columns(&self.case)
     }
 
-    /// Gives the numbers of the rows that are held here to `write`, which is given a place in the columns and the bytes from there
+    /// Passes the numbers of the rows that are held here to `write`, with a place in the columns and the bytes from there
     /// on.
     ///
-    /// # Errors
-    /// Those of `write`.
+    /// # Errors Errors of `write`.
     pub fn write_columns<E>(&self, mut write: impl FnMut(u64, &[u8]) -> Result<(), E>) -> Result<(), E> {
         let [blocks, fields] = self.columns();
         let mut bytes = Vec::new();
@@ -413,7 +414,7 @@ impl Running {
         Ok(())
     }
 
-    /// The numbers of a run that has ended, which stays to be looked at. All ranks must call this together.
+    /// The numbers of a run that has ended; the run itself stays. All ranks must call this together.
     pub fn summary(&self, reason: StopReason) -> Summary {
         let instants = self.observers.fields.instants.as_deref().cloned();
         let instants = instants.map_or(Vec::new(), Instants::found);
@@ -433,7 +434,7 @@ impl Running {
         numbers
     }
 
-    /// What the run leaves behind, once it has ended. All ranks must call this together.
+    /// All results of the run, once it has ended. All ranks must call this together.
     pub fn record(self, reason: StopReason) -> Record {
         let (case, simulation) = (self.case, self.simulation);
         let Observers {
@@ -465,7 +466,7 @@ impl Running {
     }
 }
 
-/// Adds what the first slips of all blocks tell of the front, if one has passed.
+/// Adds the front to the summary, from the first slips of all blocks, if one has passed.
 pub(crate) fn add_front(
     numbers: &mut Summary,
     observers: &SummaryObservers,
@@ -480,7 +481,7 @@ pub(crate) fn add_front(
     }
 }
 
-/// Runs a case on one thread as long as `ends` does not say otherwise; none if it was given up.
+/// Runs a case on one thread until `ends` returns true; none if it was given up.
 pub fn run_unless(case: &Arc<Case>, ends: &dyn Fn() -> bool) -> Option<Result<Record, RunError>> {
     let mut running = Running::start(case, None, Execution::default());
     while !ends() {
@@ -493,8 +494,8 @@ pub fn run_unless(case: &Arc<Case>, ends: &dyn Fn() -> bool) -> Option<Result<Re
     None
 }
 
-/// Frames without letters, and instants with theirs, in the order of time. Those of one step, as instants on a uniform lattice may be,
-/// are one frame with all letters: times of a file must rise.
+/// Frames without letters, and instants with theirs, in the order of time. Frames of one step, as instants on a uniform
+/// lattice may be, are one frame with all letters, because times of a file must rise.
 fn lettered(instants: Vec<(char, Frame)>, frames: Vec<Frame>) -> Vec<(String, Frame)> {
     let frames = frames.into_iter().map(|frame| (String::new(), frame));
     let instants = instants
@@ -516,7 +517,7 @@ fn lettered(instants: Vec<(char, Frame)>, frames: Vec<Frame>) -> Vec<(String, Fr
 mod tests {
     use super::*;
 
-    /// What is known on the way becomes what the run leaves.
+    /// The values known on the way become the results of the run.
     #[test]
     fn a_run_can_be_looked_at_on_its_way() {
         let text = "slider.blocks = [20, 20]\n[[texture]]\nshape = 'cavity'\ncoverage = 10\n";
@@ -547,8 +548,8 @@ mod tests {
         assert_eq!(record.kymograph, kymograph);
     }
 
-    /// A sheet on a mount without texture moves as a whole: forces, paths and displacements in SI units are the same on blocks of half
-    /// the size, at steps that are equally long.
+    /// A sheet on a mount without texture moves as a whole: forces, paths and displacements in SI units are equal on blocks
+    /// of half the size, at steps that are equally long.
     #[test]
     fn a_sheet_is_one_slider_on_any_blocks() {
         let run = |blocks: usize, size: f64, step: f64| {

@@ -1,4 +1,4 @@
-//! `series.csv`: the curve of a run, one row per recorded step, names with units in the header.
+//! The file `series.csv`: the curve of a run, one row per recorded step, names with units in the header.
 
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -17,34 +17,34 @@ use slipfront_case::text;
 /// One row of `series.csv`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct SeriesRow {
-    /// Step.
+    /// Number of the step.
     pub step: u64,
-    /// t*.
+    /// Time t*.
     pub time_star: f64,
     /// Time, s.
     pub time_s: f64,
-    /// t* of the drive, of one that is held: its path over V* at a constant speed.
+    /// t* of a drive that is held: its path over V* at a constant speed.
     #[serde(default, deserialize_with = "number", skip_serializing_if = "Option::is_none")]
     pub drive_time_star: Option<f64>,
-    /// How far the drive has moved, m; of a rotation at its largest radius.
+    /// Displacement of the drive, m; for a rotation at its largest radius.
     #[serde(default, deserialize_with = "number", skip_serializing_if = "Option::is_none")]
     pub drive_displacement_m: Option<f64>,
-    /// mu* (Eq. 9 over mu_s).
+    /// Friction coefficient mu* (Eq. 9 over mu_s).
     pub mu_star: f64,
-    /// mu (Eq. 9).
+    /// Friction coefficient mu (Eq. 9).
     pub friction_coefficient: f64,
     /// The component of mu* across the drive.
     pub mu_lateral_star: f64,
-    /// Friction along the drive, N; none of a drive that rotates.
+    /// Friction along the drive, N; none for a drive that rotates.
     #[serde(default, deserialize_with = "number", skip_serializing_if = "Option::is_none")]
     pub friction_force_n: Option<f64>,
     /// Friction across the drive, N.
     #[serde(default, deserialize_with = "number", skip_serializing_if = "Option::is_none")]
     pub lateral_force_n: Option<f64>,
-    /// Torque of friction, N m, of a drive that rotates.
+    /// Torque of friction, N m, for a drive that rotates.
     #[serde(default, deserialize_with = "number", skip_serializing_if = "Option::is_none")]
     pub torque_n_m: Option<f64>,
-    /// N*, %.
+    /// Share of sliding blocks N*, %.
     pub sliding_percent: f64,
     /// Work of the drive since the start, J.
     pub work_j: f64,
@@ -54,28 +54,30 @@ pub struct SeriesRow {
     pub lattice_energy_j: f64,
     /// Energy of the drive springs, J.
     pub drive_spring_energy_j: f64,
-    /// Lost to friction since the start, J.
+    /// Energy lost to friction since the start, J.
     pub friction_loss_j: f64,
-    /// Lost to damping since the start, J.
+    /// Energy lost to damping since the start, J.
     pub damping_loss_j: f64,
-    /// Lost to the dampers between blocks since the start, J, if there are any.
+    /// Energy lost to the dampers between blocks since the start, J, if there are any.
     #[serde(default, deserialize_with = "number", skip_serializing_if = "Option::is_none")]
     pub viscous_loss_j: Option<f64>,
     /// Energy of the springs in contact, J; none if contacts are no springs.
     #[serde(default, deserialize_with = "number", skip_serializing_if = "Option::is_none")]
     pub contact_spring_energy_j: Option<f64>,
-    /// Lost with such springs that broke since the start, J.
+    /// Energy lost with springs in contact that broke since the start, J.
     #[serde(default, deserialize_with = "number", skip_serializing_if = "Option::is_none")]
     pub broken_spring_loss_j: Option<f64>,
-    /// The part of the loss to friction that strength which falls with slip has taken since the start, J; none where it does not fall.
+    /// Part of the loss to friction since the start that is the energy of slip weakening, J; none where strength does not
+    /// fall.
     #[serde(default, deserialize_with = "number", skip_serializing_if = "Option::is_none")]
     pub weakening_loss_j: Option<f64>,
-    /// Mean state of the contacts, t*; none of contacts without a state.
+    /// Mean state of the contacts, t*; none for contacts without a state.
     #[serde(default, deserialize_with = "number", skip_serializing_if = "Option::is_none")]
     pub mean_state_star: Option<f64>,
 }
 
-/// A number of a column that a series need not have, since it belongs to an option or is younger than the file; one that has it has a number in every row.
+/// Reads a number of an optional column, which a series may lack because it belongs to an option or is younger than the
+/// file; a series that has the column has a number in every row.
 fn number<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<f64>, D::Error> {
     f64::deserialize(deserializer).map(Some)
 }
@@ -131,7 +133,7 @@ impl SeriesRow {
     }
 }
 
-/// Fields of the rows of a table: the name of each, and what gives its number in a row, if it has one.
+/// Names the fields of the rows of a table, each with the function that gives its number in a row, if it has one.
 macro_rules! columns_of {
     ($row:ty: $($name:ident)*) => {
         [$((stringify!($name), (|row| row.$name.into()) as fn(&$row) -> Option<f64>)),*]
@@ -139,7 +141,7 @@ macro_rules! columns_of {
 }
 pub(crate) use columns_of;
 
-/// The columns of a series: their names and values, without those that it does not have, and without the numbers of the steps.
+/// The columns of a series: names and values, without columns that it lacks, and without the numbers of the steps.
 pub fn columns(rows: &[SeriesRow]) -> Vec<(&'static str, Vec<f64>)> {
     let all = columns_of! { SeriesRow:
         time_star time_s drive_time_star drive_displacement_m mu_star friction_coefficient mu_lateral_star friction_force_n lateral_force_n
@@ -151,7 +153,7 @@ pub fn columns(rows: &[SeriesRow]) -> Vec<(&'static str, Vec<f64>)> {
         .collect()
 }
 
-/// Most bytes of a column of a row as CSV: 24 characters, and what separates them from the next.
+/// Largest number of bytes of a column of a row as CSV: 24 characters, and the separator.
 pub const COLUMN_BYTES: usize = 25;
 
 /// Columns of the series of a run of this model.
@@ -205,7 +207,7 @@ pub fn read_csv(path: &Path) -> Result<Vec<SeriesRow>, SeriesError> {
     read_rows(path, SERIES, |row| row)
 }
 
-/// Reads the rows of a table of a run, which is called `name` in its folder, and keeps `part` of each.
+/// Reads the rows of a table of a run, called `name` in its folder, and keeps `part` of each.
 pub(crate) fn read_rows<T: DeserializeOwned, U>(
     path: &Path,
     name: &'static str,
@@ -229,7 +231,7 @@ fn rows_of<T: DeserializeOwned, U>(file: impl Read, part: impl Fn(T) -> U) -> Re
     rows.collect()
 }
 
-/// The longest line of a series: more than its header, and than sixteen numbers take.
+/// Largest length of a line of a series: more than its header and sixteen numbers take.
 const LINE_MAX_BYTES: usize = 4096;
 
 /// A file whose lines are not too long: the csv crate would keep one of any length in memory.
@@ -293,7 +295,7 @@ mod tests {
         assert_eq!(rows_of(text.as_slice(), |row: SeriesRow| row).unwrap(), rows);
     }
 
-    /// In the order of the file, each with its own numbers.
+    /// Columns have the order of the file, each with its own numbers.
     #[test]
     fn columns_are_those_of_the_file() {
         let row = SeriesRow {

@@ -1,4 +1,4 @@
-//! The numbers of a run: what `summary.json` holds.
+//! The numbers of a run, the content of `summary.json`.
 
 use std::ops::RangeInclusive;
 use std::path::Path;
@@ -21,36 +21,37 @@ use slipfront_case::case::{Case, Topography};
 use slipfront_case::case_file::Motion;
 use slipfront_case::disk::{TEXT_MAX_BYTES, json, read_limited};
 
-/// The numbers of a run. Starred quantities are dimensionless (Eq. 11); times without a star are in s. A drive that is held has a time of its own,
-/// that for which it has moved.
+/// The numbers of a run. Starred quantities are dimensionless (Eq. 11); times without a star are in s. A drive that is held
+/// has its own time, which counts only while it moves.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Summary {
-    /// mu_s*, the first peak of mu*, of a drive that is held its largest value before the kinetic window (or its largest value where there is no transition).
+    /// mu_s*, the first peak of mu*; for a drive that is held the largest value before the kinetic window; without a
+    /// transition the largest value.
     pub static_friction_star: f64,
-    /// mu_s.
+    /// Static friction coefficient mu_s.
     pub static_friction: f64,
-    /// The same across the drive at that instant, positive to the left of the drive.
+    /// Friction across the drive at the instant of mu_s*, over the load and mu_s, positive to the left of the drive.
     #[serde(default)]
     pub static_lateral_friction_star: f64,
-    /// t_s*, that of the drive.
+    /// Time t_s* of the onset, on the time of the drive.
     pub onset_time_star: f64,
-    /// t_s, s.
+    /// Time t_s of the onset, s.
     pub onset_time_s: f64,
     /// t* of the first slip of a block in contact.
     pub first_slip_time_star: Option<f64>,
-    /// The same in s.
+    /// Time of the first slip of a block in contact, s.
     pub first_slip_time_s: Option<f64>,
     /// mu_k*, the mean of mu* over the kinetic window.
     pub kinetic_friction_star: Option<f64>,
     /// Standard error of mu_k*; none where the window supports none (see the warnings).
     pub kinetic_friction_star_uncertainty: Option<f64>,
-    /// mu_k.
+    /// Kinetic friction coefficient mu_k.
     pub kinetic_friction: Option<f64>,
-    /// Mean across the drive over the same window.
+    /// Mean friction across the drive over the kinetic window.
     #[serde(default)]
     pub kinetic_lateral_friction_star: Option<f64>,
-    /// [t1*, t2*] of that mean, times of the drive.
+    /// First and last t* of the kinetic window, on the time of the drive.
     pub kinetic_window_star: Option<[f64; 2]>,
     /// Mean N* over the kinetic window, %.
     pub sliding_percent_kinetic: Option<f64>,
@@ -58,78 +59,79 @@ pub struct Summary {
     pub sliding_percent_max: f64,
     /// Largest mu* of the whole run; above mu_s* where a later peak is higher than the first.
     pub mu_star_max: f64,
-    /// Whether mu* fell at least half-way to the steady level L and by (1 - L)/20 after its first peak, within the time of a transition,
-    /// and mu_k* is as much below the peak, where steady sliding takes less force than the blocks hold at rest.
+    /// Whether mu* fell at least half-way to the steady level L and by (1 - L)/20 after its first peak, within the time of a
+    /// transition, mu_k* is as much below the peak, and steady sliding takes less force than the blocks hold at rest.
     pub transition: bool,
     /// The instants A-F that were found.
     pub instants: Vec<InstantSummary>,
-    /// Units of the starred quantities and what is measured in a laboratory; none in summaries of older versions.
+    /// Units of the starred quantities and laboratory values; none in summaries of older versions.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub si: Option<SiSummary>,
-    /// Sites at which slip has nucleated, of a run with a transition or an event that crosses a slider driven at an edge, as all that
-    /// follows about the front.
+    /// Number of sites at which slip has nucleated. Like all values of the front, it belongs to a run with a transition, or
+    /// to an event that crosses a slider driven at an edge.
     pub nucleation_sites: Option<usize>,
-    /// Where it has first, x in m.
+    /// Coordinate x of the first nucleation, m.
     pub nucleation_x_m: Option<f64>,
-    /// y of that in m.
+    /// Coordinate y of the first nucleation, m.
     pub nucleation_y_m: Option<f64>,
-    /// All sites.
+    /// All sites of nucleation.
     #[serde(default)]
     pub nucleations: Vec<NucleationSummary>,
-    /// Share of the windows of 7 x 7 blocks through which a front passes; of a slider driven at an edge, in the event that crosses it, as
-    /// all that follows.
+    /// Share of the windows of 7 x 7 blocks through which a front passes. For a slider driven at an edge, this and the
+    /// following values belong to the event that crosses it.
     #[serde(default)]
     pub front_share: Option<f64>,
     /// Median speed of the slip front over the speed of long shear waves; none where it passes through less than half of the windows.
     pub front_speed_c_s: Option<f64>,
-    /// 5 % of the front is slower.
+    /// Speed below which 5 % of the front is, over the speed of long shear waves.
     pub front_speed_low_c_s: Option<f64>,
-    /// 95 % of the front is slower.
+    /// Speed below which 95 % of the front is, over the speed of long shear waves.
     pub front_speed_high_c_s: Option<f64>,
     /// Median speed of the front, m/s.
     pub front_speed_m_s: Option<f64>,
-    /// 5 % of the front is slower, m/s.
+    /// Speed below which 5 % of the front is, m/s.
     pub front_speed_low_m_s: Option<f64>,
-    /// 95 % of the front is slower, m/s.
+    /// Speed below which 95 % of the front is, m/s.
     pub front_speed_high_m_s: Option<f64>,
-    /// t* from 5 to 95 % of the first slips.
+    /// Duration from 5 to 95 % of the first slips, t*.
     pub front_duration_star: Option<f64>,
-    /// The same in s.
+    /// Duration from 5 to 95 % of the first slips, s.
     pub front_duration_s: Option<f64>,
-    /// V*.
+    /// Speed V* of the drive.
     pub v_star: f64,
-    /// R*.
+    /// Ratio R* of the mean coefficients.
     pub r_star: f64,
-    /// Omega*.
+    /// Damping Omega*.
     pub omega_star: f64,
-    /// sigma_s*.
+    /// Spread sigma_s* of the static coefficients.
     pub sigma_static_star: f64,
-    /// sigma_k*.
+    /// Spread sigma_k* of the kinetic coefficients.
     pub sigma_kinetic_star: f64,
-    /// eps = P mu_s l/(E h).
+    /// Strain of the load, eps = P mu_s l/(E h).
     pub epsilon: f64,
-    /// N.
+    /// Number N of blocks that exist.
     pub n_blocks: usize,
-    /// A* as meshed, %.
+    /// Textured area A* as meshed, %.
     pub texture_percent: f64,
-    /// A* as asked for, %; none where a mask or polygon says so block by block only.
+    /// Textured area A* as asked for, %; none where a mask or polygon gives it block by block only.
     pub texture_percent_asked: Option<f64>,
     /// Height maps among the textures.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub topographies: Option<Vec<TopographySummary>>,
-    /// dt*.
+    /// Time step dt*.
     pub dt_star: f64,
-    /// Steps done.
+    /// Number of steps done.
     pub steps: u64,
-    /// Steps in which the drive moved, of a drive that is held; in the others it stood.
+    /// Number of steps in which a held drive moved; in the others it stood.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub drive_steps: Option<u64>,
     /// Seed of the random coefficients.
     pub seed: u64,
-    /// Share of the variance of the random coefficients at a point that their means over blocks keep, %, if they are alike over a length.
+    /// Share of the variance of correlated random coefficients at a point that means over blocks keep, %.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub variance_of_blocks_percent: Option<f64>,
-    /// Share of that variance that the mean of a surface keeps from seed to seed, %.
+    /// Share of the variance of correlated random coefficients at a point that the mean of a surface has from seed to seed,
+    /// %.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub variance_of_surfaces_percent: Option<f64>,
     /// Negative draws of the coefficients of blocks in contact that were set to 0.
@@ -138,32 +140,32 @@ pub struct Summary {
     pub energy_error: f64,
     /// Work of the drive, J.
     pub work_j: f64,
-    /// Lost to friction, J.
+    /// Energy lost to friction, J.
     pub friction_loss_j: f64,
-    /// Lost to damping, J.
+    /// Energy lost to damping, J.
     pub damping_loss_j: f64,
-    /// Of a drive that rotates: mu* and its derivatives are the torque over P mu_s l^2 times the sum of all radii.
+    /// Motion of a drive that rotates: mu* and its derivatives are the torque over P mu_s l^2 times the sum of all radii.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub motion: Option<Motion>,
     /// Events of slip of a slider driven at an edge.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub precursors: Option<PrecursorSummary>,
-    /// Under a program of speeds, the peak of every part in which the drive moves forwards.
+    /// Peak of every part of a program of speeds in which the drive moves forwards.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub cycles: Option<Vec<CycleSummary>>,
-    /// Lost to the dampers between blocks, J, if there are any.
+    /// Energy lost to the dampers between blocks, J, if there are any.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub viscous_loss_j: Option<f64>,
-    /// Lost with contacts that broke, J; none of contacts that store no energy.
+    /// Energy lost with contacts that broke, J; none for contacts that store no energy.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub broken_spring_loss_j: Option<f64>,
-    /// The part of the loss to friction that strength which falls with slip has taken, J; none where it does not fall.
+    /// Part of the loss to friction that is the energy of slip weakening, J; none where strength does not fall.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub weakening_loss_j: Option<f64>,
-    /// Mean state of the contacts at the end, t*; none of contacts without a state.
+    /// Mean state of the contacts at the end, t*; none for contacts without a state.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub mean_state_star: Option<f64>,
-    /// What a reader should know before trusting the numbers.
+    /// Warnings that a reader should know before trusting the numbers.
     pub warnings: Vec<String>,
     /// Version of slipfront.
     pub version: String,
@@ -173,25 +175,25 @@ pub struct Summary {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SiSummary {
-    /// P, Pa.
+    /// Pressure P, Pa.
     pub pressure_pa: f64,
-    /// E, Pa.
+    /// Young's modulus E, Pa.
     pub young_modulus_pa: f64,
-    /// rho, kg/m^3.
+    /// Density rho, kg/m^3.
     pub density_kg_m3: f64,
-    /// l, m.
+    /// Edge of a block l, m.
     pub block_size_m: f64,
     /// Area of all blocks, m^2.
     pub area_m2: f64,
     /// Load that the blocks in contact carry, N.
     pub normal_force_n: f64,
-    /// Largest friction of the first peak, N; none of a drive that rotates.
+    /// Largest friction of the first peak, N; none for a drive that rotates.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub static_friction_force_n: Option<f64>,
     /// Mean friction over the kinetic window, N.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub kinetic_friction_force_n: Option<f64>,
-    /// Torque of the first peak, N m, of a drive that rotates.
+    /// Torque of the first peak, N m, for a drive that rotates.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub static_torque_n_m: Option<f64>,
     /// One unit of t*, s.
@@ -204,11 +206,11 @@ pub struct SiSummary {
     pub contact_stress_max_pa: f64,
 }
 
-/// A height map: parameters of ISO 25178-2 of all of its points, and what of it touches.
+/// A height map: parameters of ISO 25178-2 of all of its points, and its height of contact.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TopographySummary {
-    /// Position of its texture in the case file, from 0.
+    /// Position of the height map's texture in the case file, from 0.
     pub texture: usize,
     /// Points along x and along y.
     pub points: [usize; 2],
@@ -218,9 +220,9 @@ pub struct TopographySummary {
     pub sa_m: f64,
     /// Root mean square height Sq, m.
     pub sq_m: f64,
-    /// Skewness Ssk; none of a plane.
+    /// Skewness Ssk; none for a plane.
     pub ssk: Option<f64>,
-    /// Kurtosis Sku; none of a plane.
+    /// Kurtosis Sku; none for a plane.
     pub sku: Option<f64>,
     /// The least height of a block that touches, m.
     pub contact_height_m: f64,
@@ -230,16 +232,16 @@ pub struct TopographySummary {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct InstantSummary {
-    /// A-F.
+    /// Letter of the instant, A-F.
     pub instant: char,
-    /// t*.
+    /// Time t* of the instant.
     pub time_star: f64,
-    /// t* of the drive, of one that is held.
+    /// t* of a held drive at the instant.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub drive_time_star: Option<f64>,
-    /// mu*.
+    /// Friction coefficient mu* at the instant.
     pub mu_star: f64,
-    /// N*, %.
+    /// Share of sliding blocks N* at the instant, %.
     pub sliding_percent: f64,
 }
 
@@ -259,11 +261,11 @@ impl InstantSummary {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct NucleationSummary {
-    /// x of its first block, m.
+    /// Coordinate x of the site's first block, m.
     pub x_m: f64,
-    /// y of its first block, m.
+    /// Coordinate y of the site's first block, m.
     pub y_m: f64,
-    /// t* of its first slip.
+    /// t* of the first slip of the site.
     pub time_star: f64,
 }
 
@@ -271,15 +273,15 @@ pub struct NucleationSummary {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PrecursorSummary {
-    /// How many there were; each is a row of `precursors.csv`.
+    /// Number of events; each is a row of `precursors.csv`.
     pub events: usize,
     /// t* at which the first one begins that crosses the whole slider.
     pub crossing_time_star: Option<f64>,
-    /// mu* then.
+    /// mu* at the beginning of the first event that crosses the whole slider.
     pub crossing_mu_star: Option<f64>,
-    /// How many events there were before that one, or in all if none crosses: precursors.
+    /// Number of precursors: events before the one that crosses the whole slider, or all events if none crosses.
     pub precursor_count: usize,
-    /// Length of the longest of these, over that of the slider.
+    /// Length of the longest precursor, over that of the slider.
     pub precursor_length_max: Option<f64>,
     /// mu* when the first event begins over mu* when the first one begins that crosses the whole slider: the load at nucleation over that
     /// at the transition.
@@ -290,24 +292,24 @@ pub struct PrecursorSummary {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct CycleSummary {
-    /// t* at which it begins.
+    /// t* at which the part begins.
     pub from_star: f64,
-    /// Its V*.
+    /// Speed V* of the part.
     pub v_star: f64,
-    /// Largest mu*.
+    /// Largest mu* in the part.
     pub mu_star_max: f64,
-    /// t* of it.
+    /// t* of the largest mu*.
     pub time_star: f64,
 }
 
-/// The observers of which every run has one each, and its numbers.
+/// The observers that every run has, and their numbers.
 #[derive(Debug, Serialize, Deserialize)]
 pub(crate) struct SummaryObservers {
     pub(crate) curve: Curve,
     history: KineticHistory,
-    /// Of a drive at an edge.
+    /// Events of slip under a drive at an edge.
     pub(crate) precursors: Option<Precursors>,
-    /// Of a program of speeds.
+    /// Peaks under a program of speeds.
     cycles: Option<Cycles>,
 }
 
@@ -317,7 +319,7 @@ impl SummaryObservers {
         Self::with_rows_every(case.output.series_stride, case)
     }
 
-    /// Observers that keep the first and the last row of the curve alone.
+    /// Observers of a run of this case that keep only the first and the last row of the curve.
     pub(crate) fn without_curve(case: &Case) -> Self {
         Self::with_rows_every(u64::MAX, case)
     }
@@ -331,7 +333,7 @@ impl SummaryObservers {
         }
     }
 
-    /// Whether they can be those that began as `new` at a checkpoint of steps of `dt_star`.
+    /// Whether the observers can be those that began as `new`, at a checkpoint of steps of `dt_star`.
     pub(crate) fn is_consistent_with(&self, new: &Self, checkpoint: &Checkpoint, dt_star: f64) -> bool {
         let [time_star, drive_time_star] =
             [checkpoint.step, checkpoint.drive_steps].map(|steps| steps as f64 * dt_star);
@@ -389,8 +391,8 @@ impl SummaryObservers {
         })
     }
 
-    /// The t* in which a front passes: all of a run with a transition, and of a slider driven at an edge the event that crosses it; none
-    /// if there is none.
+    /// The t* in which a front passes: all t* of a run with a transition, or the event that crosses a slider driven at an
+    /// edge; none if there is no front.
     pub(crate) fn times_of_front(&self, transition: bool) -> Option<RangeInclusive<f64>> {
         let Some(precursors) = &self.precursors else {
             return transition.then_some(0.0..=f64::INFINITY);
@@ -522,7 +524,8 @@ impl SummaryObservers {
     }
 }
 
-/// mu* along and across the drive and t* of static friction: at the first peak, or where mu* is largest if there is no transition.
+/// mu* along and across the drive and t* of static friction: at the first peak, or at the largest mu* if there is no
+/// transition.
 fn static_friction(peak: &Peak, transition: bool) -> [f64; 3] {
     if transition {
         [peak.mu_star, peak.mu_lateral_star, peak.drive_time_star]
@@ -569,7 +572,7 @@ fn si(case: &Case, static_star: f64, kinetic_star: Option<f64>, contact_stress_m
 }
 
 impl Summary {
-    /// Adds what is known of the front.
+    /// Adds the values of the front.
     pub(crate) fn add_front(&mut self, front: &LatticeFront, scales: &Scales) {
         let nucleations = front.nucleations.iter().map(|nucleation| NucleationSummary {
             x_m: nucleation.place[0] * scales.block_size,
@@ -613,7 +616,7 @@ pub fn summary_json(summary: &Summary) -> String {
     String::from_utf8_lossy(&json(summary)).into_owned()
 }
 
-/// Share of the energy that may be unaccounted for; a step of 0.1 stays a factor of ten below.
+/// Share of unaccounted energy above which there is a warning; a step of 0.1 stays a factor of ten below.
 const LARGE_ENERGY_ERROR: f64 = 0.01;
 
 /// Whether sliding goes on as high as a peak that a fall has ended: mu_s* is then one of many peaks of a slider that creeps.
@@ -621,11 +624,11 @@ fn is_kept_up(peak: &Peak, kinetic: Option<Kinetic>) -> bool {
     peak.ended && kinetic.is_some_and(|kinetic| !peak.is_above(kinetic.mu_star))
 }
 
-/// By how much a later mu* exceeds the first peak where a reader should know it, relative to that peak. Equal peaks of stick-slip
-/// differ by less, since steps do not meet their tops.
+/// Excess of a later mu* over the first peak, relative to that peak, above which there is a warning. Equal peaks of
+/// stick-slip differ by less, since steps do not meet their tops.
 const HIGHER_LATER: f64 = 0.01;
 
-/// What the run itself gives reason to warn of.
+/// Warnings that follow from the run itself.
 fn after_run(
     (reason, is_held): (StopReason, bool),
     peak: &Peak,

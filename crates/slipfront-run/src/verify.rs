@@ -1,4 +1,4 @@
-//! Holds what stands in the folder of a run against its manifest, or against the files of a repeated run.
+//! Compares the files in the folder of a run with its manifest, or with the files of a repeated run.
 
 use std::collections::BTreeSet;
 use std::io::ErrorKind;
@@ -15,14 +15,14 @@ use slipfront_case::number_format::count;
 use slipfront_case::text::{single_line, truncated};
 use slipfront_case::unfinished::is_unfinished;
 
-/// What was found in a folder.
+/// Result of verifying a folder.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Verdict {
-    /// What it holds, in words.
+    /// Content of the folder in words.
     pub what: String,
-    /// What is not as it should be, a line each.
+    /// Differences that are errors, a line each.
     pub differences: Vec<String>,
-    /// What does no harm, a line each.
+    /// Differences that do no harm, a line each.
     pub notes: Vec<String>,
 }
 
@@ -45,7 +45,8 @@ pub enum VerifyError {
     Temporary(std::io::Error),
 }
 
-/// Refuses files `which` of a complete run that are not as they were written; without a manifest nothing is known of them.
+/// Refuses those files, chosen by `which`, of a complete run that have changed since they were written; without a manifest
+/// nothing is known of them.
 pub fn expect_as_written(run: &Inspection, which: impl Fn(&str) -> bool) -> Result<(), VerifyError> {
     let manifest = match run.manifest() {
         Ok(manifest) => manifest,
@@ -108,7 +109,7 @@ pub fn inspect(folder: &Path) -> Result<Inspection, VerifyError> {
     Ok(Inspection::of(folder)?)
 }
 
-/// Where the files of a folder differ from those listed, which for example `were written`: a sentence for each.
+/// Differences between the files of a folder and the listed ones, a sentence for each; the verb may be `were written`.
 pub fn differences<'f>(
     files: impl IntoIterator<Item = &'f ManifestFile>,
     folder: &Path,
@@ -139,7 +140,7 @@ pub fn differences<'f>(
     files.into_iter().filter_map(difference).collect()
 }
 
-/// Why the case of a run is not a resolved case for this version.
+/// Reason for which the case of a run is not a resolved case for this version.
 fn unresolved(run: &Inspection) -> Option<String> {
     let path = run.path.join(CASE);
     match &run.case {
@@ -155,12 +156,12 @@ fn unresolved(run: &Inspection) -> Option<String> {
     }
 }
 
-/// First line of a message: what stands in a list has one line.
+/// First line of a message, for a list with one line per entry.
 pub fn first_line(error: &impl ToString) -> String {
     error.to_string().lines().next().unwrap_or_default().to_owned()
 }
 
-/// A note on each entry of a folder and of its `inputs/` that is not among the `listed`.
+/// A note on each entry of a folder and of its `inputs/` that is not `listed`.
 pub fn unlisted_files(folder: &Path, listed: &BTreeSet<&str>, is_left: impl Fn(&str) -> bool) -> Vec<String> {
     let names = |folder: &Path| {
         let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();

@@ -22,8 +22,8 @@ use slipfront_run::fields::{
 use slipfront_run::running;
 use tempfile::TempDir;
 
-/// What is written for a block: eighths, which every type of the file holds exactly, that tell blocks, arrays and
-/// instants apart. `tests/fields/check.py` has the same formulas.
+/// Value that is written for a block: a multiple of an eighth, which every type of the file holds exactly, different for
+/// different blocks, arrays and instants. `tests/fields/check.py` has the same formulas.
 fn value(array: usize, row: usize, column: usize) -> f64 {
     ((31 * row + 17 * column + 1000 * array) % 4096) as f64 / 8.0
 }
@@ -146,8 +146,8 @@ fn a_small_file_is_read_back() {
     assert!(fs::read(&path).unwrap().starts_with(b"CDF\x02"));
 }
 
-/// Of a run of 30 x 4 blocks, in which none slides at first and each does at some time. The bins are columns of blocks, of which one has
-/// no contact.
+/// A kymograph is read back, of a run of 30 x 4 blocks in which none slides at first and each does at some time. The bins
+/// are columns of blocks, of which one has no contact.
 #[test]
 fn a_kymograph_is_read_back() {
     let (_folder, path) = place("kymograph.nc");
@@ -169,7 +169,7 @@ fn a_kymograph_is_read_back() {
     }
 }
 
-/// Reads rows of a file and holds all that was read against what was written.
+/// Reads rows of a file and compares all that was read with the values that were written.
 fn assert_known(path: &Path, known: &Known, rows: Range<usize>) {
     let data = read_rows(path, rows.clone()).unwrap();
     assert_eq!((data.nx, data.ny, data.stride), (known.nx, known.ny, 1));
@@ -194,8 +194,8 @@ fn assert_known(path: &Path, known: &Known, rows: Range<usize>) {
     }
 }
 
-/// The small file as netCDF-C writes it with 64-bit data (`tests/fields/check.py`): the reader takes it, and no part of it
-/// for the whole.
+/// The small file as netCDF-C writes it with 64-bit data (`tests/fields/check.py`): the reader reads it, and never takes a
+/// part of it for the whole.
 #[test]
 fn files_with_64_bit_data_of_another_program_are_read() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/fields/netcdf-c-64-bit-data.nc");

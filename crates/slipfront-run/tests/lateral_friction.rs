@@ -1,4 +1,4 @@
-//! Friction across the drive in the summary is that of the curve.
+//! Friction across the drive in the summary equals that of the curve.
 
 // Helpers of tests are not tests by themselves to clippy.
 #![allow(clippy::unwrap_used)]

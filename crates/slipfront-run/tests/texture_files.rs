@@ -1,4 +1,4 @@
-//! Files of textures for other programs: what their outlines fill is what the case's blocks are.
+//! Files of textures for other programs: their outlines fill the textured blocks of the case.
 
 #![allow(clippy::unwrap_used)]
 
@@ -17,7 +17,7 @@ enum Part {
     Arc([f64; 2], [f64; 2], f64, [f64; 2]),
 }
 
-/// What is filled by the even-odd rule.
+/// Parts that are filled together by the even-odd rule.
 type Element = Vec<Part>;
 
 fn on_arc(center: [f64; 2], [a, b]: [f64; 2], angle: f64, t: f64) -> [f64; 2] {
@@ -36,7 +36,7 @@ impl Part {
         }
     }
 
-    /// How often a ray from a point to the right meets it.
+    /// Number of times that a ray from a point to the right meets the part.
     fn crossings(&self, [x, y]: [f64; 2]) -> usize {
         let meets = |from: [f64; 2], to: [f64; 2]| (from[1] <= y) != (to[1] <= y);
         match *self {
@@ -75,7 +75,7 @@ impl Part {
         }
     }
 
-    /// How far a point is from it at most.
+    /// Largest distance of a point from the part.
     fn distance(&self, [x, y]: [f64; 2]) -> f64 {
         match *self {
             Part::Line([p, q]) => {
@@ -167,7 +167,7 @@ fn svg_path(path: &str, point: &dyn Fn(f64, f64) -> [f64; 2], block: f64) -> Ele
     parts
 }
 
-/// The arc of less than half a turn, counterclockwise: in coordinates in which the ellipse is the unit circle.
+/// The arc of less than half a turn, counterclockwise, found in coordinates in which the ellipse is the unit circle.
 fn arc(from: [f64; 2], to: [f64; 2], [a, b]: [f64; 2], angle: f64) -> Part {
     let (s, c) = angle.sin_cos();
     let turned = |p: [f64; 2]| [(p[0] * c + p[1] * s) / a, (p[1] * c - p[0] * s) / b];
@@ -191,7 +191,7 @@ fn arc(from: [f64; 2], to: [f64; 2], [a, b]: [f64; 2], angle: f64) -> Part {
     Part::Arc(center, [a, b], angle, [t, u])
 }
 
-/// The end of an arc comes after its start.
+/// Parameters of an arc such that its end comes after its start.
 fn counterclockwise([from, to]: [f64; 2]) -> [f64; 2] {
     [from, if to > from { to } else { to + TAU }]
 }

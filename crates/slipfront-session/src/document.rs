@@ -410,7 +410,7 @@ mod tests {
         assert_eq!(error, "the case has no place for the key `drive.v_star.more`");
     }
 
-    /// Of sizes that are no multiple of eight, which a byte of the image holds.
+    /// A byte of the image holds eight blocks; most of these sizes are no multiple of eight.
     #[test]
     fn a_mask_is_the_texture_it_was_painted_as() {
         for (nx, ny) in [(1, 2), (7, 3), (8, 8), (13, 5), (100, 9)] {

@@ -1,4 +1,4 @@
-//! What work beside a session tells it, and who does such work.
+//! Messages of work beside a session, and the worker who does such work.
 
 use std::ops::Deref;
 use std::sync::Arc;
@@ -21,7 +21,7 @@ pub trait Worker {
     fn now(&self) -> Duration;
 }
 
-/// What work beside a session tells it. It can be sent as JSON.
+/// Message of work beside a session. It can be sent as JSON.
 #[derive(Debug, Serialize, Deserialize)]
 pub struct Event(pub(crate) EventKind);
 
@@ -81,18 +81,18 @@ pub(crate) struct Tried {
     pub(crate) textures: usize,
     /// Change of static friction by the best of them, %.
     pub(crate) best_percent: Option<f64>,
-    /// Its textured blocks.
+    /// Textured blocks of the best of them.
     pub(crate) best_texture: Option<Mask>,
 }
 
-/// What was found beside what is painted, on surfaces that the search has not seen.
+/// Static friction of the texture that a search has found and of the painted one, on surfaces that the search has not seen.
 #[derive(Debug, Serialize, Deserialize)]
 pub(crate) struct Comparison {
     /// Number of the surfaces.
     pub(crate) surfaces: usize,
     /// Change of static friction against the slider without texture, %.
     pub(crate) best: Option<Estimate>,
-    /// What is painted changes of it, %; none where nothing is painted.
+    /// Change of static friction by the painted texture, %; none where nothing is painted.
     pub(crate) painted: Option<Estimate>,
     /// Whether what was found is better than what is painted, by more than the scatter over surfaces.
     pub(crate) is_better: bool,

@@ -1,4 +1,4 @@
-//! What a session needs of whoever holds it.
+//! Host of a session: the functions that a session needs of whoever holds it.
 
 use crate::document::Document;
 use crate::event::Event;

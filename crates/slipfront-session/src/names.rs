@@ -8,7 +8,7 @@ fn is_plain(c: char) -> bool {
     c.is_alphanumeric() || "_-. ()+".contains(c)
 }
 
-/// Whether this is a name within a folder, and not a path that may lead out of it.
+/// Whether a text is a name within a folder, and not a path that may lead out of it.
 pub fn is_plain_name(name: &str) -> bool {
     !name.is_empty() && name.len() <= 100 && !name.starts_with('.') && name.chars().all(is_plain)
 }

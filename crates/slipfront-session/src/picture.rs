@@ -39,7 +39,7 @@ pub(crate) struct Painter {
     high: Option<(DisplayedField, f32)>,
 }
 
-/// What belongs to a picture beside its values.
+/// Description of a picture beside its values.
 pub(crate) struct PictureFrame<'a> {
     pub(crate) step: u64,
     pub(crate) time_star: f64,
@@ -47,7 +47,7 @@ pub(crate) struct PictureFrame<'a> {
     pub(crate) sliding_percent: f64,
     pub(crate) size: [usize; 2],
     pub(crate) textured: &'a [bool],
-    /// Whether it was recorded before.
+    /// Whether the picture was recorded before.
     pub(crate) recorded: bool,
 }
 

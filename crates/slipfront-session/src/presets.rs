@@ -16,7 +16,7 @@ pub struct Preset {
     pub name: String,
     /// The group of the list in which it stands: `cases` or `paper`.
     pub group: String,
-    /// What it shows, in a sentence.
+    /// A sentence that tells what the case shows.
     pub title: String,
     /// The case as a text.
     pub toml: String,

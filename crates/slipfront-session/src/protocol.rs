@@ -1,4 +1,4 @@
-//! What the page and a session say to each other: requests as JSON, replies as JSON, pictures as bytes.
+//! Messages between the page and a session: requests as JSON, replies as JSON, pictures as bytes.
 //!
 //! The page is written against the types of `types/protocol.d.ts`, which a test holds against those here.
 
@@ -31,7 +31,7 @@ impl Message {
     }
 }
 
-/// What the page asks for.
+/// Request of the page.
 #[derive(Debug, Deserialize)]
 #[serde(tag = "do", rename_all = "snake_case", deny_unknown_fields)]
 pub(crate) enum Request {
@@ -58,7 +58,7 @@ pub(crate) enum Request {
     Redo,
     /// The present case again, from rest.
     Rest,
-    /// What is shown, and how fast.
+    /// Choice of the field that is shown, and of the pace.
     View(ViewChange),
     /// Some steps of a paused run.
     Step { count: u64 },
@@ -116,7 +116,7 @@ pub(crate) struct Source {
     pub(crate) files: BTreeMap<String, String>,
 }
 
-/// What a session tells.
+/// Reply of a session.
 #[derive(Debug, Serialize)]
 #[serde(tag = "is", rename_all = "snake_case")]
 pub(crate) enum Reply<'a> {
@@ -223,7 +223,7 @@ pub(crate) struct CaseReply<'a> {
     pub(crate) search: SearchLimits,
 }
 
-/// What a search for a better texture may find.
+/// Limits of the textures that a search for a better one may find.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub(crate) struct SearchLimits {
     /// Smallest width of a feature and of a gap.
@@ -328,7 +328,7 @@ pub(crate) struct FindingReply {
     pub(crate) best_texture: Vec<[usize; 3]>,
 }
 
-/// What came of a search for a better texture.
+/// Result of a search for a better texture.
 #[derive(Debug, Serialize)]
 pub(crate) struct FoundReply {
     pub(crate) outcome: FoundOutcome,
@@ -342,17 +342,17 @@ pub(crate) struct FoundReply {
     pub(crate) painted: Option<Estimate>,
 }
 
-/// What became of the painted texture after a search.
+/// Fate of the painted texture after a search.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum FoundOutcome {
     /// The best of the search has taken its place.
     Replaced,
-    /// It stays, since nothing better was found.
+    /// The painted texture stays, since nothing better was found.
     Kept,
-    /// It was changed by hand before the search had ended.
+    /// The painted texture was changed by hand before the search had ended.
     GivenUp,
-    /// It stays, since the search has failed, as a sentence before has told.
+    /// The painted texture stays, since the search has failed, as a sentence before has told.
     Failed,
 }
 

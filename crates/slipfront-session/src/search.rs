@@ -39,7 +39,7 @@ const FRESH_SURFACES: u64 = 8;
 /// Confidence of the intervals.
 const CONFIDENCE: f64 = 0.95;
 
-/// What a search for a case may find.
+/// Limits of the textures that a search for a case may find.
 pub(crate) fn limits(case: &Case) -> SearchLimits {
     let painted = case.texture.meshed_percent;
     SearchLimits {

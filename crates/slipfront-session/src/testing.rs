@@ -19,7 +19,7 @@ use crate::work::Work;
 /// Time that passes for work between two looks at its clock.
 const TICK: Duration = Duration::from_secs(3);
 
-/// What a session has said and asked its host for.
+/// Host of a session under test: it keeps the replies of the session and what was asked of it.
 #[derive(Default)]
 pub(crate) struct TestHost {
     replies: RefCell<Vec<String>>,

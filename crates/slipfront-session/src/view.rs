@@ -1,10 +1,10 @@
-//! What is shown of a run, and how fast it goes: nothing here changes the case.
+//! View of a run: which field is shown, and how fast the run goes. Nothing here changes the case.
 
 use serde::Deserialize;
 
 use crate::picture::DisplayedField;
 
-/// What the page asks to be shown.
+/// Change of the view that the page asks for.
 #[derive(Debug, Default, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub(crate) struct ViewChange {
@@ -39,7 +39,7 @@ pub(crate) enum AfterChange {
     GoOn,
 }
 
-/// What is shown.
+/// View of a run.
 #[derive(Debug)]
 pub(crate) struct View {
     pub(crate) field: DisplayedField,

@@ -20,7 +20,7 @@ enum WorkKind {
     Repeat(u64),
     /// A texture with less static friction than the painted one.
     Search,
-    /// What a search has found beside what is painted.
+    /// Comparison of the texture that a search has found with the painted one.
     Compare(Mask),
 }
 

@@ -4,11 +4,12 @@
 //! $ cargo run --release -p slipfront-study --example calibration_coverage -- 1000 1000 5000
 //! ```
 //!
-//! So many training runs and so many records of 30 x 30 blocks with six unknowns, over surfaces that training has not drawn, at 1 % and 5 %
-//! of noise. Prints for every unknown: the share of records whose interval of 90 % holds the truth, in all and in each quarter of the range;
-//! the median width of the interval over 0.9 of the range; the probability that the ranks of the truth are uniform (Kolmogorov and
-//! Smirnov). Then the share of records that the check refuses, as they are and with a drift, and processor times. The third number is that of
-//! the first record: other numbers are other records.
+//! The arguments are the numbers of training runs and of records, of 30 x 30 blocks with six unknowns, over surfaces that
+//! training has not drawn, at 1 % and 5 % of noise. Prints for every unknown: the share of records whose interval of 90 %
+//! holds the truth, in all and in each quarter of the range; the median width of the interval over 0.9 of the range; the
+//! probability that the ranks of the truth are uniform (Kolmogorov and Smirnov). Then the share of records that the check
+//! refuses, as they are and with a drift, and processor times. The third number is that of the first record: other numbers
+//! are other records.
 
 use std::collections::HashMap;
 use std::error::Error;
@@ -144,7 +145,7 @@ fn records_of(set_up: &SetUp, truths: &[Vec<f64>], first: usize) -> Result<Vec<V
     Ok(curves.ok_or("given up")?.into_iter().flatten().collect())
 }
 
-/// Pseudorandom bits (SplitMix64), which have nothing to do with those of training.
+/// Pseudorandom bits (SplitMix64), unrelated to those of training.
 fn bits(state: &mut u64) -> u64 {
     *state = state.wrapping_add(0x9E37_79B9_7F4A_7C15);
     let mut z = *state;
@@ -157,7 +158,7 @@ fn unit_interval(state: &mut u64) -> f64 {
     ((bits(state) >> 11) as f64 + 0.5) / (1u64 << 53) as f64
 }
 
-/// Where the unknowns of a record lie in their ranges.
+/// Positions of the unknowns of a record in their ranges.
 fn uniform(record: usize, count: usize) -> Vec<f64> {
     let mut state = (record as u64 + 1).wrapping_mul(0xAEF1_7502_108E_F2D9);
     (0..count).map(|_| unit_interval(&mut state)).collect()

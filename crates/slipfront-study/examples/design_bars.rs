@@ -22,11 +22,11 @@ use slipfront_run::pictures::texture_file::textured_blocks;
 use slipfront_run::running;
 use slipfront_study::design::{Bounds, Design, Limits, Mean, OnFresh, Quantity, Verdict, Wish};
 
-/// What is added to the case whose curve is asked for.
+/// Keys that are added to the case whose curve is asked for.
 const CAVITY: &str = "friction.seed = 1000\noutput.series = 5\n\
     texture = [{ shape = 'cavity', coverage = 8, center = ['17 um', '30 um'] }]";
 
-/// Surfaces on which it is held against the curve.
+/// Surfaces on which the cavity itself is compared with the curve.
 const SURFACES: u64 = 16;
 
 fn main() -> Result<(), Box<dyn Error>> {

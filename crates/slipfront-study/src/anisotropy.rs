@@ -1,4 +1,5 @@
-//! Friction against the direction of the drive: how much it differs, whether by more than chance, and friction across the drive.
+//! Friction against the direction of the drive: the size of the difference, whether it is more than chance, and friction
+//! across the drive.
 
 use std::collections::HashMap;
 
@@ -10,16 +11,16 @@ use crate::study_results::StudyResults;
 use crate::summary_values::RunQuantity;
 use slipfront_case::number_format::{are, count};
 
-/// Friction and what is across the drive with it.
+/// Names of friction along and across the drive.
 pub(crate) const FRICTION: [(&str, &str); 2] = [
     (STATIC, "static_lateral_friction_star"),
     ("kinetic_friction_star", "kinetic_lateral_friction_star"),
 ];
 
-/// A run without a transition has none.
+/// Name of static friction, which a run without a transition does not have.
 const STATIC: &str = "static_friction_star";
 
-/// Two directions are one if they differ by less, degrees.
+/// Difference in degrees below which two directions are one.
 const SAME: f64 = 1e-9;
 
 /// Friction of one quantity over the directions, at the same levels of all other axes.
@@ -29,13 +30,13 @@ pub struct Anisotropy {
     pub quantity: &'static str,
     /// Columns of the other axes, and their cells.
     pub levels: Vec<(String, String)>,
-    /// How many directions count: those in which at least half of the runs have a value.
+    /// Number of directions that count: those in which at least half of the runs have a value.
     pub directions: usize,
-    /// How many replicates count: those that have a value in each of these directions.
+    /// Number of replicates that count: those that have a value in each of these directions.
     pub replicates: usize,
-    /// What has been left out; a sentence.
+    /// Sentence on the directions, replicates and runs that are left out.
     pub left_out: Option<String>,
-    /// What these values tell, or a sentence why they are too few.
+    /// Result for these values, or a sentence why they are too few.
     pub found: Result<OverDirections, String>,
 }
 
@@ -46,24 +47,26 @@ pub struct OverDirections {
     pub mean: Sample,
     /// The direction in which the mean over replicates is largest, degrees from x towards y; the first if there are several.
     pub largest_direction: f64,
-    /// The direction in which it is smallest.
+    /// The direction in which the mean over replicates is smallest.
     pub smallest_direction: f64,
-    /// Friction in the one less that in the other, over the mean over the directions, of every replicate r after the first; for each, the
-    /// directions are those in which the mean of the replicates before it is largest and smallest:
+    /// Friction in the largest direction less that in the smallest, over the mean over the directions, of every replicate r
+    /// after the first; for each, the directions are those in which the mean of the replicates before it is largest and
+    /// smallest:
     ///
     /// ```text
     /// (mu_r(largest direction of 0 .. r - 1) - mu_r(smallest direction of 0 .. r - 1))/mean(mu_r)
     /// ```
     ///
-    /// Where friction does not depend on the direction its mean is zero; that between the largest and the smallest of the same values
-    /// would be above zero by chance alone.
+    /// Where friction does not depend on the direction its mean is zero; the difference between the largest and the smallest
+    /// of the same values would be above zero by chance alone.
     pub anisotropy: Sample,
-    /// How probable axes that stand out as much or more are if friction has none; none of less than three directions in half a turn.
+    /// Probability of axes that stand out as much or more if friction has none; none for less than three directions in half
+    /// a turn.
     pub p_value: Option<f64>,
     /// The axes of the friction tensor, if they are more than chance.
     pub principal: Option<Principal>,
-    /// Friction across the drive, positive to its left, and the direction where its mean is largest in size. As of `anisotropy`, the
-    /// direction of every value is that of the replicates before it, and so is its sign.
+    /// Friction across the drive, positive to its left, and the direction where its mean is largest in size. As for
+    /// `anisotropy`, the direction of every value is that of the replicates before it, and so is its sign.
     pub lateral: Option<(f64, Sample)>,
 }
 
@@ -164,7 +167,7 @@ impl DirectedPoints<'_> {
         found
     }
 
-    /// The values of each replicate in all directions; of those that have them all.
+    /// The values of each replicate in all directions, for the replicates that have them all.
     fn replicates(&self, directions: &[(f64, usize)], quantity: RunQuantity) -> Vec<Vec<f64>> {
         let counts = directions.iter();
         let counts = counts.map(|(_, position)| self.results.points[*position].replicates);
@@ -175,7 +178,7 @@ impl DirectedPoints<'_> {
         (0..counts.min().unwrap_or(0)).filter_map(values).collect()
     }
 
-    /// What does not count of the directions, their replicates and runs.
+    /// Sentence on the directions, replicates and runs that do not count.
     fn left_out(
         &self,
         quantity: &str,
@@ -212,7 +215,7 @@ impl DirectedPoints<'_> {
     }
 }
 
-/// What the values of replicates in these directions tell, but for friction across the drive.
+/// Result for the values of replicates in these directions, without friction across the drive.
 fn over_directions(degrees: &[f64], values: &[Vec<f64>], confidence: f64) -> Result<OverDirections, String> {
     if degrees.len() < 2 {
         return Err("anisotropy needs values in two directions or more".to_owned());
@@ -245,7 +248,7 @@ fn over_directions(degrees: &[f64], values: &[Vec<f64>], confidence: f64) -> Res
     })
 }
 
-/// The value that is largest in size, and its direction; none of less than three replicates.
+/// The value that is largest in size, and its direction; none for less than three replicates.
 fn largest_in_size(degrees: &[f64], values: &[Vec<f64>], confidence: f64) -> Option<(f64, Sample)> {
     if values.len() < MIN_REPLICATES {
         return None;
@@ -263,9 +266,9 @@ fn largest_in_size(degrees: &[f64], values: &[Vec<f64>], confidence: f64) -> Opt
     Some((degrees[at], Sample::of(&sizes, confidence)?))
 }
 
-/// A number of every replicate after the first, from its values and the sums of those of the replicates before it. What is chosen from
-/// these owes nothing to the scatter of the replicate itself, as it would if it were chosen from all; nor has this then had a part in
-/// the choice for another, which leaves an interval of the numbers as wide as it claims to be.
+/// A number of every replicate after the first, from its values and the sums of those of the replicates before it. A choice
+/// from these does not depend on the scatter of the replicate itself, as a choice from all would; nor does a number depend
+/// on the choice for an earlier one, so that the interval of the numbers is as wide as it claims to be.
 fn by_those_before(values: &[Vec<f64>], of: impl Fn(&[f64], &[f64]) -> f64) -> Vec<f64> {
     let Some((first, later)) = values.split_first() else {
         return Vec::new();
@@ -294,7 +297,7 @@ fn add(sums: &mut [f64], values: &[f64]) {
     }
 }
 
-/// Where the largest and the smallest value are, the first of equal ones.
+/// Positions of the largest and the smallest value, the first of equal ones.
 fn extremes(values: &[f64]) -> [usize; 2] {
     let (mut largest, mut smallest) = (0, 0);
     for (at, value) in values.iter().enumerate() {
@@ -340,7 +343,7 @@ mod tests {
             .collect()
     }
 
-    /// How many of the trials have an interval above zero, and one below.
+    /// Number of trials with an interval above zero, and below.
     fn outside(found: &[Sample]) -> [usize; 2] {
         let ends: Vec<[f64; 2]> = found.iter().filter_map(Sample::interval).collect();
         let count = |is: fn(&[f64; 2]) -> bool| ends.iter().filter(|&ends| is(ends)).count();
@@ -435,7 +438,7 @@ mod tests {
         assert!(found.p_value.is_none() && found.principal.is_none());
     }
 
-    /// A direction that fails, or runs that never slide, take nothing from the others.
+    /// A direction that fails, or runs that never slide, are left out, and a sentence says so; the others stay.
     #[test]
     fn what_has_no_value_is_left_out_and_said() {
         let text = "base.slider.blocks = [4, 4]\nstudy.replicates = 4\n[[axes]]\nkey = 'drive.direction'\nlist = [0, 60, 120, 90, 360]";

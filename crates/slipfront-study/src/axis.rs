@@ -1,4 +1,4 @@
-//! An axis of a study: the levels that one key, several keys together, or a set of named variants take.
+//! An axis of a study: levels of one key, of several keys together, or of a set of named variants.
 
 use std::collections::{BTreeSet, HashSet};
 use std::ops::Bound;
@@ -15,30 +15,31 @@ use slipfront_case::text::truncated;
 /// An axis and its levels.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Axis {
-    /// Names of its columns in the tables: the keys, or the name of the variants.
+    /// Names of the axis's columns in the tables: the keys, or the name of the variants.
     pub columns: Vec<String>,
-    /// Its levels, in order.
+    /// Levels of the axis, in order.
     pub levels: Vec<Level>,
-    /// How its levels are spaced.
+    /// Spacing of the levels.
     pub spacing: Spacing,
-    /// The unit in which its numbers are, where they are written with one: that of the first level. Empty where its levels are named
-    /// with their units, none where the unit is that of its key.
+    /// Unit of the axis's numbers, where they are written with one: that of the first level. Empty where levels are named
+    /// with their units, none where the unit is that of the key.
     pub unit: Option<String>,
 }
 
 /// One level of an axis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Level {
-    /// Its cells in the columns of the axis.
+    /// Cells of the level in the columns of the axis.
     pub labels: Vec<String>,
-    /// Its number on an axis of numbers, of a quantity in the unit of the axis.
+    /// Number of the level on an axis of numbers; for a quantity in the unit of the axis.
     pub number: Option<f64>,
     /// Keys of the case and their values.
     pub overrides: Vec<Override>,
 }
 
 impl Level {
-    /// Its name in pictures: a pair of equal numbers, such as the blocks of a square slider, is named by one number.
+    /// Name of the level in pictures: a pair of equal numbers, such as the blocks of a square slider, is named by one
+    /// number.
     pub fn shown(&self) -> String {
         match (self.labels.as_slice(), self.number) {
             ([_], Some(number)) => exact(number),
@@ -47,10 +48,10 @@ impl Level {
     }
 }
 
-/// How the levels of an axis are spaced.
+/// Spacing of the levels of an axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Spacing {
-    /// Names or other things without order.
+    /// Names or other levels without order.
     Named,
     /// Numbers or quantities.
     Linear,
@@ -64,7 +65,7 @@ pub enum Spacing {
 pub(crate) struct AxisKeys {
     key: Option<String>,
     list: Option<Vec<Value>>,
-    /// `[from, to, count]`, as `logspace`.
+    /// Values `[from, to, count]`, as for `logspace`.
     linspace: Option<Vec<Value>>,
     logspace: Option<Vec<Value>>,
     zip: Option<toml::Table>,
@@ -72,10 +73,10 @@ pub(crate) struct AxisKeys {
     variants: Option<toml::Table>,
 }
 
-/// Most levels of one axis.
+/// Largest number of levels of one axis.
 const MAX_LEVELS: usize = 100_000;
 
-/// The longest key of an axis, in bytes: all of a case are shorter. It is repeated in every level.
+/// The longest key of an axis, in bytes: all keys of a case are shorter. A key is repeated in every level.
 const MAX_KEY: usize = 100;
 
 impl Axis {
@@ -195,7 +196,8 @@ impl Axis {
         Ok(())
     }
 
-    /// An axis is one of numbers only if all its levels are, each another one: zipped keys may repeat the first.
+    /// Sets the spacing. An axis is one of numbers only if all its levels are different numbers: zipped keys may repeat the
+    /// first.
     fn set_spacing(&mut self) {
         let mut seen = HashSet::new();
         let mut differs = |level: &Level| level.number.is_some_and(|number| seen.insert(number.to_bits()));
@@ -222,13 +224,13 @@ impl Axis {
         least > 0.0 && most >= 10.0 * least && ratio((least * most).sqrt()) < ratio(0.5 * (least + most))
     }
 
-    /// Keys of the case that its levels set.
+    /// Keys of the case that the levels set.
     pub(crate) fn keys(&self) -> BTreeSet<&str> {
         let overrides = self.levels.iter().flat_map(|level| &level.overrides);
         overrides.map(Override::key).collect()
     }
 
-    /// The name under which pictures show it.
+    /// Name of the axis in pictures.
     pub fn title(&self) -> &str {
         &self.columns[0]
     }
@@ -298,7 +300,7 @@ fn variant((variant, keys): (String, Value)) -> Result<Level, String> {
     }
 }
 
-/// The quantity of a level, if its value has a unit; one of a pair of equal ones.
+/// The quantity of a level, if its value has a unit; for a pair of equal quantities the one.
 fn quantity(value: &Value) -> Option<WrittenQuantity<'_>> {
     match value {
         Value::String(text) => WrittenQuantity::read(text),
@@ -358,7 +360,8 @@ fn flatten(key: &str, value: &Value, list: &mut Vec<Override>) {
     }
 }
 
-/// Whether setting `key` replaces what `earlier` has set: it is that key, its partner, or a table or list around it.
+/// Whether setting `key` replaces a setting of `earlier`: the keys are equal or partners, or one is a table or list around
+/// the other.
 pub(crate) fn replaces_key(key: &str, earlier: &str) -> bool {
     let rest = earlier.strip_prefix(key);
     rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('.')) || exclude_each_other(key, earlier)
@@ -386,7 +389,7 @@ pub(crate) fn replaced_key<'k>(key: &str, earlier: &BTreeSet<&'k str>) -> Option
     same.or_else(inside).copied()
 }
 
-/// The ends of a spacing, in the unit of the first if they have one, and how many values it has.
+/// The ends of a spacing, in the unit of the first if they have one, and the number of values.
 struct Range {
     from: f64,
     to: f64,
@@ -464,7 +467,7 @@ fn twelve_digits(value: f64) -> f64 {
     format!("{value:.11e}").parse().unwrap_or(value)
 }
 
-/// Keys that count, such as a seed, take whole numbers only; all others take them too.
+/// A whole number where the value is one: keys that count, such as a seed, take only those, and all others take them too.
 fn whole_or_not(value: f64) -> Value {
     const LARGEST: f64 = 9e15;
     if value.fract() == 0.0 && value.abs() < LARGEST {
@@ -538,7 +541,7 @@ mod tests {
         assert_eq!(shown("[[10, 10], [20, 10]]"), ["[10, 10]", "[20, 10]"]);
     }
 
-    /// Quantities are numbers in the unit of the first of them, exactly those that were written.
+    /// Quantities are numbers in the unit of the first of them, exactly as they were written.
     #[test]
     fn quantities_are_numbers_in_one_unit() {
         let of = |keys: &str| {

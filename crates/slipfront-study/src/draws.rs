@@ -22,13 +22,13 @@ impl Draws {
         Self(ChaCha8Rng::from_seed(key))
     }
 
-    /// Uniform in [0, 1).
+    /// A uniform number in [0, 1).
     pub(crate) fn uniform(&mut self) -> f64 {
         const UNIT: f64 = 1.0 / (1u64 << 53) as f64;
         (self.0.next_u64() >> 11) as f64 * UNIT
     }
 
-    /// Uniform from `low` to `high`.
+    /// A uniform number from `low` to `high`.
     pub(crate) fn between(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * self.uniform()
     }
@@ -38,7 +38,7 @@ impl Draws {
         ((self.uniform() * n as f64) as usize).min(n - 1)
     }
 
-    /// Standard normal, by Box and Muller.
+    /// A standard normal number, by Box and Muller.
     pub(crate) fn normal(&mut self) -> f64 {
         let radius = (-2.0 * libm::log(1.0 - self.uniform())).sqrt();
         radius * libm::cos(std::f64::consts::TAU * self.uniform())

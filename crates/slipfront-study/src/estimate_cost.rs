@@ -1,4 +1,4 @@
-//! What the runs of a study will cost, from some steps of each size of slider, and what they may.
+//! Estimate of the cost of a study, from some steps of each size of slider, and limits on it.
 
 use std::collections::HashMap;
 
@@ -10,7 +10,7 @@ use slipfront_run::estimate_cost::seconds_per_step;
 use crate::error::StudyError;
 use crate::plan::Plan;
 
-/// What the runs of a study may take at most.
+/// Limits on the runs of a study.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct CostLimits {
     /// Memory of all runs at once, GB.
@@ -45,10 +45,9 @@ pub fn estimated_seconds(plan: &Plan, threads: usize) -> Result<f64, CaseError> 
 }
 
 impl CostLimits {
-    /// Refuses a plan if it has as many runs at once as there is no memory for, or takes more than this.
+    /// Refuses a plan if there is no memory for `threads` runs at once, or if it exceeds the limits.
     ///
-    /// # Errors
-    /// Says what it takes, the limit, and what takes less.
+    /// # Errors A sentence with the cost, the limit, and the remedy.
     pub fn check(self, plan: &Plan, threads: usize) -> Result<(), StudyError> {
         const GB: f64 = 1e9;
         plan.check_memory(threads)?;

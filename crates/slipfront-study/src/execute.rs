@@ -1,4 +1,4 @@
-//! Runs what a study lacks: the scheduler on this thread, and one run at a time on each thread of the pool.
+//! Makes the missing runs of a study: the scheduler on this thread, and one run at a time on each thread of the pool.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
@@ -27,8 +27,8 @@ type IsStopped<'a> = dyn Fn() -> bool + Sync + 'a;
 /// Runs a case; without an outcome if the run was given up.
 type RunCase<'a> = dyn Fn(RunKey, &IsStopped) -> Result<Option<Outcome>, StudyError> + Sync + 'a;
 
-/// Looks at a run that has ended, before what it leaves is written; whether it counts as done. One that does not is no failure: it is
-/// as if it had been stopped.
+/// Function that gets a run that has ended, before its results are written, and returns whether it counts as done. A run
+/// that does not is no failure: it counts as stopped.
 pub type LookAtRun<'a> = dyn Fn(RunKey, &Arc<Case>, &running::Record) -> bool + Sync + 'a;
 
 /// Runs everything that the plan needs and the records lack.
@@ -46,7 +46,7 @@ pub fn execute(
     execute_and_look(plan, records, folder, stop, &|_, _, _| true, watch)
 }
 
-/// The same, where `look` looks at every run that ends, on the thread of the run.
+/// Executes a plan as [`execute`] does; `look` gets every run that ends, on the thread of the run.
 pub fn execute_and_look(
     plan: &Plan,
     records: &Records,
@@ -151,7 +151,8 @@ fn run_one(
     }))
 }
 
-/// Writes a run folder. Of a failed run it is that of an interrupted one and holds the case alone, by which it can be repeated.
+/// Writes a run folder. The folder of a failed run is that of an interrupted one and holds the case alone, by which it can
+/// be repeated.
 fn write_folder(
     case: &Case,
     record: Option<&mut running::Record>,
@@ -190,7 +191,7 @@ mod tests {
         Plan::new(&file, None).unwrap()
     }
 
-    /// A run whose number depends on its seed and point, and whose duration on neither.
+    /// A pretended run whose number depends on its seed and point, and whose duration on neither.
     fn pretend(run: RunKey) -> Outcome {
         let mixed = (run.replicate as u64 * 7919 + run.point as u64 * 104_729) % 1000;
         Outcome::Done(Box::new(Summary {
@@ -200,7 +201,7 @@ mod tests {
         }))
     }
 
-    /// Executes a plan with so many runs at once: the thread that waits for them is one more of the pool.
+    /// Executes a plan with `threads` runs at once: the thread that waits for them is one more of the pool.
     fn execute_on(
         threads: usize,
         plan: &Plan,

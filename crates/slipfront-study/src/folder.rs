@@ -85,7 +85,7 @@ impl StudyFolder {
         Ok(folder)
     }
 
-    /// The folder.
+    /// Path of the folder.
     pub fn path(&self) -> &Path {
         &self.path
     }
@@ -200,7 +200,8 @@ pub fn refuse_foreign(folders: &[PathBuf]) -> Result<(), StudyError> {
 mod tests {
     use super::*;
 
-    /// Changes of the original files during a study have no effect; a changed copy is an error.
+    /// Runs read the copies of which their identity was made: changes of the original files during a study have no effect,
+    /// and a changed copy is an error.
     #[test]
     fn runs_read_what_their_identity_was_made_of() {
         let folder = tempfile::tempdir().unwrap();

@@ -1,13 +1,13 @@
-//! The friction tensor of values over directions: the test of whether friction has axes at all, and these.
+//! The friction tensor of values over directions: the test of whether friction has axes at all, and the axes.
 
 use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 
 use crate::statistics::{Sample, mean};
 
-/// Fewest replicates of which the test can tell: one more than the second harmonic has components.
+/// Smallest number of replicates for the test: one more than the components of the second harmonic.
 pub(crate) const MIN_REPLICATES: usize = 3;
 
-/// Values that differ by less, relative to the mean, differ by roundings.
+/// Difference relative to the mean below which values differ only by rounding.
 const ROUNDING: f64 = 1e-9;
 
 /// The friction tensor M that fits best, by least squares over the directions d:
@@ -17,20 +17,20 @@ const ROUNDING: f64 = 1e-9;
 /// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Principal {
-    /// theta_1, the direction of the larger principal value, from 0 to 180 degrees; the other one is across it.
+    /// Direction theta_1 of the larger principal value, from 0 to 180 degrees; the other direction is across it.
     pub direction: f64,
-    /// Half width of its confidence interval, degrees.
+    /// Half width of the direction's confidence interval, degrees.
     pub half_width: Option<f64>,
-    /// mu_1 and mu_2.
+    /// Principal values mu_1 and mu_2.
     pub values: [Sample; 2],
-    /// Root mean square of what is left over the directions, over the mean.
+    /// Root mean square of the residuals over the directions, over the mean.
     pub misfit: f64,
 }
 
-/// What the tensors of all replicates tell.
+/// Result of the tensors of all replicates.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Tensor {
-    /// How probable axes that stand out as much or more are if friction has none.
+    /// Probability of axes that stand out as much or more if friction has none.
     pub(crate) p_value: f64,
     /// The axes, if they are more than chance at this confidence.
     pub(crate) principal: Option<Principal>,

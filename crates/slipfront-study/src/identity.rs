@@ -1,4 +1,4 @@
-//! What decides the numbers of a run, as a hash: runs of one identity are made once.
+//! Identity of a run, a hash of all that decides its numbers: runs of one identity are made once.
 
 use serde::Serialize;
 use slipfront_case::case::{Case, Input};
@@ -8,7 +8,7 @@ use slipfront_run::program;
 
 use crate::SOURCE_HASH;
 
-/// A base of points, with what identifies the tables that they leave as they are.
+/// A base of points, with hashes of the tables that they leave unchanged.
 pub(crate) struct Prepared<'a> {
     pub(crate) case: ParsedCase<'a>,
     texts: Option<[Vec<u8>; 6]>,
@@ -23,14 +23,14 @@ impl<'a> Prepared<'a> {
         })
     }
 
-    /// The case of the base, and what identifies its tables.
+    /// The case of the base, with the hashes of its tables.
     pub(crate) fn known(&self) -> Option<(&CaseFile, &[Vec<u8>; 6])> {
         self.case.plain().zip(self.texts.as_ref())
     }
 }
 
 /// Hash of all that decides the numbers of a run but its seed: the physics of the case, the contents of its files and the
-/// program; not the names of files, nor the output. Tables that are as in a `known` case are not written again.
+/// program; not the names of files, nor the output. Tables that equal those of a `known` case are not hashed again.
 pub(crate) fn physics(
     case: &Case,
     known: Option<(&CaseFile, &[Vec<u8>; 6])>,

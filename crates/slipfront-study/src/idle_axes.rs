@@ -1,5 +1,5 @@
-//! Axes along which a study does not vary what is computed: the dimensionless model and its time plan are the same at every
-//! level. Pressure, stiffness and density alone do that, since they set units only, as long as the drive has a V*.
+//! Axes that change nothing in a study: the dimensionless model and its time plan are the same at every level. Pressure,
+//! stiffness and density alone are such axes, since they only set units as long as the drive has a V*.
 
 use std::cell::LazyCell;
 
@@ -9,11 +9,11 @@ use slipfront_case::case::Case;
 use crate::axis::Axis;
 use crate::plan::Plan;
 
-/// Strain of the load below which results do not depend on it in the digits that are printed: it shows in the third one above
-/// ten times this.
+/// Strain of the load below which results do not depend on it in the digits that are printed: the strain shows in the third
+/// digit above ten times this.
 const NEGLIGIBLE_EPSILON: f64 = 1e-3;
 
-/// The keys that set the unit of speed (Eq. 11a): V* stays what it is when they vary.
+/// The keys that set the unit of speed (Eq. 11a): V* does not change with them.
 const UNITS_OF_SPEED: [&str; 4] = [
     "load.pressure",
     "slider.young_modulus",
@@ -52,8 +52,8 @@ pub fn idle_axes(plan: &Plan) -> Vec<String> {
     idle.map(|axis| sentence(&plan.axes[axis])).collect()
 }
 
-/// Hash of what is computed at these levels; none where they are no valid case, which a part of a study need not notice of a point
-/// that it does not run.
+/// Hash of the computed model at these levels; none where they are no valid case, since a part of a study need not notice a
+/// point that it does not run.
 fn digest_at(plan: &Plan, levels: &[usize]) -> Option<blake3::Hash> {
     plan.case_of(levels).ok().as_ref().map(digest)
 }
@@ -141,7 +141,7 @@ mod tests {
         format!("[[axes]]\nkey = '{key}'\nlist = {list}\n")
     }
 
-    /// What is dimensionless alone counts, whatever the key is called.
+    /// Axes of units are named with their remedy: only the dimensionless model counts, whatever the key is called.
     #[test]
     fn axes_of_units_are_named_with_their_remedy() {
         let (pressure, speed) = (
@@ -217,7 +217,7 @@ mod tests {
         }
     }
 
-    /// An axis that counts at the last levels of the others alone is none that changes nothing.
+    /// An axis that only counts at the last levels of the others is no idle axis.
     #[test]
     fn an_axis_may_count_at_some_points_alone() {
         let variants = "[[axes]]\nname = 'held'\n[axes.variants]\nv_star = { drive.v_star = 0.03 }\n\

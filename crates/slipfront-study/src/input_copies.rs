@@ -13,8 +13,8 @@ use slipfront_run::folder_error::FolderError;
 /// Folder of the copies.
 const FOLDER: &str = "inputs";
 
-/// The name of a file without the way to it: its path below the case, or the last part of one that leads elsewhere.
-/// A copy has the plain name of its original.
+/// The plain name of a file: its path below the case, or the last part of a path that leads elsewhere. A copy has the plain
+/// name of its original.
 pub(crate) fn plain_name(written: &str) -> String {
     let path = Path::new(written);
     let is_below = |part| matches!(part, Component::Normal(_) | Component::CurDir);
@@ -30,9 +30,9 @@ pub(crate) fn plain_name(written: &str) -> String {
 
 /// A copy to be made of a file.
 pub(crate) struct Copy {
-    /// Its path in the results folder.
+    /// Path of the copy in the results folder.
     pub(crate) name: String,
-    /// The file.
+    /// Path of the original.
     pub(crate) original: PathBuf,
     hash: blake3::Hash,
 }
@@ -117,7 +117,7 @@ mod tests {
         }
     }
 
-    /// No point reads it, so that no case has looked at it.
+    /// A file without end is not copied. No point reads it, so that no case has noticed it.
     #[cfg(unix)]
     #[test]
     fn what_never_ends_is_not_copied() {
@@ -129,7 +129,7 @@ mod tests {
         assert!(copy(&mut study, folder.path()).unwrap().is_empty());
     }
 
-    /// It is there, so that a point may read it the next time.
+    /// A file that cannot be read is an error: a point may read it the next time.
     #[cfg(unix)]
     #[test]
     fn what_cannot_be_read_is_told() {

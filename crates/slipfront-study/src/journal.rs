@@ -25,8 +25,8 @@ pub(crate) struct Journal {
 }
 
 impl Journal {
-    /// Opens the file of this name in a folder, unless another process has it open, and makes an empty one where there is none. Gives the
-    /// records in it, and the number of lines that failed their checksum.
+    /// Opens the file of this name in a folder, unless another process has it open, and makes an empty one where there is
+    /// none. Returns the records in it, and the number of lines that failed their checksum.
     pub(crate) fn open<T: DeserializeOwned>(
         folder: &Path,
         name: &str,
@@ -48,7 +48,7 @@ impl Journal {
         Ok((Self { path, file }, lines.records, lines.damaged))
     }
 
-    /// Appends lines and waits until the disk has them; what had been recorded before stays whole.
+    /// Appends lines and waits until they are on the disk; earlier records stay whole.
     pub(crate) fn append(&mut self, lines: &[u8]) -> Result<(), StudyError> {
         let Self { path, file } = self;
         let before = file.stream_position();
@@ -75,7 +75,7 @@ pub struct Records {
     pub damaged: usize,
 }
 
-/// The file, and what stands in it.
+/// The file, and the results in it.
 #[derive(Debug)]
 struct Written {
     journal: Journal,
@@ -100,7 +100,7 @@ impl Records {
         })
     }
 
-    /// What is written, for this thread alone. A thread that panicked has left it whole: results are added last.
+    /// The file and results, locked for this thread. A thread that panicked has left them whole: results are added last.
     fn written(&self) -> MutexGuard<'_, Written> {
         self.written.lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -115,13 +115,12 @@ impl Records {
         self.written().results.len()
     }
 
-    /// Whether nothing is recorded.
+    /// Whether the file has no records.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// Appends finished runs that are not recorded yet and waits until the disk has them; what had been recorded before stays
-    /// whole.
+    /// Appends finished runs that are not recorded yet and waits until they are on the disk; earlier records stay whole.
     pub fn append(&self, records: &[FinishedRun]) -> Result<(), StudyError> {
         let Written { journal, results } = &mut *self.written();
         // Studies that share the file may have made the same run at the same time.
@@ -155,7 +154,7 @@ impl Records {
     }
 }
 
-/// What is kept in memory of a record.
+/// The part of a record that is kept in memory.
 fn entry(record: &FinishedRun) -> (String, RunResult) {
     (record.id.clone(), record.outcome.result())
 }
@@ -190,7 +189,7 @@ fn open_locked(path: &Path, folder: &Path) -> Result<File, StudyError> {
     Ok(file)
 }
 
-/// Records whose lines are written at once: each time waits for the disk.
+/// Number of records whose lines are written at once: each time waits for the disk.
 const LINES_AT_ONCE: usize = 1000;
 
 /// The longest line of a record file: hundreds of times what a run takes.
@@ -208,7 +207,7 @@ struct JournalLines<T> {
     bytes: u64,
     /// Whether the last line is a record without a line break.
     lacks_break: bool,
-    /// Where the last line begins, if it is a part of a line.
+    /// Position at which the last line begins, if it is a part of a line.
     cut_at: Option<u64>,
 }
 
@@ -252,7 +251,7 @@ impl<T: DeserializeOwned> JournalLines<T> {
     }
 
     /// Makes the file end with a line break, so that the next record begins a line: a record that lacks its line break gets
-    /// one, and a part of a record is cut off.
+    /// it, and a part of a record is cut off.
     fn repair_end(&self, file: &mut File) -> std::io::Result<()> {
         match self.cut_at {
             Some(begin) => file.set_len(begin),
@@ -353,7 +352,7 @@ mod tests {
         }
     }
 
-    /// A file without end, and what is no file, are neither read nor waited for.
+    /// A file without end, and an entry that is no file, are refused: they are neither read nor waited for.
     #[cfg(unix)]
     #[test]
     fn what_never_ends_is_refused() {

@@ -39,7 +39,7 @@ pub(crate) fn axis_symbol(axis: &Axis) -> String {
     in_its_unit(axis, |label| label.legend())
 }
 
-/// A level of an axis, as it is shown, beside those of others: what it is a value of, and its unit. A name says itself what it is.
+/// Text of a level of an axis beside those of others: its symbol, value and unit. A name stands alone.
 pub(crate) fn level_with_symbol(axis: &Axis, shown: String) -> String {
     if axis.spacing == Spacing::Named {
         return shown;
@@ -63,7 +63,7 @@ fn in_its_unit(axis: &Axis, write: impl Fn(QuantityLabel) -> String) -> String {
     })
 }
 
-/// A unit as it is printed: with a micro sign and raised powers.
+/// A unit as pictures print it: with a micro sign and raised powers.
 fn printed(unit: &str) -> String {
     let symbol = |symbol: &str| match symbol.strip_prefix('u') {
         Some(rest) if rest.starts_with(char::is_alphabetic) => format!("\u{b5}{rest}"),

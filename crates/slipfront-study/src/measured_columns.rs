@@ -27,8 +27,7 @@ impl MeasuredColumns {
 
     /// The record in a table.
     ///
-    /// # Errors
-    /// Why it is none, as a sentence.
+    /// # Errors A sentence on why the table is no record.
     pub(crate) fn read(&self, path: &Path, along: Measure) -> Result<MeasuredRecord, String> {
         let read = MeasuredRecord::read(path, [&self.x, &self.y], along);
         read.map_err(|error| match error {

@@ -1,4 +1,5 @@
-//! What the levels of a coverage are meshed to, which blocks meet nearly: pictures show that in the place of what is asked.
+//! Meshed coverages of the levels of a coverage, which blocks meet only nearly: pictures show them in place of the asked
+//! ones.
 
 use std::collections::HashMap;
 
@@ -7,8 +8,8 @@ use slipfront_case::number_format::count;
 use crate::axis::Spacing;
 use crate::plan::Plan;
 
-/// What is meshed at every point of a study with an axis of numbers over the coverage of its only texture. Of several textures it is not
-/// known what each of them covers.
+/// Meshed coverage at every point of a study with an axis of numbers over the coverage of its only texture. For several
+/// textures the coverage of each is not known.
 pub struct MeshedCoverage {
     /// Position of the axis.
     pub axis: usize,
@@ -17,7 +18,7 @@ pub struct MeshedCoverage {
 }
 
 impl MeshedCoverage {
-    /// What is meshed at the points of a study; none if it has no such axis.
+    /// Meshed coverages at the points of a study; none if it has no such axis.
     pub fn of(plan: &Plan) -> Option<Self> {
         let is_coverage = |key: &str| {
             let texture = key.strip_prefix("texture.");

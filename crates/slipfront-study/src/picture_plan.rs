@@ -1,4 +1,4 @@
-//! Which pictures a study has, by its axes alone: curves over numbers, maps over two of them, bars for names.
+//! The pictures of a study, which follow from its axes alone: curves over numbers, maps over two of them, bars for names.
 
 use std::collections::HashSet;
 
@@ -8,16 +8,16 @@ use crate::plan::Plan;
 use crate::study_results::StudyResults;
 use crate::summary_values::REDUCTION;
 
-/// Quantities that are drawn, if the study has values of them.
+/// Quantities that are drawn, if the study has values for them.
 pub(crate) const QUANTITIES: [&str; 3] = ["static_friction_star", "kinetic_friction_star", REDUCTION];
 
-/// Most curves in one picture.
+/// Largest number of curves in one picture.
 const MOST_CURVES: usize = 9;
 
-/// Most pictures of curves of a quantity; for a larger study the tables serve better.
+/// Largest number of pictures of curves of a quantity; for a larger study the tables serve better.
 const MOST_PICTURES: usize = 1000;
 
-/// Most characters of the levels in the name of a picture: the length of file names is limited.
+/// Largest number of characters of the levels in the name of a picture: the length of file names is limited.
 const MOST_OF_LEVELS: usize = 100;
 
 /// Names of all pictures that a study of these axes may get.
@@ -51,12 +51,12 @@ pub(crate) fn polar(axes: &[Axis]) -> Option<Result<(usize, Vec<Levels>), String
 
 /// A picture to be drawn.
 pub(crate) struct PlannedPicture {
-    /// Name of its files.
+    /// Name of the picture's files.
     pub(crate) name: String,
     pub(crate) kind: PictureKind,
 }
 
-/// What a picture shows; axes and levels are given by their positions.
+/// Kind of a picture; axes and levels are given by their positions.
 pub(crate) enum PictureKind {
     /// A bar for each name of one axis, or groups of bars for two.
     Bars,
@@ -70,8 +70,8 @@ pub(crate) enum PictureKind {
     Map { x: usize, y: usize },
 }
 
-/// The quantities of which the study has a value at some point: runs that stop at the onset have no kinetic friction, and a study
-/// without a reference has no reduction.
+/// The quantities for which the study has a value at some point: runs that stop at the onset have no kinetic friction, and a
+/// study without a reference has no reduction.
 pub(crate) fn measured_quantities(plan: &Plan, results: &StudyResults) -> Vec<&'static str> {
     let has = |quantity: &&str| {
         let mut points = 0..plan.points.len();
@@ -80,7 +80,7 @@ pub(crate) fn measured_quantities(plan: &Plan, results: &StudyResults) -> Vec<&'
     QUANTITIES.into_iter().filter(has).collect()
 }
 
-/// A sentence for each quantity that a study of this kind has pictures of, and this one has no value of.
+/// A sentence for each quantity that a study of this kind has pictures of, and for which this one has no value.
 pub fn quantities_without_pictures(plan: &Plan, results: &StudyResults) -> Vec<String> {
     let measured = measured_quantities(plan, results);
     let expected = |quantity: &&str| plan.has_reference() || *quantity != REDUCTION;
@@ -91,7 +91,8 @@ pub fn quantities_without_pictures(plan: &Plan, results: &StudyResults) -> Vec<S
         .collect()
 }
 
-/// Why a study of these axes has no curves and no bars, and why no polar picture of its directions: sentences, none for what it has.
+/// Sentences on why a study of these axes has no curves and no bars, and why no polar picture of its directions; none for
+/// pictures that it has.
 pub fn why_no_pictures(axes: &[Axis]) -> Vec<String> {
     let polar = polar(axes).and_then(Result::err);
     why_no_curves(axes).into_iter().chain(polar).collect()
@@ -109,7 +110,7 @@ fn why_no_curves(axes: &[Axis]) -> Option<String> {
     Some(format!("there are no pictures of curves: {why}; {values}"))
 }
 
-/// How the values of a study are drawn beside a map.
+/// Kind of the charts of a study beside a map.
 enum ChartKind {
     Bars,
     /// Curves over axis `x`; the first `split` of the others take a picture for each combination of their levels.
@@ -181,8 +182,8 @@ fn others_than(axes: &[Axis], x: usize) -> Vec<usize> {
     (0..axes.len()).filter(|&axis| axis != x).collect()
 }
 
-/// How many of the axes beside `x` are split off into pictures of their own, from the front, so that a picture can hold curves for
-/// the rest; a sentence if there would still be too many curves, or too many pictures.
+/// Number of axes beside `x` that are split off into pictures of their own, from the front, so that a picture can hold
+/// curves for the rest; a sentence if there would still be too many curves, or too many pictures.
 fn split(axes: &[Axis], x: usize) -> Result<usize, String> {
     let others = others_than(axes, x);
     let count: usize = others.iter().map(|&axis| axes[axis].levels.len()).product();
@@ -259,7 +260,7 @@ mod tests {
             .collect()
     }
 
-    /// Whatever the levels are called: no picture takes the place of another, and no name is longer than one can be.
+    /// Every picture has a name of its own, whatever the levels are called, and no name is too long.
     #[test]
     fn every_picture_has_a_name_of_its_own() {
         let long = "x".repeat(300);
@@ -284,7 +285,7 @@ mod tests {
         );
     }
 
-    /// A line of a file can ask for a million.
+    /// No more pictures are drawn than are useful, although a line of a file can ask for a million.
     #[test]
     fn more_pictures_than_anyone_looks_at_are_not_drawn() {
         let surfaces: String = (0..1001)
@@ -300,7 +301,7 @@ mod tests {
         assert_eq!(why, expected);
     }
 
-    /// Whether curves are drawn, and over which axis, or why not.
+    /// The axis over which curves are drawn, or the reason why there are none.
     #[test]
     fn curves_that_are_left_out_have_a_reason() {
         let axis =

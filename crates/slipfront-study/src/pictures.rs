@@ -20,11 +20,11 @@ use slipfront_plot::{
     Bar, BarChart, BarGroup, HeatAxis, HeatMap, Picture, PictureError, Polar, Response, Responses,
 };
 
-/// What a legend of several axes has no room for.
+/// Note that coverages are meshed ones, for which a legend of several axes has no room.
 const AS_MESHED: &str = "A* as meshed";
 
-/// Draws the pictures of a study and hands each on with the name of its files. No more are in memory at once than there is
-/// room for in the budget.
+/// Draws the pictures of a study and hands each on with the name of its files. The budget limits the number of pictures in
+/// memory at once.
 pub(crate) fn draw(
     plan: &Plan,
     results: &StudyResults,
@@ -65,15 +65,15 @@ struct PlottedQuantity<'a> {
     quantity: &'static str,
     /// Mean and the ends of its interval, by the levels of a point; NaN where there is none.
     values: HashMap<Vec<usize>, [f64; 3]>,
-    /// What the intervals are.
+    /// Meaning of the intervals.
     note: String,
-    /// How many values there are at each point that has one.
+    /// Number of values at each point that has one.
     counts: Vec<usize>,
-    /// The levels of points of which runs are left out that had no transition: a cross marks them.
+    /// Levels of the points of which runs without a transition are left out: a cross marks them.
     crossed: HashSet<Vec<usize>>,
-    /// How many such runs there are.
+    /// Number of runs without a transition.
     without_transition: usize,
-    /// What the coverages of an axis are meshed to: they are drawn there.
+    /// Meshed coverages of an axis, at which values are drawn.
     meshed: Option<MeshedCoverage>,
 }
 
@@ -126,12 +126,12 @@ impl<'a> PlottedQuantity<'a> {
         self.values.get(levels).copied().unwrap_or([f64::NAN; 3])
     }
 
-    /// What is meshed, where this axis is the one of coverages.
+    /// The meshed coverages, if this axis is the one of coverages.
     fn meshed(&self, axis: usize) -> Option<&MeshedCoverage> {
         self.meshed.as_ref().filter(|meshed| meshed.axis == axis)
     }
 
-    /// A title of an axis, which says so if it is one of coverages as they are meshed.
+    /// A title of an axis, with a remark if its coverages are meshed ones.
     fn titled(&self, axis: usize, title: String) -> String {
         match self.meshed(axis) {
             Some(_) => format!("meshed {title}"),
@@ -178,7 +178,7 @@ impl<'a> PlottedQuantity<'a> {
         }
     }
 
-    /// A level beside those of other axes, of which these are held.
+    /// Text of a level beside those of other axes, with these axes held at levels.
     fn level_with_symbol(&self, axis: usize, level: usize, held: &[(usize, usize)]) -> String {
         level_with_symbol(&self.axes[axis], self.shown(axis, level, held))
     }
@@ -202,7 +202,7 @@ impl<'a> PlottedQuantity<'a> {
         })
     }
 
-    /// What the intervals are, after the levels that all curves of a picture have in common.
+    /// The note on the intervals, after the levels that all curves of a picture have in common.
     fn note_at(&self, fixed: &[(usize, usize)], varied: &[usize]) -> String {
         let levels = fixed
             .iter()
@@ -216,8 +216,8 @@ impl<'a> PlottedQuantity<'a> {
         parts.join("; ")
     }
 
-    /// A curve over axis `x` at these levels of the others; those of the `varied` axes name it, a single one of which is told by the title
-    /// of the legend.
+    /// A curve over axis `x` at these levels of the others; the levels of the `varied` axes name it; a single varied axis
+    /// stands in the title of the legend.
     fn curve(&self, x: usize, fixed: &[(usize, usize)], varied: &[(usize, usize)]) -> Response {
         let held = [fixed, varied].concat();
         let label = varied.iter().map(|&(axis, level)| match varied.len() {
@@ -281,8 +281,8 @@ impl<'a> PlottedQuantity<'a> {
         })
     }
 
-    /// The means of what the lines of a map over two axes are meshed to; none if this is no axis of coverages, or if lines would not be
-    /// where they are asked in order.
+    /// The mean meshed coverages of the lines of a map over two axes; none if this is no axis of coverages, or if the lines
+    /// would not keep their order.
     fn meshed_lines(&self, axis: usize, asked: &[(f64, usize)], log: bool) -> Option<Vec<f64>> {
         let meshed = self.meshed(axis)?;
         let across = 0..self.axes[1 - axis].levels.len();
@@ -385,7 +385,7 @@ fn friction_polar(
     picture.map(Some)
 }
 
-/// What the intervals around means of so many values are, and how many runs are left out of them.
+/// Note on the intervals around means of `counts` values, and on the number of runs that are left out.
 fn note_on_intervals(confidence: f64, counts: &[usize], without_transition: usize) -> String {
     let intervals = intervals(confidence, counts);
     match without_transition {
@@ -410,7 +410,7 @@ fn intervals(confidence: f64, counts: &[usize]) -> String {
     )
 }
 
-/// Coverages that a level is meshed to, from the smallest to the largest.
+/// Range of the coverages to which a level is meshed.
 fn range(coverages: &[f64]) -> String {
     let ends = [f64::min, f64::max].map(|of| coverages.iter().copied().reduce(of));
     let [least, most] = ends.map(|end| four_digits(end.unwrap_or(f64::NAN)));

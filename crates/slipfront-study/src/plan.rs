@@ -1,4 +1,4 @@
-//! The plan of a study: its points, and what each run of a point is.
+//! The plan of a study: its points, and the runs of each point.
 
 use std::ops::Range;
 
@@ -24,13 +24,13 @@ use slipfront_run::pictures;
 pub struct Plan {
     /// Name of the study.
     pub name: String,
-    /// Repetition, reference and what is kept.
+    /// Repetition, reference and kept folders.
     pub settings: Settings,
     /// The axes of the study.
     pub axes: Vec<Axis>,
     /// Every combination of levels, the last axis fastest.
     pub points: Vec<Point>,
-    /// What is known of the runs of the points, one for each role.
+    /// Data of the runs of the points, one for each role.
     specs: Vec<RunSpec>,
     warnings: Vec<Warning>,
     base: Base,
@@ -40,50 +40,50 @@ pub struct Plan {
 /// A combination of levels. There may be a million of them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Point {
-    /// Place in the whole study, from 0: the same in every shard.
+    /// Index of the point in the whole study, from 0: equal in every shard.
     pub index: usize,
 }
 
-/// What is known of the runs of a point before any is made.
+/// Data of the runs of a point before any is made.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct RunSpec {
     /// Seed of replicate 0.
     seed: u64,
     /// Hash of all that decides the numbers of a run, but for the seed.
     physics: blake3::Hash,
-    /// Steps times blocks of a run, at most.
+    /// Largest number of steps times blocks of a run.
     block_steps: f64,
     n_blocks: usize,
     /// Whether the drive stands while blocks slide, for steps that `block_steps` leaves out.
     is_held: bool,
     /// Memory of a run beside others, in bytes.
     memory: f64,
-    /// Memory of its case alone, in bytes.
+    /// Memory of the case of a run alone, in bytes.
     memory_of_case: f64,
-    /// Room for its files, in bytes.
+    /// Disk space for the files of a run, in bytes.
     disk: f64,
-    /// A* as meshed, %.
+    /// Textured area A* as meshed, %.
     texture_percent: f64,
-    /// What the shapes of its only texture cover as meshed, %; none of several.
+    /// Area of the shapes of the only texture as meshed, %; none for several textures.
     meshed_coverage: Option<f64>,
 }
 
-/// Cases of more blocks are made one at a time while planning: one for each thread might not fit into memory.
+/// Number of blocks above which cases are made one at a time while planning: one for each thread might not fit into memory.
 const LARGE: u64 = 250_000;
 
-/// What is known of a run, and the warnings about it.
+/// Data of a run, and the warnings about it.
 type Spec = Result<(RunSpec, Vec<String>), CaseError>;
 
-/// What became of the cases of points in a row.
+/// Result of making the cases of points in a row.
 enum MadeRow {
-    /// They were made, and this is known of their runs.
+    /// The cases were made; data of their runs.
     Made(Vec<Spec>),
-    /// One of them has too many blocks to be made beside others.
+    /// A case has too many blocks to be made beside others.
     TooLarge,
 }
 
 impl MadeRow {
-    /// What is known of the runs, if the cases were made.
+    /// Data of the runs, if the cases were made.
     fn specs(self) -> Vec<Spec> {
         match self {
             Self::Made(specs) => specs,
@@ -92,19 +92,19 @@ impl MadeRow {
     }
 }
 
-/// Points whose cases are made before what is known of them is taken down.
+/// Number of points whose cases are made before the data of their runs are collected.
 const POINTS_AT_ONCE: usize = 4096;
 
-/// Points in a row whose cases are made from one base.
+/// Number of points in a row whose cases are made from one base.
 const POINTS_OF_A_BASE: usize = 64;
 
-/// A line of the records and a row of the tables.
+/// Bytes of a line of the records and a row of the tables.
 const RECORD_BYTES: f64 = 4096.0;
 
-/// What a run leaves in memory: its identity and its numbers, in the records, in the results and for the pictures.
+/// Bytes that a run keeps in memory: its identity and its numbers, in the records, in the results and for the pictures.
 const RESULT_BYTES: f64 = 2048.0;
 
-/// Pictures of the study that are drawn at once.
+/// Number of pictures of the study that are drawn at once.
 pub(crate) const PICTURES_AT_ONCE: usize = 2;
 
 /// The purpose of a run of a point.
@@ -112,7 +112,7 @@ pub(crate) const PICTURES_AT_ONCE: usize = 2;
 pub enum Role {
     /// The point itself.
     Point,
-    /// The reference that its reduction is measured against.
+    /// The reference for the reduction of the point.
     Reference,
 }
 
@@ -123,7 +123,7 @@ pub struct RunKey {
     pub point: usize,
     /// Replicate, from 0.
     pub replicate: usize,
-    /// Its purpose.
+    /// Purpose of the run.
     pub role: Role,
 }
 
@@ -148,7 +148,7 @@ impl Plan {
         Ok(plan)
     }
 
-    /// Makes the cases of all points, and takes down what is known of their runs.
+    /// Makes the cases of all points, and collects the data of their runs.
     fn make_specs(&mut self) -> Result<(), StudyError> {
         let invalid = |point: Option<&Point>, source| {
             let point = point.map_or_else(String::new, |point| self.describe(point));
@@ -187,7 +187,8 @@ impl Plan {
         Ok(())
     }
 
-    /// How many of the first axes keep their levels over so many points in a row, of which a base can be made.
+    /// Number of the first axes that keep their levels over several points in a row, from which a base can be made, and the
+    /// number of these points.
     fn slow_axes(&self) -> (usize, usize) {
         let (mut slow, mut length) = (self.axes.len(), 1);
         while slow > 0 && length < POINTS_OF_A_BASE {
@@ -270,7 +271,7 @@ impl Plan {
         self.case_file(&self.base.parse()?, &self.points[0], Role::Point)
     }
 
-    /// The case of a combination of levels, for a look at what it computes.
+    /// The case of a combination of levels, for its computed model.
     pub(crate) fn case_of(&self, levels: &[usize]) -> Result<Case, CaseError> {
         let axes = self.axes.iter().zip(levels);
         let point = Point {
@@ -295,7 +296,7 @@ impl Plan {
         Ok(file)
     }
 
-    /// Makes the case of a point; gives what is known of its runs, and the warnings about it.
+    /// Makes the case of a point; returns the data of its runs, and the warnings about it.
     fn spec(&self, base: &Prepared, file: CaseFile, role: Role) -> Spec {
         let case = self.trimmed(file, "point", &mut |_| true)?;
         let writes = self.settings.keep == RetainRuns::All;
@@ -338,8 +339,8 @@ impl Plan {
         &self.warnings
     }
 
-    /// The case of a run, ready to run, unless a file that it reads has changed since the plan was made.
-    /// `watch` is shown how its texture is laid over the blocks.
+    /// The case of a run, ready to run, unless a file that it reads has changed since the plan was made. `watch` gets the
+    /// progress of laying its texture over the blocks.
     pub fn case(&self, run: RunKey, watch: &mut Watch) -> Result<Case, CaseError> {
         let mut file = self.case_file(&self.base.parse()?, &self.points[run.point], run.role)?;
         file.friction.seed = self.seed(run);
@@ -358,8 +359,8 @@ impl Plan {
         Ok(case)
     }
 
-    /// This plan for the study in a results folder, which reads copies of its files there: later changes of the original files
-    /// have no effect on its runs.
+    /// Returns the plan for the study in a results folder, which reads copies of its files there: later changes of the
+    /// original files have no effect on its runs.
     #[must_use]
     pub fn reading_copies(self, study: &StudyFile) -> Self {
         Self {
@@ -394,7 +395,7 @@ impl Plan {
         self.spec_of(run).seed + run.replicate as u64
     }
 
-    /// Identifies a run by its physics and seed. Points share runs of one identity, such as their reference.
+    /// Identity of a run, from its physics and seed. Points share runs of one identity, such as their reference.
     pub fn identity(&self, run: RunKey) -> String {
         let mut hasher = blake3::Hasher::new();
         hasher.update(self.spec_of(run).physics.as_bytes());
@@ -402,19 +403,19 @@ impl Plan {
         hasher.finalize().to_hex()[..32].to_owned()
     }
 
-    /// Name of the folder of a run, where it is kept: the beginning of its identity, so that it stays true when the
-    /// study grows.
+    /// Name of the folder of a run, where it is kept: the beginning of its identity, so that the name stays when the study
+    /// grows.
     pub fn folder_name(&self, run: RunKey) -> String {
         self.identity(run)[..12].to_owned()
     }
 
-    /// Most steps times blocks of a run, and its blocks: the measure of its cost.
+    /// Largest number of steps times blocks of a run, and its blocks: the measure of its cost.
     pub fn cost(&self, run: RunKey) -> (f64, usize) {
         let spec = self.spec_of(run);
         (spec.block_steps, spec.n_blocks)
     }
 
-    /// Whether the drive of any run stands while blocks slide, so that the cost is a least one.
+    /// Whether the drive of any run stands while blocks slide, so that the cost is a lower bound.
     pub fn has_held_drive(&self) -> bool {
         self.runs(1).any(|run| self.spec_of(run).is_held)
     }
@@ -440,15 +441,15 @@ impl Plan {
         made.fold(0.0, f64::max)
     }
 
-    /// The run that takes the most memory, and how much, in bytes.
+    /// The run that takes the most memory, and this memory in bytes.
     fn largest_run(&self) -> Option<(RunKey, f64)> {
         self.runs(1)
             .map(|run| (run, self.spec_of(run).memory))
             .max_by(|a, b| a.1.total_cmp(&b.1))
     }
 
-    /// Refuses as many runs at once as there is no memory for, and says how many there is memory for; with no runs, what
-    /// tables and pictures take is held against the memory alone.
+    /// Refuses `threads` runs at once if there is no memory for them, and says how many there is memory for; with no runs,
+    /// only the memory of tables and pictures counts.
     pub fn check_memory(&self, threads: usize) -> Result<(), StudyError> {
         self.compare_memory(threads, available_of(self.memory(threads)))
     }
@@ -485,17 +486,17 @@ impl Plan {
         })
     }
 
-    /// Room that these runs will take on the disk, in bytes.
+    /// Disk space for these runs, in bytes.
     pub fn disk(&self, runs: impl Iterator<Item = RunKey>) -> f64 {
         runs.map(|run| RECORD_BYTES + self.spec_of(run).disk).sum()
     }
 
-    /// A* as meshed at the point at `position`, %.
+    /// Textured area A* as meshed at the point at `position`, %.
     pub fn texture_percent(&self, position: usize) -> f64 {
         self.spec_of(first_run(position)).texture_percent
     }
 
-    /// What the shapes of the only texture cover as meshed at the point at `position`, %; none where there are several textures.
+    /// Meshed area of the shapes of the only texture at the point at `position`, %; none where there are several textures.
     pub(crate) fn meshed_coverage(&self, position: usize) -> Option<f64> {
         self.spec_of(first_run(position)).meshed_coverage
     }
@@ -574,7 +575,7 @@ mod tests {
 
     use super::*;
 
-    /// An interval of replicates that differ in little looks better than it is.
+    /// An interval of replicates that differ in little looks better than it is, and a note says so.
     #[test]
     fn what_differs_between_replicates_is_said() {
         let notes = |keys: &str| -> Vec<String> {
@@ -592,8 +593,8 @@ mod tests {
         assert!(notes("sigma_static_star = 0, sigma_kinetic_star = 0")[0].contains("the same run"));
     }
 
-    /// The threads share the blocks of a large case, too: none of them may wait for another to be done with one. What is known of the runs
-    /// and which invalid point is named does not depend on their number.
+    /// The threads share the blocks of a large case, too: none may wait for another to be done with one. The data of the
+    /// runs and the named invalid point do not depend on the number of threads.
     #[test]
     fn large_cases_are_planned_on_any_number_of_threads() {
         // Some large cases, unevenly spread over 16 rows, so that threads run out of rows of their own at different times.
@@ -620,7 +621,7 @@ mod tests {
         assert_eq!(invalid(1), invalid(6));
     }
 
-    /// Runs at once count with the largest of them, and not with more than there are.
+    /// Memory counts the largest runs, and no more of them than there are.
     #[test]
     fn threads_are_held_against_the_memory() {
         let text = "[study]\nreplicates = 2\n[[axes]]\nkey = 'slider.blocks'\nlist = [[4, 4], [800, 800]]";

@@ -12,7 +12,7 @@ pub struct Warning {
     pub sentence: String,
     /// Number of points.
     pub points: usize,
-    /// Position of the first of them in the plan.
+    /// Position of the first of these points in the plan.
     pub first: usize,
 }
 
@@ -20,12 +20,12 @@ pub struct Warning {
 #[derive(Default)]
 pub(crate) struct Warnings {
     pub(crate) found: Vec<Warning>,
-    /// Place in `found` by kind, and the last point that it is about.
+    /// Place in `found` by kind, and the last point to which it applies.
     known: HashMap<String, (usize, usize)>,
 }
 
 impl Warnings {
-    /// Adds those of a run of the point at this position.
+    /// Adds the warnings about a run of the point at this position.
     pub(crate) fn add(&mut self, position: usize, sentences: Vec<String>) {
         for sentence in sentences {
             // Sentences of one kind differ in their figures.
@@ -49,7 +49,7 @@ impl Warnings {
     }
 }
 
-/// What a reader of the intervals over replicates, which differ by their seed alone, must know of what that changes.
+/// Note on the effect of the seed, which alone differs between replicates, for the intervals over them.
 pub(crate) fn note_on_replicates(case: &Case) -> Option<&'static str> {
     let (friction, groups) = (&case.file.friction, &case.groups);
     if friction.mu_static_field.is_none() && groups.sigma_static_star > 0.0 {

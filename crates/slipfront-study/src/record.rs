@@ -8,17 +8,17 @@ use serde::{Deserialize, Serialize};
 use crate::summary_values::SummaryValues;
 use slipfront_run::summary::Summary;
 
-/// How a run ended.
+/// End of a run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Outcome {
-    /// Its numbers.
+    /// Numbers of the run.
     Done(Box<Summary>),
-    /// Why it failed.
+    /// Reason for the failure.
     Failed(String),
 }
 
-/// The part of an outcome that tables and statistics need: numbers, or why the run failed.
+/// The part of an outcome that tables and statistics need: numbers, or the reason of the failure.
 pub type RunResult = Result<Arc<SummaryValues>, String>;
 
 impl Outcome {
@@ -27,7 +27,7 @@ impl Outcome {
         Self::Done(Box::new(summary)).or_not_finite()
     }
 
-    /// The part of it that tables and statistics need.
+    /// The part of the outcome that tables and statistics need.
     pub(crate) fn result(&self) -> RunResult {
         match self {
             Self::Done(summary) => Ok(Arc::new(SummaryValues::of(summary))),
@@ -50,9 +50,9 @@ impl Outcome {
 pub struct FinishedRun {
     /// Identity of the run: a hash of all that decides its numbers.
     pub id: String,
-    /// Seconds that the run took. A repeated run gives another value here, and only here.
+    /// Seconds that the run took. A repeated run differs in this value alone.
     pub wall_time_s: f64,
-    /// How it ended.
+    /// Outcome of the run.
     pub outcome: Outcome,
 }
 

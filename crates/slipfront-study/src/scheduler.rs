@@ -1,4 +1,4 @@
-//! Decides which runs a study needs, and records each as soon as it is finished.
+//! Decides on the runs that a study needs, and records each as soon as it is finished.
 //!
 //! The results do not depend on the order in which runs finish: the number of replicates of a point is decided by its first
 //! replicates in their order, however many more have been run.
@@ -31,7 +31,7 @@ pub(crate) struct Scheduler<'a> {
     plan: &'a Plan,
     records: &'a Records,
     start: &'a dyn Fn(Task),
-    /// Runs at once.
+    /// Number of runs at once.
     threads: usize,
     /// The runs known so far; the points follow at the end.
     results: StudyResults,
@@ -48,20 +48,20 @@ pub(crate) struct Scheduler<'a> {
 /// Replication of a point while the study runs.
 #[derive(Clone, Default)]
 struct PointState {
-    /// Replicates requested so far.
+    /// Number of replicates requested so far.
     requested: usize,
-    /// Runs of these replicates that are not finished.
+    /// Number of runs of these replicates that are not finished.
     missing: usize,
     /// Number of first replicates that the stopping rule has been evaluated with.
     evaluated: usize,
-    /// Half width of the interval of these replicates.
+    /// Half width of the interval of the replicates evaluated last.
     half_width: Option<f64>,
-    /// Set once the number of replicates is decided.
+    /// Result of the point, set once the number of replicates is decided.
     result: Option<PointResult>,
 }
 
 impl<'a> Scheduler<'a> {
-    /// `start` lets a run be done by another thread.
+    /// A scheduler; `start` has a run done by another thread.
     pub(crate) fn new(plan: &'a Plan, records: &'a Records, start: &'a dyn Fn(Task), threads: usize) -> Self {
         let until = plan.settings.until.as_ref();
         Self {

@@ -6,7 +6,8 @@ use std::str::FromStr;
 use crate::error::StudyError;
 use slipfront_case::text::truncated;
 
-/// Part `number` of `count`, counted from 1. It holds every `count`-th point, so that all shards have nearly equal sizes.
+/// Part `number` of `count`, counted from 1. A shard holds every `count`-th point, so that all shards have nearly equal
+/// sizes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Shard {
     number: usize,
@@ -14,7 +15,7 @@ pub struct Shard {
 }
 
 impl Shard {
-    /// Whether it holds the point with this index.
+    /// Whether the shard holds the point with this index.
     pub fn holds(self, index: usize) -> bool {
         index % self.count == self.number - 1
     }

@@ -12,7 +12,7 @@ pub struct Batch {
     pub command: String,
     /// Path of the study file, as the job will see it.
     pub study: String,
-    /// Folder of the results; every task has one of its own in it.
+    /// Folder of the results; every task has a subfolder of its own.
     pub out: String,
     /// Number of tasks.
     pub tasks: usize,

@@ -20,7 +20,7 @@ pub struct Sample {
 }
 
 impl Sample {
-    /// Statistics of `values`, with an interval of this confidence; none if there are no values.
+    /// Statistics of `values`, with an interval of the given confidence; none if there are no values.
     ///
     /// ```text
     /// half width = t(n - 1, (1 + confidence)/2) s/sqrt(n)

@@ -23,9 +23,9 @@ pub struct StudyFile {
     pub name: String,
     /// The case that the axes vary.
     pub base: Base,
-    /// `[study]`.
+    /// Settings under `[study]`.
     pub settings: Settings,
-    /// `[[axes]]`, in the order of the file.
+    /// Axes under `[[axes]]`, in the order of the file.
     pub axes: Vec<Axis>,
     /// The file as a table, for the copy in the results folder.
     pub(crate) table: toml::Table,
@@ -36,9 +36,9 @@ pub struct StudyFile {
 pub struct Base {
     /// Text of the case file.
     pub text: String,
-    /// Its name in messages.
+    /// Name of the case in messages.
     pub name: String,
-    /// The folder that the files it names are relative to.
+    /// The folder to which the files of the case are relative.
     pub folder: PathBuf,
 }
 
@@ -49,7 +49,7 @@ impl Base {
     }
 }
 
-/// `[study]`: repetition, reference and what is kept.
+/// The table `[study]`: repetition, reference and kept folders.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Settings {
@@ -57,7 +57,7 @@ pub struct Settings {
     pub replicates: u32,
     /// Keys of the case that reductions are measured against, at the same seed (Eq. 16).
     pub reference: Option<toml::Table>,
-    /// Which run folders are kept.
+    /// Run folders that are kept.
     pub keep: RetainRuns,
     /// Adaptive replication, in place of `replicates`.
     pub until: Option<StoppingRule>,
@@ -74,15 +74,15 @@ impl Default for Settings {
     }
 }
 
-/// Which run folders are kept beside the tables.
+/// Run folders that are kept beside the tables.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum RetainRuns {
-    /// Of every run, with fields and pictures.
+    /// Folders of every run, with fields and pictures.
     All,
-    /// Of none.
+    /// No folders.
     None,
-    /// Of a run that failed, its case file.
+    /// Case files of runs that failed.
     Failed,
 }
 
@@ -94,7 +94,7 @@ pub struct StoppingRule {
     pub key: String,
     /// Half width that the interval must not exceed.
     pub half_width: f64,
-    /// Its confidence.
+    /// Confidence of the interval.
     #[serde(default = "default_confidence")]
     pub confidence: f64,
     /// Fewest replicates.
@@ -115,10 +115,10 @@ fn default_min() -> u32 {
 /// Confidence of intervals where the study asks for no other.
 pub(crate) const CONFIDENCE: f64 = 0.95;
 
-/// Most points that are listed.
+/// Largest number of points that are listed.
 const MAX_POINTS: usize = 1_000_000;
 
-/// Most replicates of a point.
+/// Largest number of replicates of a point.
 const MAX_REPLICATES: u32 = 100_000;
 
 impl Settings {
@@ -127,12 +127,12 @@ impl Settings {
         self.until.as_ref().map_or(CONFIDENCE, |until| until.confidence)
     }
 
-    /// Replicates that every point has at the least.
+    /// Smallest number of replicates of every point.
     pub fn min_replicates(&self) -> usize {
         self.until.as_ref().map_or(self.replicates, |until| until.min) as usize
     }
 
-    /// Replicates that a point has at the most.
+    /// Largest number of replicates of a point.
     pub fn max_replicates(&self) -> usize {
         self.until.as_ref().map_or(self.replicates, |until| until.max) as usize
     }
@@ -198,12 +198,12 @@ impl StudyFile {
         portable(&self.base, &self.table)
     }
 
-    /// Whether it has anything of a study: an empty file is one, too, and varies nothing.
+    /// Whether the file has anything of a study: an empty file is a study, too, which varies nothing.
     pub fn is_study(&self) -> bool {
         !self.table.is_empty()
     }
 
-    /// Whether its base is a file of its own, and not a table in it.
+    /// Whether the base is a file of its own, and not a table in the study file.
     pub fn has_base_file(&self) -> bool {
         self.table.get("base").is_some_and(toml::Value::is_str)
     }
@@ -213,7 +213,7 @@ impl StudyFile {
         count_points(&self.axes)
     }
 
-    /// Runs of the whole study at the most; references that points share are counted for each.
+    /// Largest number of runs of the whole study; references that points share are counted for each.
     pub fn count_runs(&self) -> Result<u64, StudyError> {
         let roles = 1 + u64::from(self.settings.reference.is_some());
         Ok(self.count_points()? as u64 * self.settings.max_replicates() as u64 * roles)
@@ -280,7 +280,7 @@ pub(crate) fn read_named<'p>(path: &'p Path, default: &str) -> Result<(String, S
     Ok((text, name.into_owned(), folder))
 }
 
-/// The tables of a text, the places of whose keys its source knows from then on.
+/// Parses a text, and notes the places of its keys in the source.
 pub(crate) fn parse_noting_places<'t>(source: &mut Source, text: &'t str) -> Result<DeTable<'t>, CaseError> {
     let root = DeTable::parse(limit_nesting(source, 0, text)?);
     let root = root
@@ -316,8 +316,8 @@ fn base_table(base: &Base) -> Result<toml::Table, CaseError> {
     table.map_err(|error| syntax_error(&source, 0, &error))
 }
 
-/// The text of a study. What stands in an axis or under `[study]` keeps its order, which is that of columns and points: a
-/// table in full would have its lists of tables behind all else.
+/// The text of a study. Keys in an axis or under `[study]` keep their order, which is that of columns and points: a table in
+/// full would have its lists of tables behind all else.
 pub(crate) fn portable_text(mut study: toml::Table) -> Result<String, CaseError> {
     let mut text = String::new();
     if let Some(base) = study.remove("base") {
@@ -389,7 +389,7 @@ fn read_axes(tables: &mut Tables) -> Result<Vec<Axis>, StudyError> {
     Ok(axes)
 }
 
-/// The product of the axes.
+/// Number of points: the product of the axes.
 fn count_points(axes: &[Axis]) -> Result<usize, StudyError> {
     let mut counts = axes.iter().map(|axis| axis.levels.len());
     let product = counts.try_fold(1usize, usize::checked_mul);
@@ -397,7 +397,7 @@ fn count_points(axes: &[Axis]) -> Result<usize, StudyError> {
     product.ok_or(StudyError::TooLarge { limit: MAX_POINTS })
 }
 
-/// Refuses axes that overwrite each other, and columns that another column of the tables has the name of.
+/// Refuses axes that overwrite each other, and columns with the name of another column of the tables.
 fn refuse_conflicts(axes: &[Axis], source: &Source) -> Result<(), CaseError> {
     let (mut columns, mut keys) = (HashSet::new(), BTreeSet::new());
     for (k, axis) in axes.iter().enumerate() {

@@ -8,14 +8,14 @@ use crate::record::RunResult;
 use crate::statistics::Sample;
 use crate::summary_values::{REDUCTION, RunQuantity, reduction_percent};
 
-/// How many runs of a study are done.
+/// Progress of a study.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Progress {
-    /// Runs done, those of earlier processes included.
+    /// Number of runs done, including those of earlier processes.
     pub done: usize,
-    /// Runs known to be needed. The number grows while intervals are too wide.
+    /// Number of runs known to be needed. The number grows while intervals are too wide.
     pub total: usize,
-    /// Runs that this process has done.
+    /// Number of runs that this process has done.
     pub here: usize,
     /// Failed runs.
     pub failed: usize,
@@ -78,8 +78,9 @@ impl StudyResults {
             .filter(|run| self.is_without_transition(*run))
     }
 
-    /// How many replicates of the point at `position` of the plan a quantity lacks because a run that it is taken from has no transition: that of
-    /// the point or, for a reduction, its reference. Of quantities that do not need one too, it is the number of such runs of the point.
+    /// Number of replicates of the point at `position` of the plan for which a quantity is missing because its run has no
+    /// transition: the run of the point or, for a reduction, its reference. For quantities that do not need a transition it
+    /// is the number of runs of the point without one.
     pub fn runs_without_transition(&self, position: usize, name: &str) -> usize {
         let replicates = self.points.get(position).map_or(0, |point| point.replicates);
         let roles = if name == REDUCTION {
@@ -109,10 +110,9 @@ impl StudyResults {
         runs.filter_map(|(run, result)| Some((*run, result.as_ref().err()?.as_str())))
     }
 
-    /// Refuses results of which runs have failed, and names the first.
+    /// Refuses results with failed runs, and names the first.
     ///
-    /// # Errors
-    /// Says how many failed, and why the first.
+    /// # Errors A sentence with the number of failed runs, and the reason of the first.
     pub fn expect_no_failures(&self, plan: &Plan) -> Result<(), StudyError> {
         let Some((run, reason)) = self.failures().next() else {
             return Ok(());

@@ -37,8 +37,8 @@ const OF_PRECURSORS: [(&str, NumberOf); 3] = [
     }),
 ];
 
-/// Numbers that the first peak of mu* defines. A run without a transition has none of them, whatever its summary says: its largest mu* is
-/// its `mu_star_max`.
+/// Numbers that the first peak of mu* defines. A run without a transition has none of these numbers, whatever its summary
+/// says: its largest mu* is its `mu_star_max`.
 const OF_PEAK: [&str; 5] = [
     "static_friction_star",
     "static_friction",
@@ -47,8 +47,8 @@ const OF_PEAK: [&str; 5] = [
     "onset_time_s",
 ];
 
-/// Numbers of the kinetic window. A run without a transition has them only if the window begins after its largest mu*: before that, mu* may
-/// still rise to the onset.
+/// Numbers of the kinetic window. A run without a transition has these numbers only if the window begins after its largest
+/// mu*: before that, mu* may still rise to the onset.
 const OF_KINETIC_WINDOW: [&str; 5] = [
     "kinetic_friction_star",
     "kinetic_friction_star_uncertainty",
@@ -57,7 +57,7 @@ const OF_KINETIC_WINDOW: [&str; 5] = [
     "sliding_percent_kinetic",
 ];
 
-/// Whether a quantity belongs to runs with a transition alone.
+/// Whether a quantity exists only for runs with a transition.
 pub(crate) fn needs_transition(name: &str) -> bool {
     name == REDUCTION || OF_PEAK.contains(&name)
 }
@@ -105,7 +105,7 @@ pub fn is_column(name: &str) -> bool {
 /// A quantity of a run, or of a run and its reference.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RunQuantity {
-    /// Position in the summary.
+    /// A number of the summary, by its position.
     Number(usize),
     /// The reduction of static friction (Eq. 16).
     Reduction,
@@ -121,12 +121,12 @@ impl RunQuantity {
     }
 }
 
-/// The numbers of a summary in the order of [`known`]: the part of it that tables and statistics need. Numbers that only some
-/// summaries have are not among them.
+/// The numbers of a summary in the order of [`known`]: the part of it that tables and statistics need. Numbers that only
+/// some summaries have are left out.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SummaryValues {
     values: Box<[Option<f64>]>,
-    /// mu_s*; none without a transition.
+    /// Static friction mu_s*; none without a transition.
     static_friction_star: Option<f64>,
     /// Whether the run had a transition from static to kinetic friction.
     pub(crate) transition: bool,
@@ -250,7 +250,8 @@ mod tests {
         assert_eq!(reduction_percent(&without, &with), None);
     }
 
-    /// While mu* still rises to the onset, its mean is no kinetic friction.
+    /// A kinetic window before the largest mu* gives no kinetic friction without a transition: while mu* still rises to the
+    /// onset, its mean is none.
     #[test]
     fn a_kinetic_window_before_the_largest_mu_star_is_none_without_a_transition() {
         assert_eq!(number(&values_of(false, 100.0), "kinetic_friction_star"), None);

@@ -1,5 +1,5 @@
-//! `runs.csv`, with a row for each run, `points.csv`, with the statistics of each quantity at each point, and `anisotropy.csv`, with
-//! those of friction over the directions of the drive.
+//! `runs.csv`, with a row for each run, `points.csv`, with the statistics of each quantity at each point, and
+//! `anisotropy.csv`, with the statistics of friction over the directions of the drive.
 
 use std::io::Write;
 
@@ -12,8 +12,8 @@ use crate::summary_values::{
     AFTER_AXES, BEFORE_AXES, RunQuantity, STATISTICS, is_optional, known, needs_transition,
 };
 
-/// `runs.csv`: for each run, references included, the levels of its point, the seed, whether it failed and why, and every
-/// number of its summary.
+/// Writes `runs.csv`: for each run, references included, the levels of its point, the seed, whether it failed and why, and
+/// every number of its summary.
 pub(crate) fn runs(plan: &Plan, results: &StudyResults, to: impl Write) -> csv::Result<()> {
     let mut table = csv::Writer::from_writer(to);
     let quantities = quantities(plan, results);
@@ -50,8 +50,8 @@ pub(crate) fn runs(plan: &Plan, results: &StudyResults, to: impl Write) -> csv::
     Ok(table.flush()?)
 }
 
-/// The quantities that the tables of a study have: a reduction only against a reference, and what few runs have only if there is
-/// one of them, or if it decides on replication.
+/// The quantities that the tables of a study have: a reduction only against a reference, and an optional quantity only if
+/// one run has it, or if it decides on replication.
 fn quantities(plan: &Plan, results: &StudyResults) -> Vec<(&'static str, RunQuantity)> {
     let until = plan.settings.until.as_ref();
     let is_there = |name: &str, quantity: RunQuantity| match quantity {
@@ -69,8 +69,9 @@ fn quantities(plan: &Plan, results: &StudyResults) -> Vec<(&'static str, RunQuan
         .collect()
 }
 
-/// `points.csv`: for each point and quantity the number of values, their mean, standard deviation, confidence
-/// interval of the mean, smallest and largest; reductions are paired by seed. Beside an axis of coverages stands A* as meshed.
+/// Writes `points.csv`: for each point and quantity the number of values, their mean, standard deviation, confidence
+/// interval of the mean, smallest and largest; reductions are paired by seed. Beside an axis of coverages stands A* as
+/// meshed.
 pub(crate) fn points(plan: &Plan, results: &StudyResults, to: impl Write) -> csv::Result<()> {
     let mut table = csv::Writer::from_writer(to);
     let meshed = MeshedCoverage::of(plan).map(|_| TEXTURE_PERCENT);
@@ -106,8 +107,8 @@ pub(crate) fn points(plan: &Plan, results: &StudyResults, to: impl Write) -> csv
     Ok(table.flush()?)
 }
 
-/// `anisotropy.csv`: for the levels of all axes but that of the directions, how static and kinetic friction depend on them. There is at
-/// least one row.
+/// Writes `anisotropy.csv`: for the levels of all axes but that of the directions, the dependence of static and kinetic
+/// friction on the directions. There is at least one row.
 pub(crate) fn anisotropy(rows: &[Anisotropy], to: impl Write) -> csv::Result<()> {
     let mut table = csv::Writer::from_writer(to);
     let levels = rows.first().into_iter().flat_map(|row| &row.levels);
@@ -191,7 +192,7 @@ fn axis_columns(plan: &Plan) -> impl Iterator<Item = &str> {
     columns.map(String::as_str)
 }
 
-/// As few digits as are needed to read back the same bits.
+/// A number with as few digits as read back to the same bits.
 fn cell(value: Option<f64>) -> String {
     value.map_or(String::new(), |value| format!("{value:?}"))
 }

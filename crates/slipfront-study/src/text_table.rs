@@ -74,8 +74,8 @@ fn aligned(cells: &[&str]) -> Vec<String> {
         .collect()
 }
 
-/// Texts so that their first points, or their ends, stand below each other, all filled up to one width. The halves of a bracket before a
-/// power of ten are filled up from outside alone.
+/// Fills up texts so that their first points, or their ends, stand below each other, to one width. The halves of a bracket
+/// before a power of ten are filled up from outside alone.
 fn at_the_point(texts: &[&str], fill: fn(&str, usize) -> String) -> Vec<String> {
     let split = |text: &str| {
         let (before, after) = text.split_at(text.find('.').unwrap_or(text.len()));

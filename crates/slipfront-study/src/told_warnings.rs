@@ -3,10 +3,11 @@
 use crate::plan::Plan;
 use crate::plan_warnings::Warning;
 
-/// Most warnings that are told.
+/// Largest number of warnings that are listed.
 const MAX_TOLD: usize = 8;
 
-/// Warnings about the cases of a study in words, each with the points that it concerns: the first eight, and how many more there are.
+/// Warnings about the cases of a study in words, each with the points that it concerns: the first eight, and the number of
+/// the others.
 pub fn told_warnings(plan: &Plan) -> Vec<String> {
     let all = plan.warnings();
     let mut told: Vec<String> = all

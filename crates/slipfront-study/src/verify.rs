@@ -1,5 +1,6 @@
-//! Holds the folder of a study against the tables and pictures that its records give, with what its meshes found where it tells that, and
-//! the folders of the runs that it kept against their manifests; and that of a design or a calibration against what its runs give.
+//! Compares the folder of a study with the tables and pictures that its records give, and with the comparison of its meshes
+//! if it has one; the folders of the runs that it kept with their manifests; and the folder of a design or a calibration
+//! with the results of its runs.
 
 use std::collections::HashSet;
 use std::io::ErrorKind;
@@ -69,7 +70,7 @@ pub fn verify(folder: &Path) -> Result<Verdict, VerifyStudyError> {
     }
 }
 
-/// Finds a design again from the runs in its journal, and holds the folder against what it leaves.
+/// Finds a design again from the runs in its journal, and compares the folder with the results.
 fn verify_design(folder: &Path) -> Result<Verdict, VerifyStudyError> {
     let Some(search) = search_of(folder)? else {
         let (what, path) = ("design", folder.to_owned());
@@ -98,7 +99,7 @@ fn verify_design(folder: &Path) -> Result<Verdict, VerifyStudyError> {
     })
 }
 
-/// Calibrates again from the runs in the journal, and holds the folder against what that leaves.
+/// Calibrates again from the runs in the journal, and compares the folder with the results.
 fn verify_calibration(folder: &Path) -> Result<Verdict, VerifyStudyError> {
     if !is_finished(folder) {
         let (what, path) = ("calibration", folder.to_owned());
@@ -112,8 +113,8 @@ fn verify_calibration(folder: &Path) -> Result<Verdict, VerifyStudyError> {
     })
 }
 
-/// Holds a folder against what the runs in its journal leave when `again` finds it in another folder, and tells how many runs it had there
-/// before and after: runs that the journal lacks are made.
+/// Compares a folder with the results that `again` finds in another folder from the runs in its journal; `again` returns the
+/// numbers of runs there before and after, since runs that the journal lacks are made.
 fn verify_from_runs(
     folder: &Path,
     what: &str,
@@ -140,8 +141,8 @@ fn verify_from_runs(
     Ok(verdict)
 }
 
-/// Makes tables and pictures of a study again from its records, and holds the folder against them; then its run
-/// folders against their manifests.
+/// Makes tables and pictures of a study again from its records, and compares the folder with them; then its run folders with
+/// their manifests.
 fn verify_study(folder: &Path) -> Result<Verdict, VerifyStudyError> {
     let mut verdict = Verdict::default();
     let made = study_of(folder).and_then(|file| Ok((Plan::new(&file, None)?, file)));
@@ -202,7 +203,7 @@ fn verify_study(folder: &Path) -> Result<Verdict, VerifyStudyError> {
     Ok(verdict)
 }
 
-/// Verifies the run folders that a study has kept; gives their number.
+/// Verifies the run folders that a study has kept; returns their number.
 fn verify_kept(
     folder: &Path,
     plan: &Plan,

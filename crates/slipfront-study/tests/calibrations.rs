@@ -1,4 +1,4 @@
-//! Calibrations: what they find of records whose truth is known, and that they find it again however they are run.
+//! Calibrations: their results for records whose truth is known, and that results are equal however the runs are made.
 
 // Helpers of tests are not tests by themselves to clippy.
 #![allow(clippy::unwrap_used)]
@@ -15,12 +15,12 @@ use slipfront_study::StudyError;
 use slipfront_study::calibrate::{CalibrationFile, CalibrationFolder, CalibrationStage};
 use slipfront_study::design::DesignFile;
 
-/// A small slider, of which two keys are looked for.
+/// A small slider with two unknown keys.
 const BASE: &str = "[base]\nslider.blocks = [6, 6]\ndrive.v_star = 0.1\ntime.step = 0.4\n";
 const KEYS: &str = "[calibrate]\nx = 'time_s'\ny = 'force_n'\nnoise = 0.01\nruns = 100\nfiner_runs = 0\n\
     unknowns = { 'friction.mu_static' = [0.3, 0.9], 'drive.stiffness_star' = [0.3, 0.9] }\n";
 
-/// Where the truth lies.
+/// True values of the unknowns.
 const TRUTH: [f64; 2] = [0.55, 0.7];
 
 fn file(text: &str) -> CalibrationFile {
@@ -139,7 +139,7 @@ fn calibration_files_are_true() {
     }
 }
 
-/// The record of the example is the run that its comment tells, with noise of 1 % of its mean.
+/// The record of the example is the run that its comment describes, with noise of 1 % of its mean.
 #[test]
 fn the_record_of_the_example_is_a_run_with_noise() {
     let text = fs::read_to_string(root().join("cases/calibrations/sliding.csv")).unwrap();
@@ -208,7 +208,7 @@ fn the_truth_lies_within_the_intervals() {
     assert!((case.scales.mu_static_mean - told(&found, 0)[0]).abs() < 1e-12);
 }
 
-/// Stopped, with a journal cut short, on one thread and on three: the same files.
+/// A calibration that was stopped, with a journal cut short, on one thread and on three, gives the same files.
 #[test]
 fn a_calibration_goes_on_to_the_same_bytes() {
     let folder = tempfile::tempdir().unwrap();
@@ -270,7 +270,8 @@ fn a_calibration_goes_on_to_the_same_bytes() {
     }
 }
 
-/// Several records are fitted at once, and one of another speed is none of this model.
+/// Records of another law are refused and conditions count: several records are fitted at once, and a record of another
+/// speed is none of this model.
 #[test]
 fn records_of_another_law_are_refused_and_conditions_count() {
     let folder = tempfile::tempdir().unwrap();
@@ -291,7 +292,7 @@ fn records_of_another_law_are_refused_and_conditions_count() {
     assert!(numbers(&foreign)["is_refused"].as_bool().unwrap());
 }
 
-/// What a file or a record cannot be is told with its key.
+/// A file or record that cannot be calibrated is refused with its key.
 #[test]
 fn what_cannot_be_calibrated_is_refused() {
     let folder = tempfile::tempdir().unwrap();

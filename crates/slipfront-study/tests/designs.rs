@@ -1,4 +1,4 @@
-//! Designs: what the search finds, and that it finds the same however it is run.
+//! Designs: the results of the search, and that they are equal however it is run.
 
 // Helpers of tests are not tests by themselves to clippy.
 #![allow(clippy::unwrap_used)]
@@ -207,7 +207,7 @@ fn the_design_is_not_worse_than_named_patterns() {
     assert!(named.verdict.optimism.abs() < 0.05);
 }
 
-/// A search without a verdict finds what a run judges, and on fresh surfaces a texture gives what the verdict says.
+/// A search alone finds the texture that a run judges, and on fresh surfaces the texture has the values of the verdict.
 #[test]
 fn a_search_alone_finds_what_is_judged() {
     let design = file_of(SMOOTH, LEAST).design().unwrap();
@@ -264,7 +264,7 @@ fn a_value_is_found_or_told_as_out_of_reach() {
     assert!(verdict.design.loss < 0.005);
 }
 
-/// A curve that a texture has left is met by a texture.
+/// A curve of a texture is met by a texture.
 #[test]
 fn a_curve_is_followed() {
     let folder = tempfile::tempdir().unwrap();
@@ -333,7 +333,7 @@ fn a_base_may_name_files() {
     assert_eq!(again.design, found.verdict.design, "it keeps what it was made of");
 }
 
-/// What a program of speeds leaves out is told.
+/// A change that a program of speeds rules out is named.
 #[test]
 fn a_program_of_speeds_has_no_other_speed() {
     let base = "[base]\nslider.blocks = [8, 8]\ndrive.program = [{ v_star = 0.1, until_star = 40 }, { v_star = 0.05 }]\n\

@@ -1,4 +1,4 @@
-//! What the Worker calls.
+//! Functions that the Worker calls.
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -21,7 +21,7 @@ thread_local! {
     static PAGE: RefCell<Option<(Session, Rc<WorkerHost>)>> = const { RefCell::new(None) };
 }
 
-/// What the Worker has given, read as JSON.
+/// Bytes that the Worker has given, read as JSON.
 fn given<T: for<'de> Deserialize<'de>>() -> Result<T, String> {
     let bytes = GIVEN.take();
     serde_json::from_slice(&bytes).map_err(|error| error.to_string())
@@ -50,7 +50,7 @@ pub(crate) fn begin() {
     }));
 }
 
-/// What the page begins with.
+/// Presets and opening case with which the page begins.
 #[derive(Deserialize)]
 struct Beginning {
     presets: Presets,

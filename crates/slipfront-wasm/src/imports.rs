@@ -1,8 +1,8 @@
-//! What the Worker gives the module.
+//! Functions that the Worker gives the module.
 
 use std::time::Duration;
 
-/// What the module says.
+/// Kind of a message of the module.
 #[derive(Clone, Copy)]
 #[repr(u32)]
 pub(crate) enum Saying {
@@ -16,7 +16,7 @@ pub(crate) enum Saying {
     Work,
     /// The number of work that is to be ended.
     End,
-    /// What work tells.
+    /// Event of work.
     Event,
     /// A run that is to be saved.
     Save,
@@ -28,7 +28,7 @@ pub(crate) enum Saying {
     Archive,
     /// Bits of a run.
     Bits,
-    /// What is wrong.
+    /// Sentence that tells what is wrong.
     Refusal,
     /// A defect, as the terminal of a program would show it.
     Defect,

@@ -31,7 +31,7 @@ fn baseline(n: usize) -> Model {
     )
 }
 
-/// A simulation past the transition, when blocks stick and slip: the steps that a run is made of.
+/// A simulation past the transition, where blocks stick and slip as in most steps of a run.
 fn sliding(n: usize, kernel: Kernel) -> Simulation {
     let model = baseline(n);
     let first = first_slip_time_star(&model.surface.mu_static, &model.surface.mu_kinetic, 1.0, 0.03);

@@ -33,7 +33,7 @@ const TURNS: usize = 150;
 /// Steps after which a simulation that begins in steady sliding is measured.
 const WARM_UP: usize = 100;
 
-/// What differs from the plain model, one or several.
+/// Departures from the plain model, one or several.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Choice {
     EdgeDrive,
@@ -193,7 +193,7 @@ pub(crate) fn model(size: usize, choices: &[Choice]) -> Result<Model, Box<dyn Er
     Ok(model)
 }
 
-/// Every block at the speed of the drive, more or less, and behind it by what it takes to keep it there.
+/// State in which every block slides at about the speed of the drive, behind it by the stretch that keeps it sliding.
 pub(crate) fn steady_state(model: &Model) -> State {
     let behind = match model.friction {
         Friction::ContactSprings(_) => 0.0,

@@ -1,4 +1,4 @@
-//! What a run needs to continue later with the same bits.
+//! State that a run needs to continue later with the same bits.
 //!
 //! A checkpoint is small. Beside it stand the columns: numbers of every block in the order of the lattice, so that they do not
 //! depend on how the kernel lays out its arrays, on the number of threads or ranks, or on the SIMD width. They are handed over
@@ -14,7 +14,7 @@ use crate::measure::Peak;
 use crate::model::Model;
 use crate::totals::Totals;
 
-/// A run between two steps, without the numbers of its blocks: these are its columns.
+/// A run between two steps, without the numbers of its blocks, which are the columns of the checkpoint.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Checkpoint {
     /// Number of steps done.
@@ -28,12 +28,12 @@ pub struct Checkpoint {
     pub(crate) peak: Peak,
     /// Largest square of a contact stress so far.
     pub(crate) stress_square_max: f64,
-    /// Of the fused kernel.
+    /// Bounds on displacements and speeds; present only for the fused kernel.
     pub(crate) motion_bounds: Option<MotionBounds>,
 }
 
 impl Checkpoint {
-    /// The instant that it belongs to, in steps of `dt_star`.
+    /// The instant of the checkpoint, with times in steps of `dt_star`.
     pub(crate) fn clock(&self, dt_star: f64) -> Clock {
         Clock {
             step: self.step,
@@ -43,7 +43,7 @@ impl Checkpoint {
         }
     }
 
-    /// Whether its counts of steps can be those of a run of this model.
+    /// Whether the counts of steps can be those of a run of this model.
     pub fn is_consistent_with(&self, model: &Model) -> bool {
         let stood = self.step.checked_sub(self.drive_steps);
         stood.is_some_and(|stood| self.standing <= stood && (stood == 0 || model.drive.is_held()))
@@ -51,23 +51,24 @@ impl Checkpoint {
 }
 
 impl Model {
-    /// Columns of a checkpoint: numbers that are kept of every block.
+    /// Number of columns of a checkpoint; a column holds one number per block.
     pub fn n_columns(&self) -> usize {
         BlockColumn::ALL.len() + self.friction.n_columns()
     }
 }
 
-/// A number that is kept of every block, whatever the law of friction. Behind them a law that remembers more has
-/// [columns](crate::Friction::n_columns) of its own.
+/// A number that is kept of every block, whatever the law of friction. After these columns a law of friction that remembers
+/// more has [columns](crate::Friction::n_columns) of its own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BlockColumn {
     /// u_x at t_n.
     DisplacementX,
     /// u_y at t_n.
     DisplacementY,
-    /// v_x half a step after t_n; half a step before it of the general kernel, which evaluates t_n again.
+    /// v_x half a step after t_n for the fused kernel, half a step before t_n for the general kernel, which evaluates t_n
+    /// again.
     VelocityX,
-    /// v_y at the same time.
+    /// v_y at the instant of [`VelocityX`](Self::VelocityX).
     VelocityY,
     /// t* of the first slip; NaN for a block that has not slipped.
     FirstSlip,
@@ -83,7 +84,7 @@ impl BlockColumn {
         Self::FirstSlip,
     ];
 
-    /// Number of blocks in a part.
+    /// Number of blocks in a part of a column.
     const PART: usize = 1 << 16;
 
     /// Takes all columns of `n_blocks` blocks part by part through `work`, which is given the column, the first block, and room
@@ -97,7 +98,7 @@ impl BlockColumn {
         })
     }
 
-    /// The same of one column.
+    /// Takes one column of `n_blocks` blocks part by part through `work`, as [`for_each_part`] does for all columns.
     pub(crate) fn for_each_part_of_one<E>(
         n_blocks: usize,
         mut work: impl FnMut(usize, &mut [f64]) -> Result<(), E>,
@@ -110,16 +111,17 @@ impl BlockColumn {
     }
 }
 
-/// Upper bounds on displacements, on the differences of displacement between the ends of springs, and on speeds: those when they
-/// were last measured, and by how much they may have grown since. By them the fused kernel chooses how to compute spring forces,
-/// and the quanta of its sums. Part of a checkpoint, so that a resumed run chooses the same at every step.
+/// Upper bounds on displacements, on the differences of displacement between the ends of springs, and on speeds: the values
+/// of the latest measurement, and the most by which they may have grown since. The fused kernel chooses by them how it
+/// computes spring forces, and the quanta of its sums. They are part of a checkpoint, so that a resumed run chooses the same
+/// at every step.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct MotionBounds {
     /// Largest u_x, -u_x, u_y, -u_y at the latest measurement.
     pub(crate) extent: [f64; 4],
-    /// Largest difference of u_x and of u_y between the ends of a spring, likewise.
+    /// Largest differences of u_x and of u_y between the ends of a spring at the latest measurement.
     pub(crate) difference: [f64; 2],
-    /// By how much two displacements may have moved apart since.
+    /// Distance by which two displacements may have moved apart since the latest measurement.
     pub(crate) growth: f64,
     /// Highest speed after the latest sweep.
     pub(crate) speed: f64,
@@ -130,7 +132,7 @@ pub(crate) struct MotionBounds {
 }
 
 impl Default for MotionBounds {
-    /// At rest without displacement; not measured yet.
+    /// Bounds of blocks at rest without displacement, not measured yet.
     fn default() -> Self {
         Self {
             extent: [f64::NEG_INFINITY; 4],
@@ -161,7 +163,7 @@ impl MotionBounds {
         epsilon * (2.0 * (ex + ey) + epsilon * (ex * ex + ey * ey))
     }
 
-    /// Moves the ranges of sums that no longer hold all numbers; whether there were such.
+    /// Moves the ranges of sums that no longer hold all numbers; returns whether there were such ranges.
     pub(crate) fn move_ranges(&mut self) -> bool {
         let mut moved = false;
         for axis in 0..2 {
@@ -182,5 +184,5 @@ impl MotionBounds {
     }
 }
 
-/// Springs of blocks that slide are stretched by more.
+/// Least range of spring stretches; blocks that slide stretch their springs by more.
 const MIN_SPRING_RANGE: f64 = 1e-9;

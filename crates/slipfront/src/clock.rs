@@ -1,9 +1,9 @@
-//! The two times of a run: that of the blocks, and that of the drive, which stands while a held drive does.
+//! The two times of a run: the time of the blocks, and the time of the drive, which stands while a held drive does.
 
 /// An instant t_n, as counts of steps: times are products of these and of the time step, so that no rounding errors add up.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Clock {
-    /// n.
+    /// Number of the step, n.
     pub(crate) step: u64,
     /// Steps up to t_n in which the drive moved: n at constant loading.
     pub(crate) drive_steps: u64,
@@ -13,7 +13,7 @@ pub(crate) struct Clock {
 }
 
 impl Clock {
-    /// t = 0.
+    /// The clock at t = 0.
     pub(crate) fn start(dt_star: f64) -> Self {
         Self {
             step: 0,
@@ -38,22 +38,22 @@ impl Clock {
         self.drive_steps.saturating_sub(u64::from(self.drive_moved()))
     }
 
-    /// Whether the drive moved in the step that ends at t_n; so also at t = 0.
+    /// Whether the drive moved in the step that ends at t_n; true at t = 0.
     pub(crate) fn drive_moved(&self) -> bool {
         self.standing == 0
     }
 
-    /// t*_n.
+    /// Time t*_n of the blocks.
     pub(crate) fn time_star(&self) -> f64 {
         self.step as f64 * self.dt_star
     }
 
-    /// Time of the drive, on which its path depends.
+    /// Time of the drive t*, on which its path depends.
     pub(crate) fn drive_time_star(&self) -> f64 {
         self.drive_steps as f64 * self.dt_star
     }
 
-    /// Time of the drive at the instant before.
+    /// Time of the drive t* at the instant before.
     pub(crate) fn drive_time_before(&self) -> f64 {
         self.drive_steps_before() as f64 * self.dt_star
     }

@@ -1,4 +1,4 @@
-//! How the processes that share one lattice talk to each other. The physics knows no more of them than this.
+//! How the processes that share one lattice talk to each other. The physics knows nothing else of other processes.
 //!
 //! Each process, a *rank*, holds consecutive rows of the lattice: rank 0 the lowest. Everything that ranks agree on is a
 //! maximum or a sum of integers, so that it does not depend on how many they are.
@@ -13,19 +13,19 @@ pub trait Communicator: Debug + Send + Sync {
     /// Number of ranks.
     fn size(&self) -> usize;
 
-    /// Sends `to[0]` to the rank below and `to[1]` to the rank above, and receives `from[0]` from the rank below and `from[1]`
-    /// from the rank above, while `meanwhile` runs. The ranks form a ring: the last is below the first. What is empty is neither
-    /// sent nor received, and both sides must agree on that.
+    /// Sends `to[0]` to the rank below and `to[1]` to the rank above, and receives `from[0]` from the rank below and
+    /// `from[1]` from the rank above, while `meanwhile` runs. The ranks form a ring: the last is below the first. Empty
+    /// slices are neither sent nor received, and both sides must agree on which are empty.
     fn exchange(&self, to: [&[f64]; 2], from: [&mut [f64]; 2], meanwhile: &mut dyn FnMut());
 
     /// Replaces every value by the largest that any rank has in its place.
     fn largest(&self, values: &mut [f64]);
 
-    /// Replaces every value by the sum of those that the ranks have in its place, modulo 2^64.
+    /// Replaces every value by its sum over all ranks, modulo 2^64.
     fn sum(&self, values: &mut [i64]);
 }
 
-/// The lowest rank for which it is so, on all of them; none if it is so for none.
+/// The lowest rank on which `is_so` is true, returned on all ranks; none if it is true on none.
 ///
 /// ```
 /// use slipfront::communicator::{Alone, lowest_rank};
@@ -40,7 +40,7 @@ pub fn lowest_rank(communicator: &dyn Communicator, is_so: bool) -> Option<usize
     (from_above[0] > 0.0).then(|| size - from_above[0] as usize)
 }
 
-/// The text that one of the ranks has, on all of them; what the others have is not looked at.
+/// Sends the text of one `rank` to all ranks; the texts of the other ranks are ignored.
 pub fn text_of(communicator: &dyn Communicator, rank: usize, text: &str) -> String {
     let own = if communicator.rank() == rank { text } else { "" };
     let mut length = [own.len() as i64];

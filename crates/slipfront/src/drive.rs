@@ -12,17 +12,17 @@ use crate::vector_field::{length, unit_vector};
 /// How the slider is pulled.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Drive {
-    /// Dimensionless speed `V*` (Eq. 11a); the largest of a program, and that at the largest radius of a rotation.
+    /// Dimensionless speed `V*` (Eq. 11a); the largest of a program; for a rotation the speed at the largest radius.
     pub v_star: f64,
     /// Unit vector of the sliding direction.
     pub direction: [f64; 2],
     /// Stiffness `k_s` of the spring on every block, in units of `E h`; see [`Slider::drive_springs`](crate::Slider::drive_springs).
     pub k_drive: f64,
-    /// A constant force on every block in addition to the drive spring's, in units of `P mu_s l^2`; zero in the paper. A block with
-    /// another drive spring has as much more or less of it. Its components are x and y, of a rotation those along the
-    /// [direction](Self::direction_at) of each block and across it.
+    /// A constant force on every block in addition to the drive spring's, in units of `P mu_s l^2`; zero in the paper. It is
+    /// scaled with the relative stiffness of the block's drive spring. The components are along x and y; for a rotation
+    /// along the [direction](Self::direction_at) of each block and across it.
     pub constant_force: [f64; 2],
-    /// Speeds that follow one another; `v_star` all the time if there are none.
+    /// Speeds that follow one another; the drive moves at `v_star` all the time if there are none.
     pub program: Option<Arc<Program>>,
     /// A rotation in place of the translation along `direction`.
     pub rotation: Option<Rotation>,
@@ -33,11 +33,12 @@ pub struct Drive {
 /// When the far ends of the drive springs move.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Loading {
-    /// In every step: at the speed of the drive.
+    /// The far ends move in every step, at the speed of the drive.
     #[default]
     Constant,
-    /// In a step before which no block in contact slid: slow loading, however large the speed. The drive's own time, which path, program
-    /// and windows count in, is then `dt*` times the number of steps in which it moved.
+    /// The far ends move only in steps before which no block in contact slid: slow loading, however large the speed. The
+    /// drive's own time, which path, program and windows count in, is then `dt*` times the number of steps in which it
+    /// moved.
     Held {
         /// Steps of the drive up to which the largest mu* counts as static friction.
         onset_steps: u64,
@@ -55,9 +56,9 @@ pub struct Program {
 pub struct Segment {
     /// Speed, which may be zero or negative.
     pub v_star: f64,
-    /// t* at which it begins.
+    /// t* at which the segment begins.
     pub from_star: f64,
-    /// Displacement of the far ends at its beginning.
+    /// Displacement of the far ends at the beginning of the segment.
     pub from_position: f64,
 }
 
@@ -66,7 +67,7 @@ pub struct Segment {
 pub struct Rotation {
     /// The axis, in units of the block size.
     pub centre: [f64; 2],
-    /// Largest distance of a block from it, at which the speed is `v_star`.
+    /// Largest distance of a block from the axis, at which the speed is `v_star`.
     pub radius: f64,
     /// `sum r_i/radius` over all blocks that exist.
     pub sum_radii: f64,
@@ -75,9 +76,9 @@ pub struct Rotation {
 }
 
 impl Drive {
-    /// Lengths in blocks over which the mount, a drive spring on every block, screens what happens at a place: the pull on blocks farther
-    /// away has not changed. Along the drive and across it, with the stiffness of the lattice against a strain along the drive, 3/4 of a
-    /// chain:
+    /// Lengths in blocks over which the mount, a drive spring on every block, screens a local change of stress: blocks
+    /// farther away are pulled as before. First the length along the drive, then across it. The stiffness of the lattice
+    /// against a strain along the drive is 9/8, 3/4 for a chain:
     ///
     /// ```text
     /// lambda = sqrt(K_el/k_s),   K_el = 9/8 along and 3/8 across
@@ -94,8 +95,8 @@ impl Drive {
 }
 
 impl Rotation {
-    /// About the middle of all blocks of the whole lattice that exist, of which this rank holds some `rows`; called by all `ranks` at
-    /// once.
+    /// A rotation about the centroid of all blocks of the whole lattice that exist, of which this rank holds some `rows`.
+    /// All `ranks` must call this together.
     pub fn about_centroid(
         lattice: &Lattice,
         rows: &Range<usize>,
@@ -145,7 +146,7 @@ impl Rotation {
 }
 
 impl Program {
-    /// From the speed of each segment and the t* at which it ends; the last has no end.
+    /// A program from the speed of each segment and the t* at which the segment ends; the last segment has no end.
     pub fn new(segments: impl IntoIterator<Item = (f64, f64)>) -> Self {
         let (mut from_star, mut from_position) = (0.0, 0.0);
         let segment = |(v_star, until_star): (f64, f64)| {
@@ -168,7 +169,7 @@ impl Program {
         &self.segments
     }
 
-    /// The segment at `time_star`; of two that meet there, the later.
+    /// The segment at `time_star`; where two segments meet, the later one.
     pub fn segment_at(&self, time_star: f64) -> &Segment {
         let after = self
             .segments
@@ -178,7 +179,7 @@ impl Program {
 }
 
 impl Drive {
-    /// Along x at `v_star`.
+    /// A drive along x at `v_star`.
     pub fn along_x(v_star: f64) -> Self {
         Self {
             v_star,
@@ -191,7 +192,7 @@ impl Drive {
         }
     }
 
-    /// At `v_star`, `degrees` from x towards y.
+    /// A drive at `v_star` in the direction `degrees` from x towards y.
     pub fn at_angle(v_star: f64, degrees: f64) -> Self {
         Self {
             direction: unit_vector(degrees),
@@ -199,17 +200,17 @@ impl Drive {
         }
     }
 
-    /// Whether it stands still while a block in contact slides.
+    /// Whether the drive stands still while a block in contact slides.
     pub fn is_held(&self) -> bool {
         self.loading != Loading::Constant
     }
 
-    /// Speed of steady sliding: V*, and 0 of a held drive, under which blocks slide while it stands.
+    /// Speed of steady sliding: V*; 0 for a held drive, which stands while blocks slide.
     pub(crate) fn steady_speed(&self) -> f64 {
         if self.is_held() { 0.0 } else { self.v_star }
     }
 
-    /// Path of the driven ends at `time_star` of the drive, along the direction or of a rotation at its largest radius.
+    /// Path of the driven ends at `time_star` of the drive, along the direction; for a rotation at its largest radius.
     #[inline]
     pub fn path(&self, time_star: f64) -> f64 {
         match &self.program {
@@ -221,7 +222,7 @@ impl Drive {
         }
     }
 
-    /// Speed from `time_star` on.
+    /// Speed of the drive from `time_star` on.
     pub fn speed_after(&self, time_star: f64) -> f64 {
         match &self.program {
             None => self.v_star,
@@ -236,7 +237,7 @@ impl Drive {
         later.filter(|&from_star| from_star > time_star).reduce(f64::min)
     }
 
-    /// Displacement of the driven ends of the drive springs at `time_star`, of a drive that does not rotate.
+    /// Displacement of the driven ends of the drive springs at `time_star`, for a drive that does not rotate.
     #[inline]
     pub fn position(&self, time_star: f64) -> [f64; 2] {
         let along = self.path(time_star);
@@ -258,7 +259,8 @@ impl Drive {
         }
     }
 
-    /// When the driven ends have first moved by `path`, forwards or backwards; infinite if they never do.
+    /// Time of the drive at which the driven ends have first moved by `path`, forwards or backwards; infinite if they never
+    /// do.
     pub fn time_of_path(&self, path: f64) -> f64 {
         let Some(program) = &self.program else {
             return path / self.v_star;

@@ -7,13 +7,13 @@ const LN_2: [f64; 2] = [
     f64::from_bits(0x3dea_39ef_3579_3c76),
 ];
 
-/// What is added to a number leaves it rounded to a whole one, which stands in the lowest bits of the sum.
+/// Constant whose sum with a number has the number, rounded to a whole one, in its lowest bits.
 const TO_WHOLE: f64 = 1.5 * (1_u64 << 52) as f64;
 
-/// Beyond, [`exp`] gives what it gives here.
+/// Largest exponent: [`exp`] of a larger one gives the value at this one.
 const MAX_EXPONENT: f64 = 700.0;
 
-/// `1/k!` from k = 0 on.
+/// Inverse factorials `1/k!` from k = 0 on.
 const INVERSE_FACTORIALS: [f64; 16] = {
     let mut inverse = [1.0; 16];
     let mut k = 1;
@@ -24,7 +24,7 @@ const INVERSE_FACTORIALS: [f64; 16] = {
     inverse
 };
 
-/// `sum_k c_k x^k`, by pairs so that few operations wait for each other.
+/// The polynomial `sum_k c_k x^k`, evaluated by pairs so that few operations wait for each other.
 #[inline(always)]
 fn polynomial<const TERMS: usize>(c: [f64; TERMS], x: f64) -> f64 {
     let (mut sum, square) = (0.0, x * x);
@@ -36,7 +36,7 @@ fn polynomial<const TERMS: usize>(c: [f64; TERMS], x: f64) -> f64 {
     sum
 }
 
-/// `e^x` for -700 to 700, to four units in the last place.
+/// The exponential `e^x` for x of -700 to 700, to four units in the last place.
 #[inline(always)]
 pub(crate) fn exp(x: f64) -> f64 {
     let x = x.clamp(-MAX_EXPONENT, MAX_EXPONENT);
@@ -53,7 +53,7 @@ pub(crate) fn exp(x: f64) -> f64 {
     )
 }
 
-/// `ln x` of a positive number that is not subnormal, to four units in the last place.
+/// The logarithm `ln x` of a positive number that is not subnormal, to four units in the last place.
 #[inline(always)]
 pub(crate) fn ln(x: f64) -> f64 {
     /// Bits of 1, and of a number just below the root of 1/2.
@@ -69,10 +69,10 @@ pub(crate) fn ln(x: f64) -> f64 {
     n * LN_2[0] + (n * LN_2[1] + s * polynomial(c, s * s))
 }
 
-/// Below, [`small_mean_decay`] leaves out what is beyond the last digit.
+/// Bound below which [`small_mean_decay`] is exact to the last digit with the terms that it has.
 pub(crate) const SMALL_DECAY: f64 = 0.5;
 
-/// `(1 - e^-x)/x` of x >= 0, 1 at 0.
+/// Mean of `e^-x` over an interval, `(1 - e^-x)/x` for x >= 0; 1 at 0.
 #[inline(always)]
 pub(crate) fn mean_decay(x: f64) -> f64 {
     let series = small_mean_decay(x.min(SMALL_DECAY));
@@ -80,7 +80,7 @@ pub(crate) fn mean_decay(x: f64) -> f64 {
     if x < SMALL_DECAY { series } else { quotient }
 }
 
-/// The same below [`SMALL_DECAY`].
+/// The mean `(1 - e^-x)/x` for x below [`SMALL_DECAY`], by a series.
 #[inline(always)]
 pub(crate) fn small_mean_decay(x: f64) -> f64 {
     let c: [f64; 14] = std::array::from_fn(|k| INVERSE_FACTORIALS[k + 1]);
@@ -91,7 +91,7 @@ pub(crate) fn small_mean_decay(x: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// Seven roundings by half a unit in the last place, 1.1e-16 each, of numbers no larger than the value.
+    /// Tolerance: seven roundings by half a unit in the last place, 1.1e-16 each, of numbers no larger than the value.
     fn assert_close(found: f64, exact: f64, x: f64) {
         assert!(
             (found - exact).abs() <= 8e-16 * exact.abs(),

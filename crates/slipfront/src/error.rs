@@ -11,15 +11,15 @@ pub enum RunError {
          lower the load's strain epsilon or the time step"
     )]
     NotFinite {
-        /// Step at which it was noticed.
+        /// Step at which the run was found to diverge.
         step: u64,
         /// Dimensionless time of that step.
         time_star: f64,
         /// Column of the block that is displaced farthest along an axis, the first of equal ones.
         i: usize,
-        /// Its row.
+        /// Row of the block that is displaced farthest.
         j: usize,
-        /// Its displacement along this axis, finite or not.
+        /// Displacement of this block along this axis, finite or not.
         value: f64,
     },
     /// Under a drive that is held some block has slid for too long.
@@ -28,7 +28,7 @@ pub enum RunError {
          friction takes too little for the slider to come to rest; raise its kinetic friction or damping, or take constant loading"
     )]
     NoRest {
-        /// Step at which it was noticed.
+        /// Step at which the limit on sliding was passed.
         step: u64,
         /// Dimensionless time of that step.
         time_star: f64,
@@ -43,9 +43,9 @@ pub enum RunError {
          drive or the time step, or shorten the run"
     )]
     TooManySteps {
-        /// Steps done.
+        /// Number of steps done.
         step: u64,
-        /// Steps in which the drive has moved.
+        /// Number of steps in which the drive has moved.
         drive_steps: u64,
     },
     /// An observer failed.

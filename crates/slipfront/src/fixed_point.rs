@@ -12,14 +12,14 @@ use crate::reductions;
 /// Numbers of at most a given size as multiples of a quantum, which is a power of two.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct FixedPoint {
-    /// The power of two above the bound. NaN if there is no bound, so that all sums are NaN.
+    /// Power of two above the bound; NaN if there is no bound, so that all sums are NaN.
     limit: f64,
 }
 
 /// Largest bound: quanta and what is added to them must stay finite.
 const MAX_BOUND: f64 = 1e300;
 
-/// Sizes below are not told apart, so that quanta do not underflow.
+/// Least bound: a smaller one is replaced by it, so that quanta do not underflow.
 const MIN_BOUND: f64 = 1e-270;
 
 /// Quanta in the largest number.
@@ -29,7 +29,7 @@ const QUANTA: f64 = (1_u64 << 51) as f64;
 const MAX_TERMS: usize = 1 << 11;
 
 impl FixedPoint {
-    /// For numbers of at most `bound` in size.
+    /// Multiples of a quantum for numbers of at most `bound` in size.
     pub(crate) fn new(bound: f64) -> Self {
         let exponent = bound.max(MIN_BOUND).to_bits() & f64::INFINITY.to_bits();
         Self {
@@ -46,8 +46,8 @@ impl FixedPoint {
         self.limit
     }
 
-    /// `1.5 2^52` quanta. What is added to it is rounded to a multiple of the quantum, and the bits of the sum are those of this
-    /// number plus the multiple.
+    /// Shift of `1.5 2^52` quanta. A number added to it is rounded to a multiple of the quantum, and the bits of the sum are
+    /// those of the shift plus the multiple.
     pub(crate) fn shift(self) -> f64 {
         3.0 * self.limit
     }
@@ -72,7 +72,7 @@ impl FixedPoint {
         sum
     }
 
-    /// What a sum of integers stands for, rounded to the nearest double.
+    /// Number that a sum of integers stands for, rounded to the nearest double.
     pub(crate) fn value(self, sum: i128) -> f64 {
         sum as f64 * (self.limit / QUANTA)
     }
@@ -106,30 +106,31 @@ impl Window {
         first <= low && high <= last
     }
 
-    /// The middle of the window.
+    /// Middle of the window.
     pub(crate) fn centre(&self) -> f64 {
         self.centre
     }
 
-    /// Differences from the centre.
+    /// Multiples of a quantum for differences from the centre.
     pub(crate) fn differences(&self) -> FixedPoint {
         self.differences
     }
 
-    /// What is added to a number, to find the nearest multiple for its difference from the centre in the bits of the sum: see
-    /// [`FixedPoint::shift`].
+    /// Constant whose sum with a number has, in its bits, the nearest multiple for the difference of the number from the
+    /// centre: see [`FixedPoint::shift`].
     pub(crate) fn shift(&self) -> f64 {
         self.differences.shift() - self.centre
     }
 }
 
-/// Sum of `term(k)` over `0..n`, the same for any order of the terms.
+/// Sum of `term(k)` over `0..n`, equal for any order of the terms.
 #[inline(always)]
 pub(crate) fn sum(n: usize, term: impl Fn(usize) -> f64) -> f64 {
     sum_over(&Alone, n, term)
 }
 
-/// The same over the blocks of all `ranks`, which call this together, each with its own `n` terms.
+/// Sum of `term(k)` over the blocks of all `ranks`, equal for any order. All ranks call this together, each with its own `n`
+/// terms.
 #[inline(always)]
 pub(crate) fn sum_over(ranks: &dyn Communicator, n: usize, term: impl Fn(usize) -> f64) -> f64 {
     // A term that is no number makes the bound infinite.
@@ -142,19 +143,20 @@ pub(crate) fn sum_over(ranks: &dyn Communicator, n: usize, term: impl Fn(usize) 
     fixed_point.value(join(words))
 }
 
-/// A sum over blocks that is found at every step, part by part. Its terms hardly ever outgrow the power of two that bounds them, or
-/// fall below it: they are added up with the bound of the step before, while the largest is found, and once more if that was another.
-/// So the sum is that of [`sum`], whatever was before.
+/// A sum over blocks that is found at every step, part by part. Its terms hardly ever outgrow the power of two that bounds
+/// them, or fall below it. They are added up with the bound of the step before while the largest is found, and once more if
+/// the bound has changed. So the sum equals [`sum`] of the terms, whatever was before.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RunningSum {
     bound: FixedPoint,
-    /// Bits of the largest size of a term so far. As integers they have the order of the sizes, beyond which lie those of no number.
+    /// Bits of the largest size of a term so far. As integers, bits have the order of the sizes; NaN lies beyond all of
+    /// them.
     largest: i64,
     sum: i128,
 }
 
 impl RunningSum {
-    /// Adds these terms.
+    /// Adds terms to the sum.
     #[inline(always)]
     pub(crate) fn add(&mut self, terms: &[f64]) {
         const SIZE: u64 = i64::MAX as u64;
@@ -177,7 +179,7 @@ impl RunningSum {
         if size.is_nan() { f64::INFINITY } else { size }
     }
 
-    /// Adds the terms of others with the same bounds.
+    /// Adds the terms of other sums with the same bounds.
     pub(crate) fn join<const N: usize>(sums: &mut [Self; N], others: &[Self; N]) {
         for (sum, other) in sums.iter_mut().zip(others) {
             sum.largest = sum.largest.max(other.largest);
@@ -185,8 +187,8 @@ impl RunningSum {
         }
     }
 
-    /// Begins again with no terms, and with the bound of those before, of which this is the largest. Returns whether they were added up
-    /// with this bound.
+    /// Empties the sum and sets the bound of the next terms by the `largest` of those before. Returns whether those were
+    /// added up with that bound.
     fn restart(&mut self, largest: f64) -> bool {
         let bound = FixedPoint::new(largest);
         let was_bound = bound.limit.to_bits() == self.bound.limit.to_bits();
@@ -197,7 +199,8 @@ impl RunningSum {
         was_bound
     }
 
-    /// The sums of all terms that all `ranks` have added; none if a bound was another, so that all have to be added once more.
+    /// Sums of all terms that all `ranks` have added; none if a bound has changed, so that all terms have to be added once
+    /// more.
     pub(crate) fn finish<const N: usize>(ranks: &dyn Communicator, sums: &mut [Self; N]) -> Option<[f64; N]> {
         let mut largest = sums.each_ref().map(Self::largest);
         ranks.largest(&mut largest);
@@ -233,7 +236,7 @@ pub(crate) fn split(sum: i128) -> [i64; 2] {
     [low as i64, (sum >> LOW_BITS) as i64]
 }
 
-/// The sum whose words, or sums of words, these are: see [`split`].
+/// Sum whose words, or sums of words, are `low` and `high`: see [`split`].
 pub(crate) fn join([low, high]: [i64; 2]) -> i128 {
     (i128::from(high) << LOW_BITS) + i128::from(low)
 }
@@ -253,7 +256,7 @@ mod tests {
         assert_eq!(sum(3, |k| [1e300, 1.0, -1e300][k]), 0.0);
     }
 
-    /// More than a word holds.
+    /// The sum exceeds what one word holds.
     #[test]
     fn long_sums_do_not_overflow() {
         for x in [1.0, -1.0] {
@@ -262,7 +265,7 @@ mod tests {
         }
     }
 
-    /// Larger terms, smaller ones, none, and some that are no numbers: after whatever came before, the sum is that of the terms alone.
+    /// Whatever came before, a sum is that of its own terms: larger ones, smaller ones, none, and some that are no numbers.
     #[test]
     fn a_running_sum_is_the_sum_of_its_step() {
         let scales = [1.0, 1e-3, 1.5e-3, 1e9, 0.0, f64::NAN, 2.0, f64::INFINITY, 1e-12];

@@ -8,10 +8,10 @@ use crate::vector_field::VectorField;
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Forces {
     pub(crate) drive: VectorField,
-    /// Sum over the springs between blocks and the dampers beside them.
+    /// Sum over the springs between blocks and the dampers beside them, per block.
     pub(crate) lattice: VectorField,
     pub(crate) friction: VectorField,
-    /// Velocities after the update within a step; between steps those before it.
+    /// Velocities after the update within a step; between steps the velocities before the update.
     pub(crate) velocity: VectorField,
     pub(crate) slides: Vec<bool>,
     /// Force of the spring along each bond, before they are summed into `lattice`.

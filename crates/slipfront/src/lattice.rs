@@ -31,15 +31,16 @@ pub fn dt_star_limit() -> f64 {
     2.0 / OMEGA_MAX_SQUARED.sqrt()
 }
 
-/// How many drive springs' force a block bears that is held alone in a large sheet of free blocks, with drive springs of stiffness
-/// `k_drive`: the lattice brings it that of its neighbours too. The response of the free sheet, an integral over the waves of the lattice, is
+/// Number of drive springs whose force a block bears that is held alone in a large sheet of free blocks, with drive springs
+/// of stiffness `k_drive`: the lattice passes on the pull on its neighbours. The response of the free sheet, an integral
+/// over the waves of the lattice, is
 ///
 /// ```text
 /// 1/G_xx(0)/k_s     G(0) = mean over q of [k_s + D(q)]^-1
 /// D_xx = 2 k_1 (1 - cos q_x) + 2 k_2 (1 - cos q_x cos q_y)     D_xy = 2 k_2 sin q_x sin q_y
 /// ```
 pub fn springs_on_a_lone_block(k_drive: f64) -> f64 {
-    /// Waves along each axis, enough for four digits down to a tenth of [`K_DRIVE`].
+    /// Number of waves along each axis, enough for four digits down to a tenth of [`K_DRIVE`].
     const WAVES: usize = 64;
     let wave = |n: usize| (n as f64 + 0.5) / WAVES as f64 * std::f64::consts::TAU;
     // Every one stands in many terms of the sum.
@@ -56,7 +57,7 @@ pub fn springs_on_a_lone_block(k_drive: f64) -> f64 {
     n_waves as f64 / ((0..n_waves).map(response).sum::<f64>() * k_drive)
 }
 
-/// What lies beyond the edges of the lattice along one axis.
+/// Boundary of the lattice at both ends of one axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Edges {
@@ -70,13 +71,13 @@ pub enum Edges {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Edge {
-    /// At x = 0.
+    /// The edge at x = 0.
     Left,
-    /// At the largest x.
+    /// The edge at the largest x.
     Right,
-    /// At y = 0.
+    /// The edge at y = 0.
     Bottom,
-    /// At the largest y.
+    /// The edge at the largest y.
     Top,
 }
 
@@ -149,8 +150,8 @@ impl Lattice {
     /// Fewest blocks along a periodic axis.
     pub const MIN_PERIODIC: usize = 3;
 
-    /// Stiffness against a strain along an axis that is the same across it, in units of `E h`: `k_1 + k_2 = 9/8` of a sheet, `k_1` of a
-    /// chain.
+    /// Stiffness against a strain along an axis that is uniform across it, in units of `E h`: `k_1 + k_2 = 9/8` for a sheet,
+    /// `k_1` for a chain.
     pub(crate) fn stiffness_along(&self) -> f64 {
         if self.nx == 1 || self.ny == 1 {
             K_STRAIGHT
@@ -235,13 +236,13 @@ pub struct Bond {
 }
 
 impl Bond {
-    /// To the neighbour at x + 1.
+    /// The bond to the neighbour at x + 1.
     pub const EAST: Bond = Bond::new([1, 0], K_STRAIGHT, 1.0);
-    /// To the neighbour at y + 1.
+    /// The bond to the neighbour at y + 1.
     pub const NORTH: Bond = Bond::new([0, 1], K_STRAIGHT, 1.0);
-    /// To the neighbour at (x + 1, y + 1).
+    /// The bond to the neighbour at (x + 1, y + 1).
     pub const NORTH_EAST: Bond = Bond::new([1, 1], K_DIAGONAL, SQRT_2);
-    /// To the neighbour at (x - 1, y + 1).
+    /// The bond to the neighbour at (x - 1, y + 1).
     pub const NORTH_WEST: Bond = Bond::new([-1, 1], K_DIAGONAL, SQRT_2);
     /// The four bonds that, over all blocks, make every spring once.
     pub const ALL: [Bond; 4] = [Bond::EAST, Bond::NORTH, Bond::NORTH_EAST, Bond::NORTH_WEST];
@@ -311,7 +312,7 @@ impl Bond {
         0.5 * self.stiffness * extension * extension
     }
 
-    /// `(r^2 - d^2)/eps = 2 d.e + eps e^2`.
+    /// Stretch of the spring, `(r^2 - d^2)/eps = 2 d.e + eps e^2`.
     #[inline(always)]
     fn stretch(&self, e: [f64; 2], epsilon: f64) -> f64 {
         2.0 * (self.rest[0] * e[0] + self.rest[1] * e[1]) + epsilon * (e[0] * e[0] + e[1] * e[1])

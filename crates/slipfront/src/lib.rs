@@ -75,5 +75,5 @@ pub use surface::Surface;
 pub use totals::{StoredEnergy, Totals};
 pub use vector_field::VectorField;
 
-/// BLAKE3 hash of the sources of this crate, by which programs that give the same bits are told.
+/// BLAKE3 hash of the sources of this crate. Programs with the same hash give the same bits.
 pub const SOURCE_HASH: &str = env!("SLIPFRONT_SOURCE_HASH");

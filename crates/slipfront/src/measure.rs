@@ -1,5 +1,5 @@
-//! What one instant of a run measures: the friction coefficient mu* (Eq. 9), the percentage of sliding blocks N*, the largest mu*
-//! and the first peak of mu*.
+//! Measures of one instant of a run: the friction coefficient mu* (Eq. 9), the percentage of sliding blocks N*, the largest
+//! mu* and the first peak of mu*.
 
 use serde::{Deserialize, Serialize};
 
@@ -80,8 +80,8 @@ pub struct Largest {
 }
 
 impl Largest {
-    /// Before the first step. What comes after the drive has first gone further than `until_path`, in units of displacement, does
-    /// not count; [`f64::INFINITY`] takes the whole run.
+    /// The state before the first step. Steps after the drive has first gone further than `until_path`, in units of
+    /// displacement, do not count; [`f64::INFINITY`] takes the whole run.
     pub fn until(until_path: f64) -> Self {
         Self {
             mu_star: f64::NEG_INFINITY,
@@ -106,8 +106,8 @@ impl Largest {
     }
 }
 
-/// What friction loses in a transition at least, of the largest loss 1 - L. Ripples of sliding just above L are smaller; a texture that
-/// lowers mu_s* nearly to L leaves more.
+/// Least loss of friction in a transition, as a share of the largest loss 1 - L. Ripples of sliding just above L are
+/// smaller; a texture that lowers mu_s* nearly to L leaves more.
 const LEAST_FALL: f64 = 0.05;
 
 /// The first peak of mu* that is followed by a fall of at least half-way to the steady level L and of at least (1 - L)/20, within the
@@ -120,37 +120,37 @@ const LEAST_FALL: f64 = 0.05;
 pub struct Peak {
     /// mu* at the peak: mu_s* once `ended`.
     pub mu_star: f64,
-    /// What is across the drive then.
+    /// Friction across the drive at the peak.
     pub mu_lateral_star: f64,
     /// Step of the peak.
     pub step: u64,
     /// Time of the peak: t_s* once `ended`.
     pub time_star: f64,
-    /// Time of the drive then.
+    /// Time of the drive at the peak.
     pub drive_time_star: f64,
-    /// Whether the fall has been seen; under a held drive not before the largest mu* is known.
+    /// Whether the fall has been seen; under a held drive only once the largest mu* is known.
     pub ended: bool,
     /// Largest mu* of the whole run so far.
     pub largest: Largest,
     steady_level: f64,
     longest_fall: f64,
-    /// Whether mu* fell that far too late to be a transition; under a held drive, not at all.
+    /// Whether mu* fell by the least loss too late for a transition; under a held drive, whether it did not fall.
     crept: bool,
-    /// Of a held drive.
+    /// Peak under a held drive.
     held: Option<HeldPeak>,
 }
 
-/// What a peak under a held drive is known by.
+/// State by which the peak under a held drive is found.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 struct HeldPeak {
-    /// Steps of the drive after which it is final.
+    /// Steps of the drive after which the peak is final.
     onset_steps: u64,
     /// Whether the fall after the largest mu* so far has been seen.
     has_fallen: bool,
 }
 
 impl Peak {
-    /// Before the first step; `steady_level` is L, see [`Model::steady_level`].
+    /// The peak before the first step; `steady_level` is L, see [`Model::steady_level`].
     pub(crate) fn new(model: &Model, steady_level: f64) -> Self {
         let held = match model.drive.loading {
             Loading::Constant => None,
@@ -165,7 +165,7 @@ impl Peak {
         }
     }
 
-    /// The peak under a drive at constant speed; `longest_fall` is that of [`Model::longest_fall`].
+    /// The peak under a drive at constant speed; `longest_fall` comes from [`Model::longest_fall`].
     fn within(longest_fall: f64, steady_level: f64) -> Self {
         Self {
             mu_star: f64::NEG_INFINITY,
@@ -190,12 +190,12 @@ impl Peak {
         }
     }
 
-    /// Whether a run that stops after the onset ends now: the fall has been seen, or under a held drive it is known that there was none.
+    /// Whether a run that stops after the onset ends now: the fall has been seen, or under a held drive there was none.
     pub(crate) fn is_final(&self) -> bool {
         self.ended || (self.held.is_some() && self.crept)
     }
 
-    /// Whether it is a fall as fast as a transition that leads to `mu_star` at this instant.
+    /// Whether the fall to `mu_star` at this instant is as fast as a transition.
     fn is_transition_to(&self, clock: &Clock, mu_star: f64) -> bool {
         self.is_fall_to(mu_star) && clock.drive_time_star() - self.drive_time_star <= self.longest_fall
     }
@@ -283,7 +283,8 @@ mod tests {
         );
     }
 
-    /// At L = 0.5 a ripple of less than 0.025 is none, though it falls half-way to L; and where L is above 1 half-way is enough.
+    /// A ripple of less than 0.025 is no peak at L = 0.5, though it falls half-way to L; where L is above 1 half-way is
+    /// enough.
     #[test]
     fn a_ripple_just_above_the_level_of_sliding_is_no_peak() {
         let curve = [0.0, 0.51, 0.5, 0.52, 0.497, 0.68, 0.55];
@@ -318,7 +319,7 @@ mod tests {
         assert!(!peak_within(2.5, 0.5, &curve).ended);
     }
 
-    /// What creeps goes up and down for ever: in the end some fall would be fast enough.
+    /// A slider that creeps goes up and down for ever: in the end some fall would be fast enough.
     #[test]
     fn what_has_crept_once_has_no_transition_any_more() {
         let peak = peak_within(2.5, 0.5, &[0.0, 1.0, 0.9, 0.8, 0.75, 1.1, 0.3]);

@@ -1,4 +1,4 @@
-//! What never changes in a run: lattice, slider, surface, drive, damping and friction law.
+//! The model of a run, which never changes: lattice, slider, surface, drive, damping and friction law.
 
 use std::f64::consts::{PI, TAU};
 use std::ops::Range;
@@ -21,13 +21,13 @@ pub const ONSET_PATH: f64 = 2.5;
 pub struct Model {
     /// Blocks and springs, all of them.
     pub lattice: Lattice,
-    /// The rows that this process holds: all, unless it is one rank of several.
+    /// The rows of the lattice that this process holds: all, unless it is one rank of several.
     pub rows: Range<usize>,
-    /// What differs from block to block of these rows; it fits them.
+    /// Heterogeneous properties of the blocks of these rows.
     pub(crate) slider: Slider,
     /// Friction of every block of these rows.
     pub surface: Surface,
-    /// How it is pulled.
+    /// The drive of the slider.
     pub drive: Drive,
     /// Damping `Omega` per unit of dimensionless time (see [`crate::scales::damping`]).
     pub damping: f64,
@@ -78,7 +78,7 @@ impl Model {
         }
     }
 
-    /// This model of blocks that differ, for which the surface must be made.
+    /// Returns the model with a heterogeneous slider, for which the surface must be made.
     ///
     /// # Panics
     /// Unless every array of the slider has one value for each block that this process holds, and drive springs are given with an
@@ -88,13 +88,13 @@ impl Model {
         Self { slider, ..self }
     }
 
-    /// This model under a drive that is loaded in this way.
+    /// Returns the model with the given loading of its drive.
     pub fn with_loading(mut self, loading: Loading) -> Self {
         self.drive.loading = loading;
         self
     }
 
-    /// This model with a program of speeds for its drive, if there is one.
+    /// Returns the model with a program of speeds for its drive, if there is one.
     pub fn with_program(mut self, program: Option<Arc<Program>>) -> Self {
         self.drive.program = program;
         self
@@ -116,7 +116,7 @@ impl Model {
         }
     }
 
-    /// What differs from block to block of the rows that this process holds.
+    /// Heterogeneous properties of the blocks of the rows that this process holds.
     pub fn slider(&self) -> &Slider {
         &self.slider
     }
@@ -126,9 +126,10 @@ impl Model {
         self.slider.n_blocks(&self.lattice)
     }
 
-    /// Size along the drive, in blocks, from which a patch at its threshold runs away where strength falls with slip: that of a long strip
-    /// across the drive whose blocks have the mean strength of those in contact, on the mean drive spring `k_s`; on none, where only some blocks
-    /// have one. Infinite where the mount is stiff enough for slip of any size to be stable; none under other laws.
+    /// Size along the drive, in blocks, from which a patch at its threshold runs away where strength falls with slip: the
+    /// critical size of a long strip across the drive whose blocks have the mean strength of those in contact, on the mean
+    /// drive spring `k_s`; without drive springs, where only some blocks have one. The size is infinite where the mount is
+    /// stiff enough for slip of any size to be stable; there is none under other laws.
     ///
     /// ```text
     /// L_c = pi sqrt(K_el/(W - k_s)),   W = (S - K)/D_c,   K_el = 9/8, 3/4 of a chain
@@ -152,8 +153,8 @@ impl Model {
         })
     }
 
-    /// What the sum of the forces of the drive springs is divided by in mu*: the number of blocks that exist; of a rotation
-    /// `sum r_i/r_max`, which makes mu* the torque of the drive springs over `P mu_s l^2 sum r_i`.
+    /// Divisor of the sum of the forces of the drive springs in mu*: the number of blocks that exist; for a rotation `sum
+    /// r_i/r_max`, which makes mu* the torque of the drive springs over `P mu_s l^2 sum r_i`.
     pub fn mu_star_divisor(&self) -> f64 {
         match &self.drive.rotation {
             None => self.n_blocks() as f64,
@@ -184,16 +185,18 @@ impl Model {
         self.loading_speed() * self.slider.mean_slowness
     }
 
-    /// Between which t* the onset is expected. The later of the two is Eq. 12 for blocks that bear their load alone, which is larger by the
-    /// [load factor](Surface::load_factor) f where only some touch; the earlier one is Eq. 12 for blocks that all touch or, if that
-    /// is later, for blocks that stand alone and are pushed by their free neighbours too:
+    /// Earliest and latest t* at which the onset is expected. The later of the two is Eq. 12 for blocks that bear their load
+    /// alone, which is larger by the [load factor](Surface::load_factor) f where only some touch; the earlier one is Eq. 12
+    /// for blocks that all touch or, if that is later, for blocks that stand alone and are pushed by their free neighbours
+    /// too:
     ///
     /// ```text
     /// max(2.5, f/A k_2)/V* ... 2.5 f/V*
     /// ```
     ///
-    /// with A = [`springs_on_a_lone_block`] and the [speed of loading](Self::loading_speed) in place of V*. What a sheet of free blocks
-    /// brings to those that touch is known for a drive on every block alone; `f` is 1 for any other.
+    /// with A = [`springs_on_a_lone_block`] and the [speed of loading](Self::loading_speed) in place of V*. The pull that a
+    /// sheet of free blocks passes to those that touch is known only for a drive on every block; `f` is 1 for any other
+    /// drive.
     pub fn onset_estimate(&self, load_factor: f64) -> [f64; 2] {
         let speed = self.loading_speed();
         let late = ONSET_PATH * load_factor.max(1.0);
@@ -201,9 +204,10 @@ impl Model {
         [lone.clamp(ONSET_PATH, late) / speed, late / speed]
     }
 
-    /// The longest time in which mu* falls from its peak half-way to the [level of sliding](Self::steady_level) in a transition; what takes
-    /// longer is creep. It is the longest of the time of loading 2.5/V* (Eq. 12), after which kinetic friction is measured, that of
-    /// a slip front across the slider, a block per t*, and that of a swing of the slider on its drive springs.
+    /// The longest time in which mu* falls from its peak half-way to the [level of sliding](Self::steady_level) in a
+    /// transition; a slower fall is creep. It is the longest of three times: of loading, 2.5/V* (Eq. 12), after which
+    /// kinetic friction is measured; of a slip front across the slider, a block per t*; and of a swing of the slider on its
+    /// drive springs.
     pub fn longest_fall(&self) -> f64 {
         let k_drive = self.drive.k_drive;
         let loading = ONSET_PATH / self.loading_speed() * self.friction.loading_delay(k_drive);
@@ -222,8 +226,8 @@ impl Model {
         1000.0 * self.response_time()
     }
 
-    /// Drag of the damping in steady sliding at V*, none under a held drive: the part of [`steady_level`](Self::steady_level) that is no friction. All `ranks` of a
-    /// lattice must call this together.
+    /// Drag of the damping in steady sliding at V*; 0 under a held drive. It is the part of
+    /// [`steady_level`](Self::steady_level) that is no friction. All `ranks` of a lattice must call this together.
     pub fn steady_drag(&self, ranks: &dyn Communicator) -> f64 {
         let drag = self.damping * self.drive.steady_speed();
         let Some(rotation) = &self.drive.rotation else {
@@ -246,8 +250,8 @@ impl Model {
     /// L = [sum_i mu_ki F_n,i r_i/(P l^2 mu_s) + Omega V* sum_i m_i r_i^2/r_max]/sum_i r_i    of a rotation
     /// ```
     ///
-    /// with 0 for V* where the drive is held, the coefficient at V* of a law in which it depends on the speed, and half the mean threshold of springs in contact. All `ranks` of a lattice
-    /// must call this together.
+    /// V* counts as 0 under a held drive; a coefficient that depends on the speed is taken at V*; for springs in contact
+    /// half the mean threshold stands for kinetic friction. All `ranks` of a lattice must call this together.
     pub fn steady_level(&self, ranks: &dyn Communicator) -> f64 {
         let Some(rotation) = &self.drive.rotation else {
             let kinetic = self
@@ -267,15 +271,15 @@ impl Model {
         torque / rotation.sum_radii
     }
 
-    /// Time of the first slip of a block in contact on a surface without texture, exact. Of a drive at constant speed along a
-    /// direction
+    /// Time of the first slip of a block in contact on a surface without texture, exact. For a drive at constant speed along
+    /// a direction
     ///
     /// ```text
     /// t* = min_i max(mu_si, mu_ki) F_n,i/(k_s,i V*)
     /// ```
     ///
-    /// and in general when the path of the drive is as long as it is here after this time. All `ranks` of a lattice must call this
-    /// together.
+    /// In general it is the time t at which the path of the drive is as long as that of the constant speed at this time,
+    /// `path(t) = V* t*`. All `ranks` of a lattice must call this together.
     pub fn first_slip_estimate(&self, ranks: &dyn Communicator) -> f64 {
         let (k_drive, v_star) = (self.drive.k_drive, self.drive.v_star);
         let pull =
@@ -302,7 +306,7 @@ impl Model {
         self.drive.time_of_path(-negative[0])
     }
 
-    /// `r_i/r_max` of block `b` of these rows, of a rotation.
+    /// Relative radius `r_i/r_max` of block `b` of these rows in a rotation.
     fn relative_radius(&self, b: usize) -> f64 {
         let first = self.lattice.blocks_of(&self.rows).start;
         length(self.drive.direction_at(&self.lattice, first + b))

@@ -6,7 +6,8 @@ use crate::communicator::Communicator;
 use crate::lattice::{Edges, Lattice, harmonic_mean};
 use crate::slider::Slider;
 
-/// Moduli of the blocks of some rows and of those below the first and above the last, `E_i/E`; 0 of blocks that do not exist.
+/// Moduli `E_i/E` of the blocks of some rows and of the rows below the first and above the last; 0 for blocks that do not
+/// exist.
 pub(crate) struct Moduli<'a> {
     slider: &'a Slider,
     lattice: Lattice,
@@ -16,7 +17,8 @@ pub(crate) struct Moduli<'a> {
 }
 
 impl<'a> Moduli<'a> {
-    /// Of the rows that this rank holds, called by all `ranks` at once, which tell each other those at their ends.
+    /// Moduli of the rows that this rank holds. All `ranks` call this at once, and exchange the moduli at the ends of their
+    /// rows.
     pub(crate) fn new(
         slider: &'a Slider,
         lattice: &Lattice,
@@ -47,7 +49,7 @@ impl<'a> Moduli<'a> {
         moduli
     }
 
-    /// Of block (i, j) of the lattice, in or beside these rows.
+    /// Modulus of block (i, j) of the lattice, in or beside these rows.
     pub(crate) fn at(&self, i: usize, j: usize) -> f64 {
         if self.slider.has_equal_springs() {
             return 1.0;
@@ -59,8 +61,8 @@ impl<'a> Moduli<'a> {
         self.beside[side].get(i).copied().unwrap_or(0.0)
     }
 
-    /// Stiffness of the spring from block (i, j) of these rows to the block `offset` away over that of its bond, the harmonic mean of
-    /// their moduli; 0 beyond a free edge.
+    /// Stiffness of the spring from block (i, j) of these rows to the block `offset` away, over the stiffness of its bond:
+    /// the harmonic mean of their moduli; 0 beyond a free edge.
     pub(crate) fn spring(&self, [i, j]: [usize; 2], offset: [isize; 2]) -> f64 {
         let Some(other) = self.lattice.neighbour(i, j, offset) else {
             return 0.0;

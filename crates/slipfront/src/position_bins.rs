@@ -7,11 +7,11 @@ use crate::lattice::Lattice;
 /// the axis. A bin is one block wide, or several where that would take more than [`PositionBins::MAX`] bins.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PositionBins {
-    /// How many there are.
+    /// Number of bins.
     pub count: usize,
-    /// Blocks along each.
+    /// Width of each bin, in blocks.
     pub width: usize,
-    /// `r . d` where the first one begins, in blocks.
+    /// Place `r . d` where the first bin begins, in blocks.
     pub start: f64,
     measure: Coordinate,
 }
@@ -23,10 +23,10 @@ enum Coordinate {
 }
 
 impl PositionBins {
-    /// Most bins.
+    /// Largest number of bins.
     pub const MAX: usize = 1024;
 
-    /// The bins of a lattice that is driven so.
+    /// The bins of a lattice under the given drive.
     ///
     /// ```
     /// use slipfront::{Drive, Lattice, PositionBins};

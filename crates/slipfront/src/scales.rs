@@ -1,4 +1,4 @@
-//! Conversion between dimensional and dimensionless quantities (Eq. 11), in this file alone.
+//! Conversion between dimensional and dimensionless quantities (Eq. 11).
 //!
 //! A block is `l` by `l` and as thick as the sheet, `h`; the paper's blocks are cubes, `h = l`. Lengths count in blocks, masses in
 //! block masses, times in `l sqrt(rho/E)` (D4: the paper prints no `l`), displacements in `P mu_s l^2/(E h)`, forces in
@@ -68,7 +68,8 @@ impl Scales {
         self.young_modulus * self.thickness
     }
 
-    /// Stiffness of a spring on one block, in units of `E h`, of springs that have this stiffness per area, in N/m^3: `K l^2/(E h)`.
+    /// Stiffness of a spring on one block, in units of `E h`, for springs of the given stiffness per area, in N/m^3: `K
+    /// l^2/(E h)`.
     ///
     /// ```
     /// let scales = slipfront::Scales {
@@ -85,7 +86,7 @@ impl Scales {
         self.pressure * self.mu_static_mean / self.young_modulus * self.slenderness()
     }
 
-    /// Edge of a block over its thickness; exactly 1 of the paper's cubes.
+    /// Edge of a block over its thickness; exactly 1 for the paper's cubes.
     fn slenderness(&self) -> f64 {
         self.block_size / self.thickness
     }

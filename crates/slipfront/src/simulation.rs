@@ -17,7 +17,8 @@ use crate::state::State;
 use crate::stop::{Stop, StopReason};
 use crate::totals::Totals;
 
-/// Most steps under a drive that is held, of which none can be told before: the fused kernel keeps their numbers in 32 bits.
+/// Largest number of steps under a drive that is held, whose steps are not known in advance: the fused kernel keeps their
+/// numbers in 32 bits.
 const MAX_HELD_STEPS: u64 = u32::MAX as u64 - 1;
 
 /// A run in progress.
@@ -101,8 +102,8 @@ impl Simulation {
         }))
     }
 
-    /// What [`Simulation::resume`] needs beside the [columns](Self::write_columns). Taken between two calls of
-    /// [`Simulation::advance`], it belongs together with what the observers have recorded by then. All ranks must call this
+    /// The state that [`Simulation::resume`] needs beside the [columns](Self::write_columns). Taken between two calls of
+    /// [`Simulation::advance`], it belongs together with the recordings of the observers by then. All ranks must call this
     /// together.
     pub fn checkpoint(&self) -> Checkpoint {
         Checkpoint {
@@ -121,8 +122,7 @@ impl Simulation {
     /// first block, and the values. The columns are [`BlockColumn::ALL`] and those of the law of friction, together
     /// [`Model::n_columns`].
     ///
-    /// # Errors
-    /// Those of `write`.
+    /// # Errors Errors of `write`.
     pub fn write_columns<E>(
         &self,
         mut write: impl FnMut(usize, usize, &[f64]) -> Result<(), E>,
@@ -140,8 +140,8 @@ impl Simulation {
         })
     }
 
-    /// Steps until `stop`, showing every instant to the observers that are due, the last one included. All ranks must call this
-    /// together, with observers that need energies at the same steps.
+    /// Steps until `stop`, and shows every instant, including the last, to the observers that are due. All ranks must call
+    /// this together, with observers that need energies at the same steps.
     ///
     /// # Errors
     /// [`RunError::NotFinite`] when the run diverges, and whatever an observer fails with.
@@ -153,8 +153,8 @@ impl Simulation {
         }
     }
 
-    /// At most `steps` steps towards `stop`; none if it was not reached. Observers see every instant once, also where one
-    /// call ends and the next begins. All ranks must call this together, as [`Simulation::run`].
+    /// Makes at most `steps` steps towards `stop`; returns none if it was not reached. Observers see every instant once,
+    /// also where one call ends and the next begins. All ranks must call this together, as [`Simulation::run`].
     ///
     /// # Errors
     /// As for [`Simulation::run`].
@@ -186,7 +186,7 @@ impl Simulation {
         }
     }
 
-    /// One time step, from t_n to t_n+1, which all ranks must take together. Whether the run diverges is not checked.
+    /// Makes one time step, from t_n to t_n+1, which all ranks must take together. Divergence is not checked.
     pub fn step(&mut self) {
         self.step_with(false);
     }
@@ -245,13 +245,14 @@ impl Simulation {
         self.engine.stress_square_max(&self.model, &self.clock).sqrt()
     }
 
-    /// When each block of this rank first slid while in contact, t*; NaN where none has. They take no memory beside that of
-    /// the run, which ends with them.
+    /// First-slip times t* of the blocks of this rank while in contact; NaN for blocks that have not slipped. The run ends,
+    /// and its memory is reused for them.
     pub fn into_first_slip_time_star(self) -> Vec<f64> {
         self.engine.into_first_slips()
     }
 
-    /// Speeds that diverge show it first in sums of their squares, which overflow long before displacements do.
+    /// Checks that the run does not diverge. Sums of squares of speeds show it first, because they overflow long before
+    /// displacements do.
     fn check_finite(&self) -> Result<(), RunError> {
         let (point, totals) = (&self.point, &self.totals);
         let stored = totals.stored_energy.unwrap_or_default().total();
@@ -276,7 +277,7 @@ impl Simulation {
         })
     }
 
-    /// A held drive would stand for ever over a slider that does not come to rest.
+    /// Checks that the slider comes to rest, since a held drive would stand for ever over one that does not.
     fn check_standing(&self) -> Result<(), RunError> {
         let Clock {
             step,
@@ -301,8 +302,8 @@ impl Simulation {
         Ok(())
     }
 
-    /// The block of all ranks that is displaced farthest along an axis, the first of equal ones, and its displacement along this
-    /// axis. One that is no number counts as infinite.
+    /// The block of all ranks that is displaced farthest along an axis, the first of equal ones, and its displacement along
+    /// this axis. A displacement that is no number counts as infinite.
     fn largest_displacement(&self) -> (usize, f64) {
         let size = |u: f64| if u.is_nan() { f64::INFINITY } else { u.abs() };
         let first = self.model.lattice.blocks_of(&self.model.rows).start;

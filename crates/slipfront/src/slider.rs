@@ -1,4 +1,4 @@
-//! What may differ from block to block of the slider, which blocks there are, and its internal viscosity.
+//! Heterogeneous properties of the slider, its outline, and its internal viscosity.
 
 use std::ops::Range;
 
@@ -6,7 +6,8 @@ use crate::communicator::Communicator;
 use crate::fixed_point::sum_over;
 use crate::lattice::{Edge, Lattice};
 
-/// What may differ from block to block; arrays have one value per block. Without any of it, as in the paper, all blocks are alike.
+/// Heterogeneous properties of the slider; arrays have one value per block. Without any of them, as in the paper, all blocks
+/// are alike.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Slider {
     /// Young's modulus `E_i/E`. A spring between blocks takes the harmonic mean of its ends.
@@ -15,37 +16,38 @@ pub struct Slider {
     pub density: Option<Vec<f64>>,
     /// Mean of the masses of all blocks of the whole lattice that exist, in units of `rho l^3`.
     pub mean_mass: f64,
-    /// Mean over the same blocks of the time in which a wave passes one, `sqrt(rho_i E/(rho E_i))`, over that of a block of `E` and `rho`.
+    /// Mean over all blocks of the whole lattice that exist of the time in which a wave passes one, `sqrt(rho_i E/(rho
+    /// E_i))`, over the time for a block of `E` and `rho`.
     pub mean_slowness: f64,
-    /// Drive springs that are not all alike.
+    /// Drive springs of different stiffness.
     pub drive_springs: Option<DriveSprings>,
     /// Whether some blocks of the whole lattice that exist have no drive spring.
     pub drives_some: bool,
-    /// The blocks that exist, if some do not.
+    /// Outline of the slider, if some blocks do not exist.
     pub outline: Option<Outline>,
     /// Time of the dampers beside all springs between blocks, `tau_v = eta_ij/k_ij` (Kelvin-Voigt); 0 for none.
     pub viscosity_time: f64,
 }
 
-/// Drive springs that are not all alike.
+/// Drive springs of different stiffness.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DriveSprings {
-    /// Stiffness of each over [`Drive::k_drive`](crate::Drive::k_drive); 0 for a block that is not driven.
+    /// Stiffness of each drive spring over [`Drive::k_drive`](crate::Drive::k_drive); 0 for a block that is not driven.
     pub relative: Vec<f64>,
-    /// Sum of these over the whole lattice.
+    /// Sum of the relative stiffness over the whole lattice.
     pub sum: f64,
 }
 
 /// The outline of a slider. Blocks outside have no mass, springs or load.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Outline {
-    /// Which blocks exist.
+    /// Whether each block exists.
     pub exists: Vec<bool>,
-    /// Number of these in the whole lattice.
+    /// Number of blocks that exist in the whole lattice.
     pub n_blocks: usize,
 }
 
-/// Which arrays a slider has, known before they are made, and whether it has dampers.
+/// Options of a slider that decide which arrays it has, and whether it has dampers; known before the arrays are made.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SliderOptions {
     /// Whether Young's modulus is given block by block.
@@ -91,7 +93,8 @@ impl Default for Slider {
 }
 
 impl DriveSprings {
-    /// Of the blocks that this rank holds, called by all `ranks` at once: the sum has the same bits however many they are.
+    /// Drive springs of the blocks that this rank holds. All `ranks` call this at once: the sum has the same bits for any
+    /// number of ranks.
     pub fn new(relative: Vec<f64>, ranks: &dyn Communicator) -> Self {
         Self {
             sum: sum_over(ranks, relative.len(), |b| relative[b]),
@@ -101,7 +104,7 @@ impl DriveSprings {
 }
 
 impl Outline {
-    /// Of the blocks that this rank holds, called by all `ranks` at once.
+    /// The outline of the blocks that this rank holds. All `ranks` call this at once.
     pub fn new(exists: Vec<bool>, ranks: &dyn Communicator) -> Self {
         let mut count = [exists.iter().filter(|&&exists| exists).count() as i64];
         ranks.sum(&mut count);
@@ -111,8 +114,8 @@ impl Outline {
         }
     }
 
-    /// Which blocks of some rows belong to the disc that fills the lattice: those whose centres lie within half its shorter side of
-    /// its middle.
+    /// Marks the blocks of some rows that belong to the disc that fills the lattice: those whose centres lie within half its
+    /// shorter side of its middle.
     ///
     /// ```
     /// use slipfront::{Lattice, Outline};
@@ -134,8 +137,8 @@ impl Outline {
 }
 
 impl Slider {
-    /// Blocks of these moduli and densities within an outline, of those that this rank holds; called by all `ranks` at once. Each
-    /// drive spring is as stiff as its block: `k_s,i = k_s E_i/E`.
+    /// A slider with the given moduli, densities and outline of the blocks that this rank holds. All `ranks` call this at
+    /// once. Each drive spring is as stiff as its block: `k_s,i = k_s E_i/E`.
     pub fn new(
         stiffness: Option<Vec<f64>>,
         mut density: Option<Vec<f64>>,
@@ -219,7 +222,7 @@ impl Slider {
         }
     }
 
-    /// What differs from block to block among some blocks.
+    /// Properties of some of the blocks.
     pub(crate) fn of_some_blocks(&self, blocks: &Range<usize>) -> Self {
         let some = |values: &Vec<f64>| values[blocks.clone()].to_vec();
         Self {
@@ -270,7 +273,8 @@ impl Slider {
         }
     }
 
-    /// Takes the drive springs away from all blocks but some of those that this rank holds, called by all `ranks` at once.
+    /// Takes the drive springs away from all blocks but those for which `is_attached` is true, among the blocks that this
+    /// rank holds. All `ranks` call this at once.
     pub fn attach(&mut self, n_blocks: usize, is_attached: impl Fn(usize) -> bool, ranks: &dyn Communicator) {
         let relative = |b: usize| if is_attached(b) { self.drive_spring(b) } else { 0.0 };
         let mut without = [(0..n_blocks)
@@ -281,7 +285,8 @@ impl Slider {
         (self.drive_springs, self.drives_some) = (Some(springs), without[0] > 0);
     }
 
-    /// [`attach`](Self::attach) the blocks of one edge of the lattice, on the rank that holds these `rows`.
+    /// Attaches drive springs to the blocks of one edge of the lattice alone, on the rank that holds these `rows`: see
+    /// [`attach`](Self::attach).
     pub fn attach_edge(
         &mut self,
         lattice: &Lattice,

@@ -1,4 +1,4 @@
-//! What observers see of a run.
+//! The view of a run that observers get.
 
 use crate::checkpoint::BlockColumn;
 use crate::clock::Clock;
@@ -17,9 +17,9 @@ pub struct Snapshot<'a> {
     pub model: &'a Model,
     /// Number of the step, n.
     pub step: u64,
-    /// Number of steps in which the drive has moved: n, unless it is held.
+    /// Number of steps in which the drive has moved: n, unless the drive is held.
     pub drive_steps: u64,
-    /// `t* = n dt*`.
+    /// Time `t* = n dt*`.
     pub time_star: f64,
     /// Time of the drive, `drive_steps dt*`, on which its path depends.
     pub drive_time_star: f64,
@@ -29,7 +29,7 @@ pub struct Snapshot<'a> {
     pub totals: Totals,
     /// Sums that belong to the law of friction.
     pub contact: ContactTotals,
-    /// mu* and N*.
+    /// Friction coefficient mu* and percentage N*.
     pub point: CurvePoint,
     /// The first peak of mu* as far as it is known at t_n.
     pub peak: Peak,
@@ -112,8 +112,8 @@ impl Snapshot<'_> {
             .expect("an observer needs the energies of this step")
     }
 
-    /// Energy that the fall of strength with slip has taken since the start, a part of what friction takes, block by block the integral of
-    /// `f - K` over its slip; 0 where strength does not fall. All ranks must call this together.
+    /// Energy of slip weakening since the start, a part of the loss to friction: for each block the integral of `f - K` over
+    /// its slip; 0 where strength does not fall. All ranks must call this together.
     pub fn weakening_energy(&self) -> f64 {
         let Some(law) = self.model.friction.strength_over_slip() else {
             return 0.0;
@@ -132,14 +132,14 @@ impl Snapshot<'_> {
         })
     }
 
-    /// When each block of this rank first slid while in contact, t*; NaN where none has.
+    /// First-slip times t* of the blocks of this rank while in contact; NaN for blocks that have not slipped.
     pub fn first_slip_time_star(&self) -> Vec<f64> {
         let mut times = vec![0.0; self.model.surface.n_blocks()];
         self.read_first_slips(&mut times);
         times
     }
 
-    /// Writes the same into `values`.
+    /// Writes the first-slip times t* of the blocks of this rank into `values`.
     ///
     /// # Panics
     /// If there is not one value per block.
@@ -148,7 +148,7 @@ impl Snapshot<'_> {
         self.engine.read_column(BlockColumn::FirstSlip, 0, values);
     }
 
-    /// When the first block of all ranks slid while in contact, t*. All ranks must call this together.
+    /// Time t* at which the first block of all ranks slid while in contact. All ranks must call this together.
     pub fn earliest_first_slip(&self) -> Option<f64> {
         const PART: usize = 1 << 10;
         let (n, mut times) = (self.model.surface.n_blocks(), [0.0; PART]);
@@ -175,7 +175,7 @@ impl Snapshot<'_> {
         self.next_clock().drive_time_star()
     }
 
-    /// Path of the drive at the next step, along the direction or of a rotation at its largest radius.
+    /// Path of the drive at the next step, along the direction; for a rotation at its largest radius.
     pub fn next_path(&self) -> f64 {
         self.model.drive.path(self.next_drive_time_star())
     }

@@ -1,4 +1,4 @@
-//! What changes from step to step: displacements and velocities.
+//! The state that changes from step to step: displacements and velocities.
 
 use crate::vector_field::VectorField;
 
@@ -13,7 +13,7 @@ pub struct State {
 }
 
 impl State {
-    /// Every block stuck at its rest site.
+    /// The state of blocks that are all stuck at their rest sites.
     pub fn at_rest(n_blocks: usize) -> Self {
         Self {
             displacement: VectorField::zeros(n_blocks),

@@ -1,17 +1,17 @@
-//! When a run ends.
+//! The end of a run.
 
 use serde::{Deserialize, Serialize};
 
 use crate::snapshot::{MU_STAR_ROUNDING, Snapshot};
 
-/// When a run ends.
+/// Condition for the end of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Stop {
     last_step: u64,
     after_onset: bool,
 }
 
-/// Why a run ended.
+/// Reason for which a run ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum StopReason {
@@ -23,7 +23,7 @@ pub enum StopReason {
 }
 
 impl Stop {
-    /// After `last_step` steps of the drive: all steps, unless it is held.
+    /// Stops after `last_step` steps of the drive, which are all steps unless the drive is held.
     pub fn at_step(last_step: u64) -> Self {
         Self {
             last_step,
@@ -31,7 +31,8 @@ impl Stop {
         }
     }
 
-    /// As soon as the fall that ends the first peak is seen, under a held drive as soon as the largest mu* is known, and after `last_step` steps at the latest.
+    /// Stops as soon as the fall that ends the first peak is seen, under a held drive as soon as the largest mu* is known,
+    /// and after `last_step` steps at the latest.
     pub fn after_onset(last_step: u64) -> Self {
         Self {
             last_step,
@@ -39,7 +40,7 @@ impl Stop {
         }
     }
 
-    /// Never: the run goes on for as long as it is advanced.
+    /// Never stops: the run goes on for as long as it is advanced.
     pub fn never() -> Self {
         Self::at_step(u64::MAX)
     }
@@ -51,7 +52,7 @@ impl Stop {
         next.drive_steps >= self.last_step || (self.after_onset && onset_ends())
     }
 
-    /// Why the run ends now, if it does.
+    /// Reason for which the run ends now, if it does.
     pub(crate) fn reached(&self, now: &Snapshot) -> Option<StopReason> {
         if self.after_onset && now.peak.is_final() {
             Some(StopReason::Onset)

@@ -1,4 +1,4 @@
-//! What tests of slipfront and of crates that use it need beside the model: ranks that are threads, and what is private to the fused
+//! Helpers for tests of slipfront and of crates that use it: ranks that are threads, and parts that are private to the fused
 //! kernel.
 
 use std::sync::mpsc::{Receiver, Sender, channel};
@@ -8,18 +8,18 @@ use std::thread;
 use crate::communicator::Communicator;
 pub use crate::kernel::fused::for_tests::FusedKernel;
 
-/// One of several ranks that are threads of this process: what a lattice of many machines does can be tried on one.
+/// One of several ranks that are threads of this process: a lattice of many machines can be tried on one.
 #[derive(Clone, Debug)]
 pub struct Threads {
     rank: usize,
-    /// To each rank, this one included.
+    /// Channels to each rank, including this one.
     to: Vec<Sender<Vec<u64>>>,
-    /// From each rank. Only the thread of this rank listens.
+    /// Channels from each rank. Only the thread of this rank listens.
     from: Vec<Arc<Mutex<Receiver<Vec<u64>>>>>,
     seat: Arc<Seat>,
 }
 
-/// Where all ranks meet to tell each other something: each is woken once, and not once by every other.
+/// Meeting point at which all ranks exchange words: each is woken once, and not once by every other.
 #[derive(Debug)]
 struct Meeting {
     table: Mutex<Table>,
@@ -28,12 +28,12 @@ struct Meeting {
 
 #[derive(Debug)]
 struct Table {
-    /// Of each rank that has come.
+    /// Words of each rank that has come.
     words: Vec<Option<Vec<u64>>>,
     n_here: usize,
     /// Meetings that are over.
     n_over: u64,
-    /// Of each rank at the last meeting. The next is not over before all have read them.
+    /// Words of each rank at the last meeting. The next meeting is not over before all have read them.
     latest: Arc<Vec<Vec<u64>>>,
     ended: Option<usize>,
 }
@@ -61,8 +61,8 @@ impl Meeting {
     }
 }
 
-/// How often a rank lets others go first before it sleeps until it is woken, which costs far more. There are more ranks than cores, and
-/// what one waits for is mostly there when its turn comes again.
+/// Number of times that a rank lets others go first before it sleeps until it is woken, which costs far more. There are more
+/// ranks than cores, and the words that a rank waits for are mostly there when its turn comes again.
 const TURNS: usize = 16;
 
 impl Seat {
@@ -70,7 +70,7 @@ impl Seat {
         self.meeting.table.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// What every rank has, rank 0 first.
+    /// Gathers the words of every rank, rank 0 first.
     fn gather(&self, words: Vec<u64>) -> Arc<Vec<Vec<u64>>> {
         let mut table = self.table();
         table.words[self.rank] = Some(words);
@@ -109,7 +109,7 @@ impl Drop for Seat {
 }
 
 impl Threads {
-    /// Does some work on `size` ranks at once, and gives what each of them returns, rank 0 first.
+    /// Does some work on `size` ranks at once, and returns the result of each, rank 0 first.
     ///
     /// # Panics
     /// If the work of a rank does: the others, which wait for it in vain, end as well.
@@ -226,7 +226,7 @@ mod tests {
     use super::*;
     use crate::communicator::{Alone, lowest_rank};
 
-    /// The ring of one and of two ranks, where above and below are the same, included.
+    /// Threads talk as ranks do, also in the ring of one and of two ranks, where above and below are the same.
     #[test]
     fn threads_talk_as_ranks_do() {
         for size in 1..5 {
@@ -263,7 +263,7 @@ mod tests {
         assert_eq!((below, above), ([2.0, 3.0], [1.0]));
     }
 
-    /// Of every set of ranks.
+    /// The lowest rank is known to all, for every set of ranks.
     #[test]
     fn all_ranks_know_the_lowest() {
         for size in 1..5 {

@@ -5,16 +5,16 @@ use serde::{Deserialize, Serialize};
 /// Sums over all blocks at t_n, in units of this crate.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Totals {
-    /// `sum w u`, with the relative stiffness `w` of the drive springs. In a drive that rotates its two components are not x and
-    /// y, but `w u . g` along the [direction](crate::Drive::direction_at) of each block and the same across it, to its left.
+    /// `sum w u`, with the relative stiffness `w` of the drive springs. For a drive that rotates the two components are not
+    /// x and y, but along the [direction](crate::Drive::direction_at) `g` of each block and across it, to its left.
     pub displacement: [f64; 2],
-    /// `sum w v` at t_n, the mean of the half steps around it, in the same components.
+    /// Sum `sum w v` at t_n, the mean of the half steps around it, in the components of `displacement`.
     pub velocity: [f64; 2],
-    /// `sum w v` at `t_n + dt/2`.
+    /// Sum `sum w v` at `t_n + dt/2`, in the components of `displacement`.
     pub velocity_after: [f64; 2],
-    /// `sum m v^2` at t_n.
+    /// Sum `sum m v^2` at t_n.
     pub velocity_square: f64,
-    /// `sum F_f . v` at t_n, the power of friction: negative.
+    /// Power of friction, `sum F_f . v` at t_n: negative.
     pub friction_power: f64,
     /// Number of blocks that slide from t_n on, textured ones included.
     pub n_sliding: usize,
@@ -29,14 +29,14 @@ pub struct Totals {
 pub struct StoredEnergy {
     /// Kinetic energy, the mean of the half steps before and after.
     pub kinetic: f64,
-    /// In the springs between blocks.
+    /// Energy of the springs between blocks.
     pub lattice: f64,
-    /// In the drive springs.
+    /// Energy of the drive springs.
     pub drive_springs: f64,
 }
 
 impl StoredEnergy {
-    /// All of it.
+    /// Sum of the three energies.
     pub fn total(&self) -> f64 {
         self.kinetic + self.lattice + self.drive_springs
     }

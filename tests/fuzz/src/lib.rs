@@ -41,7 +41,7 @@ pub struct Target {
     pub repetitions: usize,
 }
 
-/// Most memory at once: a constant, and a multiple of the length of the input.
+/// Largest memory at once: a constant, and a multiple of the length of the input.
 #[derive(Clone, Copy)]
 struct Memory {
     bytes: usize,

@@ -1,11 +1,11 @@
-//! What can be wrong with an array or image file.
+//! Errors of array and image files.
 
 use std::io;
 use std::path::{Path, PathBuf};
 
 use crate::text::single_line;
 
-/// What is wrong with an array or image file: one sentence that ends with the remedy.
+/// An error of an array or image file: one sentence that ends with the remedy.
 #[derive(Debug, thiserror::Error)]
 #[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
 pub enum ArrayError {
@@ -44,7 +44,7 @@ pub enum ArrayError {
 }
 
 impl ArrayError {
-    /// What the system says of a file that is read.
+    /// An error of the system about a file that is read.
     pub(super) fn read(path: &Path) -> impl Fn(io::Error) -> Self {
         move |source| Self::Read {
             path: path.to_owned(),
@@ -59,7 +59,7 @@ pub(super) fn contents_error(path: &Path, problem: String) -> ArrayError {
     ArrayError::Contents { path, problem }
 }
 
-/// An error about a file that cannot be read as what its name says.
+/// An error about a file that cannot be read in the format of its name.
 pub(super) fn broken(path: &Path, format: &str, detail: &str) -> ArrayError {
     let detail = single_line(detail);
     let problem = format!("is not a readable {format} file: {detail}; write the file again");

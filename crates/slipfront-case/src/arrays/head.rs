@@ -1,11 +1,11 @@
-//! What is looked at of an array before its numbers.
+//! The beginning of an array file, which is read before its numbers.
 
 use std::io::{BufRead, Read, Seek, SeekFrom};
 use std::path::Path;
 
 use super::error::ArrayError;
 
-/// The length of a source and its first bytes, at most `most`; it is read from its beginning again.
+/// The length of a source and its first bytes, at most `most`; afterwards it stands at its beginning again.
 pub(super) fn length_and_head(
     path: &Path,
     source: &mut (impl BufRead + Seek),

@@ -10,14 +10,15 @@ use super::pixels::limit_pixels;
 use super::slab::Slab;
 use crate::disk::write_atomic;
 
-/// Deflate cannot pack more than about 1030 bytes into one.
+/// Largest ratio of compression: deflate cannot pack more than about 1030 bytes into one.
 const DEFLATE_MAX_RATIO: u64 = 1040;
 
-/// A mask for some rows of a lattice of `nx` x `ny` blocks, of a PNG image called `path`, of any colour type and depth.
+/// Reads a mask for some rows of a lattice of `nx` x `ny` blocks from a PNG image called `path`, of any colour type and
+/// depth.
 ///
 /// The image is stretched over the slider, and a block is textured if the pixel at its centre is dark. Returns the values in
-/// row-major order, the smallest y (the bottom of the image) first: no other pixel is kept, though all are read. `watch` is
-/// told the share of the rows of the image that have been read, and its error ends the work.
+/// row-major order, the smallest y (the bottom of the image) first: no other pixel is kept, though all are read. `watch`
+/// gets the share of the rows of the image that have been read, and its error ends the work.
 ///
 /// A pixel is dark when its luminance, in 0 to 1, lies below `threshold`. The luminance is
 ///
@@ -73,7 +74,7 @@ pub(super) fn png_reader<'a, S: BufRead + Seek>(
     Ok(reader)
 }
 
-/// The decoder takes a palette of any length and panics on one that is not made of 1 to 256 whole colours.
+/// Refuses a palette that is not made of 1 to 256 whole colours: the decoder takes any length and panics on such a one.
 fn check_palette(path: &Path, palette: Option<&[u8]>) -> Result<(), ArrayError> {
     let bytes = palette.map_or(0, <[u8]>::len);
     if bytes.is_multiple_of(3) && (3..=768).contains(&bytes) {
@@ -83,7 +84,7 @@ fn check_palette(path: &Path, palette: Option<&[u8]>) -> Result<(), ArrayError> 
     Err(broken(path, ".png", &detail))
 }
 
-/// Decodes row by row, and keeps what the centres of the blocks lie on.
+/// Decodes row by row, and keeps the pixels at the centres of the blocks.
 fn read_rows(
     path: &Path,
     mut reader: Reader<impl BufRead + Seek>,
@@ -191,8 +192,8 @@ pub(super) fn decoding_error(path: &Path, source: DecodingError) -> ArrayError {
 
 /// Writes a texture as a black and white PNG image: one pixel per block, textured = black.
 ///
-/// `textured` holds `nx * ny` values in row-major order, row j = 0 (the smallest y) first; the top row of the
-/// image is the largest y. For the same lattice [`mask_png`] gives the same mask back.
+/// `textured` holds `nx * ny` values in row-major order, row j = 0 (the smallest y) first; the top row of the image is the
+/// largest y. For this lattice [`mask_png`] gives the mask back.
 ///
 /// # Errors
 /// [`ArrayError`] if the name does not end in `.png`, `textured` has another length or the file cannot be written.

@@ -4,8 +4,8 @@
 //! allocates memory, files longer than their lattice can need are refused, and any invalid contents give an
 //! [`ArrayError`]. Arrays are (ny, nx) and row-major, row j = 0 (the smallest y) first.
 //!
-//! A file is never in memory as a whole: what is kept are the values of the rows that are asked for. Where several ranks read
-//! their rows of one file, the error of the lowest of them is the one that reading all rows gives.
+//! A file is never in memory as a whole: only the values of the rows that are asked for are kept. Where several ranks read
+//! their rows of one file, the error of the lowest rank is the error of reading all rows.
 
 mod error;
 mod head;
@@ -31,7 +31,7 @@ pub use table::{reader as table_reader, separator};
 use crate::disk::open_regular;
 use error::{contents_error, unknown_extension};
 
-/// Opens a file, and tells its length in bytes.
+/// Opens a file; returns it and its length in bytes.
 ///
 /// # Errors
 /// [`ArrayError`] if the file is missing or not a regular file.
@@ -70,7 +70,7 @@ pub fn limit_length(path: &Path, found: u64, nx: usize, ny: usize) -> Result<(),
     Err(contents_error(path, problem))
 }
 
-/// Refuses a height map that is longer than 256 MiB. It may have any number of points for a block.
+/// Refuses a height map that is longer than 256 MiB. The map may have any number of points per block.
 ///
 /// # Errors
 /// [`ArrayError`] with both lengths.
@@ -83,7 +83,7 @@ pub fn limit_length_of_height_map(path: &Path, found: u64) -> Result<(), ArrayEr
     Ok(())
 }
 
-/// One number per block of some rows, of a `.npy` or `.csv` file called `path`.
+/// Reads one number per block of some rows from a `.npy` or `.csv` file called `path`.
 ///
 /// A `.npy` file has the shape (ny, nx), any real, integer or boolean type, either byte order and either memory order. A
 /// `.csv` file has `ny` lines of `nx` numbers with a decimal point, separated by commas, semicolons, tabs or blanks; blank

@@ -10,10 +10,10 @@ use super::pixels::{SIDE_MAX, limit_pixels};
 use super::slab::Slab;
 use crate::text::truncated;
 
-/// Numpy itself refuses longer headers.
+/// Largest length of a header; numpy itself refuses longer ones.
 pub(super) const HEADER_MAX_BYTES: u64 = 10_000;
 
-/// A mask for some rows of a `.npy` file called `path`, of shape (ny, nx): 1 or true = textured, 0 or false = not.
+/// Reads a mask for some rows from a `.npy` file called `path`, of shape (ny, nx): 1 or true = textured, 0 or false = not.
 ///
 /// Any real, integer or boolean type is accepted, in either byte and memory order. Returns the values in row-major order, the
 /// smallest y first.
@@ -65,14 +65,14 @@ pub(super) fn values(
     Ok(values)
 }
 
-/// Reads an array of any size in the order of its file, and returns its columns and rows. `take` is given numbers of a row one after the
-/// other, with the row, counted along the first axis, and the column of the first.
+/// Reads an array of any size in the order of its file, and returns its columns and rows. `take` is given numbers of a row
+/// one after the other, with their row, counted along the first axis, and the column of the first number.
 pub(super) fn rows(
     path: &Path,
     source: &mut (impl BufRead + Seek),
     mut take: impl FnMut([usize; 2], &[f64]) -> Result<(), ArrayError>,
 ) -> Result<[u64; 2], ArrayError> {
-    /// Numbers that are in memory at once: no fewer than a side has.
+    /// Number of values that are in memory at once: at least as many as a side may have.
     const BAND: usize = SIDE_MAX as usize;
     let mut array = NpyArray::open(path, source, |shape| {
         let &[height, width] = shape else {
@@ -114,16 +114,16 @@ struct NpyArray<'a, S> {
     path: &'a Path,
     source: &'a mut S,
     number: NumberType,
-    /// Whether the numbers of a column stand one after the other, and not those of a row.
+    /// Whether the numbers of a column stand one after the other, rather than those of a row.
     fortran_order: bool,
     /// Rows and columns.
     shape: [usize; 2],
-    /// The number that the source has come to.
+    /// Index of the number at which the source stands.
     at: usize,
 }
 
 impl<'a, S: BufRead + Seek> NpyArray<'a, S> {
-    /// Opens an array whose `shape` is as wanted.
+    /// Opens an array that has the wanted `shape`.
     fn open(
         path: &'a Path,
         source: &'a mut S,
@@ -157,7 +157,7 @@ impl<'a, S: BufRead + Seek> NpyArray<'a, S> {
         })
     }
 
-    /// Reads numbers that stand one after the other, the first of them after `start` others.
+    /// Reads numbers that stand one after the other; `start` others stand before the first.
     fn read(&mut self, start: usize, numbers: &mut [f64]) -> Result<(), ArrayError> {
         let read_error = ArrayError::read(self.path);
         let size = self.number.size;
@@ -236,17 +236,17 @@ fn wrong_shape(path: &Path, found: &[u64], nx: usize, ny: usize) -> ArrayError {
     contents_error(path, problem)
 }
 
-/// How one number is stored.
+/// Type of the stored numbers.
 struct NumberType {
     kind: Kind,
-    /// 1, 2, 4 or 8 bytes.
+    /// Size of a number: 1, 2, 4 or 8 bytes.
     size: usize,
     big_endian: bool,
 }
 
 #[derive(Clone, Copy)]
 enum Kind {
-    /// Boolean values are 0 and 1.
+    /// Unsigned integers; boolean values are 0 and 1.
     Unsigned,
     Signed,
     Float,
@@ -282,7 +282,7 @@ impl NumberType {
         })
     }
 
-    /// Decodes numbers of `SIZE` bytes, which is its `size`.
+    /// Decodes numbers of `SIZE` bytes, which is the `size` of the type.
     fn decode<const SIZE: usize>(&self, stored: &[u8], numbers: &mut [f64]) {
         for (number, stored) in numbers.iter_mut().zip(stored.as_chunks().0) {
             *number = self.value::<SIZE>(*stored);

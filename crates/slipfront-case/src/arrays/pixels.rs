@@ -1,17 +1,18 @@
-//! How many pixels an image or height map may have.
+//! Limits on the number of pixels of an image or height map.
 
 use std::path::Path;
 
 use super::error::ArrayError;
 
-/// More pixels than any lattice has blocks.
+/// Largest number of pixels, more than any lattice has blocks.
 const PIXELS_MAX: u64 = 1 << 28;
-/// More pixels than any lattice has blocks along a side. A row, of which a decoder holds some, takes eight bytes for each.
+/// Largest number of pixels along a side, more than any lattice has blocks. A row, of which a decoder holds some, takes
+/// eight bytes for each.
 pub(super) const SIDE_MAX: u64 = 1 << 20;
-/// A file of more bytes than this is refused.
+/// Largest length of a file in bytes.
 pub(super) const FILE_MAX_BYTES: u64 = PIXELS_MAX;
 
-/// Refuses a file of more pixels than are read.
+/// Refuses a file with too many pixels.
 pub(super) fn limit_pixels(path: &Path, width: u64, height: u64) -> Result<(), ArrayError> {
     if width.max(height) <= SIDE_MAX && width * height <= PIXELS_MAX {
         return Ok(());

@@ -1,8 +1,8 @@
-//! Which rows are read of a file.
+//! The rows of a file that are read.
 
 use std::ops::Range;
 
-/// The rows of a lattice of `nx` x `ny` blocks that are read of a file.
+/// The rows of a lattice of `nx` x `ny` blocks that are read from a file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Slab {
     /// Blocks along x.
@@ -19,7 +19,7 @@ impl Slab {
         Self { nx, ny, rows: 0..ny }
     }
 
-    /// Number of blocks of its rows.
+    /// Number of blocks of the rows.
     pub fn n_blocks(&self) -> usize {
         self.nx * self.rows.len()
     }

@@ -10,15 +10,15 @@ use super::head::length_and_head;
 use super::pixels::{SIDE_MAX, limit_pixels};
 use super::slab::Slab;
 
-/// Comment lines are searched for the separator up to this total length.
+/// Total length of comment lines among which the separator is searched.
 pub(super) const PREAMBLE_MAX_BYTES: u64 = 1 << 20;
-/// A number with its separator and blanks, and its share of comments: numpy's longest takes 25.
+/// Largest length of a number with its separator and blanks, and its share of comments: numpy's longest number takes 25.
 pub(super) const NUMBER_MAX_BYTES: u64 = 64;
-/// A line of a table of any size, which is in memory as a whole, with a place of each of its fields: eight bytes for each of as many
-/// as are read.
+/// Largest length of a line of a table of any size. The line is in memory as a whole, with the place of each of its fields:
+/// eight bytes for each of the fields that are read.
 const LINE_MAX_BYTES: u64 = 8 * SIDE_MAX;
 
-/// The rows of a slab of `ny` lines of `nx` numbers. The lines before are counted, those behind not read.
+/// The rows of a slab of `ny` lines of `nx` numbers. Lines before these rows are counted, lines behind are not read.
 pub(super) fn values(
     path: &Path,
     source: &mut (impl BufRead + Seek),
@@ -64,7 +64,8 @@ pub(super) fn values(
     Ok(values)
 }
 
-/// Reads a table of any size row after row, and returns its columns and rows. `take` is given each, with its number and the column 0.
+/// Reads a table of any size row after row, and returns its columns and rows. `take` gets each row, with its number and the
+/// column 0.
 pub(super) fn rows(
     path: &Path,
     source: &mut (impl BufRead + Seek),
@@ -98,14 +99,14 @@ pub(super) fn rows(
 struct TableLines<'a, R> {
     path: &'a Path,
     table: csv::Reader<Take<R>>,
-    /// Most bytes of one of them, with comments before it.
+    /// Largest number of bytes of a line, with comments before it.
     line_max: u64,
     separator: u8,
     record: StringRecord,
 }
 
 impl<'a, R: BufRead + Seek> TableLines<'a, &'a mut R> {
-    /// Opens a table with lines of at most this many bytes, and tells its length in bytes.
+    /// Opens a table with lines of at most `line_max` bytes; returns its length in bytes and its lines.
     fn of(path: &'a Path, source: &'a mut R, line_max: u64) -> Result<(u64, Self), ArrayError> {
         let (length, preamble) = length_and_head(path, source, PREAMBLE_MAX_BYTES)?;
         let separator = separator(&preamble);
@@ -177,10 +178,10 @@ pub fn reader<R: Read>(source: R, separator: u8) -> csv::Reader<R> {
         .from_reader(source)
 }
 
-/// What separates the fields of the first line that is no comment, given the beginning of a table: a semicolon, a tab, a comma or a
-/// blank.
+/// Separator of the fields of the first line that is no comment, from the beginning of a table: a semicolon, a tab, a comma
+/// or a blank.
 ///
-/// The semicolon comes before the comma, so that a decimal comma is known as such.
+/// The semicolon comes before the comma, so that a decimal comma is recognised.
 pub fn separator(preamble: &[u8]) -> u8 {
     const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
     let preamble = preamble.strip_prefix(BYTE_ORDER_MARK).unwrap_or(preamble);

@@ -48,8 +48,8 @@ fn open(path: &Path, nx: usize, ny: usize) -> Result<BufReader<File>, ArrayError
     Ok(BufReader::new(file))
 }
 
-/// What is read of all rows at once. Every division of the rows among several ranks, the lowest of which tells its error, gives
-/// the same.
+/// Reads all rows at once. Every division of the rows among several ranks gives the same result, or the error of the lowest
+/// rank.
 fn read<T: PartialEq + Debug>(
     nx: usize,
     ny: usize,
@@ -476,7 +476,7 @@ fn png_claiming(width: u32, height: u32) -> Vec<u8> {
     bytes
 }
 
-/// Makes the checksum of every chunk good, so that the decoder looks at damaged chunks too.
+/// Makes the checksum of every chunk good, so that the decoder reads damaged chunks too.
 fn repair_checksums(png: &mut [u8]) {
     let mut start = 8;
     while let Some(length) = png.get(start..start + 4) {
@@ -546,7 +546,7 @@ fn png_that_is_cut_short_or_something_else() {
     }
 }
 
-/// A file with a hole at its end, which takes no room on the disk.
+/// A file with a hole at its end, which takes no space on the disk.
 fn stretched(name: &str, bytes: &[u8], length: u64) -> (TempDir, PathBuf) {
     let (folder, path) = file(name, bytes);
     let stretched = fs::OpenOptions::new().write(true).open(&path).unwrap();
@@ -618,13 +618,13 @@ fn masks_that_cannot_be_written() {
     assert!(message(write_mask_png(&folder.path().join("mask.png"), 0, 0, &[])).contains("0 pixels"));
 }
 
-/// Puts a new file in the place of an old one: some file systems wait for the disk when a file is emptied first.
+/// Replaces an old file by a new one: some file systems wait for the disk when a file is emptied first.
 fn replace(path: &Path, bytes: &[u8]) {
     let _ = fs::remove_file(path);
     fs::write(path, bytes).unwrap();
 }
 
-/// Whatever happens to the bytes of a file, the readers answer without a panic.
+/// Readers answer without a panic for any damage to the bytes of a file.
 #[test]
 fn damaged_files_are_refused_or_read() {
     let folder = tempfile::tempdir().unwrap();

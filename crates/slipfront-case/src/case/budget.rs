@@ -1,7 +1,8 @@
-//! Memory that a case takes while it is made and stepped, compared with what the machine has before any of it is taken.
+//! Memory that a case takes while it is made and stepped, compared with the free memory of the machine before any of it is
+//! taken.
 //!
-//! The owners of the arrays say what these take. What the results of a run take in memory and on the disk is added by
-//! those who write them, in slipfront-run.
+//! The modules that own the arrays state their sizes. The modules of slipfront-run that write the results of a run add the
+//! memory and disk space of these.
 
 use std::ops::Range;
 
@@ -13,11 +14,11 @@ use crate::case_file::{CaseError, CaseFile};
 use crate::machine::{available_memory, can_be_had};
 use crate::number_format::{byte_size, count};
 
-/// Share of memory by which more is resident than was allocated, at most: what the allocator holds of memory that has been given back, or
-/// cannot use between pieces that have not. It was up to 4 %.
+/// Largest ratio of resident to allocated memory: the allocator keeps memory that has been given back, and cannot use gaps
+/// between pieces that have not. The ratio was up to 1.04.
 const HEAP: f64 = 1.05;
 
-/// The program itself.
+/// Memory of the program itself.
 pub const PROGRAM: f64 = 8.0 * 1024.0 * 1024.0;
 
 /// Memory that a case takes while it is made and stepped.
@@ -29,7 +30,7 @@ pub struct Budget {
     pub surface: f64,
     /// Bytes of the kernel per block, on one thread.
     pub kernel: f64,
-    /// Bytes per block that the kernel takes beside these on several threads.
+    /// Bytes per block that the kernel adds on several threads.
     pub bands: f64,
     /// Bytes of masks and heights until they are laid over the lattice.
     pub laid: f64,
@@ -41,31 +42,31 @@ pub struct Budget {
     pub ranks_on_node: f64,
 }
 
-/// What takes memory or disk space.
+/// A cause of memory or disk use.
 #[derive(Clone, Debug)]
 pub struct Cause {
-    /// The key of the case that it is due to.
+    /// The key of the case to which the use is due.
     pub key: &'static str,
-    /// How many of what.
+    /// Number and kind of the things that take the memory.
     pub what: String,
-    /// How to take less.
+    /// Remedy by which less is taken.
     pub remedy: &'static str,
 }
 
-/// Memory that is needed for something.
+/// Memory that is needed for a purpose.
 #[derive(Debug)]
 pub struct Demand<'a> {
-    /// The case whose key to change a refusal names.
+    /// The case whose key a refusal names.
     pub file: &'a CaseFile,
-    /// For what it is needed.
+    /// Purpose for which the memory is needed.
     pub whose: &'a str,
-    /// What most of it is due to, and how many bytes that are.
+    /// Cause of the largest part of the demand, and its bytes.
     pub most: (Cause, f64),
     /// Bytes of this rank, with the program.
     pub of_rank: f64,
     /// Bytes of all ranks of this machine.
     pub on_node: f64,
-    /// Bytes of it that each rank has taken already.
+    /// Bytes of the demand that each rank has taken already.
     pub had: f64,
 }
 
@@ -77,8 +78,8 @@ impl Cause {
 }
 
 impl Budget {
-    /// Cases that take less memory are not compared with the machine, nor in Python their runs: to ask what it has takes longer than to make
-    /// a small one. Commands compare all that a run takes.
+    /// Memory of cases that are too small to be compared with the machine, nor in Python their runs: asking for its free
+    /// memory takes longer than making a small case. Commands compare the whole memory of a run.
     pub const SMALL: f64 = 64.0 * 1024.0 * 1024.0;
 
     /// The budget of a case with a model of these options, for a process that holds these rows.
@@ -105,7 +106,7 @@ impl Budget {
         }
     }
 
-    /// Bytes that are resident where so many are allocated.
+    /// Bytes that are resident where `allocated` bytes are allocated.
     pub fn resident(allocated: f64) -> f64 {
         HEAP * allocated
     }
@@ -125,7 +126,7 @@ impl Budget {
         self.blocks * (self.surface + self.kernel + self.bands)
     }
 
-    /// The blocks that this process holds.
+    /// The blocks that this process holds, as a cause of memory use.
     pub fn cause_of_blocks(&self) -> Cause {
         Cause {
             key: "slider.blocks",
@@ -134,7 +135,7 @@ impl Budget {
         }
     }
 
-    /// The files that the case reads.
+    /// The files that the case reads, as a cause of memory use.
     pub fn cause_of_inputs() -> Cause {
         Cause {
             key: "texture",
@@ -143,7 +144,7 @@ impl Budget {
         }
     }
 
-    /// Refuses a case that cannot even be made.
+    /// Refuses a case that has no memory to be made.
     pub(super) fn check_making(&self, file: &CaseFile) -> Result<(), CaseError> {
         if self.making() < Self::SMALL {
             return Ok(());
@@ -160,7 +161,7 @@ impl Budget {
         )
     }
 
-    /// Refuses a case that cannot be stepped, or not even be made.
+    /// Refuses a case that has no memory to be made or stepped.
     pub(super) fn check_running(&self, file: &CaseFile) -> Result<(), CaseError> {
         let stepping = self.stepping();
         if self.ranks_on_node * stepping >= Self::SMALL {
@@ -193,7 +194,7 @@ impl Budget {
         }
     }
 
-    /// Refuses what needs more memory than there is, where so many bytes are `available` beside those that each rank has taken.
+    /// Refuses a demand for more memory than there is, with `available` bytes beside those that each rank has taken.
     ///
     /// # Errors
     /// A sentence with both figures, and the key to change.

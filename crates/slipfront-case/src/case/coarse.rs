@@ -10,8 +10,8 @@ const ROUNDING: f64 = 1e-6;
 const LEAST_BLOCK: f64 = 1e-12;
 
 impl Case {
-    /// Where blocks are too coarse for the outlines of its textures, and how many there should be; of masks and height maps, whose
-    /// outlines are not known, nothing is said.
+    /// A sentence on blocks that are too coarse for the outlines of the textures, with the number of blocks that is enough;
+    /// none for masks and height maps, whose outlines are not known.
     pub fn too_coarse(&self) -> Option<String> {
         let lengths = self.smallest_lengths();
         let too_small = lengths.iter().filter_map(|length| {
@@ -41,7 +41,7 @@ impl Case {
         ))
     }
 
-    /// What to set for blocks that are so many times finer, on a slider of this size: the ratio of its sides stays as it is.
+    /// Settings for blocks that are `finer` times finer, on a slider of this size; the ratio of its sides stays.
     fn blocks_for(&self, finer: f64) -> String {
         let (lattice, block_size) = (&self.model.lattice, self.scales.block_size);
         let sides = [lattice.nx, lattice.ny].map(|blocks| blocks as u64);
@@ -74,7 +74,7 @@ fn greatest_common_divisor([one, other]: [u64; 2]) -> u64 {
     }
 }
 
-/// A length with so many digits that as many copies have room in a pitch as before, which 1e-9 may decide.
+/// A length with ten digits, so that as many copies have room in a pitch as before, which 1e-9 may decide.
 pub(super) fn ten_digits(length: f64) -> String {
     let (factor, prefix) = si_prefix(length);
     let rounded = format!("{:.9e}", length / factor);

@@ -1,4 +1,5 @@
-//! Friction coefficients of a case, drawn or read from the files that it names, and what makes thresholds of them.
+//! Friction coefficients of a case, drawn or read from the files that it names, and the contact that turns them into
+//! thresholds.
 
 use slipfront::surface::{
     Adhesion, Coefficients, Contact, CorrelatedField, Distribution, Load, deviation_along, pressure_along,
@@ -10,7 +11,7 @@ use super::inputs::Inputs;
 use crate::case_file::{CaseError, CaseFile};
 use crate::number_format::four_digits;
 
-/// Refuses a correlation length of which the blocks could not be drawn, before any file is read.
+/// Refuses a correlation length with which coefficients could not be drawn, before any file is read.
 pub(super) fn check_correlation(file: &CaseFile) -> Result<(), CaseError> {
     let (least, most) = CorrelatedField::LENGTHS.into_inner();
     let Some(blocks) = correlation_length(file) else {
@@ -35,13 +36,13 @@ pub(super) fn check_correlation(file: &CaseFile) -> Result<(), CaseError> {
     Err(file.source.error("friction.correlation_length", sentence))
 }
 
-/// xi in blocks.
+/// Correlation length xi in blocks.
 fn correlation_length(file: &CaseFile) -> Option<f64> {
     let length = file.friction.correlation_length.as_ref()?;
     Some(length.si() / file.slider.block_size.si())
 }
 
-/// The field of which the random coefficients are means over blocks, if they are not drawn block by block.
+/// The field whose means over blocks are the random coefficients, if they are not drawn block by block.
 pub(super) fn correlated_field(file: &CaseFile, lattice: &Lattice) -> Option<CorrelatedField> {
     correlation_length(file).map(|length| CorrelatedField::new(lattice, length))
 }
@@ -77,7 +78,7 @@ pub(super) fn coefficients(
     Ok(drawn)
 }
 
-/// Load and adhesion.
+/// Contact of a surface: load and adhesion.
 pub(super) fn contact(
     file: &CaseFile,
     scales: &Scales,

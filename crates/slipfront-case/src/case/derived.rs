@@ -1,4 +1,4 @@
-//! What follows from a case file without the files that it names.
+//! Quantities that follow from a case file without the files that it names.
 
 use std::ops::Range;
 
@@ -12,7 +12,7 @@ use super::ranks::Ranks;
 use crate::case_file::{CaseError, CaseFile};
 use crate::quantity::Length;
 
-/// What follows from a case file without the files that it names.
+/// Quantities that follow from a case file without the files that it names.
 pub(super) struct Derived {
     pub(super) scales: Scales,
     pub(super) groups: Groups,
@@ -21,7 +21,7 @@ pub(super) struct Derived {
 }
 
 impl Derived {
-    /// Refuses numbers out of the range of the model, and what there is no memory for.
+    /// Derives the quantities; refuses numbers out of the range of the model, and cases for which there is no memory.
     pub(super) fn of(
         file: &CaseFile,
         lattice: &Lattice,

@@ -1,4 +1,4 @@
-//! How the slider of a case is driven.
+//! The drive of a case.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -16,7 +16,7 @@ use crate::case_file::{
 /// Largest angle, in rad, by which a drive may turn: the far ends move along tangents, not along circles.
 const MAX_ANGLE: f64 = 1e-3;
 
-/// Bytes of [`attached`] of so many blocks.
+/// Bytes of the blocks that [`attached`] returns.
 pub(super) fn bytes_of_attached(file: &CaseFile, n_blocks: usize) -> usize {
     match file.drive.attached {
         Attached::File(_) => n_blocks * size_of::<bool>(),
@@ -24,7 +24,7 @@ pub(super) fn bytes_of_attached(file: &CaseFile, n_blocks: usize) -> usize {
     }
 }
 
-/// The blocks of these rows that have a drive spring, if a file says so.
+/// The blocks of these rows that have a drive spring, if a file names them.
 pub(super) fn attached(
     file: &CaseFile,
     inputs: &Inputs,
@@ -38,7 +38,7 @@ pub(super) fn attached(
     attached.map(Some)
 }
 
-/// Leaves drive springs to the blocks of these rows alone that the case attaches, called by all ranks at once.
+/// Removes the drive springs of all blocks of these rows but those that the case attaches. All ranks call this at once.
 pub(super) fn attach(
     slider: &mut Slider,
     file: &CaseFile,
@@ -101,7 +101,7 @@ pub(super) fn drive(
     })
 }
 
-/// Stiffness of all drive springs together, if the case says that.
+/// Stiffness of all drive springs together, if the case states it.
 fn total(file: &CaseFile, scales: &Scales) -> Option<f64> {
     match &file.drive.stiffness {
         DriveStiffness::Total(total) => Some(total.si() / scales.stiffness()),
@@ -110,7 +110,7 @@ fn total(file: &CaseFile, scales: &Scales) -> Option<f64> {
     }
 }
 
-/// Stiffness of each, unless the case says what they have together.
+/// Stiffness of each drive spring, unless the case states their total stiffness.
 fn each(file: &CaseFile, scales: &Scales) -> f64 {
     match &file.drive.stiffness {
         DriveStiffness::Each(each) => each.si() / scales.stiffness(),
@@ -143,7 +143,7 @@ pub(super) fn program(file: &CaseFile, dt_star: f64) -> Result<Option<Arc<Progra
     Ok(Some(Arc::new(Program::new(parts))))
 }
 
-/// Refuses a drive that is held over blocks which nothing stops, called by all ranks at once.
+/// Refuses a drive that is held over blocks which nothing stops. All ranks call this at once.
 pub(super) fn refuse_endless_slip(
     file: &CaseFile,
     model: &Model,

@@ -1,4 +1,4 @@
-//! Where the contents of the files are that a case names: in a folder, or in memory.
+//! The places of the files that a case names: a folder, or memory.
 
 use std::collections::HashMap;
 use std::fs::File;
@@ -9,12 +9,12 @@ use std::sync::Arc;
 /// Contents of files by the names that a case gives them.
 pub type FilesInMemory = HashMap<String, Arc<[u8]>>;
 
-/// Where the files are that a case names.
+/// The places of the files that a case names.
 #[derive(Clone, Copy)]
 pub struct Files<'a> {
-    /// The folder from which their names lead to them.
+    /// The folder to which names of files are relative.
     pub folder: &'a Path,
-    /// Those that are in memory, and are not looked for in the folder.
+    /// Files in memory, which are not looked for in the folder.
     pub in_memory: Option<&'a FilesInMemory>,
 }
 
@@ -30,9 +30,9 @@ impl<'a> From<&'a Path> for Files<'a> {
 /// A file that was opened.
 #[derive(Debug)]
 pub enum Opened {
-    /// On the disk.
+    /// A file on the disk.
     OnDisk(File),
-    /// In memory.
+    /// A file in memory.
     InMemory(Cursor<Arc<[u8]>>),
 }
 

@@ -29,8 +29,8 @@ const MAX_EPSILON: f64 = 0.5;
 const MIN_V_STAR: f64 = 1e-9;
 const MAX_V_STAR: f64 = 10.0;
 const MAX_OMEGA_STAR: f64 = 1000.0;
-/// Smallest unit of a displacement, speed or stress, in SI: fields are written in single precision, which ends at 1e-38, and
-/// have eight digits below their unit.
+/// Smallest unit of a displacement, speed or stress, in SI: fields are written in single precision, which ends at 1e-38 and
+/// must resolve eight digits below the unit.
 const MIN_UNIT: f64 = 1e-30;
 
 impl Groups {
@@ -79,7 +79,7 @@ impl Groups {
     }
 }
 
-/// Refuses units of results that are lost to the smallest numbers there are.
+/// Refuses units of results below the smallest numbers that results can hold.
 fn refuse_small_units(file: &CaseFile, scales: &Scales) -> Result<(), CaseError> {
     let units = [
         ("displacement, P mu_s l^2/(E h),", scales.displacement(), "m"),

@@ -17,30 +17,29 @@ use crate::machine::machine_number;
 use crate::same::{Given, expect_same, of_all, words_of};
 use crate::text::{display_path, single_line};
 
-/// Told the share that is done of laying the texture over the blocks; `false` ends it.
+/// Function that gets the share that is done of laying the texture over the blocks; `false` ends the work.
 pub type Watch<'a> = dyn FnMut(f64) -> bool + 'a;
 
-/// A file that a case reads, and of which the run folder holds a copy.
+/// A file that a case reads. The run folder holds a copy of it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Input {
-    /// Path of its copy in the run folder.
+    /// Path of the copy in the run folder.
     pub name: String,
-    /// Path that it is read from, or its name if it is in memory.
+    /// Path from which the file is read, or its name if it is in memory.
     pub original: PathBuf,
-    /// Its contents, if they are in memory.
+    /// Contents of the file, if they are in memory.
     pub contents: Option<Arc<[u8]>>,
-    /// Its length in bytes.
+    /// Length of the file in bytes.
     pub length: u64,
-    /// Hash of its contents, taken before the case was made of them: a copy that is made afterwards and has the same one holds
-    /// what the case was made of.
+    /// Hash of the file's contents, taken before the case was made from them. A copy that is made afterwards and has this
+    /// hash holds the contents that the case was made from.
     pub hash: blake3::Hash,
 }
 
 impl Input {
-    /// Its contents, read once more unless they are in memory.
+    /// Contents of the file, read once more unless they are in memory.
     ///
-    /// # Errors
-    /// When it cannot be read, or is no longer what the case was made of.
+    /// # Errors When the file cannot be read, or has changed since the case was made from it.
     pub fn read_again(&self) -> Result<Arc<[u8]>, CaseError> {
         if let Some(contents) = &self.contents {
             return Ok(Arc::clone(contents));
@@ -59,10 +58,9 @@ impl Input {
         Ok(contents.into())
     }
 
-    /// Opens it to be copied.
+    /// Opens the file to be copied.
     ///
-    /// # Errors
-    /// When it is on the disk and is no regular file that can be read.
+    /// # Errors When the file is on the disk and is no regular file that can be read.
     pub fn open(&self) -> io::Result<Opened> {
         match &self.contents {
             Some(contents) => Ok(Opened::in_memory(contents)),
@@ -72,9 +70,9 @@ impl Input {
 }
 
 /// Names the copy of a file in the folder `inputs/` after its plain name; files of one name and different contents are
-/// numbered. Gives the name, and whether there is such a copy already.
+/// numbered. Returns the name, and whether there is such a copy already.
 ///
-/// `is_same` says of a name whether the copy that has it, if there is one, has the contents of the file.
+/// `is_same` tells for a name whether the copy with it, if there is one, has the contents of the file.
 pub fn name_of_copy(plain: &str, is_same: impl Fn(&str) -> Option<bool>) -> (String, bool) {
     let mut name = format!("inputs/{plain}");
     let mut number = 1;
@@ -96,9 +94,9 @@ struct FoundFile {
     key: String,
     holds: FileUse,
     original: PathBuf,
-    /// Its contents and their hash, if they are in memory.
+    /// Contents of the file and their hash, if they are in memory.
     contents: Option<(Arc<[u8]>, blake3::Hash)>,
-    /// What changes when the file does, or is another one.
+    /// Stamp that changes when the file does, or is another file.
     stamp: String,
 }
 
@@ -106,7 +104,7 @@ struct FoundFile {
 pub(super) struct NamedFiles(Vec<FoundFile>);
 
 impl NamedFiles {
-    /// Finds the files, and opens none.
+    /// Finds the files without opening any.
     pub(super) fn find(file: &mut CaseFile, files: Files) -> Result<Self, CaseError> {
         let (named, source) = file.files_mut();
         let found = named.map(|named| {
@@ -133,7 +131,7 @@ impl NamedFiles {
 
     /// Hashes the files, and replaces their names in the case by those of copies. Files of equal contents and names are one.
     ///
-    /// Of ranks that find the same files, as those of one machine do, one hashes them.
+    /// One of the ranks that find the same files, such as those of one machine, hashes them.
     ///
     /// # Errors
     /// When a file is not the same for all ranks, or cannot be read.
@@ -190,7 +188,7 @@ impl NamedFiles {
         digests.collect()
     }
 
-    /// What rank 0 has found of each file.
+    /// Digests that rank 0 has found for each file.
     fn of_first(&self, own: Option<&[Digest]>, communicator: &dyn Communicator) -> Vec<Digest> {
         let mut words = vec![[0; 5]; self.0.len()];
         if communicator.rank() == 0 {
@@ -204,7 +202,7 @@ impl NamedFiles {
         words.into_iter().map(digest).collect()
     }
 
-    /// Names of the files, and what is in them.
+    /// Names of the files and their contents, for the comparison of ranks.
     fn given(&self, digests: &[Digest]) -> Given {
         let named = self.0.iter().zip(digests).map(|(found, (length, hash))| {
             let name = format!("{} (`{}`)", single_line(&found.plain_name()), found.key);
@@ -234,7 +232,7 @@ impl NamedFiles {
         inputs
     }
 
-    /// Fails if a file has changed since it was found: what was read of it afterwards need not be what was hashed.
+    /// Refuses a file that has changed since it was found, because its contents as read may differ from the hashed ones.
     pub(super) fn expect_unchanged(&self, file: &CaseFile) -> Result<(), CaseError> {
         for found in self.0.iter().filter(|found| found.contents.is_none()) {
             let now = stamp(&found.original).map_err(|error| placed(file, &found.key, error))?;
@@ -257,7 +255,7 @@ impl FoundFile {
     }
 }
 
-/// Which file this is on its machine, and when it was changed.
+/// Stamp of a file: its identity on its machine, and the time of its last change.
 fn stamp(path: &Path) -> Result<String, ArrayError> {
     let metadata = path.metadata().map_err(|source| ArrayError::Read {
         path: path.to_owned(),
@@ -290,7 +288,8 @@ fn hash_of_words(words: [i64; 4]) -> blake3::Hash {
     blake3::Hash::from_bytes(bytes)
 }
 
-/// Opens a file that is in memory or on the disk, and is read as what it holds for a lattice of so many columns and rows.
+/// Opens a file that is in memory or on the disk, and limits its length to that of its use for a lattice of `nx` x `ny`
+/// blocks.
 fn open(
     original: &Path,
     contents: Option<&Arc<[u8]>>,
@@ -320,14 +319,14 @@ fn digest(path: &Path, file: Opened) -> Result<Digest, ArrayError> {
     Ok((hasher.count(), hasher.finalize()))
 }
 
-/// The files that a case reads, and the rows that are wanted of them.
+/// The files that a case reads, and the rows that are read from them.
 pub(super) struct Inputs {
     pub(super) files: Vec<Input>,
     pub(super) slab: Slab,
 }
 
 impl Inputs {
-    /// Reads the file that has this name in the case, which `key` gives it, as what it `holds`.
+    /// Reads the file that has this name in the case, given by `key`, as the kind that `holds` names.
     fn read<T>(
         &self,
         file: &CaseFile,
@@ -344,7 +343,8 @@ impl Inputs {
         read.map_err(|error| placed(file, key, error))
     }
 
-    /// Reads the image or array that has this name in the case, which `key` gives it: whether each block of the slab is dark, or 1.
+    /// Reads the image or array that has this name in the case, given by `key`: whether each block of the slab is dark, or
+    /// 1.
     pub(super) fn read_mask(
         &self,
         file: &CaseFile,
@@ -365,7 +365,7 @@ impl Inputs {
         })
     }
 
-    /// Reads the height map that has this name in the case, which `key` gives it.
+    /// Reads the height map that has this name in the case, given by `key`.
     pub(super) fn read_height_map<T>(
         &self,
         file: &CaseFile,
@@ -392,7 +392,7 @@ impl Inputs {
     }
 }
 
-/// Whether the file of a mask is an array, and not an image.
+/// Whether the file of a mask is an array, rather than an image.
 pub(super) fn is_array(path: &Path) -> bool {
     arrays::extension(path) == "npy"
 }

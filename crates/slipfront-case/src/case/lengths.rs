@@ -1,8 +1,9 @@
-//! The lengths of a case against its blocks: which of them decides how much of an answer is the mesh.
+//! The lengths of a case in blocks, and the one that decides the mesh error of an answer.
 //!
-//! What is enough of each was measured on a sheet of 1 mm with square and round cavities of 50 to 400 um, on 20 to 320 blocks along a side with all
-//! else held in metres, seconds and pascals: from so many blocks on the reduction of static friction by the cavity is within 2 % of that on the
-//! finest mesh (`docs/model.md`, "How many blocks a length needs").
+//! The number of blocks that is enough for each was measured on a sheet of 1 mm with square and round cavities of 50 to 400
+//! um, on 20 to 320 blocks along a side with everything else held in metres, seconds and pascals: from this number of blocks
+//! on the reduction of static friction by the cavity is within 2 % of that on the finest mesh (`docs/model.md`, "How many
+//! blocks a length needs").
 
 use slipfront::surface::{Clearance, clearance};
 
@@ -11,34 +12,37 @@ use super::textures::outlines_in_blocks;
 use crate::case_file::{Attached, AttachedEdge, CaseFile, DriveStiffness, LengthOfABlock, Motion, Texture};
 use crate::number_format::{four_digits, with_si_prefix};
 
-/// Blocks of the critical size of slip.
+/// Number of blocks in the critical size of slip that is enough.
 const OF_CRITICAL_SIZE: f64 = 5.0;
-/// Blocks of the screening length along the drive, where it is the shorter one.
+/// Number of blocks in the screening length along the drive that is enough, where it is the shorter one.
 const OF_SCREENING: f64 = 3.0;
-/// Critical size over the screening length above which slip is stable or nearly so on this mount, and the screening length counts.
+/// Ratio of critical size to screening length above which slip is stable or nearly so on this mount, and the screening
+/// length counts.
 const NEARLY_STABLE: f64 = 4.0;
-/// Blocks of the correlation length: coefficients are exact means over blocks.
+/// Number of blocks in the correlation length that is enough: coefficients are exact means over blocks.
 const OF_CORRELATION: f64 = 0.5;
-/// Blocks across the smallest feature: its area is then meshed within 2 % in root mean square over its place on the mesh.
+/// Number of blocks across the smallest feature that is enough: its area is then meshed within 2 % in root mean square over
+/// its place on the mesh.
 const ACROSS_A_FEATURE: f64 = 5.0;
-/// Blocks across the smallest gap: one of them is in contact wherever the mesh lies.
+/// Number of blocks across the smallest gap that is enough: one of them is in contact wherever the mesh lies.
 const ACROSS_A_GAP: f64 = 2.0;
 
-/// A length of a case, and how many blocks of it an answer needs.
+/// A length of a case, and the number of blocks that an answer needs in it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CaseLength {
-    /// Name, such as "critical size".
+    /// Name of the length, such as "critical size".
     pub name: String,
     /// The length in blocks; infinite for the critical size of slip that is stable at any size.
     pub blocks: f64,
     /// The length in m.
     pub metres: f64,
-    /// Blocks from which on a reduction of static friction is within 2 % of its limit; none where the length sets no bound.
+    /// Number of blocks from which on a reduction of static friction is within 2 % of its limit; none where the length sets
+    /// no bound.
     pub enough: Option<f64>,
 }
 
 impl CaseFile {
-    /// Lengths of the material that are those of a block, since no key gives them: on other blocks they are others.
+    /// Lengths of the material that equal the length of a block because no key gives them; they change with the blocks.
     pub fn lengths_of_a_block(&self) -> Vec<LengthOfABlock> {
         let thickness = self.slider.thickness.is_none().then_some(LengthOfABlock {
             length: "the thickness of the sheet",
@@ -82,7 +86,7 @@ impl Case {
         lengths
     }
 
-    /// The smallest feature and gap of the textures; none of masks and height maps, whose outlines are not known.
+    /// The smallest feature and gap of the textures; none for masks and height maps, whose outlines are not known.
     pub(super) fn smallest_lengths(&self) -> Vec<CaseLength> {
         let lattice = &self.model.lattice;
         let outlines = outlines_in_blocks(&self.file, &self.scales, lattice, self.model.n_blocks());
@@ -100,7 +104,7 @@ impl Case {
             .collect()
     }
 
-    /// Which length decides how much of an answer is the mesh, in a sentence without a full stop.
+    /// The length that decides the mesh error of an answer, in a sentence without a full stop.
     pub fn deciding_length(&self) -> String {
         if self.model.n_blocks() == 1 {
             return "a single block has none".to_owned();
@@ -147,7 +151,7 @@ impl Case {
             .collect()
     }
 
-    /// Whether every block of a slider of several hangs on the drive by a spring of its own, in translation.
+    /// Whether every one of several blocks hangs on the drive by a spring of its own, in translation.
     fn has_spring_on_every_block(&self) -> bool {
         let drive = &self.file.drive;
         let is_on_all = matches!(drive.attached, Attached::At(AttachedEdge::All));
@@ -164,7 +168,7 @@ impl Case {
     }
 }
 
-/// What is textured and what is between, as their user calls it.
+/// Names of the textured parts and of the parts between them, in the words of a user.
 fn names(textures: &[Texture]) -> [&'static str; 2] {
     let drawn = |texture: &Texture| Some((texture.shape.outline()?.noun(), texture.pattern.invert));
     let drawn: Vec<(&str, bool)> = textures.iter().filter_map(drawn).collect();

@@ -26,12 +26,12 @@ pub struct TextureReport {
     pub topographies: Vec<Topography>,
     /// Positions in the case file, from 0, of the textures that a free edge clips.
     pub clipped: Vec<usize>,
-    /// Positions of those that cover no block.
+    /// Positions of the textures that cover no block.
     pub empty: Vec<usize>,
 }
 
-/// The model of some rows of the lattice, without the program of its drive, whose speeds change where steps begin. Files are refused that
-/// have changed while they were read.
+/// The model of some rows of the lattice, without the program of its drive, whose speeds change where steps begin. Files
+/// that have changed while they were read are refused.
 pub(super) fn make(
     file: &CaseFile,
     derived: &Derived,

@@ -28,7 +28,7 @@ mod tests {
     use super::*;
     use crate::case::Case;
 
-    /// Each option alone, and what the model then has.
+    /// The options of a file with one option set are those of the model made from it.
     #[test]
     fn options_are_those_of_the_model() {
         for set in [

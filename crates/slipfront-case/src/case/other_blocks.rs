@@ -1,5 +1,5 @@
-//! One slider on other blocks: the keys of a case that its slider, load, mount, friction and time keep when the blocks become finer or
-//! coarser.
+//! One slider on other blocks: the keys of a case with finer or coarser blocks whose slider, load, mount, friction and time
+//! stay.
 //!
 //! A key with a star counts in units that depend on the edge `l` of a block and on the thickness `h` of the sheet. It is converted by the
 //! ratio of the two units, so that metres, seconds and pascals are held:
@@ -20,7 +20,7 @@ use crate::case_file::{
 };
 use crate::quantity::Length;
 
-/// What a key with a star counts in.
+/// Unit of a key with a star.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum StarUnit {
     Speed,
@@ -28,11 +28,11 @@ enum StarUnit {
     /// One over a time.
     Rate,
     Displacement,
-    /// The spring of a block, which belongs to an area: held is `K = k* E h/l^2`.
+    /// The stiffness of the spring of a block, whose value per area is held: `K = k* E h/l^2`.
     SpringOfBlock,
-    /// All springs together.
+    /// The stiffness of all springs together.
     Stiffness,
-    /// Of no unit: a ratio, or a spread of coefficients.
+    /// No unit: a ratio, or a spread of coefficients.
     None,
 }
 
@@ -61,7 +61,7 @@ const UNITS: &[(&str, StarUnit)] = &[
 ];
 
 impl StarUnit {
-    /// The unit in SI, up to a factor that no block changes.
+    /// The unit in SI, up to a factor that does not depend on the blocks.
     fn size(self, scales: &Scales) -> f64 {
         match self {
             Self::Speed => scales.speed(),
@@ -76,9 +76,10 @@ impl StarUnit {
 }
 
 impl Case {
-    /// The keys that put this slider on blocks that are `finer` times as fine, a power of two, and keep in metres, seconds and pascals
-    /// what it is: dimensions, textures, load, mount, damping, lengths of friction, speed and duration. The step keeps its share of the
-    /// time that sound takes across a block. Spreads of coefficients stay: those of blocks are others on other blocks.
+    /// The keys that put this slider on blocks that are `finer` times as fine, a power of two, and keep in metres, seconds
+    /// and pascals: dimensions, textures, load, mount, damping, lengths of friction, speed and duration. The step keeps its
+    /// share of the time that sound takes across a block. Spreads of coefficients stay; they are spreads over blocks,
+    /// whatever the size of these.
     ///
     /// # Errors
     /// When the blocks cannot be divided so, or when the case has values that belong to its blocks.
@@ -169,7 +170,7 @@ impl Case {
         Ok(other)
     }
 
-    /// Refuses what belongs to the blocks of the case, and has no meaning on others.
+    /// Refuses values that belong to the blocks of the case, and have no meaning on others.
     fn refuse_values_of_blocks(&self) -> Result<(), CaseError> {
         let file = &self.file;
         let fields = [
@@ -205,7 +206,7 @@ impl Case {
     }
 }
 
-/// A length as people write it, if ten digits are that length to the last bit.
+/// A length as people write it, if its ten digits are the length to the last bit.
 fn length_text(metres: f64) -> String {
     let text = ten_digits(metres);
     let read = text.parse::<Length>();
@@ -216,7 +217,7 @@ fn length_text(metres: f64) -> String {
     }
 }
 
-/// From the units of one mesh to those of another.
+/// Conversion from the units of one mesh to those of another.
 struct Conversion<'a> {
     from: &'a Scales,
     to: &'a Scales,
@@ -246,7 +247,7 @@ impl Conversion<'_> {
         }
     }
 
-    /// Converts the numbers of a table; gives how many have units.
+    /// Converts the numbers of a table; returns how many have units.
     fn convert_table(&self, table: &mut Table) -> usize {
         let mut count = 0;
         for (name, value) in table {
@@ -258,7 +259,7 @@ impl Conversion<'_> {
         count
     }
 
-    /// A number in the other units, if the key has units.
+    /// The number in the other units, if its key has units.
     fn converted(&self, name: &str, value: &Value) -> Option<Value> {
         let (_, unit) = UNITS.iter().find(|(key, _)| *key == name)?;
         let number = value
@@ -276,7 +277,7 @@ mod tests {
     use super::*;
     use crate::case_file::SECTIONS;
 
-    /// A key with a star that is not in the table would keep a number in place of what it means.
+    /// Every key with a star is in the table of units: one that is missing would keep its number and change its meaning.
     #[test]
     fn every_key_with_a_star_has_a_unit() {
         let keys = SECTIONS.iter().flat_map(|section| section.keys);
@@ -289,7 +290,7 @@ mod tests {
         Case::parse(text, "case", "", &[]).unwrap()
     }
 
-    /// What a case is in metres, seconds, newtons per metre and cubic metre.
+    /// Values of a case in metres, seconds, newtons per metre and cubic metre.
     fn in_si(case: &Case) -> Vec<f64> {
         let (scales, model) = (&case.scales, &case.model);
         let side = |blocks: usize| blocks as f64 * scales.block_size;

@@ -1,4 +1,4 @@
-//! Which results a case writes, and at which steps.
+//! The results that a case writes, and the steps at which it does.
 
 use slipfront::observe::Field;
 
@@ -7,14 +7,14 @@ use crate::case_file;
 use crate::case_file::{Attached, AttachedEdge, AutoOr, CaseError, CaseFile};
 use crate::field_info::field_info;
 
-/// Which results are written.
+/// The results that are written.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Output {
     /// The instants at which fields are recorded.
     pub snapshots: Snapshots,
     /// The fields that are recorded.
     pub fields: Vec<Field>,
-    /// Every n-th block of each axis in the fields file.
+    /// Stride n: the fields file has every n-th block of each axis.
     pub stride: usize,
     /// Steps between rows of the series.
     pub series_stride: u64,
@@ -25,22 +25,22 @@ pub struct Output {
 /// The instants at which fields are recorded.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Snapshots {
-    /// At the instants A-F.
+    /// The instants A-F.
     Instants,
-    /// At these steps.
+    /// The given steps.
     At(Vec<u64>),
-    /// Every n-th step from 0, and at the instants A-F.
+    /// Multiples of a number of steps from 0, and the instants A-F.
     Every(u64),
 }
 
-/// Most maps in the picture of the stress: of more snapshots, six spread over the run are shown.
+/// Largest number of maps in the picture of the stress: of more snapshots, six spread over the run are shown.
 pub const MAX_MAPS: usize = 6;
 
-/// Most pictures of a movie: a minute and more of it.
+/// Largest number of pictures of a movie, which take a minute and more.
 pub const MAX_PICTURES: usize = 1000;
 
-/// The field whose maps are drawn: the contact stress, and of a slider of which only some blocks have a drive spring the traction,
-/// since the contact stress of a stuck block is the pull of its own drive spring.
+/// The field whose maps are drawn: the contact stress, or the traction if only some blocks have a drive spring, because the
+/// contact stress of a stuck block is the pull of its own drive spring.
 pub fn mapped_field(file: &CaseFile) -> Field {
     match file.drive.attached {
         Attached::At(AttachedEdge::All) => Field::ContactStress,
@@ -48,10 +48,10 @@ pub fn mapped_field(file: &CaseFile) -> Field {
     }
 }
 
-/// The instants A-F.
+/// Number of the instants A-F.
 const INSTANTS: u64 = 6;
 
-/// Most rows of the series unless the case sets a spacing.
+/// Largest number of rows of the series unless the case sets a spacing.
 const SERIES_ROWS: u64 = 20_000;
 
 impl Output {
@@ -91,7 +91,7 @@ impl Output {
         Ok(output)
     }
 
-    /// Most snapshots of a run of so many steps.
+    /// Largest number of snapshots of a run of `last_step` steps.
     pub fn max_snapshots(&self, last_step: u64) -> u64 {
         match &self.snapshots {
             Snapshots::Instants => INSTANTS,

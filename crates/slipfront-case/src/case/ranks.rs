@@ -8,9 +8,9 @@ use crate::case_file::CaseError;
 /// The ranks that make a case together, each its own rows.
 #[derive(Clone, Copy)]
 pub struct Ranks<'a> {
-    /// By which they talk.
+    /// Connection by which the ranks talk.
     pub communicator: &'a dyn Communicator,
-    /// How many of them run on this machine and share its memory.
+    /// Number of ranks that run on this machine and share its memory.
     pub on_node: usize,
 }
 
@@ -23,8 +23,8 @@ impl Ranks<'static> {
 }
 
 impl Ranks<'_> {
-    /// What this rank has found, if none has failed; else an error on all of them: that of the lowest rank that has one, which it
-    /// names unless it is rank 0, or that they were stopped.
+    /// Returns `found` of this rank if no rank has failed; else an error on all ranks: the error of the lowest rank that has
+    /// one, which it names unless it is rank 0, or that they were stopped.
     pub fn agree<T>(&self, found: Result<T, CaseError>) -> Result<T, CaseError> {
         self.agree_in_words(found, |rank, text| match rank {
             0 => text,
@@ -32,7 +32,7 @@ impl Ranks<'_> {
         })
     }
 
-    /// [`agree`](Self::agree) on what each rank has found in the rows that it holds: the error is that of reading all rows.
+    /// [Agrees](Self::agree) on the results of each rank for the rows that it holds: the error is that of reading all rows.
     pub(super) fn agree_on_rows<T>(&self, found: Result<T, CaseError>) -> Result<T, CaseError> {
         self.agree_in_words(found, |_, text| text)
     }

@@ -22,7 +22,7 @@ use crate::arrays::Slab;
 use crate::case_file::{CaseError, CaseFile};
 use crate::same::expect_same;
 
-/// A case that can be run. It is valid by construction.
+/// A case that can be run, which is valid by construction.
 #[derive(Debug)]
 pub struct Case {
     /// Name of the case and of its results.
@@ -37,30 +37,31 @@ pub struct Case {
     pub groups: Groups,
     /// The slider, and the surface of the rows that this process holds: all, unless it is one rank of several.
     pub model: Arc<Model>,
-    /// What is known of the run before it.
+    /// Estimates of the run before it begins.
     pub expected: Expected,
     /// Texture as asked and as meshed.
     pub texture: TextureReport,
     /// Duration and steps.
     pub time_plan: TimePlan,
-    /// Which results are written.
+    /// The results that are written.
     pub output: Output,
-    /// Memory that making and stepping it takes. What its results take is added in slipfront-run.
+    /// Memory for making and stepping the case. The memory of its results is added in slipfront-run.
     pub budget: Budget,
 }
 
-/// What the model says of a run before it, of the whole lattice.
+/// Estimates of the model about a run before it begins, for the whole lattice.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Expected {
-    /// [`Model::steady_level`].
+    /// Level of steady sliding, see [`Model::steady_level`].
     pub steady_level: f64,
-    /// [`Model::steady_drag`].
+    /// Drag of the damping, see [`Model::steady_drag`].
     pub steady_drag: f64,
-    /// [`Model::first_slip_estimate`], t*.
+    /// Time t* of the first slip, see [`Model::first_slip_estimate`].
     pub first_slip_star: f64,
-    /// [`Model::onset_estimate`], the earliest and the latest t*.
+    /// Earliest and latest t* of the onset, see [`Model::onset_estimate`].
     pub onset_star: [f64; 2],
-    /// t* up to which the largest mu* is static friction: twice that of the onset, and more where only some blocks touch or adhesion delays it.
+    /// t* up to which the largest mu* is static friction: twice the t* of the onset, and more where only some blocks touch
+    /// or adhesion delays it.
     pub onset_end_star: f64,
 }
 
@@ -77,9 +78,9 @@ impl Expected {
 }
 
 impl Case {
-    /// Loads a case file and the files it names, which stand relative to it. A case whose model needs more memory to be stepped than
-    /// there is gets refused before any array is allocated. `watch` is shown how its texture is laid over the blocks. It is made on all
-    /// `ranks` at once, as [`to_run`](Self::to_run) does.
+    /// Loads a case file and the files it names, which stand relative to it. A case whose model needs more memory to be
+    /// stepped than there is, is refused before any array is allocated. `watch` gets the progress of laying the texture over
+    /// the blocks. All `ranks` make the case at once, as [`to_run`](Self::to_run) does.
     pub fn load(
         path: &Path,
         overrides: &[String],
@@ -89,7 +90,7 @@ impl Case {
         Self::load_with(path, overrides, None, watch, ranks)
     }
 
-    /// Loads a case file as [`load`](Self::load) does; of the files that it or an override names, some may be in memory.
+    /// Loads a case file as [`load`](Self::load) does; some of the files that it or an override names may be in memory.
     pub fn load_with(
         path: &Path,
         overrides: &[String],
@@ -117,9 +118,9 @@ impl Case {
         Self::to_run(file, name, folder.as_ref(), &mut |_| true, Ranks::ALONE)
     }
 
-    /// Makes a case of a case file that was read already, to be run; the files it names stand relative to `folder`. It is made on all
-    /// `ranks` at once: each makes the surface of its own rows, and knows the rest of the case. If one fails, or was given another case
-    /// or other files, all give the same error.
+    /// Makes a case of a case file that was read already, to be run; the files it names stand relative to `folder`. All
+    /// `ranks` make the case at once: each makes the surface of its own rows, and knows the rest of the case. If one fails,
+    /// or was given another case or other files, all return the same error.
     pub fn to_run(
         file: CaseFile,
         name: &str,
@@ -130,7 +131,7 @@ impl Case {
         Self::to_run_with(file, name, folder.into(), watch, ranks)
     }
 
-    /// Makes a case as [`to_run`](Self::to_run) does, of which files may be in memory.
+    /// Makes a case as [`to_run`](Self::to_run) does, with files that may be in memory.
     ///
     /// ```
     /// use std::path::Path;
@@ -156,8 +157,8 @@ impl Case {
         Self::make(file, name, files, true, watch, ranks)
     }
 
-    /// Makes a case of a case file on all `ranks` at once; the files it names stand relative to `folder`. The memory in
-    /// which its model is stepped is not checked.
+    /// Makes a case of a case file on all `ranks` at once; the files it names stand relative to `folder`. The memory for
+    /// stepping its model is not checked.
     pub fn new(
         file: CaseFile,
         name: &str,
@@ -168,7 +169,7 @@ impl Case {
         Self::make(file, name, folder.into(), false, watch, ranks)
     }
 
-    /// The file, what follows from it alone, what it reads, the model, the steps.
+    /// Makes a case: the file, the quantities that follow from it alone, its inputs, the model, the steps.
     fn make(
         mut file: CaseFile,
         name: &str,
@@ -244,12 +245,12 @@ impl Case {
         made.map(|in_blocks| in_blocks.textures)
     }
 
-    /// The field of which the random coefficients are means over blocks; none if every block draws its own.
+    /// The field whose means over blocks are the random coefficients; none if every block draws its own.
     pub fn correlated_field(&self) -> Option<CorrelatedField> {
         correlated_field(&self.file, &self.model.lattice)
     }
 
-    /// Steps times blocks, those in which a held drive stands left out, the measure of what the run costs.
+    /// Steps times blocks, without the steps in which a held drive stands: the measure of the cost of a run.
     pub fn block_steps(&self) -> f64 {
         self.time_plan.last_step as f64 * self.model.lattice.n_blocks() as f64
     }

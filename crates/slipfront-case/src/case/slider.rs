@@ -1,4 +1,4 @@
-//! Stiffness, density and outline of the slider, from what its file says or from the files that it names.
+//! Stiffness, density and outline of the slider, from its file or from the files that it names.
 
 use slipfront::{Communicator, Lattice, Outline, Slider};
 
@@ -7,7 +7,7 @@ use crate::arrays::Slab;
 use crate::case_file::{self, CaseError, CaseFile, DEFAULT_THRESHOLD, Grade};
 use crate::case_file::{MAX_RELATIVE, MIN_RELATIVE};
 
-/// Which blocks of some rows exist, if the slider does not fill its lattice.
+/// Marks the blocks of some rows that exist, if the slider does not fill its lattice.
 pub(super) fn outline(
     file: &CaseFile,
     lattice: &Lattice,
@@ -26,7 +26,7 @@ pub(super) fn outline(
     Ok(Some(exists))
 }
 
-/// What is given of the blocks that this rank holds.
+/// Properties of the blocks that this rank holds, as the case gives them.
 pub(super) struct GivenBlocks {
     stiffness: Option<Vec<f64>>,
     density: Option<Vec<f64>>,
@@ -77,7 +77,7 @@ impl GivenBlocks {
         })
     }
 
-    /// The slider of these blocks, made by all ranks at once; refused if no rank has a block.
+    /// The slider of these blocks. All ranks make it at once; it is refused if no rank has a block.
     pub(super) fn slider(self, file: &CaseFile, ranks: &dyn Communicator) -> Result<Slider, CaseError> {
         let outline = self.exists.map(|exists| Outline::new(exists, ranks));
         if outline.as_ref().is_some_and(|outline| outline.n_blocks == 0) {

@@ -21,14 +21,15 @@ use crate::quantity::Length;
 pub(super) struct InBlocks {
     /// The textures, in the order of the file.
     pub(super) textures: Vec<surface::Texture>,
-    /// The area of all as asked for, % of that of the blocks that exist (see
+    /// The area of all textures as asked for, % of the area of the blocks that exist (see
     /// [`TextureReport`](super::runnable::TextureReport)).
     pub(super) asked_percent: Option<f64>,
-    /// The height maps among them.
+    /// The height maps among the textures.
     pub(super) topographies: Vec<Topography>,
 }
 
-/// The textured blocks of the rows that this rank holds, with the textures; masks and height maps are read. `n_blocks` exist.
+/// The textured blocks of the rows that this rank holds, with the textures; masks and height maps are read. `n_blocks`
+/// blocks exist.
 pub(super) fn mesh(
     file: &CaseFile,
     scales: &Scales,
@@ -114,7 +115,7 @@ pub(super) fn shapes_in_blocks(
     })
 }
 
-/// The textures of which outlines are known, in blocks: all but masks and height maps.
+/// The textures whose outlines are known, in blocks: all but masks and height maps.
 pub(super) fn outlines_in_blocks(
     file: &CaseFile,
     scales: &Scales,
@@ -139,8 +140,8 @@ pub(super) fn outlines_in_blocks(
     file.texture.iter().filter_map(outline).collect()
 }
 
-/// The arrays of a pattern in blocks, the outermost first: it is spread over the slider, and the next one over a place of it. An
-/// error is the key, within the texture, and the sentence.
+/// The arrays of a pattern in blocks, the outermost first: it is spread over the slider, and the next one over a place of
+/// it. An error consists of the key, within the texture, and the sentence.
 pub(super) fn arrays(
     pattern: &Pattern,
     scales: &Scales,
@@ -201,7 +202,7 @@ pub(super) fn arrays(
     Ok(arrays)
 }
 
-/// The blocks of a mask or height map, of which there is one in every place of a pattern.
+/// Size in blocks of a mask or height map, of which there is one in every place of a pattern.
 fn cell(arrays: &[surface::Array], lattice: &Lattice) -> Result<[usize; 2], String> {
     let slider = [lattice.nx, lattice.ny];
     let Some(array) = arrays.last() else {
@@ -217,8 +218,8 @@ fn cell(arrays: &[surface::Array], lattice: &Lattice) -> Result<[usize; 2], Stri
     Ok(size)
 }
 
-/// Bytes while textures are laid over the blocks of some rows: of these blocks for every mask, and of all `n_blocks` of the lattice for a
-/// height map.
+/// Bytes while textures are laid over the blocks of some rows: for every mask bytes of these blocks, and for a height map
+/// bytes of all `n_blocks` of the lattice.
 pub(super) fn bytes_to_lay(file: &CaseFile, n_own: usize, n_blocks: usize) -> usize {
     let of_heights = match count_height_maps(file) {
         0 => 0,
@@ -227,8 +228,8 @@ pub(super) fn bytes_to_lay(file: &CaseFile, n_own: usize, n_blocks: usize) -> us
     n_own * count_masks(file) * size_of::<bool>() + n_blocks * of_heights
 }
 
-/// How many masks a case has in memory at once, with those of height maps, and of inverted textures while they are laid over the
-/// blocks.
+/// Number of masks that a case has in memory at once, including those of height maps, and of inverted textures while they
+/// are laid over the blocks.
 fn count_masks(file: &CaseFile) -> usize {
     let mut masks = Vec::new();
     for texture in &file.texture {
@@ -245,7 +246,7 @@ fn count_masks(file: &CaseFile) -> usize {
         + usize::from(file.texture.iter().any(|texture| texture.pattern.invert))
 }
 
-/// How many height maps a case has. Their heights are in memory one after the other.
+/// Number of height maps of a case. Their heights are in memory one after the other.
 fn count_height_maps(file: &CaseFile) -> usize {
     let shapes = file.texture.iter().map(|texture| &texture.shape);
     shapes
@@ -253,7 +254,7 @@ fn count_height_maps(file: &CaseFile) -> usize {
         .count()
 }
 
-/// What tells the masks of a case apart: file, bits of the threshold, and blocks. Several textures may have one.
+/// Identity of a mask of a case: file, bits of the threshold, and blocks. Several textures may share one.
 type MaskKey<'a> = (&'a str, u64, [usize; 2]);
 
 /// The masks that have been read.
@@ -293,8 +294,8 @@ impl<'a> Masks<'a> {
     }
 }
 
-/// How far a texture may reach, in slider lengths. Farther away it is a typing error, and on a periodic axis its position
-/// would be lost to rounding.
+/// How far a texture may reach, in slider lengths. A texture farther away is a typing error, and on a periodic axis its
+/// position would be lost to rounding.
 const REACH: f64 = 100.0;
 
 fn within_reach(shape: &surface::Shape, arrays: &[surface::Array], lattice: &Lattice) -> Result<(), String> {

@@ -16,20 +16,20 @@ use crate::number_format::four_digits;
 pub struct TimePlan {
     /// The time step dt*.
     pub dt_star: f64,
-    /// What it must be less than.
+    /// Limit below which the time step must stay.
     pub step_limit: f64,
-    /// Number of steps in which the drive moves: all, unless it is held.
+    /// Number of steps in which the drive moves: all, unless the drive is held.
     pub last_step: u64,
     /// The condition that ends the run.
     pub stop: Stop,
     /// Start of the window that kinetic friction is averaged over, on the time of the drive.
     pub kinetic: KineticStart,
-    /// Whether the drive is held, and up to which of its steps the largest mu* counts as static friction then.
+    /// Whether the drive is held, and if so up to which of its steps the largest mu* counts as static friction.
     pub loading: Loading,
 }
 
-/// Load of a block in contact over what it would be if every block touched, by which the onset comes later: 1 unless every block has a drive
-/// spring, and can bear its load by that alone.
+/// Load of a block in contact over its load if every block touched, a factor by which the onset comes later: 1 unless every
+/// block has a drive spring, and can bear its load by that alone.
 pub(super) fn load_factor(file: &CaseFile, model: &Model) -> f64 {
     match file.drive.attached {
         Attached::At(AttachedEdge::All) => model.surface.load_factor(),
@@ -40,7 +40,7 @@ pub(super) fn load_factor(file: &CaseFile, model: &Model) -> f64 {
 /// The step of "auto", where it is stable.
 const AUTO_STEP: f64 = 0.1;
 
-/// Longest run, in steps, of which the kernel keeps the numbers in 32 bits.
+/// Longest run, in steps, for which the kernel keeps the numbers of steps in 32 bits.
 const MAX_STEPS: f64 = 4e9;
 
 impl TimePlan {
@@ -138,10 +138,11 @@ impl TimePlan {
     }
 }
 
-/// 8/V* shows onset and sliding of the paper's slider. Where only some blocks touch and bear f times the load, the onset comes before their
-/// own drive springs bear it all, at f/(k_s V*); after that time there must be room for the 2.5/V* that pass before the kinetic
-/// window begins, which takes longer than 8/V* where less than 48 % of the blocks touch. A drive that loads more slowly and adhesion delay the
-/// onset; under a program of speeds it is counted from the last of them.
+/// Duration of "auto": 8/V*, which shows onset and sliding of the paper's slider, or longer. Where only some blocks touch
+/// and bear f times the load, the onset comes before their own drive springs bear it all, at f/(k_s V*); after that time
+/// there must be room for the 2.5/V* that pass before the kinetic window begins, which takes longer than 8/V* where less
+/// than 48 % of the blocks touch. A drive that loads more slowly and adhesion delay the onset; under a program of speeds it
+/// is counted from the last of them.
 fn auto_duration(file: &CaseFile, scales: &Scales, model: &Model) -> f64 {
     let last = match &file.drive.speed {
         DriveSpeed::Program(segments) => segments
@@ -154,13 +155,13 @@ fn auto_duration(file: &CaseFile, scales: &Scales, model: &Model) -> f64 {
     last.unwrap_or(0.0) + path / model.loading_speed() * delay(file, scales)
 }
 
-/// By how many times adhesion delays the onset.
+/// Factor by which adhesion delays the onset.
 fn delay(file: &CaseFile, scales: &Scales) -> f64 {
     1.0 + file.friction.adhesion.si() / scales.stress()
 }
 
-/// The time of a held drive, t*, up to which the largest mu* counts as static friction: twice that of the onset (Eq. 12), or when the drive springs
-/// of the blocks that touch bear it all, if that is later.
+/// Time t* of a held drive up to which the largest mu* counts as static friction: twice that of the onset (Eq. 12), or the
+/// time at which the drive springs of the blocks that touch bear the whole load, if that is later.
 pub(super) fn auto_onset_end(file: &CaseFile, scales: &Scales, model: &Model) -> f64 {
     let path = f64::max(2.0 * ONSET_PATH, load_factor(file, model) / K_DRIVE);
     path / model.loading_speed() * delay(file, scales)

@@ -1,4 +1,4 @@
-//! Measured topography: which blocks of a height map touch.
+//! Measured topography: the blocks of a height map that touch.
 
 use std::sync::Arc;
 
@@ -19,9 +19,9 @@ pub struct Topography {
     pub file: String,
     /// Points of the file along x and along y.
     pub points: [usize; 2],
-    /// Its true size along x and along y, m.
+    /// True size of the map along x and along y, m.
     pub size: [f64; 2],
-    /// Blocks that it is laid over, along x and along y.
+    /// Blocks over which the map is laid, along x and along y.
     pub blocks: [usize; 2],
     /// Roughness of all points.
     pub roughness: Roughness,
@@ -29,18 +29,18 @@ pub struct Topography {
     pub contact_height: f64,
 }
 
-/// Bytes for every block of the lattice while a height map is laid over it: the means of the blocks, before that their sums in two
-/// numbers, and the same heights in order; within an outline whether each block exists.
+/// Bytes for every block of the lattice while a height map is laid over it: the means of the blocks, before them their sums
+/// in two numbers, and the heights in order; within an outline whether each block exists.
 pub(super) fn bytes_per_block(has_outline: bool) -> usize {
     2 * size_of::<f64>() + usize::from(has_outline) * size_of::<bool>()
 }
 
-/// What a height map is laid over.
+/// The blocks over which a height map is laid.
 pub(super) struct Ground<'a> {
     pub(super) lattice: &'a Lattice,
-    /// Which blocks of the whole lattice exist; all if there is no outline.
+    /// Marks of the blocks of the whole lattice that exist; all exist if there is no outline.
     pub(super) exists: Option<&'a [bool]>,
-    /// How many of them.
+    /// Number of blocks that exist.
     pub(super) n_blocks: usize,
     /// Blocks of the map along x and along y.
     pub(super) size: [usize; 2],
@@ -49,8 +49,8 @@ pub(super) struct Ground<'a> {
 }
 
 impl Ground<'_> {
-    /// Reads the height map of a texture: which of its blocks do not touch, and their area as asked for, % of that of the blocks
-    /// that exist.
+    /// Reads the height map of a texture: the blocks that do not touch, and their area as asked for, % of the area of the
+    /// blocks that exist.
     pub(super) fn read(
         &self,
         file: &CaseFile,
@@ -116,7 +116,7 @@ impl Ground<'_> {
         Ok((tile, topography, asked))
     }
 
-    /// The heights of the blocks that exist, within an outline of every copy.
+    /// The heights of the blocks that exist, within an outline for every copy.
     fn standing(&self, heights: &[f64]) -> Vec<f64> {
         let Some(exists) = self.exists else {
             return heights.to_vec();
@@ -148,8 +148,8 @@ impl Ground<'_> {
     }
 }
 
-/// The least height that touches, m, of some blocks, of which at least one does; none if there is no block. Of a share it is the
-/// height of a block, so that blocks of equal height all touch or none does.
+/// The least height, m, at which some blocks touch, at least one of them; none if there is no block. A share is turned into
+/// the height of a block, so that all blocks of equal height touch or none does.
 fn contact_height(mut heights: Vec<f64>, map: &HeightMap) -> Option<f64> {
     let highest = heights.iter().copied().reduce(f64::max)?;
     Some(match &map.bearing {

@@ -1,4 +1,4 @@
-//! The static friction coefficient that a slider without texture shows as a whole, which is below that of its blocks.
+//! The static friction coefficient of a slider without texture as a whole, which is below that of its blocks.
 
 use slipfront::{FrictionLaw, Slider};
 
@@ -6,25 +6,26 @@ use super::groups::Groups;
 use super::runnable::Case;
 use crate::case_file::{Attached, AttachedEdge, DriveStiffness, Motion};
 
-/// What a slider of blocks that hold differently bears as a whole, an estimate.
+/// An estimate of the static friction of a heterogeneous slider as a whole.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WholeSlider {
     /// mu_s of the slider as a whole.
     pub mu_static: f64,
-    /// Half the width of the range about it in which a run is expected.
+    /// Half the width of the range about the estimate in which a run is expected.
     pub half_width: f64,
-    /// `friction.mu_static` of the blocks with which the slider as a whole would have the one that is given, at the same V*.
+    /// Value of `friction.mu_static` of the blocks for which the slider as a whole would have the given coefficient, at the
+    /// same V*.
     pub for_given: f64,
 }
 
 /// R* of the tables of [`MEASURED`].
 const R_STAR: [f64; 4] = [0.25, 0.5, 0.75, 0.9];
-/// V* of their rows.
+/// V* of the rows of the tables.
 const V_STAR: [f64; 4] = [0.003, 0.01, 0.03, 0.1];
-/// sigma_s* of their columns.
+/// sigma_s* of the columns of the tables.
 const SIGMA_STAR: [f64; 5] = [0.0, 0.02, 0.05, 0.1, 0.2];
 
-/// mu_s* of 50 x 50 blocks, the mean of eight surfaces: `cases/studies/whole_slider.toml`, of which this is the table.
+/// mu_s* of 50 x 50 blocks, the mean of eight surfaces, measured by `cases/studies/whole_slider.toml`.
 const MEASURED: [[[f64; 5]; 4]; 4] = [
     [
         [1.000, 0.933, 0.831, 0.701, 0.605],
@@ -52,19 +53,20 @@ const MEASURED: [[[f64; 5]; 4]; 4] = [
     ],
 ];
 
-/// How far a run may be from the estimate, in units of `mu_static`: between the entries of the table the mean of surfaces is off by up to
-/// 0.020, and one of them scatters about it by up to 0.015.
+/// How far a run may be from the estimate, in units of `mu_static`: between the entries of the table the mean of surfaces is
+/// off by up to 0.020, and a single surface scatters about the mean by up to 0.015.
 const ACCURACY: f64 = 0.03;
 
-/// Fewest and most blocks along an axis for which this has been tried.
+/// Smallest and largest number of blocks along an axis for which the table was tried.
 const BLOCKS: [usize; 2] = [25, 200];
-/// Largest spread of kinetic coefficients and largest damping for which it has.
+/// Largest spread of kinetic coefficients and largest damping for which the table was tried.
 const MAX_SIGMA_KINETIC: f64 = 0.1;
 const MAX_OMEGA_STAR: f64 = 0.5;
 
 impl Case {
-    /// What the slider as a whole is expected to bear. None where there is no ground for an estimate: with a texture, blocks that
-    /// differ by more than chance, another law of friction or drive, or groups outside of what was measured.
+    /// Estimate of the static friction of the slider as a whole. None where there is no ground for an estimate: with a
+    /// texture, a slider that is heterogeneous by design, another law of friction or drive, or groups outside of the
+    /// measured ones.
     pub fn whole_slider(&self) -> Option<WholeSlider> {
         let share = self.has_measured_kind().then(|| interpolated(&self.groups))??;
         let mu_static = self.scales.mu_static_mean;
@@ -75,7 +77,7 @@ impl Case {
         })
     }
 
-    /// Whether the case is of the kind of those that were measured, but for its dimensionless groups.
+    /// Whether the case is of the measured kind, apart from its dimensionless groups.
     fn has_measured_kind(&self) -> bool {
         let (file, model) = (&self.file, &self.model);
         let (drive, load, friction) = (&file.drive, &file.load, &file.friction);
@@ -100,7 +102,7 @@ impl Case {
     }
 }
 
-/// mu_s* from the table, linear in R*, log V* and sigma_s*; none outside of it.
+/// mu_s* from the table, linear in R*, log V* and sigma_s*; none outside of the table.
 fn interpolated(groups: &Groups) -> Option<f64> {
     if groups.sigma_kinetic_star > MAX_SIGMA_KINETIC || groups.omega_star > MAX_OMEGA_STAR {
         return None;
@@ -117,7 +119,8 @@ fn interpolated(groups: &Groups) -> Option<f64> {
     Some(between([along_v(table), along_v(table + 1)], at_r))
 }
 
-/// The interval between neighbours of a rising grid in which a number lies, and where in it; none outside of the grid.
+/// The interval between neighbours of a rising grid in which a number lies, and its position there; none outside of the
+/// grid.
 fn place(grid: &[f64], number: f64) -> Option<(usize, f64)> {
     let within = |pair: &[f64]| (pair[0]..=pair[1]).contains(&number);
     let first = grid.windows(2).position(within)?;

@@ -41,7 +41,7 @@ impl<'a> Check<'a> {
         self.source.has(&self.path_of(key))
     }
 
-    /// Refuses a value that is not what its key takes.
+    /// Refuses a value that its key does not take.
     pub(super) fn value(&self, key: &str, value: &dyn Checked) -> Result<(), CaseError> {
         match self.keys.iter().find(|found| found.name == key) {
             Some(found) => self.value_of(&found.kind, key, value),
@@ -54,7 +54,7 @@ impl<'a> Check<'a> {
         self.hold(key, value.complaint(kind))
     }
 
-    /// Refuses a number out of bounds that depend on other values, or none (`nan`).
+    /// Refuses a number out of bounds that depend on other values, or NaN.
     pub(super) fn number_within(
         &self,
         key: &str,
@@ -73,9 +73,9 @@ impl<'a> Check<'a> {
     }
 }
 
-/// A value that is checked against what its key takes.
+/// A value that is checked against the kind of its key.
 pub(super) trait Checked {
-    /// What it is, and what it must be, if it is not of this kind.
+    /// A complaint about a value that is not of this kind: the value, and the values allowed.
     fn complaint(&self, kind: &KeyKind) -> Option<String>;
 }
 
@@ -156,7 +156,7 @@ fn is_within(bounds: Bounds, value: f64) -> bool {
     bounds.contains(&value) && value.is_finite()
 }
 
-/// What is wrong with a number out of its bounds, or none (`nan`).
+/// A complaint about a number out of its bounds, or NaN.
 fn out_of(bounds: Bounds, value: f64, remark: &str) -> Option<String> {
     let sentence = || format!("{}: it must be {}; {remark}", exact(value), in_words(bounds));
     (!is_within(bounds, value)).then(sentence)

@@ -1,8 +1,8 @@
 //! Tables in which one of two keys sets the same thing, such as `v_star` and `speed` in `[drive]`.
 
-/// Declares how a table with such a choice is read and written: a struct `$keys` with the keys as they stand in the file, and its
-/// conversions from and to the struct `$table`, where an enum in `$choice` says which key was given. A table with neither of them
-/// is refused with the sentence that follows.
+/// Declares how a table with such a choice is read and written: a struct `$keys` with the keys as they stand in the file,
+/// and its conversions from and to the struct `$table`, where an enum in `$choice` says which key was given. A table with
+/// neither key is refused with the sentence that follows.
 macro_rules! keys_with_choice {
     (
         $table:ident: $keys:ident {

@@ -1,8 +1,9 @@
-//! Limits how deep a text and a key lead, before they are parsed: tables within tables are read, copied, written and freed by
-//! functions that call themselves, each level of which takes some of the stack.
+//! Limits the depth of a text and of a key before they are parsed: tables within tables are read, copied, written and freed
+//! by functions that call themselves, each level of which takes some of the stack.
 //!
-//! `toml` itself refuses keys of 80 parts and brackets 80 deep, but not both together, which are tables 6400 deep. It also counts
-//! brackets that close nothing, as in `{ [], a = { [], a = `, so that a text of such mistakes takes it as deep as it is long.
+//! `toml` itself refuses keys of 80 parts and brackets 80 deep, but not both together, which are tables 6400 deep. The
+//! parser also counts brackets that close nothing, as in `{ [], a = { [], a = `, so that a text of such mistakes takes it as
+//! deep as it is long.
 
 use toml_parser::Source as Tokens;
 use toml_parser::lexer::TokenKind;
@@ -18,8 +19,7 @@ const MAX_PARTS: usize = 4;
 
 /// The parts of a key by which a value is set, such as `texture.0.coverage`.
 ///
-/// # Errors
-/// A sentence, if they are too many or no names.
+/// # Errors A sentence, if the parts are too many or no names.
 pub fn parts_of(key: &str) -> Result<Vec<&str>, &'static str> {
     let is_bare = |c: char| c.is_ascii_alphanumeric() || "_-".contains(c);
     let is_name = |part: &&str| !part.is_empty() && part.chars().all(is_bare);
@@ -33,7 +33,7 @@ pub fn parts_of(key: &str) -> Result<Vec<&str>, &'static str> {
     Ok(parts)
 }
 
-/// The text, which begins at `offset` of the source, if it can be parsed as TOML without going too deep.
+/// Returns the text, which begins at `offset` of the source, if it can be parsed as TOML without going too deep.
 ///
 /// # Errors
 /// [`CaseError::Invalid`] at the bracket or dot that is nested too deep.
@@ -55,7 +55,7 @@ struct OpenBracket {
     dots: usize,
 }
 
-/// Where the first bracket or dot stands that leads too deep.
+/// Position of the first bracket or dot that leads too deep.
 fn too_deep(text: &str) -> Option<usize> {
     let level = |bracket| OpenBracket { bracket, dots: 0 };
     // The last one is never closed: brackets that close nothing find no other of their kind.
@@ -140,7 +140,8 @@ mod tests {
         }
     }
 
-    /// The parser's own limits, which hold for keys and for brackets alone, are not reached: the sentence is always ours.
+    /// The parser's own limits, which hold for keys and for brackets alone, are not reached: the sentence is always one of
+    /// this crate.
     #[test]
     fn what_is_let_through_is_parsed() {
         let nested = |levels: usize, key: &str| {

@@ -11,7 +11,7 @@ use super::source::Source;
 use super::synonyms::advice_on;
 use crate::text::truncated;
 
-/// What the parser says of common slips, by how its message begins, and what a user needs to know of them.
+/// Messages of the parser about common slips, by their beginnings, and the advice for a user on each.
 const GRAMMAR: [(&str, &str); 7] = [
     (
         "string values must be quoted",
@@ -52,8 +52,8 @@ pub fn syntax_error(source: &Source, offset: usize, error: &toml::de::Error) -> 
     source.error_at(span, sentence)
 }
 
-/// An error of serde at `span`, while it reads the table under `header`, whose keys are `known`, those of `section` if it is one
-/// of a case.
+/// An error of serde at `span`, while the table under `header` is read, whose keys are `known`; they are the keys of
+/// `section` if the table is one of a case.
 pub(super) fn value_error(
     source: &Source,
     span: Range<usize>,
@@ -103,13 +103,13 @@ pub(super) fn value_error(
     source.error_at(span, sentence)
 }
 
-/// The name, and those that were expected, in a message of serde: "unknown field `name`, expected one of `a`, `b`".
+/// The unknown name and the expected names in a message of serde: "unknown field `name`, expected one of `a`, `b`".
 fn name_and_expected<'m>(message: &'m str, start: &str) -> Option<(&'m str, Vec<&'m str>)> {
     let (name, expected) = message.strip_prefix(start)?.rsplit_once("`, expected ")?;
     Some((name, expected.split('`').skip(1).step_by(2).collect()))
 }
 
-/// Advice on a word that is none of those `known` if it is about the table of its key, the `subject`.
+/// Advice on a word that is none of the `known` words if it is about the table of its key, the `subject`.
 fn unknown_word(word: &str, known: &[&str], subject: &str) -> String {
     let quoted: Vec<String> = known.iter().map(|word| format!("\"{word}\"")).collect();
     let list = quoted.join(", ");
@@ -126,7 +126,7 @@ fn one_line(message: &str) -> String {
     message.trim().replace('\n', ", ")
 }
 
-/// What serde expected, in a message about a value that is of another type or length.
+/// The expected type in a message of serde about a value of another type or length.
 fn expected_by(message: &str) -> Option<&str> {
     if message == "integer number overflowed" {
         return Some("a whole number");
@@ -143,7 +143,7 @@ fn expected_by(message: &str) -> Option<&str> {
     }
 }
 
-/// What a key takes by the table of keys; none where serde says more of its form.
+/// The values that a key takes by the table of keys; none where serde says more about their form.
 fn takes(key: &Key, message: &str) -> Option<String> {
     let example = if key.default.starts_with('[') {
         format!(", such as {}", key.default)
@@ -174,8 +174,8 @@ fn takes(key: &Key, message: &str) -> Option<String> {
     })
 }
 
-/// What else may help with a value as it was `written`: a number needs no quotes and a point, not a comma, and a key with a unit
-/// may have a partner without, and the other way round. Else a number has its remark.
+/// Further advice about a value as it was `written`: a number needs no quotes and a point, not a comma, and a key with a
+/// unit may have a partner without, and the other way round. In other cases a number has its remark.
 fn hint(key: &Key, section: Option<&Section>, written: &str) -> String {
     let quantity = |key: &Key| matches!(key.kind, KeyKind::Quantity { .. });
     // The same thing with a unit, or without.
@@ -210,7 +210,7 @@ fn hint(key: &Key, section: Option<&Section>, written: &str) -> String {
     }
 }
 
-/// What serde expected, with the names of TOML's types in place of those of Rust's.
+/// The type that serde expected, with TOML's names of types in place of Rust's.
 fn in_plain_words(expected: &str) -> String {
     const WORDS: [(&str, &str); 9] = [
         ("f64", "a number"),

@@ -1,4 +1,4 @@
-//! `[drive]`: how the slider is pulled.
+//! The table `[drive]`: the pull on the slider.
 
 use serde::{Deserialize, Deserializer, Serialize};
 use slipfront::{Edge, Edges};
@@ -11,7 +11,7 @@ use super::values::word;
 use super::words::{AttachedEdge, Loading, Motion, Outline};
 use crate::quantity::{QuantityError, Speed, Stiffness, StiffnessPerArea};
 
-/// `[drive]`: how the slider is pulled.
+/// The table `[drive]`: the pull on the slider.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "DriveKeys", into = "DriveKeys")]
 pub struct Drive {
@@ -19,11 +19,11 @@ pub struct Drive {
     pub speed: DriveSpeed,
     /// Direction of the drive (theta), degrees from x towards y, -360 to 360.
     pub direction: f64,
-    /// How the far ends of the drive springs move.
+    /// Motion of the far ends of the drive springs.
     pub motion: Motion,
-    /// Whether it stands still while a block in contact slides.
+    /// Whether the drive stands still while a block in contact slides.
     pub loading: Loading,
-    /// Which blocks have a drive spring: `attach` or `attach_file`.
+    /// Blocks that have a drive spring: `attach` or `attach_file`.
     pub attached: Attached,
     /// Stiffness of the drive springs: `stiffness`, `stiffness_star`, `stiffness_per_area`, `total_stiffness` or `total_stiffness_star`.
     pub stiffness: DriveStiffness,
@@ -46,7 +46,7 @@ pub enum DriveSpeed {
 pub struct SpeedSegment {
     /// V*, -10 to 10.
     pub v_star: f64,
-    /// t* at which it ends; none for the last.
+    /// t* at which the segment ends; none for the last segment.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub until_star: Option<f64>,
 }
@@ -54,7 +54,7 @@ pub struct SpeedSegment {
 /// The blocks that have a drive spring.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Attached {
-    /// `attach`.
+    /// The key `attach`: the blocks of an edge, or all.
     At(AttachedEdge),
     /// `attach_file`: a `.png` (dark pixels are driven) or a `.npy` of shape (ny, nx) of 0 and 1 (driven), relative to the case file.
     File(String),
@@ -63,21 +63,21 @@ pub enum Attached {
 /// The stiffness of the drive springs.
 #[derive(Clone, Debug, PartialEq)]
 pub enum DriveStiffness {
-    /// `stiffness = "auto"`: k_2 of each.
+    /// The value `stiffness = "auto"`: k_2 for each spring.
     Auto,
-    /// `stiffness`: of each, N/m.
+    /// The key `stiffness`: of each spring, N/m.
     Each(Stiffness),
-    /// `stiffness_star`: of each over E h, more than 0.
+    /// The key `stiffness_star`: of each spring over E h, more than 0.
     EachStar(f64),
-    /// `stiffness_per_area`: of each over the area of a block, N/m^3.
+    /// The key `stiffness_per_area`: of each spring over the area of a block, N/m^3.
     PerArea(StiffnessPerArea),
-    /// `total_stiffness`: of all together, N/m.
+    /// The key `total_stiffness`: of all springs together, N/m.
     Total(Stiffness),
-    /// `total_stiffness_star`: of all together over E h, more than 0.
+    /// The key `total_stiffness_star`: of all springs together over E h, more than 0.
     TotalStar(f64),
 }
 
-/// Most segments of a program.
+/// Largest number of segments of a program.
 const MAX_SEGMENTS: usize = 10_000;
 
 impl Drive {
@@ -183,7 +183,7 @@ fn check_program(segments: &[SpeedSegment], check: &Check) -> Result<(), CaseErr
     Ok(())
 }
 
-/// `[drive]` as it stands in the file.
+/// The table `[drive]` as it stands in the file.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct DriveKeys {
@@ -205,7 +205,7 @@ struct DriveKeys {
     total_stiffness_star: Option<f64>,
 }
 
-/// `stiffness` as it stands in the file.
+/// The key `stiffness` as it stands in the file.
 #[derive(Clone, Serialize, Deserialize)]
 #[serde(try_from = "String", into = "String")]
 enum AutoOrStiffness {

@@ -1,4 +1,4 @@
-//! What can be wrong with a case file, in sentences that name the place and the remedy.
+//! Errors of case files, in sentences that name the place and the remedy.
 
 use std::fmt;
 use std::io;
@@ -31,21 +31,21 @@ pub enum CaseError {
     Invalid(Box<Invalid>),
     #[error("stopped while the texture was laid over the blocks; nothing was written")]
     Stopped,
-    /// In the words of the rank that has found it.
+    /// An error of another rank, in the words of that rank.
     #[error("{0}")]
     OnOtherRank(String),
     #[error(transparent)]
     Differs(#[from] Difference),
 }
 
-/// Something that is wrong with the contents of a case, and where.
+/// An error in the contents of a case, with its place.
 #[derive(Debug, Error)]
 #[error("{}{sentence}{}", place.as_ref().map(|place| format!("{place}: ")).unwrap_or_default(),
     place.as_ref().map(Place::excerpt).unwrap_or_default())]
 pub struct Invalid {
-    /// Where it was written; none for values that were set in code.
+    /// Place at which the wrong value was written; none for values that were set in code.
     pub place: Option<Place>,
-    /// What is wrong, and what to write instead.
+    /// The error, and the remedy.
     pub sentence: String,
 }
 
@@ -57,10 +57,10 @@ impl CaseError {
     }
 }
 
-/// Where a value was written.
+/// Place at which a value was written.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Place {
-    /// In the case file.
+    /// A place in the case file.
     File {
         /// The file's name.
         name: String,
@@ -71,7 +71,7 @@ pub enum Place {
         /// The line, and below it a caret under the value.
         excerpt: String,
     },
-    /// In the value of a `--set`, which is given here.
+    /// A place in the value of a `--set`, which is given here.
     Override(String),
 }
 

@@ -49,14 +49,14 @@ pub struct CaseFile {
     pub drive: Drive,
     /// `[friction]`: the law and the local coefficients.
     pub friction: Friction,
-    /// `[[texture]]`: the parts of the surface that do not touch; they unite.
+    /// `[[texture]]`: the parts of the surface that do not touch; a block inside any of them is textured.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub texture: Vec<Texture>,
     /// `[time]`: duration, step, end and averaging window.
     pub time: Time,
-    /// `[output]`: what is written.
+    /// `[output]`: the results that are written.
     pub output: Output,
-    /// What the case was read from, for errors found later: see [`Source::error`].
+    /// Text of the case for errors found later: see [`Source::error`].
     #[serde(skip)]
     pub source: Source,
 }
@@ -67,8 +67,8 @@ impl CaseFile {
     /// `name` stands for the file in messages. An override's value is TOML, or else a string as it stands; it replaces
     /// a key that excludes it, such as `drive.v_star` of the file when `drive.speed` is set.
     ///
-    /// # Errors
-    /// [`CaseError::Invalid`], with its place, for what is not TOML, not a known key, or out of its bounds.
+    /// # Errors [`CaseError::Invalid`], with its place, for text that is not TOML, unknown keys and values out of their
+    /// bounds.
     pub fn parse(text: &str, name: &str, overrides: &[String]) -> Result<Self, CaseError> {
         let base = ParsedCase::parse(text, name)?;
         let overrides = overrides.iter().map(|entry| Override::parse(entry));
@@ -85,7 +85,7 @@ impl CaseFile {
         Self::parse(&text, &path.display().to_string(), overrides)
     }
 
-    /// Every file that the case names, and what the case was read from, for errors about a file.
+    /// Every file that the case names, and the source of the case, for errors about a file.
     pub fn files_mut(&mut self) -> (impl Iterator<Item = NamedFile<'_>>, &Source) {
         let named = |key: &str, name, holds| NamedFile {
             key: key.to_owned(),
@@ -142,8 +142,7 @@ impl CaseFile {
 
     /// Writes the case with every default filled in, in the order of the design; reading it back gives an equal case.
     ///
-    /// # Errors
-    /// Those of [`check`](Self::check) for a case that was changed in code: what is written can be read.
+    /// # Errors Errors of [`check`](Self::check) for a case that was changed in code, so that the written text can be read.
     pub fn to_toml(&self) -> Result<String, CaseError> {
         self.check()?;
         Ok(toml::to_string(self)?)
@@ -165,7 +164,7 @@ impl CaseFile {
     }
 }
 
-/// Adds all values below a key, by the keys that lead there. An array of plain values is one of them.
+/// Adds all values below a key, by their full keys. An array of plain values is one value.
 fn flatten(key: &str, value: &toml::Value, values: &mut Vec<(String, String)>) {
     let below = |name: &str| match key {
         "" => name.to_owned(),
@@ -188,15 +187,15 @@ fn flatten(key: &str, value: &toml::Value, values: &mut Vec<(String, String)>) {
 
 /// A file that a case names.
 pub struct NamedFile<'a> {
-    /// The key that names it.
+    /// The key that names the file.
     pub key: String,
-    /// Its path, relative to the case file.
+    /// Path of the file, relative to the case file.
     pub name: &'a mut String,
-    /// What it is read as.
+    /// Use for which the file is read.
     pub holds: FileUse,
 }
 
-/// What a file is read as.
+/// Use for which a file is read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FileUse {
     /// A value of each block, or an image of the slider.
@@ -223,8 +222,7 @@ pub struct ParsedCase<'t> {
 impl<'t> ParsedCase<'t> {
     /// Parses the text of a case file, which messages call `name`.
     ///
-    /// # Errors
-    /// [`CaseError::Invalid`] for what is not TOML.
+    /// # Errors [`CaseError::Invalid`] for text that is not TOML.
     pub fn parse(text: &'t str, name: &str) -> Result<Self, CaseError> {
         let source = Source::new(name, text);
         let root = DeTable::parse(limit_nesting(&source, 0, text)?);
@@ -236,11 +234,10 @@ impl<'t> ParsedCase<'t> {
         })
     }
 
-    /// This case with these overrides, as the base of many cases: it is read here, so that [`with`](Self::with) reads no more
-    /// than the tables that are changed further.
+    /// Makes the case with these overrides the base of many cases. The base is read once, so that [`with`](Self::with) only
+    /// reads the tables that are changed further.
     ///
-    /// # Errors
-    /// [`CaseError::Invalid`] for an override that does not fit; what is wrong with the case is told by `with`.
+    /// # Errors [`CaseError::Invalid`] for an override that does not fit; errors of the case come from `with`.
     pub fn prepared<'a>(&'a self, overrides: &[&'a Override]) -> Result<ParsedCase<'a>, CaseError> {
         let mut prepared = ParsedCase {
             root: self.root.clone(),
@@ -282,7 +279,7 @@ impl<'t> ParsedCase<'t> {
             root,
             source: &source,
         };
-        /// A table of the case, read unless it is that of the case without overrides.
+        /// Expands to a table of the case, which is read only if an override has changed it.
         macro_rules! table {
             ($name:ident, $read:expr) => {
                 match plain {

@@ -1,4 +1,4 @@
-//! Keys of a case file: what a key takes, its bounds, default and title, and the words by which rows of the table are written.
+//! Keys of a case file: kind, bounds, default and title of each, and the functions by which rows of the table are written.
 //!
 //! Bounds on quantities are generous: they refuse typing errors (a block of 1000 km), not unusual materials.
 
@@ -7,23 +7,23 @@ use std::ops::Bound::{self, Excluded, Included};
 /// A range of numbers.
 pub type Bounds = (Bound<f64>, Bound<f64>);
 
-/// What a key takes.
+/// Kind of the values that a key takes.
 #[derive(Clone, Copy, Debug)]
 #[expect(
     missing_docs,
     reason = "the sentence of each variant tells what its fields are"
 )]
 pub enum KeyKind {
-    /// A number, or one of these words in its place. The remark ends the sentence about a number out of bounds.
+    /// A number, or one of the given words in its place. The remark ends the sentence about a number out of bounds.
     Number {
         bounds: Bounds,
         remark: &'static str,
         words: &'static [&'static str],
     },
-    /// A string of number and unit; the bounds are in this unit of the SI.
+    /// A string of number and unit; the bounds are in the SI unit `unit`.
     Quantity { unit: &'static str, bounds: Bounds },
-    /// A whole number, or a pair of them. The noun is what it must be, where "from 1 to 64" does not say enough, and the
-    /// remark ends the sentence about a number out of bounds.
+    /// A whole number, or a pair of them. The noun names the value where "from 1 to 64" does not say enough; the remark ends
+    /// the sentence about a number out of bounds.
     Whole {
         least: u64,
         most: u64,
@@ -34,42 +34,42 @@ pub enum KeyKind {
     Words(fn() -> &'static [&'static str]),
     /// `true` or `false`.
     Switch,
-    /// The path of a file of one of these formats.
+    /// The path of a file of one of the given formats.
     File(&'static [&'static str]),
-    /// A value whose bounds depend on others, or that has a form of its own: its bounds in words.
+    /// A value whose bounds depend on others, or that has a form of its own, with its bounds in words.
     Special(&'static str),
 }
 
-/// What a quantity is called along an axis of a picture.
+/// Title of a quantity along an axis of a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Title {
-    /// What it is, in words.
+    /// Name of the quantity in words.
     pub words: &'static str,
-    /// Its symbol; empty if it has none. Subscripts are Unicode's subscript letters.
+    /// Symbol of the quantity; empty if it has none. Subscripts are Unicode's subscript letters.
     pub symbol: &'static str,
-    /// Its unit as pictures print it; empty for a number without unit.
+    /// Unit of the quantity as pictures print it; empty for a number without unit.
     pub unit: &'static str,
 }
 
 /// A key of a case file.
 #[derive(Clone, Copy, Debug)]
 pub struct Key {
-    /// Its name within its table.
+    /// Name of the key within its table.
     pub name: &'static str,
-    /// What it takes.
+    /// Kind of the values that the key takes.
     pub kind: KeyKind,
-    /// Its default as TOML; empty if it has none.
+    /// Default of the key as TOML; empty if it has none.
     pub default: &'static str,
-    /// The keys that set the same thing: a table has one of them.
+    /// The keys that set the same quantity: a table has one of them.
     partners: [Option<&'static str>; 4],
-    /// Its title; none for keys that no picture has along an axis.
+    /// Title of the key; none for keys that no picture has along an axis.
     pub title: Option<Title>,
-    /// What it means, in one line.
+    /// Meaning of the key, in one line.
     pub doc: &'static str,
 }
 
 impl Key {
-    /// The keys that set the same thing: a table has one of them.
+    /// The keys that set the same quantity: a table has one of them.
     pub fn partners(&self) -> impl Iterator<Item = &'static str> + use<> {
         self.partners.into_iter().flatten()
     }
@@ -130,22 +130,22 @@ pub(super) const fn whole(least: u64, most: u64) -> KeyKind {
     }
 }
 
-/// From `low` to `high`, both included.
+/// Bounds from `low` to `high`, both included.
 pub(super) const fn within(low: f64, high: f64) -> Bounds {
     (Included(low), Included(high))
 }
 
-/// More than `low`, at most `high`.
+/// Bounds above `low`, up to and with `high`.
 pub(super) const fn above(low: f64, high: f64) -> Bounds {
     (Excluded(low), Included(high))
 }
 
-/// More than `low`, less than `high`.
+/// Bounds above `low` and below `high`.
 pub(super) const fn between(low: f64, high: f64) -> Bounds {
     (Excluded(low), Excluded(high))
 }
 
-/// A stiffness per area with its unit.
+/// Kind of a stiffness per area with its unit.
 pub(super) const STIFFNESS_PER_AREA: KeyKind = quantity("N/m^3", within(1e-30, 1e40));
 /// The longest time, in t*.
 pub(super) const MAX_TIME_STAR: f64 = 1e9;
@@ -170,7 +170,7 @@ pub(super) const TIME_STAR: KeyKind = number(POSITIVE_TIME, "it is a time t*");
 /// The word that stands for a number which the case decides.
 pub(super) const AUTO: &[&str] = &["auto"];
 
-/// How many keys there are in some lists of them.
+/// Number of keys in some lists of them.
 pub(super) const fn count(lists: &[&[Key]]) -> usize {
     let (mut sum, mut list) = (0, 0);
     while list < lists.len() {
@@ -180,7 +180,7 @@ pub(super) const fn count(lists: &[&[Key]]) -> usize {
     sum
 }
 
-/// Some lists of keys as one, of [`count`] keys.
+/// Some lists of keys joined to one, of [`count`] keys.
 pub(super) const fn joined<const COUNT: usize>(lists: &[&[Key]]) -> [Key; COUNT] {
     let mut keys = [lists[0][0]; COUNT];
     let (mut place, mut list) = (0, 0);

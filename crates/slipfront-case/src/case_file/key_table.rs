@@ -1,4 +1,4 @@
-//! The table of keys: for every key of a case file what it takes, its bounds, default and title.
+//! The table of keys: kind, bounds, default and title of every key of a case file.
 
 use std::borrow::Cow;
 use std::collections::HashMap;
@@ -25,19 +25,19 @@ use super::words::{AttachedEdge, Loading, Motion, Outline};
 pub struct Section {
     /// The name of the table; for a shape of texture, the shape.
     pub name: &'static str,
-    /// Whether it is a shape of `[[texture]]`.
+    /// Whether the section is a shape of `[[texture]]`.
     pub is_shape: bool,
-    /// Its keys, in the order of the documentation. `shape` itself is not among those of a texture.
+    /// Keys of the section, in the order of the documentation. `shape` itself is not among the keys of a texture.
     pub keys: &'static [Key],
 }
 
 impl Section {
-    /// The top-level table of the file that holds its keys.
+    /// The top-level table of the file that holds the section's keys.
     pub fn table(&self) -> &'static str {
         if self.is_shape { TEXTURE } else { self.name }
     }
 
-    /// The key of this name.
+    /// The key of the section with this name.
     pub fn key(&self, name: &str) -> Option<&'static Key> {
         self.keys.iter().find(|key| key.name == name)
     }
@@ -75,7 +75,7 @@ static DEFAULTS: LazyLock<HashMap<&str, Defaults>> = LazyLock::new(|| {
 /// The table of the textures.
 pub(super) const TEXTURE: &str = "texture";
 
-/// Most blocks along an axis.
+/// Largest number of blocks along an axis.
 pub(crate) const MAX_BLOCKS: u64 = 100_000;
 /// dt* at which the scheme becomes unstable: 2/sqrt(6.5 x 0.75) = 0.9058.
 pub(super) const UNSTABLE_STEP: f64 = 0.9058;
@@ -255,7 +255,7 @@ fn sections_of(table: &str) -> impl Iterator<Item = &'static Section> {
     SECTIONS.iter().filter(move |section| section.table() == table)
 }
 
-/// The names of the keys that exclude `key` in a table: each sets the same thing.
+/// The names of the keys that exclude `key` in a table because each sets the same quantity.
 pub(super) fn partners<'k>(table: &'k str, key: &'k str) -> impl Iterator<Item = &'static str> + 'k {
     let keys = sections_of(table).filter_map(move |section| section.key(key));
     keys.flat_map(Key::partners)

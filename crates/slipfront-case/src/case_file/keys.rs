@@ -1,4 +1,4 @@
-//! Which keys a case file has, which exclude each other, and which one a misspelt one was meant to be.
+//! The keys of a case file, those that exclude each other, and the key that a misspelt one was meant to be.
 
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
@@ -11,7 +11,8 @@ use super::synonyms::advice_on;
 /// The longest name that is compared with the known ones, in bytes.
 const MAX_NAME: usize = 100;
 
-/// The shortest word that names a longer one of which it is a part, such as "stress" of "contact_stress_star", in bytes.
+/// Length in bytes of the shortest word that names a longer one of which it is a part, such as "stress" for
+/// "contact_stress_star".
 const MIN_PART: usize = 4;
 
 /// The names of the tables, in the order of the design.
@@ -20,7 +21,7 @@ pub const TABLES: [&str; 7] = ["slider", "load", "drive", "friction", "texture",
 /// The names of the tables of a study file.
 pub const STUDY_TABLES: [&str; 3] = ["base", "study", "axes"];
 
-/// The table that a design file alone has.
+/// The table that only a design file has.
 pub(super) const DESIGN: &str = "design";
 
 /// A table's header as it stands in the file.
@@ -49,7 +50,7 @@ fn home_of(key: &str) -> Option<String> {
     Some(header(home.name))
 }
 
-/// The keys that set the same thing as a key such as `drive.v_star`, which has `drive.speed`.
+/// The keys that set the same quantity as a key such as `drive.v_star`, which has `drive.speed`.
 pub fn partners_of(key: &str) -> Vec<String> {
     let Some((table, leaf)) = key.rsplit_once('.') else {
         return Vec::new();
@@ -60,7 +61,7 @@ pub fn partners_of(key: &str) -> Vec<String> {
         .collect()
 }
 
-/// Whether two keys, such as `drive.v_star` and `drive.speed`, set the same thing.
+/// Whether two keys, such as `drive.v_star` and `drive.speed`, set the same quantity.
 pub fn exclude_each_other(one: &str, other: &str) -> bool {
     partners_of(one).iter().any(|partner| partner == other)
 }
@@ -155,7 +156,7 @@ pub(super) fn unknown_shape(shape: Option<&str>) -> String {
     }
 }
 
-/// The one of `known` that `word` was probably meant to be.
+/// The word among `known` that `word` was probably meant to be.
 pub(super) fn nearest<'k>(word: &str, known: &[&'k str]) -> Option<&'k str> {
     // The distance takes time and memory in proportion to the word, which may be as long as the file.
     if word.len() > MAX_NAME {

@@ -1,13 +1,13 @@
-//! A length that a case leaves to its blocks.
+//! A length that follows the block because no key gives it.
 
 use std::fmt;
 
-/// A length of the material that is the block's, since no key gives it.
+/// A length of the material that equals the length of a block because no key gives it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LengthOfABlock {
     /// The length, such as "the thickness of the sheet".
     pub length: &'static str,
-    /// The key that gives it.
+    /// The key that would give the length.
     pub key: &'static str,
 }
 

@@ -45,7 +45,7 @@ pub fn read_text(path: &Path) -> Result<String, CaseError> {
     })
 }
 
-/// Most entries of a folder among which a similar name is looked for.
+/// Largest number of entries of a folder among which a similar name is looked for.
 const MAX_ENTRIES: usize = 10_000;
 
 /// The file that a missing one was probably meant to be: one of a similar name, or with the ending .toml, in the same folder,

@@ -24,7 +24,7 @@ pub struct Load {
     pub pressure_field: Option<String>,
 }
 
-/// What rises along an axis, `1 + relative_slope (2 x/L - 1)` times its mean.
+/// A profile along an axis, `1 + relative_slope (2 x/L - 1)` times the mean.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Profile {
@@ -39,9 +39,9 @@ pub struct Profile {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Along {
-    /// Along rows.
+    /// The axis along rows.
     X,
-    /// Along columns.
+    /// The axis along columns.
     Y,
 }
 

@@ -1,4 +1,4 @@
-//! `[output]`: what is written, how often and how finely.
+//! The table `[output]`: the results that are written, their instants and their resolution.
 
 use serde::{Deserialize, Serialize};
 use slipfront::observe::Field;
@@ -9,7 +9,7 @@ use super::key_table::{SNAPSHOT_TIME, SPACING};
 use super::values::{AutoOr, words};
 use crate::number_format::exact;
 
-/// `[output]`: snapshots, fields and the series.
+/// The table `[output]`: snapshots, fields and the series.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Output {
@@ -18,7 +18,7 @@ pub struct Output {
     /// The fields that are written at these instants.
     #[serde(deserialize_with = "words")]
     pub fields: Vec<Field>,
-    /// Every n-th block, along x and along y, is written to the fields file; 1 or more.
+    /// Stride n of the fields file, which has every n-th block along x and along y; 1 or more.
     pub stride: u32,
     /// Spacing of the rows of the series in t*; `auto` is every step, or as many as give at most 20 000 rows.
     pub series: AutoOr,

@@ -13,11 +13,11 @@ use super::error::CaseError;
 use super::key_table::partners;
 use super::source::Source;
 
-/// A key of a case file and its new value. It replaces a key that excludes it, as `drive.speed` does `drive.v_star`; of
-/// two overrides of one key the later holds.
+/// A key of a case file and its new value. The override removes a key that excludes it, as `drive.speed` does
+/// `drive.v_star`; the later of two overrides of one key holds.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Override {
-    /// `KEY=VALUE`, as messages repeat it.
+    /// The override as messages repeat it: `KEY=VALUE`.
     text: String,
     key: Range<usize>,
     value: Range<usize>,
@@ -77,12 +77,12 @@ impl Override {
         })
     }
 
-    /// The key.
+    /// The key that the override sets.
     pub fn key(&self) -> &str {
         &self.text[self.key.clone()]
     }
 
-    /// The value: a string where it is not TOML.
+    /// The value of the override: a string where it is not TOML.
     pub fn value(&self) -> toml::Value {
         let text = &self.text[self.value.clone()];
         let parsed = format!("value = {text}").parse::<toml::Table>();
@@ -90,7 +90,7 @@ impl Override {
         value.unwrap_or_else(|| toml::Value::from(text))
     }
 
-    /// The top-level table that it changes.
+    /// The top-level table that the override changes.
     pub(super) fn table(&self) -> &str {
         self.key().split('.').next().unwrap_or_default().trim()
     }

@@ -1,4 +1,4 @@
-//! `pitch`, `array`, `lattice`, `repeat` and `invert` of a `[[texture]]`: how often its shape stands where.
+//! Keys `pitch`, `array`, `lattice`, `repeat` and `invert` of a `[[texture]]`: the copies of its shape.
 
 use serde::{Deserialize, Serialize};
 
@@ -10,9 +10,9 @@ use super::values::{Pair, length, word};
 use super::words::Arrangement;
 use crate::quantity::Length;
 
-/// Most columns, and most rows, of all arrays of a texture together.
+/// Largest number of columns, and of rows, of all arrays of a texture together.
 pub(crate) const MAX_COUNT: u64 = 1000;
-/// Columns and rows.
+/// Kind of the number of columns and rows.
 const COUNT: KeyKind = whole(1, MAX_COUNT);
 
 /// The keys of a pattern, which all shapes have.
@@ -28,7 +28,7 @@ pub(super) const KEYS: &[Key] = &[
     key("invert", "false", KeyKind::Switch, "whether all but the inside is textured"),
 ];
 
-/// The pattern in which the shape of a texture is repeated: by default it is not.
+/// The pattern in which the shape of a texture is repeated; by default it stands once.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Pattern {
@@ -36,12 +36,12 @@ pub struct Pattern {
     pub pitch: Option<Pitch>,
     /// Columns and rows of copies.
     pub array: Count,
-    /// How they are arranged.
+    /// Arrangement of the copies.
     #[serde(deserialize_with = "word")]
     pub lattice: Arrangement,
-    /// A pattern at every place of which the array stands.
+    /// A pattern that holds the array at every place.
     pub repeat: Option<Array>,
-    /// Whether what lies outside of the shapes is textured, in place of what lies inside.
+    /// Whether the parts outside of the shapes are textured, in place of the parts inside.
     pub invert: bool,
 }
 
@@ -51,37 +51,37 @@ pub struct Pattern {
 pub struct Array {
     /// Distance between neighbouring places.
     pub pitch: Option<Pitch>,
-    /// Columns and rows of them.
+    /// Number of columns and rows.
     #[serde(default)]
     pub array: Count,
-    /// How they are arranged.
+    /// Arrangement of the places.
     #[serde(default, deserialize_with = "word")]
     pub lattice: Arrangement,
 }
 
-/// `array`: columns and rows.
+/// The key `array`: columns and rows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(try_from = "CountKey", into = "CountKey")]
 pub enum Count {
-    /// `"auto"`: as many as have room in steps of `pitch`, or one without a pitch.
+    /// The value `"auto"`: as many as have room in steps of `pitch`, or one without a pitch.
     #[default]
     Auto,
-    /// `[columns, rows]`, 1 to 1000 each.
+    /// The value `[columns, rows]`, 1 to 1000 each.
     Of([u32; 2]),
 }
 
-/// `pitch`: the distance between neighbours, m.
+/// The key `pitch`: the distance between neighbours, m.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "PitchKey", into = "PitchKey")]
 pub enum Pitch {
-    /// One length: between columns and between rows, or of a hexagonal lattice between all neighbours.
+    /// One length: between columns and between rows, or for a hexagonal lattice between all neighbours.
     Equal(Length),
-    /// `[x, y]`: between columns, and between rows.
+    /// The value `[x, y]`: between columns, and between rows.
     Each([Length; 2]),
 }
 
 impl Pattern {
-    /// The arrays, the outermost first, with what stands before the names of their keys.
+    /// The arrays, the outermost first, with the prefix of the names of their keys.
     pub(crate) fn arrays(&self) -> impl Iterator<Item = (&'static str, Array)> + '_ {
         let own = Array {
             pitch: self.pitch.clone(),
@@ -109,7 +109,7 @@ impl Pattern {
 }
 
 impl Array {
-    /// Whether it is more than one place.
+    /// Whether the array has more than one place.
     pub(crate) fn is_array(&self) -> bool {
         self.pitch.is_some() || self.array != Count::Auto
     }
@@ -153,7 +153,7 @@ impl Pitch {
 
 const COUNT_EXPECTED: &str = "expected \"auto\" or a pair of whole numbers from 1 to 1000, such as [4, 3]";
 
-/// `array` as it stands in the file.
+/// The key `array` as it stands in the file.
 #[derive(Serialize, Deserialize)]
 #[serde(
     untagged,
@@ -185,7 +185,7 @@ impl From<Count> for CountKey {
     }
 }
 
-/// `pitch` as it stands in the file: texts, so that a length that cannot be read keeps its own message.
+/// The key `pitch` as it stands in the file: texts, so that a length that cannot be read keeps its own message.
 #[derive(Serialize, Deserialize)]
 #[serde(
     untagged,

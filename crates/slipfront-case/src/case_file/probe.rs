@@ -1,4 +1,4 @@
-//! The names that serde reads a type by: the fields of a struct, the words of an enum.
+//! The names by which serde reads a type: the fields of a struct, the words of an enum.
 
 use serde::de::value::Error as ProbeError;
 use serde::de::{DeserializeOwned, Deserializer, Error as _, Visitor};
@@ -11,7 +11,7 @@ pub fn names_of<T: DeserializeOwned>() -> &'static [&'static str] {
     names
 }
 
-/// A deserializer that notes the names a type asks for.
+/// A deserializer that notes the names for which a type asks.
 struct Probe<'a>(&'a mut &'static [&'static str]);
 
 impl<'de> Deserializer<'de> for Probe<'_> {

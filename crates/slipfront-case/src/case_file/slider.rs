@@ -21,7 +21,7 @@ pub struct Slider {
     pub blocks: [u32; 2],
     /// Edge of a block (l), m.
     pub block_size: Length,
-    /// Thickness of the sheet that the slider is (h), m; `block_size` if not given.
+    /// Thickness of the sheet (h), m; `block_size` if not given.
     pub thickness: Option<Length>,
     /// Young's modulus (E), Pa.
     pub young_modulus: Pressure,
@@ -54,13 +54,13 @@ pub struct Grade {
     /// The axis.
     #[serde(deserialize_with = "word")]
     pub along: Along,
-    /// At the edge where the axis begins, 1e-6 to 1e6.
+    /// Value at the edge where the axis begins, 1e-6 to 1e6.
     pub from: f64,
-    /// At the other edge, 1e-6 to 1e6.
+    /// Value at the other edge, 1e-6 to 1e6.
     pub to: f64,
 }
 
-/// How strongly the motion is damped.
+/// Damping of the motion.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Damping {
     /// `omega_star`: Omega over the square root of `k_straight/block_mass`, dimensionless, 0 to 1000.
@@ -69,9 +69,9 @@ pub enum Damping {
     Rate(Rate),
 }
 
-/// Most blocks altogether.
+/// Largest number of all blocks.
 pub(crate) const MAX_BLOCKS_TOTAL: u64 = 4_000_000_000;
-/// Fewest blocks along a periodic axis: a block has two neighbours there.
+/// Smallest number of blocks along a periodic axis, where a block has two neighbours.
 const MIN_BLOCKS_PERIODIC: u32 = 3;
 
 impl Slider {

@@ -1,4 +1,4 @@
-//! The text of a case file and its overrides, and where in it each value stands.
+//! The text of a case file and its overrides, and the place of each value in it.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -10,8 +10,8 @@ use toml::de::{DeTable, DeValue};
 use super::error::{CaseError, Place};
 use crate::text::truncated;
 
-/// The longest key whose place is noted, in bytes: all known ones are shorter. The keys below one of many megabytes
-/// would take that length each.
+/// The longest key whose place is noted, in bytes: all known keys are shorter. Each key below one of many megabytes would
+/// take its length.
 const MAX_KEY: usize = 64;
 
 /// The text that a case was read from, kept so that errors found later name their place.
@@ -21,10 +21,10 @@ const MAX_KEY: usize = 64;
 pub struct Source {
     name: Arc<str>,
     file: Arc<str>,
-    /// The overrides, each with the position of its first byte: positions go on behind the file, so that a span alone
-    /// tells where it belongs.
+    /// The overrides, each with the position of its first byte: positions go on behind the file, so that a span determines
+    /// its text.
     overrides: Vec<(usize, String)>,
-    /// The span of every value by its key, such as `drive.v_star` or `texture.0.coverage`; none of absurdly long keys.
+    /// The span of every value by its key, such as `drive.v_star` or `texture.0.coverage`; longer keys are left out.
     places: BTreeMap<String, Range<usize>>,
 }
 
@@ -44,7 +44,7 @@ impl Source {
         }
     }
 
-    /// Adds the text of an override; gives the position of its first byte.
+    /// Adds the text of an override; returns the position of its first byte.
     pub(super) fn add_override(&mut self, text: &str) -> usize {
         let end = match self.overrides.last() {
             Some((start, last)) => start + last.len(),
@@ -68,7 +68,7 @@ impl Source {
         piece.unwrap_or_default()
     }
 
-    /// This source without the places of what stands in these top-level tables.
+    /// Returns the source without the places of values in these top-level tables.
     pub(super) fn without(&self, tables: &[&str]) -> Self {
         let table = |key: &str| key.split('.').next().is_some_and(|table| tables.contains(&table));
         let kept = self.places.iter().filter(|(key, _)| !table(key));
@@ -110,7 +110,7 @@ impl Source {
 
     /// An error about the value of `key`, such as `drive.v_star` or `texture.0.coverage`.
     ///
-    /// It carries the place of that value, or none when the value is a default or was set in code.
+    /// The error carries the place of that value, or none when the value is a default or was set in code.
     pub fn error(&self, key: &str, sentence: impl Into<String>) -> CaseError {
         let span = self.places.get(key).cloned();
         CaseError::invalid(span.map(|span| self.place(span)), sentence)
@@ -129,7 +129,7 @@ impl Source {
         }
     }
 
-    /// The override that holds a position, and where it begins.
+    /// The override that holds a position, and the position where it begins.
     pub(super) fn override_at(&self, position: usize) -> Option<&(usize, String)> {
         self.overrides.iter().rev().find(|(start, _)| *start <= position)
     }

@@ -1,8 +1,8 @@
-//! Words that people try first, and what a case file has in their place.
+//! Words that people try first, and the keys of a case file in their place.
 
 use super::{friction, shapes};
 
-/// Each word, in small letters if it is longer than one, and the advice on it. Keys stand in backquotes.
+/// Each word, in small letters if it is longer than one letter, and the advice on it. Keys stand in backquotes.
 const COMMON: &[(&str, &str)] = &[
     ("E", YOUNG),
     ("young", YOUNG),
@@ -243,7 +243,7 @@ mod tests {
     use super::*;
     use crate::case_file::key_table::SECTIONS;
 
-    /// Every key that is named exists, and no word is a key itself, which would be misdirected from the wrong table, unless its
+    /// Every key that is named exists. No word is a key itself, which would be misdirected from the wrong table, unless its
     /// advice names it.
     #[test]
     fn advice_names_keys_that_exist() {

@@ -54,7 +54,7 @@ impl<'i> Tables<'_, 'i> {
         self.read_keys(table, header, None)
     }
 
-    /// A table that stands under `header`, and has the keys of `section` if it is one of a case.
+    /// Reads a table that stands under `header`, and has the keys of `section` if it is one of a case.
     pub(super) fn read_keys<T: DeserializeOwned>(
         &self,
         table: Spanned<DeValue<'i>>,

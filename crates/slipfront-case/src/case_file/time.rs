@@ -1,4 +1,4 @@
-//! `[time]`: how long the run is, in which steps, and when it may stop.
+//! The table `[time]`: duration, steps and end of the run.
 
 use std::ops::Bound::{Excluded, Included};
 
@@ -19,11 +19,11 @@ use crate::quantity::Duration;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "TimeKeys", into = "TimeKeys")]
 pub struct Time {
-    /// How long the run is: `duration_star` or `duration`.
+    /// Duration of the run: `duration_star` or `duration`.
     pub duration: RunTime,
     /// The time step.
     pub step: TimeStep,
-    /// What ends the run: its duration, or the fall after the first peak of mu* if that comes first.
+    /// Condition that ends the run: its duration, or the fall after the first peak of mu* if that comes first.
     pub stop: StopReason,
     /// Start of the window that the kinetic friction is averaged over, in t*; `auto` is 2.5/V* after the onset.
     pub kinetic_from_star: AutoOr,
@@ -32,9 +32,9 @@ pub struct Time {
 /// The length of the run.
 #[derive(Clone, Debug, PartialEq)]
 pub enum RunTime {
-    /// `duration_star`: in t*, more than 0; `auto` is 8/V*, longer for drives that load slower.
+    /// The key `duration_star`: in t*, more than 0; `auto` is 8/V*, longer for drives that load slower.
     Star(AutoOr),
-    /// `duration`: in s.
+    /// The key `duration`, in s.
     Duration(Duration),
 }
 
@@ -42,9 +42,9 @@ pub enum RunTime {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "WordOrNumber", into = "WordOrNumber")]
 pub enum TimeStep {
-    /// `"auto"`: dt* = 0.1.
+    /// The value `"auto"`: dt* = 0.1.
     Auto,
-    /// `"paper"`: dt* = (2/3) V* (Eq. 13).
+    /// The value `"paper"`: dt* = (2/3) V* (Eq. 13).
     Paper,
     /// dt* itself, more than 0 and less than 0.9058.
     Number(f64),

@@ -18,7 +18,7 @@ impl<'de, T: Deserialize<'de>> Deserialize<'de> for Pair<T> {
     }
 }
 
-/// Counts inside the visit, where an error still gets the place of the pair.
+/// Visitor that counts the values inside the visit, where an error still gets the place of the pair.
 struct PairVisitor<T>(PhantomData<T>);
 
 impl<'de, T: Deserialize<'de>> Visitor<'de> for PairVisitor<T> {
@@ -39,7 +39,8 @@ impl<'de, T: Deserialize<'de>> Visitor<'de> for PairVisitor<T> {
     }
 }
 
-/// A length that was read as a text, so that one that cannot be read keeps its own message where several shapes of a value are tried.
+/// Reads a length from a text, so that a text that cannot be read keeps its own message where several shapes of a value are
+/// tried.
 pub(super) fn length(text: &str) -> Result<Length, String> {
     text.parse().map_err(|error: QuantityError| error.to_string())
 }
@@ -61,7 +62,7 @@ impl<'de, T: Deserialize<'de>> Deserialize<'de> for Word<T> {
     }
 }
 
-/// Looks the word up inside the visit, where an error still gets the place of the word.
+/// Visitor that looks the word up inside the visit, where an error still gets the place of the word.
 struct WordVisitor<T>(PhantomData<T>);
 
 impl<'de, T: Deserialize<'de>> Visitor<'de> for WordVisitor<T> {

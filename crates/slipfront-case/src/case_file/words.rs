@@ -1,4 +1,4 @@
-//! Keys that take one word of several.
+//! Keys that take one of several words.
 
 use serde::{Deserialize, Serialize};
 
@@ -6,11 +6,11 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Outline {
-    /// All blocks.
+    /// The shape with all blocks.
     Rectangle,
     /// The disc that fills as many blocks along x as along y.
     Disc,
-    /// The blocks of a file.
+    /// The shape with the blocks of a file.
     Mask,
 }
 
@@ -18,47 +18,48 @@ pub enum Outline {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum AttachedEdge {
-    /// Every block.
+    /// All blocks.
     All,
     /// The blocks at x = 0.
     Left,
-    /// Those at the largest x.
+    /// The blocks at the largest x.
     Right,
-    /// Those at y = 0.
+    /// The blocks at y = 0.
     Bottom,
-    /// Those at the largest y.
+    /// The blocks at the largest y.
     Top,
 }
 
-/// How the far ends of the drive springs move.
+/// Motion of the far ends of the drive springs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Motion {
-    /// Along the direction of the drive.
+    /// Motion along the direction of the drive.
     Translation,
-    /// About the middle of the slider.
+    /// Rotation about the middle of the slider.
     Rotation,
 }
 
-/// When the far ends of the drive springs move.
+/// Times at which the far ends of the drive springs move.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Loading {
-    /// In every step.
+    /// The far ends move in every step.
     Constant,
-    /// While no block in contact slides.
+    /// The far ends stand while a block in contact slides.
     Held,
 }
 
-/// `lattice`: how columns and rows lie to each other.
+/// The key `lattice`: arrangement of columns and rows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Arrangement {
-    /// In a grid.
+    /// A square grid.
     #[default]
     Square,
-    /// Every second row is shifted by half a pitch, and rows are sqrt(3)/2 pitches apart: six neighbours at one distance.
+    /// A hexagonal arrangement: every second row is shifted by half a pitch, and rows are sqrt(3)/2 pitches apart, so that
+    /// every copy has six neighbours at one distance.
     Hexagonal,
-    /// Every second row is shifted by half a pitch.
+    /// A staggered arrangement: every second row is shifted by half a pitch.
     Staggered,
 }

@@ -1,4 +1,4 @@
-//! Memory and disk space that this machine has left, and which machine it is.
+//! Free memory and disk space of this machine, and its identity.
 
 #[cfg(feature = "disk")]
 mod of_system;
@@ -19,8 +19,8 @@ pub fn machine_number() -> i64 {
     words_of(&blake3::hash(name.as_bytes()))[0]
 }
 
-/// Memory that this process may still take, in bytes: what the machine can give without swapping, or what is left to its
-/// control group or within its limit of addresses (`ulimit -v`) if that is less. `None` if the system does not say.
+/// Memory that this process may still take, in bytes: the memory that the machine can give without swapping, or the rest of
+/// its control group or of its limit of addresses (`ulimit -v`) if that is less. `None` if the system does not say.
 pub fn available_memory() -> Option<f64> {
     use sysinfo::{ProcessRefreshKind, ProcessesToUpdate, System};
     let mut system = System::new().ok()?;
@@ -48,7 +48,7 @@ pub fn available_memory() -> Option<f64> {
 /// allocator of glibc wants twice as much for a moment. A thread that gets no arena takes a page for every small piece.
 const THREAD_ADDRESSES: u64 = (2 + 128) << 20;
 
-/// Bytes of addresses that are left to the work of the threads, at least.
+/// Least number of bytes of addresses that are left to the work of the threads.
 const ADDRESSES_TO_WORK: u64 = 64 << 20;
 
 /// Bytes of addresses that this process may still take; none without a limit, or if the system does not say.
@@ -63,7 +63,7 @@ fn addresses_left() -> Option<u64> {
     Some(limit.saturating_sub(taken))
 }
 
-/// How many of the `wanted` threads have room within the limit of addresses of this process (`ulimit -v`), each beside
+/// Number of the `wanted` threads that have room within the limit of addresses of this process (`ulimit -v`), each with
 /// `others` that it needs.
 pub fn threads_that_fit(wanted: usize, others: usize) -> usize {
     let Some(left) = addresses_left() else {
@@ -73,7 +73,7 @@ pub fn threads_that_fit(wanted: usize, others: usize) -> usize {
     wanted.min((left.saturating_sub(ADDRESSES_TO_WORK) / each) as usize)
 }
 
-/// Memory out of `bytes` that this process can be given, in bytes: all of it, or what is left.
+/// Memory out of `bytes` that this process can get, in bytes: the whole, or the rest.
 pub fn available_of(bytes: f64) -> f64 {
     most_at_once(bytes.min(available_memory().unwrap_or(f64::INFINITY)))
 }
@@ -95,7 +95,7 @@ fn most_at_once(bytes: f64) -> f64 {
     given
 }
 
-/// Whether the system allocates so many bytes at once; they are freed again without being used.
+/// Whether the system allocates `bytes` at once; they are freed again without being used.
 pub fn can_be_had(bytes: f64) -> bool {
     let mut all = Vec::<u8>::new();
     let reserved = all.try_reserve_exact(bytes as usize);

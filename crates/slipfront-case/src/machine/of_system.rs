@@ -1,4 +1,4 @@
-//! What the system says of the machine beside its memory.
+//! Name and free disk space of a machine, as its system tells them.
 
 use std::ffi::OsString;
 use std::path::Path;

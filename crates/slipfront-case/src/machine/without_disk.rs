@@ -1,4 +1,4 @@
-//! What is known of a machine without a disk, such as a page of a browser.
+//! Name and free disk space of a machine without a disk, such as a page of a browser: neither is known.
 
 use std::ffi::OsString;
 use std::path::Path;

@@ -123,7 +123,7 @@ fn messages_say_what_to_write() {
     assert!(error::<kind::Length>(&"1".repeat(201)).contains("201 bytes"));
 }
 
-/// A suggestion is of the dimension that is wanted, and a unit that is known elsewhere is converted.
+/// A suggestion has the wanted dimension, and a unit that is known elsewhere is converted.
 #[test]
 fn suggestions_are_of_the_wanted_dimension() {
     let psi = error::<kind::Pressure>("5 psi");

@@ -15,7 +15,7 @@ fn every_bad_file_is_refused_with_its_sentence() {
     assert!(complaints.is_empty(), "{}", complaints.join("\n\n"));
 }
 
-/// What is wrong with the error of a bad file, if anything.
+/// A complaint about the error of a bad file, if there is one.
 fn complaint(path: &Path) -> Option<String> {
     let name = path.file_name().unwrap().display();
     let text = fs::read_to_string(path).unwrap();

@@ -6,7 +6,7 @@ fn case(text: &str, overrides: &[String]) -> Case {
     Case::parse(text, "case", "", overrides).unwrap_or_else(|error| panic!("{text}\n{overrides:?}\n{error}"))
 }
 
-/// What the sentence says to set, as a user copies it for `--set`.
+/// The settings that the sentence names, as a user copies them for `--set`.
 fn remedies(note: &str) -> Vec<String> {
     let quoted = note.split('`').skip(1).step_by(2);
     quoted.map(|keys| keys.replacen(" = ", "=", 1)).collect()
@@ -68,7 +68,7 @@ fn a_slider_of_two_millimetres_needs_167_blocks() {
     }
 }
 
-/// Whatever is too coarse: the blocks that are named are fine enough, and the next coarser ones of the same slider are not.
+/// The blocks that are named are fine enough, and the next coarser ones of the slider are not, for any cause of coarseness.
 #[test]
 fn the_blocks_that_are_named_are_the_fewest() {
     let on = |slider: &str, texture: &str| format!("[slider]\n{slider}\n[[texture]]\n{texture}");

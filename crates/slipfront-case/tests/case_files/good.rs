@@ -165,7 +165,7 @@ fn steps_and_durations_follow_the_blocks() {
     }
 }
 
-/// The springs of the blocks that are driven are as stiff together as the case says, whatever they are of each.
+/// The springs of the driven blocks are together as stiff as the case says, whatever each is.
 #[test]
 fn a_total_stiffness_is_the_sum_of_all_drive_springs() {
     for attach in ["all", "left"] {
@@ -185,7 +185,8 @@ fn a_total_stiffness_is_the_sum_of_all_drive_springs() {
     }
 }
 
-/// Equal blocks of any modulus and density have the V* of a case that says so in its material; a grade is told as what it is worth.
+/// Equal blocks of any modulus and density have the V* of a case with this material; for a grade the equivalent speed is
+/// stated.
 #[test]
 fn fast_loading_is_told_in_the_speed_that_equal_blocks_would_have() {
     let fast = |keys: &str| {
@@ -221,8 +222,8 @@ fn fast_loading_is_told_in_the_speed_that_equal_blocks_would_have() {
     assert_eq!(graded, Some(of_equal(&expected)));
 }
 
-/// Where fewer than half of the blocks touch, the run lasts until their own drive springs have borne their load, and 2.5/V* more. The
-/// blocks of an edge drive bear theirs by the springs of others.
+/// Where fewer than half of the blocks touch, the run lasts until their own drive springs have borne their load, and 2.5/V*
+/// more. Blocks under an edge drive bear their load by the springs of others.
 #[test]
 fn runs_last_longer_where_few_blocks_touch() {
     let end = |texture: &str, changes: &[&str]| {
@@ -258,8 +259,8 @@ fn runs_last_longer_where_few_blocks_touch() {
     }
 }
 
-/// Times are held against the end of the run as its own drive springs make it: later than 8/V* of a soft slider, earlier of a stiff
-/// one, whose moduli are known only when a file is read.
+/// Times are compared with the end of the run that its own drive springs determine: later than 8/V* for a soft slider,
+/// earlier for a stiff one, whose moduli are known only when a file is read.
 #[test]
 fn times_are_held_against_the_end_of_the_run_itself() {
     let folder = tempfile::tempdir().unwrap();
@@ -282,8 +283,8 @@ fn times_are_held_against_the_end_of_the_run_itself() {
     assert!(refused.contains("the run ends at 40.0000"), "{refused}");
 }
 
-/// What a pattern covers does not depend on how it is said: by a pitch that fills the slider, by a count, by an array in an array,
-/// or with a mask of each cell.
+/// The coverage of a pattern does not depend on its form: a pitch that fills the slider, a count, an array in an array, or a
+/// mask for each cell.
 #[test]
 fn patterns_can_be_said_in_several_ways() {
     let case = |pattern: &str| {
@@ -332,7 +333,7 @@ fn patterns_can_be_said_in_several_ways() {
     assert!(!warnings("array = [2, 2]\npitch = '5 um'").contains("periodic edges"));
 }
 
-/// Coverage is that of all copies together, for every shape that has one.
+/// Coverage counts all copies together, for every shape that has one.
 #[test]
 fn copies_share_the_coverage() {
     for (texture, blocks) in [

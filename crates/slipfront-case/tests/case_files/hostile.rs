@@ -67,7 +67,7 @@ fn long_lines_and_odd_characters_make_short_messages() {
     refused("[time]\nstep = 1979-05-27", &[]);
 }
 
-/// The name of a table stands before each of its keys in what is kept of a file; megabytes must not become terabytes.
+/// Long names of tables are not repeated for each of their keys: megabytes must not become terabytes.
 #[test]
 fn long_names_of_tables_are_not_repeated_for_every_key() {
     let keys: String = (0..100_000).map(|key| format!("k{key}=1\n")).collect();

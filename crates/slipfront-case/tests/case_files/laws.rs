@@ -9,7 +9,7 @@ fn case(text: &str) -> Case {
 
 const RATE_AND_STATE: &str = "friction = { law = 'rate_and_state', mu_static = 0.5, a = 0.01, b = 0.02, d_c_star = 0.5, v_0_star = 0.02 }";
 
-/// Coefficients are over `mu_static`; what is not given follows from the rest.
+/// Coefficients count over `mu_static`; missing ones follow from the rest.
 #[test]
 fn keys_become_the_law_in_units_of_the_model() {
     let velocity = "velocity = { law = 'weakening', v_c_star = 0.1, ratio = 0.4 }";
@@ -186,7 +186,7 @@ fn coefficients_that_are_alike_over_a_length_are_those_of_the_place() {
     assert_eq!(by_block.surface.mu_static, drawn.mu_static);
 }
 
-/// What is the same all over a surface differs from seed to seed, and a surface that is all but even says so.
+/// A field that is nearly uniform over the surface differs from seed to seed, and a warning says so.
 #[test]
 fn a_field_that_is_longer_than_the_slider_is_warned_of() {
     let said = |rest: &str| {

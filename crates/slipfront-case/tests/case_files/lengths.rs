@@ -1,4 +1,4 @@
-//! The lengths of a case against its blocks, and the sentences about them.
+//! The lengths of a case in blocks, and the sentences about them.
 
 use slipfront_case::case::Case;
 
@@ -14,7 +14,7 @@ fn case(text: &str) -> Case {
     Case::parse(text, "case", "", &[]).unwrap_or_else(|error| panic!("{text}\n{error}"))
 }
 
-/// Name, blocks and what is enough of each length.
+/// Name of each length, its blocks and the number that is enough.
 fn lengths(case: &Case) -> Vec<(String, f64, Option<f64>)> {
     let lengths = case.lengths().into_iter();
     lengths
@@ -39,13 +39,13 @@ fn assert_lengths(case: &Case, expected: &[(&str, f64, Option<f64>)]) {
     }
 }
 
-/// Note on the length of such a name.
+/// Note on the length with the given name.
 fn note_on(case: &Case, name: &str) -> Option<String> {
     let begins = format!("the {name} is ");
     case.warnings().into_iter().find(|note| note.starts_with(&begins))
 }
 
-/// `L_c = pi sqrt(9/(8 (W - k_s)))` and `sqrt(9/(8 k_s))`, with k_s = 3/8.
+/// The critical size is `L_c = pi sqrt(9/(8 (W - k_s)))`, the screening length `sqrt(9/(8 k_s))`, with k_s = 3/8.
 #[test]
 fn the_critical_size_decides_of_a_sheet() {
     let sheet = case(&format!("{SHEET}slip_weakening = {{ length_star = 0.8 }}"));
@@ -74,7 +74,8 @@ fn the_critical_size_decides_of_a_sheet() {
     );
 }
 
-/// Of a drive at an edge most blocks hang on no spring: however stiff it is, it does not hold a patch far from it, `L_c = pi sqrt(9/(8 W))`.
+/// A drive at an edge leaves most blocks without a spring: however stiff it is, it does not hold a patch far from it, and
+/// `L_c = pi sqrt(9/(8 W))`.
 #[test]
 fn a_stiff_drive_at_an_edge_does_not_make_slip_stable() {
     for (stiffness, edge) in [(0.375, "left"), (1000.0, "right")] {
@@ -170,7 +171,7 @@ fn features_gaps_and_correlated_coefficients_are_lengths() {
     );
 }
 
-/// A length that no key gives is that of a block, which decides then.
+/// A length that no key gives equals that of a block, which then decides.
 #[test]
 fn the_block_decides_where_no_key_gives_a_length() {
     for (text, expected) in [

@@ -1,4 +1,4 @@
-//! Case files that are read, and case files that are refused with the sentence that they carry themselves.
+//! Case files that are read, and case files that are refused with the sentence that they contain.
 
 // Helpers of tests are not tests by themselves to clippy.
 #![allow(clippy::unwrap_used)]
@@ -28,7 +28,7 @@ fn files(folder: &str) -> Vec<PathBuf> {
     files
 }
 
-/// What follows `# name: ` in the comments that open a file.
+/// The text after `# name: ` in the comments at the beginning of a file.
 fn notes(text: &str, name: &str) -> Vec<String> {
     let start = format!("# {name}: ");
     let comments = text.lines().take_while(|line| line.starts_with('#'));

@@ -78,7 +78,7 @@ fn the_reference_tells_every_key_as_it_is() {
     }
 }
 
-/// What the cell of the bounds must hold.
+/// Texts that the cell of the bounds must hold.
 fn bounds(kind: &KeyKind) -> Vec<String> {
     let quoted = |words: &[&str]| {
         words

@@ -242,7 +242,7 @@ fn friction() -> impl Strategy<Value = Friction> {
     ]
 }
 
-/// The correlation length, of coefficients that are not all given.
+/// A correlation length for coefficients that are not all given.
 fn drawn(plain: &Friction, draws_kinetic: bool) -> Option<Length> {
     let is_drawn = draws_kinetic || plain.mu_static_field.is_none();
     plain.correlation_length.clone().filter(|_| is_drawn)

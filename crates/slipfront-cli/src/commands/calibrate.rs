@@ -73,7 +73,7 @@ impl CalibrateCommand {
     }
 }
 
-/// Prints what the user must know of a folder that has been used before.
+/// Prints notes about a folder that has been used before.
 fn print_notes(folder: &CalibrationFolder) {
     let note = |sentence: &str| print_stderr(&for_stderr(&format!("note: {sentence}")));
     if folder.damaged > 0 {

@@ -16,7 +16,7 @@ pub(crate) struct CompletionsCommand {
 }
 
 impl CompletionsCommand {
-    /// `command` is the description of the whole command line.
+    /// Prints the completions; `command` is the description of the whole command line.
     pub(crate) fn execute(self, mut command: Command) -> Result<(), Failure> {
         let mut script = Vec::new();
         clap_complete::generate(self.shell, &mut command, "slipfront", &mut script);

@@ -1,4 +1,4 @@
-//! `slipfront converge`: how much of a result belongs to the mesh.
+//! Command `slipfront converge`: the mesh error of a result.
 
 use std::path::{Path, PathBuf};
 

@@ -99,7 +99,7 @@ impl DesignCommand {
     }
 }
 
-/// Prints what the user must know of a folder that has been used before.
+/// Prints notes about a folder that has been used before.
 fn print_notes(folder: &DesignFolder) {
     let note = |sentence: &str| print_stderr(&for_stderr(&format!("note: {sentence}")));
     if folder.damaged > 0 {

@@ -55,7 +55,7 @@ pub(crate) struct LabCommand {
     single: Option<PathBuf>,
 }
 
-/// What stands before the case in a link.
+/// Beginning of the part of a link that holds the case.
 const LINK: &str = "#case=";
 
 impl LabCommand {
@@ -135,8 +135,8 @@ fn places_of_module() -> Vec<PathBuf> {
     program.ancestors().skip(1).take(2).map(Path::to_owned).collect()
 }
 
-/// Starts the browser on a page that leads to the address, which it is not told itself: every user of the machine can read with what
-/// a program was started.
+/// Starts the browser on a page that leads to the address, which is not in the arguments: every user of the machine can read
+/// the arguments of a program.
 fn start_browser(laboratory: &Laboratory, link: Option<&str>) -> Result<(), String> {
     if let Some(reason) = browser::hindrance() {
         return Err(reason);
@@ -173,7 +173,7 @@ fn refuse_readable_output() -> Result<(), Failure> {
 
 /// Waits for the signal that ends the command.
 async fn stopped(signals: &Signals) {
-    /// Between two looks; short enough for whoever waits.
+    /// Time between two checks; short enough for a person who waits.
     const LOOK: Duration = Duration::from_millis(50);
     while signals.stopped().is_none() {
         tokio::time::sleep(LOOK).await;

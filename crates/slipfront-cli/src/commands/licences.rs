@@ -1,11 +1,11 @@
-//! `slipfront licences`: under which licences slipfront is, and all that it contains.
+//! Command `slipfront licences`: the licences of slipfront and of its parts.
 
 use clap::Args;
 
 use crate::failure::Failure;
 use crate::print::print;
 
-/// Written by `tests/licences/notices.py`, and held by `.ci/run` to the crates that are locked.
+/// Text written by `tests/licences/notices.py`; `.ci/run` compares it with the locked crates.
 const NOTICES: &str = include_str!("../../THIRD-PARTY-NOTICES.txt");
 
 /// Print the licences of slipfront and of the work of others in it

@@ -45,7 +45,7 @@ pub(crate) struct MovieCommand {
     force: bool,
 }
 
-/// Pictures of an MP4 file in a second.
+/// Number of pictures per second of an MP4 file.
 const RATE: usize = 25;
 
 fn known_field(name: &str) -> Result<Field, String> {
@@ -101,7 +101,7 @@ impl MovieCommand {
 }
 
 impl MovieCommand {
-    /// That the run has no snapshots of the field, and of which it has.
+    /// A sentence that the run has no snapshots of the field, with the fields of which it has.
     fn no_snapshots(&self, case: Option<&CaseFile>) -> String {
         let field = self
             .field
@@ -158,7 +158,7 @@ fn mp4(run: &Path, movie: &slipfront_plot::Movie) -> Result<Vec<u8>, Failure> {
     std::fs::read(&path).map_err(failed)
 }
 
-/// Hands all pictures to ffmpeg, each as often as it is long, and waits for its end.
+/// Hands all pictures to ffmpeg, each as many times as its duration, and waits for its end.
 fn feed(
     mut child: Child,
     movie: &slipfront_plot::Movie,

@@ -50,19 +50,19 @@ pub(crate) struct PlotCommand {
     /// A measured record to draw with the curves, in SI units: a table of text (.csv)
     #[arg(long, value_name = "FILE", requires_all = ["x", "y"])]
     data: Option<PathBuf>,
-    /// Its column of times, or of displacements with `--against displacement`: name or number from 1
+    /// Column of times of the record, or of displacements with `--against displacement`: name or number from 1
     #[arg(long, value_name = "COLUMN", requires = "data")]
     x: Option<String>,
-    /// Its column of forces, or of coefficients if its unit is 1
+    /// Column of forces of the record, or of coefficients if its unit is 1
     #[arg(long, value_name = "COLUMN", requires = "data")]
     y: Option<String>,
-    /// Unit of the former [default: that in its header]
+    /// Unit of the column of times or displacements [default: that in its header]
     #[arg(long, value_name = "UNIT", requires = "data")]
     x_unit: Option<String>,
-    /// Unit of the latter [default: that in its header]
+    /// Unit of the column of forces [default: that in its header]
     #[arg(long, value_name = "UNIT", requires = "data")]
     y_unit: Option<String>,
-    /// Factor of the latter: -1 turns its sign
+    /// Factor of the forces: -1 turns their sign
     #[arg(
         long,
         value_name = "NUMBER",
@@ -71,7 +71,7 @@ pub(crate) struct PlotCommand {
         allow_negative_numbers = true
     )]
     y_factor: f64,
-    /// What is added to the latter after that, in N or 1
+    /// Number added to the forces after that, in N or 1
     #[arg(
         long,
         value_name = "NUMBER",
@@ -80,7 +80,7 @@ pub(crate) struct PlotCommand {
         allow_negative_numbers = true
     )]
     y_offset: f64,
-    /// What is added to its times or displacements, in s or m [default: what fits the first run best]
+    /// Number added to the record's times or displacements, in s or m [default: what fits the first run best]
     #[arg(long, value_name = "NUMBER", requires = "data", allow_negative_numbers = true)]
     shift: Option<f64>,
     /// Folder for the pictures [default: the run's own; results/overlay for several, for friction and for a field alone]
@@ -235,7 +235,7 @@ impl PlotCommand {
         })
     }
 
-    /// How a measured record fits each run.
+    /// The fit of a measured record to each run, in words.
     fn fit_report(&self, fit: &Fit, data: &Path) -> String {
         let [x, y] = fit.measures.map(Measure::unit);
         let quantity = |value: f64, unit: &str| match unit {
@@ -266,7 +266,7 @@ fn expect_a_folder(out: &Path) -> Result<(), Failure> {
     )))
 }
 
-/// Refuses pictures for which there is no memory, of which they take so many bytes beside the program.
+/// Refuses pictures for which there is no memory: `bytes` beside the program.
 pub(super) fn expect_memory(bytes: f64) -> Result<(), Failure> {
     let needed = PROGRAM + bytes;
     let available = available_of(needed);
@@ -304,7 +304,7 @@ pub(super) fn expect_results(folder: &Path) -> Result<(), Failure> {
     Err(Failure::input(anyhow::anyhow!(sentence)))
 }
 
-/// Refuses the folder of a run that these are not the pictures of.
+/// Refuses a folder of a run to which these pictures do not belong.
 pub(super) fn refuse_other_run(out: &Path) -> Result<(), Failure> {
     let manifest = out.join(MANIFEST);
     let sentence = match manifest.try_exists() {
@@ -318,8 +318,8 @@ pub(super) fn refuse_other_run(out: &Path) -> Result<(), Failure> {
     Err(Failure::input(anyhow::anyhow!(sentence)))
 }
 
-/// Refuses to replace what stands where the pictures go, unless it is the same, or a picture that the run in the folder, if
-/// they are `own` ones of it, has drawn there.
+/// Refuses to replace files where the pictures go, unless they are equal, or pictures that the run in the folder has drawn
+/// there, if the new ones are its `own`.
 pub(super) fn refuse_to_replace(
     out: &Path,
     files: &[(String, &[u8])],
@@ -336,7 +336,8 @@ pub(super) fn refuse_to_replace(
     Ok(())
 }
 
-/// Why a file cannot stand where another one is, unless the run in the folder, if it is an `own` one of it, has drawn that.
+/// Reason for which a file cannot replace another, unless the run in the folder has drawn that one and the new file is its
+/// `own`.
 pub(super) fn in_the_way(
     out: &Path,
     name: &str,

@@ -1,4 +1,4 @@
-//! `slipfront verify`: what stands in results folders, against what was written there.
+//! Command `slipfront verify`: the files of results folders, compared with what was written there.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -109,7 +109,7 @@ impl VerifyCommand {
         self.repeat(&run, signals, verdict)
     }
 
-    /// Runs the case of a folder again beside it, and adds what differs.
+    /// Runs the case of a folder again beside it, and adds the differences.
     fn repeat(&self, run: &Inspection, signals: &Signals, verdict: &mut Verdict) -> Result<(), Failure> {
         let (started, folder) = (clock::now(), run.path.as_path());
         let case = folder.join("case.toml");
@@ -201,7 +201,7 @@ impl VerifyCommand {
     }
 }
 
-/// Completes the folder of a repeated run, with pictures unless the run before has drawn none.
+/// Completes the folder of a repeated run, with pictures unless the first run has drawn none.
 fn complete_as(
     before: Option<&Manifest>,
     case: &Case,

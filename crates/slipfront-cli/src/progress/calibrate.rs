@@ -6,7 +6,7 @@ use slipfront_study::calibrate::{CalibrationProgress, CalibrationStage};
 
 use super::display::{ProgressDisplay, time_left};
 
-/// Shows how far a calibration has come.
+/// Display of the progress of a calibration.
 pub(crate) struct CalibrateProgress(ProgressDisplay);
 
 impl CalibrateProgress {
@@ -24,7 +24,7 @@ impl CalibrateProgress {
     }
 }
 
-/// Runs done, what is left, and what they are for.
+/// Text of the progress: runs done, the time left, and the purpose of the runs.
 fn text(now: &CalibrationProgress, passed: Duration) -> String {
     let stage = match now.stage {
         CalibrationStage::Training => "training",

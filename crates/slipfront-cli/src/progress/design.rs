@@ -7,7 +7,7 @@ use slipfront_study::design::{DesignStage, SearchProgress};
 
 use super::display::{ProgressDisplay, time_left};
 
-/// Shows how far a design has come.
+/// Display of the progress of a design.
 pub(crate) struct DesignProgress {
     display: ProgressDisplay,
     /// Runs of earlier calls.
@@ -15,7 +15,7 @@ pub(crate) struct DesignProgress {
 }
 
 impl DesignProgress {
-    /// Of a design of which some runs were made by earlier calls.
+    /// The display for a design of which `before` runs were made by earlier calls.
     pub(crate) fn new(quiet: bool, before: usize) -> Self {
         Self {
             display: ProgressDisplay::new("{wide_bar} {msg}", quiet),
@@ -35,7 +35,7 @@ impl DesignProgress {
     }
 }
 
-/// Runs done, the time left as that of the runs made `here` tells it, what is being done, and the best so far.
+/// Text of the progress: runs done, the time left from the runs made `here`, the stage, and the best value so far.
 fn text(now: &SearchProgress, here: usize, passed: Duration) -> String {
     let left = time_left(now.of.saturating_sub(now.runs) as u64, here as u64, passed);
     let stage = match now.stage {

@@ -1,4 +1,4 @@
-//! How progress is shown: a bar on a terminal, else plain lines.
+//! Display of progress: a bar on a terminal, else plain lines.
 
 use std::io::IsTerminal;
 use std::time::{Duration, Instant};
@@ -8,22 +8,22 @@ use indicatif::{HumanDuration, ProgressBar, ProgressStyle};
 use crate::print_stderr::{is_silent, print_stderr};
 use crate::wrap::for_stderr;
 
-/// Shows how far some work has come.
+/// Display of the progress of some work.
 pub(crate) struct ProgressDisplay {
     began: Instant,
     sink: Sink,
 }
 
 enum Sink {
-    /// Where the user asked for quiet, or another process speaks for this one.
+    /// No display, because the user asked for quiet, or another process prints for this one.
     Silent,
     Bar(ProgressBar),
-    /// Plain lines, and when the next one is due.
+    /// Plain lines, and the time at which the next one is due.
     Lines(Instant),
 }
 
 impl ProgressDisplay {
-    /// `template` is that of the bar, as indicatif reads it.
+    /// A display; `template` is the template of its bar, in the format of indicatif.
     pub(crate) fn new(template: &str, quiet: bool) -> Self {
         let began = Instant::now();
         let sink = if quiet || is_silent() {
@@ -40,7 +40,7 @@ impl ProgressDisplay {
         Self { began, sink }
     }
 
-    /// Moves the bar, or prints a line if one is due; `text` is given the time passed since the beginning.
+    /// Moves the bar, or prints a line if one is due; `text` gets the time passed since the beginning.
     pub(crate) fn show(&mut self, done: u64, total: u64, text: impl FnOnce(Duration) -> String) {
         let passed = self.began.elapsed();
         match &mut self.sink {
@@ -72,7 +72,7 @@ impl ProgressDisplay {
         }
     }
 
-    /// Prints a line beside the progress, also where none is shown: for what was asked for, and for warnings.
+    /// Prints a line beside the progress, also where none is shown: for requested output, and for warnings.
     pub(crate) fn note(&self, text: &str) {
         let text = for_stderr(text);
         match &self.sink {
@@ -89,7 +89,7 @@ impl ProgressDisplay {
     }
 }
 
-/// The time left for `more` things of which `here` were done in the time that has `passed`; empty where none was.
+/// The time left for `more` things of which `here` were done in the time that has `passed`; empty where none was done.
 pub(crate) fn time_left(more: u64, here: u64, passed: Duration) -> String {
     let seconds = more as f64 * passed.as_secs_f64() / here as f64;
     match Duration::try_from_secs_f64(seconds) {
@@ -98,7 +98,7 @@ pub(crate) fn time_left(more: u64, here: u64, passed: Duration) -> String {
     }
 }
 
-/// Time between two plain lines when so much time has passed: 5 seconds at first, a minute in the log of hours.
+/// Time between two plain lines after `passed`: 5 seconds at first, a minute in the log of hours.
 fn pause(passed: Duration) -> Duration {
     (passed / 12).clamp(Duration::from_secs(5), Duration::from_secs(60))
 }

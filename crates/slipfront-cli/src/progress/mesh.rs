@@ -4,12 +4,12 @@ use std::time::{Duration, Instant};
 
 use super::display::{ProgressDisplay, time_left};
 
-/// Time before anything is shown: most textures take less.
+/// Time before any progress is shown: most textures take less.
 const PATIENCE: Duration = Duration::from_millis(500);
-/// Time between two looks at the display, of which there are millions.
+/// Time between two updates of the display, for which there are millions of calls.
 const PAUSE: Duration = Duration::from_millis(50);
 
-/// Shows which share of the texture is laid over the blocks, if that takes long.
+/// Display of the share of the texture that is laid over the blocks, if that takes long.
 pub(crate) struct MeshProgress {
     quiet: bool,
     began: Instant,

@@ -7,7 +7,7 @@ use slipfront_run::running::Running;
 
 use super::display::{ProgressDisplay, time_left};
 
-/// Shows how far a run has come.
+/// Display of the progress of a run.
 pub(crate) struct RunProgress {
     display: ProgressDisplay,
     steps: Steps,
@@ -15,21 +15,21 @@ pub(crate) struct RunProgress {
 
 /// The steps of a run.
 struct Steps {
-    /// Where this process began.
+    /// Place at which this process began.
     first: Place,
     /// Number of steps in which the drive moves: all, unless it is held.
     last: u64,
     n_blocks: usize,
 }
 
-/// How far a run has come.
+/// Progress of a run.
 #[derive(Clone, Copy)]
 struct Place {
     /// Steps done.
     step: u64,
     /// Steps in which the drive moved.
     drive_steps: u64,
-    /// What tells it: t*, or the path of a drive that is held.
+    /// Name of the measure of progress: t*, or the path of a drive that is held.
     name: &'static str,
     value: f64,
 }
@@ -52,7 +52,7 @@ impl Place {
 }
 
 impl RunProgress {
-    /// For a run that begins, or is resumed, at its present step.
+    /// The display for a run that begins, or is resumed, at its present step.
     pub(crate) fn new(running: &Running, quiet: bool) -> Self {
         let case = running.case();
         Self {
@@ -114,7 +114,8 @@ mod tests {
         }
     }
 
-    /// Half of what is left took a minute: a minute is left, however much an earlier process had done.
+    /// A resumed run counts its own steps: half of the rest took a minute, so that a minute is left, however much an earlier
+    /// process had done.
     #[test]
     fn a_resumed_run_counts_its_own_steps() {
         let steps = Steps {
@@ -132,7 +133,7 @@ mod tests {
         );
     }
 
-    /// Of 3000 steps the drive has stood in 2000.
+    /// A held drive shows its path: the drive has stood in 2000 of 3000 steps.
     #[test]
     fn a_held_drive_shows_its_path() {
         let steps = Steps {

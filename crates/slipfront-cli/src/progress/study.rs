@@ -7,7 +7,7 @@ use slipfront_study::Progress;
 
 use super::display::{ProgressDisplay, time_left};
 
-/// Shows how far a study has come.
+/// Display of the progress of a study.
 pub(crate) struct StudyProgress(ProgressDisplay);
 
 impl StudyProgress {
@@ -25,8 +25,8 @@ impl StudyProgress {
     }
 }
 
-/// Runs done, their rate in this process, which has run for the time `passed`, what is left, failed runs, and the widest interval
-/// of a study that goes on until intervals are narrow.
+/// Runs done, their rate in this process, which has run for the time `passed`, the time left, failed runs, and the widest
+/// interval of a study that goes on until intervals are narrow.
 fn text(now: &Progress, passed: Duration) -> String {
     let failed = match now.failed {
         0 => String::new(),
@@ -48,7 +48,7 @@ fn text(now: &Progress, passed: Duration) -> String {
     )
 }
 
-/// A rate in the unit in which it is a number that can be read.
+/// A rate in a unit in which it is easy to read.
 fn rate(per_second: f64) -> String {
     if per_second >= 1.0 {
         format!("{per_second:.1} runs/s")
@@ -88,7 +88,7 @@ mod tests {
         assert_eq!(rate(1.0 / 600.0), "6.0 runs/h");
     }
 
-    /// Of the most runs that need no confirmation.
+    /// The longest text fits a terminal, for the most runs that need no confirmation.
     #[test]
     fn the_longest_text_fits_a_terminal() {
         let now = Progress {

@@ -17,8 +17,8 @@ use crate::failure::Failure;
 
 /// The ranks of a command, as one of them sees them.
 ///
-/// What one rank finds out alone is agreed on before anything is done in which the ranks need each other, so that no rank
-/// waits for one that has given up. Functions that end with [`RankFailure`] end so on every rank.
+/// The ranks agree on the findings of each before they need each other, so that no rank waits for one that has given up.
+/// Functions that end with [`RankFailure`] end so on every rank.
 #[derive(Clone)]
 pub(crate) struct CommandRanks {
     program: &'static str,
@@ -40,7 +40,7 @@ impl CommandRanks {
         }
     }
 
-    /// What the ranks talk by.
+    /// Connection by which the ranks talk.
     pub(crate) fn communicator(&self) -> Arc<dyn Communicator> {
         Arc::clone(&self.communicator) as Arc<dyn Communicator>
     }
@@ -57,23 +57,23 @@ impl CommandRanks {
         self.communicator.size()
     }
 
-    /// Whether this rank prints, and makes what there is one of: the folder, the manifest, the pictures.
+    /// Whether this rank prints, and makes the folder, the manifest and the pictures, of which there is one.
     pub(crate) fn is_first(&self) -> bool {
         self.communicator.rank() == 0
     }
 
-    /// What this rank has done, if all have done it.
+    /// Outcome of this rank, if all have succeeded.
     pub(crate) fn agree<T>(&self, outcome: Result<T, Failure>) -> Result<T, RankFailure> {
         agree(&*self.communicator, outcome.map_err(RankFailure::from))
     }
 
-    /// Fails unless all ranks were given the same.
+    /// Fails unless all ranks were given the same inputs.
     pub(crate) fn expect_same(&self, given: impl FnOnce() -> Given) -> Result<(), RankFailure> {
         let same = expect_same(&*self.communicator, given);
         same.map_err(|difference| Failure::input(difference).into())
     }
 
-    /// What the first rank alone does; none on the others.
+    /// Work of the first rank alone; none on the others.
     pub(crate) fn first<T>(
         &self,
         work: impl FnOnce() -> Result<T, Failure>,
@@ -81,7 +81,7 @@ impl CommandRanks {
         self.agree(self.is_first().then(work).transpose())
     }
 
-    /// Whether it is so on any rank.
+    /// Whether `is_so` is true on any rank.
     pub(crate) fn any(&self, is_so: bool) -> bool {
         let mut largest = [f64::from(is_so)];
         self.largest(&mut largest);
@@ -98,7 +98,7 @@ impl CommandRanks {
         resume_command(self.program, folder)
     }
 
-    /// What this rank has told the others in each of so many steps; none of one rank.
+    /// Description of the messages of this rank to the others per step, over `steps` steps; none for one rank.
     pub(crate) fn traffic(&self, steps: u64) -> Option<String> {
         (self.size() > 1 && steps > 0).then(|| self.communicator.per_step(steps))
     }

@@ -1,4 +1,4 @@
-//! What the ranks tell each other, counted.
+//! Counts of the messages between ranks.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -6,17 +6,17 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use slipfront::Communicator;
 use slipfront_case::number_format::byte_size;
 
-/// A connection with other ranks that counts what goes through it.
+/// A connection with other ranks that counts its messages.
 #[derive(Debug)]
 pub(super) struct Traffic {
     inner: Arc<dyn Communicator>,
-    /// To the neighbours.
+    /// Messages to the neighbours.
     messages: TrafficCount,
     /// Maxima and sums over all ranks.
     reductions: TrafficCount,
 }
 
-/// How many, and how much in all.
+/// Number of messages, and their total size.
 #[derive(Debug, Default)]
 struct TrafficCount {
     number: AtomicU64,
@@ -30,7 +30,7 @@ impl TrafficCount {
             .fetch_add(size_of_val(values) as u64, Ordering::Relaxed);
     }
 
-    /// In one of so many steps.
+    /// Number of messages and size per step, over `steps` steps.
     fn per_step(&self, steps: u64) -> (f64, String) {
         let [number, bytes] =
             [&self.number, &self.bytes].map(|count| count.load(Ordering::Relaxed) as f64 / steps as f64);
@@ -47,7 +47,7 @@ impl Traffic {
         }
     }
 
-    /// What this rank has given in one of so many steps, in words.
+    /// Messages of this rank per step, in words.
     pub(super) fn per_step(&self, steps: u64) -> String {
         let (messages, sent) = self.messages.per_step(steps);
         let (reductions, reduced) = self.reductions.per_step(steps);
@@ -89,7 +89,8 @@ mod tests {
     use super::*;
     use slipfront::communicator::Alone;
 
-    /// Messages of 3 and 5 numbers in every step, and one in the other direction that is empty; every other step a sum.
+    /// Messages are counted: of 3 and 5 numbers in every step, an empty one in the other direction, and a sum in every other
+    /// step.
     #[test]
     fn what_is_given_is_counted() {
         let traffic = Traffic::count(Arc::new(Alone));

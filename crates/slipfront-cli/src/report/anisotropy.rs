@@ -1,4 +1,4 @@
-//! How friction depends on the direction of the drive, for a study that varies it.
+//! Dependence of friction on the direction of the drive, for a study that varies it.
 
 use slipfront_case::number_format::{four_digits, with_half_width};
 use slipfront_study::text_table::table;
@@ -6,7 +6,7 @@ use slipfront_study::{Anisotropy, OverDirections, Plan, Sample, StudyResults, an
 
 use crate::wrap::note;
 
-/// Most rows that are printed, and most notes on what has been left out.
+/// Largest number of rows that are printed, and of notes on omissions.
 const MAX_ROWS: usize = 40;
 const MAX_NOTES: usize = 8;
 
@@ -50,7 +50,7 @@ pub(crate) fn anisotropy(plan: &Plan, results: &StudyResults) -> String {
     table + &notes(&all)
 }
 
-/// What has been left out, and why there are no numbers where there are none.
+/// Notes on omissions, and on why there are no numbers where there are none.
 fn notes(all: &[Anisotropy]) -> String {
     let sentence = |row: &Anisotropy| {
         let parts = [row.left_out.as_ref(), row.found.as_ref().err()];

@@ -1,4 +1,4 @@
-//! What `slipfront check` adds to the physics of a case.
+//! Additions of `slipfront check` to the physics of a case.
 
 use slipfront_case::case::Case;
 use slipfront_case::machine::available_memory;
@@ -15,8 +15,8 @@ pub(crate) fn cost(case: &Case, seconds: f64) -> String {
     onset(case) + &loading + &scales(case) + &resources(case, seconds) + &notes(&warnings)
 }
 
-/// The time in which a slip front crosses the slider, about a block per t*, over that in which the drive loads it, about 1/V*: the
-/// line, and a note where the drive is the faster. A drive that is held waits for the front.
+/// The time in which a slip front crosses the slider, about a block per t*, over the time in which the drive loads it, about
+/// 1/V*: the line of the report, and a note where the drive is the faster. A drive that is held waits for the front.
 fn loading(case: &Case) -> (String, Option<String>) {
     let (lattice, drive) = (&case.model.lattice, &case.model.drive);
     if drive.is_held() {
@@ -79,7 +79,7 @@ fn onset(case: &Case) -> String {
     text + &whole_slider(case)
 }
 
-/// What the slider as a whole is expected to bear, where that is known and less than its blocks bear.
+/// Expected static friction of the slider as a whole, where it is known and less than that of its blocks.
 fn whole_slider(case: &Case) -> String {
     let given = case.scales.mu_static_mean;
     let expected = case
@@ -111,7 +111,7 @@ fn scales(case: &Case) -> String {
     )
 }
 
-/// Says what the cost of a drive that is held leaves out, since nobody knows how long it stands.
+/// Remark on the cost of a drive that is held, which leaves out the unknown time in which it stands.
 pub(super) fn standing(is_held: bool) -> &'static str {
     if is_held {
         " at least (without those in which the drive stands)"

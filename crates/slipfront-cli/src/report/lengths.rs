@@ -5,7 +5,7 @@ use slipfront_case::number_format::{four_digits, with_si_prefix};
 
 use slipfront_study::text_table::table;
 
-/// The table of the lengths of a case with the blocks that are enough of each, and which of them decides.
+/// The table of the lengths of a case with the number of blocks that is enough for each, and the length that decides.
 pub(crate) fn lengths(case: &Case) -> String {
     let rows: Vec<Vec<String>> = case.lengths().iter().map(|length| row(case, length)).collect();
     let decides = case.deciding_length();
@@ -30,7 +30,7 @@ fn row(case: &Case, length: &CaseLength) -> Vec<String> {
     row
 }
 
-/// What there is to say behind a row.
+/// Remark behind a row.
 fn remark(case: &Case, length: &CaseLength) -> Option<String> {
     if length.blocks.is_infinite() {
         return Some("slip of any size is stable on this mount".to_owned());

@@ -55,7 +55,7 @@ fn slider(case: &Case) -> String {
     format!("{outline}{nx} x {ny} {blocks} of {size}{thickness}, {edges} edges")
 }
 
-/// What follows a property of the material that is not the same everywhere.
+/// Remark behind a property of the material that is not uniform.
 fn local(field: &Option<String>, grade: &Option<Grade>) -> String {
     match (field, grade) {
         (Some(file), _) => format!(" times {file}"),
@@ -144,7 +144,7 @@ pub(crate) fn texture(case: &Case) -> String {
     )
 }
 
-/// The size and roughness of a height map, and what of it touches.
+/// The size and roughness of a height map, and its height of contact.
 fn topography(topography: &Topography) -> String {
     let in_metres = |length: f64| with_si_prefix(length, "m");
     let roughness = &topography.roughness;
@@ -166,7 +166,7 @@ fn topography(topography: &Topography) -> String {
     )
 }
 
-/// The smallest lengths of the texture, on lines of their own, with what there is to say about them and `said` of a file.
+/// The smallest lengths of the texture, on lines of their own, with remarks on them and the remarks `said` on a file.
 pub(crate) fn smallest(case: &Case, smallest: Clearance, said: &[String]) -> String {
     let mut lines = String::new();
     for (name, length) in [("feature", smallest.feature), ("gap", smallest.gap)] {

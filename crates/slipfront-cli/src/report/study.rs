@@ -15,13 +15,13 @@ use super::cost::standing;
 use super::times::duration;
 use crate::wrap::note;
 
-/// Most levels of an axis that are printed.
+/// Largest number of levels of an axis that are printed.
 const MAX_LEVELS: usize = 10;
 
-/// Most points that are printed.
+/// Largest number of points that are printed.
 const MAX_POINTS: usize = 40;
 
-/// The plan of a study and what it will cost.
+/// The plan of a study and its cost.
 pub(crate) fn plan(plan: &Plan, block_steps: f64, seconds: f64, threads: usize) -> String {
     let settings = &plan.settings;
     let (min, max) = (settings.min_replicates(), settings.max_replicates());
@@ -93,8 +93,8 @@ fn case_warnings(plan: &Plan) -> String {
         .collect()
 }
 
-/// The answer of a study: its main quantity at every point, notes, and the folder of tables and pictures, with the reason why there
-/// are none of something.
+/// The answer of a study: its main quantity at every point, notes, and the folder of tables and pictures, with the reasons
+/// for omissions.
 pub(crate) fn study(plan: &Plan, results: &StudyResults, folder: &Path) -> String {
     let missing = why_no_pictures(&plan.axes).into_iter();
     let missing = missing.chain(quantities_without_pictures(plan, results));
@@ -166,7 +166,7 @@ fn meshed(plan: &Plan, shown: usize) -> Option<Vec<String>> {
         .then_some(meshed)
 }
 
-/// The main quantity at a point with its interval, of how many values it is, and what a reader must know of it.
+/// The main quantity at a point with its interval, the number of values, and remarks for a reader.
 fn point_value(plan: &Plan, results: &StudyResults, point: usize) -> Vec<String> {
     let has_failed = || results.failures().any(|(run, _)| run.point == point);
     let without = results.runs_without_transition(point, plan.main_quantity());
@@ -196,7 +196,7 @@ fn point_value(plan: &Plan, results: &StudyResults, point: usize) -> Vec<String>
     cells
 }
 
-/// What a reader must know of the study as a whole.
+/// Notes for a reader on the study as a whole.
 fn notes(plan: &Plan, results: &StudyResults) -> String {
     let mut text = String::new();
     // Points share references: each counts once.

@@ -106,7 +106,7 @@ fn events(case: &Case, precursors: &PrecursorSummary) -> String {
     format!("{}, {crossing}", precursors.events)
 }
 
-/// Most peaks that are printed.
+/// Largest number of peaks that are printed.
 const MAX_PEAKS: usize = 6;
 
 fn peaks(cycles: &[CycleSummary]) -> String {

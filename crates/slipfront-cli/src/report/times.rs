@@ -12,7 +12,7 @@ pub(super) fn instant(time_star: f64, scales: &Scales) -> String {
     format!("t* = {} ({seconds})", four_digits(time_star))
 }
 
-/// How long a computation takes.
+/// Duration of a computation.
 pub(super) fn duration(seconds: f64) -> String {
     if seconds < 1.0 {
         return "less than a second".to_owned();

@@ -13,7 +13,7 @@ fn case(drive: &str) -> String {
 
 const TOTAL: &str = "total_stiffness_star = 20";
 
-/// A `.npy` file of 60 x 50 blocks, of which those for which it is 1 are attached.
+/// A `.npy` file of 60 x 50 blocks; those for which `value` is 1 are attached.
 fn npy(value: impl Fn(usize, usize) -> i8) -> Vec<u8> {
     let mut bytes =
         b"\x93NUMPY\x01\x00\x46\x00{'descr': '|i1', 'fortran_order': False, 'shape': (50, 60), }".to_vec();

@@ -1,4 +1,4 @@
-//! Runs that cannot end well: diverged, interrupted, on a full disk, with nobody left to read what they say.
+//! Runs that cannot end well: diverged, interrupted, on a full disk, without a reader of their output.
 
 use std::collections::BTreeSet;
 use std::process::{Command, Stdio};
@@ -50,7 +50,7 @@ fn a_closed_pipe_is_no_failure() {
     assert!(workspace.exists("results/small/manifest.json"));
 }
 
-/// A full disk behind stdout loses messages and nothing else; what has no other product than its output says so.
+/// A full disk behind stdout loses messages and nothing else; a command whose only product is its output reports it.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_full_stdout_stops_no_work() {
@@ -113,7 +113,7 @@ fn a_full_stdout_stops_no_work() {
     workspace.assert_same_run("whole", "b");
 }
 
-/// Whatever a process may take: a sentence, or less work at once, and never an abort.
+/// A limit of addresses ends in a sentence, or in less work at once, and never in an abort.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_limit_of_addresses_ends_nothing_in_an_abort() {
@@ -276,8 +276,8 @@ fn a_file_that_cannot_be_written_whole_is_not_there_at_all() {
     assert!(failed.len() >= 5, "only {failed:?} were hit");
 }
 
-/// Runs a line in a folder `disk` of its own size and number of files; gives the status and what was said. Mounting
-/// one takes rights that few have: nothing is tested then.
+/// Runs a line in a folder `disk` of its own size and number of files; returns the status and the messages. Mounting one
+/// takes rights that few have: nothing is tested then.
 #[cfg(target_os = "linux")]
 fn on_a_small_disk(workspace: &Workspace, options: &str, line: &str) -> Option<(i32, String)> {
     // A mount in a name space of its own goes away by itself.

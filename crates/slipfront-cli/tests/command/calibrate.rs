@@ -1,4 +1,4 @@
-//! What measured records tell of a case.
+//! The command `slipfront calibrate` from outside.
 
 use crate::support::process::{send, stderr, stdout, wait_for};
 use crate::support::workspace::Workspace;
@@ -20,7 +20,7 @@ fn workspace() -> Workspace {
     workspace
 }
 
-/// What is said is what was written, the case runs, and the files are those of any other call and of `verify`.
+/// The printed text is the written one, the case runs, and the files are those of any other call and of `verify`.
 #[test]
 fn a_calibration_is_told_and_found_again() {
     let workspace = workspace();
@@ -92,7 +92,7 @@ fn folders_of_others_are_left_alone() {
     assert!(said.contains("notes.txt") && !workspace.exists("new"), "{said}");
 }
 
-/// What was run is kept, and the same command goes on.
+/// A signal keeps the finished runs, and the same command goes on.
 #[cfg(unix)]
 #[test]
 fn a_signal_keeps_what_was_run() {

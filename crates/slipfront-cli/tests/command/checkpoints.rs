@@ -54,7 +54,7 @@ static SPOT: LazyLock<Vec<u8>> = LazyLock::new(|| {
     workspace.read("spot.png")
 });
 
-/// The folder of a run of `slow.toml` without a stop, which is made once: whatever is compared with it has the same bytes.
+/// The folder of a run of `slow.toml` without a stop, made once: results compared with it have the same bytes.
 static WHOLE: LazyLock<Files> = LazyLock::new(|| {
     let workspace = slow_workspace();
     workspace.succeed("run slow.toml -o whole");
@@ -149,7 +149,8 @@ fn a_second_signal_ends_it_at_once() {
     assert!(matches!(status, Some(130 | 143)), "{status:?}");
 }
 
-/// A full disk under the log, or a terminal that has gone, costs what would have been said, and nothing else.
+/// Messages that cannot be printed are no failure: a full disk under the log, or a terminal that has gone, costs nothing
+/// else.
 #[cfg(target_os = "linux")]
 #[test]
 fn what_cannot_be_said_is_no_failure() {
@@ -413,7 +414,7 @@ fn a_resumed_run_that_diverges_leaves_its_case() {
     assert!(workspace.files("out/runs") == kept);
 }
 
-/// A kill between the two renames leaves the one before alone: it is the latest then.
+/// Where a kill between the two renames leaves only the checkpoint before, it counts as the latest.
 #[test]
 fn where_only_the_one_before_is_left_it_is_taken() {
     let workspace = slow_workspace();

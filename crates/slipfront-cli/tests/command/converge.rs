@@ -51,7 +51,7 @@ fn a_sheet_is_told_with_the_error_of_its_mesh() {
     assert!(workspace.files("meshes") == before);
 }
 
-/// What the meshes found follows from the records, as tables do.
+/// The comparison of the meshes follows from the records, as tables do.
 #[test]
 fn verify_holds_what_meshes_found_against_the_records() {
     let workspace = Workspace::new();
@@ -134,7 +134,7 @@ fn the_guide_shows_what_is_printed() {
     assert!(guide.contains(&shown), "docs/guide/experiment.md lacks: {shown}");
 }
 
-/// A mask lies where its case says, and is copied into the folder as those of any study.
+/// A mask lies where its case places it, and is copied into the folder as in any study.
 #[test]
 fn a_mask_is_laid_over_every_mesh() {
     let workspace = Workspace::new();
@@ -178,7 +178,7 @@ fn no_limit_is_given_where_a_block_is_a_length_of_the_material() {
     }
 }
 
-/// Before the first run, and before a folder is made.
+/// A case that cannot be put on meshes is refused before the first run, and before a folder is made.
 #[test]
 fn what_cannot_be_put_on_meshes_is_refused() {
     let workspace = Workspace::new();

@@ -13,7 +13,7 @@ fn verdict(workspace: &Workspace, folder: &str) -> Value {
     serde_json::from_slice(&workspace.read(&format!("{folder}/design.json"))).unwrap()
 }
 
-/// What is said is what was written, the case runs with the texture, and the files are those of any other call.
+/// The printed text is the written one, the case runs with the texture, and the files are those of any other call.
 #[test]
 fn a_design_is_a_texture_that_other_commands_read() {
     let workspace = Workspace::new();
@@ -81,7 +81,7 @@ fn a_design_is_a_texture_that_other_commands_read() {
     assert!(workspace.files("twice") == before);
 }
 
-/// Without time for a search, the best named pattern is told as one.
+/// A search without time for runs reports the best named pattern as one.
 #[test]
 fn a_search_without_time_is_none() {
     let workspace = Workspace::new();
@@ -112,7 +112,7 @@ fn folders_of_others_are_left_alone() {
     assert!(said.contains("no texture keeps these limits"), "{said}");
 }
 
-/// More texture never gives less of what is wished for, since what covers less is legal too.
+/// A front shows that more texture never gives less of the wish, since smaller coverages are legal too.
 #[test]
 fn a_front_tells_what_less_texture_gives() {
     let workspace = Workspace::new();
@@ -136,7 +136,7 @@ fn a_front_tells_what_less_texture_gives() {
     assert!(workspace.exists("found/front.png") && workspace.exists("found/front.svg"));
 }
 
-/// The best so far is a texture that can be run, and the same command goes on.
+/// A signal keeps the best texture so far, which can be run, and the same command goes on.
 #[cfg(unix)]
 #[test]
 fn a_signal_keeps_the_best() {

@@ -1,4 +1,4 @@
-//! Every command line in the book is one that the command understands, every link in it leads somewhere, and it tells every `unsafe`.
+//! Every command line in the book is understood by the command, every link leads somewhere, and every `unsafe` is listed.
 
 use std::path::{Path, PathBuf};
 
@@ -44,8 +44,8 @@ fn words(line: &str) -> Vec<String> {
     words
 }
 
-/// What stands behind `slipfront`, `cargo run --release --` or, with any way to start it, `slipfront-mpi`, of which `run` is the
-/// same, in the `$` lines of the console blocks.
+/// Arguments of `slipfront`, of `cargo run --release --` and, with any way to start it, of `slipfront-mpi`, whose `run`
+/// takes the same, in the `$` lines of the console blocks.
 fn commands(page: &str) -> Vec<Vec<String>> {
     let mut found = Vec::new();
     let mut console = false;
@@ -157,7 +157,7 @@ fn every_link_in_the_book_leads_somewhere() {
     assert_eq!(anchor(" What 31 % means"), "what-31--means");
 }
 
-/// What `run` and `check` print stands in the guides, but for lines that depend on the machine.
+/// The guides show the output of `run` and `check`, but for lines that depend on the machine.
 #[test]
 fn the_guides_show_what_run_and_check_print() {
     let guide = |name: &str| std::fs::read_to_string(repository().join("docs/guide").join(name)).unwrap();
@@ -221,7 +221,7 @@ fn unsafe_lines(code: &str) -> Vec<usize> {
         .collect()
 }
 
-/// What users run: each `unsafe` has its reason above it, and is told in the book with its file.
+/// Every `unsafe` in the programs of users has its reason above it, and is listed in the book with its file.
 #[test]
 fn every_unsafe_has_its_reason_and_stands_in_the_book() {
     let repository = repository();

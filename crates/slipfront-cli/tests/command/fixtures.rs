@@ -1,4 +1,4 @@
-//! Small cases, and what is asked of the folders of their runs.
+//! Small cases, and checks of the folders of their runs.
 
 use crate::support::workspace::{Files, Workspace};
 
@@ -77,7 +77,7 @@ impl Workspace {
     }
 }
 
-/// What is printed, with every note on one line again.
+/// Printed text with every note on one line again.
 pub(crate) fn unwrapped(text: &str) -> String {
     text.replace("\n      ", " ")
 }

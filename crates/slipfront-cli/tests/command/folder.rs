@@ -1,4 +1,4 @@
-//! The run folder: whose files are replaced, and whose never.
+//! Replacement of files in the run folder: slipfront's own, and never others.
 
 use crate::fixtures::{MASKED, SMALL};
 use crate::support::workspace::Workspace;
@@ -142,7 +142,7 @@ fn a_folder_that_cannot_be_written_is_said_before_the_run() {
     assert_eq!(workspace.read("file"), b"mine");
 }
 
-/// Root may write anywhere: nothing is tested then.
+/// A read-only folder is reported before the run. Nothing is tested for root, who may write anywhere.
 #[cfg(unix)]
 #[test]
 fn a_read_only_folder_is_said_before_the_run() {
@@ -199,7 +199,8 @@ fn force_takes_the_copies_of_a_killed_run_along() {
     assert_eq!(workspace.files("b").len(), 2);
 }
 
-/// Whatever a file is called, it is a run's only if the run has finished it, and if it is still the same.
+/// Files that an interrupted run has not written stay, whatever their names: a file is the run's only if it has finished it,
+/// and if it is unchanged.
 #[test]
 fn what_an_interrupted_run_has_not_written_stays() {
     let workspace = Workspace::small();
@@ -293,7 +294,7 @@ fn what_was_edited_in_a_complete_folder_is_not_replaced_without_a_word() {
     );
 }
 
-/// What a link leads to is somebody else's.
+/// Copies behind a link are somebody else's originals.
 #[cfg(unix)]
 #[test]
 fn copies_behind_a_link_are_originals() {
@@ -311,7 +312,7 @@ fn copies_behind_a_link_are_originals() {
     assert_eq!(workspace.read("masks/spot.png"), workspace.read("spot.png"));
 }
 
-/// Files that only happen to have a name like ours.
+/// Files that only happen to have a name like those of slipfront stay.
 #[test]
 fn what_only_looks_like_ours_stays() {
     let workspace = Workspace::small();

@@ -1,4 +1,4 @@
-//! What is wrong with a case is said in a sentence, with status 2, and nothing is written.
+//! Errors of a case are sentences with status 2, and nothing is written.
 
 use crate::support::process::{program, stderr};
 use crate::support::workspace::Workspace;
@@ -85,7 +85,7 @@ fn inputs_are_files() {
     }
 }
 
-/// The copy of an input takes no more than what can be meant, whatever follows it in the file.
+/// The copy of an input takes no more than its lattice can need, whatever follows in the file.
 #[test]
 fn inputs_are_no_longer_than_their_lattice_needs() {
     let workspace = Workspace::small();
@@ -134,7 +134,7 @@ fn what_no_machine_holds_is_refused_in_a_sentence() {
     assert!(said.contains("look at its units"), "{said}");
 }
 
-/// What the machine has is not what the process may have.
+/// A limit of the process is refused in a sentence: the process may have less than the machine.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_limit_of_the_process_is_refused_in_a_sentence() {

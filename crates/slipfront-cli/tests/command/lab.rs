@@ -10,14 +10,14 @@ use std::process::{Child, Command, Output, Stdio};
 use crate::support::process::{ignores_hangup, send, stderr, stdout, wait_for};
 use crate::support::workspace::Workspace;
 
-/// Starts the command; gives the address that it prints.
+/// Starts the command; returns it and the address that it prints.
 fn open(workspace: &Workspace, line: &str) -> (Child, String) {
     let mut process = workspace.process(line);
     fs::create_dir_all(workspace.path("temporary")).unwrap();
     start(process.env("TMPDIR", workspace.path("temporary")))
 }
 
-/// Starts a command; gives the address that it prints.
+/// Starts a command; returns it and the address that it prints.
 fn start(process: &mut Command) -> (Child, String) {
     let mut child = process
         .stdout(Stdio::piped())
@@ -37,7 +37,7 @@ fn start(process: &mut Command) -> (Child, String) {
     (child, address)
 }
 
-/// Waits for the end of a process, which a signal has asked for.
+/// Waits for the end of a process to which a signal was sent.
 fn ended(mut child: Child) -> Output {
     wait_for("end of the laboratory", || child.try_wait().unwrap().is_some());
     child.wait_with_output().unwrap()
@@ -89,7 +89,8 @@ fn it_serves_its_page_until_a_signal() {
 struct Desktop(Workspace);
 
 impl Desktop {
-    /// `xdg-open` notes what it is asked to open, and stays as long as that note, as a browser does that shows a page.
+    /// A desktop whose `xdg-open` notes the file that it should open, and stays as long as that note, as a browser does that
+    /// shows a page.
     fn new() -> Self {
         let desktop = Self(Workspace::small());
         let note = desktop.0.path("opened");
@@ -112,7 +113,7 @@ impl Desktop {
         fs::set_permissions(self.0.path(name), PermissionsExt::from_mode(0o755)).unwrap();
     }
 
-    /// What opens HTML files, and what addresses.
+    /// Sets the programs that open HTML files, and addresses.
     fn default_program(&self, pages: &str, addresses: &str) {
         let script = format!("case $3 in text/html) echo {pages} ;; *) echo {addresses} ;; esac");
         self.program("bin/xdg-mime", &script);
@@ -141,7 +142,7 @@ impl Desktop {
     }
 }
 
-/// What a program prints as the user `nobody`; none if this user may not become another one.
+/// Output of a program as the user `nobody`; none if this user may not become another one.
 fn as_nobody(script: &str) -> Option<String> {
     let mut shell = Command::new("sh");
     let output = shell.args(["-c", script]).uid(65534).gid(65534).output().ok()?;
@@ -253,7 +254,7 @@ fn the_address_is_not_printed_into_a_file_that_others_can_read() {
     }
 }
 
-/// The folder of its start page goes with it, or with the next one.
+/// The temporary folder of the start page of a killed laboratory is removed by the next one.
 #[test]
 fn what_a_killed_one_left_is_removed_by_the_next() {
     let desktop = Desktop::new();

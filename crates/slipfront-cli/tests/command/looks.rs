@@ -1,4 +1,4 @@
-//! Help, version, completions, and what `check` and `run` print.
+//! Help, version, completions, and the output of `check` and `run`.
 
 use crate::fixtures::{SMALL, unwrapped};
 use crate::support::workspace::Workspace;
@@ -52,7 +52,8 @@ fn completions_know_subcommands_and_options() {
     assert!(workspace.fail("completions dos", 2).contains("bash"));
 }
 
-/// That they are those of every crate is held by `tests/licences/run.sh`.
+/// The licences of slipfront and of its parts are printed; that they are those of every crate is tested by
+/// `tests/licences/run.sh`.
 #[test]
 fn licences_are_told_of_slipfront_and_of_what_it_contains() {
     let workspace = Workspace::small();
@@ -226,7 +227,7 @@ fn run_prints_physics_summary_and_where_everything_is() {
     }
 }
 
-/// Textured blocks are held by nothing; of springs in contact, whose breaking counts, they have none.
+/// Textured blocks slide from the start and a run says so; springs in contact do not count them, because they have none.
 #[test]
 fn a_run_says_that_textured_blocks_slide_from_the_start() {
     let workspace = Workspace::small();
@@ -261,7 +262,8 @@ fn a_run_says_that_textured_blocks_slide_from_the_start() {
     assert!(!said.contains(sentence), "{said}");
 }
 
-/// Springs that are not alike are not counted by what they are worth.
+/// A total stiffness is reported as it is shared: springs of different stiffness are not counted by their relative
+/// stiffness.
 #[test]
 fn a_total_stiffness_is_told_as_it_is_shared() {
     let workspace = Workspace::small();
@@ -299,7 +301,7 @@ fn a_run_says_what_its_numbers_are_worth() {
     assert!(workspace.summary("stuck")["first_slip_time_star"].is_null());
 }
 
-/// What is meant by a file or a folder in the place of a subcommand, and by a misspelt file.
+/// A file or a folder in the place of a subcommand, and a misspelt file, are understood.
 #[test]
 fn a_forgotten_subcommand_and_a_misspelt_file_are_understood() {
     let workspace = Workspace::small();

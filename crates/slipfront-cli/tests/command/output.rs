@@ -1,11 +1,11 @@
-//! What a run leaves behind, and what `[output]`, `[time]` and `edges` make of it.
+//! Files of a run, and the effects of `[output]`, `[time]` and `edges`.
 
 use slipfront_run::fields::{FieldFrame, FieldsData, read_fields, read_kymograph};
 
 use crate::fixtures::RUN_FILES;
 use crate::support::workspace::Workspace;
 
-/// What `summary.json` holds at least (design, section 3).
+/// Keys that `summary.json` holds at least (design, section 3).
 const KEYS: [&str; 28] = [
     "static_friction_star",
     "static_friction",
@@ -226,8 +226,8 @@ fn a_later_mu_star_above_the_first_peak_is_told() {
     );
 }
 
-/// Drag of the damping, or a kinetic coefficient above the static one, makes steady sliding take more than the blocks hold at rest: what mu*
-/// falls by is no loss of friction.
+/// Drag of the damping, or a kinetic coefficient above the static one, makes steady sliding take more than the static
+/// strength of the blocks: a fall of mu* is then no loss of friction.
 #[test]
 fn where_friction_loses_nothing_there_is_no_transition() {
     let workspace = Workspace::small();
@@ -399,7 +399,7 @@ fn a_case_can_ask_for_its_movie() {
     assert!(!workspace.exists("other"));
 }
 
-/// Skipped where there is no ffmpeg.
+/// ffmpeg makes an MP4 file; skipped where there is no ffmpeg.
 #[test]
 fn ffmpeg_makes_an_mp4_file() {
     if std::process::Command::new("ffmpeg")

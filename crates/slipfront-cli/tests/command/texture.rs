@@ -8,7 +8,7 @@ use crate::support::workspace::Workspace;
 const LONG: &str = "slider = { blocks = [200, 200], edges = ['periodic', 'periodic'] }\n[[texture]]\nshape = 'cavity'\n\
                     s = 64\nw = 0.015\nlambda = '9 mm'\narray = [1000, 1000]\n";
 
-/// Before, it went on to the end, and a second signal killed it without a word.
+/// A signal ends a texture that takes long.
 #[cfg(unix)]
 #[test]
 fn a_signal_ends_a_texture_that_takes_long() {

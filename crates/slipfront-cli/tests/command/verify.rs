@@ -1,4 +1,4 @@
-//! `slipfront verify`: whatever changes in a run folder is seen, and a repeated run gives the same.
+//! The command `slipfront verify`: every change in a run folder is found, and a repeated run gives the same files.
 
 use std::collections::BTreeMap;
 use std::process::Stdio;
@@ -7,7 +7,7 @@ use crate::fixtures::{RUN_FILES, unwrapped};
 use crate::support::process::{send, wait_for};
 use crate::support::workspace::Workspace;
 
-/// Verifies; gives the status and what was said on stdout and on stderr.
+/// Verifies; returns the status, stdout and stderr.
 pub(crate) fn verified(workspace: &Workspace, line: &str) -> (i32, String, String) {
     let output = workspace.command(&format!("verify {line}")).output().unwrap();
     let [out, err] = [output.stdout, output.stderr].map(|said| String::from_utf8(said).unwrap());
@@ -26,7 +26,7 @@ fn remove(workspace: &Workspace, name: &str) {
     std::fs::remove_file(workspace.path(name)).unwrap();
 }
 
-/// Changes the manifest as whoever wrote it could have written it.
+/// Changes the manifest, with the right checksum.
 fn reseal(workspace: &Workspace, change: impl Fn(&mut serde_json::Value)) {
     let mut manifest: serde_json::Value = serde_json::from_slice(&workspace.read("a/manifest.json")).unwrap();
     change(&mut manifest);
@@ -81,7 +81,7 @@ fn every_changed_byte_is_seen() {
     assert_eq!(verified(&workspace, "a").0, 0);
 }
 
-/// Pictures of damaged files would look right.
+/// Changed files are not drawn, because pictures of damaged files would look right.
 #[test]
 fn what_has_changed_is_not_drawn() {
     let workspace = workspace_with_a_run();
@@ -123,7 +123,7 @@ fn every_byte_of_the_manifest_is_under_its_seal() {
     }
 }
 
-/// It may be whole: what is wrong are the rights or the disk.
+/// A manifest that cannot be read is not called damaged: the rights or the disk may be wrong.
 #[cfg(unix)]
 #[test]
 fn a_manifest_that_cannot_be_read_is_not_called_damaged() {
@@ -167,7 +167,7 @@ fn missing_and_cut_files_are_named() {
     assert!(status == 1 && said.contains("not a regular file"), "{said}");
 }
 
-/// They do no harm: a user may keep notes beside results.
+/// Files of others are named; they do no harm, since a user may keep notes beside results.
 #[test]
 fn files_of_others_are_named() {
     let workspace = workspace_with_a_run();
@@ -368,7 +368,7 @@ fn a_repeated_run_of_another_case_gives_another() {
     assert!(said.starts_with("a/case.toml differs: it has "), "{said}");
 }
 
-/// Files that the repeated run does not write.
+/// A repeated run may write fewer files.
 #[test]
 fn a_repeated_run_may_write_less() {
     let workspace = workspace_with_a_run();
@@ -410,7 +410,7 @@ fn an_interrupted_repetition_leaves_nothing_behind() {
     assert_eq!(std::fs::read_dir(&temporary).unwrap().count(), 0);
 }
 
-/// The second of them neither waits for the first nor takes its folder away.
+/// A run is repeated twice at once: the second repetition neither waits for the first nor takes its folder away.
 #[cfg(unix)]
 #[test]
 fn a_run_is_repeated_twice_at_once() {

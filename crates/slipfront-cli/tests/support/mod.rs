@@ -1,4 +1,4 @@
-//! What the tests of the command share: a folder to work in, and the processes that work there.
+//! Shared parts of the tests of the command: a folder to work in, and the processes that work there.
 
 // Every test binary uses a part of it.
 #![allow(dead_code)]

@@ -9,12 +9,12 @@ pub(crate) fn program() -> &'static str {
     env!("CARGO_BIN_EXE_slipfront")
 }
 
-/// What a process has printed to stderr.
+/// Text that a process has printed to stderr.
 pub(crate) fn stderr(output: &Output) -> String {
     String::from_utf8_lossy(&output.stderr).into_owned()
 }
 
-/// What a process has printed to stdout.
+/// Text that a process has printed to stdout.
 pub(crate) fn stdout(output: &Output) -> String {
     String::from_utf8_lossy(&output.stdout).into_owned()
 }
@@ -24,7 +24,7 @@ pub(crate) fn send(child: &Child, signal: &str) {
     assert!(try_send(child, signal), "{signal} cannot be sent");
 }
 
-/// Sends a signal to a process that may have ended; says whether it was still there.
+/// Sends a signal to a process that may have ended; returns whether it was still there.
 pub(crate) fn try_send(child: &Child, signal: &str) -> bool {
     let kill = Command::new("kill")
         .args([signal, &child.id().to_string()])
@@ -58,7 +58,7 @@ pub(crate) fn ignores_hangup() -> bool {
     signal_mask("self", "SigIgn:").is_some_and(|mask| mask & 1 == 1)
 }
 
-/// A set of signals in the status of a process, number n at bit n - 1; none of a process that has ended.
+/// A set of signals in the status of a process, number n at bit n - 1; none for a process that has ended.
 fn signal_mask(process: &str, name: &str) -> Option<u64> {
     let status = std::fs::read_to_string(format!("/proc/{process}/status")).ok()?;
     let mask = status.lines().find_map(|line| line.strip_prefix(name))?;

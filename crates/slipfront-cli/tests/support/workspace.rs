@@ -13,7 +13,7 @@ use super::process::{program, stderr, stdout, wait_for};
 /// Files by their names, with their bytes.
 pub(crate) type Files = BTreeMap<String, Vec<u8>>;
 
-/// A larger file is not read: it is one of the empty files of a TiB that tests make.
+/// Largest number of bytes of a file that is read: a larger file is one of the empty files of a TiB that tests make.
 const MAX_READ_BYTES: u64 = 1 << 30;
 
 /// A temporary folder. Names of files are relative to it, and commands run in it.
@@ -106,13 +106,13 @@ impl Workspace {
         self.process(line).output().unwrap()
     }
 
-    /// Runs the command, which must succeed; gives what it prints to stdout.
+    /// Runs the command, which must succeed; returns its stdout.
     pub(crate) fn succeed(&self, line: &str) -> String {
         let output = self.command(line).assert().success().get_output().clone();
         String::from_utf8(output.stdout).unwrap()
     }
 
-    /// Runs the command, which must fail with this status and without results; gives what it prints to stderr.
+    /// Runs the command, which must fail with this status and without results; returns its stderr.
     pub(crate) fn fail(&self, line: &str, status: i32) -> String {
         let output = self.output(line);
         let errors = stderr(&output);

@@ -1,4 +1,4 @@
-//! The command with bounds on its time and memory, and what its end must look like.
+//! The command with bounds on its time and memory, and the checks of its end.
 
 use std::process::{Child, Output, Stdio};
 use std::time::Duration;
@@ -14,7 +14,7 @@ const MAX_SECONDS: u64 = 120;
 /// using it.
 const MAX_MEMORY_KIB: u64 = 1 << 20;
 
-/// How a command ended.
+/// End of a command.
 #[derive(Debug)]
 pub(crate) struct Ended {
     pub(crate) status: i32,

@@ -1,7 +1,7 @@
-//! Whatever is done to the files that a command reads, it gives no wrong answer that looks right.
+//! A command gives no wrong answer that looks right, whatever happens to the files that it reads.
 //!
-//! Files with a checksum (results, records, findings) are refused or made again; what a user writes (cases, studies,
-//! masks, arrays) is taken as it stands now, and recorded as such.
+//! Files with a checksum (results, records, findings) are refused or made again; files of a user (cases, studies, masks,
+//! arrays) are read as they are now, and recorded as such.
 
 use std::process::Command;
 use std::sync::OnceLock;
@@ -17,15 +17,15 @@ const ENDLESS_BYTES: u64 = 1 << 40;
 
 #[derive(Clone, Debug)]
 enum Damage {
-    /// Only so many bytes are left.
+    /// Only these bytes are left.
     Cut(usize),
-    /// A bit is another.
+    /// A bit is flipped.
     Flip(usize),
-    /// Two bytes have changed places.
+    /// Two bytes are exchanged.
     Swap(usize, usize),
-    /// Sixteen bytes from here on are zero.
+    /// Sixteen bytes from this one on are zero.
     Zero(usize),
-    /// Another file stands in its place.
+    /// Another file stands in the place of this one.
     Other(String),
     Gone,
     Folder,
@@ -37,11 +37,11 @@ enum Damage {
     Endless,
 }
 
-/// Files by what they are.
+/// Files by their kinds.
 type Others = Vec<(String, Vec<u8>)>;
 
-/// Damage to a file: at most `most` cuts, flips and the like, and everything that can stand in its place, of which the
-/// short form takes no more either.
+/// Damage to a file: at most `most` cuts, flips and the like, and everything that can stand in its place, of which the short
+/// form also takes at most `most`.
 fn damages(bytes: &[u8], chance: &mut Chance, most: usize) -> Vec<Damage> {
     let len = bytes.len();
     let mut all: Vec<Damage> = Vec::new();
@@ -72,7 +72,7 @@ fn damages(bytes: &[u8], chance: &mut Chance, most: usize) -> Vec<Damage> {
 }
 
 impl Damage {
-    /// The bytes after it, where bytes are left and not the same.
+    /// The bytes after the damage, where bytes are left and differ.
     fn bytes(&self, whole: &[u8]) -> Option<Vec<u8>> {
         let mut bytes = whole.to_vec();
         match self {
@@ -89,7 +89,7 @@ impl Damage {
         (bytes != whole).then_some(bytes)
     }
 
-    /// Puts it in the place of a file; says whether anything has changed.
+    /// Damages a file; returns whether anything has changed.
     fn apply(&self, workspace: &Workspace, name: &str, whole: &[u8]) -> bool {
         let path = workspace.path(name);
         if let Some(bytes) = self.bytes(whole) {
@@ -114,7 +114,7 @@ impl Damage {
         true
     }
 
-    /// A user may hand over a case through a pipe: it is waited for.
+    /// Whether a command waits for the file: a user may hand over a case through a pipe.
     fn is_waited_for(&self) -> bool {
         matches!(self, Self::Pipe)
     }
@@ -127,7 +127,7 @@ struct Target<'a> {
     most: usize,
 }
 
-/// Damages a file in every way, asks each time what comes of it, and mends it.
+/// Damages a file in every way, judges the outcome each time, and mends the file.
 fn torture(
     tally: &mut Tally,
     workspace: &Workspace,
@@ -153,7 +153,7 @@ fn torture(
     }
 }
 
-/// A file of every kind, to stand in for another: of the same case and study, and of others.
+/// A file of every kind, to stand in for another: from the same case and study, and from others.
 fn others() -> &'static Others {
     static OTHERS: OnceLock<Others> = OnceLock::new();
     let make = || {
@@ -312,7 +312,7 @@ fn of_a_study_file() {
     tally.close();
 }
 
-/// Nothing that differs from what was written may pass.
+/// Nothing that differs from the written files may pass.
 fn seen(workspace: &Workspace, line: &str) -> Result<&'static str, String> {
     let ended = workspace.run_bounded(line)?;
     match ended.status {

@@ -14,11 +14,11 @@ struct Call {
     path: String,
 }
 
-/// What becomes of it.
+/// Fate of a call.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Fault {
     action: &'static str,
-    /// And of all that follow.
+    /// Whether all calls that follow fail, too.
     lasts: bool,
 }
 
@@ -47,7 +47,7 @@ impl Fault {
         ["kill", "torn"].contains(&self.action)
     }
 
-    /// Whether a call can meet with it on a real system.
+    /// Whether a call can meet with the fault on a real system.
     fn can_hit(self, call: &Call) -> bool {
         let name = call.name.as_str();
         match self.action {
@@ -91,11 +91,11 @@ impl Fault {
     }
 }
 
-/// What came of a line with a fault.
+/// Outcome of a line with a fault.
 struct Hit {
-    /// How it ended; nothing if it was killed.
+    /// End of the command; none if it was killed.
     ended: Result<Option<Ended>, String>,
-    /// The first call that was spoilt.
+    /// The first call that failed, if one did.
     call: Option<Call>,
     calls: Vec<Call>,
 }
@@ -128,7 +128,7 @@ fn hit(workspace: &Workspace, line: &str, fault: Fault, number: usize) -> Hit {
     Hit { ended, call, calls }
 }
 
-/// Says what came of a fault at a call, or what is wrong with it.
+/// Function that describes the outcome of a fault at a call, or finds an error.
 type Judge<'a> = dyn Fn(Fault, Option<Ended>, &Call) -> Result<&'static str, String> + 'a;
 
 /// The words of an error of the system.
@@ -148,7 +148,7 @@ fn names(said: &str, path: &str) -> bool {
     parts.next().is_none_or(|part| said.contains(part))
 }
 
-/// Every fault at every call of a line, or a sample of them; `judge` says what came of one.
+/// Tries every fault at every call of a line, or a sample of them; `judge` describes the outcome of one.
 fn every_fault(
     tally: &mut Tally,
     workspace: &Workspace,
@@ -295,7 +295,7 @@ fn a_file_that_was_not_renamed_goes_with_the_next() {
     }
 }
 
-/// What only reads: its answer is the right one, or there is none.
+/// The answer of a command that only reads is the right one, or there is none.
 #[test]
 fn of_those_who_read() {
     if watcher().is_none() {
@@ -341,7 +341,8 @@ fn of_those_who_read() {
     tally.close();
 }
 
-/// A look that fails is not taken for a file that is not there: a run that goes on tells the cause, or writes all that it should.
+/// A failed look at a file is not taken for a missing file: a run that goes on reports the cause, or writes all of its
+/// files.
 #[test]
 fn of_a_look_of_a_run_that_goes_on() {
     if watcher().is_none() {
@@ -392,7 +393,7 @@ fn of_a_look_of_a_run_that_goes_on() {
     assert!(findings.is_empty(), "{}", findings.join("\n"));
 }
 
-/// The calls of the program are seen however they are made: this one renames without libc.
+/// The calls of the program are seen however they are made: this program renames without libc.
 #[test]
 fn renames_are_seen() {
     if watcher().is_none() {

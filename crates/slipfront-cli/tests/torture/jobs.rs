@@ -1,4 +1,4 @@
-//! Commands that write folders: what they are given, how they go on, and what their folders must hold.
+//! Commands that write folders: their inputs, their continuation, and the required content of their folders.
 
 use std::collections::BTreeMap;
 use std::sync::Mutex;
@@ -11,21 +11,21 @@ use crate::support::workspace::{Files, Workspace};
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Job {
     pub(crate) name: &'static str,
-    /// Whether it is given the folder `done` of a finished run, and `out`, which is empty.
+    /// Whether the job gets the folder `done` of a finished run, and an empty folder `out`.
     pub(crate) is_given_a_run: bool,
-    /// The first time.
+    /// Command line of the first call.
     pub(crate) line: &'static str,
-    /// After it was stopped in any way.
+    /// Command line after a stop of any kind.
     pub(crate) again: &'static str,
-    /// After it was stopped before there was anything to go on with.
+    /// Command line after a stop before there was anything to go on with.
     pub(crate) anew: &'static str,
-    /// Whether SIGUSR1 makes it save what it has.
+    /// Whether SIGUSR1 makes the command save its state.
     pub(crate) saves: bool,
     /// Whether `slipfront verify` knows such folders.
     pub(crate) verified: bool,
 }
 
-/// Every one that there is.
+/// All jobs.
 pub(crate) const JOBS: [Job; 8] = [
     Job {
         name: "run",
@@ -139,7 +139,7 @@ key = "drive.v_star"
 list = [0.1, 0.2]
 "#;
 
-/// Of this one the run folders are kept.
+/// A study whose run folders are kept.
 const KEPT: &str = r#"
 [study]
 keep = "all"
@@ -203,7 +203,7 @@ pub(crate) fn workspace() -> Workspace {
 }
 
 impl Job {
-    /// Makes everything as it is before the job.
+    /// Prepares the state before the job.
     pub(crate) fn prepare(&self, workspace: &Workspace) {
         workspace.remove("out");
         workspace.remove("temporary");
@@ -229,12 +229,12 @@ impl Job {
     }
 }
 
-/// Names of files that are being written, and of all that belongs to a run which is not complete.
+/// Whether a name belongs to a file that is being written, or to a run which is not complete.
 fn unfinished(name: &str) -> bool {
     name.split('/').any(|part| part.starts_with('.'))
 }
 
-/// What the disk holds of a run that is not the same each time: when it was made.
+/// Whether a file of a run depends on the time at which it was made.
 fn told_by_time(name: &str) -> bool {
     name.ends_with("manifest.json") || name == "records.jsonl"
 }
@@ -258,7 +258,7 @@ fn records(bytes: &[u8]) -> Result<BTreeMap<String, Value>, String> {
     Ok(found)
 }
 
-/// Demands that a folder holds nothing but files as they should be, some of which may be missing.
+/// Demands that a folder holds only files as they should be, some of which may be missing.
 pub(crate) fn expect_sound(now: &Files, whole: &Files) -> Result<(), String> {
     for (name, bytes) in now {
         if unfinished(name) || told_by_time(name) {
@@ -283,7 +283,7 @@ pub(crate) fn expect_sound(now: &Files, whole: &Files) -> Result<(), String> {
     Ok(())
 }
 
-/// Demands that a folder holds exactly what it should.
+/// Demands that a folder holds exactly the files that it should.
 pub(crate) fn expect_complete(now: &Files, whole: &Files) -> Result<(), String> {
     expect_nothing_unfinished(now)?;
     expect_all(now, whole)
@@ -306,7 +306,7 @@ pub(crate) fn expect_nothing_temporary(workspace: &Workspace) -> Result<(), Stri
     }
 }
 
-/// Demands that a folder holds all that it should, beside which something half written may be left.
+/// Demands that a folder holds all files that it should; half-written files may stand beside them.
 pub(crate) fn expect_all(now: &Files, whole: &Files) -> Result<(), String> {
     if let Some(missing) = whole.keys().find(|name| !now.contains_key(*name)) {
         return Err(format!("{missing} is missing"));
@@ -326,7 +326,7 @@ pub(crate) fn expect_all(now: &Files, whole: &Files) -> Result<(), String> {
 }
 
 impl Job {
-    /// What to do next, whatever has become of the folder.
+    /// Next command line, from the state of the folder.
     pub(crate) fn next(&self, workspace: &Workspace, whole: &Files) -> &'static str {
         // A run goes on with its case and all that this reads.
         let read = |name: &&String| *name == "case.toml" || name.starts_with("inputs/");
@@ -357,7 +357,7 @@ impl Job {
         Ok(())
     }
 
-    /// Demands that what stands in the folder is right so far, and that it does not look complete unless it is.
+    /// Demands that the files in the folder are right so far, and that it looks complete only if it is.
     pub(crate) fn expect_honest(&self, workspace: &Workspace, whole: &Files) -> Result<(), String> {
         let now = workspace.files_if_any("out");
         expect_sound(&now, whole)?;

@@ -34,7 +34,7 @@ fn kill_and_look(
     }
 }
 
-/// How long a job takes when nothing disturbs it.
+/// Duration of a job that nothing disturbs.
 fn time_of(workspace: &Workspace, job: &Job) -> Duration {
     job.prepare(workspace);
     let began = Instant::now();
@@ -106,7 +106,7 @@ fn a_killed_repetition_of_a_run_is_repeated() {
     torture(&JOBS[7], cases(8, 200));
 }
 
-/// A signal to which a command can answer leaves nothing that the next command would have to remove.
+/// A signal that a command can answer leaves nothing that the next command would have to remove.
 #[test]
 fn what_a_signal_stops_leaves_nothing_behind() {
     let workspace = workspace();

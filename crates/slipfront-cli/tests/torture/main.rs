@@ -1,5 +1,5 @@
-//! Torture: the command is killed, its file-system calls fail, and what it reads is damaged. It must never give a wrong
-//! answer that looks right, never panic, never hang and never take memory without bound.
+//! Torture: the command is killed, its file-system calls fail, and the files that it reads are damaged. It must never give a
+//! wrong answer that looks right, never panic, never hang and never take memory without bound.
 //!
 //! `cargo test` takes a sample of the cases. All of them, with the numbers of cases tried:
 //!

@@ -1,14 +1,14 @@
-//! How much is tried, by what seed, and what came of it.
+//! The extent of the tests, their seed, and their outcomes.
 
 use std::collections::BTreeMap;
 
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
-/// Findings that are shown of one test.
+/// Largest number of findings of one test that are shown.
 const SHOWN: usize = 40;
 
-/// Which share of all cases is asked for; none for the short form.
+/// Share of all cases that is asked for; none for the short form.
 fn share() -> Option<f64> {
     match std::env::var("SLIPFRONT_TORTURE").ok()?.as_str() {
         "long" => Some(1.0),
@@ -16,12 +16,12 @@ fn share() -> Option<f64> {
     }
 }
 
-/// Whether this is not the short form.
+/// Whether the long form, or a share of it, is asked for.
 pub(crate) fn long() -> bool {
     share().is_some()
 }
 
-/// How many cases to try, where there are `all` in the long form.
+/// Number of cases to try, where there are `all` in the long form.
 pub(crate) fn cases(short: usize, all: usize) -> usize {
     share().map_or(short, |share| short.max((all as f64 * share) as usize))
 }
@@ -45,7 +45,7 @@ impl Chance {
         (self.0.next_u64() % bound.max(1) as u64) as usize
     }
 
-    /// At most `count` of these, in their order.
+    /// At most `count` of the elements, in their order.
     pub(crate) fn some<T>(&mut self, mut of: Vec<T>, count: usize) -> Vec<T> {
         while of.len() > count {
             let gone = self.below(of.len());
@@ -55,7 +55,7 @@ impl Chance {
     }
 }
 
-/// What came of the cases of a test.
+/// Outcomes of the cases of a test.
 pub(crate) struct Tally {
     what: &'static str,
     outcomes: BTreeMap<String, usize>,
@@ -71,7 +71,7 @@ impl Tally {
         }
     }
 
-    /// Notes a case of some kind: how it ended well, or what is wrong with it.
+    /// Notes a case of some kind: its good end, or its error.
     pub(crate) fn note(&mut self, kind: &str, case: &str, ended: Result<&str, String>) {
         let ended = ended.unwrap_or_else(|finding| {
             self.findings.push(format!("{kind}, {case}: {finding}"));
@@ -80,7 +80,7 @@ impl Tally {
         *self.outcomes.entry(format!("{kind}: {ended}")).or_default() += 1;
     }
 
-    /// Says how many cases there were, and fails if there is a finding.
+    /// Prints the number of cases, and fails if there is a finding.
     pub(crate) fn close(self) {
         let all: usize = self.outcomes.values().sum();
         let mut text = format!("{}: {all} cases\n", self.what);

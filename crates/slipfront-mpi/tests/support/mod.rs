@@ -1,4 +1,4 @@
-//! What the tests share: programs under mpirun.
+//! Shared parts of the tests: programs under mpirun.
 
 // Every test binary uses a part of it.
 #![allow(dead_code)]
@@ -13,14 +13,15 @@ use std::process::{Command, Output};
 /// The environment in which a test program finds the arguments of the command that it is to run.
 const ARGUMENTS: &str = "SLIPFRONT_TEST_ARGUMENTS";
 
-/// Starts a program with so many ranks.
+/// Starts a program with `ranks` ranks.
 pub(crate) fn mpirun(ranks: usize, program: impl AsRef<OsStr>) -> Command {
     let mut command = launcher();
     command.args(["-n", &ranks.to_string()]).arg(program);
     command
 }
 
-/// mpirun, which is still to be told what to start. Ranks may be more than cores, and then give way to each other while they wait.
+/// The command mpirun, without a program to start yet. Ranks may be more than cores, and then give way to each other while
+/// they wait.
 pub(crate) fn launcher() -> Command {
     let mut command = Command::new("mpirun");
     command.args(["--allow-run-as-root", "--oversubscribe", "--bind-to", "none"]);
@@ -38,7 +39,7 @@ pub(crate) fn output(command: &mut Command) -> Output {
     })
 }
 
-/// What is printed to stdout and stderr.
+/// Text that is printed to stdout and stderr.
 pub(crate) fn printed(output: &Output) -> String {
     [&output.stdout, &output.stderr]
         .map(|bytes| String::from_utf8_lossy(bytes))
@@ -52,7 +53,7 @@ pub(crate) fn ranks_of_test(ranks: usize, test: &str) -> Command {
     command
 }
 
-/// Runs `slipfront`, the plain command, which must succeed, in a folder: as a process of this test program, which has
+/// Runs the plain command `slipfront`, which must succeed, in a folder, as a process of this test program, which has
 /// [`run_plain_command`] in a test named `plain_command`.
 pub(crate) fn run_plain(folder: &Path, line: &str) {
     let mut command = Command::new(std::env::current_exe().unwrap());

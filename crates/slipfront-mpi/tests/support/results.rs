@@ -1,4 +1,4 @@
-//! What a run has written.
+//! Files that a run has written.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -6,7 +6,7 @@ use std::path::Path;
 /// Files by their names, with their bytes.
 pub(crate) type Files = BTreeMap<String, Vec<u8>>;
 
-/// Every file of a run that is complete but the manifest, which tells of machines and dates.
+/// Every file of a complete run but the manifest, which names machines and dates.
 pub(crate) fn results(folder: &Path) -> Files {
     let mut files = Files::new();
     for folder in [folder, &folder.join("inputs")] {

@@ -1,15 +1,15 @@
-//! An exact answer and what was computed in its place.
+//! An exact answer and the value computed for it.
 
 use crate::drawing::Drawing;
 
-/// What one option of the engine is held against.
+/// A chapter: one option of the engine and its exact answers.
 #[derive(Clone, Debug)]
 pub struct Chapter {
-    /// Its heading.
+    /// Heading of the chapter.
     pub title: &'static str,
-    /// Name of its picture's file.
+    /// Name of the file of the chapter's picture.
     pub name: &'static str,
-    /// What is modelled, and how the answers are derived, in Markdown.
+    /// The model and the derivation of the answers, in Markdown.
     pub text: &'static str,
     /// The answers.
     pub answers: Vec<Answer>,
@@ -17,25 +17,25 @@ pub struct Chapter {
     pub picture: Option<(&'static str, Drawing)>,
 }
 
-/// An exact answer and what was computed.
+/// An exact answer and the computed value.
 #[derive(Clone, Debug)]
 pub struct Answer {
-    /// What it is.
+    /// Name of the quantity.
     pub quantity: String,
     /// The exact value.
     pub exact: f64,
-    /// The computed one.
+    /// The computed value.
     pub found: f64,
-    /// How far they may be apart.
+    /// Largest allowed distance.
     pub tolerance: Tolerance,
 }
 
-/// How far a computed value may be from the exact one, and why as far.
+/// Largest allowed distance of a computed value from the exact one, and its reason.
 #[derive(Clone, Copy, Debug)]
 pub struct Tolerance {
     /// The largest distance.
     pub distance: f64,
-    /// Its reason, in one clause.
+    /// Reason for the distance, in one clause.
     pub reason: &'static str,
 }
 
@@ -54,7 +54,7 @@ impl Answer {
         }
     }
 
-    /// Whether the two agree; not so of a value that is none.
+    /// Whether the two values agree; false for NaN.
     pub fn holds(&self) -> bool {
         (self.found - self.exact).abs() <= self.tolerance.distance
     }

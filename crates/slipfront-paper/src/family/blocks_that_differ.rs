@@ -1,4 +1,4 @@
-//! Graded sliders, outlines, dampers beside the springs.
+//! Heterogeneous sliders: grades, outlines, dampers beside the springs.
 
 use std::sync::Arc;
 

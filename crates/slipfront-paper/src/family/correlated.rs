@@ -10,9 +10,9 @@ use crate::error::PaperError;
 
 /// Seeds over which correlations are measured.
 const SEEDS: u16 = 10_000;
-/// Correlation length of these, in blocks.
+/// Correlation length for the measured correlations, in blocks.
 const LENGTH: f64 = 2.0;
-/// Blocks in a row of them.
+/// Number of blocks in a row for the measured correlations.
 const BLOCKS: u8 = 6;
 
 /// The field itself, as static coefficients of mean 0 and deviation 1.
@@ -32,7 +32,7 @@ fn covariance(n: f64) -> f64 {
     twice(n + 1.0) - 2.0 * twice(n) + twice(n - 1.0)
 }
 
-/// Largest difference of a block from the mean of its four parts, of a slider of 12 x 10 blocks.
+/// Largest difference of a block from the mean of its four parts, on a slider of 12 x 10 blocks.
 fn apart(length: f64) -> f64 {
     let (nx, ny) = (12, 10);
     let parents = drawn(&Lattice::free(nx, ny), length, 1);

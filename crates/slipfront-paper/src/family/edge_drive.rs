@@ -42,16 +42,16 @@ const CHAINS: [Chain; 2] = [
 /// An event that is longer than all before, and does not cross the chain.
 struct Longer {
     length: f64,
-    /// `F_T/F_N` after it.
+    /// Load `F_T/F_N` after the event.
     load: f64,
-    /// How far that may be from the exact load while the drive adds little during an event.
+    /// Largest allowed distance of the load from the exact one while the drive adds little during an event.
     bound: f64,
-    /// What the drive has added during it.
+    /// Load that the drive has added during the event.
     added: f64,
 }
 
 impl Longer {
-    /// Relative error of the load, and how large it may be without and with what the drive has added.
+    /// Relative error of the load, and its largest allowed sizes without and with the load that the drive has added.
     fn error(&self, slope: f64) -> [f64; 3] {
         let exact = precursor_load(self.length, KINETIC, slope);
         [self.load - exact, self.bound, self.bound + self.added].map(|load| load.abs() / exact)
@@ -108,7 +108,7 @@ impl Chain {
         Ok((longer, STATIC * simulation.peak().largest.mu_star))
     }
 
-    /// What is known of its runs under one profile of pressure; and the events of the run of the finest step.
+    /// Answers for the chain's runs under one profile of pressure; and the events of the run of the finest step.
     fn answers(&self, slope: f64) -> Result<(Vec<Answer>, Vec<Longer>), PaperError> {
         let runs = self
             .steps

@@ -1,4 +1,4 @@
-//! `docs/validation/family.md`, and the lines that the command prints.
+//! The page `docs/validation/family.md`, and the lines that the command prints.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -66,7 +66,7 @@ fn row(answer: &Answer) -> String {
     )
 }
 
-/// Six significant digits.
+/// A number to six significant digits.
 fn digits(value: f64) -> String {
     let places = if value == 0.0 {
         0
@@ -110,7 +110,7 @@ pub fn foreign_docs(folder: &Path) -> Option<PathBuf> {
     (page.symlink_metadata().is_ok() && !begins_with(&page, TITLE.as_bytes())).then_some(page)
 }
 
-/// Writes the page and its pictures: what stands in `docs/validation`.
+/// Writes the page and its pictures, as they stand in `docs/validation`.
 ///
 /// # Errors
 /// When a picture cannot be drawn or a file not be written.

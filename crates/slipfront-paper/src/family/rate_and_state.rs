@@ -42,7 +42,7 @@ fn computed(k_drive: f64, damping: f64) -> f64 {
 /// by `sigma a dt/(2 V)`.
 const MASS: f64 = 1.0 + LAW.a * DT_STAR / (2.0 * V_STAR);
 
-/// The law over that mass.
+/// The law over this mass.
 const HEAVIER: RateAndState = RateAndState {
     a: LAW.a / MASS,
     b: LAW.b / MASS,
@@ -51,15 +51,15 @@ const HEAVIER: RateAndState = RateAndState {
 
 /// V* before the step of speed.
 const V_1: f64 = 0.01;
-/// t* from there to where friction is read.
+/// Time t* from the step of speed to the reading of friction.
 const AFTER: f64 = 10.0;
 /// Stiffness of the drive springs that hold blocks at the speed of the drive.
 const STIFF: f64 = 2500.0;
-/// Omega, with which what is left of the swing about it is exp(-Omega t/2) = exp(-50).
+/// Damping Omega, with which the swing about the speed of the drive decays to exp(-Omega t/2) = exp(-50).
 const STIFF_DAMPING: f64 = 10.0;
 
-/// `mu - mu_ss` of blocks that slid steadily at [`V_1`] until a drive took them to `v_2`, a time [`AFTER`] later. Springs are so stiff that
-/// they follow it.
+/// `mu - mu_ss` of blocks that slid steadily at [`V_1`] until a drive took them to `v_2`, a time [`AFTER`] later. Springs
+/// are so stiff that the blocks follow it.
 fn after_step(v_2: f64) -> f64 {
     let law = RateAndState {
         theta_0: LAW.d_c / V_1,

@@ -12,9 +12,9 @@ use crate::error::PaperError;
 
 /// A run that has ended.
 pub(super) struct AnswerRun {
-    /// As it stands at the end.
+    /// The simulation at the end of the run.
     pub(super) simulation: Simulation,
-    /// Every step.
+    /// Rows of every step.
     pub(super) rows: Vec<CurveRow>,
     pub(super) model: Arc<Model>,
 }
@@ -23,17 +23,17 @@ pub(super) struct AnswerRun {
 pub(super) struct Experiment {
     pub(super) model: Arc<Model>,
     pub(super) dt_star: f64,
-    /// At rest if there is none.
+    /// State at the start; at rest if there is none.
     pub(super) state: Option<State>,
 }
 
 impl AnswerRun {
-    /// Of a case: what a user would write.
+    /// Runs a case given as a user would write it.
     pub(super) fn of_case(name: &str, text: &str) -> Result<Self, PaperError> {
         Self::watched(name, text, &mut [])
     }
 
-    /// The same, seen by other observers at every step.
+    /// Runs a case given as a user would write it, with further observers at every step.
     pub(super) fn watched(
         name: &str,
         text: &str,
@@ -43,7 +43,7 @@ impl AnswerRun {
         experiment.run(name, last_step, others)
     }
 
-    /// When the first block slipped; NaN if none has.
+    /// Time of the first slip of any block; NaN if none has slipped.
     pub(super) fn first_slip(&self) -> f64 {
         self.simulation
             .snapshot()
@@ -74,7 +74,7 @@ impl AnswerRun {
 }
 
 impl Experiment {
-    /// What a case describes, and its last step.
+    /// The experiment that a case describes, and its last step.
     pub(super) fn of_case(name: &str, text: &str) -> Result<(Self, u64), PaperError> {
         let case = Case::parse(text, name, "", &[])?;
         let experiment = Self {
@@ -85,7 +85,7 @@ impl Experiment {
         Ok((experiment, case.time_plan.last_step))
     }
 
-    /// Runs it to this step.
+    /// Runs the experiment to this step.
     pub(super) fn run(
         self,
         name: &str,
@@ -108,7 +108,7 @@ impl Experiment {
         })
     }
 
-    /// Its simulation at the first instant.
+    /// The simulation at the first instant.
     pub(super) fn begin(&self) -> Simulation {
         let execution = Execution::default();
         Simulation::new(
@@ -119,7 +119,7 @@ impl Experiment {
         )
     }
 
-    /// What `value` is at these times, which follow one another.
+    /// Values of `value` at these times, which follow one another.
     pub(super) fn values(&self, times: &[f64], value: impl Fn(&Snapshot) -> f64) -> Vec<f64> {
         let mut simulation = self.begin();
         let at = |time: &f64| {
@@ -133,7 +133,7 @@ impl Experiment {
     }
 }
 
-/// Why the level of steady sliding of Omega* = 1, in steps of 0.1, is as near to the exact one as [`rounding`] says.
+/// Reason for the distance that [`rounding`] allows for the level of steady sliding with Omega* = 1, in steps of 0.1.
 pub(super) const ROUNDING: &str = "rounding of displacements, ε X/2 a step, which swings forget in 2/Ω; of these exp(-Ω t/2) is left, nothing";
 
 /// Rounding of mu* in steady sliding with Omega* = 1, in steps of 0.1, when the far ends have gone this far: `k_s (eps X/2)` of each of
@@ -152,7 +152,7 @@ pub(super) fn growth(values: &[f64], apart: f64) -> f64 {
     libm::log(q) / (2.0 * apart)
 }
 
-/// The same of a small disturbance of steady sliding of blocks that move as one, from `t* = first` on.
+/// Growth rate of a small disturbance of steady sliding of blocks that move as one, from `t* = first` on, as for [`growth`].
 pub(super) fn growth_of_disturbance(model: Model, dt_star: f64, first: f64, apart: f64) -> f64 {
     let (v_star, n) = (model.drive.v_star, model.lattice.n_blocks());
     let behind = model.steady_level(&Alone) / model.drive.k_drive;

@@ -11,7 +11,7 @@ use slipfront::{
 use super::answer::{Answer, Chapter};
 use crate::error::PaperError;
 
-/// `S - K` of thresholds 1 and 0.5.
+/// Difference `S - K` of thresholds 1 and 0.5.
 const DROP: f64 = 0.5;
 /// Speed with which the drive comes to the threshold.
 const FAST: f64 = 1e-3;
@@ -36,7 +36,8 @@ fn block(weakening: f64, damping: f64, segments: &[(f64, f64)]) -> Simulation {
     Simulation::new(model, DT_STAR, None, Execution::default())
 }
 
-/// Where a block comes to rest that has jumped without damping, the drive standing at its threshold, and the energy that weakening has taken.
+/// Place where a block that has jumped without damping comes to rest, with the drive standing at its threshold, and the
+/// energy of weakening.
 fn jumped(weakening: f64) -> [f64; 2] {
     let until = (1.0 / K_DRIVE / FAST / DT_STAR).ceil() * DT_STAR + DT_STAR;
     let mut simulation = block(weakening, 0.0, &[(FAST, until), (0.0, f64::INFINITY)]);
@@ -47,7 +48,7 @@ fn jumped(weakening: f64) -> [f64; 2] {
     [now.block(0).displacement[0], now.weakening_energy()]
 }
 
-/// Slip of a block that does not jump where the drive has gone a path.
+/// Slip of a block that does not jump, when the drive has gone a path.
 fn followed(weakening: f64, damping: f64, speed: f64, path: f64) -> f64 {
     let near = (0.97 / K_DRIVE / FAST).round();
     let mut simulation = block(weakening, damping, &[(FAST, near), (speed, f64::INFINITY)]);

@@ -34,15 +34,15 @@ const V_STAR: f64 = 1e-3;
 const OMEGA_STAR: f64 = 2.0;
 const DT_STAR: f64 = 0.8;
 
-/// How far above that of blocks at their kinetic friction the torque may be while those within `stuck` of the radius stick: by the drag of
-/// those that slide, `Omega V* r/r_max` each; by what is left of `1 - R*` of each a time t after its slip, which is found up to a step
-/// late: at most
+/// Excess that the torque may have over that of blocks at their kinetic friction while those within `stuck` of the radius
+/// stick: by the drag of sliding blocks, `Omega V* r/r_max` each; by the rest of `1 - R*` of each block a time t after its
+/// slip, which is found up to a step late: at most
 ///
 /// ```text
 /// s_2/(s_2 - s_1) exp(-s_1 t),   s_1,2 = Omega/2 -+ sqrt(Omega^2/4 - k_s)
 /// ```
 ///
-/// and by the pull of half a step, since it is read at a whole one.
+/// and by the pull of half a step, since the torque is read at whole steps.
 fn excess(radii: &[f64], stuck: f64, r_star: f64) -> f64 {
     let damping = scales::damping(OMEGA_STAR);
     let root = (0.25 * damping * damping - K_DRIVE).sqrt();

@@ -22,7 +22,7 @@ fn files(corrected: bool) -> impl Iterator<Item = String> {
     })
 }
 
-/// Table 1: what its parameters make of V*.
+/// Measures Table 1: V* from its parameters.
 pub(super) fn measure_table(runner: &mut FigureRunner, data: &mut FigureData) -> Result<(), PaperError> {
     let mut rows = Vec::new();
     let (mut printed_error, mut corrected_error) = (0.0_f64, 0.0_f64);

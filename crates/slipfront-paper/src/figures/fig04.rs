@@ -1,4 +1,4 @@
-//! Fig. 4: contact stress at the instants A-F, and what the paper reads from it.
+//! Fig. 4: contact stress at the instants A-F, and the paper's reading of it.
 
 use slipfront::observe::{Field, Frame};
 
@@ -59,7 +59,7 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
     Ok(())
 }
 
-/// Until the first slip: is the stress the same everywhere, does it grow as k_s V* t*, does nothing move?
+/// Measures before the first slip: whether the stress is uniform and grows as k_s V* t*, and whether blocks move.
 fn before_slip(runner: &FigureRunner, main: &FigureRun, data: &mut FigureData) -> Result<(), PaperError> {
     let first = main.first_slip()?;
     let times: Vec<f64> = (1..=8).map(|k| first * f64::from(k) / 9.0).collect();
@@ -90,8 +90,8 @@ fn first_slip_rank(run: &FigureRun) -> Result<f64, PaperError> {
     Ok(1.0 + mu_static.iter().filter(|&&mu| mu < mu_static[first]).count() as f64)
 }
 
-/// How far the contact stress of the first block to slip falls in the 2 t* after its slip, over its rise in the 2 t* before.
-/// A wave goes over two blocks in that time: what falls is the block's own stress, not that of the slider.
+/// Fall of the contact stress of the first block to slip in the 2 t* after its slip, over its rise in the 2 t* before. A
+/// wave goes over two blocks in that time, so that the fall is that of the block's own stress, not that of the slider's.
 fn fall_over_rise(runner: &FigureRunner, run: &FigureRun) -> Result<f64, PaperError> {
     let (first, block) = (run.first_slip()?, run.first_block()?);
     // The last step at which the block still holds.
@@ -119,7 +119,7 @@ fn slipped_at_peak(run: &FigureRun) -> Result<f64, PaperError> {
     Ok(100.0 * slipped as f64 / run.case.model.surface.n_contact() as f64)
 }
 
-/// How long after the peak the last block slips for the first time, % of t_s*.
+/// Time from the peak to the first slip of the last block, % of t_s*.
 fn rest_slips_within(run: &FigureRun) -> Result<f64, PaperError> {
     let onset = run.record.summary.onset_time_star;
     Ok(100.0 * (run.time_of_share(1.0)? - onset) / onset)

@@ -1,4 +1,4 @@
-//! Fig. 6: onset time and number of time steps against speed, and what of the material decides on the onset.
+//! Fig. 6: onset time and number of time steps against speed, and the properties of the material that decide on the onset.
 
 use crate::drawing::{Drawing, formula, measured};
 use crate::error::PaperError;

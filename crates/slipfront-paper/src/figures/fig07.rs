@@ -97,7 +97,7 @@ fn literal(sweep: &ParameterSweep, data: &mut FigureData) {
     );
 }
 
-/// Where values that fall through zero do so, between two places; NaN if they do not.
+/// Zero of values that fall through zero between two places; NaN if they do not.
 fn zero(places: &[f64], values: &[f64]) -> f64 {
     let crossing = (1..values.len()).find(|&k| values[k - 1] > 0.0 && values[k] <= 0.0);
     crossing.map_or(f64::NAN, |k| {

@@ -1,4 +1,4 @@
-//! Fig. 11: where slip begins, and how its fronts spread over a rough surface.
+//! Fig. 11: places at which slip begins, and the spread of its fronts over a rough surface.
 
 use slipfront::Lattice;
 
@@ -91,7 +91,7 @@ pub(super) fn neighbours(lattice: &Lattice, block: usize) -> impl Iterator<Item 
         .filter_map(move |offset| lattice.neighbour(i, j, offset))
 }
 
-/// The blocks where slip begins: they slip before the peak, ahead of all blocks around them.
+/// The blocks where slip begins: blocks that slip before the peak, ahead of all blocks around them.
 pub(super) fn starts(run: &FigureRun) -> Vec<usize> {
     let lattice = &run.case.model.lattice;
     let times = &run.record.first_slip_time_star;
@@ -103,7 +103,7 @@ pub(super) fn starts(run: &FigureRun) -> Vec<usize> {
         .collect()
 }
 
-/// Of the places where slip begins, the share that are local minima of mu_si, %.
+/// Share of the places where slip begins that are local minima of mu_si, %.
 fn nucleations_at_minima(run: &FigureRun) -> f64 {
     let minima = minima(&run.case.model.lattice, &run.case.model.surface.mu_static);
     let starts = starts(run);

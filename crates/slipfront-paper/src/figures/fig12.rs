@@ -50,7 +50,7 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
     kinetic(runner, data)
 }
 
-/// How often five surfaces are as close together as the paper's, at every point of the figure with a spread.
+/// Share of fives of surfaces that are as close together as the paper's, at every point of the figure with a spread.
 fn surfaces(runner: &mut FigureRunner, data: &mut FigureData) -> Result<(), PaperError> {
     let sweep = runner.study("fig12_surfaces")?;
     let farthest_of = |five: &[f64]| farthest(five, mean(five));
@@ -83,7 +83,7 @@ fn surfaces(runner: &mut FigureRunner, data: &mut FigureData) -> Result<(), Pape
     Ok(())
 }
 
-/// A measure of how far five values scatter.
+/// A measure of the scatter of five values.
 type Scatter<'a> = &'a dyn Fn(&[f64]) -> f64;
 
 /// The standard deviation of a sample, with n - 1 in the denominator.

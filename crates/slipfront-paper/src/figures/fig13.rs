@@ -112,7 +112,7 @@ fn parameters() -> Sketch {
     }
 }
 
-/// How many places of an outline lie farther out than those before and after: its vertices.
+/// Number of places of an outline that lie farther out than those before and after: its vertices.
 fn farthest(points: &[[f64; 2]]) -> usize {
     let radius = |k: usize| {
         let [x, y] = points[k % points.len()];

@@ -74,8 +74,8 @@ fn nearness(run: &FigureRun, share: f64) -> f64 {
     mean_distance(slipped(run, share).unwrap_or_default()) / mean_distance(all)
 }
 
-/// Of the local minima of mu_si, the share that slip for the first time before the mean of their neighbours do, %. Where fronts
-/// do not heed them it is one half.
+/// Share of the local minima of mu_si that slip for the first time before the mean of their neighbours, %. Where fronts do
+/// not heed them it is one half.
 fn early_minima(run: &FigureRun) -> f64 {
     let model = &run.case.model;
     let times = &run.record.first_slip_time_star;
@@ -89,7 +89,7 @@ fn early_minima(run: &FigureRun) -> f64 {
     100.0 * minima.iter().filter(is_early).count() as f64 / minima.len() as f64
 }
 
-/// Of the blocks that slip at the very first, the share that touch the cavity, %.
+/// Share of the blocks that slip at the very first that touch the cavity, %.
 fn first_at_rim(run: &FigureRun) -> f64 {
     let (lattice, textured) = (&run.case.model.lattice, &run.case.model.surface.textured);
     let times = &run.record.first_slip_time_star;
@@ -100,7 +100,7 @@ fn first_at_rim(run: &FigureRun) -> f64 {
     100.0 * first.iter().filter(touches).count() as f64 / first.len() as f64
 }
 
-/// How far the times of first slip differ from those of the mirror image across the drive, over their range, %.
+/// Difference of the times of first slip from those of the mirror image across the drive, over their range, %.
 fn asymmetry(run: &FigureRun) -> f64 {
     let lattice = &run.case.model.lattice;
     let times = &run.record.first_slip_time_star;

@@ -1,4 +1,4 @@
-//! Fig. 16: elongated cavities, and grooves as their limit; and how general the 31 % is (D9).
+//! Fig. 16: elongated cavities, and grooves as their limit; and the generality of the 31 % (D9).
 
 use crate::drawing::{Drawing, formula, measured};
 use crate::error::PaperError;
@@ -56,7 +56,7 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
     Ok(())
 }
 
-/// How the reduction by a circular cavity depends on the size and the speed of the slider.
+/// Measures the reduction by a circular cavity against the size and the speed of the slider.
 fn generality(sweep: &ParameterSweep, data: &mut FigureData) {
     let reductions = sweep.numbers(&[], REDUCTION);
     let moved = farthest(&values(&reductions), reductions[0].value);

@@ -1,4 +1,4 @@
-//! What the springs k_1 and k_2 make of the slider's elasticity, by stretching it.
+//! Elastic constants of the slider from the springs k_1 and k_2, by stretching it.
 
 use std::sync::Arc;
 

@@ -1,4 +1,4 @@
-//! The figures and tables of the paper. Each has a file: which cases it runs, what it measures on them, and what is drawn.
+//! The figures and tables of the paper. Each has a file with its cases, measurements and drawings.
 
 mod fig01;
 mod fig02;
@@ -28,11 +28,11 @@ use crate::runner::FigureRunner;
 /// A figure or table of the paper.
 #[derive(Clone, Copy, Debug)]
 pub struct Figure {
-    /// Its name, such as `fig12`.
+    /// Name of the figure, such as `fig12`.
     pub name: &'static str,
-    /// Its title.
+    /// Title of the figure.
     pub title: &'static str,
-    /// Runs its cases and adds what it measures to its data.
+    /// Function that runs the figure's cases and adds its measurements to the data.
     pub(crate) measure: fn(&mut FigureRunner, &mut FigureData) -> Result<(), PaperError>,
 }
 

@@ -1,4 +1,4 @@
-//! Appendix: how the main numbers move with what the paper leaves open.
+//! Appendix: sensitivity of the main numbers to choices that the paper leaves open.
 
 use crate::error::PaperError;
 use crate::figure_data::FigureData;

@@ -54,7 +54,7 @@ pub(super) fn page(paper: &Paper, drawn: &[Vec<Picture>]) -> String {
     page.into_string()
 }
 
-/// The title, the paper, and how many claims hold.
+/// The title, the paper, and the number of claims that hold.
 fn header(paper: &Paper) -> Markup {
     let unexpected = paper.unexpected_verdicts().count();
     html! {

@@ -55,7 +55,7 @@ pub fn page(paper: &Paper) -> String {
     text
 }
 
-/// In how many verdicts the paper's step differs.
+/// Number of verdicts in which the paper's step differs.
 fn other_verdicts(paper: &Paper) -> String {
     let pairs = paper.results.iter().zip(&paper.results_by_paper_step);
     match pairs.filter(|(one, other)| one.verdict != other.verdict).count() {

@@ -1,4 +1,4 @@
-//! What the command prints at the end.
+//! The summary that the command prints at the end.
 
 use crate::claims::ClaimResult;
 use crate::paper::Paper;

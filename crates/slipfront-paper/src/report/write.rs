@@ -73,10 +73,10 @@ pub fn foreign_docs(folder: &Path) -> Option<PathBuf> {
 const PAGE: &str = "paper.md";
 /// The folder of the pictures of the page.
 const IMAGES: &str = "images";
-/// What their names begin with.
+/// Beginning of the pictures' names.
 const PICTURE: &str = "paper-";
 
-/// Writes the claims table as `paper.md` with all pictures: what stands in `docs/validation`.
+/// Writes the claims table as `paper.md` with all pictures, as they stand in `docs/validation`.
 ///
 /// # Errors
 /// When a picture cannot be drawn or a file not be written.

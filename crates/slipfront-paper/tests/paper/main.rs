@@ -200,7 +200,7 @@ fn figures_are_known_by_their_short_names_too() {
     );
 }
 
-/// A stopped call loses no finished figure: what is there is not run again, so that no signal can end it.
+/// A stopped call loses no finished figure: a stored figure is not run again, so that no signal can end it.
 #[test]
 fn a_finished_figure_is_not_run_again() {
     let folder = tempfile::tempdir().unwrap();

@@ -1,7 +1,7 @@
 //! Pictures of every kind and of unusual shapes: no two texts overlap, none leaves the page, and of a single run no curve runs through
 //! one.
 //!
-//! With a folder in `SLIPFRONT_GALLERY` they are written there, to be looked at.
+//! The pictures are written to the folder in `SLIPFRONT_GALLERY`, if it is set.
 
 // Helpers of tests are not tests by themselves to clippy.
 #![allow(clippy::unwrap_used)]
@@ -23,7 +23,7 @@ use runs::*;
 const UM: f64 = 1e-6;
 const INSTANTS: [&str; 6] = ["A", "B", "C", "D", "E", "F"];
 
-/// Checks a picture, and writes it if it is to be looked at.
+/// Checks a picture, and writes it if a folder is set.
 fn check(name: &str, picture: Result<Picture, PictureError>) -> Page {
     let picture = picture.unwrap_or_else(|error| panic!("{name}: {error}"));
     if let Some(folder) = std::env::var_os("SLIPFRONT_GALLERY") {
@@ -198,7 +198,7 @@ fn fronts_on_every_shape() {
     }
 }
 
-/// What stands below the pictures of studies.
+/// Note below the pictures of studies.
 const NOTE: &str = "intervals: 95 % of the mean, n = 3 to 12";
 
 fn curve(label: &str, level: f64, line: bool) -> Response {
@@ -254,7 +254,7 @@ fn responses() {
     check("precursors", drawn(precursors, &["events", "exact"]));
 }
 
-/// Friction around the directions: the same in all, larger along one axis, with wide intervals, without a value in one.
+/// Friction around the directions: equal in all, larger along one axis, with wide intervals, without a value in one.
 #[test]
 fn polars() {
     let around = |label: &str, mean: &dyn Fn(f64) -> f64, half: f64| {

@@ -1,10 +1,10 @@
-//! What stands where on the page of a picture, found from its SVG.
+//! Positions of texts and curves on the page of a picture, found from its SVG.
 
 use std::collections::HashMap;
 
 /// The widths of letters, of a font 2048 units high.
 const OUTLINES: &str = include_str!("../../src/font/outlines.txt");
-/// How far letters reach above the line, and some of them below it, over the font size.
+/// Height of letters above the line, and depth of some of them below it, over the font size.
 const ABOVE: f64 = 0.73;
 const BELOW: f64 = 0.24;
 const DESCENDING: [char; 9] = ['g', 'j', 'p', 'q', 'y', '\u{3bc}', '(', ')', ','];
@@ -51,7 +51,7 @@ impl Page {
         }
     }
 
-    /// What is wrong with the texts: one that leaves the page, two that overlap.
+    /// Faults of the texts: one that leaves the page, two that overlap.
     pub(crate) fn faults(&self) -> Vec<String> {
         let mut faults = Vec::new();
         for (index, written) in self.texts.iter().enumerate() {

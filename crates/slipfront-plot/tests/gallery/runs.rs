@@ -20,7 +20,8 @@ fn through(points: &[(f64, f64)]) -> Vec<[f64; 3]> {
     points.windows(2).flat_map(between).collect()
 }
 
-/// A run through these points, its peak the highest of its rows, with first slip, instants and the kinetic window from there on.
+/// A run through these points, with the highest of its rows as the peak, and with first slip, instants and the kinetic
+/// window from there on.
 pub(crate) fn run(
     points: &[(f64, f64)],
     first_slip: f64,
@@ -136,10 +137,10 @@ fn scatter(index: usize) -> f64 {
     (index * index * 7919 % 1009) as f64 / 1009.0
 }
 
-/// What is textured of a lattice.
+/// Function that tells whether a block of a lattice is textured.
 pub(crate) type Texture = fn(usize, usize) -> bool;
 
-/// Nothing.
+/// A lattice without texture.
 pub(crate) const SMOOTH: Texture = |_, _| false;
 /// Dimples of 8 blocks, every 10.
 pub(crate) const DIMPLES: Texture = |i, j| (i % 10).abs_diff(5).pow(2) + (j % 10).abs_diff(5).pow(2) < 16;
@@ -201,7 +202,7 @@ pub(crate) fn stress_maps(
     }
 }
 
-/// First slips that spread from these blocks, and what slides meanwhile.
+/// First slips that spread from these blocks, and the blocks that slide meanwhile.
 pub(crate) fn front_of(
     nx: usize,
     ny: usize,

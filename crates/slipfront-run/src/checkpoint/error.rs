@@ -1,14 +1,14 @@
-//! Why a run cannot go on from a checkpoint.
+//! Reasons for which a run cannot go on from a checkpoint.
 
 use std::path::PathBuf;
 
 use slipfront_case::same::Difference;
 use thiserror::Error;
 
-/// How the file is laid out. A program reads no other layout.
+/// Version of the file's layout. A program reads no other layout.
 pub(super) const LAYOUT: u32 = 4;
 
-/// Why a run cannot go on from a checkpoint.
+/// Reason for which a run cannot go on from a checkpoint.
 #[derive(Debug, Error)]
 #[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
 pub enum CheckpointError {

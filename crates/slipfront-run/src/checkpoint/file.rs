@@ -1,8 +1,8 @@
 //! The file of a checkpoint.
 //!
-//! A line of JSON tells whose checkpoint it is, and how large the columns are that follow it: raw little-endian numbers in the
-//! order of the whole lattice, each at a place that this line tells, so that every rank writes and reads those of its own rows.
-//! Behind them stand the state in postcard's binary form, and the checksum of all that.
+//! A line of JSON holds the identity of the run and the sizes of the columns that follow it: raw little-endian numbers in
+//! the order of the whole lattice, each at a place that follows from this line, so that every rank writes and reads the
+//! numbers of its own rows. Behind them stand the state in postcard's binary form, and the checksum of all that.
 
 use std::fs::File;
 use std::io::{BufRead, BufReader, BufWriter, Error, ErrorKind, Read, Seek, SeekFrom, Write};
@@ -37,13 +37,13 @@ pub(super) struct Header {
     pub(super) columns: [Columns; 2],
 }
 
-/// Of a first line whatever version wrote it.
+/// The part of a first line that every version has written.
 #[derive(Deserialize)]
 struct FormatVersion {
     slipfront_checkpoint: u32,
 }
 
-/// A file whose checksum fits.
+/// A file whose checksum is right.
 #[derive(Debug)]
 pub(super) struct VerifiedFile {
     pub(super) header: Header,
@@ -54,7 +54,7 @@ pub(super) struct VerifiedFile {
 }
 
 impl Header {
-    /// That of a run whose case has this hash, and which began at `started`.
+    /// The first line for a run whose case has this hash, and which began at `started`.
     pub(super) fn new(case_blake3: &str, started: Timestamp, running: &Running) -> Self {
         Self {
             slipfront_checkpoint: LAYOUT,
@@ -66,14 +66,15 @@ impl Header {
         }
     }
 
-    /// Bytes of a file up to the end of the columns, of which `begin` are before them; none if there are too many to count.
+    /// Bytes of a file up to the end of the columns, of which `begin` stand before them; none if there are too many to
+    /// count.
     fn columns_end(&self, begin: u64) -> Option<u64> {
         let [blocks, fields] = self.columns.map(|columns| columns.bytes());
         begin.checked_add(blocks?)?.checked_add(fields?)
     }
 }
 
-/// Writes a checkpoint to a new file, each rank its own rows, and forces it to the disk.
+/// Writes a checkpoint to a new file, each rank its own rows, and forces the file to the disk.
 ///
 /// On a file system that several machines share, one of them is sure to see what another has written from when that has closed the
 /// file on: each rank writes all that it has and closes the file before any of them reads it. None reads while it writes, which would
@@ -115,7 +116,7 @@ pub(super) fn write(
     agree_on_io(communicator, finish())
 }
 
-/// The number that the first rank has, on all of them.
+/// The number of the first rank, returned on all ranks.
 fn of_first(communicator: &dyn Communicator, number: u64) -> u64 {
     let is_first = communicator.rank() == 0;
     let mut of_first = [if is_first { number.cast_signed() } else { 0 }];
@@ -123,7 +124,7 @@ fn of_first(communicator: &dyn Communicator, number: u64) -> u64 {
     of_first[0].cast_unsigned()
 }
 
-/// Makes the file with all but its columns and its checksum, the state from byte `end` on, and gives it with its length.
+/// Makes the file with all but its columns and its checksum, the state from byte `end` on; returns it with its length.
 fn write_line_and_state(
     path: &Path,
     line: &[u8],
@@ -153,7 +154,7 @@ fn write_columns(mut file: File, begin: u64, running: &Running) -> std::io::Resu
     file.sync_all()
 }
 
-/// Reads a checkpoint of the case with this hash, all but its columns, whose bytes are held against the checksum.
+/// Reads a checkpoint of the case with this hash, all but its columns, whose bytes are compared with the checksum.
 pub(super) fn read(
     path: &Path,
     case_blake3: &str,
@@ -225,7 +226,7 @@ pub(super) fn read(
 /// A file that was opened to be read.
 struct Opened {
     file: File,
-    /// The first line, empty if it is no text.
+    /// The first line; empty if it is no text.
     line: String,
     length: u64,
     /// The last bytes.
@@ -248,7 +249,7 @@ fn open(path: &Path) -> std::io::Result<Opened> {
     })
 }
 
-/// The state that takes all bytes from `begin` to `end`; an error of [`ErrorKind::InvalidData`] if there is none.
+/// Reads the state, which takes all bytes from `begin` to `end`; an error of [`ErrorKind::InvalidData`] if there is none.
 fn read_state(mut file: &File, begin: u64, end: u64) -> std::io::Result<RunState> {
     file.seek(SeekFrom::Start(begin))?;
     let file = Told { file, error: None };
@@ -261,7 +262,7 @@ fn read_state(mut file: &File, begin: u64, end: u64) -> std::io::Result<RunState
     state.ok_or_else(|| error.unwrap_or_else(|| ErrorKind::InvalidData.into()))
 }
 
-/// A file that is read, and the error that it gave: postcard tells none.
+/// A file that is read, and the error of the last read: postcard keeps none.
 struct Told<'a> {
     file: &'a File,
     error: Option<std::io::Error>,

@@ -1,4 +1,4 @@
-//! Checkpoints of a run in its folder: what it needs to go on after it was stopped, with the same bytes in every file.
+//! Checkpoints of a run in its folder, from which it goes on after it was stopped, with the same bytes in every file.
 //!
 //! A file takes its name when it is whole; the one before it is kept beside it. Any number of ranks writes the same bytes, each
 //! its own rows, and goes on from what any other number has written.
@@ -30,7 +30,7 @@ pub struct LoadedCheckpoint {
     folder: PathBuf,
     path: PathBuf,
     file: VerifiedFile,
-    /// Whether it is the latest, and not the one before.
+    /// Whether the checkpoint is the latest, and not the one before.
     latest: bool,
 }
 
@@ -40,7 +40,7 @@ impl LoadedCheckpoint {
         self.file.header.step
     }
 
-    /// The run that goes on from it; none if it is not one of a run of this case.
+    /// The run that goes on from the checkpoint; none if this belongs to another case.
     ///
     /// # Errors
     /// [`CheckpointError::Unreadable`].
@@ -67,9 +67,9 @@ pub struct Checkpoints {
     unfinished: Unfinished,
     case_blake3: String,
     started: Timestamp,
-    /// Whether the latest checkpoint there is known to be whole.
+    /// Whether the latest checkpoint in the folder is known to be whole.
     latest_is_whole: bool,
-    /// Step of the latest one that was saved or gone on from.
+    /// Step of the latest checkpoint that was saved, or from which the run goes on.
     saved_step: Option<u64>,
 }
 
@@ -100,12 +100,12 @@ impl Checkpoints {
         &self.folder
     }
 
-    /// The step from which the run would go on, if any was saved.
+    /// The step of the latest saved checkpoint, if there is one.
     pub fn saved_step(&self) -> Option<u64> {
         self.saved_step
     }
 
-    /// When the run began.
+    /// Time at which the run began.
     pub fn started(&self) -> Timestamp {
         self.started
     }
@@ -149,8 +149,8 @@ impl Checkpoints {
         sync_folder(self.unfinished.path())
     }
 
-    /// Reads the latest checkpoint of a run folder, or the one before it; none if there is none. Where a kill has left
-    /// only the one before, that is the latest.
+    /// Reads the latest checkpoint of a run folder, or the one before it; nothing if the folder has neither. Where a kill
+    /// has left only the one before, it counts as the latest.
     pub fn load(
         folder: &Path,
         case: &Case,
@@ -183,7 +183,7 @@ impl Checkpoints {
     }
 }
 
-/// Hash of a case and of the files that it reads, by which equal cases are told.
+/// Hash of a case and of the files that it reads; equal cases have equal hashes.
 pub fn hash_of(case: &Case) -> String {
     let mut hasher = blake3::Hasher::new();
     // A case that was loaded can be written.
@@ -252,7 +252,7 @@ mod tests {
         }
     }
 
-    /// At many instants of a run with all kinds of frames, each rank with its own rows.
+    /// Ranks that share a lattice save the bytes of one rank, at many instants of a run with all kinds of frames.
     #[test]
     fn ranks_that_share_a_lattice_save_the_bytes_of_one() {
         for text in [
@@ -373,7 +373,7 @@ mod tests {
         }
     }
 
-    /// The places of all numbers of blocks, and what is read back from there, as bits: numbers may be NaN.
+    /// Columns stand where the first line places them, and are read back with the same bits: numbers may be NaN.
     #[test]
     fn columns_stand_where_the_first_line_tells() {
         let case = case();
@@ -411,7 +411,7 @@ mod tests {
         }
     }
 
-    /// What a damaged first line claims is neither believed nor allocated.
+    /// Counts in a damaged first line are neither believed nor allocated.
     #[test]
     fn wrong_counts_are_refused() {
         let case = case();

@@ -10,7 +10,7 @@ use super::netcdf3_header::{Attribute, Definition, Variable};
 /// The dimensions, in the order of the header.
 const DIMENSIONS: [&str; 4] = [Y, X, TIME, LABEL_LENGTH];
 
-/// What a file defines.
+/// The definition of a fields file.
 ///
 /// Blanks are NaN, which every reader knows; there is no `_FillValue`. Nor have x and y an `axis`: ParaView would take
 /// them for longitude and latitude.
@@ -39,15 +39,15 @@ pub(super) fn define(file: &FieldsFile) -> Definition {
     }
 }
 
-/// Bytes of a cell of what never changes: whether it is textured, two coefficients, and the time of the first slip.
+/// Bytes of a cell of the constant arrays: whether it is textured, two coefficients, and the time of the first slip.
 pub const STATIC_BYTES: usize = size_of::<i16>() + 3 * size_of::<f64>();
 
-/// Bytes of a record of so many fields of so many cells each: two times, the number of the step, a label, and values.
+/// Bytes of a record of `n_fields` fields of `n_cells` cells each: two times, the number of the step, a label, and values.
 pub fn record_bytes(n_fields: f64, n_cells: f64) -> f64 {
     4.0 * size_of::<f64>() as f64 + n_fields * n_cells * size_of::<f32>() as f64
 }
 
-/// What never changes.
+/// Variables that never change.
 fn statics() -> Vec<Variable> {
     let flags = [
         Attribute::numbers("flag_values", &[0i16, 1]),
@@ -72,7 +72,7 @@ fn statics() -> Vec<Variable> {
     ]
 }
 
-/// What every record holds: of the instant itself, then these fields.
+/// Variables of every record: those of the instant itself, then the fields.
 fn of_time(names: &[Field]) -> Vec<Variable> {
     let axis = [Attribute::text("axis", "T")];
     let of_instant = |name, long_name| variable(name, &[TIME], ExternalType::Double, long_name, "1", []);

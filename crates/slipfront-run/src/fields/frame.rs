@@ -1,4 +1,4 @@
-//! What a fields file holds, the names of it there, and why it cannot be written or read.
+//! The content of a fields file, the names in it, and the errors of writing and reading it.
 
 use std::io;
 use std::ops::Range;
@@ -25,7 +25,7 @@ pub(super) const STRIDE: &str = "stride";
 pub(super) const BLOCK_SIZE: &str = "block_size_m";
 pub(super) const TIME_UNIT: &str = "time_unit_s";
 
-/// What never changes in a run, block by block: row-major, the lowest row first, not thinned.
+/// Arrays that never change in a run, block by block: row-major, the lowest row first, not thinned.
 #[derive(Debug, Clone, Copy)]
 pub struct StaticFields<'a> {
     /// Whether the block is texture.
@@ -86,7 +86,7 @@ impl FieldFrame {
     }
 }
 
-/// All that goes into `fields.nc`, or of blocks what a process holds of it that shares the lattice with others.
+/// The content of `fields.nc`, or the part of it that a process holds which shares the lattice with others.
 #[derive(Debug, Clone)]
 pub struct FieldsFile<'a> {
     /// Number of blocks along x, before thinning.
@@ -103,9 +103,10 @@ pub struct FieldsFile<'a> {
     pub time_unit_s: f64,
     /// The fields that every frame holds, each at most once.
     pub names: &'a [Field],
-    /// What never changes, of these rows.
+    /// Arrays that never change, of these rows.
     pub statics: StaticFields<'a>,
-    /// The instants, in order of time, each with the values of these rows; NetCDF wants each time once. There may be none.
+    /// The instants, in order of time, each with the values of these rows; NetCDF wants each time once. The list may be
+    /// empty.
     pub frames: &'a [FieldFrame],
 }
 
@@ -125,13 +126,13 @@ impl FieldsFile<'_> {
         kept(self.rows.clone(), self.stride)
     }
 
-    /// What the file keeps of values of the blocks that are here.
+    /// The values of the given ones that the file keeps, for the blocks that are here.
     pub(super) fn keep<T: Copy>(&self, values: &[T]) -> impl Iterator<Item = T> {
         let skipped = (self.kept_here().start * self.stride - self.rows.start) * self.nx;
         thin(values.get(skipped..).unwrap_or_default(), self.nx, self.stride)
     }
 
-    /// NetCDF has no length 0, so that empty labels take one byte.
+    /// Length of the labels, at least 1, because NetCDF has no length 0.
     pub(super) fn label_length(&self) -> usize {
         let lengths = self.frames.iter().map(|frame| frame.label.len());
         lengths.max().unwrap_or(0).max(1)
@@ -193,7 +194,7 @@ pub fn thin<T: Copy>(values: &[T], nx: usize, stride: usize) -> impl Iterator<It
     rows.flat_map(move |row| row.iter().step_by(stride)).copied()
 }
 
-/// Why `fields.nc` cannot be written or read: one sentence that ends with the remedy.
+/// An error of writing or reading `fields.nc`: one sentence that ends with the remedy.
 #[derive(Debug, thiserror::Error)]
 #[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
 pub enum FieldsError {

@@ -1,4 +1,5 @@
-//! `kymograph.nc`: the share of the blocks that slide, against place along the drive and time, in the format of `fields.nc`.
+//! The file `kymograph.nc`: the share of the blocks that slide, against place along the drive and time, in the format of
+//! `fields.nc`.
 
 use std::path::Path;
 
@@ -94,19 +95,19 @@ fn append<T: StoredNumber>(bytes: &mut Vec<u8>, values: impl Iterator<Item = T>)
     values.for_each(|value| bytes.extend(value.encode().as_ref()));
 }
 
-/// What the file of a run holds.
+/// The content of the file of a run.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct KymographData {
-    /// t* of every row.
+    /// Time t* of every row.
     pub time_star: Vec<f64>,
-    /// Where the first bin begins and the last one ends, in m.
+    /// Places where the first bin begins and the last one ends, in m.
     pub places: [f64; 2],
-    /// The share of the blocks in contact of every bin that slide, row after row; NaN of a bin without contact.
+    /// The share of the blocks in contact of every bin that slide, row after row; NaN for a bin without contact.
     pub sliding_share: Vec<f32>,
 }
 
 impl KymographData {
-    /// What the file of this run holds.
+    /// The content of the file of this run.
     pub fn of(kymograph: &Kymograph, case: &Case) -> Self {
         let bins = PositionBins::of(&case.model.lattice, &case.model.drive);
         let (steps, shares): (Vec<f64>, Vec<Vec<f32>>) = kymograph.rows().unzip();

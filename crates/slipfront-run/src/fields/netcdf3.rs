@@ -1,6 +1,6 @@
-//! What the header of a NetCDF-3 file is made of, in both forms that fields files have.
+//! Elements of the header of a NetCDF-3 file, in both forms that fields files have.
 
-/// The form of a file.
+/// Form of a file.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum CdfVersion {
     /// CDF-2: 64-bit offsets, all other numbers of the header with 32 bits.
@@ -32,7 +32,7 @@ pub(super) const DIMENSIONS: u32 = 0x0a;
 pub(super) const VARIABLES: u32 = 0x0b;
 pub(super) const ATTRIBUTES: u32 = 0x0c;
 
-/// How a number is stored, big-endian, with the code that it has in a header.
+/// Type by which a number is stored, big-endian, with the code that it has in a header.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum ExternalType {
     Byte = 1,

@@ -1,4 +1,4 @@
-//! The header of a NetCDF-3 file, as it is written, and where the values stand behind it.
+//! The header of a NetCDF-3 file, and the places of the values behind it.
 
 use super::netcdf3::{ATTRIBUTES, CdfVersion, DIMENSIONS, ExternalType, StoredNumber, VARIABLES};
 
@@ -6,7 +6,7 @@ use super::netcdf3::{ATTRIBUTES, CdfVersion, DIMENSIONS, ExternalType, StoredNum
 /// but not every reader: some keep the number with a sign.
 const OFFSET64_MAX_BYTES: u64 = i32::MAX as u64 - 3;
 
-/// What stands in a file, without the values of its variables.
+/// The definition of a file, without the values of its variables.
 pub(super) struct Definition {
     /// Number of records.
     pub(super) records: usize,
@@ -16,7 +16,7 @@ pub(super) struct Definition {
     pub(super) variables: Vec<Variable>,
 }
 
-/// A name with some numbers, or a text.
+/// A name with some numbers, or with a text.
 pub(super) struct Attribute {
     name: &'static str,
     kind: ExternalType,
@@ -42,20 +42,20 @@ impl Attribute {
 
 pub(super) struct Variable {
     pub(super) name: &'static str,
-    /// Indices into the dimensions.
+    /// Dimensions of the variable, as indices.
     pub(super) dimensions: Vec<usize>,
     pub(super) kind: ExternalType,
     pub(super) attributes: Vec<Attribute>,
 }
 
-/// The bytes of a header, and the places of what it defines.
+/// The bytes of a header, and the places of the values that it defines.
 pub(super) struct HeaderBytes {
     pub(super) bytes: Vec<u8>,
-    /// In the order of the file: first the variables without records, then record after record.
+    /// Places in the order of the file: first the variables without records, then record after record.
     pub(super) places: Vec<ValuePlace>,
 }
 
-/// Where the values of a variable stand, or those of one record of it.
+/// Place of the values of a variable, or of one record of it.
 pub(super) struct ValuePlace {
     pub(super) variable: &'static str,
     /// Number of the record; 0 for a variable without records.
@@ -146,7 +146,7 @@ impl Definition {
     }
 }
 
-/// The bytes of a header that are there.
+/// The bytes of a header up to now.
 struct Encoder {
     form: CdfVersion,
     bytes: Vec<u8>,
@@ -157,13 +157,13 @@ impl Encoder {
         self.bytes.extend(number.to_be_bytes());
     }
 
-    /// What has 32 bits in one form fits, because no larger variable is written in it.
+    /// Appends a count. A count that has 32 bits in one form fits, because no larger variable is written in it.
     fn count(&mut self, count: usize) {
         let bytes = (count as u64).to_be_bytes();
         self.bytes.extend(&bytes[bytes.len() - self.form.count_bytes()..]);
     }
 
-    /// Zeros up to a multiple of four behind all bytes before.
+    /// Appends zeros up to a multiple of four behind all bytes before.
     fn pad(&mut self) {
         self.bytes.resize(self.bytes.len().next_multiple_of(4), 0);
     }

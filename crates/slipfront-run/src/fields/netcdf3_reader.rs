@@ -1,5 +1,5 @@
-//! The NetCDF-3 format, read only: every number of a header is held against the bytes that are left before memory is
-//! reserved for what it counts.
+//! The NetCDF-3 format, read only: every count of a header is compared with the bytes that are left before memory is
+//! reserved for its elements.
 
 use std::collections::HashSet;
 use std::fs::File;
@@ -11,13 +11,13 @@ use slipfront_case::disk::open_regular;
 
 use super::netcdf3::{ATTRIBUTES, CdfVersion, DIMENSIONS, ExternalType, VARIABLES};
 
-/// Values that are read at once.
+/// Number of values that are read at once.
 const PIECE: usize = 1 << 14;
 
-/// Headers of fields files take a few kilobytes.
+/// Largest length of a header: those of fields files take a few kilobytes.
 const HEADER_MAX_BYTES: u64 = 1 << 20;
 
-/// What is wrong with a file.
+/// Error of a file.
 #[derive(Debug, thiserror::Error)]
 pub(super) enum NetCdfError {
     #[error(transparent)]
@@ -30,7 +30,7 @@ pub(super) fn broken<T>(detail: impl Into<String>) -> Result<T, NetCdfError> {
     Err(NetCdfError::Broken(detail.into()))
 }
 
-/// An open file and what its header says.
+/// An open file and the content of its header.
 pub(super) struct NetCdf3Reader {
     file: File,
     file_bytes: u64,
@@ -38,12 +38,12 @@ pub(super) struct NetCdf3Reader {
     pub(super) records: usize,
     record_bytes: u64,
     dimensions: Vec<StoredDimension>,
-    /// Text counts as numbers too, one per byte.
+    /// Global attributes with their numbers; text counts as numbers too, one per byte.
     attributes: Vec<(String, Vec<f64>)>,
     variables: Vec<StoredVariable>,
 }
 
-/// A length of 0 marks the record dimension.
+/// Length of the dimension; 0 marks the record dimension.
 struct StoredDimension {
     name: String,
     length: usize,
@@ -51,7 +51,7 @@ struct StoredDimension {
 
 struct StoredVariable {
     name: String,
-    /// Indices into the dimensions.
+    /// Dimensions of the variable, as indices.
     dimensions: Vec<usize>,
     kind: ExternalType,
     offset: u64,
@@ -138,7 +138,7 @@ impl NetCdf3Reader {
         Ok(values)
     }
 
-    /// Hands these values over piece by piece, so that they need not be in memory at once.
+    /// Hands the values over piece by piece, so that they need not be in memory at once.
     pub(super) fn read(
         &mut self,
         name: &str,
@@ -202,7 +202,7 @@ impl NetCdf3Reader {
     }
 }
 
-/// Names that stand twice would be read twice, however long their arrays are.
+/// Refuses names that stand twice, since they would be read twice, however long their arrays are.
 fn each_once<'a>(mut names: impl Iterator<Item = &'a String>) -> Result<(), NetCdfError> {
     let mut seen = HashSet::new();
     match names.find(|name| !seen.insert(*name)) {

@@ -1,4 +1,4 @@
-//! Reading what `write_fields` has written.
+//! Reads the files that `write_fields` has written.
 
 use std::ops::Range;
 use std::path::Path;
@@ -11,7 +11,7 @@ use slipfront_case::text;
 use super::frame::*;
 use super::netcdf3_reader::{NetCdf3Reader, NetCdfError, broken};
 
-/// All values of a variable.
+/// Range of all values of a variable.
 const WHOLE: Range<u64> = 0..u64::MAX;
 
 /// Reads a `fields.nc` that [`write_fields`](super::write_fields) has written. Variables that slipfront does not know are
@@ -20,7 +20,8 @@ pub fn read_fields(path: &Path) -> Result<FieldsData, FieldsError> {
     read_rows(path, 0..usize::MAX)
 }
 
-/// The same for these rows of the file alone, as far as it has them, counted from y = 0: of a file that is larger than the memory.
+/// Reads these rows of a fields file alone, as far as it has them, counted from y = 0, for a file that is larger than the
+/// memory.
 pub fn read_rows(path: &Path, rows: Range<usize>) -> Result<FieldsData, FieldsError> {
     let read = || {
         let mut file = NetCdf3Reader::open(path)?;
@@ -42,19 +43,19 @@ fn values_of(rows: &Range<usize>, columns: usize) -> Range<u64> {
     start..end
 }
 
-/// What is kept of the values of a field or of the texture while they are read, row after row.
+/// Reduction of the values of a field or of the texture while they are read, row after row.
 pub trait Reduction {
-    /// Nothing yet of an array with rows of this many values, and this many rows.
+    /// Begins the reduction of an array with rows of `columns` values, and with `rows` rows.
     fn of(columns: usize, rows: usize) -> Self;
 
     /// Takes the next values in.
     fn add(&mut self, values: impl Iterator<Item = f32>);
 
-    /// What is kept.
+    /// Result of the reduction.
     fn finish(self) -> Vec<f32>;
 }
 
-/// All values.
+/// The reduction that keeps all values.
 impl Reduction for Vec<f32> {
     fn of(_: usize, _: usize) -> Self {
         Self::new()
@@ -69,9 +70,9 @@ impl Reduction for Vec<f32> {
     }
 }
 
-/// Reads what a picture of one field takes, however long the file is: this field alone, at the snapshots that `choose` numbers, given
-/// the letters of each, and of what never changes the texture alone, all [reduced](Reduction) while they are
-/// read. What is reduced counts as texture if its mean does by more than a half.
+/// Reads the data of a picture of one field, however long the file is: this field alone, at the snapshots that `choose`
+/// numbers from the letters of each, and of the constant arrays the texture alone, all [reduced](Reduction) while they are
+/// read. A reduced value counts as texture if more than half of its blocks do.
 pub fn read_maps<R: Reduction>(
     path: &Path,
     field: Field,
@@ -92,7 +93,8 @@ pub fn count_snapshots(path: &Path) -> Result<usize, FieldsError> {
     Ok(file.records)
 }
 
-/// The numbers of at most `most` snapshots with these letters: of more those that have letters, or as many spread over the run.
+/// The numbers of at most `most` snapshots with these letters: if there are more, those that have letters, or as many spread
+/// over the run.
 pub fn few_of(labels: &[String], most: usize) -> Vec<usize> {
     let (count, shown) = (labels.len(), labels.len().min(most));
     let instants: Vec<usize> = (0..count).filter(|&k| !labels[k].is_empty()).collect();
@@ -102,8 +104,8 @@ pub fn few_of(labels: &[String], most: usize) -> Vec<usize> {
     }
 }
 
-/// Reads the times of the first slips in place of fields, [reduced](Reduction) while they are read, and the texture likewise: they are
-/// the one array of the one frame.
+/// Reads the times of the first slips in place of fields, [reduced](Reduction) while they are read, and the texture in the
+/// same way. The times are the one array of the one frame.
 pub fn read_first_slips<R: Reduction>(path: &Path) -> Result<FieldsData, FieldsError> {
     let read = || {
         let mut file = NetCdf3Reader::open(path)?;
@@ -217,7 +219,7 @@ fn read_label(file: &mut NetCdf3Reader, record: usize) -> Result<String, NetCdfE
     Ok(String::from_utf8_lossy(&label).into_owned())
 }
 
-/// What is kept of some rows of a variable of one value per block.
+/// The reduction of some rows of a variable of one value per block.
 fn read_reduced<R: Reduction>(
     file: &mut NetCdf3Reader,
     name: &str,
@@ -234,7 +236,7 @@ fn read_reduced<R: Reduction>(
     Ok(reduced.finish())
 }
 
-/// A global attribute of N positive numbers.
+/// Reads a global attribute of N positive numbers.
 fn numbers<const N: usize>(file: &NetCdf3Reader, name: &str) -> Result<[f64; N], NetCdfError> {
     match <[f64; N]>::try_from(file.attribute(name)?) {
         Ok(values) if values.iter().all(|value| value.is_finite() && *value > 0.0) => Ok(values),
@@ -244,7 +246,7 @@ fn numbers<const N: usize>(file: &NetCdf3Reader, name: &str) -> Result<[f64; N],
     }
 }
 
-/// The same for whole numbers; they fit, because the file stores them with 32 bits.
+/// Reads a global attribute of N positive whole numbers; they fit, because the file stores them with 32 bits.
 fn counts<const N: usize>(file: &NetCdf3Reader, name: &str) -> Result<[usize; N], NetCdfError> {
     let values = numbers::<N>(file, name)?.map(|value| value as usize);
     if values.contains(&0) {

@@ -23,7 +23,7 @@ fn write(path: &Path, file: &FieldsFile) -> Result<(), FieldsError> {
 const NX: usize = 5;
 const NY: usize = 3;
 
-/// The arrays of a lattice of 5 x 3 blocks that is told apart from its mirror images.
+/// The arrays of a lattice of 5 x 3 blocks that differs from its mirror images.
 struct Lattice {
     textured: Vec<bool>,
     mu_static: Vec<f64>,
@@ -107,7 +107,7 @@ fn folder() -> (TempDir, PathBuf) {
     (folder, path)
 }
 
-/// NaN equals NaN here.
+/// Compares numbers; NaN equals NaN.
 fn same(left: &[f64], right: &[f64]) -> bool {
     left.len() == right.len()
         && left
@@ -231,7 +231,7 @@ fn equal_input_gives_equal_bytes() {
     assert_ne!(first, bytes_with(0.0));
 }
 
-/// The beginning of the file, as the format document has it.
+/// The header begins as the format document says.
 #[test]
 fn the_header_is_netcdf_3() {
     let lattice = lattice();
@@ -535,7 +535,7 @@ fn an_array_that_stands_twice_is_refused() {
     assert!(said.contains("its header defines `velocity_x` twice"), "{said}");
 }
 
-/// Whatever happens to the bytes, the reader answers without a panic and without reserving what is not there.
+/// Damaged files are refused or read, without a panic and without memory for missing values.
 #[test]
 fn damaged_files_are_refused_or_read() {
     let lattice = lattice();

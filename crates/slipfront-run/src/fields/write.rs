@@ -1,4 +1,4 @@
-//! Writing: the header, what a record says of its instant, and the rows of blocks, each at its place.
+//! Writing: the header, the entries of a record about its instant, and the rows of blocks, each at its place.
 
 use std::collections::BTreeSet;
 use std::fs::File;
@@ -17,17 +17,17 @@ use super::netcdf3::StoredNumber;
 use super::netcdf3_header::{HeaderBytes, ValuePlace};
 use crate::agree::agree_on_io;
 
-/// Bytes that are collected before they are written.
+/// Number of bytes that are collected before they are written.
 const BUFFER: usize = 1 << 18;
 
-/// What fills up a variable of 16-bit numbers behind an odd number of them: the beginning of NetCDF's number for nothing.
+/// Padding of a variable of 16-bit numbers behind an odd number of them: the beginning of NetCDF's fill value.
 const SHORT_PADDING: [u8; 2] = [0x80, 0x01];
 
-/// Writes what will be the `fields.nc` at `path` to a temporary file in a folder on the same file system, each rank the rows that
+/// Writes the future `fields.nc` at `path` to a temporary file in a folder on the same file system, each rank the rows that
 /// it holds.
 ///
-/// It is complete and on the disk, and takes its name when the first rank, which has it, renames it (`persist`). Coordinates are
-/// the block centres in m and the time in s; fields are float32, what never changes is float64.
+/// The file is complete and on the disk, and takes its name when the first rank, which returns it, renames it (`persist`).
+/// Coordinates are the block centres in m and the time in s; fields are float32, constant arrays are float64.
 ///
 /// # Errors
 ///

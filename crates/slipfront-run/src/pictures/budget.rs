@@ -1,4 +1,4 @@
-//! What the pictures of a run take of memory and disk space.
+//! Memory and disk space of the pictures of a run.
 
 use std::path::PathBuf;
 

@@ -1,4 +1,4 @@
-//! What can go wrong with the pictures of a run.
+//! Errors of the pictures of a run.
 
 use std::path::PathBuf;
 
@@ -11,7 +11,7 @@ use crate::fields::FieldsError;
 use crate::folder_error::FolderError;
 use crate::series::SeriesError;
 
-/// What can go wrong with pictures, and with the results that they are drawn from.
+/// An error of pictures, or of the results from which they are drawn.
 #[derive(Debug, Error)]
 #[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
 pub enum RunPictureError {

@@ -12,10 +12,10 @@ use crate::names::SERIES;
 use crate::series::{self, SeriesRow};
 use crate::summary::{SiSummary, Summary, read_summary};
 
-/// Bytes of a row of the series while pictures are drawn from it: three numbers that are read of it, and the points of its curves.
+/// Bytes of a row of the series while pictures are drawn from it: three numbers that are read, and the points of its curves.
 pub(super) const ROW_BYTES: f64 = (3 + 2 + 3) as f64 * size_of::<f64>() as f64;
 
-/// What the axes count in.
+/// Units of the axes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum AxisUnits {
     /// Dimensionless quantities.
@@ -25,7 +25,7 @@ pub enum AxisUnits {
     Si,
 }
 
-/// What friction is drawn against.
+/// Abscissa of a friction curve.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Against {
     /// Time.
@@ -38,32 +38,34 @@ pub enum Against {
 /// A measured record that is laid over curves in SI units.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OverlaidRecord {
-    /// What the legend calls it.
+    /// Name of the record in the legend.
     pub label: String,
-    /// Times or displacements, with forces or coefficients.
+    /// The record: times or displacements, with forces or coefficients.
     pub record: MeasuredRecord,
-    /// What is added to its times or displacements, in SI units; none for what makes it fit the first run best.
+    /// Shift of the record's times or displacements, in SI units; if none is given, the shift with which it fits the first
+    /// run best.
     pub shift: Option<f64>,
 }
 
-/// How a measured record fits, in SI units.
+/// Fit of a measured record to runs, in SI units.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fit {
-    /// What the record counts along, and of what.
+    /// Abscissa of the record, and its quantity.
     pub measures: [Measure; 2],
-    /// What was added to its times or displacements.
+    /// Shift of the record's times or displacements.
     pub shift: f64,
-    /// Root mean square of what it differs by from each run, over the points that lie within it; none if there are none.
+    /// Root mean square of the difference between the record and each run, over the points that lie within the run; none if
+    /// there are none.
     pub misfits: Vec<Option<f64>>,
 }
 
-/// A picture, and a sentence that says on which axes if they are not those that were to be expected.
+/// A picture, and a sentence about its axes if they are not the expected ones.
 pub struct Overlay {
-    /// How a record fits that was laid over the curves.
+    /// Fit of a record that was laid over the curves.
     pub fit: Option<Fit>,
     /// The picture.
     pub picture: Picture,
-    /// The sentence.
+    /// The sentence about the axes.
     pub note: Option<String>,
 }
 
@@ -74,13 +76,13 @@ struct DrawnRun {
     rows: Vec<[f64; 4]>,
 }
 
-/// By what the numbers of a run are multiplied, and the names of the axes.
+/// Factors of the numbers of a run, and the names of the axes.
 struct Scale {
     axes: FrictionAxes,
     against: Against,
-    /// Of each run: of times or paths, and of friction.
+    /// Factors for each run: of times or paths, and of friction.
     factors: Vec<[f64; 2]>,
-    /// What the axes count, in SI units; 1 without units.
+    /// Prefixes of the axes in SI units; 1 without units.
     prefixes: [f64; 2],
 }
 
@@ -95,11 +97,10 @@ impl Scale {
 
 /// Draws the friction curves of run folders over each other.
 ///
-/// Without units and abscissa of their own, runs of different materials are drawn where they can be compared: if their mean local
-/// coefficients differ, as mu; if their units of time do, against the path of the drive.
+/// Without units and abscissa of their own, runs of different materials are drawn where they can be compared: if their mean
+/// local coefficients differ, as mu; if their units of time differ, against the path of the drive.
 ///
-/// # Errors
-/// When a folder cannot be read, or its run has not what is asked for.
+/// # Errors When a folder cannot be read, or its run lacks the requested data.
 pub fn overlay(
     folders: &[PathBuf],
     units: AxisUnits,
@@ -193,7 +194,7 @@ fn misfit((xs, ys): (&[f64], &[f64]), curve: (&[f64], &[f64]), shift: f64) -> Op
     (n > 0).then(|| (sum / f64::from(n)).sqrt())
 }
 
-/// The shift with the least [`misfit`] among those at which record and curve have at least half of the shorter one in common.
+/// The shift with the least [`misfit`] among those at which record and curve overlap by at least half of the shorter one.
 fn best_shift(record: (&[f64], &[f64]), curve: (&[f64], &[f64])) -> f64 {
     const POINTS: usize = 2000;
     const SHIFTS: u32 = 400;
@@ -233,7 +234,7 @@ pub(super) fn of_run(folder: &Path) -> Result<Picture, RunPictureError> {
     overlay(&[folder.to_owned()], AxisUnits::Star, Some(Against::Time)).map(|overlay| overlay.picture)
 }
 
-/// All that a summary knows of a curve of mu* against t*, without its points.
+/// The curve of mu* against t* with all marks that a summary has, without its points.
 pub fn marked_curve(label: String, summary: &Summary) -> FrictionCurve {
     let kinetic = summary.kinetic_window_star.zip(summary.kinetic_friction_star);
     let peak = (summary.onset_time_star, summary.static_friction_star);
@@ -281,7 +282,7 @@ impl DrawnRun {
         self.summary.motion == Some(Motion::Rotation)
     }
 
-    /// Its units, which older versions did not write.
+    /// Units of the run, which older versions did not write.
     fn si(&self) -> Result<&SiSummary, RunPictureError> {
         let found = self.summary.si.as_ref();
         found.ok_or_else(|| RunPictureError::NoUnits(self.folder.clone()))
@@ -329,7 +330,7 @@ impl DrawnRun {
     }
 }
 
-/// Axes without units, and why they are not mu* against t*.
+/// Dimensionless axes, with a note if they are not mu* against t*.
 fn dimensionless(
     runs: &[DrawnRun],
     asked: Option<Against>,

@@ -1,4 +1,5 @@
-//! The picture of the slip front: when each block has slipped first, and what slides against place and time.
+//! The picture of the slip front: the time at which each block has first slipped, and the share of sliding blocks against
+//! place and time.
 
 use std::ops::Range;
 use std::path::Path;
@@ -12,10 +13,10 @@ use crate::fields;
 use crate::names::{FIELDS, KYMOGRAPH};
 use crate::summary::{Summary, read_summary};
 
-/// Rows of the kymograph that are shown at least, where the run has so many.
+/// Least number of rows of the kymograph that are shown, where the run has as many.
 const MIN_INSTANTS: usize = 32;
 
-/// Draws how slip has spread, in a run with a transition.
+/// Draws the spread of slip in a run with a transition.
 pub(super) fn of_run(folder: &Path) -> Result<Option<Picture>, RunPictureError> {
     let (summary, path) = (read_summary(folder)?, folder.join(KYMOGRAPH));
     if !summary.transition || found(&path)?.is_none() {

@@ -20,7 +20,7 @@ use crate::summary::{InstantSummary, Summary, read_summary};
 /// Bytes of a cell of a lattice while maps of it are read: whether it is textured, and its mean.
 pub(super) const CELL_BYTES: f64 = (size_of::<bool>() + CellMeans::BYTES_PER_CELL) as f64;
 
-/// Bytes of a cell of a map in the picture of the stress while it is drawn: its value, and what it takes of the files.
+/// Bytes of a cell of a map in the picture of the stress while it is drawn: its value, and its part of the files.
 pub(super) const MAP_CELL_BYTES: f64 = (size_of::<f32>() + plot::STRESS_FILE_BYTES) as f64;
 
 /// Maps are read as the means that are drawn, so that they take no more memory for a larger lattice.
@@ -38,10 +38,11 @@ impl Reduction for CellMeans {
     }
 }
 
-/// mu* of snapshots: of an instant from the summary, else of its row of the series, which a thinned one may lack.
+/// Values mu* of snapshots: of an instant from the summary, else from its row of the series, which a thinned series may
+/// lack.
 pub(super) struct MuStar<'a> {
     instants: &'a [InstantSummary],
-    /// By steps.
+    /// Values mu* of the rows by steps.
     rows: HashMap<u64, f64>,
 }
 
@@ -53,7 +54,7 @@ impl<'a> MuStar<'a> {
         }
     }
 
-    /// mu* of a snapshot; not a number if it is not known.
+    /// Value mu* of a snapshot; NaN if it is not known.
     pub(super) fn at(&self, frame: &FieldFrame) -> f64 {
         let mut instants = self.instants.iter();
         let instant = instants.find(|instant| instant.time_star == frame.time_star);
@@ -72,8 +73,7 @@ pub(super) fn of_run(folder: &Path) -> Result<Option<Picture>, RunPictureError> 
 
 /// Draws the maps of a field of a run folder from its files, which must be there and undamaged.
 ///
-/// # Errors
-/// When it cannot be read, or holds no such maps.
+/// # Errors When the folder cannot be read, or holds no such maps.
 pub fn draw_field(folder: &Path, field: Field) -> Result<Picture, RunPictureError> {
     draw_maps(folder, case_of(folder)?.as_ref(), field)?.ok_or_else(|| RunPictureError::NoMaps {
         path: folder.join(FIELDS),
@@ -88,18 +88,18 @@ pub(super) fn field_of_maps(case: Option<&CaseFile>) -> Field {
 
 /// The scale of the maps of a field.
 pub(super) struct MapScale {
-    /// What a colour bar says of it.
+    /// Title of the colour bar.
     title: String,
     /// The symbol and the unit of the field, where there is no room for the title.
     pub(super) symbol: String,
-    /// The unit in which its values are drawn.
+    /// The unit in which the values of the field are drawn.
     pub(super) unit: f32,
-    /// The values at the ends of the bar.
+    /// Values at the ends of the bar.
     pub(super) range: [f64; 2],
 }
 
 impl MapScale {
-    /// The scale of maps of a field that have these values, in the unit of its file.
+    /// The scale of maps of a field with these values, in the unit of its file.
     pub(super) fn of(field: Field, case: Option<&CaseFile>, values: impl Iterator<Item = f32>) -> Self {
         let symbol = match (field, case) {
             (Field::ContactStress, _) => "\u{3c4}_c*",
@@ -164,7 +164,7 @@ fn extent(values: impl Iterator<Item = f32>) -> [f64; 2] {
     })
 }
 
-/// Draws the maps of a field of a run; none if it has not kept it.
+/// Draws the maps of a field of a run; none if it has not kept the field.
 fn draw_maps(
     folder: &Path,
     case: Option<&CaseFile>,
@@ -209,7 +209,7 @@ fn draw_maps(
     })
 }
 
-/// The letters of the instants of a map, which its file joins.
+/// The letters of the instants of a map, which are joined in its file.
 pub(super) fn separated(letters: &str) -> String {
     letters.chars().map(String::from).collect::<Vec<_>>().join(", ")
 }

@@ -1,6 +1,6 @@
 //! The pictures of a run, drawn from its files, so that those of a run and those of `slipfront plot` are equal.
 //!
-//! Nothing else in this crate knows how a picture is drawn: who writes a run calls [`write_run`] here, or [`complete`] after
+//! No other module of this crate draws pictures: a program that writes a run calls [`write_run`] here, or [`complete`] after
 //! the results of several ranks.
 
 mod budget;
@@ -76,7 +76,7 @@ pub fn draw(folder: &Path) -> Result<Vec<(&'static str, Picture)>, RunPictureErr
     Ok(pictures)
 }
 
-/// Draws a picture from the files of a run folder; none if the run has kept nothing that it could show.
+/// Draws a picture from the files of a run folder; none if the run has kept no data for it.
 fn draw_one(picture: RunPicture, folder: &Path) -> Result<Option<Picture>, RunPictureError> {
     match picture {
         RunPicture::Friction => friction::of_run(folder).map(Some),

@@ -20,24 +20,24 @@ use crate::names::{FIELDS, SERIES};
 use crate::series::{self, SeriesRow};
 use crate::summary::read_summary;
 
-/// A movie takes so long, in hundredths of a second, as far as its pictures are not shown longer or shorter than this.
+/// Duration of a movie in hundredths of a second, as far as the limits on the duration of its pictures allow.
 const DURATION: usize = 1600;
 const SHORTEST: usize = 5;
 const LONGEST: usize = 100;
-/// An instant A-F is shown so many times as long as other pictures.
+/// Factor by which an instant A-F is shown longer than other pictures.
 const INSTANT: usize = 5;
 
-/// Most pictures that are drawn at once.
+/// Largest number of pictures that are drawn at once.
 const BATCH: usize = 8;
-/// Bytes while so many are drawn.
+/// Bytes while [`BATCH`] pictures are drawn.
 pub(super) const BATCH_BYTES: f64 = (BATCH * MOVIE_PICTURE_BYTES) as f64;
 
-/// Bytes of a snapshot of so many cells while a movie is made: its values, and its picture in the file.
+/// Bytes of a snapshot of `cells` cells while a movie is made: its values, and its picture in the file.
 pub(super) fn snapshot_bytes(cells: f64) -> f64 {
     cells * size_of::<f32>() as f64 + MOVIE_FILE_BYTES as f64
 }
 
-/// Memory in which the movie of a run folder is made, in bytes.
+/// Memory for making the movie of a run folder, in bytes.
 pub fn memory(folder: &Path) -> Result<f64, RunPictureError> {
     let snapshots = fields::count_snapshots(&folder.join(FIELDS))?;
     let rows = series::estimate_rows(&folder.join(SERIES))?;
@@ -51,7 +51,8 @@ pub fn memory(folder: &Path) -> Result<f64, RunPictureError> {
     ))
 }
 
-/// The movie of a run folder, of this field or of that whose maps are drawn; none if the run has kept no snapshot of it.
+/// The movie of a run folder, of the given field or of the field whose maps are drawn; none if the run has kept no snapshot
+/// of it.
 ///
 /// # Errors
 /// When a file cannot be read, or there are more than 1000 snapshots.
@@ -103,7 +104,7 @@ pub fn of_run(folder: &Path, field: Option<Field>) -> Result<Option<Movie>, RunP
     }))
 }
 
-/// How long each picture of a movie is shown, in hundredths of a second.
+/// Duration of each picture of a movie, in hundredths of a second.
 pub fn delays(movie: &Movie) -> Vec<u16> {
     let delay = (DURATION / movie.frames.len().max(1)).clamp(SHORTEST, LONGEST);
     let frames = movie.frames.iter();
@@ -115,18 +116,16 @@ pub fn delays(movie: &Movie) -> Vec<u16> {
         .collect()
 }
 
-/// The pictures of a movie, to be drawn, and their colours.
+/// The pictures of a movie before they are drawn, and their colours.
 ///
-/// # Errors
-/// When they cannot be drawn.
+/// # Errors When the pictures cannot be drawn.
 pub fn pictures(movie: &Movie) -> Result<MoviePictures<'_>, RunPictureError> {
     MoviePictures::of(movie).map_err(not_drawn)
 }
 
-/// Draws the pictures of a movie one after the other, and gives each to `take`.
+/// Draws the pictures of a movie one after the other, and passes each to `take`.
 ///
-/// # Errors
-/// Those of `take`.
+/// # Errors Errors of `take`.
 pub fn draw<E>(
     movie: &Movie,
     pictures: &MoviePictures,

@@ -12,8 +12,8 @@ use super::files::found;
 use crate::names::{CASE, PRECURSORS};
 use crate::precursors::{self, PrecursorRow};
 
-/// Draws how far the events of slip of a slider driven at an edge have reached, against the load after them; none of another run. An
-/// event counts if it is longer than all before: a shorter one slips over what these have left behind.
+/// Draws the reach of the events of slip of a slider driven at an edge, against the load after them; none for another run.
+/// An event counts if it is longer than all before: a shorter one slips over the part that these have left behind.
 pub(super) fn of_run(folder: &Path) -> Result<Option<Picture>, RunPictureError> {
     let path = folder.join(PRECURSORS);
     if found(&path)?.is_none() {
@@ -59,7 +59,8 @@ pub(super) fn of_run(folder: &Path) -> Result<Option<Picture>, RunPictureError> 
     })
 }
 
-/// Kinetic coefficient and slope of the pressure from the driven end, of a chain of equal thresholds that is pulled along itself.
+/// Kinetic coefficient and slope of the pressure from the driven end, for a chain of equal thresholds that is pulled along
+/// itself.
 fn equal_chain(case: &CaseFile) -> Option<(f64, f64)> {
     let (slider, load, friction) = (&case.slider, &case.load, &case.friction);
     let edge = case.drive.edge()?;

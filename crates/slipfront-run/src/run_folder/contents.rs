@@ -1,4 +1,4 @@
-//! Which files of a run folder are slipfront's own: those that are listed with the hash that they have.
+//! The files of a run folder that belong to slipfront: those that are listed with the hash that they have.
 
 use std::path::{Component, Path, PathBuf};
 
@@ -9,7 +9,7 @@ use crate::folder_error::FolderError;
 use crate::manifest::ManifestFile;
 use crate::names::{CASE, FIELDS, KYMOGRAPH, MANIFEST, MOVIE, PRECURSORS, RunPicture, SERIES, SUMMARY};
 
-/// The files that a run leaves beside its case and the copies in `inputs/`, the manifest first.
+/// The files that a run writes beside its case and the copies in `inputs/`, the manifest first.
 pub(super) fn result_files() -> impl Iterator<Item = String> {
     let files = [MANIFEST, SUMMARY, SERIES, PRECURSORS, KYMOGRAPH, FIELDS, MOVIE].map(str::to_owned);
     files
@@ -18,8 +18,8 @@ pub(super) fn result_files() -> impl Iterator<Item = String> {
 }
 
 /// The files of an earlier run in a folder, in the order in which they may be removed: the manifest first, so that the
-/// folder does not look complete, and of the others the case last, by which it is known as that of a run. They are those that
-/// are `listed` and still as they are listed, whatever has become of the others, and what stands in the hidden subfolder.
+/// folder does not look complete, and the case last, which marks the folder as one of a run. The files are those that are
+/// `listed` and unchanged, whatever has become of the others, and those in the hidden subfolder.
 pub(super) fn managed_files(folder: &Path, listed: &[ManifestFile]) -> Result<Vec<String>, FolderError> {
     let mut names = Vec::new();
     for name in listed_names(folder, listed)? {
@@ -43,7 +43,7 @@ pub(super) fn managed_bytes(folder: &Path, listed: &[ManifestFile]) -> Result<u6
     names.map(|name| length(folder.join(name))).sum()
 }
 
-/// Names that a run may write, each once: whatever a manifest or a journal lists, no file elsewhere is touched.
+/// Names that a run may write, each once, so that no file elsewhere is touched, whatever a manifest or a journal lists.
 fn listed_names(folder: &Path, listed: &[ManifestFile]) -> Result<Vec<String>, FolderError> {
     let copies = folder.join("inputs");
     let has_copies = is_folder(&copies).map_err(FolderError::read(&copies))?;
@@ -56,7 +56,7 @@ fn listed_names(folder: &Path, listed: &[ManifestFile]) -> Result<Vec<String>, F
     Ok(names)
 }
 
-/// Whether a file is there as it was listed. One of another length is not read: it may be huge.
+/// Whether a file exists and is unchanged since it was listed. A file of another length is not read: it may be huge.
 pub(super) fn is_as_listed(folder: &Path, name: &str, listed: &[ManifestFile]) -> std::io::Result<bool> {
     let Some(found) = found_at(&folder.join(name))? else {
         return Ok(false);
@@ -71,7 +71,7 @@ pub(super) fn is_as_listed(folder: &Path, name: &str, listed: &[ManifestFile]) -
     Ok(alike.any(|file| *file == found))
 }
 
-/// Whether this is the name of a file, without a folder, that a file system can hold.
+/// Whether a name is that of a file, without a folder, that a file system can hold.
 fn is_plain(name: &str) -> bool {
     const LONGEST: usize = 255;
     let mut parts = Path::new(name).components();
@@ -80,8 +80,8 @@ fn is_plain(name: &str) -> bool {
         && name.len() <= LONGEST
 }
 
-/// Refuses files that stand under one of these names, at which a run will write, and are not `managed`; and a hidden
-/// subfolder that is not slipfront's.
+/// Refuses files at the names that a run will write, unless they are `managed`; and a hidden subfolder that is not
+/// slipfront's.
 pub(super) fn refuse_unmanaged(
     folder: &Path,
     names: impl Iterator<Item = String>,
@@ -115,7 +115,7 @@ pub(super) fn refuse_unmanaged(
     Ok(())
 }
 
-/// Removes these files of a run from a folder, where they exist, and `inputs/` if it is empty then.
+/// Removes these files of a run from a folder, where they exist, and then `inputs/` if it is empty.
 pub(super) fn remove_files(
     folder: &Path,
     names: impl IntoIterator<Item = impl AsRef<Path>>,

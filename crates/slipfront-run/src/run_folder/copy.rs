@@ -8,7 +8,7 @@ use super::RunFolder;
 use crate::folder_error::FolderError;
 use crate::names::{CASE, MANIFEST, UNFINISHED};
 
-/// Copies the files of a run folder. Its case and its manifest come last: without them, the copy is not taken for whole.
+/// Copies the files of a run folder. The case and the manifest come last: without them, the copy does not count as whole.
 pub fn copy_run(from: &Path, to: &Path) -> Result<(), FolderError> {
     let failed = |source| FolderError::Copy {
         from: from.to_owned(),
@@ -35,7 +35,7 @@ pub fn copy_run(from: &Path, to: &Path) -> Result<(), FolderError> {
     Ok(())
 }
 
-/// Every file below a folder of what is finished, by its path from there.
+/// Collects every file below a folder, without those of unfinished work, by its path from there.
 fn collect_names(folder: &Path, prefix: &str, names: &mut Vec<String>) -> std::io::Result<()> {
     for entry in std::fs::read_dir(folder.join(prefix))? {
         let entry = entry?;

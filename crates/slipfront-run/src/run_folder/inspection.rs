@@ -1,4 +1,4 @@
-//! What a run folder holds: read once, and passed on to whoever needs it.
+//! The content of a run folder: read once, and passed on to the code that needs it.
 
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
@@ -12,46 +12,45 @@ use crate::folder_error::FolderError;
 use crate::manifest::{Manifest, ManifestError, ManifestFile};
 use crate::names::{CASE, MANIFEST, UNFINISHED};
 
-/// A folder that may be that of a run, as it was found.
+/// A folder that may be a run folder, as it was found.
 #[derive(Debug)]
 pub struct Inspection {
     /// The folder.
     pub path: PathBuf,
-    /// Whose it is.
+    /// Owner and state of the folder.
     pub contents: Contents,
-    /// Its `case.toml`.
+    /// The folder's `case.toml`.
     pub case: Result<CaseFile, CaseDefect>,
 }
 
-/// Whose a folder is.
+/// Owner and state of a folder.
 #[derive(Debug)]
 pub enum Contents {
-    /// Nobody's: it does not exist, or holds no more than a run leaves that is killed before it has written its case.
+    /// A free folder: it does not exist, or holds no more than a run leaves that is killed before it has written its case.
     Empty,
-    /// Somebody else's.
+    /// A folder of somebody else.
     Foreign,
-    /// That of a run which is not complete: it has a resolved case, and no manifest.
+    /// The folder of a run which is not complete: it has a resolved case, and no manifest.
     Interrupted,
-    /// That of a run which was completed: it has a manifest.
+    /// The folder of a run which was completed: it has a manifest.
     Complete(Result<Box<Manifest>, ManifestError>),
 }
 
-/// Why the case in a folder is not one that a run has written.
+/// Reason for which the case in a folder was not written by a run.
 #[derive(Debug)]
 pub enum CaseDefect {
-    /// It cannot be read.
+    /// The case cannot be read.
     Unreadable(std::io::Error),
-    /// It is not a case.
+    /// The file is not a case.
     Invalid(CaseError),
-    /// It is a case, but not a resolved one, byte for byte.
+    /// The file is a case, but not a resolved one, byte for byte.
     NotResolved(Box<CaseFile>),
 }
 
 impl Inspection {
     /// Reads the case and the manifest of a folder.
     ///
-    /// # Errors
-    /// When it cannot be listed, or the system does not say what it holds.
+    /// # Errors When the folder cannot be listed, or the system does not tell what it holds.
     pub fn of(folder: &Path) -> Result<Self, FolderError> {
         let is_unused = is_unused(folder)?;
         let case = read_case(folder);
@@ -69,7 +68,7 @@ impl Inspection {
         })
     }
 
-    /// The manifest of a run that is complete, if it is as it was written.
+    /// The manifest of a run that is complete, if it is unchanged.
     pub fn manifest(&self) -> Result<&Manifest, ManifestError> {
         match &self.contents {
             Contents::Complete(manifest) => manifest.as_deref().map_err(Clone::clone),
@@ -107,7 +106,7 @@ impl Inspection {
         Err(FolderError::NoRun { path, why })
     }
 
-    /// Every file that slipfront has written here, as the manifest and the journal of a run that is not complete list them.
+    /// Every file that slipfront has written in the folder, from the manifest and the journal of a run that is not complete.
     pub(super) fn listed(&self) -> Result<Vec<ManifestFile>, FolderError> {
         let mut listed = Unfinished::of(&self.path).listed()?;
         if let Contents::Complete(Ok(manifest)) = &self.contents {
@@ -118,20 +117,20 @@ impl Inspection {
         Ok(listed)
     }
 
-    /// Whether a file of this name stands in the folder as slipfront has written it.
+    /// Whether a file of this name stands unchanged in the folder since slipfront has written it.
     pub fn has_written(&self, name: &str) -> Result<bool, FolderError> {
         let listed = self.listed()?;
         is_as_listed(&self.path, name, &listed).map_err(FolderError::read(&self.path.join(name)))
     }
 
-    /// Bytes that are free when the files of the run in the folder are removed.
+    /// Bytes that become free when the files of the run in the folder are removed.
     pub fn managed_bytes(&self) -> Result<u64, FolderError> {
         managed_bytes(&self.path, &self.listed()?)
     }
 }
 
-/// The case in a folder if it is a resolved one. Another was not written by a run, and what it names may be the only copy
-/// that there is.
+/// The case in a folder if it is a resolved one. Another case was not written by a run, and the files that it names may have
+/// no other copy.
 fn read_case(folder: &Path) -> Result<CaseFile, CaseDefect> {
     let path = folder.join(CASE);
     // A user may hand over a case through a pipe; in a folder of results it would block.
@@ -145,7 +144,7 @@ fn read_case(folder: &Path) -> Result<CaseFile, CaseDefect> {
     }
 }
 
-/// Whether there is no folder, or it holds nothing but a hidden subfolder of slipfront without a checkpoint.
+/// Whether there is no folder, or it holds only a hidden subfolder of slipfront without a checkpoint.
 fn is_unused(folder: &Path) -> Result<bool, FolderError> {
     let read = FolderError::read(folder);
     let entries = match std::fs::read_dir(folder) {

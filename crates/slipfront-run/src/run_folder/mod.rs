@@ -33,14 +33,14 @@ use crate::names::{CASE, CHECKPOINT, JOURNAL, MANIFEST, PREVIOUS, UNFINISHED};
 /// A folder that was locked, if it exists, and inspected, for a run that begins or is resumed there.
 #[derive(Debug)]
 pub struct OpenedFolder {
-    /// What it holds.
+    /// Result of the inspection.
     pub inspection: Inspection,
     existed: bool,
     lock: Option<File>,
 }
 
 impl OpenedFolder {
-    /// Locks a folder and inspects it.
+    /// Locks a folder and inspects its content.
     ///
     /// # Errors
     /// When another process runs there, or the folder cannot be listed.
@@ -68,11 +68,11 @@ impl OpenedFolder {
         })
     }
 
-    /// Makes the folder ready for a run that reads these `inputs`: it is created, or empty, or with `force` the files of an
-    /// earlier run are removed (and nothing else).
+    /// Makes the folder ready for a run that reads these `inputs`: it is created, or is empty, or with `force` the files of
+    /// an earlier run are removed (and nothing else).
     ///
-    /// # Errors
-    /// When it holds something else, which includes foreign files in the place of the copies, or cannot be written.
+    /// # Errors When the folder holds other files, which includes foreign files in the place of the copies, or cannot be
+    /// written.
     pub fn prepare(self, force: bool, inputs: &[Input]) -> Result<RunFolder, FolderError> {
         self.claim(force, inputs)?.take()
     }
@@ -120,8 +120,8 @@ impl OpenedFolder {
         })
     }
 
-    /// Takes over the folder of an interrupted run of this case: removes what it had written of its results, which are
-    /// written again. The case, the files that it reads and the checkpoints stay.
+    /// Takes over the folder of an interrupted run of this case: removes its results, which are written again. The case, the
+    /// files that it reads and the checkpoints stay.
     ///
     /// # Errors
     /// When a file that the run has not written stands where its results go: then nothing is removed.
@@ -153,21 +153,20 @@ pub struct ClaimedFolder {
     folder: RunFolder,
     /// Files of the earlier run.
     replaced: Vec<String>,
-    /// Folders that were made for this run, each before the one in which it is.
+    /// Folders that were made for this run, each before the folder that contains it.
     made: Vec<PathBuf>,
 }
 
 impl ClaimedFolder {
     /// Removes the files of the earlier run.
     ///
-    /// # Errors
-    /// When one of them cannot be removed.
+    /// # Errors When a file cannot be removed.
     pub fn take(self) -> Result<RunFolder, FolderError> {
         remove_files(&self.folder.path, self.replaced)?;
         Ok(self.folder)
     }
 
-    /// Leaves the folder as it was found.
+    /// Restores the folder as it was found.
     pub fn release(self) {
         // Why the run does not begin is what matters.
         if self.made.contains(&self.folder.path.join(UNFINISHED)) {
@@ -182,8 +181,7 @@ impl ClaimedFolder {
 /// Fails on all ranks, with the same words, unless each of them sees under its path the folder in which rank 0 is about to run.
 /// Every rank must ask.
 ///
-/// # Errors
-/// When one of them does not; the sentence names the rank.
+/// # Errors When a rank does not; the sentence names it.
 pub fn expect_shared(path: &Path, communicator: &dyn Communicator) -> Result<(), RankFailure> {
     if communicator.size() == 1 {
         return Ok(());
@@ -209,7 +207,7 @@ pub fn expect_shared(path: &Path, communicator: &dyn Communicator) -> Result<(),
     agree(communicator, seen.map_err(failure))
 }
 
-/// A folder that a run is being written to.
+/// A folder to which a run is written.
 #[derive(Debug)]
 pub struct RunFolder {
     path: PathBuf,
@@ -219,7 +217,7 @@ pub struct RunFolder {
     written: Vec<ManifestFile>,
     /// Whether this process began the run.
     new: bool,
-    /// Held as long as the run goes on.
+    /// Lock of the folder, held as long as the run goes on.
     _lock: Option<File>,
 }
 
@@ -244,7 +242,8 @@ impl RunFolder {
         })
     }
 
-    /// Ends a run that failed: removes what this process has written, if it began the run. A resumed run keeps its case.
+    /// Ends a run that failed: removes the files that this process has written, if it began the run. A resumed run keeps its
+    /// case.
     pub fn discard(self) {
         if self.new {
             let names = self.written.iter().map(|file| &file.name).rev();
@@ -254,7 +253,7 @@ impl RunFolder {
         }
     }
 
-    /// Syncs the folders of the case and of the files that it reads, so that these survive a power failure.
+    /// Syncs the folders of the case and of its input files, so that these survive a power failure.
     pub(crate) fn sync(&self) -> Result<(), FolderError> {
         for folder in [self.path.clone(), self.path.join("inputs")] {
             let failed = FolderError::write(&folder);
@@ -265,7 +264,7 @@ impl RunFolder {
         Ok(())
     }
 
-    /// The folder.
+    /// Path of the folder.
     pub fn path(&self) -> &Path {
         &self.path
     }
@@ -284,8 +283,7 @@ impl RunFolder {
 
     /// Copies a file that the case reads, where no foreign file stands in its place.
     ///
-    /// # Errors
-    /// When it is no longer what the case was made of, or cannot be read or written.
+    /// # Errors When the file has changed since the case was made from it, or cannot be read or written.
     pub(crate) fn copy(&mut self, input: &Input) -> Result<(), FolderError> {
         let path = self.path.join(&input.name);
         let failed = |source| FolderError::Copy {
@@ -304,7 +302,7 @@ impl RunFolder {
         self.place_listed(copied, file)
     }
 
-    /// Makes a finished temporary file one of the run: it is listed in the journal, and then takes its name, where no
+    /// Makes a finished temporary file a file of the run: it is listed in the journal, and then takes its name, where no
     /// foreign file stands in its place.
     pub fn place(&mut self, name: &str, file: TempPath) -> Result<(), FolderError> {
         let listed = hash_temp(&file, name).map_err(FolderError::write(&self.path.join(name)))?;
@@ -331,7 +329,7 @@ impl RunFolder {
         self.journal.append(files).map_err(FolderError::write(&path))
     }
 
-    /// Writes the manifest: the run is complete, if every file is still as it was written.
+    /// Writes the manifest: the run is complete, if every file is unchanged since it was written.
     pub fn complete(
         mut self,
         case: &Case,
@@ -365,7 +363,7 @@ impl RunFolder {
     }
 }
 
-/// A temporary file as one of this name.
+/// Entry of a temporary file under the given name.
 fn hash_temp(file: &Path, name: &str) -> std::io::Result<ManifestFile> {
     let mut hasher = blake3::Hasher::new();
     Ok(ManifestFile::hashed(

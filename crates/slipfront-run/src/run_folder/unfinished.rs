@@ -18,7 +18,7 @@ pub struct Unfinished {
 }
 
 impl Unfinished {
-    /// That of a run folder.
+    /// The hidden subfolder of a run folder.
     pub fn of(run: &Path) -> Self {
         let path = run.join(UNFINISHED);
         Self { path }
@@ -34,7 +34,7 @@ impl Unfinished {
         self.path.join(TEMPORARY)
     }
 
-    /// Whether slipfront made the subfolder: it holds a journal, or nothing yet. A link is never slipfront's.
+    /// Whether slipfront made the subfolder: the subfolder holds a journal, or nothing yet. A link is never slipfront's.
     ///
     /// # Errors
     /// When the system does not say.
@@ -96,7 +96,8 @@ impl Unfinished {
         journal::read(&path).map_err(FolderError::read(&path))
     }
 
-    /// What may be in it beside the journal, as paths in the run folder; nothing where it is not slipfront's.
+    /// Files that may stand in the subfolder beside the journal, as paths in the run folder; none where it is not
+    /// slipfront's.
     pub(super) fn managed_files(&self) -> Result<Vec<String>, FolderError> {
         if !self.is_managed()? {
             return Ok(Vec::new());
@@ -115,7 +116,7 @@ impl Unfinished {
         names.try_for_each(|name| remove_if_there(&folder.join(name)))
     }
 
-    /// Removes the subfolder: the run is complete. Files of others stay, and the subfolder with them.
+    /// Removes the subfolder: the run is complete. Files of others stay, and so does the subfolder then.
     pub fn remove(&self) -> std::io::Result<()> {
         self.clear_temporary()?;
         for name in [CHECKPOINT, PREVIOUS] {
@@ -132,7 +133,7 @@ impl Unfinished {
     }
 }
 
-/// Makes a folder; an error names `told`.
+/// Makes a folder; an error names the path `told`.
 fn make_folder(path: &Path, told: &Path) -> Result<(), FolderError> {
     match std::fs::create_dir(path) {
         Err(error) if error.kind() != ErrorKind::AlreadyExists => Err(FolderError::unwritable(told)(error)),

@@ -15,7 +15,7 @@ use slipfront_case::case::{Case, Ranks};
 use slipfront_run::running;
 use slipfront_run::summary::Summary;
 
-/// Relative deviation that is let pass.
+/// Relative deviation that is accepted.
 ///
 /// A run gives the same bits every time and on every machine: the order of all sums is fixed, and no result depends on
 /// the system's mathematical library. So nothing has to be let pass today; 1e-9 leaves room for another order of
@@ -37,13 +37,13 @@ struct Pin {
     static_friction_star: f64,
     onset_time_star: f64,
     first_slip_time_star: f64,
-    /// None of a run that has no kinetic window.
+    /// Kinetic friction; none for a run that has no kinetic window.
     kinetic_friction_star: Option<f64>,
     texture_percent: f64,
 }
 
 impl Pin {
-    /// Results that do not exist are not a number, which equals no pin.
+    /// Pins of a summary; missing results are NaN, which equals no pin.
     fn of(summary: &Summary) -> Self {
         Self {
             static_friction_star: summary.static_friction_star,
@@ -54,7 +54,7 @@ impl Pin {
         }
     }
 
-    /// As it stands in `pinned.toml`.
+    /// The pin as it stands in `pinned.toml`.
     fn lines(&self, name: &str) -> String {
         let kinetic = self.kinetic_friction_star;
         let kinetic = kinetic.map_or(String::new(), |mu| format!("kinetic_friction_star = {mu:?}\n"));

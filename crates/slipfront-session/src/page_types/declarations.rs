@@ -6,7 +6,7 @@ use std::vec::IntoIter;
 
 use serde_json::{Map, Value, json};
 
-/// What a key holds.
+/// Type of the values of a key.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Type {
     Text,
@@ -15,7 +15,7 @@ pub(super) enum Type {
     Null,
     /// Anything: `unknown`.
     Unknown,
-    /// This text.
+    /// A certain text.
     Literal(String),
     List(Box<Type>),
     /// An object with any keys.
@@ -26,7 +26,7 @@ pub(super) enum Type {
 }
 
 impl Type {
-    /// What lists and objects with any keys hold at last.
+    /// Innermost type of lists and of objects with any keys.
     fn within(&self) -> &Self {
         match self {
             Self::List(of) | Self::Map(of) => of.within(),
@@ -57,7 +57,7 @@ pub(super) struct Declarations {
     unions: BTreeMap<String, Type>,
 }
 
-/// What `check` has found in examples: names of interfaces and keys, with what the keys held.
+/// Findings of `check` in examples: names of interfaces and keys, with the types of their values.
 pub(super) type Seen = BTreeSet<(String, String, Option<Type>)>;
 
 impl Declarations {
@@ -141,7 +141,7 @@ impl Declarations {
                 })
     }
 
-    /// What `check` finds if examples show all that an interface and those within it, `except` one, may hold.
+    /// Findings of `check` if examples show all values that an interface and those within it, `except` one, may hold.
     pub(super) fn all_of(&self, interface: &str, except: &str, all: &mut Seen) {
         for (key, DeclaredKey { optional, holds }) in &self.interface(interface).keys {
             if *optional {

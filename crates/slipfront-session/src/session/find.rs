@@ -12,7 +12,7 @@ use crate::work::Work;
 /// Time between two reports of how far a search is.
 const REPORT_INTERVAL: Duration = Duration::from_millis(250);
 
-/// What came of a search: the best texture, and it beside what is painted; or why there is none.
+/// Result of a search: the best texture and its comparison with the painted one; or a sentence that tells why there is none.
 type Outcome = Result<(Mask, Comparison), String>;
 
 impl Session {
@@ -82,7 +82,7 @@ impl Session {
         self.host.reply(Reply::Found(found).json());
     }
 
-    /// What came of the search, once it has ended. What it has found is compared first, once textures are no longer tried.
+    /// Result of the search, once it has ended. Its best texture is compared with the painted one first, once textures are no longer tried.
     fn outcome_of_search(&mut self) -> Option<Outcome> {
         let search = self.search.as_mut()?;
         let mut searched = None;
@@ -177,7 +177,7 @@ impl FoundReply {
         }
     }
 
-    /// What came of a search that has tried so many textures.
+    /// Reply that tells the result of a search which has tried so many textures.
     fn of(comparison: &Comparison, textures: usize) -> Self {
         Self {
             outcome: if comparison.is_better {

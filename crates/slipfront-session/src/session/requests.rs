@@ -1,4 +1,4 @@
-//! What a page asks for.
+//! Requests of a page.
 
 use super::state::Session;
 use crate::history::History;

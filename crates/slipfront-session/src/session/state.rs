@@ -1,4 +1,4 @@
-//! What a session holds.
+//! State of a session.
 
 use std::rc::Rc;
 use std::time::Duration;
@@ -30,7 +30,7 @@ pub(super) struct PendingEdit {
 pub(super) struct TextureSearch {
     /// The gesture of the page that asked for it.
     pub(super) gesture: u64,
-    /// When it was looked after first.
+    /// Time at which the search was looked after first.
     pub(super) began: Option<Duration>,
     /// How long it has taken up to now.
     pub(super) elapsed: Duration,
@@ -39,7 +39,7 @@ pub(super) struct TextureSearch {
     /// The search, or the comparison.
     pub(super) task: Box<dyn Task>,
     pub(super) tried: Tried,
-    /// What is compared; none while textures are tried.
+    /// Texture that is compared with the painted one; none while textures are tried.
     pub(super) compared: Option<Mask>,
 }
 
@@ -64,11 +64,11 @@ pub struct Session {
     /// Static friction over seeds, while it is being found.
     pub(super) repeating: Option<Box<dyn Task>>,
     pub(super) search: Option<TextureSearch>,
-    /// What is to be sent with the next points.
+    /// Updates that are to be sent with the next points.
     pub(super) pending: PendingUpdates,
 }
 
-/// What the page has not been sent yet.
+/// Updates that the page has not been sent yet.
 #[derive(Default)]
 pub(super) struct PendingUpdates {
     /// Something is to be drawn although nothing moved.

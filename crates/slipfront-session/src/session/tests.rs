@@ -34,7 +34,7 @@ impl Tried {
         panic!("no {is} came after {all:?}");
     }
 
-    /// What came of the search.
+    /// Result of the search.
     fn found(&mut self) -> Value {
         self.follow("found", |_| true).pop().unwrap()
     }

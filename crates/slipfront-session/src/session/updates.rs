@@ -1,4 +1,4 @@
-//! What a page is sent: the case, the curve, pictures, numbers.
+//! Updates of a page: the case, the curve, pictures, numbers.
 
 use std::time::Duration;
 
@@ -52,7 +52,8 @@ impl Session {
                     .kinetic
                     .time_star(&peak, case.model.loading_speed())
             },
-            drive_degrees: (case.file.drive.motion == Motion::Translation).then_some(case.file.drive.direction),
+            drive_degrees: (case.file.drive.motion == Motion::Translation)
+                .then_some(case.file.drive.direction),
             steady_level: case.expected.steady_level,
             can_undo: history.can_undo(),
             can_redo: history.can_redo(),

@@ -1,4 +1,4 @@
-//! What a training tells of the unknowns of a record.
+//! Estimates of unknowns from records, by a training.
 
 use rayon::prelude::*;
 
@@ -10,54 +10,55 @@ use super::regression::{Prediction, Regression};
 use super::scaling::{Scaling, summaries_of};
 use super::training::Training;
 
-/// An interval of 90 % that is wider, as a share of the range, says that the record does not tell the unknown.
+/// Width of an interval of 90 %, as a share of the range, above which the record does not determine the unknown.
 const UNDETERMINED: f64 = 0.8;
 
-/// Correlation from which errors of two unknowns make a pair, and the width that both intervals then have at the least.
+/// Correlation from which errors of two unknowns make a pair, and least width of both intervals of a pair.
 const OF_A_PAIR: f64 = 0.8;
 const WIDTH_OF_A_PAIR: f64 = 0.2;
 
-/// A training whose summaries have been learnt from at one level of noise.
+/// A training whose summaries are regressed at one level of noise.
 #[derive(Clone, Debug)]
 pub struct Calibration {
     scaling: Scaling,
-    /// Shares of the ranges of the training runs: for every unknown those of all runs.
+    /// Shares of the ranges of the training runs: for every unknown the shares of all runs.
     truths: Vec<Vec<f64>>,
     regressions: Vec<Regression>,
     check: Check,
 }
 
-/// Two unknowns that a record tells only together.
+/// Two unknowns that a record determines only together.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pair {
-    /// Their numbers.
+    /// Numbers of the two unknowns.
     pub unknowns: [usize; 2],
-    /// Correlation of their errors: above 0 where both may be larger than found together, below 0 where one may be larger and the other smaller.
+    /// Correlation of the errors of both: above 0 where both may be larger than found together, below 0 where one may be
+    /// larger and the other smaller.
     pub correlation: f64,
 }
 
-/// What records tell.
+/// Estimate from records.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Estimate {
-    /// Where every unknown lies in its range.
+    /// Distribution of every unknown over its range.
     pub distributions: Vec<Distribution>,
-    /// Numbers of the unknowns that are not told.
+    /// Numbers of the unknowns that are not determined.
     pub undetermined: Vec<usize>,
-    /// Unknowns that are told only together.
+    /// Unknowns that are determined only together.
     pub pairs: Vec<Pair>,
     /// Whether the model can have made the records.
     pub misfit: Misfit,
-    /// How alike the records are every training run, in what is told of the unknowns; all together 1.
+    /// Likeness of the records to every training run, in the predictions of the unknowns; the sum is 1.
     likeness: Vec<f64>,
     predictions: Vec<Prediction>,
 }
 
-/// Training runs that count at the least where records are likened to them.
+/// Least number of training runs that count where records are compared with them.
 const LIKE_AT_LEAST: f64 = 50.0;
 
 impl Calibration {
-    /// Learns from a training what records with white noise tell, whose standard deviation is this share of the mean friction of the record.
-    /// `grids` are those of the set-up.
+    /// Learns from a training the relation between records and unknowns, for records with white noise whose standard
+    /// deviation is the share `noise` of their mean friction. `grids` are those of the set-up.
     pub fn new(training: &Training, grids: &[Grid], noise: f64) -> Self {
         let shares: Vec<f64> = grids.iter().map(|grid| noise * grid.noise_share()).collect();
         let rows: Vec<Vec<f64>> = training
@@ -95,7 +96,7 @@ impl Calibration {
         }
     }
 
-    /// What records tell, each as its [`Grid::record`].
+    /// Estimate from records, each made by [`Grid::record`].
     pub fn estimate(&self, records: &[Vec<f64>]) -> Estimate {
         let summaries = self.scaling.scaled(&summaries_of(records));
         let predictions: Vec<_> = self
@@ -125,7 +126,8 @@ impl Calibration {
         }
     }
 
-    /// How alike a record with these predictions is every training run: a product of normal weights, as wide as leaves enough runs.
+    /// Likeness of a record with these predictions to every training run: a product of normal weights, wide enough to leave
+    /// enough runs.
     fn likeness(&self, predictions: &[Prediction]) -> Vec<f64> {
         let runs = self.truths.first().map_or(0, Vec::len);
         let distance = |run: usize| -> f64 {
@@ -150,8 +152,8 @@ impl Calibration {
         }
     }
 
-    /// So many points of the ranges, drawn from what is told of all unknowns together: residuals of whole training runs, around what is
-    /// predicted of the records.
+    /// Draws `count` points of the ranges from the joint distribution of all unknowns: residuals of whole training runs
+    /// around the predictions from the records.
     pub fn sample(&self, estimate: &Estimate, count: usize) -> Vec<Vec<f64>> {
         let mut sum = 0.0;
         let sums: Vec<f64> = estimate
@@ -176,8 +178,8 @@ impl Calibration {
         (0..count).map(point).collect()
     }
 
-    /// Widths of the intervals of 90 % that records like these have, for every unknown, as a share of its range: the mean over training runs
-    /// that are left out.
+    /// Widths of the intervals of 90 % for records like these, for every unknown, as a share of its range: the mean over
+    /// training runs that are left out.
     pub(crate) fn widths(&self, of: &Estimate) -> Vec<f64> {
         let all: Vec<_> = self.regressions.iter().zip(&self.truths).collect();
         all.par_iter()
@@ -235,7 +237,7 @@ mod tests {
     use super::*;
     use slipfront_run::measured::{Measure, MeasuredRecord};
 
-    /// A slope and a level that the slope leads to, both known, and a number that no curve shows.
+    /// A curve with a slope and a level that the slope leads to, both known, and a number that no curve shows.
     fn curve(point: &[f64]) -> Vec<f64> {
         let (slope, level) = (0.02 + 0.03 * point[0], 0.5 + 0.5 * point[1]);
         (0..100).map(|i| (slope * f64::from(i)).min(level)).collect()

@@ -4,17 +4,17 @@
 
 use fearless_simd::{Level, Simd, SimdBase, dispatch, f64x8};
 
-/// Columns that are computed together: two vectors of AVX2, one of AVX-512.
+/// Number of columns that are computed together: two vectors of AVX2, one of AVX-512.
 const PANEL: usize = 8;
 
-/// Rows that are computed together.
+/// Number of rows that are computed together.
 const ROWS: usize = 4;
 
 /// The lower factor `L` of a symmetric positive matrix `A = L L^T`.
 #[derive(Clone, Debug)]
 pub(crate) struct Factor {
     n: usize,
-    /// Row after row; what stands above the diagonal means nothing.
+    /// Rows of the factor one after the other; numbers above the diagonal have no meaning.
     rows: Vec<f64>,
 }
 
@@ -33,7 +33,7 @@ fn tile<S: Simd>(simd: S, a: [&[f64]; ROWS], b: &[[f64; PANEL]]) -> [[f64; PANEL
     sums.map(Into::into)
 }
 
-/// Rows of a matrix from `first` on, from column `from` on; behind the last row it is repeated.
+/// Rows of a matrix from `first` on, from column `from` on; behind the last row this row is repeated.
 #[inline(always)]
 fn rows_from(matrix: &[f64], n: usize, first: usize, from: usize) -> [&[f64]; ROWS] {
     std::array::from_fn(|k| {
@@ -43,7 +43,7 @@ fn rows_from(matrix: &[f64], n: usize, first: usize, from: usize) -> [&[f64]; RO
 }
 
 impl Factor {
-    /// Factorizes the symmetric matrix of `n` rows, of which the lower half is read; none if it is not positive.
+    /// Factorizes the symmetric matrix of `n` rows, of which the lower half is read; none if the matrix is not positive.
     ///
     /// ```text
     /// L_ij = (A_ij - sum_k<j L_ik L_jk)/L_jj,   L_jj = sqrt(A_jj - sum_k<j L_jk^2)

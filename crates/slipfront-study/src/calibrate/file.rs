@@ -1,4 +1,4 @@
-//! The calibration file: a base case, the keys that are looked for, and how records were measured.
+//! The calibration file: a base case, the unknown keys, and the conditions of the records.
 
 use std::path::{Path, PathBuf};
 
@@ -23,10 +23,11 @@ use crate::study_file::{Base, found_at, parse_noting_places, portable, read_base
 /// The tables of a calibration file.
 const TABLES: [&str; 2] = ["base", "calibrate"];
 
-/// Fewest and most runs of a training: fewer leave intervals of 90 % to chance, more are a system of equations that memory is too small for.
+/// Smallest and largest number of runs of a training: fewer leave intervals of 90 % to chance, more are a system of
+/// equations that memory is too small for.
 const RUNS: [u32; 2] = [100, 5000];
 
-/// Most steps of a run that a record may ask for: a thousand runs of as many take days.
+/// Largest number of steps of a run for a record: a thousand such runs take days.
 const MAX_STEPS: u64 = 10_000_000;
 
 /// A calibration file.
@@ -34,7 +35,7 @@ const MAX_STEPS: u64 = 10_000_000;
 pub struct CalibrationFile {
     /// Name of the calibration and of its results.
     pub name: String,
-    /// Its keys.
+    /// Keys of the file.
     pub keys: CalibrationKeys,
     /// The case.
     pub(crate) base: Base,
@@ -42,7 +43,7 @@ pub struct CalibrationFile {
     table: Table,
 }
 
-/// `[calibrate]`.
+/// The table `[calibrate]`.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct CalibrationKeys {
@@ -63,12 +64,12 @@ pub struct CalibrationKeys {
     /// Runs of the training on blocks of half the size; 0 for none.
     #[serde(default = "default_finer_runs")]
     pub finer_runs: u32,
-    /// Experiments that may be made next, each as keys in which they differ from the case.
+    /// Experiments that may be made next, each as the keys in which it differs from the case.
     #[serde(default)]
     pub next: Vec<Table>,
 }
 
-/// What the first column of a record is.
+/// Quantity of the first column of a record.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 enum Against {
@@ -77,7 +78,7 @@ enum Against {
     Displacement,
 }
 
-/// How one of several records was measured.
+/// Conditions of one of several records.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct RecordKeys {
@@ -123,7 +124,7 @@ fn default_finer_runs() -> u32 {
     300
 }
 
-/// A record as it was measured, and the steps in which it is compared.
+/// A record as measured, and the steps in which it is compared.
 #[derive(Clone, Debug)]
 pub(crate) struct GivenRecord {
     pub(crate) measured: MeasuredRecord,
@@ -207,7 +208,7 @@ impl CalibrationFile {
         self.unknowns().map(drop)
     }
 
-    /// The keys that are looked for.
+    /// The unknown keys.
     fn unknowns(&self) -> Result<Vec<Unknown>, CaseError> {
         self.keys
             .unknowns
@@ -289,7 +290,7 @@ impl CalibrationFile {
         paths.iter().map(read).collect()
     }
 
-    /// What is run for records, on the blocks of the case. Both ends of every range are held against the case.
+    /// The set-up of the runs for records, on the blocks of the case. Both ends of every range are checked with the case.
     pub(crate) fn set_up(&self, records: &[GivenRecord]) -> Result<SetUp, StudyError> {
         let conditions = records.iter().enumerate().map(|(number, record)| Conditions {
             overrides: self.overrides_of(number),
@@ -344,7 +345,7 @@ impl CalibrationFile {
 }
 
 impl Number {
-    /// The number, and its unit.
+    /// The number, and the unit.
     fn parted(self) -> (Option<f64>, Option<String>) {
         match self {
             Self::Plain(number) => (Some(number), None),

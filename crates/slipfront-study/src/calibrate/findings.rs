@@ -1,4 +1,4 @@
-//! What a calibration finds, as numbers.
+//! Results of a calibration, as numbers.
 
 use serde::Serialize;
 
@@ -7,74 +7,74 @@ use super::intervals::Distribution;
 use super::misfit::Misfit;
 use super::unknowns::Unknown;
 
-/// Share of the intervals.
+/// Probability of the intervals.
 pub(crate) const CONFIDENCE: f64 = 0.9;
 
-/// `calibration.json`.
+/// Content of `calibration.json`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct Findings {
     /// Runs of the training.
     pub(crate) runs: usize,
-    /// Standard deviation of the noise that records were given, as a share of their mean friction.
+    /// Standard deviation of the noise for which records were estimated, as a share of their mean friction.
     pub(crate) noise: f64,
-    /// The keys that were looked for.
+    /// The unknown keys.
     pub(crate) unknowns: Vec<Told>,
-    /// Those that are told only together.
+    /// Pairs of unknowns that are determined only together.
     pub(crate) pairs: Vec<ToldTogether>,
-    /// What speaks against the records.
+    /// Tests of whether the model can have made the records.
     pub(crate) misfit: Misfit,
-    /// Whether the model cannot have made them.
+    /// Whether the model cannot have made the records.
     pub(crate) is_refused: bool,
     /// Share of the values of each record that lie within the band of the calibrated model, %.
     pub(crate) within_band_percent: Vec<f64>,
-    /// What blocks of half the size have to say.
+    /// Results on blocks of half the size.
     pub(crate) finer: OnFinerBlocks,
-    /// What further experiments would tell.
+    /// Narrowing of the intervals by further experiments.
     pub(crate) next: Vec<Further>,
     pub(crate) version: &'static str,
 }
 
-/// An unknown, as the records tell it, in its own unit.
+/// An unknown, as estimated from the records, in its own unit.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct Told {
     pub(crate) key: String,
-    /// Its range.
+    /// Range of the unknown.
     pub(crate) range: [f64; 2],
     pub(crate) unit: Option<String>,
     pub(crate) median: f64,
-    /// The interval that holds it with 90 %.
+    /// Interval that holds the unknown with 90 %.
     pub(crate) interval: [f64; 2],
-    /// Whether the records tell it: the interval is less than 0.8 of the range.
+    /// Whether the records determine the unknown: the interval is less than 0.8 of the range.
     pub(crate) is_determined: bool,
     /// Median and interval on blocks of half the size.
     pub(crate) on_finer_blocks: Option<(f64, [f64; 2])>,
-    /// Whether the median there lies beyond the interval.
+    /// Whether the median on blocks of half the size lies beyond the interval.
     pub(crate) belongs_to_block: bool,
 }
 
-/// Two unknowns that are told only together.
+/// Two unknowns that are determined only together.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct ToldTogether {
     pub(crate) keys: [String; 2],
     pub(crate) correlation: f64,
 }
 
-/// What was done on blocks of half the size.
+/// Runs on blocks of half the size.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum OnFinerBlocks {
-    /// So many training runs.
+    /// Number of training runs.
     Runs(usize),
-    /// Nothing: the file asks for no runs there.
+    /// No runs, because the file asks for none.
     NotAskedFor,
-    /// Nothing, for this reason.
+    /// No runs, for the given reason.
     Impossible(String),
 }
 
 /// An experiment that may be made next.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct Further {
-    /// The keys in which it differs from the case.
+    /// The keys in which the experiment differs from the case.
     pub(crate) set: String,
     /// Widths of the intervals with it over those without, for every unknown.
     pub(crate) narrowed_to: Vec<f64>,
@@ -95,7 +95,7 @@ impl Told {
         }
     }
 
-    /// Adds what was found on blocks of half the size.
+    /// Adds the results on blocks of half the size.
     pub(crate) fn hold_against(&mut self, unknown: &Unknown, finer: &Distribution) {
         let (median, interval) = in_its_unit(unknown, finer);
         let [low, high] = self.interval;
@@ -103,7 +103,7 @@ impl Told {
         self.on_finer_blocks = Some((median, interval));
     }
 
-    /// A value of it, as a text with its unit.
+    /// A value of the unknown, as a text with its unit.
     pub(crate) fn text(&self, value: f64) -> String {
         let number = slipfront_case::number_format::four_digits(value);
         match &self.unit {

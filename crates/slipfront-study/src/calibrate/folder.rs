@@ -1,4 +1,4 @@
-//! The results folder of a calibration: its file, copies of the records, the journal of training runs, and what was found.
+//! The results folder of a calibration: its file, copies of the records, the journal of training runs, and the findings.
 
 use std::collections::{BTreeMap, HashMap};
 use std::io::Write;
@@ -29,10 +29,10 @@ const CALIBRATION: &str = "calibration.toml";
 /// The journal: a line for every training run.
 pub(crate) const TRAINING: &str = "training.jsonl";
 
-/// What names of copies of records begin with.
+/// Beginning of the names of copies of records.
 const RECORD: &str = "record-";
 
-/// Points that are drawn from what the records tell.
+/// Number of points that are drawn from the estimate.
 const SAMPLE: usize = 400;
 
 /// A line of the journal.
@@ -44,7 +44,7 @@ struct KeptRun {
     run: TrainingRun,
 }
 
-/// What a calibration is doing.
+/// Stage of a calibration.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CalibrationStage {
     /// Runs of the case over the ranges.
@@ -55,18 +55,18 @@ pub enum CalibrationStage {
     Further,
 }
 
-/// How far a calibration has come.
+/// Progress of a calibration.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CalibrationProgress {
-    /// What it is doing.
+    /// Present stage.
     pub stage: CalibrationStage,
-    /// Runs of this call that have ended.
+    /// Number of runs of this call that have ended.
     pub runs: usize,
-    /// All runs of this call.
+    /// Number of all runs of this call.
     pub of: usize,
 }
 
-/// Runs of a calibration on their way.
+/// Runs of a calibration in progress.
 struct Work<'a> {
     stop: &'a AtomicBool,
     watch: &'a mut dyn FnMut(&CalibrationProgress),
@@ -75,7 +75,7 @@ struct Work<'a> {
 }
 
 impl Work<'_> {
-    /// Shows that so many more runs have ended.
+    /// Shows that `runs` more runs have ended.
     fn show(&mut self, stage: CalibrationStage, runs: usize) {
         self.ended += runs;
         (self.watch)(&CalibrationProgress {
@@ -86,7 +86,7 @@ impl Work<'_> {
     }
 }
 
-/// Records, and what a training tells of them.
+/// Records, and the estimate of a training from them.
 struct Calibrated {
     curves: Vec<Vec<f64>>,
     calibration: Calibration,
@@ -111,7 +111,7 @@ impl Calibrated {
 #[derive(Debug)]
 pub struct CalibrationFolder {
     path: PathBuf,
-    /// Keeps other processes out of the folder, and training runs unless another folder has them.
+    /// Journal of the folder, which keeps other processes out, and holds training runs unless another folder has them.
     journal: Journal,
     /// Training runs that several calibrations share.
     shared: Option<Journal>,
@@ -128,12 +128,12 @@ pub fn is_calibration(folder: &Path) -> bool {
     folder.join(CALIBRATION).exists() && folder.join(TRAINING).exists()
 }
 
-/// Whether a calibration in the folder has come to its end.
+/// Whether a calibration in the folder was finished.
 pub(crate) fn is_finished(folder: &Path) -> bool {
     folder.join(FOUND[0]).exists()
 }
 
-/// A journal of training runs, the runs in it, and how many of its lines are damaged.
+/// Opens a journal of training runs; returns it, the runs in it, and the number of its damaged lines.
 fn open_journal(folder: &Path) -> Result<(Journal, Vec<KeptRun>, usize), StudyError> {
     Journal::open(folder, TRAINING).map_err(|error| match error {
         StudyError::NotRecords { path } => FolderError::Foreign { path }.into(),
@@ -145,9 +145,8 @@ impl CalibrationFolder {
     /// Opens a results folder: a new one, an empty one, or one of an earlier call for these records that no other process works in. Training
     /// runs are kept in it, or in the folder `training`.
     ///
-    /// # Errors
-    /// When the records cannot be read, or the ranges leave the bounds of the case: then nothing is written. When the folder holds other
-    /// things, another process works in it, or it cannot be written to.
+    /// # Errors When the records cannot be read, or the ranges leave the bounds of the case: then nothing is written. When
+    /// the folder holds other files, another process works in it, or it cannot be written to.
     pub fn open(
         path: &Path,
         training: Option<&Path>,
@@ -228,7 +227,7 @@ impl CalibrationFolder {
         Self::open(other, None, &file, &records)
     }
 
-    /// The folder.
+    /// Path of the folder.
     pub fn path(&self) -> &Path {
         &self.path
     }
@@ -238,7 +237,8 @@ impl CalibrationFolder {
         self.known.len()
     }
 
-    /// Trains, fits the records, looks at blocks of half the size and at further experiments, writes what was found, and gives it as a text.
+    /// Trains, fits the records, runs blocks of half the size and further experiments, writes the findings, and returns them
+    /// as a text.
     ///
     /// # Errors
     /// When runs cannot be made or kept, after a stop, and when the system refuses to write.
@@ -301,7 +301,7 @@ impl CalibrationFolder {
         report.write(&told.curves, &bands, &sample(SAMPLE))
     }
 
-    /// Trains with each of the further experiments beside the records, and tells how much narrower the intervals are.
+    /// Trains with each of the further experiments beside the records, and returns how much narrower the intervals are.
     fn weigh(
         &mut self,
         work: &mut Work,
@@ -348,7 +348,7 @@ impl CalibrationFolder {
         Ok(Some(finer))
     }
 
-    /// The set-ups of further experiments, over the path of the first record, and what they are called.
+    /// The set-ups of further experiments, over the path of the first record, and their names.
     fn further(&self, next: &[toml::Table]) -> Result<Vec<(String, SetUp)>, StudyError> {
         let middle = self.set_up.middle();
         let first = &self.set_up.conditions[0];
@@ -373,7 +373,7 @@ impl CalibrationFolder {
         next.iter().map(set_up).collect()
     }
 
-    /// Trains, or goes on where an earlier call was.
+    /// Trains, or goes on from an earlier call.
     fn train(
         &mut self,
         work: &mut Work,
@@ -413,7 +413,7 @@ impl CalibrationFolder {
         Training::run(set_up, runs, of_set_up, &mut keep, stop)
     }
 
-    /// Runs of all set-ups that are not known yet.
+    /// Number of runs of all set-ups that are not known yet.
     fn n_missing(
         &self,
         finer: &Result<Option<SetUp>, String>,
@@ -432,7 +432,7 @@ impl CalibrationFolder {
     }
 }
 
-/// Copies of records: their names in the folder, and what stands in them.
+/// Copies of records: their names in the folder, and their contents.
 fn contents(records: &[PathBuf]) -> Result<Vec<(String, Vec<u8>)>, StudyError> {
     let copy = |(number, path): (usize, &PathBuf)| {
         let ending = path
@@ -445,7 +445,7 @@ fn contents(records: &[PathBuf]) -> Result<Vec<(String, Vec<u8>)>, StudyError> {
     records.iter().enumerate().map(copy).collect()
 }
 
-/// Pairs of unknowns that are told only together.
+/// Pairs of unknowns that are determined only together.
 fn pairs(set_up: &SetUp, estimate: &Estimate) -> Vec<ToldTogether> {
     let of = |pair: &super::calibration::Pair| ToldTogether {
         keys: pair

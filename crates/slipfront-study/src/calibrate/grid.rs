@@ -5,24 +5,25 @@ use slipfront_run::run_curve::RunCurve;
 
 use super::summaries::MIN_VALUES;
 
-/// Most values of a curve from which summaries are made: of more, neighbours are averaged.
+/// Largest number of values of a curve from which summaries are made: more values are averaged over neighbours.
 const MAX_VALUES: usize = 400;
 
-/// Where friction of one record is known.
+/// Places at which friction of a record is known.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Grid {
-    /// Time or displacement.
+    /// Quantity of the places: time or displacement.
     along: Measure,
-    /// Force or coefficient.
+    /// Quantity at the places: force or coefficient.
     of: Measure,
     start: f64,
     step: f64,
-    /// Values of the record.
+    /// Number of values of the record.
     count: usize,
 }
 
 impl Grid {
-    /// As many equal steps as a record has values, from its first to its last; none of a record that is too short or stands still.
+    /// As many equal steps as a record has values, from its first to its last; none for a record that is too short or stands
+    /// still.
     pub fn of(record: &MeasuredRecord) -> Option<Self> {
         let (count, start, end) = (record.x.len(), *record.x.first()?, *record.x.last()?);
         let step = (end - start) / (count - 1).max(1) as f64;
@@ -35,17 +36,17 @@ impl Grid {
         })
     }
 
-    /// What places are.
+    /// Quantity of the places.
     pub(crate) fn along(&self) -> Measure {
         self.along
     }
 
-    /// What is known there.
+    /// Quantity at the places.
     pub(crate) fn friction(&self) -> Measure {
         self.of
     }
 
-    /// This grid over the same path of a drive that takes so many times as long for it; displacements stay.
+    /// The grid over the same path of a drive that takes `times` times as long for it; displacements stay.
     pub(crate) fn slower(&self, times: f64) -> Self {
         let times = if self.along == Measure::Time { times } else { 1.0 };
         Self {
@@ -60,7 +61,7 @@ impl Grid {
         self.start + (self.count - 1) as f64 * self.step
     }
 
-    /// Values that are averaged.
+    /// Number of values that are averaged to one.
     fn merged(&self) -> usize {
         self.count.div_ceil(MAX_VALUES)
     }
@@ -79,12 +80,12 @@ impl Grid {
             .collect()
     }
 
-    /// A record in equal steps, of which neighbours are averaged.
+    /// A record in equal steps, averaged over neighbours.
     pub fn record(&self, record: &MeasuredRecord) -> Vec<f64> {
         self.averages(&record.x, &record.y)
     }
 
-    /// The curve of a run as a record of it would be; none if the run ends before, or its friction is a torque.
+    /// The curve of a run in the form of a record; none if the run ends before, or its friction is a torque.
     pub(crate) fn curve(&self, curve: &RunCurve) -> Option<Vec<f64>> {
         let x = curve.along(self.along);
         // What rounding makes of the end of a run is not missed.

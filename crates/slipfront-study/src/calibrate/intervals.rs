@@ -2,16 +2,17 @@
 
 use super::regression::{Prediction, Regression};
 
-/// Values of an unknown with their weights, in rising order: where it lies in its range, from 0 to 1.
+/// Values of an unknown with their weights, in rising order: its distribution over its range, from 0 to 1.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Distribution {
     values: Vec<f64>,
-    /// Sum of the weights up to every value, of which the last is 1.
+    /// Sums of the weights up to every value; the last is 1.
     sums: Vec<f64>,
 }
 
 impl Distribution {
-    /// Residuals that training runs like the record had when they were left out, in units of their scale, around what is predicted of it.
+    /// The distribution of residuals that training runs like the record had when they were left out, in units of their
+    /// scale, around the prediction from the record.
     ///
     /// ```text
     /// u = f + s (u_i - f_i)/s_i   with the weight exp(-(f - f_i)^2/(2 0.15^2) - log^2(s/s_i)/(2 0.5^2))
@@ -45,12 +46,13 @@ impl Distribution {
         self.values[place.min(self.values.len() - 1)]
     }
 
-    /// The interval that holds this share, with as much below as above.
+    /// The interval that holds `share` of the distribution, with as much below as above.
     pub fn interval(&self, share: f64) -> [f64; 2] {
         [self.quantile(0.5 - 0.5 * share), self.quantile(0.5 + 0.5 * share)]
     }
 
-    /// The share of the distribution below a value: a uniform number for the values of records that were made of the prior.
+    /// The share of the distribution below a value: a uniform number for the true values of records that were drawn from the
+    /// prior.
     pub fn below(&self, value: f64) -> f64 {
         let place = self.values.partition_point(|&other| other < value);
         if place == 0 { 0.0 } else { self.sums[place - 1] }

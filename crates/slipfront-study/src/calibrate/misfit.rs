@@ -10,17 +10,17 @@ use super::regression::Regression;
 use super::scaling::{Scaling, summaries_of};
 use super::training::Training;
 
-/// Largest drift that is learnt: friction that rises or falls by this share of itself over the record.
+/// Largest drift in training: friction that rises or falls by this share of itself over the record.
 const MAX_DRIFT: f64 = 0.12;
 
-/// How many good records in 1000 each of the two checks refuses.
+/// Share of good records that each of the two checks refuses.
 const REFUSED_BY_DRIFT: f64 = 0.025;
 const REFUSED_AS_FOREIGN: f64 = 0.01;
 
-/// Runs to which the distance of a record is the mean of.
+/// Number of the nearest runs over which the distance of a record is averaged.
 const NEAREST: usize = 5;
 
-/// What tells records of the model from others.
+/// Test that distinguishes records of the model from others.
 #[derive(Clone, Debug)]
 pub(super) struct Check {
     drift: Regression,
@@ -32,19 +32,20 @@ pub(super) struct Check {
     far: f64,
 }
 
-/// What speaks against a record.
+/// Tests of whether the model can have made a record.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Misfit {
     /// Drift of friction over the record, as a share of friction: an interval that holds it for all records but 25 in 1000.
     pub drift: [f64; 2],
     /// Whether the interval leaves out 0.
     pub has_drift: bool,
-    /// Distance of the summaries from those of the nearest training runs, over the distance that 10 training runs in 1000 exceed.
+    /// Distance of the summaries from those of the nearest training runs, over the distance that 10 training runs in 1000
+    /// exceed.
     pub distance: f64,
 }
 
 impl Misfit {
-    /// Whether the model makes records like this: 3.5 % of its own are refused.
+    /// Whether the records are refused as none of the model; 3.5 % of the model's own are.
     pub fn is_refused(&self) -> bool {
         self.has_drift || self.distance > 1.0
     }
@@ -57,13 +58,14 @@ fn drifting(curve: &[f64], drift: f64) -> Vec<f64> {
     values.map(|(i, y)| y * (1.0 + drift * i as f64 / last)).collect()
 }
 
-/// The drift at a share of what is learnt.
+/// The drift at a share of the range of drifts.
 fn drift_at(share: f64) -> f64 {
     MAX_DRIFT * (2.0 * share - 1.0)
 }
 
 impl Check {
-    /// Learns drift from the training runs, each with one of its own; `noise` is that of every record, as a share of friction.
+    /// Learns drift from the training runs, each with a drift of its own; `noise` is the noise of every record, as a share
+    /// of friction.
     pub(super) fn learn(training: &Training, noise: &[f64], scaling: &Scaling, table: &[f64]) -> Self {
         let runs = training.curves.len();
         let drifts: Vec<f64> = (0..runs)
@@ -99,7 +101,7 @@ impl Check {
         }
     }
 
-    /// What speaks against a record with these scaled summaries.
+    /// Tests of a record with these scaled summaries.
     pub(super) fn misfit(&self, summaries: &[f64]) -> Misfit {
         let drift = Distribution::of(&self.drift, &self.drifts, self.drift.predict(summaries));
         let drift = drift.interval(1.0 - REFUSED_BY_DRIFT).map(drift_at);
@@ -112,7 +114,7 @@ impl Check {
     }
 }
 
-/// Root of the mean of the least squared distances; of a run among all, the first is that to itself.
+/// Root of the mean of the least squared distances; for a run among all, the first is the distance to itself.
 fn distance(row: &[f64], nearest: usize) -> f64 {
     let mut row = row.to_vec();
     let nearest = nearest.min(row.len());

@@ -2,16 +2,16 @@
 
 use crate::draws::Draws;
 
-/// What random numbers are drawn for; each has numbers of its own.
+/// Purpose of random numbers; each purpose has numbers of its own.
 #[derive(Clone, Copy)]
 pub(crate) enum Stream {
     /// Noise of the curves of training.
     Noise = 0,
-    /// Drift of the curves that the check of a record learns from.
+    /// Drift of the curves from which the test of a record learns.
     Drift = 1,
     /// Noise of the curves with a drift.
     DriftNoise = 2,
-    /// Runs that are drawn from what a record tells, and noise of their curves.
+    /// Runs that are drawn from an estimate, and noise of their curves.
     Predicted = 3,
 }
 
@@ -21,7 +21,7 @@ pub(crate) fn draws(stream: Stream, run: usize, record: usize) -> Draws {
     Draws::of([calibration, run as u64, record as u64, stream as u64])
 }
 
-/// Standard normals.
+/// Standard normal numbers.
 pub(crate) fn normals(stream: Stream, run: usize, record: usize) -> impl Iterator<Item = f64> {
     let mut draws = draws(stream, run, record);
     std::iter::repeat_with(move || draws.normal())

@@ -1,4 +1,4 @@
-//! What the model makes of records once it is calibrated: runs at points that are drawn from what the records tell.
+//! Predictions of the calibrated model for the records: runs at points that are drawn from the estimate.
 
 use std::sync::atomic::AtomicBool;
 
@@ -12,7 +12,7 @@ use crate::error::StudyError;
 /// Number of the surface of the first run; training draws from 1 on.
 const FIRST_SURFACE: u64 = 1 << 32;
 
-/// Runs of which a band is made.
+/// Number of runs from which a band is made.
 pub(crate) const PREDICTED: usize = 60;
 
 /// Shares of the runs below the lines of a band.

@@ -1,4 +1,4 @@
-//! Regression of one unknown on the summaries of training runs, of which the summaries that matter are found.
+//! Regression of one unknown on the summaries of training runs, which finds the summaries that matter.
 //!
 //! Kernel ridge regression with a Gaussian kernel, whose lengths come from the mean squared slopes of the regression itself: first with the
 //! same length for every summary, then with weights (Radhakrishnan et al., Science 383 (2024) 1461, with a diagonal matrix):
@@ -8,24 +8,24 @@
 //! k(x, x') = exp(-sum_f w_f (x_f - x'_f)^2/(2 h^2)),   w_f ~ mean_i (df/dx_f(x_i))^2
 //! ```
 //!
-//! The prediction of a run by all others, which is what intervals are made of, needs no regression of its own:
-//! `u_i - f_without_i(x_i) = a_i/[(K + lambda)^-1]_ii`.
+//! The prediction of a run by all others, from which intervals are made, needs no regression of its own: `u_i -
+//! f_without_i(x_i) = a_i/[(K + lambda)^-1]_ii`.
 
 use super::dense::{Factor, squared_distances};
 
-/// Most runs from which weights and lengths are found.
+/// Largest number of runs from which weights and lengths are found.
 const MAX_SEARCHED: usize = 800;
 
-/// Times that the weights are found anew.
+/// Number of times that the weights are found anew.
 const ROUNDS: usize = 2;
 
 /// Largest residual that counts when lengths are compared, in standard deviations of the unknown: few runs far off decide nothing.
 const MAX_RESIDUAL: f64 = 3.0;
 
-/// A regression of an unknown that explains less of its variance has learnt nothing.
+/// Least share of the variance of an unknown that a regression must explain; otherwise it has learnt nothing.
 const LEAST_EXPLAINED: f64 = 0.02;
 
-/// What the lengths are multiples of: `h^2 = 2^spread` medians of the squared distances, `lambda = 10^(ridge/2)`.
+/// Multiples of a trial: `h^2 = 2^spread` medians of the squared distances, `lambda = 10^(ridge/2)`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Trial {
     spread: i32,
@@ -48,27 +48,27 @@ const STEPS: [(i32, i32); 8] = [
 const SPREADS: std::ops::RangeInclusive<i32> = -2..=7;
 const RIDGES: std::ops::RangeInclusive<i32> = -14..=0;
 
-/// What training runs tell of an unknown.
+/// Regression of an unknown on the summaries of training runs.
 #[derive(Clone, Debug)]
 pub(crate) struct Regression {
     /// Mean of the unknown over the training runs.
     mean: f64,
-    /// What every summary is multiplied by; empty if the summaries tell nothing.
+    /// Factors of the summaries; empty if the summaries tell nothing.
     lengths: Vec<f64>,
-    /// The summaries of the training runs, multiplied.
+    /// The summaries of the training runs, times their factors.
     points: Vec<f64>,
     coefficients: Vec<f64>,
-    /// The kernel is raised to this power where residuals are averaged over runs nearby.
+    /// Power to which the kernel is raised where residuals are averaged over runs nearby.
     power: i32,
-    /// What every run is predicted to be by all others.
+    /// Predictions of every run by all others.
     pub(crate) predictions: Vec<f64>,
-    /// Root mean square of the residuals near every run, itself left out.
+    /// Root mean square of the residuals near every run, without its own.
     pub(crate) scales: Vec<f64>,
     /// Squares of the residuals.
     squares: Vec<f64>,
 }
 
-/// What is predicted of a record.
+/// Prediction from a record.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Prediction {
     pub(crate) value: f64,
@@ -88,7 +88,7 @@ impl Prediction {
 }
 
 impl Regression {
-    /// What a training run is predicted to be by all others.
+    /// Prediction of a training run by all others.
     pub(crate) fn left_out(&self, run: usize) -> Prediction {
         Prediction {
             value: self.predictions[run],
@@ -104,8 +104,8 @@ impl Regression {
         away * away + wider * wider
     }
 
-    /// The residual of a training run, of which this is the truth, in units of its scale around what is predicted of a record:
-    /// `f + s (u_i - f_i)/s_i`.
+    /// The residual of a training run with this truth, in units of its scale, around the prediction from a record: `f + s
+    /// (u_i - f_i)/s_i`.
     pub(crate) fn moved(&self, run: usize, truth: f64, record: &Prediction) -> f64 {
         let other = self.left_out(run);
         let residual = (truth - other.bounded()) / other.scale;
@@ -143,7 +143,7 @@ impl Regression {
         }
     }
 
-    /// Summaries that tell nothing: the mean is predicted.
+    /// A regression for summaries that tell nothing: it predicts the mean.
     fn nothing(mean: f64, targets: &[f64]) -> Self {
         let squares: Vec<f64> = targets.iter().map(|target| target * target).collect();
         let scale = (squares.iter().sum::<f64>() / squares.len() as f64).sqrt();
@@ -159,7 +159,7 @@ impl Regression {
         }
     }
 
-    /// How much every training run is like a record to this regression and to another: the product of their kernels.
+    /// Likeness of every training run to a record in this regression and in another: the product of their kernels.
     pub(crate) fn likeness(&self, summaries: &[f64], other: &Self) -> Vec<f64> {
         let own = |of: &Self| {
             if of.lengths.is_empty() {
@@ -192,14 +192,14 @@ fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len() as f64
 }
 
-/// Rows of summaries, of which each is multiplied by its length.
+/// Rows of summaries, each summary times its factor.
 fn multiplied(summaries: &[f64], lengths: &[f64]) -> Vec<f64> {
     let rows = summaries.chunks_exact(lengths.len());
     rows.flat_map(|row| row.iter().zip(lengths).map(|(x, length)| x * length))
         .collect()
 }
 
-/// `exp(-|x - x'|^2/2)`.
+/// The kernel `exp(-|x - x'|^2/2)`.
 fn kernel(points: &[f64], others: &[f64], d: usize) -> Vec<f64> {
     let mut kernel = squared_distances(points, others, d);
     for value in &mut kernel {
@@ -214,7 +214,7 @@ fn kernel_of_all(points: &[f64], d: usize) -> Vec<f64> {
     exponentials(distances, points.len() / d, 1.0)
 }
 
-/// `exp(-unit square/2)` of the elements of a symmetric matrix of n rows.
+/// Exponentials `exp(-unit square/2)` of the elements of a symmetric matrix of n rows.
 fn exponentials(mut squares: Vec<f64>, n: usize, unit: f64) -> Vec<f64> {
     for i in 0..n {
         for j in 0..=i {
@@ -226,7 +226,7 @@ fn exponentials(mut squares: Vec<f64>, n: usize, unit: f64) -> Vec<f64> {
     squares
 }
 
-/// A regression, and what it leaves of every run that it has not seen.
+/// A regression, and the residuals of every run by the others.
 struct Fit {
     coefficients: Vec<f64>,
     residuals: Vec<f64>,
@@ -259,13 +259,13 @@ impl Fit {
     }
 }
 
-/// What the kernel of an unknown is made of.
+/// Parameters of the kernel of an unknown.
 struct Lengths {
     multipliers: Vec<f64>,
     ridge: f64,
 }
 
-/// Finds weights, lengths and ridge from some runs; none if no summaries tell of the unknown.
+/// Finds weights, lengths and ridge from some runs; none if no summaries depend on the unknown.
 fn lengths(summaries: &[f64], targets: &[f64], d: usize) -> Option<Lengths> {
     let n = targets.len();
     let variance = targets.iter().map(|target| target * target).sum::<f64>() / n as f64;
@@ -318,11 +318,11 @@ fn ridge(trial: Trial) -> f64 {
 /// A trial and its regression.
 struct Tried {
     trial: Trial,
-    /// Mean square of its residuals.
+    /// Mean square of the trial's residuals.
     error: f64,
     coefficients: Vec<f64>,
     kernel: Vec<f64>,
-    /// 1/h^2.
+    /// Unit 1/h^2.
     unit: f64,
 }
 
@@ -353,7 +353,7 @@ fn search(start: Trial, fit: &dyn Fn(Trial) -> Option<Tried>) -> Option<Tried> {
     }
 }
 
-/// Root mean square of the slope of the regression along every summary over the runs, the largest of which is 1.
+/// Root mean square of the slope of the regression along every summary over the runs; the largest is scaled to 1.
 ///
 /// ```text
 /// df/dx_f(x_i) = sum_j a_j k_ij (x_jf - x_if) w_f/h^2
@@ -390,7 +390,7 @@ fn median(values: &[f64]) -> f64 {
 /// Powers of the kernel among which the scale of residuals is looked for.
 const POWERS: [i32; 4] = [1, 4, 16, 64];
 
-/// How many runs the mean of all residuals counts for where few are near.
+/// Number of runs for which the mean of all residuals counts where few runs are near.
 const PRIOR_RUNS: f64 = 5.0;
 
 /// A power of a kernel that is a power of two or of four.
@@ -499,7 +499,7 @@ mod tests {
         assert_eq!(found.predict(&[0.1, 0.2, 0.3]).value, mean(&truths));
     }
 
-    /// The residual of a run that is left out, against a regression that has not seen it.
+    /// Residuals are those of runs left out, compared with a regression that has not seen them.
     #[test]
     fn residuals_are_those_of_runs_left_out() {
         let (n, d, ridge) = (12, 2, 0.01);

@@ -1,4 +1,4 @@
-//! What a calibration leaves: numbers, tables, a case that runs, pictures, and a text that a person reads.
+//! Results of a calibration: numbers, tables, a case that runs, pictures, and a text for a person.
 
 use std::io::Write;
 use std::path::Path;
@@ -16,13 +16,13 @@ use crate::error::StudyError;
 use crate::files_in_folder::{write_in, write_picture};
 use crate::text_table::table;
 
-/// What was found, as numbers and as a text.
+/// The findings, as numbers and as a text.
 pub(super) const FOUND: [&str; 2] = ["calibration.json", "calibration.txt"];
 
-/// Points that are drawn from what the records tell of all unknowns together, a row each.
+/// Points that are drawn from the joint estimate of all unknowns, a row each.
 const POSTERIOR: &str = "posterior.csv";
 
-/// Where a calibration leaves what it leaves.
+/// Writer of the results of a calibration.
 pub(super) struct Report<'a> {
     /// The results folder.
     pub(super) path: &'a Path,
@@ -31,7 +31,7 @@ pub(super) struct Report<'a> {
 }
 
 impl Report<'_> {
-    /// Writes what was found, of these records, and gives it as a text.
+    /// Writes the findings for these records, and returns them as a text.
     pub(super) fn write(
         &self,
         records: &[Vec<f64>],
@@ -110,7 +110,7 @@ impl Report<'_> {
     }
 }
 
-/// What a column or an axis is called.
+/// Title of a column or an axis.
 fn title(measure: Measure, unit: &str) -> String {
     let quantity = match measure {
         Measure::Time => "time",
@@ -167,7 +167,7 @@ fn picture(
     })
 }
 
-/// What was found, as a person reads it.
+/// The findings as a text for a person.
 fn in_words(found: &Findings) -> String {
     let mut text = String::new();
     if found.is_refused {
@@ -239,7 +239,7 @@ fn row(told: &Told) -> Vec<String> {
     row
 }
 
-/// Why the records are none of the model.
+/// Reasons for which the records are none of the model.
 fn refusal(found: &Findings) -> String {
     let mut reasons = Vec::new();
     let [low, high] = found.misfit.drift;
@@ -289,7 +289,7 @@ fn on_finer_blocks(found: &Findings) -> String {
     }
 }
 
-/// How much narrower further experiments would make the intervals.
+/// Narrowing of the intervals by further experiments, in words.
 fn further(found: &Findings) -> String {
     if found.next.is_empty() {
         return String::new();

@@ -1,4 +1,4 @@
-//! Summaries of records, brought to one scale.
+//! Scaling of summaries of records.
 
 use super::summaries::summaries;
 
@@ -7,14 +7,15 @@ pub(super) fn summaries_of(curves: &[Vec<f64>]) -> Vec<f64> {
     curves.iter().flat_map(|curve| summaries(curve)).collect()
 }
 
-/// Means and standard deviations that bring summaries to one scale.
+/// Means and standard deviations by which summaries are scaled.
 #[derive(Clone, Debug)]
 pub(super) struct Scaling {
     means: Vec<f64>,
     deviations: Vec<f64>,
 }
 
-/// Summaries count no farther from their mean, in standard deviations: a record outside of the training is not extrapolated to.
+/// Largest distance of a summary from its mean that counts, in standard deviations: there is no extrapolation to a record
+/// outside of the training.
 const MAX_AWAY: f64 = 4.0;
 
 impl Scaling {
@@ -34,7 +35,7 @@ impl Scaling {
         Self { means, deviations }
     }
 
-    /// Summaries in standard deviations from their mean; 0 of those that never differ.
+    /// Summaries in standard deviations from their mean; 0 for those that never differ.
     pub(super) fn scaled(&self, row: &[f64]) -> Vec<f64> {
         let columns = row.iter().zip(&self.means).zip(&self.deviations);
         columns

@@ -1,4 +1,4 @@
-//! What a calibration runs: the case, its unknown keys, and how each record was measured.
+//! The set-up of a calibration: the case, its unknown keys, and the conditions of each record.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -13,21 +13,21 @@ use crate::error::StudyError;
 use crate::identity::physics;
 use crate::study_file::Base;
 
-/// How one record was measured.
+/// Conditions of one record.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Conditions {
     /// Keys in which the record differs from the case, such as its speed.
     pub overrides: Vec<Override>,
-    /// Where friction is known.
+    /// Places at which friction is known.
     pub grid: Grid,
 }
 
-/// What a training is made of.
+/// The set-up of a training.
 #[derive(Clone, Debug)]
 pub struct SetUp {
     /// The case.
     pub base: Base,
-    /// The keys that are looked for.
+    /// The unknown keys.
     pub unknowns: Vec<Unknown>,
     /// The records.
     pub conditions: Vec<Conditions>,
@@ -35,7 +35,7 @@ pub struct SetUp {
     pub is_finer: bool,
 }
 
-/// Why the model has no curves at some values of the unknowns.
+/// Reason for which the model has no curves at some values of the unknowns.
 #[derive(Debug, thiserror::Error)]
 #[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
 pub enum TrainingError {
@@ -50,11 +50,11 @@ pub enum TrainingError {
     Short { point: String, record: usize },
 }
 
-/// Friction without noise, of every record.
+/// Friction without noise, for every record.
 pub type Curves = Vec<Vec<f64>>;
 
 impl SetUp {
-    /// The keys at these shares of the ranges.
+    /// Settings of the unknown keys at these shares of the ranges.
     pub(crate) fn set_to(&self, shares: &[f64]) -> Vec<Override> {
         let values = self.unknowns.iter().zip(shares);
         values.map(|(unknown, &share)| unknown.set_to(share)).collect()
@@ -70,7 +70,7 @@ impl SetUp {
         vec![0.5; self.unknowns.len()]
     }
 
-    /// These shares as a sentence calls them.
+    /// Values of the unknowns at these shares, for a sentence.
     fn point(&self, shares: &[f64]) -> String {
         let set = self.set_to(shares);
         set.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ")
@@ -78,8 +78,7 @@ impl SetUp {
 
     /// The case of a record at these shares of the ranges, over the surface that `friction.seed` draws.
     ///
-    /// # Errors
-    /// When it is no valid case, or cannot be put on blocks of half the size where that is asked for.
+    /// # Errors When the case is not valid, or cannot be put on blocks of half the size where they are asked for.
     pub fn case(&self, shares: &[f64], seed: u64, conditions: &Conditions) -> Result<Case, CaseError> {
         let mut changes = self.set_to(shares);
         changes.push(Override::new("friction.seed", &toml::Value::from(seed as i64)));
@@ -97,8 +96,7 @@ impl SetUp {
 
     /// The curves of all records at these shares of the ranges, over the surface that `friction.seed` draws; none after a stop.
     ///
-    /// # Errors
-    /// When the case is none there, the run diverges, or it ends before a record.
+    /// # Errors When the case is not valid there, the run diverges, or it ends before a record.
     pub fn curves(
         &self,
         shares: &[f64],

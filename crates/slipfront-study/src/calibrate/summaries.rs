@@ -1,21 +1,22 @@
-//! A curve of friction in numbers that a calibration learns from.
+//! Summaries of a curve of friction: numbers from which a calibration learns.
 //!
-//! `y_i`, i from 0 to n - 1, is friction at n instants or places in equal steps. Widths of windows are shares of the record: "w of 400" is w n/400 values. `s3` and `s5` are running means over 3 and 5 of
-//! 400, `m` is the mean of the second half, in which a slider is taken to slide steadily. Each file of this folder tells the formulas of its
-//! numbers; they are ratios and logarithms, so that a regression of them can be near to linear.
+//! `y_i`, i from 0 to n - 1, is friction at n instants or places in equal steps. Widths of windows are shares of the record:
+//! "w of 400" is w n/400 values. `s3` and `s5` are running means over 3 and 5 of 400, `m` is the mean of the second half, in
+//! which a slider is taken to slide steadily. Each file of this folder has the formulas of its numbers; they are ratios and
+//! logarithms, so that a regression on them can be nearly linear.
 
 mod levels;
 mod loading;
 mod release;
 mod steady;
 
-/// Fewest values of a curve that has summaries.
+/// Smallest number of values of a curve that has summaries.
 pub(super) const MIN_VALUES: usize = 40;
 
-/// What ratios are bounded by from below before their logarithm is taken.
+/// Lower bound of ratios before their logarithm is taken.
 const LEAST: f64 = 1e-4;
 
-/// A curve, and what several summaries need of it.
+/// A curve, with quantities that several summaries need.
 pub(crate) struct Curve<'a> {
     /// The values.
     y: &'a [f64],
@@ -43,18 +44,18 @@ impl<'a> Curve<'a> {
         }
     }
 
-    /// Height of the first peak: the running mean over 5 of 400 there.
+    /// Height of the first peak: the running mean over 5 of 400 at its position.
     fn height(&self) -> f64 {
         self.s5[self.peak]
     }
 
-    /// A number of values that is a share of the record, given as so many of 400.
+    /// A number of values that is a share of the record, given as `count` of 400.
     fn of_400(&self, count: usize) -> usize {
         window(self.y, count)
     }
 }
 
-/// So many of 400 of the values, one at least.
+/// Number of values that is a share of `y`, given as `count` of 400; one at least.
 fn window(y: &[f64], count: usize) -> usize {
     ((count * y.len() + 200) / 400).max(1)
 }
@@ -79,7 +80,8 @@ pub(crate) fn summaries(y: &[f64]) -> Vec<f64> {
     found
 }
 
-/// Position of the first peak: the largest of the values up to where they have first fallen by `fall` below the largest so far, or of all.
+/// Position of the first peak: of the largest value up to the first fall by `fall` below the largest so far, or of all
+/// values.
 fn first_peak(s: &[f64], fall: f64) -> usize {
     let mut peak = 0;
     for (i, &value) in s.iter().enumerate() {
@@ -121,7 +123,7 @@ fn log(ratio: f64) -> f64 {
     libm::log(ratio.max(LEAST))
 }
 
-/// Quantiles of values, between which it is interpolated.
+/// Quantiles of values, interpolated between them.
 pub(super) fn quantiles<const N: usize>(values: &[f64], shares: [f64; N]) -> [f64; N] {
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);

@@ -1,4 +1,4 @@
-//! Training: runs of the model over the ranges of the unknowns, of which curves without noise are kept.
+//! Training: runs of the model over the ranges of the unknowns, with their curves without noise.
 
 use std::collections::HashMap;
 use std::sync::atomic::AtomicBool;
@@ -10,19 +10,19 @@ use super::set_up::{Curves, SetUp, TrainingError};
 use super::unknowns::design_point;
 use crate::error::StudyError;
 
-/// Runs that are made before they are kept.
+/// Number of runs that are made before they are kept.
 const AT_ONCE: usize = 32;
 
 /// A run of a training.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TrainingRun {
-    /// Its number.
+    /// Number of the run.
     pub run: usize,
     /// Friction of every record.
     pub curves: Curves,
 }
 
-/// Takes runs that have ended, in their order.
+/// Function that takes runs that have ended, in their order.
 pub type KeepRuns<'a> = dyn FnMut(&[TrainingRun]) -> Result<(), StudyError> + 'a;
 
 /// Curves of runs over the ranges of the unknowns.
@@ -35,11 +35,10 @@ pub struct Training {
 }
 
 impl Training {
-    /// Runs so many points of the ranges but those that are `known`, each over a surface of its own, on rayon's threads; `keep` is given them
-    /// as they end.
+    /// Runs the points of the ranges that are not `known`, each over a surface of its own, on rayon's threads; `keep` gets
+    /// the runs as they end.
     ///
-    /// # Errors
-    /// The error of the first run that has one, that of `keep`, and after a stop.
+    /// # Errors The error of the first run that has one, errors of `keep`, and after a stop.
     pub fn run(
         set_up: &SetUp,
         runs: usize,
@@ -69,7 +68,7 @@ impl Training {
         Ok(Self { points, curves })
     }
 
-    /// This training, with the curves that the same runs have under further conditions.
+    /// Adds the curves that the runs of the training have under further conditions.
     pub(crate) fn with(mut self, further: Self) -> Self {
         for (curves, more) in self.curves.iter_mut().zip(further.curves) {
             curves.extend(more);
@@ -92,7 +91,7 @@ mod tests {
     use super::*;
     use crate::study_file::StudyFile;
 
-    /// Two speeds of a small slider, along the path of the drive, of so many units of length.
+    /// A set-up with two speeds of a small slider, along a path of the drive in units of length.
     fn set_up(range: [f64; 2], path: f64) -> SetUp {
         let text = "base.slider.blocks = [6, 6]\nbase.time.duration_star = 60\nbase.drive.v_star = 0.1";
         let base = StudyFile::parse(text, "base", "base", Path::new(""))
@@ -121,7 +120,7 @@ mod tests {
         }
     }
 
-    /// A training on so many threads, of which these runs are known.
+    /// A training on `threads` threads, of which these runs are known.
     fn trained(
         set_up: &SetUp,
         threads: usize,

@@ -1,8 +1,8 @@
-//! What a calibration looks for: numeric keys of the case, each with a range.
+//! The unknowns of a calibration: numeric keys of the case, each with a range.
 
 use slipfront_case::case_file::Override;
 
-/// A key of the case whose value is looked for within a range, in which all values are alike likely before there is a record.
+/// A key of the case with a range of values, which are all equally likely before there is a record.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Unknown {
     key: String,
@@ -12,7 +12,7 @@ pub struct Unknown {
     is_logarithmic: bool,
 }
 
-/// Why a range is none.
+/// Reason for which a range is refused.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
 pub enum UnknownError {
@@ -25,7 +25,7 @@ pub enum UnknownError {
 }
 
 impl Unknown {
-    /// Values of `key` between `from` and `to`, alike likely, or alike likely in their logarithm.
+    /// An unknown with values of `key` between `from` and `to`, equally likely, or equally likely in their logarithm.
     ///
     /// # Errors
     /// When the range is empty or not finite, begins at or below 0 on a logarithmic scale, or is one of seeds.
@@ -49,7 +49,7 @@ impl Unknown {
         })
     }
 
-    /// This unknown, with values that are written with a unit, such as `um`.
+    /// Returns the unknown with values that are written with a unit, such as `um`.
     #[must_use]
     pub fn in_unit(self, unit: &str) -> Self {
         Self {
@@ -63,7 +63,7 @@ impl Unknown {
         &self.key
     }
 
-    /// Its unit, if its values have one.
+    /// Unit of the values, if they have one.
     pub fn unit(&self) -> Option<&str> {
         self.unit.as_deref()
     }
@@ -84,7 +84,7 @@ impl Unknown {
         }
     }
 
-    /// Where a value stands in the range, from 0 to 1.
+    /// Position of a value in the range, from 0 to 1.
     pub fn share_of(&self, value: f64) -> f64 {
         if self.is_logarithmic {
             libm::log(value / self.from) / libm::log(self.to / self.from)
@@ -93,7 +93,7 @@ impl Unknown {
         }
     }
 
-    /// What sets the key to the value at a share of the range.
+    /// Setting of the key to the value at a share of the range.
     pub fn set_to(&self, share: f64) -> Override {
         let value = self.at(share);
         let value = match &self.unit {
@@ -150,7 +150,8 @@ mod tests {
         );
     }
 
-    /// One dimension is the golden ratio's sequence; every one has a mean of 1/2, to the discrepancy log(n)/n.
+    /// Design points fill the ranges: one dimension is the golden ratio's sequence, and every one has a mean of 1/2, to the
+    /// discrepancy log(n)/n.
     #[test]
     fn design_points_fill_the_ranges() {
         let ratio = (5.0_f64.sqrt() - 1.0) / 2.0;

@@ -11,27 +11,27 @@ use crate::error::StudyError;
 use crate::plan::Plan;
 use crate::study_file::{StudyFile, portable_text};
 
-/// Fewest meshes: differences of two of them show no order.
+/// Smallest number of meshes: differences of two meshes show no order.
 pub const MIN_LEVELS: u8 = 3;
-/// Most meshes: the finest has 64 times as many blocks along a side as the coarsest.
+/// Largest number of meshes: the finest has 64 times as many blocks along a side as the coarsest.
 pub const MAX_LEVELS: u8 = 7;
 
-/// Surfaces of a mesh if coefficients scatter.
+/// Number of surfaces of a mesh if coefficients scatter.
 const REPLICATES: i64 = 5;
 
-/// The study of a case on several meshes. The runs of a mesh differ by their seeds alone; if the case has textures, every run has one without
-/// them beside it.
+/// The study of a case on several meshes. The runs of a mesh differ by their seeds alone; if the case has textures, every
+/// run is paired with one without them.
 #[derive(Clone, Debug)]
 pub struct MeshStudy {
     /// The study, whose only axis is the size of the blocks.
     pub file: StudyFile,
-    /// Its runs.
+    /// Runs of the study.
     pub plan: Plan,
 }
 
 impl MeshStudy {
-    /// The case on `levels` meshes, the second of which is its own, with `replicates` surfaces on each: unless given, 5 if coefficients
-    /// scatter, else 1.
+    /// The case on `levels` meshes, the second of which is its own, with `replicates` surfaces on each, by default 5 if
+    /// coefficients scatter, else 1.
     ///
     /// # Errors
     /// When there are too few or too many meshes, when the case cannot be put on these blocks, or when no block of one mesh is textured.
@@ -61,7 +61,7 @@ fn overrides(case: &Case, levels: i64) -> Result<Vec<Vec<Override>>, CaseError> 
         .collect()
 }
 
-/// The study file.
+/// Contents of the study file.
 fn study_table(case: &Case, on_meshes: &[Vec<Override>], replicates: i64) -> Result<Table, StudyError> {
     // Each key with its values on all meshes, those alone that differ between meshes or from the case.
     let mut zip = Table::new();
@@ -100,7 +100,7 @@ fn reading_originals(case: &Case) -> CaseFile {
     file
 }
 
-/// Five surfaces where they differ by their seeds, else one.
+/// Default number of replicates: five if surfaces differ by their seeds, else one.
 fn default_replicates(case: &Case) -> i64 {
     let groups = &case.groups;
     if groups.sigma_static_star > 0.0 || groups.sigma_kinetic_star > 0.0 {

@@ -1,7 +1,8 @@
-//! How much of a result belongs to the mesh: one slider on blocks of twice, once and half the size, and so on, as a study whose only axis is
-//! the size of the blocks.
+//! The mesh error of a result: one slider on blocks of twice, once and half the size, and so on, as a study whose only axis
+//! is the size of the blocks.
 //!
-//! Of three meshes `q_1, q_2, q_3`, each of half the blocks' size of the one before, with `d = q_2 - q_1` and `e = q_3 - q_2`:
+//! For values `q_1, q_2, q_3` on three meshes, each with blocks of half the size of the one before, with `d = q_2 - q_1` and
+//! `e = q_3 - q_2`:
 //!
 //! ```text
 //! order p = log2(|d|/|e|), at least 1/2 and at most 2;  error of the mesh = max(|e|, max(|e|, |d|/4)/(2^p - 1))
@@ -31,29 +32,28 @@ use crate::folder::{self, StudyFolder};
 use crate::plan::Plan;
 use crate::study_results::StudyResults;
 
-/// Whether a study has one axis, along which blocks change, of enough meshes.
+/// Whether the only axis of a study is the size of the blocks, on enough meshes.
 fn is_over_meshes(axes: &[Axis]) -> bool {
     let [axis] = axes else { return false };
     let has_column = |key: &&str| axis.columns.iter().any(|column| column == key);
     KEYS_OF_MESHES.iter().all(has_column) && axis.levels.len() >= usize::from(MIN_LEVELS)
 }
 
-/// Whether the folder of a study with these axes holds a file of what meshes found.
+/// Whether the folder of a study with these axes holds the results of its meshes.
 pub fn is_written(folder: &Path, axes: &[Axis]) -> bool {
     is_over_meshes(axes) && CONVERGENCE.iter().any(|name| folder.join(name).exists())
 }
 
-/// Writes the tables and pictures of a study over meshes to its folder, and what the meshes found.
+/// Writes the tables and pictures of a study over meshes to its folder, and the comparison of the meshes.
 ///
-/// # Errors
-/// When a run failed, of which tables tell, or when the system refuses to write.
+/// # Errors When a run failed, which the tables name, or when the system refuses to write.
 pub fn write(plan: &Plan, results: &StudyResults, folder: &StudyFolder) -> Result<OnMeshes, StudyError> {
     folder::write(plan, results, folder)?;
     results.expect_no_failures(plan)?;
     write_meshes(plan, results, folder)
 }
 
-/// Writes what the meshes found to the folder of the study: as `convergence.json`, and as a text that a person reads.
+/// Writes the comparison of the meshes to the folder of the study: as `convergence.json`, and as a text for a person.
 pub(crate) fn write_meshes(
     plan: &Plan,
     results: &StudyResults,

@@ -1,4 +1,4 @@
-//! What several meshes found of one slider: the values on each, and the verdict on them.
+//! Comparison of several meshes of one slider: the values on each, and the verdict on them.
 
 use serde::Serialize;
 use slipfront_case::case_file::CaseError;
@@ -8,7 +8,7 @@ use crate::statistics::Sample;
 use crate::study_results::StudyResults;
 use crate::summary_values::REDUCTION;
 
-/// What is measured on every mesh.
+/// Quantities that are compared.
 const QUANTITIES: [&str; 4] = [
     REDUCTION,
     "static_friction_star",
@@ -19,10 +19,10 @@ const QUANTITIES: [&str; 4] = [
 /// The mean speed of the front, m/s.
 const FRONT_SPEED: &str = "front_speed_m_s";
 
-/// The keys by which meshes differ.
+/// The keys in which meshes differ.
 pub(super) const KEYS_OF_MESHES: [&str; 2] = ["slider.block_size", "slider.blocks"];
 
-/// A mesh, and what is meshed of the textures.
+/// A mesh, with the textured area on it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Mesh {
     /// Edge of a block, as in the case file.
@@ -34,17 +34,17 @@ pub struct Mesh {
 /// A quantity on all meshes.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Convergence {
-    /// Its name in summaries.
+    /// Name of the quantity in summaries.
     pub quantity: String,
     /// Mean over the seeds on each mesh, the coarsest first.
     pub means: Vec<f64>,
-    /// Half width of the interval of each mean that the scatter over surfaces leaves; none of one seed.
+    /// Half width of the interval of each mean, due to the scatter over surfaces; none for one seed.
     pub half_widths: Vec<Option<f64>>,
-    /// What the meshes tell.
+    /// Verdict on the means.
     pub verdict: Verdict,
 }
 
-/// What differences between meshes tell.
+/// Verdict on the differences between meshes.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {
@@ -57,7 +57,7 @@ pub enum Verdict {
     },
     /// All meshes have one value.
     Equal,
-    /// Differences do not decrease; the values on meshes differ by up to so much.
+    /// Differences do not decrease; the values on the meshes differ by up to `spread`.
     Open {
         /// Largest value less smallest of the last three meshes.
         spread: f64,
@@ -106,7 +106,7 @@ pub(super) fn meshes(plan: &Plan) -> Vec<Mesh> {
     points.map(mesh).collect()
 }
 
-/// What every quantity does that all meshes have a value of.
+/// Comparisons of every quantity of which all meshes have a value.
 fn convergences(plan: &Plan, results: &StudyResults) -> Vec<Convergence> {
     let of = |name: &&str| {
         let samples = (0..plan.points.len()).map(|position| results.sample(plan, position, name));
@@ -123,23 +123,22 @@ fn convergences(plan: &Plan, results: &StudyResults) -> Vec<Convergence> {
     QUANTITIES.iter().filter_map(of).collect()
 }
 
-/// What several meshes found of one slider.
+/// Comparison of several meshes of one slider.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct OnMeshes {
     /// The meshes, the coarsest first.
     pub meshes: Vec<Mesh>,
-    /// The quantities that all meshes have a value of.
+    /// The quantities of which all meshes have a value.
     pub quantities: Vec<Convergence>,
-    /// Lengths of the material that are those of a block: with any of them, every mesh is another material, and no limit is one of this
-    /// slider.
+    /// Lengths of the material that equal the length of a block: with any of them every mesh is another material, and no
+    /// limit is one of this slider.
     pub lengths_of_a_block: Vec<String>,
 }
 
 impl OnMeshes {
-    /// What the runs of a study over meshes found.
+    /// The comparison from the runs of a study over meshes.
     ///
-    /// # Errors
-    /// When the case is none any more.
+    /// # Errors When the case is no longer valid.
     pub(crate) fn of(plan: &Plan, results: &StudyResults) -> Result<Self, CaseError> {
         let of_a_block = plan.first_case_file()?.lengths_of_a_block();
         Ok(Self {

@@ -1,4 +1,4 @@
-//! What several meshes found, as a text.
+//! Comparison of several meshes, as a text.
 
 use slipfront_case::number_format::{four_digits, with_half_width};
 use slipfront_case::text::note;
@@ -8,8 +8,8 @@ use crate::plan::Plan;
 use crate::text_table::table;
 use crate::told_warnings::told_warnings;
 
-/// The table of what every mesh found, and a sentence on each quantity. Notes, in lines of at most `columns` characters, name lengths of the
-/// material that are the block's, and tell the warnings about the cases.
+/// The table of the results on every mesh, and a sentence on each quantity. Notes, in lines of at most `columns` characters,
+/// name lengths of the material that equal the length of a block, and the warnings about the cases.
 pub fn text(plan: &Plan, found: &OnMeshes, columns: usize) -> String {
     let (quantities, lengths) = (&found.quantities, &found.lengths_of_a_block);
     let mut text = on_meshes(found) + "\n";
@@ -55,7 +55,7 @@ fn on_meshes(found: &OnMeshes) -> String {
     table(&header, &rows)
 }
 
-/// The value on the finest mesh, where that is a material of its own.
+/// The value on the finest mesh, where this is a material of its own.
 fn of_another_material(one: &Convergence) -> String {
     format!(
         "{}: {} on the finest mesh, and a number of that mesh",
@@ -64,7 +64,7 @@ fn of_another_material(one: &Convergence) -> String {
     )
 }
 
-/// The value on the finest mesh, with the error that meshes and surfaces leave.
+/// The value on the finest mesh, with the error due to mesh and surfaces.
 fn sentence(one: &Convergence) -> String {
     let last = one.means.len() - 1;
     let (name, value, scatter) = (&one.quantity, one.means[last], one.half_widths[last]);

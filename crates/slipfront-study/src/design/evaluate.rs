@@ -1,4 +1,4 @@
-//! Runs of designs in memory: which are wanted, which are known, and what is lost by each.
+//! Runs of designs in memory: the wanted and the known runs, and the loss of each design.
 
 use std::collections::{HashMap, HashSet};
 use std::ops::Range;
@@ -24,19 +24,19 @@ use crate::error::StudyError;
 use crate::identity::physics;
 use crate::statistics::mean;
 
-/// The step that designs are tried with: it finds reductions in the order of those at a quarter of it, at a third of the cost.
+/// The step with which designs are tried: it orders reductions as a quarter of the step does, at a third of the cost.
 const COARSE_STEP: f64 = 0.4;
 
-/// The time up to which the largest mu* of a design counts as its static friction, over that up to which the largest mu* of the slider without
-/// texture does, times the load factor of as much texture as the limits allow. The latter is twice that of the onset (Eq. 12), so that it is
-/// 1.2 times the latest onset that is expected; a block that its own drive spring alone must pull until it slips, without help of its
-/// neighbours, slips at 2.67/2.5 = 1.07 of that.
+/// Ratio of two times: up to the first the largest mu* of a design counts as its static friction; the second is that of the
+/// slider without texture times the load factor of as much texture as the limits allow. The second is twice the time of the
+/// onset (Eq. 12), so that the first is 1.2 times the latest onset that is expected. A block that only its own drive spring
+/// pulls until it slips, without its neighbours, slips at 2.67/2.5 = 1.07 of the onset.
 const SEARCHED: f64 = 0.6;
 
-/// Multiple of that time up to which verdicts look, so that no design is good only until the search has looked away.
+/// Multiple of the time of a search up to which verdicts run, so that no design is good only because the search has ended.
 const JUDGED: f64 = 2.0;
 
-/// How a run of a design is made.
+/// Accuracy of a run of a design.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Fidelity {
     /// With a coarse step.
@@ -53,15 +53,15 @@ pub(crate) struct Subject {
     /// The case, without textures.
     file: CaseFile,
     name: String,
-    /// The files that the case names, and the mask has its place among: no run looks at the disk.
+    /// The files that the case names, with a place for the mask: no run reads the disk.
     files: FilesInMemory,
-    /// Steps dt*, the coarse one and that of the case.
+    /// Steps dt*: the coarse one, and the step of the case.
     steps: [f64; 2],
-    /// Ends of runs, t*: of the search, and of verdicts.
+    /// Ends of runs, t*: in the search, and in verdicts.
     ends: [f64; 2],
-    /// What decides its numbers but for texture, seed, step and end.
+    /// Hash of all that decides its numbers but texture, seed, step and end.
     physics: blake3::Hash,
-    /// Seed of its surface in the search.
+    /// Seed of the subject's surface in the search.
     seed: u64,
     /// Whether surfaces differ by their seeds.
     scatters: bool,
@@ -76,23 +76,23 @@ pub(crate) struct Wanted {
     pub(crate) subject: usize,
     /// The texture; none for the slider without.
     pub(crate) texture: Option<Arc<Vec<bool>>>,
-    /// Number of the surface; 0 is that of the search.
+    /// Number of the surface; 0 is the surface of the search.
     pub(crate) surface: u64,
-    /// How it is made.
+    /// Accuracy of the run.
     pub(crate) fidelity: Fidelity,
 }
 
 /// Identity of a run: a hash of all that decides its numbers.
 pub type RunId = String;
 
-/// What runs have found, by their identities; none of a run that diverged.
+/// Results of runs by their identities; none for a run that diverged.
 pub type Known = HashMap<RunId, Option<Measured>>;
 
 /// Takes runs that have ended, in their order.
 pub type Keep<'a> = dyn FnMut(&[(RunId, Option<Measured>)]) -> Result<(), StudyError> + 'a;
 
 impl Subject {
-    /// A case in which designs with up to `most` % of texture are tried, to find what the wish is about.
+    /// A case in which designs with up to `most` % of texture are tried, for the quantity of the wish.
     pub(crate) fn new(case: &Case, wish: &Wish, most: f64) -> Result<Self, CaseError> {
         let mut file = case.file.clone();
         file.texture.clear();
@@ -149,8 +149,7 @@ impl Subject {
 
     /// The case on blocks of half the size.
     ///
-    /// # Errors
-    /// When it cannot be put there.
+    /// # Errors When the case cannot be put on such blocks.
     pub(crate) fn on_finer_blocks(&self, wish: &Wish) -> Result<Self, CaseError> {
         let case = self.made_of(self.file.clone(), &self.files)?;
         let set = case.on_other_blocks(2.0)?;
@@ -159,7 +158,7 @@ impl Subject {
         Self::new(&self.made_of(finer, &self.files)?, wish, self.most)
     }
 
-    /// The case of a file.
+    /// Makes the case of a file.
     fn made_of(&self, file: CaseFile, in_memory: &FilesInMemory) -> Result<Case, CaseError> {
         let files = Files {
             folder: Path::new(""),
@@ -216,7 +215,7 @@ pub(crate) fn masked(file: &str) -> Texture {
     }
 }
 
-/// The cases in which designs are tried, and how their losses become one.
+/// The cases in which designs are tried, and the rule by which their losses become one.
 #[derive(Debug)]
 pub(crate) struct Evaluator {
     /// The cases, all with the same blocks.
@@ -230,7 +229,7 @@ pub(crate) struct Evaluator {
 }
 
 impl Evaluator {
-    /// Other cases for this wish.
+    /// An evaluator with other cases for this wish.
     pub(crate) fn with_subjects(&self, subjects: Vec<Subject>, grid: Grid) -> Self {
         Self {
             subjects,
@@ -265,7 +264,7 @@ impl Evaluator {
         hasher.finalize().to_hex()[..32].to_owned()
     }
 
-    /// The runs of some textures on some surfaces, each with that of the slider without texture.
+    /// The runs of some textures on some surfaces, each with the run of the slider without texture.
     pub(crate) fn wanted(
         &self,
         textures: &[Arc<Vec<bool>>],
@@ -288,8 +287,8 @@ impl Evaluator {
         wanted
     }
 
-    /// Makes the runs that are not known yet, on the threads of rayon's pool, and hands them over in the order in which they are wanted.
-    /// After a stop, none of them is handed over.
+    /// Makes the runs that are not known yet, on the threads of rayon's pool, and hands them over in the order in which they
+    /// are wanted. After a stop, no run is handed over.
     pub(crate) fn run(
         &self,
         wanted: &[Wanted],
@@ -313,7 +312,7 @@ impl Evaluator {
         Ok(())
     }
 
-    /// One run: none after a stop, and within that none of a run that diverges.
+    /// Makes one run: none after a stop, and within that none for a run that diverged.
     fn measure(&self, wanted: &Wanted, stop: &AtomicBool) -> Result<Option<Option<Measured>>, CaseError> {
         let ends = || stop.load(Ordering::Relaxed);
         let texture = wanted.texture.as_ref().map(|texture| texture.as_slice());
@@ -331,13 +330,13 @@ impl Evaluator {
         }))
     }
 
-    /// The numbers of a run; none of one that diverged or was not made.
+    /// The numbers of a run; none for a run that diverged or was not made.
     pub(crate) fn found(&self, wanted: &Wanted, known: &Known) -> Option<Measured> {
         known.get(&self.id(wanted)).cloned().flatten()
     }
 
-    /// The loss of a texture on some surfaces: of the mean deviation of each case, the mean over the cases or the largest; infinite if a run
-    /// diverged.
+    /// The loss of a texture on some surfaces: the mean over the cases of the mean deviation of each, or the largest;
+    /// infinite if a run diverged.
     pub(crate) fn loss(
         &self,
         texture: &Arc<Vec<bool>>,
@@ -374,7 +373,7 @@ impl Evaluator {
     }
 }
 
-/// Root of the mean square of mu* less what it should be at some times of the drive, with mu* linear between its rows.
+/// Root of the mean square of mu* less the wished values at some times of the drive, with mu* linear between its rows.
 fn misfit(points: &[[f64; 2]], record: &Record) -> f64 {
     let rows = &record.rows;
     let mut next = 0;
@@ -405,8 +404,8 @@ mod tests {
         Subject::new(&case, &Wish::Least(Quantity::StaticFriction), 10.0).unwrap()
     }
 
-    /// Bars that a search once placed so that mu* ripples at 0.5005, just above the level of sliding, before it rises on to 0.59: not the
-    /// ripple counts, with either step.
+    /// A ripple before the peak is no reduction: bars that a search once placed so that mu* ripples at 0.5005, just above
+    /// the level of sliding, before it rises on to 0.59, do not count for the ripple, with either step.
     #[test]
     fn a_ripple_before_the_peak_is_no_reduction() {
         let subject = subject(
@@ -428,7 +427,7 @@ mod tests {
         }
     }
 
-    /// Every block in contact has slipped before the search looks away, as far as its own drive spring alone can make it.
+    /// A search runs until every block in contact has slipped, as far as its own drive spring alone can make it.
     #[test]
     fn a_search_looks_until_every_block_has_slipped() {
         let subject = subject("slider.blocks = [4, 4]\ndrive.v_star = 0.1\ntime.kinetic_from_star = 70");

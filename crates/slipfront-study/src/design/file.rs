@@ -1,4 +1,4 @@
-//! The design file: a base case, the wish, the limits, and how long to search.
+//! The design file: a base case, the wish, the limits, and the length of the search.
 
 use std::path::Path;
 
@@ -25,7 +25,7 @@ const TABLES: [&str; 2] = ["base", "design"];
 /// Runs of a search, unless the file says otherwise.
 const DEFAULT_RUNS: u32 = 10_000;
 
-/// Most runs of a search.
+/// Largest number of runs of a search.
 const MAX_RUNS: u32 = 100_000_000;
 
 /// A design file.
@@ -33,14 +33,14 @@ const MAX_RUNS: u32 = 100_000_000;
 pub struct DesignFile {
     /// Name of the design and of its results.
     pub name: String,
-    /// Its keys.
+    /// Keys of the file.
     pub keys: DesignKeys,
     base: Base,
     source: Source,
     table: Table,
 }
 
-/// `[design]`.
+/// The table `[design]`.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct DesignKeys {
@@ -69,7 +69,7 @@ pub struct DesignKeys {
     start: u64,
     #[serde(default)]
     starts: Vec<Value>,
-    /// Coverages, %, up to which a design is asked for too.
+    /// Coverages, %, up to which further designs are asked for.
     #[serde(default)]
     pub front: Vec<f64>,
 }
@@ -86,7 +86,7 @@ fn first_start() -> u64 {
     1
 }
 
-/// `wish`: exactly one of its forms.
+/// The key `wish`: exactly one of its forms.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct WishKeys {
@@ -116,7 +116,7 @@ struct CurveKeys {
     y_unit: Option<String>,
 }
 
-/// A laser's writing: lines so far apart, all together at most so long.
+/// Limits of a laser's writing: the distance of its lines, and their largest total length.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Writing {
@@ -185,10 +185,9 @@ impl DesignFile {
         portable(&self.base, &self.table)
     }
 
-    /// The case in which designs are tried first, with the texture that it has.
+    /// The case in which designs are tried first, with its own texture.
     ///
-    /// # Errors
-    /// When it is no valid case.
+    /// # Errors When the case is not valid.
     pub fn case(&self) -> Result<Case, CaseError> {
         self.case_with(&[])
     }
@@ -220,7 +219,8 @@ impl DesignFile {
         self.design_up_to(self.keys.coverage[1])
     }
 
-    /// Refuses a design that has no memory for as many runs at once, or is not valid; so many runs are those of its search.
+    /// Refuses a design that is not valid, or that has no memory for `threads` runs at once; `runs` is the number of runs of
+    /// its search.
     ///
     /// # Errors
     /// As [`design`](Self::design), and with the number of runs at once that there is memory for.
@@ -230,7 +230,7 @@ impl DesignFile {
         self.design()?.check_memory(drafts, threads)
     }
 
-    /// The designs of a front: every coverage in `front`, with the design that may cover no more.
+    /// The designs of a front: every coverage in `front`, with the design of at most this coverage.
     ///
     /// # Errors
     /// As [`design`](Self::design).
@@ -336,7 +336,7 @@ impl DesignFile {
         })
     }
 
-    /// The largest coverage, %, of at most `most`, that the length of a laser's lines does not forbid.
+    /// The largest coverage, %, up to `most`, that the length of a laser's lines allows.
     fn largest_coverage(&self, base: &Case, grid: &Grid, most: f64) -> f64 {
         let Some(Writing {
             line_spacing,

@@ -46,8 +46,7 @@ pub struct DesignFolder {
 impl DesignFolder {
     /// Opens a results folder: a new one, an empty one, or one of an earlier call that no other process works in.
     ///
-    /// # Errors
-    /// When it holds other things, another process works in it, or it cannot be written to.
+    /// # Errors When the folder holds other files, another process works in it, or it cannot be written to.
     pub fn open(path: &Path, file: &DesignFile) -> Result<Self, StudyError> {
         make_folders(path).map_err(FolderError::unwritable(path))?;
         let used = path.join(JOURNAL).exists();
@@ -82,7 +81,7 @@ impl DesignFolder {
         })
     }
 
-    /// The folder.
+    /// Path of the folder.
     pub fn path(&self) -> &Path {
         &self.path
     }
@@ -94,7 +93,7 @@ impl DesignFolder {
         }
     }
 
-    /// Writes what a design leaves, and gives the text of the verdict.
+    /// Writes the results of a design, and returns the text of the verdict.
     ///
     /// # Errors
     /// When the system refuses to write, or a picture cannot be drawn.
@@ -107,7 +106,8 @@ impl DesignFolder {
         self.known.len()
     }
 
-    /// Finds the design, and those of a front if the file asks for one, writes what they leave, and gives the verdict as a text.
+    /// Finds the design, and the designs of a front if the file asks for one, writes their results, and returns the verdict
+    /// as a text.
     ///
     /// # Errors
     /// As [`run`](Self::run), and when the system refuses to write.
@@ -127,7 +127,8 @@ impl DesignFolder {
         Ok(text + &self.report().write_front(&front)?)
     }
 
-    /// Searches and judges, or goes on where an earlier call was; every run is kept as soon as those that were begun with it have ended.
+    /// Searches and judges, or goes on from an earlier call; every run is kept as soon as the runs that were begun with it
+    /// have ended.
     ///
     /// # Errors
     /// As [`Design::run`]. After a stop, the best texture so far stands in the folder without a verdict.
@@ -165,7 +166,7 @@ impl DesignFolder {
     }
 }
 
-/// How long the search was whose results stand in a folder; none if it was not finished.
+/// Length of the search whose results stand in a folder; none if it was not finished.
 pub(crate) fn search_of(folder: &Path) -> Result<Option<Length>, StudyError> {
     #[derive(Deserialize)]
     struct Found {

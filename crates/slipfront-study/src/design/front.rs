@@ -1,4 +1,4 @@
-//! A front: what can be had of a wish with how much texture.
+//! A front: the best value of a wish for several coverages.
 
 use serde::Serialize;
 use slipfront_case::number_format::four_digits;
@@ -26,7 +26,7 @@ struct Row<'a> {
 }
 
 impl Report<'_> {
-    /// Writes a front as a table and a picture, and gives it as a text.
+    /// Writes a front as a table and a picture, and returns it as a text.
     ///
     /// # Errors
     /// When the system refuses to write, or the picture cannot be drawn.

@@ -1,4 +1,4 @@
-//! Sets of blocks, and how narrow they are: openings by squares, on a slider with edges.
+//! Sets of blocks, and their widths: openings by squares, on a slider with edges.
 
 use slipfront::Lattice;
 use slipfront::lattice::Edges;
@@ -9,7 +9,7 @@ use slipfront_case::case::Case;
 pub struct Grid {
     /// The blocks and their arrangement.
     pub lattice: Lattice,
-    /// Which blocks exist: all, unless the slider has an outline.
+    /// Marks of the blocks that exist: all, unless the slider has an outline.
     pub exists: Vec<bool>,
 }
 
@@ -56,8 +56,8 @@ impl Grid {
         pairs.map(|(&exists, &is_in)| exists && !is_in).collect()
     }
 
-    /// The opening of a set: all its squares of `side` x `side` blocks, each wholly in the set. What lies outside of the slider is in no set,
-    /// so that a strip along an edge is as narrow as it is seen.
+    /// The opening of a set: all its squares of `side` x `side` blocks, each wholly in the set. Places outside of the slider
+    /// are in no set, so that a strip along an edge is as narrow as it looks.
     pub fn opened(&self, set: &[bool], side: usize) -> Vec<bool> {
         if side <= 1 {
             return set.to_vec();
@@ -75,7 +75,8 @@ impl Grid {
         found
     }
 
-    /// The smallest width of a set: the largest side of a square by which it can be opened without losing a block; none of an empty set.
+    /// The smallest width of a set: the largest side of a square by which it can be opened without losing a block; none for
+    /// an empty set.
     pub fn width(&self, set: &[bool]) -> Option<usize> {
         if !set.contains(&true) {
             return None;
@@ -119,7 +120,8 @@ impl Grid {
         pieces
     }
 
-    /// Replaces every block by whether all of the `side` blocks from it on are in the set, or any of those up to it.
+    /// Replaces every block by whether all of the `side` blocks from it on are in the set, or any of the `side` blocks up to
+    /// it.
     fn pass(&self, set: &mut [bool], axis: usize, side: usize, pass: Pass) {
         let n = self.size()[axis];
         let [stride, across] = [[1, self.size()[0]][axis], [self.size()[0], 1][axis]];
@@ -155,7 +157,7 @@ impl Grid {
     }
 }
 
-/// What a pass over a line looks at.
+/// Rule of a pass over a line.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Pass {
     AllAfter,

@@ -1,4 +1,4 @@
-//! Textures beside each other on fresh surfaces: their losses, and differences of these surface by surface.
+//! Comparison of textures on fresh surfaces: their losses, and differences surface by surface.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -12,18 +12,18 @@ use crate::error::StudyError;
 use crate::statistics::Sample;
 use crate::study_file::CONFIDENCE;
 
-/// Surfaces on which finalists are compared.
+/// Number of surfaces on which finalists are compared.
 pub(super) const COMPARED: u64 = 16;
 
-/// Surfaces on which the winner is judged.
+/// Number of surfaces on which the winner is judged.
 pub(super) const JUDGED: u64 = 64;
 
 /// A texture that is compared with others, under its name.
 #[derive(Clone, Debug)]
 pub(crate) struct Contender {
-    /// Its name.
+    /// Name of the texture.
     pub(crate) name: String,
-    /// Its blocks.
+    /// Blocks of the texture.
     pub(crate) texture: Arc<Vec<bool>>,
 }
 
@@ -74,11 +74,11 @@ impl Surfaces {
     }
 }
 
-/// What a verdict works with.
+/// Inputs of a verdict.
 pub(crate) struct Judge<'a> {
-    /// The runs.
+    /// Evaluator that makes the runs.
     pub(crate) evaluator: &'a Evaluator,
-    /// Ends everything.
+    /// Flag that ends all runs.
     pub(crate) stop: &'a AtomicBool,
 }
 

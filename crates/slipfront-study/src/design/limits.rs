@@ -1,4 +1,4 @@
-//! Which textures a design may have, and the texture of a draft: legal as it is made.
+//! Limits on the textures of a design, and the texture of a draft: legal as it is made.
 
 use slipfront_case::number_format::{are, count as count_of};
 
@@ -10,15 +10,15 @@ use super::patch::Draft;
 pub struct Limits {
     /// Least and largest share of the blocks that are textured, %.
     pub coverage: [f64; 2],
-    /// Smallest width of a feature: every textured block is one of a textured square of so many blocks along a side.
+    /// Smallest width of a feature: every textured block belongs to a textured square of this many blocks along a side.
     pub feature: usize,
-    /// Smallest width of what touches between features: every block in contact is one of a square of so many in contact.
+    /// Smallest width of a gap: every block in contact belongs to a square of this many blocks in contact along a side.
     pub gap: usize,
     /// Whether the left half mirrors the right one, and the lower half the upper one.
     pub mirror: [bool; 2],
-    /// Into how many equal cells the slider is divided along x and along y, all with one texture.
+    /// Numbers of equal cells into which the slider is divided along x and along y, all with one texture.
     pub copies: [usize; 2],
-    /// Blocks that must touch, if there are any.
+    /// Blocks that must be in contact, if there are any.
     pub forbidden: Option<Vec<bool>>,
     /// Largest number of features.
     pub max_features: Option<usize>,
@@ -39,7 +39,7 @@ impl Default for Limits {
     }
 }
 
-/// Why a texture is not legal.
+/// Reason for which a texture is not legal.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
 pub enum Illegal {
@@ -60,7 +60,7 @@ pub enum Illegal {
 }
 
 impl Limits {
-    /// Why a texture is not legal, unless it is.
+    /// Checks that a texture is legal.
     ///
     /// # Errors
     /// The first limit that it breaks.
@@ -112,8 +112,8 @@ impl Limits {
         Ok(())
     }
 
-    /// The texture of a draft: what its patches hold when they have grown, all alike, to the largest legal texture that covers no more than
-    /// the draft is to cover; none if there is none.
+    /// The texture of a draft: the blocks inside its patches when these have grown, all alike, to the largest legal texture
+    /// within the coverage of the draft; none if there is none.
     pub(crate) fn texture(&self, grid: &Grid, draft: &Draft) -> Option<Vec<bool>> {
         let growth = self.growth(grid, draft);
         let mut levels: Vec<f64> = growth.iter().copied().filter(|level| level.is_finite()).collect();
@@ -141,7 +141,7 @@ impl Limits {
         largest.filter(|texture| texture.contains(&true) && self.check(grid, texture).is_ok())
     }
 
-    /// By how much a draft must grow until it holds each block, in every cell and half alike; endless where it must not.
+    /// Growth by which a draft holds each block, in every cell and half alike; endless where a block must touch.
     fn growth(&self, grid: &Grid, draft: &Draft) -> Vec<f64> {
         let of_draft = draft.growth(grid);
         let mut growth = vec![f64::INFINITY; of_draft.len()];
@@ -166,7 +166,7 @@ impl Limits {
         growth
     }
 
-    /// A set without what is too narrow, and without gaps that are.
+    /// A set without parts that are too narrow, and without gaps that are.
     fn smoothed(&self, grid: &Grid, set: &[bool]) -> Vec<bool> {
         let opened = grid.opened(set, self.feature);
         if self.gap <= 1 {
@@ -251,7 +251,8 @@ mod tests {
         assert_eq!(features, Illegal::Features { found: 2, most: 1 });
     }
 
-    /// Everything that a search asks for is legal and new, whatever the limits, and it asks for the same after the same losses.
+    /// Textures that a search asks for are legal and new, whatever the limits, and it asks for the same after the same
+    /// losses.
     #[test]
     fn what_is_asked_for_is_legal_and_new() {
         let [nx, ny] = [24, 18];

@@ -1,4 +1,4 @@
-//! Memory that a design takes, compared with what the machine has before anything is run.
+//! Memory of a design, compared with the memory of the machine before the first run.
 
 use slipfront_case::case::PROGRAM;
 use slipfront_case::case_file::CaseError;
@@ -10,21 +10,21 @@ use super::Design;
 use super::evaluate::{Evaluator, Fidelity};
 use crate::error::StudyError;
 
-/// What a draft that was tried leaves in memory beside its blocks: its patches, and its line of the table.
+/// Bytes that a draft that was tried keeps beside its blocks: its patches, and its line of the table.
 const DRAFT_BYTES: f64 = 2048.0;
 
-/// Memory that a design takes, in bytes.
+/// Memory of a design, in bytes.
 #[derive(Clone, Copy, Debug)]
 struct DesignMemory {
     /// The program, and the drafts that were tried.
     beside: f64,
-    /// The largest of its runs.
+    /// The largest run.
     run: f64,
 }
 
 impl Design {
-    /// Refuses as many runs at once as there is no memory for, and says how many there is memory for; a search keeps so many drafts at the
-    /// most.
+    /// Refuses `threads` runs at once if there is no memory for them, and says how many there is memory for; a search keeps
+    /// at most `drafts` drafts.
     ///
     /// # Errors
     /// With both figures.
@@ -49,7 +49,7 @@ impl Design {
 }
 
 impl DesignMemory {
-    /// Memory with so many runs at once.
+    /// Memory with `threads` runs at once.
     fn of(&self, threads: usize) -> f64 {
         self.beside + threads as f64 * self.run
     }
@@ -93,7 +93,7 @@ mod tests {
     use super::*;
     use crate::design::DesignFile;
 
-    /// Runs count as they are on blocks of half the size, and drafts with their blocks.
+    /// Memory counts runs as they are on blocks of half the size, and drafts with their blocks.
     #[test]
     fn threads_are_held_against_the_memory() {
         let design = |blocks: usize| {

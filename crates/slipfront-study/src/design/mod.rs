@@ -1,11 +1,10 @@
-//! From a wish to a texture: the search for a mask that gives the friction that is wished for, within limits, and the verdict on it.
+//! From a wish to a texture: the search for a mask with the wished friction, within limits, and the verdict on it.
 //!
 //! ```text
 //! wish, limits -> drafts of patches -> masks -> runs on one surface -> the best on several -> the verdict on fresh ones
 //! ```
 //!
-//! A search sees some surfaces, and what it finds is good on these. What a design is said to give is measured on surfaces that were not
-//! looked at before.
+//! A search sees some surfaces, and its result is good on these. The values in a verdict are measured on fresh surfaces.
 
 mod evaluate;
 mod file;
@@ -56,32 +55,32 @@ pub use self::wish::{Measured, Quantity, Wish};
 pub struct Design {
     evaluator: Evaluator,
     limits: Limits,
-    /// Where the random drafts of the search begin.
+    /// Number from which the random drafts of the search begin.
     start: u64,
-    /// Masks with which the search begins too, and their names.
+    /// Masks with which the search also begins, and their names.
     drawn: Vec<(String, Vec<bool>)>,
 }
 
-/// What a search has found.
+/// Result of a search.
 #[derive(Debug)]
 pub struct Outcome {
     /// Textured blocks of the design.
     pub texture: Arc<Vec<bool>>,
-    /// The verdict on it.
+    /// Verdict on the design.
     pub verdict: Verdict,
     /// Every texture that was judged, by its name, the design first.
     pub(crate) compared: Vec<(String, Option<Arc<Vec<bool>>>)>,
-    /// How long the search was.
+    /// Length of the search.
     pub(crate) length: Length,
-    /// What was tried on the way, in its order.
+    /// Drafts that were tried, in their order.
     pub(crate) tried: Vec<Tried>,
 }
 
 impl Design {
     /// A design for some cases, at least one, all on the same blocks; `is_worst` asks for the worst case, in place of the mean over them.
     ///
-    /// # Errors
-    /// When a case cannot be run for as long as the search needs, or a file of it is no longer what it was made of.
+    /// # Errors When a case cannot be run for as long as the search needs, or one of its files has changed since the case
+    /// was made.
     ///
     /// # Panics
     /// Without a case.
@@ -113,7 +112,7 @@ impl Design {
         self.drawn.push((name, textured));
     }
 
-    /// Searches, and judges what was found on fresh surfaces.
+    /// Searches, and judges the result on fresh surfaces.
     ///
     /// # Errors
     /// When the limits leave no texture, when runs cannot be made or kept, and after a stop.
@@ -192,7 +191,8 @@ impl Design {
         Ok(best)
     }
 
-    /// The legal patterns with which a search begins, and their textures: the named ones, and masks; fewer once `ends` says so.
+    /// The legal patterns with which a search begins, and their textures: the named ones, and masks; fewer once `ends`
+    /// returns true.
     fn starts(&self, ends: &dyn Fn() -> bool) -> (Vec<Named>, Vec<Vec<bool>>) {
         let (grid, limits) = (&self.evaluator.grid, &self.limits);
         let drawn = self.drawn.iter().filter_map(|(name, textured)| {
@@ -203,13 +203,13 @@ impl Design {
         named(grid, limits, ends).into_iter().chain(drawn).unzip()
     }
 
-    /// A search of which somebody else makes the runs.
+    /// A search whose runs the caller makes.
     pub fn open_search(&self) -> OpenSearch {
         let (grid, limits) = (self.evaluator.grid.clone(), self.limits.clone());
         OpenSearch::new(Search::new(grid, limits, self.start, self.starts(&|| false).0))
     }
 
-    /// Why a texture is not legal, unless it is.
+    /// Checks that a texture is legal.
     ///
     /// # Errors
     /// The first limit that it breaks.
@@ -222,8 +222,8 @@ impl Design {
         self.evaluator.grid.size()
     }
 
-    /// How far each texture is from the wish, the less the better, as a mean over the first `surfaces` surfaces of the search; with a coarse
-    /// step, or that of the case.
+    /// Loss of each texture, a distance from the wish, as a mean over the first `surfaces` surfaces of the search; with a
+    /// coarse step, or that of the case.
     ///
     /// # Errors
     /// When runs cannot be made, and after a stop.
@@ -247,8 +247,8 @@ impl Design {
         Ok(textures.iter().map(loss).collect())
     }
 
-    /// How far each texture is from the wish, the less the better, on each of `surfaces` surfaces that the search has not seen, or on one
-    /// where they do not differ; as a verdict looks.
+    /// Loss of each texture, a distance from the wish, on each of `surfaces` surfaces that the search has not seen, or on
+    /// one where they do not differ, with the steps and times of a verdict.
     ///
     /// # Errors
     /// When runs cannot be made, and after a stop.
@@ -278,7 +278,7 @@ impl Design {
         Ok(textures.iter().map(losses).collect())
     }
 
-    /// Block-steps in which a texture is tried at first, on one surface with a coarse step.
+    /// Block-steps of the first trial of a texture, on one surface with a coarse step.
     ///
     /// # Errors
     /// When a case cannot be made.

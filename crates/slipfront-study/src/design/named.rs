@@ -1,4 +1,4 @@
-//! Named patterns: what a designer would draw without a search, and where a search begins.
+//! Named patterns: the drawings of a designer without a search, with which a search begins.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -9,9 +9,9 @@ use super::patch::{Draft, Form, Patch};
 /// A pattern and its name.
 #[derive(Clone, Debug)]
 pub(crate) struct Named {
-    /// Its name.
+    /// Name of the pattern.
     pub(crate) name: String,
-    /// Its draft.
+    /// Draft of the pattern.
     pub(crate) draft: Draft,
 }
 
@@ -25,10 +25,11 @@ impl Named {
     }
 }
 
-/// The pattern that others are held against first.
+/// The pattern with which others are compared first.
 pub(crate) const GROOVE: &str = "groove across";
 
-/// Named patterns that are legal, each with its texture, which covers as much as the limits allow; fewer once `ends` says so.
+/// Named patterns that are legal, each with its texture, which covers as much as the limits allow; fewer once `ends` returns
+/// true.
 pub(crate) fn named(grid: &Grid, limits: &Limits, ends: &dyn Fn() -> bool) -> Vec<(Named, Vec<bool>)> {
     let percent = limits.coverage[1];
     // A strip whose middle is that of a block has an odd number of blocks across, and one whose middle is an edge an even number.
@@ -43,8 +44,9 @@ pub(crate) fn named(grid: &Grid, limits: &Limits, ends: &dyn Fn() -> bool) -> Ve
     pairs.filter_map(larger).collect()
 }
 
-/// Named patterns whose strips and cavities are moved by so many blocks: grooves across and along it (x is the direction of the drive, unless that is
-/// turned), in the middle, in pairs and in threes, one that is tilted, a frame, a cross, and cavities, round and square, one or several.
+/// Named patterns whose strips and cavities are moved by `shift` blocks: grooves across and along it (x is the direction of
+/// the drive, unless that is turned), in the middle, in pairs and in threes, one that is tilted, a frame, a cross, and
+/// cavities, round and square, one or several.
 fn shifted(grid: &Grid, percent: f64, shift: f64) -> Vec<Named> {
     let size = grid.size().map(|n| n as f64);
     let strip = |axis: usize, place: f64, angle: f64| {

@@ -1,15 +1,15 @@
-//! A search by asking and telling: somebody else says how good each texture is.
+//! A search by asking and telling: the caller measures the loss of each texture.
 
 use std::collections::HashMap;
 use std::sync::Arc;
 
 use super::search::{Found, Proposal, Search, hash};
 
-/// A search of which somebody else makes the runs.
+/// A search whose runs the caller makes.
 #[derive(Debug)]
 pub struct OpenSearch {
     search: Search,
-    /// What was asked for and not told of yet.
+    /// Textures that were asked for and whose losses are not known yet.
     asked: HashMap<[u8; 32], Proposal>,
 }
 
@@ -36,7 +36,7 @@ impl OpenSearch {
         textures
     }
 
-    /// Takes textures with their losses, the less the better: those that were asked for, and others.
+    /// Takes textures with their losses, the less the better; the textures may be asked for or others.
     pub fn tell(&mut self, told: Vec<(Vec<bool>, f64)>) {
         let found = told.into_iter().map(|(texture, loss)| {
             let asked = self.asked.remove(&hash(&texture));
@@ -47,7 +47,7 @@ impl OpenSearch {
         self.search.tell(&found);
     }
 
-    /// The best texture that was told of, and its loss.
+    /// The best texture with a known loss, and its loss.
     pub fn best(&self) -> Option<(Arc<Vec<bool>>, f64)> {
         let best = self.search.best().first()?;
         Some((Arc::clone(&best.proposal.texture), best.loss))

@@ -1,4 +1,4 @@
-//! Drafts of textures: patches that grow together until they cover what is asked for.
+//! Drafts of textures: patches that grow together until they have the wanted coverage.
 
 use std::sync::Arc;
 
@@ -16,18 +16,18 @@ pub(crate) enum Form {
 /// A part of a texture. Lengths are in blocks; the block in column 0 and row 0 has its centre at (1/2, 1/2).
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Patch {
-    /// Its centre.
+    /// Centre of the patch.
     pub(crate) center: [f64; 2],
-    /// Half of its length and of its width, before it grows.
+    /// Half of the patch's length and of its width, before it grows.
     pub(crate) half: [f64; 2],
-    /// Angle of its length from x, radians.
+    /// Angle of the patch's length from x, radians.
     pub(crate) angle: f64,
-    /// Its form.
+    /// Form of the patch.
     pub(crate) form: Form,
 }
 
 impl Patch {
-    /// By how much the patch must grow on every side until it holds a point, in blocks; less than 0 inside of it. With (u, v) the place of
+    /// Growth on every side by which the patch holds a point, in blocks; less than 0 inside of it. With (u, v) the place of
     /// the point along length and width, and a and b their halves:
     ///
     /// ```text
@@ -69,8 +69,8 @@ impl Patch {
     }
 }
 
-/// A growth to a millionth of a block: blocks beside a strip along an axis are equally far from it, whatever the cosine of its angle is rounded
-/// to.
+/// Rounds a growth to a millionth of a block: blocks beside a strip along an axis are equally far from it, whatever the
+/// cosine of its angle is rounded to.
 fn rounded(growth: f64) -> f64 {
     (growth * 1e6).round() * 1e-6
 }
@@ -78,11 +78,11 @@ fn rounded(growth: f64) -> f64 {
 /// A draft of a texture.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Draft {
-    /// Its patches.
+    /// Patches of the draft.
     pub(crate) patches: Vec<Patch>,
-    /// A texture that was drawn block by block, if it begins with one: by how many blocks it must grow until it holds each block.
+    /// Growth by which a texture that was drawn block by block holds each block, in blocks, if the draft begins with one.
     pub(crate) drawn: Option<Arc<Vec<f64>>>,
-    /// Share of the slider that it is to cover at the most, %.
+    /// Largest share of the slider that the draft covers, %.
     pub(crate) percent: f64,
 }
 
@@ -96,7 +96,7 @@ impl Draft {
         }
     }
 
-    /// By how much the draft must grow until it holds each block.
+    /// Growth by which the draft holds each block.
     pub(crate) fn growth(&self, grid: &Grid) -> Vec<f64> {
         let n = grid.exists.len();
         let mut growth = match &self.drawn {
@@ -110,8 +110,8 @@ impl Draft {
     }
 }
 
-/// By how many blocks a set must grow until it holds each block: the number of steps to it, straight or diagonal; of a block in it, 1 less
-/// the number of steps out of it.
+/// Growth in blocks by which a set holds each block: the number of steps to it, straight or diagonal; for a block in the
+/// set, 1 less the number of steps out of it.
 fn growth_of(grid: &Grid, set: &[bool]) -> Vec<f64> {
     let outwards = steps_to(grid, set);
     let inwards = steps_to(grid, &set.iter().map(|is_in| !is_in).collect::<Vec<_>>());
@@ -191,7 +191,7 @@ mod tests {
         assert_eq!(growth[8 * 7], rounded(expected(0.0, 7.0)));
     }
 
-    /// A drawn set is what has grown by at most 0.
+    /// A drawn set is the set that has grown by at most 0.
     #[test]
     fn a_drawn_set_comes_back() {
         let grid = whole([6, 3], [false; 2]);

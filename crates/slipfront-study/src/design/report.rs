@@ -1,4 +1,5 @@
-//! What a design leaves: the mask as files for programs and lasers, a case that reads it, tables, pictures, and a text that a person reads.
+//! Results of a design: the mask as files for programs and lasers, a case that reads it, tables, pictures, and a text for a
+//! person.
 
 use std::io::Write;
 use std::path::Path;
@@ -37,22 +38,22 @@ const MASK_ENDINGS: [&str; 3] = ["svg", "dxf", "gsf"];
 /// The mask as a picture, which the case reads.
 const PICTURE: &str = "mask.png";
 
-/// The texture of a design on its blocks.
+/// Properties of the texture of a design on its blocks.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(super) struct AsMeshed {
     /// Share of the blocks that are textured, %.
     pub coverage_percent: f64,
-    /// Features that touch nowhere along an edge of a block.
+    /// Number of features that touch nowhere along an edge of a block.
     pub features: usize,
     /// Smallest width of a feature, m.
     pub feature_m: Option<f64>,
-    /// Smallest width of what touches, m.
+    /// Smallest width of a gap, m.
     pub gap_m: Option<f64>,
     /// Length of the lines of a laser, m, if their distance is given.
     pub writing_length_m: Option<f64>,
 }
 
-/// `design.json`.
+/// Content of `design.json`.
 #[derive(Serialize)]
 struct Written<'a> {
     search: Length,
@@ -73,16 +74,16 @@ struct Row<'a> {
     texture: String,
 }
 
-/// Where a design leaves what it leaves.
+/// Writer of the results of a design.
 pub(super) struct Report<'a> {
-    /// The results folder.
+    /// Path of the results folder.
     pub(super) path: &'a Path,
-    /// The design in it.
+    /// Design file in the folder.
     pub(super) file: &'a DesignFile,
 }
 
 impl Report<'_> {
-    /// Writes what a design leaves, and gives the text of the verdict.
+    /// Writes the results of a design, and returns the text of the verdict.
     ///
     /// # Errors
     /// When the system refuses to write, or a picture cannot be drawn.
@@ -139,7 +140,7 @@ impl Report<'_> {
         }
     }
 
-    /// Curves of the design and of what it is held against, on a fresh surface, and maps of where they slip first.
+    /// Writes curves of the design and of the textures in its comparison, on a fresh surface, and maps of their first slips.
     fn write_pictures(&self, design: &Design, outcome: &Outcome) -> Result<(), StudyError> {
         let subject = &design.evaluator.subjects[0];
         let [nx, ny] = design.evaluator.grid.size();
@@ -216,7 +217,7 @@ fn evaluations(design: &Design, outcome: &Outcome, to: &mut impl Write) -> Resul
     Ok(table.flush()?)
 }
 
-/// The verdict as a person reads it.
+/// The verdict as a text for a person.
 fn in_words(design: &Design, verdict: &Verdict, as_meshed: &AsMeshed, case: &Case) -> String {
     let wish = &design.evaluator.wish;
     let mut text = format!("{}\n\n", wrapped(&headline(wish, verdict), COLUMNS));
@@ -265,7 +266,7 @@ pub(super) fn unit(wish: &Wish) -> &'static str {
     }
 }
 
-/// The name of what a loss says.
+/// Name of the quantity of a loss.
 pub(super) fn called(wish: &Wish) -> &'static str {
     match wish {
         Wish::Least(_) => "reduction",
@@ -327,7 +328,7 @@ fn headline(wish: &Wish, verdict: &Verdict) -> String {
     text
 }
 
-/// A value is told as missed when the design is so far from it, %.
+/// Distance from a value above which it is reported as missed, %.
 const MISSED_PERCENT: f64 = 0.5;
 
 fn given(quantity: Quantity, given: &Given) -> Option<Mean> {
@@ -341,7 +342,7 @@ fn given(quantity: Quantity, given: &Given) -> Option<Mean> {
     }
 }
 
-/// A row for every texture that was judged, and every case.
+/// Rows of the table: one for every texture that was judged, and every case.
 fn on_fresh(wish: &Wish, verdict: &Verdict) -> String {
     let header = [
         "texture",
@@ -384,7 +385,7 @@ fn loss_cell(wish: &Wish, found: &OnFresh, is_first: bool) -> String {
     }
 }
 
-/// A difference of losses as it is told.
+/// Cell of a difference of losses as reported.
 fn better_cell(wish: &Wish, better: Option<Mean>) -> String {
     better.map_or("-".to_owned(), |better| {
         let half_width = better.half_width.map(|half| wish.difference_told(half));

@@ -1,12 +1,12 @@
-//! The search for a texture: drafts that are changed at random, of which the best are kept.
+//! The search for a texture: drafts are changed at random, and the best are kept.
 //!
 //! ```text
 //! ask: new drafts of the population, of named patterns or of nothing -> their textures, legal and none asked for before
 //! tell: their losses -> the population of the best that differ
 //! ```
 //!
-//! A population that has not become better for a while makes room for another start; its best stay among the finalists. What is asked for
-//! depends on the start number and on the losses told before, and on nothing else.
+//! A population that has not become better for a while makes room for another start; its best stay among the finalists. The
+//! textures asked for depend only on the start number and on the losses so far.
 
 use std::collections::HashSet;
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -21,24 +21,24 @@ use crate::draws::Draws;
 /// Drafts in a population.
 const POPULATION: usize = 24;
 
-/// Times that a population is asked, without becoming better by [`PROGRESS`], before another start.
+/// Times that a population is asked without becoming better by [`PROGRESS`] before another start.
 const PATIENCE: usize = 25;
 
 /// Loss by which a population must become better.
 const PROGRESS: f64 = 1e-4;
 
-/// Drafts that are tried for every texture asked for.
+/// Number of drafts that are tried for every texture asked for.
 const TRIES: usize = 50;
 
-/// Most patches of a draft.
+/// Largest number of patches of a draft.
 const MAX_PATCHES: usize = 12;
 
 /// A texture that was asked for.
 #[derive(Clone, Debug)]
 pub(crate) struct Proposal {
-    /// Where it comes from, in a word or by its name.
+    /// Origin of the texture, in a word or by its name.
     pub(crate) origin: String,
-    /// Its blocks.
+    /// Blocks of the texture.
     pub(crate) texture: Arc<Vec<bool>>,
     draft: Draft,
 }
@@ -48,7 +48,7 @@ pub(crate) struct Proposal {
 pub(crate) struct Found {
     /// The texture.
     pub(crate) proposal: Proposal,
-    /// Its loss: the lower, the better.
+    /// Loss of the texture: the lower, the better.
     pub(crate) loss: f64,
 }
 
@@ -62,9 +62,9 @@ pub(crate) struct Search {
     starts: Vec<Named>,
     /// Every texture that was asked for, as hashes.
     seen: HashSet<[u8; 32]>,
-    /// The best of this start, the best first.
+    /// The best textures of this start, the best first.
     population: Vec<Found>,
-    /// The best of all starts, the best first.
+    /// The best textures of all starts, the best first.
     best: Vec<Found>,
     /// Times asked since the population has become better.
     idle: usize,
@@ -89,8 +89,8 @@ impl Search {
         }
     }
 
-    /// Up to `n` textures that were not asked for before; fewer where the limits leave few or once `ends` says so, and none where they
-    /// leave none.
+    /// Up to `n` textures that were not asked for before; fewer where the limits leave few or once `ends` returns true, and
+    /// none where the limits leave none.
     pub(crate) fn ask(&mut self, n: usize, ends: &dyn Fn() -> bool) -> Vec<Proposal> {
         let mut asked = Vec::new();
         for _ in 0..n * TRIES {
@@ -133,7 +133,7 @@ impl Search {
         }
     }
 
-    /// A texture of somebody else, which may be told as if it had been asked for.
+    /// A proposal for a texture of the caller, whose loss may be told as if it had been asked for.
     pub(crate) fn of_other(&self, texture: Vec<bool>) -> Proposal {
         Proposal {
             origin: "another search".to_owned(),
@@ -147,12 +147,12 @@ impl Search {
         &self.best
     }
 
-    /// Textures that were asked for.
+    /// Number of textures that were asked for.
     pub(crate) fn n_asked(&self) -> usize {
         self.seen.len()
     }
 
-    /// Forgets all losses, since those told from now on are others; what was asked for is not asked for again.
+    /// Forgets all losses, because later ones are measured otherwise; textures that were asked for are not asked for again.
     pub(crate) fn begin_again(&mut self) {
         self.best.clear();
         self.population.clear();
@@ -160,7 +160,7 @@ impl Search {
         (self.reached, self.idle) = (f64::INFINITY, 0);
     }
 
-    /// A new draft, and where it comes from.
+    /// A new draft, and its origin.
     fn draft(&mut self) -> (String, Draft) {
         if let Some(Named { name, draft }) = self.starts.pop() {
             return (name, draft);
@@ -313,10 +313,11 @@ impl Search {
     }
 }
 
-/// Textures that a search hands on.
+/// Number of textures that a search hands on.
 pub(crate) const FINALISTS: usize = 24;
 
-/// Adds to a list, which is sorted by loss, and keeps the best that differ from every better one by more than a square of `feature` blocks.
+/// Adds to a list that is sorted by loss, and keeps the best that differ from every better one by more than a square of
+/// `feature` blocks.
 fn merge(list: &mut Vec<Found>, found: &[Found], most: usize, feature: usize) {
     let mut all = std::mem::take(list);
     all.extend_from_slice(found);

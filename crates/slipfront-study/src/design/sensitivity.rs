@@ -1,4 +1,4 @@
-//! What is left of a design when it is not made or used quite as it was designed.
+//! Sensitivity of a design to deviations in making or using it.
 
 use serde::Serialize;
 use slipfront::Lattice;
@@ -10,38 +10,38 @@ use super::grid::Grid;
 use super::judge::{Contender, Judge, Mean, Surfaces};
 use crate::error::StudyError;
 
-/// Surfaces on which it is looked at.
+/// Number of surfaces for each change.
 pub(crate) const SURFACES: u64 = 8;
 
-/// Changes that are looked at: of place, of speed, and of the mesh.
+/// Number of changes: of place, of speed, and of the mesh.
 pub(crate) const N_CHANGES: u64 = SHIFTS.len() as u64 + SPEEDS.len() as u64 + 1;
 
 /// A design under a change.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Changed {
-    /// What is changed.
+    /// Description of the change.
     pub change: String,
-    /// The loss of the design then, the mean over surfaces.
+    /// Loss of the design under the change, the mean over surfaces.
     pub loss: Mean,
     /// The loss of the other texture under this change less that of the design, surface by surface: above 0 where the design is better.
     pub better_by: Option<Mean>,
 }
 
-/// A change under which a design could not be looked at.
+/// A change under which a design could not be run.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LeftOut {
     /// The change.
     pub change: String,
-    /// Why, in a sentence without a full stop.
+    /// Reason, in a sentence without a full stop.
     pub why: String,
 }
 
 /// A design under changes.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Sensitivity {
-    /// The changes that were looked at.
+    /// The changes under which the design was run.
     pub changed: Vec<Changed>,
-    /// The others.
+    /// The changes under which it could not be run.
     pub left_out: Vec<LeftOut>,
 }
 
@@ -58,7 +58,7 @@ impl Sensitivity {
     }
 }
 
-/// Changes of the texture itself: misplaced by one block to every side, what leaves a slider with edges lost.
+/// Changes of the texture itself: misplaced by one block to every side; parts that leave a slider with edges are lost.
 const SHIFTS: [(&str, [isize; 2]); 4] = [
     ("one block towards +x", [1, 0]),
     ("one block towards -x", [-1, 0]),
@@ -148,10 +148,9 @@ impl Judge<'_> {
 }
 
 impl Evaluator {
-    /// These cases at another speed of the drive.
+    /// The evaluator with its cases at another speed of the drive.
     ///
-    /// # Errors
-    /// When one of them has a program of speeds, or cannot be run at that speed.
+    /// # Errors When a case has a program of speeds, or cannot be run at that speed.
     fn at_speed(&self, factor: f64) -> Result<Self, CaseError> {
         let faster = |speed: &DriveSpeed| match speed {
             DriveSpeed::VStar(v_star) => Ok(DriveSpeed::VStar(v_star * factor)),
@@ -167,8 +166,7 @@ impl Evaluator {
 
     /// The cases on blocks of half the size, as [`Case::on_other_blocks`](slipfront_case::case::Case::on_other_blocks) puts them there.
     ///
-    /// # Errors
-    /// When one of them cannot be put there.
+    /// # Errors When a case cannot be put there.
     pub(super) fn on_finer_blocks(&self) -> Result<Self, CaseError> {
         let subjects = self
             .subjects
@@ -184,7 +182,7 @@ impl Evaluator {
     }
 }
 
-/// A set that is moved; what leaves a slider with edges is lost.
+/// Moves a set; parts that leave a slider with edges are lost.
 fn moved(grid: &Grid, set: &[bool], shift: [isize; 2]) -> Vec<bool> {
     let at = |block: usize| {
         let from = grid.neighbour(block, shift.map(|step| -step));

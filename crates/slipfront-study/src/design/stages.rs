@@ -1,4 +1,4 @@
-//! The stages of a search: many drafts on one surface with a coarse step, then fewer on several with that of the case.
+//! The stages of a search: many drafts on one surface with a coarse step, then fewer on several with the step of the case.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -12,29 +12,29 @@ use super::named::Named;
 use super::search::{Found, Proposal, Search};
 use crate::error::StudyError;
 
-/// Drafts that are asked for at once. What is asked for depends on it, and not on the number of threads.
+/// Number of drafts that are asked for at once. The drafts depend on it, and not on the number of threads.
 const BATCH: usize = 32;
 
 /// Share of the runs that go to drafts on one surface.
 const EXPLORED: f64 = 0.7;
 
-/// Surfaces of the second stage.
+/// Number of surfaces of the second stage.
 const REFINED_SURFACES: u64 = 4;
 
 /// A draft that was tried.
 #[derive(Clone, Debug)]
 pub(crate) struct Tried {
-    /// Whether on several surfaces with the step of the case, or on one with a coarse step.
+    /// Whether the draft was tried on several surfaces with the step of the case, rather than on one with a coarse step.
     pub(crate) is_refined: bool,
-    /// Where it comes from.
+    /// Origin of the draft.
     pub(crate) origin: String,
-    /// Its blocks.
+    /// Blocks of the draft.
     pub(crate) texture: Arc<Vec<bool>>,
-    /// Its loss, a mean over surfaces.
+    /// Loss of the draft, a mean over surfaces.
     pub(crate) loss: f64,
 }
 
-/// What is done for a design.
+/// Stage of a design.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DesignStage {
     /// Drafts are tried on one surface with a coarse step.
@@ -45,41 +45,41 @@ pub enum DesignStage {
     Judging,
 }
 
-/// What a design shows on its way.
+/// Progress of a design.
 #[derive(Clone, Debug)]
 pub struct SearchProgress {
     /// Runs done, of the search or of the verdict.
     pub runs: usize,
-    /// Runs that the search has, or that the verdict takes at the most.
+    /// Number of runs of the search, or largest number of runs of the verdict.
     pub of: usize,
-    /// Runs that are known, those of earlier calls among them.
+    /// Number of runs that are known, including those of earlier calls.
     pub known: usize,
-    /// Textures that the search has tried.
+    /// Number of textures that the search has tried.
     pub textures: usize,
-    /// What is done.
+    /// Present stage.
     pub stage: DesignStage,
-    /// What the best draft of this stage gives, as the report tells it; NaN if there is none.
+    /// Value of the best draft of this stage, as in the report; NaN if there is none.
     pub best: f64,
-    /// Its blocks.
+    /// Blocks of the best draft.
     pub best_texture: Option<Arc<Vec<bool>>>,
 }
 
-/// How long a search may be.
+/// Bounds on the length of a search.
 pub struct Bounds<'a> {
     /// Runs of the search, without those of the verdict.
     pub runs: usize,
-    /// Share of the time allowed that has passed; never 1 without such a bound.
+    /// Share of the allowed time that has passed; never 1 without such a bound.
     pub share_of_time: &'a dyn Fn() -> f64,
-    /// Ends everything.
+    /// Flag that ends all runs.
     pub stop: &'a AtomicBool,
 }
 
-/// How long a search was.
+/// Length of a search.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct Length {
-    /// Runs that it was given.
+    /// Number of runs of the search.
     pub(crate) runs: usize,
-    /// Whether the time allowed was over before, so that the drafts tried depend on the speed of the machine.
+    /// Whether the allowed time was over first, so that the drafts tried depend on the speed of the machine.
     pub(crate) is_cut_short: bool,
 }
 
@@ -91,7 +91,7 @@ pub(crate) struct Stages<'a> {
     runs: usize,
     /// Whether surfaces differ by their seeds.
     scatters: bool,
-    /// Whether the time allowed was over before the runs.
+    /// Whether the allowed time was over before the runs.
     is_cut_short: bool,
     /// All drafts that were tried, in their order.
     pub(crate) tried: Vec<Tried>,
@@ -111,7 +111,7 @@ impl<'a> Stages<'a> {
         }
     }
 
-    /// Both stages; the finalists, the best first.
+    /// Runs both stages; returns the finalists, the best first.
     pub(crate) fn run(
         &mut self,
         bounds: &Bounds,
@@ -142,7 +142,7 @@ impl<'a> Stages<'a> {
         Ok(best.map(|found| Arc::clone(&found.proposal.texture)).collect())
     }
 
-    /// Textures to try, unless everything ends: on a large lattice they take seconds to be drawn.
+    /// Textures to try, unless the search ends: on a large lattice they take seconds to be drawn.
     fn ask(&mut self, n: usize, bounds: &Bounds) -> Result<Vec<Proposal>, StudyError> {
         let ends = || bounds.stop.load(Ordering::Relaxed);
         let asked = self.search.ask(n, &ends);
@@ -172,7 +172,7 @@ impl<'a> Stages<'a> {
         }
     }
 
-    /// Makes the runs of some textures, and tells the search their losses; whether there were any.
+    /// Makes the runs of some textures, and tells the search their losses; returns whether there were any.
     fn try_out(
         &mut self,
         proposals: Vec<Proposal>,

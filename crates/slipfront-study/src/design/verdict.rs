@@ -1,4 +1,4 @@
-//! The verdict on a design: what it gives on surfaces that the search has not seen, beside named patterns.
+//! The verdict on a design: its values on surfaces that the search has not seen, beside named patterns.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -11,53 +11,54 @@ use super::sensitivity::{self, Sensitivity};
 use super::wish::Measured;
 use crate::error::StudyError;
 
-/// Most designs of the search among the finalists.
+/// Largest number of designs of the search among the finalists.
 const MOST_FINALISTS: usize = 8;
 
-/// Named patterns among the finalists.
+/// Largest number of named patterns among the finalists.
 const NAMED_FINALISTS: usize = 4;
 
-/// What a texture gives on fresh surfaces in one case.
+/// Values of a texture on fresh surfaces in one case.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Given {
     /// The largest mu*.
     pub static_friction_star: Mean,
     /// The first peak of mu*.
     pub first_peak_star: Mean,
-    /// mu_k*, where runs are long enough.
+    /// Kinetic friction mu_k*, where runs are long enough.
     pub kinetic_friction_star: Option<Mean>,
 }
 
 /// A texture on fresh surfaces.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct OnFresh {
-    /// Its name.
+    /// Name of the texture.
     pub name: String,
     /// Share of the blocks that are textured, %.
     pub coverage_percent: f64,
-    /// What it gives in each case.
+    /// Values in each case.
     pub cases: Vec<Given>,
-    /// Its loss over all cases.
+    /// Loss over all cases.
     pub loss: f64,
-    /// Half the width of the interval of its loss, which the scatter over surfaces leaves.
+    /// Half the width of the interval of the loss, due to the scatter over surfaces.
     pub loss_half_width: Option<f64>,
-    /// The loss of this texture less that of the design, surface by surface: above 0 where the design is better; none of the design.
+    /// The loss of this texture less that of the design, surface by surface: above 0 where the design is better; none for
+    /// the design itself.
     pub design_is_better_by: Option<Mean>,
 }
 
 /// The verdict.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Verdict {
-    /// Fresh surfaces that it was found on.
+    /// Number of fresh surfaces of the verdict.
     pub surfaces: u64,
-    /// Number of the first of them, added to the seed of the case.
+    /// Number of the first fresh surface, added to the seed of the case.
     pub first_surface: u64,
     /// The design.
     pub design: OnFresh,
-    /// Whether the design is a named pattern, since none that was searched for is better on fresh surfaces than the best of them.
+    /// Whether the design is a named pattern, because no searched texture is better on fresh surfaces than the best of them.
     pub is_named: bool,
-    /// The slider without texture, the groove across, and the best named pattern, those that there are; and the best of the search if it
-    /// was not better.
+    /// The slider without texture, the groove across, and the best named pattern, as far as there are such; and the best of
+    /// the search if it was not better.
     pub others: Vec<OnFresh>,
     /// The loss on fresh surfaces less that on the surfaces that the search chose by.
     pub optimism: f64,
@@ -65,9 +66,9 @@ pub struct Verdict {
     pub sensitivity: Sensitivity,
 }
 
-/// The winner, and what it was held against.
+/// The winner, and the textures of its comparison.
 pub(crate) struct Judged {
-    /// Its blocks.
+    /// Blocks of the winner.
     pub(crate) texture: Arc<Vec<bool>>,
     /// Every texture that was judged, by its name, the winner first.
     pub(crate) compared: Vec<(String, Option<Arc<Vec<bool>>>)>,
@@ -76,7 +77,7 @@ pub(crate) struct Judged {
 }
 
 impl Judge<'_> {
-    /// Runs of a verdict at the most.
+    /// Largest number of runs of a verdict.
     pub(crate) fn most_runs(evaluator: &Evaluator) -> usize {
         let [compared, judged, changed] = if evaluator.scatters() {
             [COMPARED, JUDGED, sensitivity::SURFACES]
@@ -89,8 +90,8 @@ impl Judge<'_> {
         evaluator.subjects.len() * runs as usize
     }
 
-    /// Compares the finalists of a search with the best of the named patterns, and gives the winner with the verdict on it; none if there is
-    /// neither.
+    /// Compares the finalists of a search with the best of the named patterns, and returns the winner with the verdict on
+    /// it; none if there is no texture.
     pub(crate) fn verdict(
         &self,
         searched: &[Contender],
@@ -185,7 +186,7 @@ impl Judge<'_> {
         Ok(named)
     }
 
-    /// What a texture gives; without a texture that of the bare slider.
+    /// Values of a texture on fresh surfaces; without a texture those of the bare slider.
     fn on_fresh(
         &self,
         contender: Option<&Contender>,

@@ -1,4 +1,4 @@
-//! What a design is to be good for, and how far a texture is from it.
+//! The wish of a design, and the distance of a texture from it.
 
 use serde::{Deserialize, Serialize};
 use slipfront_run::summary::Summary;
@@ -9,7 +9,7 @@ use slipfront_run::summary::Summary;
 pub enum Quantity {
     /// The largest mu* up to a stated time.
     StaticFriction,
-    /// mu_k*.
+    /// Kinetic friction mu_k*.
     KineticFriction,
     /// The largest mu* less mu_k*.
     FrictionDrop,
@@ -18,9 +18,9 @@ pub enum Quantity {
 /// A wish.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Wish {
-    /// As little of a quantity as there can be.
+    /// The least value of a quantity.
     Least(Quantity),
-    /// As much of a quantity as there can be.
+    /// The largest value of a quantity.
     Largest(Quantity),
     /// A value of a quantity, in units of mu_s.
     Value(Quantity, f64),
@@ -28,21 +28,21 @@ pub enum Wish {
     Curve(Vec<[f64; 2]>),
 }
 
-/// What a design is made of in a run.
+/// Numbers of a run from which the loss of a design is found.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Measured {
     /// The largest mu* of the run.
     pub(crate) largest_star: f64,
-    /// mu_s*: its first peak.
+    /// Static friction mu_s*: the first peak of the run.
     pub(crate) first_peak_star: f64,
-    /// mu_k*, of runs that are long enough.
+    /// Kinetic friction mu_k*, for runs that are long enough.
     pub(crate) kinetic_star: Option<f64>,
-    /// Root of the mean square by which mu* differs from the curve of the wish, if it has one.
+    /// Root of the mean square of the difference of mu* from the curve of the wish, if it has one.
     pub(crate) misfit: Option<f64>,
 }
 
 impl Measured {
-    /// What the numbers of a run say.
+    /// The numbers from a summary.
     pub(crate) fn of(summary: &Summary) -> Self {
         Self {
             largest_star: summary.mu_star_max,
@@ -64,7 +64,7 @@ impl Measured {
 }
 
 impl Wish {
-    /// The quantity that it is about: of a curve its largest value.
+    /// The quantity of the wish; for a curve its largest value.
     pub fn quantity(&self) -> Quantity {
         match self {
             Self::Least(quantity) | Self::Largest(quantity) | Self::Value(quantity, _) => *quantity,
@@ -77,7 +77,7 @@ impl Wish {
         self.quantity() != Quantity::StaticFriction
     }
 
-    /// How far a run with a texture is from the wish, given the run of the same surface without it:
+    /// Deviation of a run with a texture from the wish, given the run of the same surface without it:
     ///
     /// ```text
     /// least  q/q_0;   largest  -q/q_0;   value  q/q_wanted - 1;   curve  root of the mean square of the differences of mu*
@@ -92,7 +92,7 @@ impl Wish {
         }
     }
 
-    /// The loss of a mean deviation, the less the better: its size, where it is that from a value.
+    /// The loss of a mean deviation, the less the better: its size, where the wish is a value.
     pub(crate) fn loss(&self, deviation: f64) -> f64 {
         match self {
             Self::Value(..) => deviation.abs(),
@@ -100,7 +100,7 @@ impl Wish {
         }
     }
 
-    /// A loss as it is told: a reduction or a rise in %, the distance from a value in %, or that from a curve.
+    /// A loss as reported: a reduction or a rise in %, the distance from a value in %, or the distance from a curve.
     pub(crate) fn told(&self, loss: f64) -> f64 {
         match self {
             Self::Least(_) => self.difference_told(1.0 - loss),
@@ -109,7 +109,7 @@ impl Wish {
         }
     }
 
-    /// A difference of losses as it is told: in points of %, of a curve as it is.
+    /// A difference of losses as reported: in points of %; for a curve as it is.
     pub(crate) fn difference_told(&self, difference: f64) -> f64 {
         match self {
             Self::Curve(_) => difference,

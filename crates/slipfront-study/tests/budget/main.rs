@@ -1,4 +1,4 @@
-//! What a run takes is what was said before it began.
+//! The memory and disk space of a run are those that were stated before it began.
 
 #![allow(clippy::unwrap_used)] // A helper that cannot do its work fails its test.
 
@@ -59,7 +59,7 @@ unsafe impl GlobalAlloc for Counting {
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
 
-/// Most bytes in use at once during some work.
+/// Largest number of bytes in use at once during some work.
 fn peak<T>(work: impl FnOnce() -> T) -> (f64, T) {
     PEAK.store(LIVE.load(Ordering::Relaxed), Ordering::Relaxed);
     let done = work();
@@ -69,12 +69,12 @@ fn peak<T>(work: impl FnOnce() -> T) -> (f64, T) {
 /// The program itself, which no allocator sees.
 const PROGRAM: f64 = 8.0 * 1024.0 * 1024.0;
 
-/// Whether what is said is not so much more than is taken that a run is refused which there is room for.
+/// Whether the stated memory does not exceed the taken one by so much that a run is refused for which there is room.
 fn is_near(said: f64, taken: f64) -> bool {
     said <= 1.5 * (taken + PROGRAM)
 }
 
-/// No less than is taken, and near it.
+/// Asserts that the stated memory is no less than the taken one, and near it.
 fn assert_honest(what: &str, said: f64, taken: f64) {
     let [shown_said, shown_taken] = [said, taken].map(|bytes| bytes / 1e6);
     assert!(
@@ -87,8 +87,9 @@ fn assert_honest(what: &str, said: f64, taken: f64) {
     );
 }
 
-/// The same of work that draws two pictures at once, and gives what was said and taken. Whether the largest of two pictures meet is up
-/// to the system, as on a busy machine on which one waits for the other: they may, and the most of some tries tells.
+/// Asserts the same as [`assert_honest`] for work that draws two pictures at once, and returns the stated and the taken
+/// memory. Whether the largest of two pictures meet is up to the system, as on a busy machine on which one waits for the
+/// other: they may, and the most of some tries tells.
 fn assert_honest_drawing(what: &str, mut work: impl FnMut() -> (f64, f64)) {
     let (said, mut taken) = work();
     for _ in 0..9 {
@@ -126,7 +127,7 @@ fn write_inputs(folder: &Path) {
     writer.finish().unwrap();
 }
 
-/// The allocator counts for the whole process: one test, one thing after the other.
+/// The stated memory is the taken one. The allocator counts for the whole process: one test, one step after the other.
 #[test]
 fn what_is_said_is_what_is_taken() {
     let folder = tempfile::tempdir().unwrap();
@@ -199,7 +200,7 @@ fn what_is_said_is_what_is_taken() {
     pictures_of_a_large_lattice(folder.path());
 }
 
-/// Bands of the general kernel, as many as there can be: each holds the rows beside its own once more.
+/// Bands of the general kernel, as many as possible: each holds the rows beside its own once more.
 fn bands(folder: &Path) {
     for sets in [
         "slider.blocks=[496,496];slider.outline='disc'",
@@ -223,7 +224,7 @@ fn bands(folder: &Path) {
     }
 }
 
-/// Ranks that make a case together take no more than a process that makes it alone, but for the buffers of those who read.
+/// Ranks that make a case together take no more than a process that makes it alone, but for the buffers of those that read.
 fn ranks(folder: &Path) {
     let text = "slider.blocks = [400, 400]\nfriction = { mu_static_field = 'mu.npy', mu_kinetic_field = 'mu.npy' }\n\
                 texture = [{ shape = 'mask', file = 'mask.png' }, { shape = 'mask', file = 'mask.npy' }]";
@@ -257,7 +258,7 @@ fn ranks(folder: &Path) {
     );
 }
 
-/// A run that goes on from a checkpoint, and saves the next one, takes no more than one that begins.
+/// A run that goes on from a checkpoint, and saves the next one, takes no more than a run that begins.
 fn checkpoints(folder: &Path) {
     for sets in [
         "slider.blocks=[600,600];time.duration_star=1;output.snapshots=[]",
@@ -300,7 +301,7 @@ fn checkpoints(folder: &Path) {
     }
 }
 
-/// Maps are averaged while they are read: what that takes does not depend on the lattice.
+/// Maps are averaged while they are read, so that their memory does not depend on the lattice.
 fn pictures_of_a_large_lattice(folder: &Path) {
     let sets = [
         "slider.blocks=[1500,1200]",
@@ -327,7 +328,7 @@ fn pictures_of_a_large_lattice(folder: &Path) {
     std::fs::remove_dir_all(out).unwrap();
 }
 
-/// Textures of one image take the room of one mask of the lattice.
+/// Textures of one image take the memory of one mask of the lattice.
 fn masks(folder: &Path) {
     let text = "[[texture]]\nshape = 'mask'\nfile = 'mask.png'\n".repeat(40);
     let before = LIVE.load(Ordering::Relaxed) as f64;

@@ -24,8 +24,8 @@ pub fn weakening_growth(law: &Weakening, kinetic: f64, v: f64, k: f64, damping: 
     -0.5 * resistance + discriminant.sqrt()
 }
 
-/// When a block breaks that has been stuck since t = 0 and is pulled by a spring of stiffness `k` whose end rests until `hold` and then
-/// moves at `v`; its static friction of age 0 is 1, so that
+/// Time at which a block slips that has been stuck since t = 0 and is pulled by a spring of stiffness `k` whose end rests
+/// until `hold` and then moves at `v`; its static friction of age 0 is 1, so that
 ///
 /// ```text
 /// k v (t - hold) = 1 + beta ln(1 + t/tau)
@@ -40,7 +40,7 @@ pub fn weakening_growth(law: &Weakening, kinetic: f64, v: f64, k: f64, damping: 
 /// assert_eq!(ageing_slip_time(&none, 0.5, 40.0, 0.5, 0.1), 50.0);
 /// ```
 ///
-/// `pull`: that of the spring while its end rests.
+/// `pull`: force of the spring while its end rests.
 pub fn ageing_slip_time(law: &Ageing, pull: f64, hold: f64, k: f64, v: f64) -> f64 {
     slip_time(law, 0.0, pull, hold, k, v)
 }
@@ -83,14 +83,14 @@ fn slip_time(law: &Ageing, stopped_at: f64, pull: f64, hold: f64, k: f64, v: f64
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StopOfSteadySliding {
-    /// `t_stop`, counted from when the drive stops.
+    /// Time `t_stop` from the stop of the drive to the stop of the block.
     pub time: f64,
-    /// `F_stop`.
+    /// Force `F_stop` of the drive spring when the block stops.
     pub pull: f64,
 }
 
 impl StopOfSteadySliding {
-    /// `kinetic`: `mu_k F_n`; `k`: stiffness of the drive spring; the mass is 1.
+    /// The stop of a block with kinetic friction `kinetic` = `mu_k F_n` on a drive spring of stiffness `k`; the mass is 1.
     pub fn new(kinetic: f64, v: f64, k: f64, damping: f64) -> Self {
         let w = (k - 0.25 * damping * damping).sqrt();
         let time = (std::f64::consts::PI - (2.0 * w).atan2(damping)) / w;
@@ -100,8 +100,8 @@ impl StopOfSteadySliding {
         }
     }
 
-    /// When the block breaks again if the drive, stopped at `stopped`, moves on at `v` from `restarted` on: its age counts from the
-    /// stop of the block.
+    /// Time of the next slip if the drive, stopped at `stopped`, moves on at `v` from `restarted` on: the age of the contact
+    /// counts from the stop of the block.
     pub fn next_slip_time(&self, law: &Ageing, stopped: f64, restarted: f64, k: f64, v: f64) -> f64 {
         slip_time(law, stopped + self.time, self.pull, restarted, k, v)
     }

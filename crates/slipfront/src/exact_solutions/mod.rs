@@ -84,7 +84,7 @@ pub struct SlipCycle {
     slip_duration: f64,
 }
 
-/// `exp(-Omega t/2) (cosine cos w t + sine sin w t)`.
+/// A damped oscillation, `exp(-Omega t/2) (cosine cos w t + sine sin w t)`.
 #[derive(Clone, Copy)]
 struct DampedOscillation {
     decay: f64,
@@ -216,13 +216,12 @@ impl SlipCycle {
         (slip + stick) / period
     }
 
-    /// Lost to friction in one slip, `R V T`: the block moves by `V T`.
+    /// Energy lost to friction in one slip, `R V T`: the block moves by `V T`.
     pub fn friction_loss(&self) -> f64 {
         self.r_star * self.v_star * self.period()
     }
 
-    /// Lost to damping in one slip: the work of the drive, `V T` times the mean force, less the loss to
-    /// friction.
+    /// Energy lost to damping in one slip: the work of the drive, `V T` times the mean force, less the loss to friction.
     pub fn damping_loss(&self) -> f64 {
         self.v_star * self.period() * self.mean_force() - self.friction_loss()
     }
@@ -231,7 +230,7 @@ impl SlipCycle {
 /// A plane wave of the linear lattice (eps = 0), `u = p cos(a i + b j)`, and its squared frequency.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LatticeWave {
-    /// `omega^2`.
+    /// Square of the frequency, `omega^2`.
     pub omega_squared: f64,
     /// Unit vector **p** along which the blocks oscillate.
     pub polarization: [f64; 2],

@@ -1,8 +1,9 @@
-//! Sliders whose blocks differ, whose springs are damped, or whose surface has two zones.
+//! Heterogeneous sliders, sliders with damped springs, and surfaces of two zones.
 
 use crate::lattice::{K_DRIVE, K_STRAIGHT};
 
-/// Time of the first slip where blocks are of different stiffness, without texture: until then nothing has moved, so that
+/// Time of the first slip of a slider whose blocks differ in stiffness, without texture. Until then nothing has moved, so
+/// that
 ///
 /// ```text
 /// k_s,i V* t* = max(mu_si, mu_ki) F_n,i,   k_s,i = k_s E_i/E
@@ -26,9 +27,9 @@ pub fn graded_first_slip_time_star(limits: &[f64], stiffness: &[f64], v_star: f6
 /// A mode of two blocks: the square of its frequency, and the displacement of the second block over that of the first.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PairMode {
-    /// `omega^2`.
+    /// Square of the frequency, `omega^2`.
     pub omega_squared: f64,
-    /// `u_2/u_1`.
+    /// Ratio of the displacements, `u_2/u_1`.
     pub ratio: f64,
 }
 
@@ -65,7 +66,8 @@ pub fn pair_modes(stiffness: [f64; 2], masses: [f64; 2]) -> [PairMode; 2] {
 /// (1/2) [Omega + tau_v (omega^2 - k_s)]
 /// ```
 ///
-/// `omega_squared`: of the mode without dampers; the part of it that drive springs make feels none. `damping`: `Omega`.
+/// `omega_squared`: squared frequency of the mode without dampers; dampers do not act on the part of it that comes from
+/// drive springs. `damping`: `Omega`.
 ///
 /// ```
 /// use slipfront::exact_solutions::viscous_decay_rate;
@@ -76,7 +78,8 @@ pub fn viscous_decay_rate(omega_squared: f64, damping: f64, viscosity_time: f64)
     0.5 * (damping + viscosity_time * (omega_squared - K_DRIVE))
 }
 
-/// The same rate for a time step `dt` and `Omega` = 0, since a damper acts by the velocity half a step before:
+/// Rate at which the amplitude of a mode with dampers decays in steps of `dt` at `Omega` = 0. A damper acts by the velocity
+/// half a step before, so that the rate differs from [`viscous_decay_rate`]:
 ///
 /// ```text
 /// -ln(1 - gamma dt)/(2 dt),   gamma = tau_v (omega^2 - k_s)

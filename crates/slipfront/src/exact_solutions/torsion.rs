@@ -6,8 +6,9 @@
 /// T/T_full = sum_i r_i^2/(r_max sum_i r_i)
 /// ```
 ///
-/// Until then all blocks are stuck, and the springs pull with forces that grow with the radius: the block at the rim reaches its
-/// threshold first, when the others bear `r_i/r_max` of theirs. 3/4 for a continuous disc. `radii`: of all blocks, in any unit.
+/// Until then all blocks are stuck, and the springs pull with forces that grow with the radius: the block at the rim reaches
+/// its threshold first, when the others bear `r_i/r_max` of theirs. The result is 3/4 for a continuous disc. `radii`: of all
+/// blocks, in any unit.
 ///
 /// ```
 /// use slipfront::exact_solutions::torsion_first_slip;

@@ -13,18 +13,18 @@ use crate::state::State;
 use crate::surface::Surface;
 use crate::vector_field::{VectorField, dot};
 
-/// Every block in contact is held by a spring that breaks at its static threshold and forms again without stress:
-/// `F_f = -k_t (u - a)`, where the anchor `a` becomes `u` when `k_t |u - a|` exceeds the threshold.
+/// Springs between every block in contact and the substrate. A spring breaks at its static threshold and forms again without
+/// stress: `F_f = -k_t (u - a)`, where the anchor `a` becomes `u` when `k_t |u - a|` exceeds the threshold.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactSprings {
     /// Stiffness `k_t` per block, in units of `E h`.
     pub stiffness: f64,
-    /// Seed by which a spring that forms again takes another coefficient; none if it keeps its own.
+    /// Seed by which a spring that forms again takes another coefficient; none if every spring keeps its own.
     pub redraw: Option<u64>,
 }
 
 impl ContactSprings {
-    /// The anchor of the spring of a block, and how often it has broken.
+    /// Needs of springs in contact: the anchor of the spring of a block, and how often it has broken.
     pub(super) const NEEDS: Needs = Needs {
         is_fused: false,
         bytes: 3 * size_of::<f64>(),
@@ -38,9 +38,9 @@ impl ContactSprings {
         (k + self.stiffness) / self.stiffness
     }
 
-    /// Static threshold of the spring of a block that has broken `breaks` times; `number` is that of the block in the whole lattice. One that is drawn anew has the coefficient of a
-    /// block in contact that seed, block and number of breaks choose at random, so that thresholds keep their distribution,
-    /// drawn or given.
+    /// Static threshold of the spring of a block that has broken `breaks` times; `number` is the number of the block in the
+    /// whole lattice. A spring that is drawn anew has the coefficient of a block in contact that seed, block and number of
+    /// breaks choose at random, so that thresholds keep their distribution, drawn or given.
     fn threshold(&self, surface: &Surface, block: usize, number: usize, breaks: u64) -> f64 {
         match self.redraw {
             Some(seed) if breaks > 0 && !surface.textured[block] => {
@@ -69,7 +69,7 @@ pub(crate) struct SpringContact {
     law: ContactSprings,
     /// Displacement at which a spring has no force.
     pub(super) anchor: VectorField,
-    /// How often it has broken: a whole number.
+    /// Number of times that the spring of each block has broken; whole numbers.
     pub(super) breaks: Vec<f64>,
     /// Number of the first block of the band in the whole lattice.
     first_block: usize,
@@ -116,7 +116,7 @@ impl SpringContact {
         }
     }
 
-    /// Threshold of the spring of a block after its breaks.
+    /// Threshold of the spring of block `b` after its breaks.
     fn threshold(&self, surface: &Surface, b: usize) -> f64 {
         let breaks = self.breaks[b] as u64;
         self.law.threshold(surface, b, self.first_block + b, breaks)
@@ -170,8 +170,8 @@ impl SpringContact {
         }
     }
 
-    /// Adds the energies of those springs of some blocks that hold, and of those that break at the present instant. There is room for
-    /// both.
+    /// Adds the energies of the springs of some blocks: of the springs that hold, and of those that break at the present
+    /// instant. The sums have room for both.
     #[inline(always)]
     pub(super) fn add_energies(
         &self,

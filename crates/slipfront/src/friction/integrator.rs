@@ -1,6 +1,7 @@
 //! The step of a velocity under forces and damping.
 
-/// Components of a velocity below this one, 2^-480 of its unit, become zero, of their sign so that mirrored problems keep mirrored bits.
+/// Least component of a velocity, 2^-480 of its unit. Smaller ones become zero with their sign, so that mirrored problems
+/// keep mirrored bits.
 ///
 /// A wave that runs into a large cavity has ahead of it, after n steps, velocities of some `(dt^2/n^2)^n` at n blocks: from a hundred blocks on
 /// they and their squares are subnormal numbers, with which processors compute slowly. Squares of what is left, and their products with small
@@ -10,11 +11,11 @@ pub(crate) const SMALLEST_VELOCITY: f64 = f64::from_bits((1023 - 480) << 52);
 /// Time step and damping (Eq. 5), centred in time so that stability does not depend on it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Integrator {
-    /// `c-/c+`, with `c-+ = 1 -+ Omega dt/2`: the factor by which damping reduces the velocity in a step.
+    /// Factor by which damping reduces the velocity in a step, `c-/c+`, with `c-+ = 1 -+ Omega dt/2`.
     pub(crate) velocity_decay: f64,
-    /// `dt/(m c+)`: change of velocity per force.
+    /// Change of velocity per force, `dt/(m c+)`.
     pub(crate) force_to_velocity: f64,
-    /// `m c+/dt`: force per change of velocity.
+    /// Force per change of velocity, `m c+/dt`.
     pub(crate) velocity_to_force: f64,
 }
 

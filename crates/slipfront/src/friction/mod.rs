@@ -1,7 +1,7 @@
-//! The laws of friction: what the force and motion of a block become where it touches the substrate.
+//! The laws of friction, which act on a block where it touches the substrate.
 //!
-//! Each law is a file, which holds its parameters, says what it [`Needs`], and computes it in the general kernel, with what it remembers
-//! of every block. [`Friction`] and [`BandContact`] here have a row for each.
+//! Each law is a file, which holds its parameters, says what it [`Needs`], and computes it in the general kernel, with the
+//! numbers that it remembers of every block. [`Friction`] and [`BandContact`] here have a row for each.
 
 mod contact_springs;
 mod coulomb;
@@ -44,7 +44,7 @@ impl From<FrictionLaw> for Friction {
 }
 
 impl Friction {
-    /// What the law needs beside the thresholds of the blocks.
+    /// Needs of the law beside the thresholds of the blocks.
     pub fn needs(&self) -> Needs {
         match self {
             Self::Coulomb(law) => law.needs(),
@@ -53,7 +53,7 @@ impl Friction {
         }
     }
 
-    /// Numbers of a block that the law remembers beside its velocity: columns of a checkpoint.
+    /// Number of columns of a checkpoint that the law adds: numbers of a block that it remembers beside its velocity.
     pub fn n_columns(&self) -> usize {
         self.needs().columns
     }
@@ -63,12 +63,13 @@ impl Friction {
         !matches!(self, Self::RateAndState(_))
     }
 
-    /// Whether a block may take the threshold of any other, so that whoever computes it must know all of them.
+    /// Whether a block may take the threshold of any other block, so that every process must know all thresholds.
     pub fn lends_thresholds(&self) -> bool {
         matches!(self, Self::ContactSprings(law) if law.redraw.is_some())
     }
 
-    /// Stiffness of what holds a block to the substrate until it slips, in units of `E h`; 0 of contacts that do not yield.
+    /// Stiffness of the contact that holds a block to the substrate until it slips, in units of `E h`; 0 for contacts that
+    /// do not yield.
     pub(crate) fn contact_stiffness(&self) -> f64 {
         match self {
             Self::Coulomb(_) | Self::RateAndState(_) => 0.0,
@@ -76,7 +77,7 @@ impl Friction {
         }
     }
 
-    /// Eq. 4 with its options, if that is the law.
+    /// Eq. 4 with its options, if Coulomb's is the law.
     pub(crate) fn coulomb(&self) -> Option<&Coulomb> {
         match self {
             Self::Coulomb(law) => Some(law),
@@ -84,13 +85,13 @@ impl Friction {
         }
     }
 
-    /// How strength falls with slip, if it does.
+    /// Law by which strength falls with slip, if there is one.
     pub(crate) fn strength_over_slip(&self) -> Option<SlipWeakening> {
         self.coulomb()?.slip_weakening
     }
 
-    /// Mean friction of all blocks in steady sliding at a speed, in units of `P mu_s l^2`; of springs in contact, which are torn off at
-    /// all extensions alike, half the mean of their thresholds.
+    /// Mean friction of all blocks in steady sliding at `speed`, in units of `P mu_s l^2`. For springs in contact it is half
+    /// the mean of their thresholds, because they are torn off at all extensions alike.
     pub(crate) fn steady_force(&self, surface: &Surface, speed: f64) -> f64 {
         match self {
             Self::Coulomb(law) => {
@@ -118,9 +119,9 @@ impl Friction {
         }
     }
 
-    /// Pull `F` of the drive springs of stiffness `k`, which rises as `k V t`, at which a block of this threshold slips on a surface
-    /// without texture: for springs in contact the pull that the whole slider would need if they did not yield. Under rate and state no
-    /// block slips at a moment; the pull is that of steady sliding.
+    /// Pull `F` of the drive springs of stiffness `k`, which rises as `k V t`, at which a block of this threshold slips on a
+    /// surface without texture. For springs in contact it is the pull that the whole slider would need if they did not
+    /// yield. Under rate and state no block slips at a moment; the pull is that of steady sliding.
     pub(crate) fn first_slip_pull(&self, surface: &Surface, threshold: f64, k: f64, speed: f64) -> f64 {
         match self {
             Self::Coulomb(law) => law.first_slip_pull(surface, threshold, k, speed),
@@ -129,7 +130,7 @@ impl Friction {
         }
     }
 
-    /// By how much longer a drive through springs of stiffness `k` takes to load contacts that yield than rigid ones.
+    /// Factor by which a drive through springs of stiffness `k` takes longer to load contacts that yield than rigid ones.
     pub(crate) fn loading_delay(&self, k: f64) -> f64 {
         match self {
             Self::Coulomb(_) | Self::RateAndState(_) => 1.0,
@@ -141,7 +142,7 @@ impl Friction {
 /// Sums over all blocks under laws of friction that store energy or have a state; 0 under all others.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ContactTotals {
-    /// Energy of the springs between blocks and substrate at t_n, of those that have not broken.
+    /// Energy at t_n of the springs between blocks and substrate that have not broken.
     pub spring_energy: f64,
     /// Energy of the springs that break at t_n.
     pub broken_energy: f64,
@@ -160,7 +161,7 @@ impl ContactTotals {
     }
 }
 
-/// A law of friction with what it remembers of the blocks of a band of the general kernel.
+/// A law of friction with its memory of the blocks of a band of the general kernel.
 #[derive(Debug)]
 pub(crate) enum BandContact {
     Coulomb(CoulombContact),
@@ -179,8 +180,8 @@ impl BandContact {
         }
     }
 
-    /// The [`Friction::n_columns`] columns that a checkpoint keeps. They are those before the present instant is evaluated, or the same
-    /// after it.
+    /// The [`Friction::n_columns`] columns that a checkpoint keeps. Before and after the present instant is evaluated they
+    /// are equal.
     pub(crate) fn columns(&self) -> Vec<&[f64]> {
         match self {
             Self::Coulomb(thresholds) => thresholds.columns(),
@@ -208,7 +209,8 @@ impl BandContact {
         }
     }
 
-    /// Remembers what some blocks did in the step before, which `forces` holds, before they move over a step.
+    /// Lets the law remember the motion of some blocks in the step before, which `forces` holds, before they move over a
+    /// step.
     #[inline(always)]
     pub(crate) fn remember(
         &mut self,
@@ -229,8 +231,8 @@ impl BandContact {
         }
     }
 
-    /// Eqs. 4-7: friction and damping of some blocks, their velocities half a step later and whether they slide. `limits`: static and kinetic
-    /// thresholds of all blocks; `integrator`: of the first, the second and so on of these blocks.
+    /// Eqs. 4-7: friction and damping of some blocks, their velocities half a step later and whether they slide. `limits`:
+    /// static and kinetic thresholds of all blocks; `integrator`: one for each of these blocks.
     #[inline(always)]
     pub(crate) fn apply(
         &mut self,
@@ -250,8 +252,8 @@ impl BandContact {
         }
     }
 
-    /// Adds what the [`ContactTotals`] are made of, of some blocks whose next velocities are known. There is room for two numbers of each
-    /// block.
+    /// Adds the terms of [`ContactTotals`] of some blocks whose next velocities are known. The sums have room for two
+    /// numbers of each block.
     #[inline(always)]
     pub(crate) fn add_up(
         &self,

@@ -1,28 +1,28 @@
-//! What a law of friction needs of kernels, checkpoints and series.
+//! Needs of a law of friction, which kernels, checkpoints and series provide.
 
-/// What a law of friction, or an option of one, needs beside the thresholds of the blocks.
+/// Needs of a law of friction, or of an option of one, beside the thresholds of the blocks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Needs {
-    /// Whether the fused kernel computes it; the general kernel computes every law.
+    /// Whether the fused kernel computes the law; the general kernel computes every law.
     pub is_fused: bool,
-    /// Whether it changes thresholds in the fused kernel, which then sweeps blocks as ones that differ.
+    /// Whether the law changes thresholds in the fused kernel, which then sweeps the blocks as heterogeneous ones.
     pub varies: bool,
-    /// Bytes per block that it adds to the general kernel.
+    /// Bytes per block that the law adds to the general kernel.
     pub bytes: usize,
-    /// Bytes per block that it adds to the fused kernel.
+    /// Bytes per block that the law adds to the fused kernel.
     pub fused_bytes: usize,
-    /// Numbers per block that it remembers beside the velocity: columns of a checkpoint.
+    /// Number of columns of a checkpoint that the law adds: numbers per block that it remembers beside the velocity.
     pub columns: usize,
     /// Whether contacts store energy, which is lost when they break.
     pub stores_energy: bool,
     /// Whether contacts have a state, whose mean is a result.
     pub has_state: bool,
-    /// Whether strength falls with slip, so that a part of what friction takes is that of weakening.
+    /// Whether strength falls with slip, so that a part of the loss to friction is the energy of weakening.
     pub weakens_with_slip: bool,
 }
 
 impl Needs {
-    /// What a law needs that remembers nothing and that every kernel computes.
+    /// Needs of a law that remembers nothing and that every kernel computes.
     pub(super) const NONE: Self = Self {
         is_fused: true,
         varies: false,
@@ -34,7 +34,7 @@ impl Needs {
         weakens_with_slip: false,
     };
 
-    /// What a law and an option of it need together.
+    /// Needs of a law and an option of it together.
     pub(super) fn and(self, option: Option<Self>) -> Self {
         option.map_or(self, |more| Self {
             is_fused: self.is_fused && more.is_fused,

@@ -1,4 +1,4 @@
-//! All that can be read of one block at one instant, and which of it a run keeps.
+//! One block at one instant: its state and forces, and the fields that a run keeps.
 
 use serde::{Deserialize, Serialize};
 
@@ -7,15 +7,15 @@ use crate::vector_field::{add, length};
 /// One block at t_n. Friction and contact are those of the update that starts there.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Block {
-    /// **u**, in units of `P mu_s l^2/(E h)`.
+    /// Displacement **u**, in units of `P mu_s l^2/(E h)`.
     pub displacement: [f64; 2],
     /// Velocity at `t_n + dt/2`.
     pub velocity: [f64; 2],
-    /// `F_s` of the drive spring (Eq. 2), with any constant force.
+    /// Force `F_s` of the drive spring (Eq. 2), with any constant force.
     pub force_drive: [f64; 2],
-    /// `F_c` of the lattice springs (Eq. 3).
+    /// Force `F_c` of the lattice springs (Eq. 3).
     pub force_lattice: [f64; 2],
-    /// `F_f` of friction (Eq. 4).
+    /// Force `F_f` of friction (Eq. 4).
     pub force_friction: [f64; 2],
 }
 
@@ -27,8 +27,8 @@ impl Block {
 
     /// Contact stress, `tau_c = |F_f + F_c|/l^2` (Eq. 10), in units of `P mu_s`.
     ///
-    /// For a stuck block `F_f + F_c = -F_s`: Eq. 10 then shows the pull of the block's own drive spring and hides the
-    /// stress concentration at the edge of a cavity. [`traction`](Self::traction) shows it.
+    /// For a stuck block `F_f + F_c = -F_s`: Eq. 10 then shows the pull of the block's own drive spring and hides the stress
+    /// concentration at the edge of a cavity. The [`traction`](Self::traction) shows this concentration.
     #[inline]
     pub fn contact_stress(&self) -> f64 {
         length(add(self.force_friction, self.force_lattice))
@@ -45,7 +45,7 @@ impl Block {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Field {
-    /// Contact stress tau_c (Eq. 10), in units of `P mu_s`; not yet divided by its maximum.
+    /// Contact stress tau_c (Eq. 10), in units of `P mu_s`; the division by its maximum comes later.
     #[serde(rename = "contact_stress_star")]
     ContactStress,
     /// Traction `|F_f|/l^2`, in units of `P mu_s`; NaN over a texture.
@@ -54,11 +54,11 @@ pub enum Field {
     DisplacementX,
     /// Displacement along y.
     DisplacementY,
-    /// Velocity along x half a step later.
+    /// Velocity along x half a step after the instant.
     VelocityX,
-    /// Velocity along y half a step later.
+    /// Velocity along y half a step after the instant.
     VelocityY,
-    /// 1 for a block that slides, 0 for one that is stuck.
+    /// Sliding: 1 for a block that slides, 0 for one that is stuck.
     Sliding,
 }
 

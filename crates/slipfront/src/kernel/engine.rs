@@ -1,4 +1,4 @@
-//! What every kernel does.
+//! The interface of every kernel.
 
 use super::block::{Block, Field};
 use crate::checkpoint::{BlockColumn, MotionBounds};
@@ -11,7 +11,7 @@ use crate::totals::Totals;
 
 /// A kernel with the state of all blocks. `clock` is at the present step, unless a function advances to it.
 pub(crate) trait Engine: Send + Sync {
-    /// Advances to the step of `clock`: the next one, or the one to begin with.
+    /// Advances to the step of `clock`: the next step, or the first one.
     fn step(&mut self, model: &Model, clock: &Clock, energies: bool) -> Totals;
 
     /// Block `b` with the forces on it.
@@ -28,38 +28,39 @@ pub(crate) trait Engine: Send + Sync {
         write: &mut dyn FnMut(usize, usize, &[f32]),
     );
 
-    /// Adds to `counts` the blocks in contact of these rows that slide, or those that do not, each in its bin.
+    /// Adds the blocks in contact of these rows to `counts`, each in its bin: those that slide if `sliding` is true, else
+    /// those that do not.
     fn count_in_contact(&self, model: &Model, bins: &PositionBins, sliding: bool, counts: &mut [i64]);
 
     /// Displacement now and velocity half a step later of block `b`.
     fn motion(&self, b: usize) -> [[f64; 2]; 2];
 
-    /// The same of all blocks.
+    /// Displacements now and velocities half a step later of all blocks.
     fn state(&self) -> State;
 
     /// A column of a checkpoint: its values of the blocks from `first` on.
     fn read_column(&self, column: BlockColumn, first: usize, values: &mut [f64]);
 
-    /// That of the first slips, of every block; memory for the state is given back before any is taken for them.
+    /// First-slip times of all blocks. Consumes the kernel, and frees its state before the times are allocated.
     fn into_first_slips(self: Box<Self>) -> Vec<f64>;
 
     /// Largest square of a contact stress of a block in contact at any step so far.
     fn stress_square_max(&self, model: &Model, clock: &Clock) -> f64;
 
-    /// Power that the dampers between blocks take at the present step, `-sum F_v . v`; of a kernel that knows none, 0.
+    /// Power that the dampers between blocks take at the present step, `-sum F_v . v`; 0 for a kernel without dampers.
     fn viscous_power(&self) -> f64 {
         0.0
     }
 
-    /// Bounds that a checkpoint keeps, of a kernel that has any.
+    /// Bounds that a checkpoint keeps, for a kernel that has any.
     fn motion_bounds(&self) -> Option<MotionBounds>;
 
-    /// Sums that belong to a law of friction, of a kernel that computes such laws.
+    /// Sums that belong to a law of friction, for a kernel that computes such laws.
     fn contact_totals(&self, _model: &Model) -> ContactTotals {
         ContactTotals::default()
     }
 
-    /// What the law of friction remembers of the blocks from `first` on: one of its
-    /// [`Friction::n_columns`](crate::friction::Friction::n_columns), at the present t*.
+    /// Reads a column of the memory of the law of friction for the blocks from `first` on, at the present t*; `column`
+    /// counts the law's own [`Friction::n_columns`](crate::friction::Friction::n_columns).
     fn read_memory(&self, time_star: f64, column: usize, first: usize, values: &mut [f64]);
 }

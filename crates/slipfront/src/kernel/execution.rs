@@ -1,4 +1,4 @@
-//! Which kernel computes a run, on how many threads, and with which other ranks.
+//! The choice of kernel, number of threads and ranks for a run.
 
 use std::sync::Arc;
 
@@ -17,10 +17,10 @@ use crate::state::State;
 /// Which kernel computes the steps.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Kernel {
-    /// One pass over the blocks per equation, for every model.
+    /// The general kernel: one pass over the blocks per equation, for every model.
     General,
-    /// One sweep for all equations. The general kernel computes what this does not: [some laws of friction](crate::Needs::is_fused),
-    /// internal viscosity, and drives that rotate.
+    /// The fused kernel: one sweep for all equations. The general kernel computes the models that this one does not: [some
+    /// laws of friction](crate::Needs::is_fused), internal viscosity, and drives that rotate.
     #[default]
     Fused,
 }
@@ -39,15 +39,15 @@ pub enum Kernel {
 /// ```
 #[derive(Clone, Debug)]
 pub struct Execution {
-    /// What computes the steps.
+    /// Kernel that computes the steps.
     pub kernel: Kernel,
-    /// Threads of the pool that share the blocks; useful from some ten thousand blocks of the fused kernel, some thousand of the
-    /// general kernel. A thread that steps a simulation should be one of the pool (see `rayon::scope`): others wait at every step
-    /// until they are woken.
+    /// Threads of the pool that share the blocks; useful from some ten thousand blocks on for the fused kernel, some
+    /// thousand for the general kernel. A thread that steps a simulation should belong to the pool (see `rayon::scope`): any
+    /// other thread waits at every step until it is woken.
     pub threads: usize,
     /// Whether blocks at rest are skipped until they can slip.
     pub skips: bool,
-    /// The connection with the ranks that share the lattice; [`Alone`] unless it is given. Each has a model of its own rows.
+    /// The connection with the ranks that share the lattice; [`Alone`] unless given. Each rank has a model of its own rows.
     pub communicator: Arc<dyn Communicator>,
 }
 
@@ -85,7 +85,7 @@ impl Kernel {
         }
     }
 
-    /// Its name in a manifest.
+    /// Name of the kernel in a manifest.
     pub fn name(self) -> &'static str {
         match self {
             Self::General => "general",
@@ -95,7 +95,7 @@ impl Kernel {
 }
 
 impl Execution {
-    /// The default kernel on so many threads, alone.
+    /// The default kernel on `threads` threads and one rank.
     pub fn on_threads(threads: usize) -> Self {
         Self {
             kernel: Kernel::default(),
@@ -117,7 +117,7 @@ impl Execution {
         }
     }
 
-    /// A kernel that continues from a checkpoint and its columns; none if it is that of another kernel.
+    /// A kernel that continues from a checkpoint and its columns; none if the checkpoint is of another kernel.
     pub(crate) fn resume<E>(
         self,
         model: &Model,

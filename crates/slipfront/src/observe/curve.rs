@@ -13,13 +13,13 @@ use crate::snapshot::Snapshot;
 pub struct CurveRow {
     /// Step.
     pub step: u64,
-    /// t*.
+    /// Time t*.
     pub time_star: f64,
     /// Steps in which the drive has moved by then: all, unless it is held.
     pub drive_steps: u64,
     /// t* of the drive, on which its path depends.
     pub drive_time_star: f64,
-    /// mu* and N*.
+    /// Friction coefficient mu* and percentage N*.
     pub point: CurvePoint,
     /// Energies stored at this instant, and supplied and lost up to it.
     pub energies: Energies,
@@ -27,7 +27,7 @@ pub struct CurveRow {
     pub mean_state: f64,
 }
 
-/// Records the curve and keeps the energy balance. It must be called at every step.
+/// Records the curve and keeps the energy balance. The observer must be called at every step.
 #[derive(Debug, Serialize, Deserialize)]
 pub struct Curve {
     /// One row for every `stride`-th step of the drive from 0, and for the last step.
@@ -46,7 +46,8 @@ impl Curve {
         }
     }
 
-    /// Whether this can be the recording that began as `new` and was called at every step until the drive had moved in so many.
+    /// Whether the recording can be the one that began as `new` and was called at every step until the drive had moved in
+    /// `drive_steps`.
     pub fn is_consistent_with(&self, new: &Self, drive_steps: u64) -> bool {
         let stride = new.stride.max(1);
         let of_stride = || (0..=drive_steps).step_by(stride as usize);

@@ -9,29 +9,29 @@ use crate::snapshot::Snapshot;
 /// A segment of a program with a speed above zero, as far as the run went.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Cycle {
-    /// t* of the drive at which it begins.
+    /// t* of the drive at which the segment begins.
     pub from_star: f64,
-    /// Its speed.
+    /// Speed of the drive in the segment.
     pub v_star: f64,
-    /// Largest mu* in it: of the instants after its beginning, up to and with its end.
+    /// Largest mu* in the segment, over the instants after its beginning, up to and with its end.
     pub mu_star: f64,
     /// t* of the drive at the largest mu*, the first of equal ones.
     pub time_star: f64,
 }
 
-/// Peaks of a run under a program. It must be called at every step.
+/// Peaks of a run under a program. The observer must be called at every step.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Cycles {
     cycles: Vec<Cycle>,
 }
 
 impl Cycles {
-    /// In the order of time.
+    /// The peaks in the order of time.
     pub fn cycles(&self) -> &[Cycle] {
         &self.cycles
     }
 
-    /// Whether this can be the recording of a run up to this time of the drive.
+    /// Whether the recording can be of a run up to this time of the drive.
     pub fn is_consistent_with(&self, drive_time_star: f64) -> bool {
         let times = self
             .cycles

@@ -11,21 +11,21 @@ use crate::vector_field::dot;
 /// Energies stored at an instant, and supplied and lost since the start.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Energies {
-    /// Stored at this instant.
+    /// Energy stored at this instant.
     pub stored: StoredEnergy,
     /// Work done by the drive (and by a constant force) since the start.
     pub work: f64,
-    /// Lost to friction since the start.
+    /// Energy lost to friction since the start.
     pub friction_loss: f64,
-    /// Lost to damping since the start.
+    /// Energy lost to damping since the start.
     pub damping_loss: f64,
-    /// Lost to the dampers between blocks since the start.
+    /// Energy lost to the dampers between blocks since the start.
     pub viscous_loss: f64,
-    /// Stored in springs between blocks and substrate at this instant.
+    /// Energy stored in springs between blocks and substrate at this instant.
     pub contact_springs: f64,
-    /// Lost with such springs that broke since the start.
+    /// Energy lost with springs between blocks and substrate that broke since the start.
     pub broken_springs_loss: f64,
-    /// The part of the loss to friction that strength which falls with slip has taken since the start, see
+    /// Part of the loss to friction since the start that is the energy of slip weakening, see
     /// [`Snapshot::weakening_energy`](crate::Snapshot::weakening_energy).
     pub weakening_loss: f64,
     /// Energy stored at the start.
@@ -48,7 +48,7 @@ impl Energies {
     /// missing = (dt/4) [(sum F . (v_after - v_before)) at the start - the same now]
     /// ```
     ///
-    /// which is that of rounding in steady sliding.
+    /// so that in steady sliding the error is that of rounding.
     pub fn error(&self) -> f64 {
         let supplied = self.work.abs() + self.stored_at_start;
         let stored = self.stored.total() + self.contact_springs;
@@ -61,7 +61,7 @@ impl Energies {
 /// The pull of the drive at one instant, and powers: of a constant force, of friction, of damping and of the dampers between blocks.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 struct Powers {
-    /// `sum F_s . d`, the force that moves along the path of the drive; of a rotation the torque over the largest radius.
+    /// Force along the path of the drive, `sum F_s . d`; for a rotation the torque over the largest radius.
     pull: f64,
     constant_force: f64,
     friction: f64,
@@ -96,7 +96,7 @@ pub struct Ledger {
 }
 
 impl Ledger {
-    /// Adds the step that ends now. It must be called at every step.
+    /// Adds the step that ends now. The function must be called at every step.
     pub(crate) fn add(&mut self, now: &Snapshot) {
         let powers = Powers::at(now);
         self.totals.contact_springs = now.contact.spring_energy;

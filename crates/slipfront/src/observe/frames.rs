@@ -16,14 +16,14 @@ use crate::snapshot::Snapshot;
 pub struct Frame {
     /// Step.
     pub step: u64,
-    /// t*.
+    /// Time t* of the blocks.
     pub time_star: f64,
-    /// t* of the drive.
+    /// Time t* of the drive.
     pub drive_time_star: f64,
-    /// mu* and N*.
+    /// Friction coefficient mu* and percentage N*.
     pub point: CurvePoint,
-    /// One array per field, row by row from y = 0, every `stride`-th block of each axis from the first on. They are as large as
-    /// the lattice: who serializes a frame writes them down beside it.
+    /// One array per field, row by row from y = 0, every `stride`-th block of each axis from the first on. The arrays are as
+    /// large as the lattice: code that serializes a frame writes them beside it.
     #[serde(skip)]
     pub values: Vec<Vec<f32>>,
 }
@@ -32,22 +32,22 @@ impl Frame {
     /// Bytes of a value.
     pub const VALUE_BYTES: usize = size_of::<f32>();
 
-    /// Bytes of a frame of so many fields, without their values.
+    /// Bytes of a frame of `n_fields` fields, without their values.
     pub const fn bytes(n_fields: usize) -> usize {
         size_of::<Self>() + n_fields * size_of::<Vec<f32>>()
     }
 }
 
-/// Which fields to record, and of which blocks.
+/// Selection of the fields to record, and of the blocks.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Selection {
-    /// The fields, in this order.
+    /// The fields, in the order in which they are recorded.
     pub fields: Vec<Field>,
     /// Every n-th block along each axis.
     pub stride: usize,
 }
 
-/// Every `stride`-th index from 0 is kept: these are kept of `indices`, counted among all that are.
+/// Indices kept among `indices` where every `stride`-th from 0 is kept, counted among all that are kept.
 ///
 /// ```
 /// # use slipfront::observe::frames::kept;
@@ -59,7 +59,7 @@ pub fn kept(indices: Range<usize>, stride: usize) -> Range<usize> {
 }
 
 impl Selection {
-    /// Number of recorded blocks along x, and which recorded rows are those of the rows of a model.
+    /// Number of recorded blocks along x, and the recorded rows among the rows of a model.
     fn counts(&self, model: &Model) -> (usize, Range<usize>) {
         let columns = kept(0..model.lattice.nx, self.stride);
         (columns.len(), kept(model.rows.clone(), self.stride))
@@ -101,14 +101,14 @@ impl Selection {
 /// Records the selected fields at every call.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Frames {
-    /// What is recorded.
+    /// Fields and blocks that are recorded.
     pub selection: Selection,
-    /// In the order of time.
+    /// Frames in the order of time.
     pub frames: Vec<Frame>,
 }
 
 impl Frames {
-    /// Nothing recorded yet.
+    /// An empty recording.
     pub fn new(selection: Selection) -> Self {
         Self {
             selection,
@@ -116,7 +116,7 @@ impl Frames {
         }
     }
 
-    /// Whether this can be the recording that began as `new` and was called up to `step`.
+    /// Whether the recording can be the one that began as `new` and was called up to `step`.
     pub fn is_consistent_with(&self, new: &Self, step: u64) -> bool {
         let steps = self.frames.iter().map(|frame| frame.step);
         self.selection == new.selection && steps.chain([step + 1]).is_sorted_by(|one, next| one < next)

@@ -23,14 +23,14 @@ const D: usize = 3;
 const E: usize = 4;
 const F: usize = 5;
 
-/// Fields at A-F. It must be called at every step.
+/// Fields at A-F. The observer must be called at every step.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Instants {
     selection: Selection,
     kinetic: KineticStart,
     end_time_star: f64,
     frames: [Option<Frame>; 6],
-    /// Which of `frames` are valid; the memory of the others is used again.
+    /// Valid frames of `frames`; the memory of the others is used again.
     valid: [bool; 6],
     ended: bool,
     /// Whether the run has gone on long enough to know D, and E.
@@ -38,7 +38,7 @@ pub struct Instants {
 }
 
 impl Instants {
-    /// Nothing found yet, in a run that will end at `end_time_star`.
+    /// The recording of a run that will end at `end_time_star`, with nothing found yet.
     pub fn new(selection: Selection, kinetic: KineticStart, end_time_star: f64) -> Self {
         Self {
             selection,
@@ -51,7 +51,7 @@ impl Instants {
         }
     }
 
-    /// Whether this can be the recording that began as `new` and was called up to `step`.
+    /// Whether the recording can be the one that began as `new` and was called up to `step`.
     pub fn is_consistent_with(&self, new: &Self, step: u64) -> bool {
         let same_settings = self.selection == new.selection
             && self.kinetic == new.kinetic
@@ -59,12 +59,12 @@ impl Instants {
         same_settings && self.frames().all(|frame| frame.step <= step)
     }
 
-    /// The frames that it holds at present, candidates included.
+    /// The frames held at present, candidates included.
     pub fn frames(&self) -> impl Iterator<Item = &Frame> {
         self.frames.iter().flatten()
     }
 
-    /// The same frames, to fill them again.
+    /// The frames held at present, to be filled again.
     pub fn frames_mut(&mut self) -> impl Iterator<Item = &mut Frame> {
         self.frames.iter_mut().flatten()
     }
@@ -97,7 +97,7 @@ impl Instants {
         shown.filter_map(|(letter, frame)| Some((letter, self.frames[frame?].as_ref()?.drive_time_star)))
     }
 
-    /// Which of the frames shows each instant that there is.
+    /// The frame that shows each instant that the run has had.
     fn shown(&self) -> [Option<usize>; 6] {
         let mut shown = std::array::from_fn(|instant| self.valid[instant].then_some(instant));
         for (instant, known) in [(D, self.known[0]), (E, self.known[1])] {

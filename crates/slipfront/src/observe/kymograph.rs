@@ -1,4 +1,4 @@
-//! Which part of the blocks slides, against place along the drive and time.
+//! Share of the blocks that slide, against place along the drive and time.
 
 use serde::{Deserialize, Serialize};
 
@@ -18,7 +18,7 @@ pub struct Kymograph {
     in_contact: Vec<i64>,
     /// Instants at which blocks were counted.
     samples: u64,
-    /// How many of them a row has; the last may have fewer.
+    /// Instants in each row; the last row may have fewer.
     samples_per_row: u64,
     /// Sliding blocks, summed over the instants of each row: row after row, bin after bin.
     sliding: Vec<i64>,
@@ -36,22 +36,24 @@ impl Default for Kymograph {
 }
 
 impl Kymograph {
-    /// Most rows.
+    /// Largest number of rows.
     pub const MAX_ROWS: usize = 1024;
-    /// Steps from one count to the next: so few that a front which takes some t* is resolved, and so many that a run takes no longer.
+    /// Steps from one count to the next: few enough that a front which takes some t* is resolved, and many enough that a run
+    /// takes no longer.
     pub const INTERVAL: u64 = 8;
 
     /// Bytes of a count.
     pub const COUNT_BYTES: usize = size_of::<i64>();
 
-    /// Most counts that it keeps of a run of so many steps: rows of time times bins of place, whatever the direction of the drive.
+    /// Largest number of counts of a run of `last_step` steps: rows of time times bins of place, whatever the direction of
+    /// the drive.
     pub fn max_counts(lattice: &Lattice, last_step: u64) -> usize {
         let samples = last_step / Self::INTERVAL + 1;
         let rows = samples.min(Self::MAX_ROWS as u64) as usize;
         rows * (lattice.nx + lattice.ny).min(PositionBins::MAX)
     }
 
-    /// Called when it is due.
+    /// The observer with its schedule.
     pub fn scheduled(&mut self) -> Scheduled<'_> {
         Scheduled::new(Schedule::EveryStep(Self::INTERVAL), self)
     }
@@ -61,8 +63,8 @@ impl Kymograph {
         &self.in_contact
     }
 
-    /// Every row: the middle of its instants, as a number of steps, and the share of the blocks in contact of every bin that
-    /// slide, NaN of a bin without contact.
+    /// The rows, each with the middle of its instants, as a number of steps, and the share of the blocks in contact of every
+    /// bin that slide, NaN for a bin without contact.
     pub fn rows(&self) -> impl Iterator<Item = (f64, Vec<f32>)> {
         let rows = self.sliding.chunks(self.in_contact.len().max(1));
         rows.zip(0..).map(|(sliding, row)| {
@@ -74,13 +76,13 @@ impl Kymograph {
         })
     }
 
-    /// The first instant of a row, and how many it has.
+    /// The first instant of a row, and the number of its instants.
     fn samples_of(&self, row: u64) -> (u64, u64) {
         let first = row * self.samples_per_row;
         (first, self.samples_per_row.min(self.samples - first))
     }
 
-    /// Whether this can be the recording of a run of this model up to `step`.
+    /// Whether the recording can be of a run of this model up to `step`.
     pub fn is_consistent_with(&self, model: &Model, step: u64) -> bool {
         let samples = step / Self::INTERVAL + 1;
         let mut samples_per_row = 1;

@@ -5,7 +5,7 @@ use crate::error::RunError;
 use crate::measure::Largest;
 use crate::snapshot::Snapshot;
 
-/// It must be called at every step.
+/// The largest mu* as an observer, which must be called at every step.
 impl Observer for Largest {
     fn observe(&mut self, now: &Snapshot) -> Result<(), RunError> {
         let path = now.model.drive.path(now.drive_time_star);

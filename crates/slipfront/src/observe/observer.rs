@@ -4,25 +4,26 @@ use crate::clock::Clock;
 use crate::error::RunError;
 use crate::snapshot::Snapshot;
 
-/// Something that measures a run.
+/// An observer, which measures a run.
 pub trait Observer {
-    /// Looks at one instant.
+    /// Reads one instant of the run.
     ///
     /// # Errors
     /// [`RunError::Observer`] ends the run.
     fn observe(&mut self, now: &Snapshot) -> Result<(), RunError>;
 
-    /// Whether it needs the stored energies after so many steps of the drive, when it has just moved. They are measured only at steps at which an observer needs them.
+    /// Whether the observer needs the stored energies after `drive_steps` steps of the drive, when the drive has just moved.
+    /// They are measured only at steps at which an observer needs them.
     fn needs_energies(&self, drive_steps: u64) -> bool {
         let _ = drive_steps;
         false
     }
 }
 
-/// At which steps an observer is called.
+/// Steps at which an observer is called.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Schedule {
-    /// At every n-th step from 0, those in which a held drive stands included.
+    /// At every n-th step from 0, including those in which a held drive stands.
     EveryStep(u64),
     /// At every n-th step of the drive from 0.
     Every(u64),
@@ -37,12 +38,12 @@ pub struct Scheduled<'a> {
 }
 
 impl<'a> Scheduled<'a> {
-    /// Calls `observer` as `schedule` says.
+    /// An observer that is called by `schedule`.
     pub fn new(schedule: Schedule, observer: &'a mut dyn Observer) -> Self {
         Self { schedule, observer }
     }
 
-    /// Calls `observer` at every step.
+    /// An observer that is called at every step.
     pub fn always(observer: &'a mut dyn Observer) -> Self {
         Self::new(Schedule::EveryStep(1), observer)
     }

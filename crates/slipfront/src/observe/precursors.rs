@@ -11,17 +11,17 @@ use crate::snapshot::Snapshot;
 /// An event: consecutive steps in which some block in contact slides.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SlipEvent {
-    /// t* at which it begins.
+    /// t* at which the event begins.
     pub from_star: f64,
-    /// How far from the driven edge a block in contact has slid, over the length of the slider.
+    /// Largest distance from the driven edge at which a block in contact has slid, over the length of the slider.
     pub length: f64,
-    /// mu* when it begins.
+    /// mu* at the beginning of the event.
     pub mu_star_before: f64,
-    /// t* at which all blocks in contact are stuck again, and mu* then; none of an event that goes on.
+    /// t* at which all blocks in contact are stuck again, and mu* then; none for an event that goes on.
     pub after: Option<(f64, f64)>,
 }
 
-/// All events of a run. It must be called at every step.
+/// All events of a run. The observer must be called at every step.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Precursors {
     edge: Edge,
@@ -29,15 +29,15 @@ pub struct Precursors {
 }
 
 impl Precursors {
-    /// Fewest steps from an event to the next, on average. Measured were 175 and more.
+    /// Least number of steps from an event to the next, on average. Measured were 175 and more.
     const MIN_STEPS: u64 = 50;
 
-    /// Most events that are reckoned with in a run of so many steps.
+    /// Largest number of events for which memory is counted in a run of `steps` steps.
     pub const fn expected_events(steps: u64) -> u64 {
         steps.div_ceil(Self::MIN_STEPS)
     }
 
-    /// Nothing found yet, in a slider that is driven at `edge`.
+    /// The recording of a slider that is driven at `edge`, with no event yet.
     pub fn new(edge: Edge) -> Self {
         Self {
             edge,
@@ -45,7 +45,7 @@ impl Precursors {
         }
     }
 
-    /// In the order of time; the last may go on.
+    /// The events in the order of time; the last may go on.
     pub fn events(&self) -> &[SlipEvent] {
         &self.events
     }
@@ -55,7 +55,7 @@ impl Precursors {
         self.events.iter().find(|event| event.length >= 1.0)
     }
 
-    /// Whether this can be the recording that began as `new` and was called up to `time_star`.
+    /// Whether the recording can be the one that began as `new` and was called up to `time_star`.
     pub fn is_consistent_with(&self, new: &Self, time_star: f64) -> bool {
         let ended = self
             .events
@@ -69,7 +69,7 @@ impl Precursors {
         self.edge == new.edge && ended && is_rising
     }
 
-    /// How far from the edge a block in contact slides from this instant on, over the length of the slider.
+    /// Distance from the edge up to which blocks in contact slide from this instant on, over the length of the slider.
     fn length(&self, now: &Snapshot) -> f64 {
         let (lattice, edge) = (&now.model.lattice, self.edge);
         let first = lattice.blocks_of(&now.model.rows).start;

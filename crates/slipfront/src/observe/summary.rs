@@ -8,7 +8,7 @@ use crate::measure::{CurvePoint, Peak};
 use crate::model::ONSET_PATH;
 use crate::snapshot::Snapshot;
 
-/// Where the kinetic window begins. It ends with the run.
+/// Beginning of the kinetic window, which ends with the run.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum KineticStart {
     /// At t_s* + 2.5/V*; at 5/V* (twice the usual t_s*, Eq. 12) in a run without a transition.
@@ -18,8 +18,8 @@ pub enum KineticStart {
 }
 
 impl KineticStart {
-    /// Where the window begins, t* of the drive, with the peak of mu* as far as it is known, at a
-    /// [loading speed](crate::Model::loading_speed) of `v_star`.
+    /// Beginning of the window, t* of the drive, with the peak of mu* as far as it is known, at a [loading
+    /// speed](crate::Model::loading_speed) of `v_star`.
     pub fn time_star(&self, peak: &Peak, v_star: f64) -> f64 {
         match *self {
             KineticStart::At(time_star) => time_star,
@@ -49,20 +49,22 @@ pub struct Kinetic {
 pub enum NoUncertainty {
     /// The window is shorter than 40/V*, or holds fewer than 40 steps.
     TooShort {
-        /// t* to which the run should go.
+        /// t* up to which the run should go.
         needed_time_star: f64,
     },
-    /// A program changes the speed of the drive: the run is part of no infinite one.
+    /// A program changes the speed of the drive: the run is no part of an infinite one.
     SpeedChanges,
-    /// The mean of the first half or of the first quarter differs by more than two standard errors from that of the rest: mu* still drifts.
+    /// The mean of the first half or of the first quarter differs by more than two standard errors from the mean of the
+    /// rest: mu* still drifts.
     Drift {
-        /// t* to which the run should go.
+        /// t* up to which the run should go.
         needed_time_star: f64,
     },
 }
 
-/// Keeps mu*, what is across the drive and N* of the whole run as at most [`KineticHistory::BINS`] means over equal numbers of steps in which the
-/// drive moves, so that memory does not grow with the run. Its times are those of the drive. It must be called at every step.
+/// Keeps mu*, the friction across the drive and N* of the whole run as at most [`KineticHistory::BINS`] means over equal
+/// numbers of steps in which the drive moves, so that memory does not grow with the run. Its times are those of the drive.
+/// The observer must be called at every step.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct KineticHistory {
     steps_per_bin: u64,
@@ -82,7 +84,8 @@ impl KineticHistory {
     /// Largest number of means. A shorter run keeps every step.
     pub const BINS: u64 = 16_384;
 
-    /// Most bytes while an uncertainty is sought: the means, and two copies of those of mu*, with as much again to spare.
+    /// Largest number of bytes while an uncertainty is sought: the means, and two copies of those of mu*, with as much again
+    /// to spare.
     pub const MAX_BYTES: usize = Self::BINS as usize * 2 * (size_of::<Bin>() + size_of::<f64>());
 
     /// An empty history of a run of `last_step` steps of the drive; [`u64::MAX`] for a run without an end. A run that goes on for longer
@@ -101,7 +104,8 @@ impl KineticHistory {
         }
     }
 
-    /// Whether this can be the history that began as `new` and was called at every step until the drive had moved in so many.
+    /// Whether the history can be the one that began as `new` and was called at every step until the drive had moved in
+    /// `drive_steps`.
     pub fn is_consistent_with(&self, new: &Self, drive_steps: u64) -> bool {
         let observed = drive_steps.saturating_add(1);
         let mut steps_per_bin = new.steps_per_bin;
@@ -149,7 +153,8 @@ impl KineticHistory {
         self.sliding_percent_max
     }
 
-    /// Means over the window from `from_star` to the end, at a [loading speed](crate::Model::loading_speed) of `v_star`; none if it is empty.
+    /// Means over the window from `from_star` to the end, at a [loading speed](crate::Model::loading_speed) of `v_star`;
+    /// none if the window is empty.
     pub fn kinetic(&self, from_star: f64, dt_star: f64, v_star: f64) -> Option<Kinetic> {
         let bin_time = self.steps_per_bin as f64 * dt_star;
         // The last bin does not count until all of its steps are done.
@@ -192,8 +197,8 @@ fn mean(x: &[f64]) -> f64 {
 /// A difference between parts of a window below this is no drift: it is less than the error of any time step.
 const NEGLIGIBLE_DRIFT: f64 = 1e-6;
 
-/// V* times the shortest window that gives a standard error. Shorter ones hide what changes slowly: across a groove friction still rises by
-/// 0.3 % after the transition, of which nothing is seen over 20/V*.
+/// V* times the shortest window that gives a standard error. Shorter windows hide slow changes: across a groove friction
+/// still rises by 0.3 % after the transition, which does not show over 20/V*.
 const LEAST_PATH: f64 = 40.0;
 
 /// Largest difference between parts of a window that is no drift, in standard errors.
@@ -238,7 +243,7 @@ fn without_line(x: &[f64]) -> Vec<f64> {
     places().zip(x).map(residual).collect()
 }
 
-/// Most values of which an autoregressive model is made: longer series are averaged over neighbours first.
+/// Largest number of values from which an autoregressive model is made: longer series are averaged over neighbours first.
 const MAX_VALUES: usize = 512;
 
 /// Terms of the autoregressive model over the root of the number of values.
@@ -257,9 +262,9 @@ const TERMS: f64 = 1.5;
 /// se^2 = (1/n^2) sum_{|k| < n} (n - |k|) gamma(k)
 /// ```
 ///
-/// A slider that sticks and slips is anticorrelated: what rises in one cycle falls in the next, and the error falls as 1/n and not as
-/// 1/sqrt(n). Estimates from independent blocks do not see that, and criteria that spare terms of the model (of Akaike, of Schwarz) see
-/// less of it.
+/// A slider that sticks and slips is anticorrelated: a rise in one cycle is a fall in the next, and the error falls as 1/n
+/// and not as 1/sqrt(n). Estimates from independent blocks do not see that, and criteria that spare terms of the model (of
+/// Akaike, of Schwarz) see less of it.
 fn standard_error(x: &[f64]) -> f64 {
     let values: Vec<f64> = x.chunks_exact(x.len().div_ceil(MAX_VALUES)).map(mean).collect();
     let n = values.len() as f64;
@@ -273,7 +278,7 @@ fn standard_error(x: &[f64]) -> f64 {
     sum.max(0.0).sqrt() / n
 }
 
-/// gamma(0) to gamma(n - 1) of the autoregressive model of a series of n values.
+/// Autocovariances gamma(0) to gamma(n - 1) of the autoregressive model of a series of n values.
 fn autocovariances(x: &[f64]) -> Vec<f64> {
     let (n, center) = (x.len() as f64, mean(x));
     // Errors of predicting each value from those before it, and of the one before these from them.

@@ -1,4 +1,4 @@
-//! The smallest textured feature and the smallest gap between two: what a tool must be able to make, and blocks to show.
+//! The smallest textured feature and the smallest gap between two: lengths that a tool must make, and blocks must resolve.
 
 use std::collections::HashMap;
 
@@ -9,25 +9,28 @@ use super::pattern::{Array, grids};
 use super::texture::{Cavity, Shape, Texture, Tile};
 use crate::lattice::{Edges, Lattice};
 
-/// Smallest lengths of textures, in blocks; none where there is no such thing.
+/// Smallest lengths of textures, in blocks; none where there is no feature or no gap.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Clearance {
-    /// Smallest width of what is textured.
+    /// Smallest width of a textured part.
     pub feature: Option<f64>,
-    /// Smallest width of what touches between textured parts.
+    /// Smallest width of a part in contact between textured parts.
     pub gap: Option<f64>,
 }
 
-/// Corners by which cavities other than ellipses are measured: a radius is met within five millionths of it.
+/// Corners by which cavities other than ellipses are measured: the radius is met within five millionths.
 const CORNERS: usize = 1024;
-/// Most copies that are all held against each other; of more, those next to each other in every pattern, and at its ends, are.
+/// Largest number of copies that are all compared with each other; of more, those next to each other in every pattern, and
+/// at its ends, are compared.
 const MANY: usize = 4096;
-/// Most points, edges and boxes that are looked at, which takes some tenths of a second: of textures that need more nothing is told.
+/// Largest number of points, edges and boxes that are examined, which takes some tenths of a second; textures that need more
+/// have no result.
 const EFFORT: usize = 50_000_000;
 
-/// The smallest width of each shape and distance between two copies, before edges cut them. Shapes that overlap are one, and those that
-/// lie off the slider do not count. The width of a cavity is that of the largest circle in it, and of a mask these are its shortest runs of
-/// blocks along x and y. Neither is told of more shapes than can be looked at in some tenths of a second.
+/// The smallest width of each shape and distance between two copies, before edges cut them. Shapes that overlap are one, and
+/// those that lie off the slider do not count. The width of a cavity is that of the largest circle in it, and of a mask
+/// these are its shortest runs of blocks along x and y. There is no result for more shapes than can be examined in some
+/// tenths of a second.
 ///
 /// ```
 /// # use slipfront::Lattice;
@@ -91,7 +94,7 @@ fn least(found: &mut Option<f64>, value: Option<f64>) {
     }
 }
 
-/// The shortest runs of blocks along x and y that are inside a mask, and of those that are outside between two of these.
+/// The shortest runs of blocks along x and y that are inside a mask, and the shortest runs outside between two of these.
 fn runs(tile: &Tile) -> [Option<f64>; 2] {
     let [nx, ny] = tile.size;
     let mut found = [None, None];
@@ -119,7 +122,7 @@ struct Drawn {
 }
 
 impl Drawn {
-    /// A shape that is no mask with its widths, inside and outside; none if no copy of it lies on the slider.
+    /// A shape other than a mask, with its widths inside and outside; none if no copy lies on the slider.
     fn of(
         lattice: &Lattice,
         texture: &Texture,
@@ -171,7 +174,7 @@ impl Drawn {
     }
 }
 
-/// The shape of a texture, and how far its copies are shifted from it: all, or some of many. None of a mask.
+/// The form of a texture, and the shifts of its copies: all, or some of many. None for a mask.
 fn form(lattice: &Lattice, texture: &Texture, all: bool) -> Option<(Form, Vec<[f64; 2]>)> {
     let form = match &texture.shape {
         Shape::Cavity(cavity) => match cavity.curve() {
@@ -203,8 +206,8 @@ fn form(lattice: &Lattice, texture: &Texture, all: bool) -> Option<(Form, Vec<[f
     Some((form, places(&texture.arrays, all)))
 }
 
-/// The places of arrays of arrays: all, or of each the first three and the last line along both axes, with all distances between
-/// neighbours.
+/// The places of arrays of arrays: all, or for each array the first three and the last line along both axes, with all
+/// distances between neighbours.
 fn places(arrays: &[Array], all: bool) -> Vec<[f64; 2]> {
     let lines = |count: usize| (0..count).filter(move |&line| all || line < 3 || line + 1 == count);
     arrays.iter().fold(vec![[0.0; 2]], |outer, array| {
@@ -232,7 +235,7 @@ struct Placed {
     at: [f64; 2],
     /// The smallest and the largest coordinate along each axis.
     bounds: [[f64; 2]; 2],
-    /// Whether it goes on from beyond a periodic edge.
+    /// Whether the copy goes on from beyond a periodic edge.
     is_image: bool,
 }
 
@@ -285,7 +288,7 @@ impl<'a> Copies<'a> {
         Ok(false)
     }
 
-    /// The smallest distance between two copies between which all counts; of those that touch there is none.
+    /// The smallest distance between two copies between which all blocks are in contact; none for copies that touch.
     fn least_distance(
         &self,
         effort: &mut Effort,
@@ -473,7 +476,8 @@ mod tests {
         Shape::Groove(groove).into()
     }
 
-    /// What a third shape covers is no gap between two others, nor is there one between grooves that cross or dimples that merge.
+    /// A part that a third shape covers is no gap between two others, nor is there one between grooves that cross or dimples
+    /// that merge.
     #[test]
     fn gaps_are_not_looked_for_below_other_shapes() {
         let free = Lattice::free(60, 60);
@@ -571,8 +575,8 @@ mod tests {
         }
     }
 
-    /// As many copies as are all held against each other, more of them, and as many textures of their own, with a groove that reaches
-    /// over all of them: none is too much to look at.
+    /// As many copies as are all held against each other, more of them, and as many textures of their own, with a groove
+    /// that reaches over all of them: none takes too long.
     #[test]
     fn many_shapes_are_measured_in_little_time() {
         let measured = |lattice: &Lattice, textures: &[Texture]| {

@@ -1,27 +1,28 @@
-//! How far two closed outlines are from each other, and how wide one is. Lengths are in blocks.
+//! The distance between two closed outlines, and the width of one. Lengths are in blocks.
 
 use std::f64::consts::TAU;
 
 use super::contour::Ellipse;
 
-/// Lengths that are none but for the rounding of coordinates: such outlines touch.
+/// Largest length that is zero but for the rounding of coordinates: outlines that are so near touch.
 const TOUCHING: f64 = 1e-6;
-/// Directions of which the best is the first guess of the one in which two ellipses are farthest apart.
+/// Number of directions of which the best is the first guess of the one in which two ellipses are farthest apart.
 const DIRECTIONS: usize = 256;
-/// Times that the interval around this guess is cut by a third: to 1e-9 of it, beyond which the distance no longer changes.
+/// Number of times that the interval around this guess is cut by a third: to 1e-9 of it, beyond which the distance no longer
+/// changes.
 const CUTS: usize = 52;
-/// Corners by which an ellipse is held against a polygon: its radius is met within five millionths.
+/// Corners of the polygon that stands for an ellipse in comparison with a polygon: its radius is met within five millionths.
 const CORNERS: usize = 1024;
 
 /// A closed outline.
 #[derive(Debug)]
 pub(super) enum Form {
     Ellipse(Ellipse),
-    /// By the even-odd rule.
+    /// A polygon, whose inside follows from the even-odd rule.
     Polygon(Vec<[f64; 2]>),
 }
 
-/// Where two outlines are nearest to each other.
+/// The place where two outlines are nearest to each other.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Closest {
     pub(super) distance: f64,
@@ -36,11 +37,11 @@ impl Closest {
     }
 }
 
-/// There was more to look at than is worth it.
+/// Error: there is more to examine than is worth it.
 #[derive(Debug)]
 pub(super) struct TooMuch;
 
-/// How many points, edges and boxes may still be looked at.
+/// Number of points, edges and boxes that may still be examined.
 pub(super) struct Effort(pub(super) usize);
 
 impl Effort {
@@ -76,7 +77,7 @@ impl Form {
         }
     }
 
-    /// Where another form, shifted by so much, is nearest; none if it touches this one or overlaps it.
+    /// The place where another form, shifted by `shift`, is nearest; none if it touches this one or overlaps it.
     pub(super) fn closest(
         &self,
         other: &Self,
@@ -128,7 +129,7 @@ fn along_axes(ellipse: &Ellipse, vector: [f64; 2]) -> [f64; 2] {
     [dot(ellipse.axis, vector), cross(ellipse.axis, vector)]
 }
 
-/// How far an ellipse reaches from its centre in a direction.
+/// Distance that an ellipse reaches from its centre in a direction.
 fn reach(ellipse: &Ellipse, direction: [f64; 2]) -> f64 {
     let [u, v] = along_axes(ellipse, direction);
     libm::hypot(ellipse.semi_axes[0] * u, ellipse.semi_axes[1] * v)
@@ -187,7 +188,7 @@ fn bounds(corners: &[[f64; 2]], axis: usize) -> [f64; 2] {
     })
 }
 
-/// At least so far are two boxes from each other.
+/// Lower bound on the distance of two boxes.
 pub(super) fn between_boxes(one: &[[f64; 2]; 2], other: &[[f64; 2]; 2]) -> f64 {
     let between = |axis: usize| {
         let ([low, high], [from, to]) = (one[axis], other[axis]);
@@ -233,7 +234,7 @@ fn do_cross([p, q]: [[f64; 2]; 2], [r, s]: [[f64; 2]; 2]) -> bool {
     a != b && c != d
 }
 
-/// Where two polygons are nearest to each other; none if they overlap.
+/// The place where two polygons are nearest to each other; none if they overlap.
 fn between_polygons(
     one: &[[f64; 2]],
     other: &[[f64; 2]],

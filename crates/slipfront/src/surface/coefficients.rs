@@ -17,7 +17,7 @@ pub struct Distribution {
 }
 
 impl Distribution {
-    /// Makes coefficients of standard normals.
+    /// Turns standard normals into coefficients.
     fn scale(self, normals: impl Iterator<Item = f64>, coefficients: &mut [f64]) {
         for (coefficient, z) in coefficients.iter_mut().zip(normals) {
             *coefficient = self.mean + self.deviation * z;
@@ -25,13 +25,13 @@ impl Distribution {
     }
 }
 
-/// Local coefficients of every block, as if there were no texture. Draws may be negative: [`Surface`](super::Surface) sets them to 0,
-/// and counts those of blocks in contact.
+/// Local coefficients of every block, as if there were no texture. Draws may be negative: [`Surface`](super::Surface) sets
+/// such draws to 0, and counts those of blocks in contact.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Coefficients {
-    /// `mu_si`, one per block.
+    /// Static coefficients `mu_si`, one per block.
     pub mu_static: Vec<f64>,
-    /// `mu_ki`, one per block.
+    /// Kinetic coefficients `mu_ki`, one per block.
     pub mu_kinetic: Vec<f64>,
 }
 
@@ -101,8 +101,8 @@ impl Coefficients {
         }
     }
 
-    /// Sets the coefficients of textured blocks and negative draws to 0: number of the latter, static and kinetic together, of blocks
-    /// in contact.
+    /// Sets the coefficients of textured blocks and negative draws to 0. Returns the number of negative draws, static and
+    /// kinetic together, of blocks in contact.
     pub(super) fn restrict(&mut self, textured: &[bool]) -> usize {
         let restrict = |coefficients: &mut [f64]| -> usize {
             let pairs = coefficients.par_iter_mut().with_min_len(PART).zip(textured);
@@ -119,17 +119,18 @@ impl Coefficients {
     }
 }
 
-/// Most blocks whose standard normals are kept. Those of more are drawn on several threads.
+/// Largest number of blocks whose standard normals are kept. The normals of more blocks are drawn on several threads.
 const MAX_KEPT: usize = 10_000;
 
-/// Blocks for which a thread draws at once: some tenths of a millisecond of work. Fewer are not worth waking a thread.
+/// Number of blocks for which a thread draws at once: some tenths of a millisecond of work. Fewer are not worth waking a
+/// thread.
 pub(super) const PART: usize = 1 << 13;
 
 /// Standard normals, with the seed and the blocks that they are drawn for.
 type Kept = (u64, Range<usize>, Vec<f64>);
 
 thread_local! {
-    /// The standard normals drawn last from each stream: most of the cases of a study have the same.
+    /// The standard normals drawn last from each stream, which most of the cases of a study share.
     static LAST_NORMALS: RefCell<[Kept; STREAMS.len()]> =
         const { RefCell::new([(0, 0..0, Vec::new()), (0, 0..0, Vec::new())]) };
 }
@@ -137,7 +138,7 @@ thread_local! {
 /// Words of 32 bits that a standard normal takes from its stream: two uniforms of two words.
 const WORDS_PER_DRAW: u128 = 4;
 
-/// Row of the numbers that are drawn block by block; other rows are those of the nodes of a grid.
+/// Row of the numbers that are drawn block by block; other rows belong to the nodes of a grid.
 const BY_BLOCK: u64 = 0;
 
 /// Standard normals of a row from draw `first` on, by Box and Muller from two uniforms each, so that draw n always has the same position
@@ -211,7 +212,7 @@ mod tests {
         );
     }
 
-    /// Of blocks in contact alone: what is drawn for a textured block changes nothing.
+    /// Negative draws of blocks in contact alone count: a draw for a textured block changes nothing.
     #[test]
     fn negative_draws_become_zero_and_are_counted() {
         let wide = Distribution {
@@ -266,7 +267,7 @@ mod tests {
         }
     }
 
-    /// Pinned: a change of these numbers changes every surface ever published with a seed.
+    /// The numbers are pinned: a change of them changes every surface ever published with a seed.
     #[test]
     fn the_first_draws_of_seed_one_never_change() {
         let z: Vec<f64> = standard_normals(1, Stream::MuStatic, BY_BLOCK, 0)

@@ -15,18 +15,18 @@ pub enum Contour {
     Ellipse(Ellipse),
     /// The corners of a polygon, in order; its inside follows from the even-odd rule.
     Polygon(Vec<[f64; 2]>),
-    /// What edges leave of an ellipse: each piece begins where the one before ends.
+    /// The parts of an ellipse within the edges: each piece begins where the one before ends.
     Pieces(Vec<Piece>),
 }
 
 /// An ellipse, a circle if both semi-axes are equal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ellipse {
-    /// Its centre.
+    /// Centre of the ellipse.
     pub center: [f64; 2],
-    /// Its semi-axes.
+    /// Semi-axes of the ellipse.
     pub semi_axes: [f64; 2],
-    /// The direction of the first of them, of length 1.
+    /// Direction of the first semi-axis, of length 1.
     pub axis: [f64; 2],
 }
 
@@ -57,7 +57,7 @@ impl Ellipse {
         ]
     }
 
-    /// Where a coordinate has this value: at two parameters from 0 to a turn, or nowhere.
+    /// The two parameters from 0 to a turn at which a coordinate has this value, if there are any.
     fn crossings(&self, axis: usize, value: f64) -> Option<[f64; 2]> {
         let [c, s] = self.axis;
         let [cosine, sine] = match axis {
@@ -75,7 +75,7 @@ impl Ellipse {
 }
 
 impl Piece {
-    /// Where it begins and ends.
+    /// First and last point of the piece.
     pub fn ends(&self) -> [[f64; 2]; 2] {
         match self {
             Self::Line(ends) => *ends,
@@ -140,7 +140,7 @@ pub fn contours(lattice: &Lattice, texture: &Texture) -> Option<Vec<Contour>> {
     Some(contours)
 }
 
-/// The shifts by whole sliders along periodic axes that bring what lies within these bounds onto the slider.
+/// The shifts by whole sliders along periodic axes that bring a contour within these bounds onto the slider.
 fn placed(lattice: &Lattice, bounds: [[f64; 2]; 2]) -> Vec<[f64; 2]> {
     let along = |axis: usize| -> Vec<f64> {
         let size = [lattice.nx, lattice.ny][axis] as f64;
@@ -155,7 +155,7 @@ fn placed(lattice: &Lattice, bounds: [[f64; 2]; 2]) -> Vec<[f64; 2]> {
     y.iter().flat_map(|&y| x.iter().map(move |&x| [x, y])).collect()
 }
 
-/// What of a curve lies on the slider, if anything.
+/// The part of a curve that lies on the slider, if any.
 fn within(lattice: &Lattice, contour: Contour) -> Option<Contour> {
     let mut pieces = match contour {
         Contour::Ellipse(ellipse) => {
@@ -211,7 +211,7 @@ fn within(lattice: &Lattice, contour: Contour) -> Option<Contour> {
 struct HalfPlane {
     axis: usize,
     limit: f64,
-    /// 1 if they lie above the limit, else -1.
+    /// Sign of the half-plane: 1 if its points lie above the limit, else -1.
     side: f64,
 }
 
@@ -220,7 +220,7 @@ impl HalfPlane {
         self.side * (point[self.axis] - self.limit) >= 0.0
     }
 
-    /// What lies here of a closed curve, closed again by lines along the limit (Sutherland and Hodgman).
+    /// The part of a closed curve in the half-plane, closed again by lines along the limit (Sutherland and Hodgman).
     fn cut(&self, pieces: &[Piece]) -> Vec<Piece> {
         let mut kept: Vec<Piece> = Vec::new();
         for piece in pieces {
@@ -243,7 +243,7 @@ impl HalfPlane {
         kept
     }
 
-    /// The parts of a piece that lie here, in order.
+    /// The parts of a piece that lie in the half-plane, in order.
     fn parts(&self, piece: &Piece) -> Vec<Piece> {
         match *piece {
             Piece::Line([from, to]) => {

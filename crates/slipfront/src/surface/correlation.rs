@@ -1,5 +1,5 @@
-//! Friction coefficients that are alike over a length: means over blocks of a Gaussian random field that belongs to the seed and the place
-//! in the slider (Eq. 1).
+//! Friction coefficients that are alike over a length: means over blocks over a Gaussian random field that depends on the
+//! seed and the place in the slider (Eq. 1).
 //!
 //! Standard normals z stand at the nodes of a grid whose pitch is a part of the correlation length xi, and not of a block:
 //!
@@ -21,7 +21,7 @@ use crate::lattice::{Edges, Lattice};
 /// Fewest nodes in a correlation length: the variance of the field then differs by 1e-9 of itself from place to place, with two by 2e-4.
 const NODES_PER_LENGTH: f64 = 3.0;
 
-/// Pitches of `xi/3` over which a node is felt: beyond them, from `sqrt(2) 13/3 = 6.1` on, the error function is 1 to the last bit.
+/// Reach of a node in pitches of `xi/3`: beyond it, from `sqrt(2) 13/3 = 6.1` on, the error function is 1 to the last bit.
 const REACH: f64 = 13.0;
 
 /// Share of a pitch by which it may exceed a third of the correlation length, so that the rounding of two lengths leaves the number of nodes
@@ -47,8 +47,9 @@ pub struct CorrelatedField {
 }
 
 impl CorrelatedField {
-    /// Correlation lengths that can be drawn, in blocks. Below the least, means over neighbouring blocks are correlated by 8 % and less, and
-    /// more than 144 numbers are drawn for a block; above the largest, the differences of error functions are lost to rounding.
+    /// Correlation lengths that can be drawn, in blocks. Below the shortest length, means over neighbouring blocks are
+    /// correlated by 8 % and less, and more than 144 numbers are drawn for a block; above the longest length, the
+    /// differences of error functions are lost to rounding.
     pub const LENGTHS: RangeInclusive<f64> = 0.25..=1e5;
 
     /// The field of correlation length `length` under the blocks of a lattice.
@@ -82,8 +83,8 @@ impl CorrelatedField {
     }
 }
 
-/// Factor by which the standard deviation of a field falls when it is averaged along an interval of a length, of a field correlated over
-/// `xi`: `I^(1/2)`, with `a = xi/length`; over a square of that side by `I`.
+/// Factor by which the standard deviation of a field falls when it is averaged along an interval of a length, for a field
+/// correlated over `xi`: `I^(1/2)`, with `a = xi/length`; over a square of that side the factor is `I`.
 ///
 /// ```text
 /// I = sqrt(pi) a erf(1/a) - a^2 (1 - exp(-1/a^2))
@@ -103,8 +104,8 @@ impl Coefficients {
     /// Draws `mu_si` and `mu_ki` for the blocks in some rows of the lattice of two fields of the same correlation length, independent of each
     /// other: `mu_si = mean + deviation g_i`, with the mean g_i of the field over block i.
     ///
-    /// The fields depend on `seed`, the correlation length, the place and, along a periodic axis, its length alone: other blocks and other
-    /// rows find the same surface.
+    /// The fields depend only on `seed`, the correlation length, the place and, along a periodic axis, its length: other
+    /// blocks and other rows find the same surface.
     pub fn draw_correlated(
         field: &CorrelatedField,
         rows: &Range<usize>,
@@ -137,9 +138,9 @@ impl Coefficients {
     }
 }
 
-/// Adds the means `sum_m w_jm sum_n w_in z_mn` over the blocks of some rows, of which `first_row` is the first in `rows`. Both sums follow
-/// the order of the nodes, so that a block has the same bits with whatever others it is found. `normals` are those of a row of nodes from
-/// a number on.
+/// Adds the means `sum_m w_jm sum_n w_in z_mn` over the blocks of some rows, of which `first_row` is the first in `rows`.
+/// Both sums follow the order of the nodes, so that the bits of a block do not depend on the other blocks of the call.
+/// `normals` gives the standard normals of a row of nodes from a number on.
 fn add_means<N: Iterator<Item = f64>>(
     columns: &Means,
     rows: &Means,
@@ -180,9 +181,9 @@ struct Axis {
     length: f64,
     /// Distance of the nodes, blocks: node k stands at `k pitch`.
     pitch: f64,
-    /// Number of nodes after which they repeat, along a periodic axis.
+    /// Number of nodes after which the nodes repeat, along a periodic axis.
     period: Option<usize>,
-    /// `A` along the axis, with which the field has the variance 1.
+    /// Factor `A` along the axis, with which the field has the variance 1.
     amplitude: f64,
 }
 
@@ -206,7 +207,7 @@ impl Axis {
         }
     }
 
-    /// What the nodes add to means over intervals of `size` blocks.
+    /// Contributions of the nodes to means over intervals of `size` blocks.
     fn means(self, intervals: Range<usize>, size: usize) -> Means {
         let reach = REACH / NODES_PER_LENGTH * self.length;
         let within = ((size as f64 + 2.0 * reach) / self.pitch).ceil() as usize + 1;
@@ -233,14 +234,14 @@ impl Axis {
     }
 }
 
-/// What the nodes along an axis add to means over intervals.
+/// Contributions of the nodes along an axis to means over intervals.
 struct Means {
     axis: Axis,
-    /// Nodes that an interval feels, one copy of each.
+    /// Number of nodes that contribute to an interval, one copy of each.
     width: usize,
-    /// The first of them, by interval.
+    /// The first node of each interval.
     first: Vec<i64>,
-    /// Their weights, interval after interval.
+    /// Weights of the nodes, interval after interval.
     weights: Vec<f64>,
 }
 
@@ -250,12 +251,12 @@ impl Means {
         self.first.len()
     }
 
-    /// Weights of the nodes that an interval feels.
+    /// Weights of the nodes that contribute to an interval.
     fn weights(&self, interval: usize) -> &[f64] {
         &self.weights[self.width * interval..][..self.width]
     }
 
-    /// The nodes that some intervals feel.
+    /// The nodes that contribute to some intervals.
     fn nodes(&self, intervals: Range<usize>) -> Range<i64> {
         match &self.first[intervals] {
             [first, .., last] | [first @ last] => *first..last + self.width as i64,
@@ -263,7 +264,7 @@ impl Means {
         }
     }
 
-    /// Number of a node, from 0: copies of a node have the same.
+    /// Number of a node, from 0; copies of a node have the same number.
     fn number(&self, node: i64) -> usize {
         match self.axis.period {
             Some(period) => node.rem_euclid(period as i64) as usize,
@@ -504,7 +505,7 @@ mod tests {
         check(apart, 0.0, "static and kinetic");
     }
 
-    /// Pinned: a change of these numbers changes every surface ever published with a seed and a correlation length.
+    /// The numbers are pinned: a change of them changes every surface ever published with a seed and a correlation length.
     #[test]
     fn the_first_means_of_seed_one_never_change() {
         let field = CorrelatedField::new(&Lattice::free(3, 1), 2.0);

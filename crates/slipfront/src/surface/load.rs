@@ -2,11 +2,11 @@
 
 use crate::lattice::Lattice;
 
-/// What happens to the load of textured blocks, which carry none.
+/// Distribution of the load of textured blocks, which carry none.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Load {
-    /// The blocks in contact carry the whole load: `F_n,i = p_i l^2 sum_all p/sum_contact p`, which is `P l^2 N/N_contact` under
-    /// an equal pressure. The paper's model.
+    /// The blocks in contact carry the whole load: `F_n,i = p_i l^2 sum_all p/sum_contact p`, which is `P l^2 N/N_contact`
+    /// under an equal pressure. This is the paper's model.
     Redistributed,
     /// Every block in contact carries `p_i l^2`; the load of the textured blocks is lost. For comparison.
     Kept,
@@ -22,31 +22,31 @@ impl Load {
     }
 }
 
-/// What makes thresholds of coefficients: `mu_i F_n,i + tau_a l^2`.
+/// Parameters that turn coefficients into thresholds, `mu_i F_n,i + tau_a l^2`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Contact {
-    /// What happens to the load of textured blocks.
+    /// Distribution of the load of textured blocks.
     pub load: Load,
     /// Scale of all forces, `mu_s`.
     pub mu_static_mean: f64,
     /// Local pressure `p_i/P` of every block that this process holds, before the load of textured ones is distributed; 1 if there
     /// are none.
     pub pressure: Option<Vec<f64>>,
-    /// What adds to friction whatever the load.
+    /// Friction that does not depend on the load.
     pub adhesion: Adhesion,
 }
 
 /// Shear strength of the contact without load, in units of `P mu_s`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Adhesion {
-    /// Added to the static threshold of a block in contact, `tau_a l^2`.
+    /// Strength added to the static threshold of a block in contact, `tau_a l^2`.
     pub of_static: f64,
-    /// Added to its kinetic friction, `tau_ak l^2`.
+    /// Strength added to the kinetic friction of a block in contact, `tau_ak l^2`.
     pub of_kinetic: f64,
 }
 
 impl Contact {
-    /// Equal pressure, without adhesion.
+    /// Contact with equal pressure, without adhesion.
     pub fn new(load: Load, mu_static_mean: f64) -> Self {
         Self {
             load,

@@ -1,5 +1,5 @@
-//! Which blocks are textured: those whose centre lies inside the outline of any texture. Outlines wrap around periodic axes
-//! and are clipped at free edges. A rank meshes its own rows and no others.
+//! Textured blocks: those whose centre lies inside the outline of any texture. Outlines wrap around periodic axes and are
+//! clipped at free edges. A rank meshes its own rows and no others.
 
 use std::convert::Infallible;
 use std::ops::Range;
@@ -26,8 +26,8 @@ pub fn mesh(lattice: &Lattice, textures: &[Texture]) -> Meshed {
     meshed
 }
 
-/// [`mesh`] of some rows, with textures that may take long: `watch` is told the share that is done, row of blocks by row of
-/// blocks, and its error ends it.
+/// Meshes some rows as [`mesh`] does, with textures that may take long: `watch` gets the share that is done, row of blocks
+/// by row of blocks, and its error ends the meshing.
 pub fn mesh_watched<E>(
     lattice: &Lattice,
     rows: &Range<usize>,
@@ -63,7 +63,7 @@ pub fn mesh_watched<E>(
     })
 }
 
-/// Whether copies of a texture's shape have blocks in common, on all of a lattice.
+/// Whether copies of a texture's shape have blocks in common, anywhere on the lattice.
 pub fn copies_overlap(lattice: &Lattice, texture: &Texture) -> bool {
     let rows = 0..lattice.ny;
     let mut mask = Mask::new(lattice, &rows);
@@ -71,8 +71,8 @@ pub fn copies_overlap(lattice: &Lattice, texture: &Texture) -> bool {
     mask.overlaps
 }
 
-/// Crossings that are farther apart than this have the same order around every centre: coordinates of up to 10^7 blocks are
-/// rounded by 10^-9.
+/// Least distance of crossings that have the same order around every centre: coordinates of up to 10^7 blocks are rounded by
+/// 10^-9.
 const DISTINCT: f64 = 1e-6;
 
 /// The largest distance between neighbouring lines of a grid.
@@ -87,7 +87,7 @@ struct Mask<'a> {
     /// The rows that are meshed.
     rows: &'a Range<usize>,
     textured: Vec<bool>,
-    /// Those that one outline, or overlapping ones, cover from edge to edge.
+    /// Rows that one outline, or overlapping ones, cover from edge to edge.
     full: Vec<bool>,
     /// Whether the present texture covers any block of these rows.
     covers: bool,
@@ -107,7 +107,7 @@ impl<'a> Mask<'a> {
         }
     }
 
-    /// Marks the blocks inside any of the copies of a shape; gives whether one of these extends beyond a free edge.
+    /// Marks the blocks inside any of the copies of a shape; returns whether a copy extends beyond a free edge.
     fn cover_copies<E>(
         &mut self,
         shape: &Shape,
@@ -123,14 +123,14 @@ impl<'a> Mask<'a> {
         }
     }
 
-    /// Marks the blocks that another mask does not.
+    /// Marks the blocks that another mask does not mark.
     fn cover_all_but(&mut self, inside: &Mask) {
         self.covers = inside.textured.contains(&false);
         let pairs = self.textured.iter_mut().zip(&inside.textured);
         pairs.for_each(|(textured, inside)| *textured |= !inside);
     }
 
-    /// Marks the blocks inside any of the outlines; gives whether one of these extends beyond a free edge.
+    /// Marks the blocks inside any of the outlines; returns whether an outline extends beyond a free edge.
     fn cover<E>(
         &mut self,
         outlines: &Outlines,
@@ -168,8 +168,8 @@ impl<'a> Mask<'a> {
 
     /// Marks the blocks of a row inside any of the outlines around `centers`, which are at most `gap` apart.
     ///
-    /// Where all neighbours overlap, their union is one interval from the first to the last of them: what remains to be done does
-    /// not grow with their number.
+    /// Where all neighbours overlap, their union is one interval from the first to the last, and the work does not grow with
+    /// their number.
     fn cover_row(
         &mut self,
         row: isize,
@@ -231,7 +231,7 @@ impl<'a> Mask<'a> {
         self.fill(row, start..end);
     }
 
-    /// Marks the blocks of the copies of a groove; gives whether one extends beyond a free edge.
+    /// Marks the blocks of the copies of a groove; returns whether a copy extends beyond a free edge.
     fn cover_strips(&mut self, groove: &Groove, grids: &[Grid]) -> bool {
         let Lattice { nx, ny, edges } = *self.lattice;
         let mut is_clipped = false;
@@ -247,7 +247,7 @@ impl<'a> Mask<'a> {
         is_clipped
     }
 
-    /// Marks the blocks of the copies of a mask; gives whether one extends beyond a free edge.
+    /// Marks the blocks of the copies of a mask; returns whether a copy extends beyond a free edge.
     fn cover_tiles<E>(
         &mut self,
         tile: &Tile,

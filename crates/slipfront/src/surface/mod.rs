@@ -1,8 +1,8 @@
 //! The sliding surface: local friction coefficients, texture and load of every block.
 //!
-//! [`Coefficients`] are drawn, by block or of a [`CorrelatedField`], or given, [`mesh`] finds the textured blocks, and the
-//! [`Load`] is distributed over the blocks in contact; [`Surface::new`] makes the friction thresholds of all blocks from the three,
-//! [`Surface::of_ranks`] those of the blocks that a rank holds.
+//! [`Coefficients`] are drawn by block or from a [`CorrelatedField`], or given; [`mesh`] finds the textured blocks, and the
+//! [`Load`] is distributed over the blocks in contact; [`Surface::new`] makes the friction thresholds of all blocks from the
+//! three, and [`Surface::of_ranks`] does so for the blocks that a rank holds.
 
 mod clearance;
 mod closest;
@@ -38,7 +38,7 @@ use crate::slider::Slider;
 
 /// Friction of every block; arrays have one value per block that this process holds.
 ///
-/// Its methods on the whole surface tell what the arrays were when it was made.
+/// The results of its methods on the whole surface are those of the arrays at the time when it was made.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Surface {
     /// Whether a block has no contact with the substrate: it lies over a texture, or does not exist.
@@ -55,7 +55,8 @@ pub struct Surface {
 }
 
 impl Surface {
-    /// Sets the coefficients of textured blocks, and negative ones, to 0 and distributes the load, the same on all blocks before.
+    /// A surface on which the coefficients of textured blocks, and negative ones, are set to 0 and the load, at first equal
+    /// on all blocks, is distributed.
     ///
     /// `mu_static_mean` is the scale of all forces. Fails when no block is left in contact.
     pub fn new(
@@ -68,8 +69,8 @@ impl Surface {
         Self::of_ranks(coefficients, textured, contact, &Slider::default(), &Alone)
     }
 
-    /// The surface under the blocks of `slider` that this rank holds, called by all `ranks` of a lattice at once. What depends on
-    /// the whole surface has the same bits on all of them, however many they are. Fails when no block is left in contact.
+    /// The surface under the blocks of `slider` that this rank holds, called by all `ranks` of a lattice at once. Numbers of
+    /// the whole surface have the same bits on all ranks, for any number of them. Fails when no block is left in contact.
     ///
     /// # Panics
     /// Unless coefficients, texture and pressures are of the same number of blocks.
@@ -126,7 +127,7 @@ impl Surface {
         Ok(surface)
     }
 
-    /// That of some blocks. What is known of the whole surface stays.
+    /// The surface under some of the blocks. Numbers of the whole surface stay.
     pub(crate) fn of_some_blocks(&self, blocks: &Range<usize>) -> Self {
         let some = |values: &[f64]| values[blocks.clone()].to_vec();
         Self {
@@ -174,7 +175,7 @@ impl Surface {
         self.limit(coefficient, self.contact.adhesion.of_static, b)
     }
 
-    /// What adds to friction whatever the load.
+    /// Friction that does not depend on the load.
     pub fn adhesion(&self) -> Adhesion {
         self.contact.adhesion
     }
@@ -191,7 +192,7 @@ impl Surface {
         coefficient / self.contact.mu_static_mean * self.normal_force(b) + adhesion
     }
 
-    /// [`kinetic_force`](Self::kinetic_force) of the blocks from `first` on.
+    /// Reads [`kinetic_force`](Self::kinetic_force) of the blocks from `first` on.
     #[inline(always)]
     pub(crate) fn read_kinetic_forces(&self, first: usize, forces: &mut [f64]) {
         for (b, force) in (first..).zip(forces) {
@@ -249,14 +250,15 @@ impl Surface {
         (sum + whole.n_contact as f64 * self.contact.adhesion.of_kinetic) / whole.n_blocks as f64
     }
 
-    /// Mean static threshold over the same blocks: `mean(mu_si F_n,i + tau_as l^2)` in units of `P mu_s l^2`.
+    /// Mean static threshold over all blocks that exist, textured ones included: `mean(mu_si F_n,i + tau_as l^2)` in units
+    /// of `P mu_s l^2`.
     pub fn mean_static_force(&self) -> f64 {
         let whole = &self.whole;
         let sum = whole.sum_static_pressure / self.contact.mu_static_mean * self.load_factor;
         (sum + whole.n_contact as f64 * self.contact.adhesion.of_static) / whole.n_blocks as f64
     }
 
-    /// Load of a block in contact over what it would be if every block touched: `N/N_contact` of an even pressure, and 1 if the load of
+    /// Load of a block in contact over its load if every block touched: `N/N_contact` for an even pressure; 1 if the load of
     /// textured blocks is not redistributed.
     pub fn load_factor(&self) -> f64 {
         self.load_factor

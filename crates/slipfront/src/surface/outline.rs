@@ -1,22 +1,23 @@
 //! Closed outlines that can be cut by a horizontal line, once or on grids of centres.
 //!
-//! Where a line cuts an outline depends on the height of its centre alone, but for a shift along x. So the cut is found once for
-//! all outlines of a row of a grid, and each of its ends is placed with the rounding of an outline that stands there alone.
+//! The cut of a line with an outline depends only on the height of its centre, but for a shift along x. So the cut is found
+//! once for all outlines of a row of a grid, and each of its ends is placed with the rounding of an outline that stands
+//! there alone.
 
 use super::pattern::Grid;
 
 /// Outlines of one curve, around every crossing of some grids of lines.
 pub(super) struct Outlines {
     pub(super) curve: Curve,
-    /// The grids of their centres.
+    /// The grids of the outlines' centres.
     pub(super) centers: Vec<Grid>,
 }
 
 /// An outline around (0, 0).
 pub(super) enum Curve {
-    /// Its semi-axes, and the direction of the first of them.
+    /// An ellipse, by its semi-axes and the direction of the first.
     Ellipse { semi_axes: [f64; 2], axis: [f64; 2] },
-    /// By the even-odd rule.
+    /// A polygon, whose inside follows from the even-odd rule.
     Polygon(Vec<Vertex>),
 }
 
@@ -34,7 +35,7 @@ pub(super) struct Vertex {
 }
 
 impl Vertex {
-    /// Where it lies of the polygon with this centre.
+    /// Place of the corner in the polygon with this centre.
     pub(super) fn around(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         [add(self.x, x), add(self.y, y)]
     }
@@ -142,13 +143,13 @@ fn edges(vertices: &[Vertex], center: f64) -> Vec<Edge> {
 /// Outlines that are cut by one horizontal line after the other.
 pub(super) struct Sweep<'a> {
     curve: &'a Curve,
-    /// y of the centres.
+    /// Coordinate y of the centres.
     center: f64,
     /// The edges of a polygon, the lowest first.
     edges: Vec<Edge>,
-    /// The first of them that lies above the line.
+    /// The first edge that lies above the line.
     next: usize,
-    /// Those that the line cuts.
+    /// The edges that the line cuts.
     cut: Vec<Edge>,
 }
 
@@ -157,12 +158,12 @@ pub(super) struct Sweep<'a> {
 pub(super) struct Crossing {
     from: Terms,
     to: Terms,
-    /// Share of the way from the one to the other.
+    /// Share of the way from one corner of the edge to the other.
     share: f64,
 }
 
 impl Crossing {
-    /// x of the crossing with the outline around this x.
+    /// Coordinate x of the crossing with the outline around this x.
     pub(super) fn x(&self, center: f64) -> f64 {
         let (from, to) = (add(self.from, center), add(self.to, center));
         from + self.share * (to - from)

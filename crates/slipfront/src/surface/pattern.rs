@@ -1,11 +1,11 @@
-//! Patterns: where the copies of a shape stand.
+//! Patterns: the places of the copies of a shape.
 
 use crate::lattice::Lattice;
 
 /// An array of places around a middle, in columns and rows.
 ///
-/// Odd rows of a staggered one are shifted by half a column against the even ones, a quarter each way: with rows `sqrt(3)/2`
-/// columns apart, every place has six neighbours at one distance.
+/// Odd rows of a staggered array are shifted by half a column against the even ones, a quarter each way: with rows
+/// `sqrt(3)/2` columns apart, every place has six neighbours at one distance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Array {
     /// Columns and rows.
@@ -27,7 +27,7 @@ impl Array {
         }
     }
 
-    /// The same with every second row shifted.
+    /// The array with every second row shifted.
     pub fn staggered(self) -> Self {
         Self {
             staggered: true,
@@ -40,7 +40,7 @@ impl Array {
         self.spacing[axis] * (line as f64 - 0.5 * (self.count[axis] as f64 - 1.0))
     }
 
-    /// How far a row is shifted, in columns.
+    /// Shift of a row, in columns.
     fn aside(&self, row: usize) -> f64 {
         match (self.staggered && self.count[1] > 1, row % 2) {
             (false, _) => 0.0,
@@ -55,7 +55,7 @@ impl Array {
         [x, self.shift(1, row)]
     }
 
-    /// Its places as rectangular grids: one, or that of even rows and that of odd ones.
+    /// Places of the array as rectangular grids: one, or one of even rows and one of odd rows.
     fn grids(&self) -> Vec<Grid> {
         let [columns, rows] = self.count;
         let grid = |first_row: usize, rows: &mut dyn Iterator<Item = usize>| {
@@ -79,7 +79,7 @@ impl Array {
 /// none empty.
 pub(super) type Grid = [Vec<f64>; 2];
 
-/// The places of arrays of arrays, as shifts from the middle of all.
+/// The places of arrays of arrays, as shifts from the middle of all places.
 pub(super) fn grids(arrays: &[Array]) -> Vec<Grid> {
     let alone = vec![[vec![0.0], vec![0.0]]];
     arrays.iter().fold(alone, |outer, array| {
@@ -93,7 +93,7 @@ pub(super) fn grids(arrays: &[Array]) -> Vec<Grid> {
     })
 }
 
-/// Every one of the first lines with every one of the second, in rising order.
+/// Sums of every one of the first lines with every one of the second, in rising order.
 fn sums(outer: &[f64], inner: &[f64]) -> Vec<f64> {
     let sums = outer
         .iter()
@@ -108,7 +108,7 @@ pub(super) fn n_rows(grids: &[Grid]) -> usize {
     grids.iter().map(|[_, rows]| rows.len()).sum()
 }
 
-/// How many places arrays of arrays have.
+/// Number of places of arrays of arrays.
 ///
 /// ```
 /// # use slipfront::surface::{Array, n_copies};

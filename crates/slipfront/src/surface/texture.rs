@@ -11,12 +11,13 @@ use super::pattern::{Array, Grid, grids, n_copies};
 use crate::lattice::Lattice;
 use crate::vector_field::unit_vector;
 
-/// A textured zone: what copies of one shape cover, or what lies between them.
+/// A textured zone: the blocks inside the copies of one shape, or the blocks between them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Texture {
     /// The shape.
     pub shape: Shape,
-    /// Where its copies stand: every place of the first array holds the second one, and so on. Without an array it stands alone.
+    /// Places of the copies: every place of the first array holds the second one, and so on. Without an array the shape
+    /// stands alone.
     pub arrays: Vec<Array>,
     /// Whether all blocks but those inside the copies are textured: the shapes are pillars.
     pub inverted: bool,
@@ -41,12 +42,13 @@ pub enum Shape {
     Groove(Groove),
     /// Any polygon, by the even-odd rule; the copies are spread around where it stands.
     Polygon(Vec<[f64; 2]>),
-    /// Block by block; the copies are spread around the middle of the slider.
+    /// A mask, block by block; the copies are spread around the middle of the slider.
     Tile(Tile),
 }
 
 impl Shape {
-    /// How many copies of the shape cover different places: those of a groove beside each other, and not along it.
+    /// Number of copies of the shape that cover different places: copies of a groove beside each other count, copies along
+    /// it do not.
     pub fn n_copies(&self, arrays: &[Array]) -> usize {
         match self {
             Self::Groove(groove) => groove.shifts(&grids(arrays)).len(),
@@ -54,7 +56,8 @@ impl Shape {
         }
     }
 
-    /// How far the shape reaches from the origin, in blocks, or somewhat farther; 0 of a mask, which lies in the slider.
+    /// Distance from the origin up to which the shape reaches, in blocks, or somewhat more; 0 for a mask, which lies in the
+    /// slider.
     pub fn reach(&self) -> f64 {
         let farthest = |lengths: &[f64]| lengths.iter().copied().map(f64::abs).fold(0.0, f64::max);
         match self {
@@ -65,7 +68,7 @@ impl Shape {
         }
     }
 
-    /// Most corners of the outline of a copy; none of a mask.
+    /// Largest number of corners of the outline of a copy; none for a mask.
     pub fn n_corners(&self) -> usize {
         match self {
             Self::Cavity(cavity) if cavity.s > 1 && cavity.w != 0.0 => OUTLINE_VERTICES,
@@ -81,14 +84,14 @@ impl Shape {
 pub struct Tile {
     /// Blocks along x and along y.
     pub size: [usize; 2],
-    /// The rows of it that are known: all, or of one that covers the lattice those that are meshed.
+    /// The known rows of the mask: all, or for a mask that covers the lattice the rows that are meshed.
     pub rows: Range<usize>,
-    /// Whether each block of these rows is inside, row by row in rising y; several textures may have the same mask.
+    /// Whether each block of the known rows is inside, row by row in rising y; several textures may have the same mask.
     pub blocks: Arc<Vec<bool>>,
 }
 
 impl Tile {
-    /// Where the copies of a mask of this size begin: blocks of the lattice, which may lie beyond its edges.
+    /// First blocks of the copies of a mask of this size: blocks of the lattice, which may lie beyond its edges.
     pub fn starts(lattice: &Lattice, size: [usize; 2], arrays: &[Array]) -> Vec<[isize; 2]> {
         let places = |[columns, heights]: &Grid| -> Vec<[f64; 2]> {
             let rows = heights.iter();
@@ -98,7 +101,7 @@ impl Tile {
         places.map(|place| Self::start(lattice, size, place)).collect()
     }
 
-    /// Where the copy begins that is shifted by this much from the middle: the block nearest to its place.
+    /// First block of the copy that is shifted by `shift` from the middle: the block nearest to its place.
     pub(super) fn start(lattice: &Lattice, size: [usize; 2], shift: [f64; 2]) -> [isize; 2] {
         let lattice = [lattice.nx, lattice.ny];
         [0, 1].map(|axis| {
@@ -149,7 +152,7 @@ pub fn cavity_percent(lambda: f64, n_blocks: usize, s: u32, w: f64, count: usize
     100.0 * count as f64 * PI * lambda * lambda * (1.0 - f64::from(s) * w * w) / n_blocks as f64
 }
 
-/// Which way a groove runs.
+/// Direction in which a groove runs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Orientation {
@@ -162,16 +165,16 @@ pub enum Orientation {
 /// A straight groove, half-open: the block whose centre lies on its lower edge is in, on its upper edge out.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Groove {
-    /// Which way it runs.
+    /// Direction in which the groove runs.
     pub orientation: Orientation,
     /// Width.
     pub width: f64,
-    /// Distance of its middle line from the middle of the slider.
+    /// Distance of the groove's middle line from the middle of the slider.
     pub offset: f64,
 }
 
 impl Groove {
-    /// The axis across which it has its width.
+    /// The axis along which the groove's width is measured.
     pub(super) fn axis(&self) -> usize {
         match self.orientation {
             Orientation::Across => 0,
@@ -179,13 +182,13 @@ impl Groove {
         }
     }
 
-    /// How far the copies are shifted across, each shift once for every grid.
+    /// Shifts of the copies across the groove, each once for every grid.
     pub(super) fn shifts(&self, grids: &[Grid]) -> Vec<f64> {
         let across = grids.iter().flat_map(|grid| &grid[self.axis()]);
         across.copied().collect()
     }
 
-    /// Smallest and largest (x, y) of the copy that is shifted by this much across, infinite along the strip.
+    /// Smallest and largest (x, y) of the copy that is shifted by `shift` across, infinite along the strip.
     pub(super) fn bounds(&self, lattice: &Lattice, shift: f64) -> [[f64; 2]; 2] {
         let along_x = self.orientation == Orientation::Along;
         let size = if along_x { lattice.ny } else { lattice.nx } as f64;
@@ -207,8 +210,8 @@ impl Groove {
     }
 }
 
-/// Number of vertices of a semi-polygon's outline. They lie on the curve, and the chords between them differ from it by less
-/// than `lambda (1 + s) (2 pi/4096)^2/8`, a ten-thousandth of a block at `lambda` = 100.
+/// Number of vertices of a semi-polygon's outline. The vertices lie on the curve, and the chords between them differ from it
+/// by less than `lambda (1 + s) (2 pi/4096)^2/8`, a ten-thousandth of a block at `lambda` = 100.
 const OUTLINE_VERTICES: usize = 4096;
 
 impl Cavity {

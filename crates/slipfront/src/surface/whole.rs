@@ -1,4 +1,4 @@
-//! What is known of the surface as a whole, whichever ranks hold its blocks.
+//! Numbers of the surface as a whole, whichever ranks hold its blocks.
 
 use std::array;
 use std::ops::Range;
@@ -10,35 +10,35 @@ use crate::communicator::Communicator;
 use crate::fixed_point::{FixedPoint, join, split};
 use crate::slider::Outline;
 
-/// Numbers of the whole surface, the same to the last bit on every rank and for any number of them.
+/// Numbers of the whole surface, equal to the last bit on every rank and for any number of ranks.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Whole {
     /// Blocks that exist.
     pub(super) n_blocks: usize,
     pub(super) n_contact: usize,
     pub(super) negative_draws: usize,
-    /// `sum mu_si` over the blocks in contact.
+    /// Sum `sum mu_si` over the blocks in contact.
     pub(super) sum_static: f64,
-    /// `sum mu_ki` over the blocks in contact.
+    /// Sum `sum mu_ki` over the blocks in contact.
     pub(super) sum_kinetic: f64,
-    /// `sum mu_si p_i/P` over the blocks in contact.
+    /// Sum `sum mu_si p_i/P` over the blocks in contact.
     pub(super) sum_static_pressure: f64,
-    /// `sum mu_ki p_i/P` over the blocks in contact.
+    /// Sum `sum mu_ki p_i/P` over the blocks in contact.
     pub(super) sum_kinetic_pressure: f64,
-    /// `sum p_i/P` over all blocks that exist, and over those in contact.
+    /// Sum `sum p_i/P` over all blocks that exist, and over those in contact.
     pub(super) sum_pressure: [f64; 2],
 }
 
-/// Blocks that a thread looks at at once.
+/// Number of blocks that a thread adds up at once.
 const PART: usize = 1 << 16;
 
-/// Sums that are formed of a block: `mu_si`, `mu_ki`, `mu_ki p_i/P`, `p_i/P`, `p_i/P` of a block in contact, and `mu_si p_i/P`.
+/// Number of sums over blocks: `mu_si`, `mu_ki`, `mu_ki p_i/P`, `p_i/P`, `p_i/P` of a block in contact, and `mu_si p_i/P`.
 const SUMS: usize = 6;
 
 impl Whole {
-    /// Found with all other ranks that hold a part of the surface, of coefficients as [restricted](Coefficients::restrict), which
-    /// found this number of negative draws, and of local pressures in units of `P`, 1 everywhere if there are none. What does not
-    /// exist counts as textured.
+    /// Finds the numbers together with all other ranks that hold a part of the surface, from coefficients as
+    /// [restricted](Coefficients::restrict), the number of negative draws, and local pressures in units of `P`, 1 everywhere
+    /// if there are none. Blocks that do not exist count as textured.
     pub(super) fn find(
         coefficients: &Coefficients,
         negative_draws: usize,

@@ -40,7 +40,7 @@ pub(crate) struct Slider {
     pub(crate) blocks: [usize; 2],
     pub(crate) edges: [Edges; 2],
     pub(crate) textures: Vec<Texture>,
-    /// What differs from block to block, of the whole lattice.
+    /// Heterogeneous properties of the whole lattice.
     pub(crate) body: slipfront::Slider,
     pub(crate) weakening: Option<Weakening>,
     pub(crate) slip_weakening: Option<SlipWeakening>,
@@ -90,7 +90,7 @@ impl Default for Slider {
     }
 }
 
-/// A run's outcome.
+/// Outcome of a run.
 pub(crate) struct Outcome {
     pub(crate) peak: Peak,
     pub(crate) kinetic: Option<Kinetic>,
@@ -98,7 +98,7 @@ pub(crate) struct Outcome {
 }
 
 impl Slider {
-    /// With equal coefficients for all blocks.
+    /// The slider with equal coefficients for all blocks.
     pub(crate) fn uniform(self) -> Self {
         Self {
             sigma_static_star: 0.0,
@@ -135,7 +135,7 @@ impl Slider {
         Surface::of_ranks(self.coefficients(), textured, contact, &self.body, &Alone).unwrap()
     }
 
-    /// Load and adhesion of some rows.
+    /// Contact of some rows: load and adhesion.
     pub(crate) fn contact(&self, rows: Range<usize>) -> Contact {
         let pressure = |(axis, slope)| pressure_along(&self.lattice(), rows, axis, slope);
         Contact {
@@ -259,8 +259,8 @@ fn part(body: &slipfront::Slider, blocks: Range<usize>) -> slipfront::Slider {
     }
 }
 
-/// A slider of `n` blocks that all differ: moduli from 0.25 to 1, densities from 0.5 to 1.5; one block in nine does not exist if it
-/// has an outline.
+/// A heterogeneous slider of `n` blocks: moduli from 0.25 to 1, densities from 0.5 to 1.5; one block in nine does not exist
+/// if it has an outline.
 pub(crate) fn varied(n: usize, has_outline: bool) -> slipfront::Slider {
     let wave = |k: f64, low: f64, high: f64| -> Vec<f64> {
         let one = |b: usize| 0.5 * (low + high) + 0.5 * (high - low) * (k * b as f64 + 2.0).sin();

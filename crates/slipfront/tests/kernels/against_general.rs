@@ -1,4 +1,4 @@
-//! The fused kernel against the general: the same to rounding.
+//! The fused kernel agrees with the general kernel to rounding.
 
 use rstest::rstest;
 use slipfront::Totals;

@@ -1,4 +1,4 @@
-//! Checkpoints of the general kernel, of observers, and of another lattice. Those of the fused kernel are tested in
+//! Checkpoints of the general kernel, of observers, and of another lattice. Checkpoints of the fused kernel are tested in
 //! `executions.rs`.
 
 use std::sync::Arc;
@@ -58,7 +58,7 @@ fn the_general_kernel_under_every_law(
     goes_on_from_checkpoints(&slider(law), every);
 }
 
-/// Blocks that all differ, with dampers beside their springs.
+/// Heterogeneous blocks, with dampers beside their springs.
 fn unequal(has_outline: bool) -> slipfront::Slider {
     slipfront::Slider {
         viscosity_time: 0.2,
@@ -108,7 +108,7 @@ fn goes_on_from_checkpoints(slider: &Slider, every: u64) {
     );
 }
 
-/// What a law remembers is part of a checkpoint: ages, anchors and breaks with their thresholds, states.
+/// The memory of a law is part of a checkpoint: ages, anchors and breaks with their thresholds, states.
 #[rstest]
 #[case(Friction::Coulomb(Coulomb {
     weakening: Some(Weakening { critical_speed: 0.1, ratio: 0.4 }),
@@ -150,8 +150,8 @@ fn what_a_law_remembers(#[case] friction: Friction, #[values(1, 7)] every: u64) 
     assert!(remembered.iter().all(differs), "there is nothing to remember");
 }
 
-/// A run without stops and one in parts, each of which continues from a checkpoint of the run and of its observers: these have
-/// seen every instant exactly once.
+/// A run without stops and one in parts, each of which continues from a checkpoint of the run and of its observers.
+/// Observers have seen every instant exactly once.
 #[rstest]
 fn observers_see_every_instant_once(
     #[values(general(), fused())] execution: Execution,

@@ -1,4 +1,4 @@
-//! Fields of all blocks, read at once, against the same fields of single blocks: the same bits.
+//! Fields of all blocks, read at once, have the same bits as fields of single blocks.
 
 use rstest::rstest;
 use slipfront::observe::frames::Selection;
@@ -13,7 +13,7 @@ fn bits(values: &[f32]) -> Vec<u32> {
     values.iter().map(|value| value.to_bits()).collect()
 }
 
-/// The field, block by block; NaN where no block exists.
+/// Values of the field, block by block; NaN where no block exists.
 fn by_block(simulation: &Simulation, field: Field) -> Vec<f32> {
     let now = simulation.snapshot();
     let textured = &now.model.surface.textured;

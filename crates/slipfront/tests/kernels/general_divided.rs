@@ -1,5 +1,5 @@
-//! What the general kernel alone computes has the same bits on several ranks and threads as on one, and goes on from a checkpoint on
-//! any other number of them.
+//! Options that the general kernel alone computes have the same bits on several ranks and threads as on one, and go on from
+//! a checkpoint on any other number of them.
 
 use rstest::rstest;
 use slipfront::communicator::Alone;
@@ -26,7 +26,7 @@ enum Variety {
 
 const BLOCKS: [usize; 2] = [19, 17];
 
-/// So many that several threads share them.
+/// A lattice of so many blocks that several threads share them.
 const MANY: [usize; 2] = [40, 110];
 
 fn slider(blocks: [usize; 2], edges: Edges, options: &[Variety]) -> Slider {

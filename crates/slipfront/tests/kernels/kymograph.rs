@@ -1,4 +1,4 @@
-//! Sliding against place and time is what the fields show, on any kernel and any number of threads and ranks.
+//! The kymograph agrees with the fields, on any kernel and any number of threads and ranks.
 
 use std::sync::Arc;
 

@@ -30,7 +30,8 @@ fn general() -> Execution {
     }
 }
 
-/// One step, after which the stored energies are known if `energies` is set: then one of the drive, with those before it in which it stands.
+/// Makes one step, or with `energies` steps until the drive has moved, including steps in which it stands; then the stored
+/// energies are known.
 fn go(simulation: &mut Simulation, energies: bool) {
     if energies {
         let next = simulation.snapshot().drive_steps + 1;

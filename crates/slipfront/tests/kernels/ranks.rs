@@ -18,7 +18,8 @@ use crate::common::{Slider, cavity, groove};
 use crate::executions::{shown, state};
 use crate::{bits, columns, fused, go, has_room, sliders};
 
-/// What a rank has shown: at every step what all know, its own state at some of them, and at the end its first slips and fields.
+/// Results of a rank: at every step the numbers that all know, its own state at some steps, and at the end its first slips
+/// and fields.
 struct Shown {
     steps: Vec<Vec<u64>>,
     states: Vec<[Vec<u64>; 4]>,
@@ -26,7 +27,7 @@ struct Shown {
     fields: Vec<Vec<Vec<f32>>>,
 }
 
-/// Of every block, of every second, and of every fifth row.
+/// Frames of every block, of every second, and of every fifth row.
 fn frames(simulation: &Simulation) -> Vec<Frame> {
     let capture = |stride| {
         let fields = vec![Field::ContactStress, Field::Traction, Field::DisplacementX];
@@ -67,7 +68,7 @@ fn part(from: &State, blocks: Range<usize>) -> State {
     }
 }
 
-/// What a model has beyond those that a [`Slider`] describes; all ranks find it together.
+/// A change of a model beyond the options of [`Slider`]; all ranks make it together.
 pub(crate) type Change = dyn Fn(&mut Model, &dyn Communicator) + Sync;
 
 fn with(mut model: Model, change: &Change, ranks: &dyn Communicator) -> Model {
@@ -122,7 +123,7 @@ pub(crate) fn assert_same_with(slider: &Slider, change: &Change, from: Option<&S
     }
 }
 
-/// What the ranks have is what one has, row after row.
+/// Asserts that the results of the ranks, row after row, are those of one.
 fn assert_joined(ranks: &[Shown], alone: &Shown, of: &str) {
     for rank in ranks {
         for (step, (here, expected)) in rank.steps.iter().zip(&alone.steps).enumerate() {
@@ -202,7 +203,7 @@ fn slow_drives(
     assert_same(&slider, None, slider.steps(2.6));
 }
 
-/// Whether the drive stands is known to all ranks alike.
+/// All ranks know alike whether the drive stands.
 #[rstest]
 fn held_drives(#[values(0.0, 65.0)] degrees: f64, #[values(false, true)] has_program: bool) {
     let slider = sliders::held([40, 24], Edges::Free, degrees, has_program);
@@ -219,7 +220,7 @@ fn a_state_in_motion(
     assert_same(&slider, Some(&from), 200);
 }
 
-/// All ranks name the block that one names: of a lattice whose blocks move alike, the first.
+/// All ranks name the block that one rank names: in a lattice whose blocks move alike, the first.
 #[rstest]
 #[case::alike(Slider { dt_star: 4.0, ..Slider::default() }.uniform())]
 #[case::apart(Slider { dt_star: 1.0, ..Slider::default() })]
@@ -293,7 +294,7 @@ fn checkpoints_go_on_on_any_number_of_ranks(#[values(0.1, 0.01)] v_star: f64) {
     assert_goes_on(&slider, &|_, _| ());
 }
 
-/// Goes on on one rank after the other number, one among them, from the columns of all ranks before.
+/// Asserts that runs go on with one number of ranks after the other, from the columns of all ranks before.
 pub(crate) fn assert_goes_on(slider: &Slider, change: &Change) {
     let steps = slider.steps(4.0);
     let model = with(slider.model(), change, &Alone);

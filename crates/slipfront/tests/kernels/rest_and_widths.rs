@@ -158,8 +158,8 @@ fn slow_drives_are_mostly_rest() {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 200, failure_persistence: None, ..ProptestConfig::default() })]
 
-    /// Displaced blocks at rest are skipped until the first of them slips, and not swept again much too early if the force on
-    /// every block grows.
+    /// Displaced blocks at rest are skipped until the first slips, and are not swept much too early if the force on every
+    /// block grows.
     #[test]
     fn rest_ends_in_time(
         u in prop::collection::vec([-0.1..0.1_f64, -0.1..0.1_f64], 9),

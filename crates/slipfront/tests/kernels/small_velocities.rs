@@ -8,14 +8,14 @@ use slipfront::{Execution, Simulation};
 use crate::common::{Slider, groove};
 use crate::{executions, fused, general, ranks};
 
-/// Below 2^-480 is no component of a velocity.
+/// Least component of a velocity, 2^-480: no smaller one but zero occurs.
 const SMALLEST: f64 = 3.203_806_5e-145;
 
 /// Steps in which a wave from an edge comes further into the groove than numbers reach.
 const STEPS: u64 = 130;
 
-/// A wide groove, whose blocks swing on their drive springs: waves run into it from its edges and from the corners of the slider, which alone
-/// move blocks across the drive.
+/// A wide groove, whose blocks swing on their drive springs: waves run into it from its edges and from the corners of the
+/// slider; only the corners move blocks across the drive.
 fn grooved(degrees: f64) -> Slider {
     Slider {
         blocks: [280, 12],

@@ -1,5 +1,5 @@
-//! Sliders whose blocks differ, kinetic friction that weakens and drives by a program on the fused kernel: it agrees with the
-//! general to rounding, and has the same bits however it is executed.
+//! Heterogeneous sliders, kinetic friction that weakens and drives by a program on the fused kernel: it agrees with the
+//! general kernel to rounding, and has the same bits however it is executed.
 
 use std::sync::Arc;
 
@@ -10,7 +10,7 @@ use slipfront::{DriveSprings, Edges, Outline, Program, SlipWeakening, Weakening}
 use crate::common::{Slider, cavity, varied};
 use crate::{against_general, executions, ranks, sliders};
 
-/// What is not as in the paper.
+/// A departure from the paper's slider.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Variety {
     /// Drive springs at the left edge alone.
@@ -24,7 +24,7 @@ enum Variety {
     SlipWeakening {
         heals: bool,
     },
-    /// A stop, and a way back.
+    /// A program with a stop and a way back.
     Program,
 }
 

@@ -227,7 +227,7 @@ fn static_friction_and_its_time_depend_on_speed(
     );
 }
 
-/// Same surface, rising speed: no scatter in the comparison.
+/// The surface is the same and the speed rises: no scatter enters the comparison.
 #[test]
 fn static_friction_rises_with_speed_on_every_surface() {
     for seed in [1, 2, 3] {
@@ -270,8 +270,8 @@ fn static_friction_falls_with_scatter(
     );
 }
 
-/// Over five random surfaces the paper finds a deviation of less than 0.015. True of the standard deviation,
-/// 0.013 here; the farthest of five may lie 0.024 from their mean.
+/// Over five random surfaces the paper finds a deviation of less than 0.015. This holds for the standard deviation, 0.013
+/// here; the farthest of five may lie 0.024 from their mean.
 #[test]
 fn five_surfaces_deviate_by_less_than_0_015() {
     let found: Vec<f64> = (1..=5)

@@ -82,7 +82,7 @@ fn a_block_that_was_held_breaks_at_its_age(
     }
 }
 
-/// Of a threshold of 1, of which a part is adhesion, only the rest ages.
+/// Adhesion, a part of a threshold of 1, does not age: only the rest does.
 #[test]
 fn adhesion_does_not_age() {
     let adhesion = Adhesion {

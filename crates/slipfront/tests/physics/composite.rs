@@ -57,7 +57,7 @@ fn the_largest_friction_of_zones_apart(
     );
 }
 
-/// Both zones at their thresholds at once are a bound that no slider reaches, however its blocks are joined.
+/// The thresholds of both zones at once are a bound that no slider reaches, however its blocks are joined.
 #[rstest]
 fn no_slider_has_both_thresholds_at_once(#[values(false, true)] apart: bool) {
     let (mu, r_star) = ([0.5, 1.0], 0.5);

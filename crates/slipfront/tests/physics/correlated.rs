@@ -9,12 +9,12 @@ use crate::common::{Slider, at_rest};
 /// Spread of the coefficients on 50 x 50 blocks, or at a point.
 const SIGMA: f64 = 0.1;
 
-/// How the coefficients of finer blocks are drawn.
+/// Method of drawing the coefficients of finer blocks.
 #[derive(Clone, Copy)]
 enum Draw {
     /// By block, with the spread that means over areas have: in proportion to the blocks along a side.
     ByBlock,
-    /// Alike over so much of the slider.
+    /// Coefficients that are alike over this share of the slider.
     Alike(f64),
 }
 
@@ -52,9 +52,9 @@ fn static_friction(n: usize, draw: Draw, seed: u64) -> f64 {
     simulation.snapshot().peak.mu_star
 }
 
-/// A surface that is alike over a tenth of the slider has a static friction that finer blocks do not change: means over blocks, springs and
-/// weakening are of second order in the size of a block, so that its changes fall to a quarter. One that is drawn by block goes on changing,
-/// although its means over areas scatter alike on all blocks.
+/// A surface that is alike over a tenth of the slider has a static friction that finer blocks do not change: means over
+/// blocks, springs and weakening are of second order in the size of a block, so that its changes fall to a quarter. With
+/// coefficients drawn by block it goes on changing, although their means over areas scatter alike on all blocks.
 #[test]
 fn static_friction_of_correlated_coefficients_converges() {
     let changes = |draw: Draw| {

@@ -1,4 +1,4 @@
-//! A slider that is driven at an edge: what its drive springs do, and its precursors.
+//! A slider that is driven at an edge: its drive springs, and its precursors.
 
 use rstest::rstest;
 use slipfront::communicator::Alone;
@@ -64,7 +64,8 @@ fn the_weakest_driven_block_slips_first(
     assert_eq!(now.first_slip_time_star()[weakest], now.time_star);
 }
 
-/// Springs on all blocks of the stiffness that those of an edge have load as fast as these, to the last bit of what is counted in it.
+/// Springs on all blocks that are together as stiff as those of an edge load as fast, and the times that count in the
+/// loading are equal to the last bit.
 #[test]
 fn waiting_times_are_counted_in_the_speed_of_loading() {
     let slider = Slider::default();

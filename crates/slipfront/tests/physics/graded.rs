@@ -14,7 +14,7 @@ fn graded(stiffness: &[f64], density: &[f64]) -> Slider {
     Slider::new(Some(stiffness.to_vec()), Some(density.to_vec()), None, &Alone)
 }
 
-/// Energies, mu* and N* included.
+/// Arrays of ones change no bit, energies, mu* and N* included.
 #[rstest]
 fn fields_of_ones_change_no_bit(
     #[values([Edges::Free; 2], [Edges::Periodic, Edges::Free])] edges: [Edges; 2],
@@ -81,8 +81,8 @@ fn a_heavier_stiffer_and_rougher_slider_moves_the_same() {
     assert!(one.peak().ended);
 }
 
-/// Nothing moves before the first slip, which is seen at most a step late, and it is the block whose spring is the first to be
-/// stretched far enough.
+/// Nothing moves before the first slip, which is seen at most a step late, and the first block to slip is the one whose
+/// spring is first stretched far enough.
 #[rstest]
 fn the_block_with_the_least_threshold_for_its_spring_slips_first(#[values(0.0, 0.05, 0.3)] sigma: f64) {
     let slider = common::Slider {
@@ -181,7 +181,7 @@ fn heavier_blocks_raise_the_drag(#[values(0.05, 0.1)] v_star: f64) {
     );
 }
 
-/// As for equal blocks: what is missed is the kinetic energy of the last step of a slip, of the second order in dt.
+/// The balance misses, as for equal blocks, the kinetic energy of the last step of a slip, of the second order in dt.
 #[test]
 fn the_ledger_closes() {
     let slider = common::Slider {

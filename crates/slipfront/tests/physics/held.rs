@@ -1,4 +1,4 @@
-//! A drive that stands while a block in contact slides, against what can be computed by hand.
+//! A drive that stands while a block in contact slides, compared with results found by hand.
 
 use rstest::rstest;
 use slipfront::lattice::K_DRIVE;
@@ -31,15 +31,15 @@ fn one_block(v_star: f64, kinetic: f64) -> Model {
     })
 }
 
-/// Steps until the slider begins to slide or stops, `slides` being what it does then.
+/// Steps until the slider begins to slide (`slides` is true) or stops.
 fn step_until(simulation: &mut Simulation, slides: bool) {
     while (simulation.snapshot().totals.n_slipping > 0) != slides {
         simulation.step();
     }
 }
 
-/// It jumps where the force of its spring first exceeds the threshold, `k_s X > S`, and slides where the drive stands to
-/// `s = 2 (k_s X - K)/k_s`.
+/// One block jumps where the force of its spring first exceeds the threshold, `k_s X > S`, and slides where the drive stands
+/// to `s = 2 (k_s X - K)/k_s`.
 #[rstest]
 fn one_block_jumps_while_the_drive_stands(
     #[values(0.001, 0.03, 1.0)] v_star: f64,
@@ -113,7 +113,7 @@ fn the_path_is_a_count_of_steps() {
     assert!(stood > 100, "the drive has hardly stood: {stood} steps");
 }
 
-/// No work is done while it stands, and the balance of energy closes.
+/// A drive that stands does no work, and the balance of energy closes.
 #[test]
 fn a_drive_that_stands_does_no_work() {
     let slider = Slider {
@@ -224,7 +224,7 @@ fn the_steady_level_has_no_drag() {
     assert!((constant - (0.5 + drag)).abs() < 1e-12 && (held.steady_level(&alone) - 0.5).abs() < 1e-12);
 }
 
-/// By how much, in %, a circle of 10 % on 50 x 50 equal blocks lowers mu_s*.
+/// Reduction of mu_s*, in %, by a circle of 10 % on 50 x 50 equal blocks.
 fn reduction(v_star: f64) -> f64 {
     let slider = Slider {
         blocks: [50, 50],

@@ -120,8 +120,8 @@ fn a_damped_wave_obeys_the_scheme(#[values(0.1, 1.0, 10.0)] omega_star: f64) {
     }
 }
 
-/// Long waves: c_P^2 = 9/8 and c_S^2 = 3/8 in every direction, those of plane stress at nu = 1/3. Checked on
-/// the simulation's own frequency, whose deviation is O(a^2 + b^2), below 1e-4 here.
+/// Long waves: c_P^2 = 9/8 and c_S^2 = 3/8 in every direction, the speeds of plane stress at nu = 1/3. Checked on the
+/// simulation's own frequency, whose deviation is O(a^2 + b^2), below 1e-4 here.
 #[rstest]
 fn long_waves_are_those_of_an_isotropic_sheet(
     #[values((1, 0), (1, 1), (2, 1), (0, 1), (1, 3))] mode: (u32, u32),

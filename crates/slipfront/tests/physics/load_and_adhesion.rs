@@ -16,8 +16,8 @@ fn adhesive(of_static: f64) -> Adhesion {
     }
 }
 
-/// Nothing moves before the first slip, so that its force is `k_s V t` on every block and the block with the least
-/// threshold slips first: `k_s V t = min_i (mu_si p_i/P + tau_a/(P mu_s))`. It is seen at most a step late.
+/// Nothing moves before the first slip, so that its force is `k_s V t` on every block and the block with the least threshold
+/// slips first: `k_s V t = min_i (mu_si p_i/P + tau_a/(P mu_s))`. The slip is seen at most a step late.
 #[rstest]
 fn the_weakest_block_slips_first(
     #[values(None, Some((0, 0.8)), Some((1, -0.5)))] pressure: Option<(usize, f64)>,

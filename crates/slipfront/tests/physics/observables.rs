@@ -1,4 +1,4 @@
-//! What is measured on a run: the instants A-F, the end of the first peak, divergence, runs without an end.
+//! Measures of a run: the instants A-F, the end of the first peak, divergence, runs without an end.
 
 use rstest::rstest;
 use slipfront::communicator::Alone;
@@ -219,7 +219,7 @@ fn a_state_too_large_to_compute_with_is_reported(#[values(0.0, 1e-6, 1e3)] epsil
     };
 }
 
-/// What a run would begin with must be numbers.
+/// A state with which a run begins must consist of numbers.
 #[rstest]
 #[should_panic(expected = "of the state to begin with is not finite")]
 fn a_state_that_is_not_finite_is_refused(
@@ -268,8 +268,8 @@ fn mu_star_is_the_mean_pull_along_and_across_the_drive() {
     assert!(lateral > 1e-4, "there is something across to be seen: {lateral}");
 }
 
-/// D is searched for up to t_s* + 2.5/V* and E up to the kinetic window, whatever comes later. The later part of the curve is
-/// invented, because N* and mu* of a real run seldom reach such values again.
+/// D is searched for up to t_s* + 2.5/V* and E up to the kinetic window, and later values do not count. The later part of
+/// the curve is invented, because N* and mu* of a real run seldom reach such values again.
 #[test]
 fn what_comes_after_the_windows_is_neither_d_nor_e() {
     let slider = Slider {

@@ -34,7 +34,7 @@ struct Body {
     v: [f64; 2],
     mu_s: f64,
     mu_k: f64,
-    /// When it stopped, its anchor, its state.
+    /// Time of the last stop of the block; its anchor and state follow.
     stopped: f64,
     anchor: [f64; 2],
     theta: f64,

@@ -1,4 +1,5 @@
-//! The model of unequal blocks, outlines and viscosity once more, in the fewest lines: every pair of blocks is looked at.
+//! The model of heterogeneous blocks, outlines and viscosity once more, in the fewest lines: every pair of blocks is
+//! examined.
 
 use proptest::prelude::*;
 use slipfront::communicator::Alone;
@@ -30,7 +31,7 @@ impl Case {
         [(b % self.size[0]) as f64, (b / self.size[0]) as f64]
     }
 
-    /// From site b to site c, where periodic edges make it shortest.
+    /// Vector from site b to site c, the shortest one with periodic edges.
     fn between(&self, b: usize, c: usize) -> [f64; 2] {
         let (b, c) = (self.at(b), self.at(c));
         [0, 1].map(|axis| {
@@ -96,7 +97,7 @@ impl Case {
         u
     }
 
-    /// The same by the kernels.
+    /// Displacements after some steps by the kernels.
     fn simulate(&self, steps: u32) -> Vec<[f64; 2]> {
         let n = self.mass.len();
         let edges = self
@@ -203,7 +204,8 @@ fn case() -> impl Strategy<Value = Case> {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(300))]
 
-    /// To rounding: 1e-16 per operation, times the 1e3 by which lengths cancel over the strain of 1e-3, grows little in 40 steps.
+    /// The tolerance is rounding: 1e-16 per operation, times the 1e3 by which lengths cancel over the strain of 1e-3, grows
+    /// little in 40 steps.
     #[test]
     fn an_independent_program_agrees(case in case()) {
         let (found, expected) = (case.simulate(40), case.run(40));

@@ -67,9 +67,9 @@ fn measured_growth(v: f64, k: f64, damping: f64, dt: f64, apart: f64) -> f64 {
     })
 }
 
-/// On both sides of the critical stiffness. Friction is taken at the speed half a step after the instant of its state, mu(v + dt v'/2), as
-/// if the mass were larger by sigma a dt/(2 v). The cubic with that mass tells the error, and half the step leaves half of it, to terms of
-/// the next order (a fifth of the error, 10 % of the ratio).
+/// Disturbances grow below and decay above the critical stiffness. Friction is taken at the speed half a step after the
+/// instant of its state, mu(v + dt v'/2), as if the mass were larger by sigma a dt/(2 v). The cubic with that mass tells the
+/// error, and half the step leaves half of it, to terms of the next order (a fifth of the error, 10 % of the ratio).
 #[rstest]
 #[case(0.03, 0.1, 0.9, 36.0)]
 #[case(0.03, 0.1, 1.1, 36.0)]

@@ -110,8 +110,8 @@ fn without_strain_the_groups_alone_decide(#[values(1, 2, 3)] slider: usize) {
     assert!(found < 1e-12, "{found}");
 }
 
-/// Each with its own strain, from 1e-6 to 9e-6: to first order in it. The stretch between neighbours, e = 0.1
-/// to 1, changes the force of a spring by eps e^2, and mu* by the mean of that over slipping and stuck blocks: 1e-4
+/// Sliders with strains of their own, from 1e-6 to 9e-6, agree to first order in the strain. The stretch between neighbours,
+/// e = 0.1 to 1, changes the force of a spring by eps e^2, and mu* by the mean of that over slipping and stuck blocks: 1e-4
 /// eps here, bounded by 1e-3 of the strain.
 #[rstest]
 fn a_small_strain_changes_little(#[values(1, 2, 3)] slider: usize) {

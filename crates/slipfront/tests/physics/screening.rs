@@ -1,4 +1,4 @@
-//! The mount: how far it lets what happens at a place be felt.
+//! The mount: the distance over which a local change of stress is felt.
 
 use std::sync::Arc;
 
@@ -15,7 +15,7 @@ use crate::common::{Slider, at_rest};
 /// 2 cosh(kappa) - 2 = k_s/K_el
 /// ```
 ///
-/// of a chain and of a strip that is periodic across the drive.
+/// for a chain and for a strip that is periodic across the drive.
 #[rstest]
 #[case::chain(1, Edges::Free, K_STRAIGHT)]
 #[case::strip(4, Edges::Periodic, K_STRAIGHT + K_DIAGONAL)]

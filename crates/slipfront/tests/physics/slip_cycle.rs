@@ -63,7 +63,7 @@ struct Slip {
     start: u64,
     stop: u64,
     force_at_stop: f64,
-    /// Before the slip, so that the second cycle does not count.
+    /// Largest mu* before the slip, so that the second cycle does not count.
     largest: f64,
 }
 

@@ -1,4 +1,4 @@
-//! Strength that falls with slip, against what can be computed by hand.
+//! Strength that falls with slip, compared with results found by hand.
 
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -17,7 +17,7 @@ use crate::common::{Slider, at_rest, cavity};
 const WHOLE: f64 = 1.0;
 /// Kinetic threshold of such a block.
 const KINETIC: f64 = 0.5;
-/// Both thresholds of a block that cannot.
+/// Both thresholds of a block that cannot slip.
 const HELD: f64 = 1e3;
 
 /// A lattice of which the blocks that `can_slip` weaken by `weakening` per slip.
@@ -159,7 +159,7 @@ fn assert_jumps_above(blocks: [usize; 2], can_slip: &dyn Fn(usize, usize) -> boo
     }
 }
 
-/// `4 k_1 sin^2(pi/(2(n + 1)))` of a chain of n blocks.
+/// Critical size of a chain of n blocks: it jumps if `W - k_s` is above `4 k_1 sin^2(pi/(2(n + 1)))`.
 #[rstest]
 #[case(1)]
 #[case(3)]
@@ -216,8 +216,8 @@ fn a_patch_jumps_by_the_springs_along_the_drive() {
     assert_jumps_above([5, 5], &inside, eigenvalue);
 }
 
-/// The balance of energy closes, and what weakening has taken is a part of what friction has: at the end, where all blocks have
-/// slipped far, `(S - K) D_c/2` of each, whatever the step.
+/// The balance of energy closes, and the energy of weakening is a part of the loss to friction: at the end, where all blocks
+/// have slipped far, `(S - K) D_c/2` of each, whatever the step.
 #[rstest]
 fn the_balance_of_energy_closes(
     #[values(0.2, 0.05)] dt_star: f64,
@@ -265,8 +265,8 @@ fn the_balance_of_energy_closes(
     }
 }
 
-/// mu_s* of one physical slider on `n` x `n` blocks: the mount per area, damping and speed in SI units, the length of weakening and a
-/// square hole of 9 %, if it has one, are those of 60 x 60 blocks of which a critical size has five.
+/// mu_s* of one physical slider on `n` x `n` blocks: the mount per area, damping and speed in SI units, the length of
+/// weakening and a square hole of 9 %, if it has one, are those of 60 x 60 blocks, with five blocks in a critical size.
 fn static_friction(n: usize, has_hole: bool) -> f64 {
     let finer = n as f64 / 60.0;
     let slider = Slider {

@@ -66,8 +66,8 @@ fn stiffness_over_density_decides(#[case] stiffness: f64, #[case] density: f64, 
     assert!((found - limit).abs() < 5e-5, "{found}");
 }
 
-/// Of blocks that all differ it is safe. A light block among heavy ones swings alone, at half of what the bound takes of its
-/// neighbours: the bound is too strict by the square root of 2, or by 2 where the dampers decide.
+/// The bound is safe for heterogeneous blocks. A light block among heavy ones swings alone, at half of what the bound takes
+/// of its neighbours: the bound is too strict by the square root of 2, or by 2 where the dampers decide.
 #[rstest]
 fn the_bound_of_unequal_blocks_is_safe(
     #[values(0.0, 0.2)] viscosity_time: f64,

@@ -36,7 +36,7 @@ impl Operation {
         if self.quarters % 2 == 1 { [y, x] } else { [x, y] }
     }
 
-    /// Where block (i, j) of a lattice of nx x ny blocks goes.
+    /// Place to which block (i, j) of a lattice of nx x ny blocks goes.
     fn place(self, [nx, ny]: [usize; 2], i: usize, j: usize) -> [usize; 2] {
         let (mut size, mut at) = ([nx, ny], if self.mirror { [i, ny - 1 - j] } else { [i, j] });
         for _ in 0..self.quarters {
@@ -47,7 +47,7 @@ impl Operation {
     }
 }
 
-/// A surface with scatter and an unsymmetric texture, and what the operation makes of it.
+/// A surface with scatter and an unsymmetric texture, and its image under the operation.
 fn models(slider: &Slider, operation: Operation) -> [Model; 2] {
     let lattice = slider.lattice();
     let turned = {
@@ -184,7 +184,7 @@ fn every_symmetry_of_the_square_is_exact(
     );
 }
 
-/// Blocks that all differ, some of which do not exist, with dampers beside their springs.
+/// Symmetry holds for heterogeneous sliders, some of whose blocks do not exist, with dampers beside their springs.
 #[rstest]
 fn sliders_of_unequal_blocks_too(
     #[values((false, 1), (false, 2), (true, 0), (true, 1))] (mirror, quarters): (bool, usize),

@@ -1,4 +1,4 @@
-//! What a texture does to load, friction, counts and times; and the three readings of the friction law.
+//! Effects of a texture on load, friction, counts and times; and the three readings of the friction law.
 
 use rstest::rstest;
 use slipfront::communicator::Alone;

@@ -214,7 +214,8 @@ fn dampers_take_what_is_missing() {
     assert!(fine < 1e-4);
 }
 
-/// Through onset and far beyond, as without dampers: what is missed is the kinetic energy of the last step of a slip.
+/// The balance closes through onset and far beyond, as without dampers: it misses the kinetic energy of the last step of a
+/// slip.
 #[test]
 fn the_ledger_closes_with_friction() {
     let slider = common::Slider {

@@ -22,7 +22,7 @@ use crate::slider;
 /// Steps of a comparison, in which blocks slip, stop, age and slip again.
 const STEPS: u64 = 40;
 
-/// What is not said by [`Slider`].
+/// Options that [`Slider`] does not have.
 #[derive(Clone, Debug)]
 struct Options {
     friction: Friction,
@@ -84,8 +84,9 @@ fn friction() -> impl Strategy<Value = Friction> {
 }
 
 prop_compose! {
-    /// So that friction is felt at all speeds: where `ln(2 V_0) - (mu_0 + b ln(V_0 theta/D_c))/a` is large there is next to none, and the
-    /// library finds speeds to an absolute error of the exponential of that times the last place alone.
+    /// Parameters with which friction is felt at all speeds: where `ln(2 V_0) - (mu_0 + b ln(V_0 theta/D_c))/a` is large
+    /// there is next to none, and the library finds speeds to an absolute error of the exponential of that times the last
+    /// place alone.
     fn rate_and_state()(
         a in 0.005..0.03,
         b_over_a in 0.0..3.0,
@@ -129,7 +130,7 @@ fn spread(n: usize, seed: u64, low: f64, high: f64) -> Vec<f64> {
     (0..n).map(one).collect()
 }
 
-/// What both sides compute.
+/// Input of both sides.
 struct Setting {
     model: Model,
     contact: Contact,
@@ -139,7 +140,7 @@ struct Setting {
 }
 
 impl Setting {
-    /// None where nothing is in contact.
+    /// The setting of a slider with options; none where nothing is in contact.
     fn new(slider: &Slider, options: &Options) -> Option<Self> {
         let (lattice, seed) = (slider.lattice(), slider.seed);
         let n = lattice.n_blocks();
@@ -263,8 +264,8 @@ impl Setting {
         ]
     }
 
-    /// Whether every step begins in the state of the kernel. It must where an error does not stay small by itself: where friction falls
-    /// with speed, or follows the direction of a velocity that may be nearly zero.
+    /// Whether every step begins in the state of the kernel. This is necessary where an error does not stay small by itself:
+    /// where friction falls with speed, or follows the direction of a velocity that may be nearly zero.
     fn takes_single_steps(&self) -> bool {
         let keeps_errors_small = match self.model.friction {
             Friction::Coulomb(coulomb) => {
@@ -303,12 +304,12 @@ fn start(model: &Model, start: Option<(f64, usize)>, seed: u64) -> State {
     }
 }
 
-/// How far results may be apart.
+/// Largest distance of the results of both sides.
 struct Tolerance {
     force: f64,
     velocity: f64,
     displacement: f64,
-    /// Of sums of energies over all blocks, and of what a step adds to work and losses.
+    /// Tolerance of sums of energies over all blocks, and of the work and losses in a step.
     energy: f64,
 }
 
@@ -363,11 +364,11 @@ impl Tolerance {
     }
 }
 
-/// How much the comparisons have seen.
+/// Coverage of the comparisons.
 #[derive(Clone, Copy, Debug, Default)]
 struct Seen {
     instants: usize,
-    /// Instants at which it is not known what slides.
+    /// Instants at which rounding decides which blocks slide.
     undecided: usize,
     /// Blocks that begin to slide.
     slips: usize,
@@ -446,9 +447,9 @@ fn agree(what: &str, found: f64, expected: f64, tolerance: f64) -> TestCaseResul
     Ok(())
 }
 
-/// Whether rounding decides if a block slides: one that no friction holds, and that moves by no more than rounding, since the forces on it
-/// cancel or a wave has just come to it. Of others it decides with a chance of 1e-13 per block and step, where a force comes so close to
-/// a threshold.
+/// Whether rounding decides if a block slides: a block that no friction holds, and that moves by no more than rounding,
+/// since the forces on it cancel or a wave has just come to it. For other blocks it decides with a chance of 1e-13 per block
+/// and step, where a force comes so close to a threshold.
 fn is_undecided(model: &Model, state: &State, reference: &Reference, tolerance: &Tolerance) -> bool {
     let is_tiny = |[x, y]: [f64; 2]| {
         let speed = x.hypot(y);
@@ -510,7 +511,7 @@ fn compare_blocks(now: &Snapshot, reference: &Reference, tolerance: &Tolerance) 
     Ok(())
 }
 
-/// What slides now, and when it first has.
+/// Compares the blocks that slide now, and the times of their first slips.
 fn compare_counts(now: &Snapshot, reference: &Reference) -> TestCaseResult {
     let bits = |times: &[f64]| -> Vec<u64> { times.iter().map(|time| time.to_bits()).collect() };
     prop_assert_eq!(bits(&now.first_slip_time_star()), bits(&reference.first_slips));

@@ -1,4 +1,4 @@
-//! Surfaces that several ranks make, each its own rows, against the one that a process makes alone.
+//! Surfaces that several ranks make, each its own rows, compared with the surface that one process makes alone.
 
 use proptest::prelude::*;
 use slipfront::Surface;
@@ -9,7 +9,7 @@ use slipfront::testing::Threads;
 use crate::common::Slider;
 use crate::{has_contact, slider};
 
-/// What a rank makes.
+/// The mesh and surface of a rank.
 fn make(slider: &Slider, rank: &dyn Communicator) -> (Meshed, Surface) {
     let lattice = slider.lattice();
     let rows = lattice.rows_of(rank);

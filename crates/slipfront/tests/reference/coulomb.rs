@@ -17,7 +17,8 @@ pub(crate) fn aged(law: Option<Ageing>, age: f64) -> f64 {
     law.map_or(1.0, |law| 1.0 + law.beta * (1.0 + age / law.time).ln())
 }
 
-/// What a block bears while it is stuck and while it slides after a slip `s`: `f = K + (S - K) max(0, 1 - s/D_c)` both, unless `K >= S`.
+/// Strength of a block while it is stuck and while it slides after a slip `s`: `f = K + (S - K) max(0, 1 - s/D_c)` for both,
+/// unless `K >= S`.
 pub(crate) fn after_slip(law: Option<SlipWeakening>, [holds, slows]: [f64; 2], slip: f64) -> [f64; 2] {
     match law {
         Some(law) if holds > slows => [slows + (holds - slows) * (1.0 - slip / law.length).max(0.0); 2],

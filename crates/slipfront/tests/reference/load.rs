@@ -24,17 +24,17 @@ pub(crate) fn normal_forces(surface: &Surface, contact: &Contact, exists: &[bool
     (0..n).map(force).collect()
 }
 
-/// What friction of one block can bear without age and speed, in units of `P mu_s l^2`.
+/// Strength of friction of one block without age and speed, in units of `P mu_s l^2`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Threshold {
-    /// `mu_i F_n,i` of its coefficient.
+    /// Part `mu_i F_n,i` from the coefficient.
     pub(crate) of_load: f64,
     /// Adhesion `tau_a l^2`, which neither ages nor weakens.
     pub(crate) of_adhesion: f64,
 }
 
 impl Threshold {
-    /// `mu_i F_n,i + tau_a l^2`; nothing over a texture, where there is no load.
+    /// The threshold `mu_i F_n,i + tau_a l^2`; nothing over a texture, where there is no load.
     pub(crate) fn new(
         coefficient: f64,
         contact: &Contact,
@@ -48,7 +48,7 @@ impl Threshold {
         }
     }
 
-    /// The whole, with the part of the load times `factor`.
+    /// The whole threshold, with the part of the load times `factor`.
     pub(crate) fn scaled(&self, factor: f64) -> f64 {
         factor * self.of_load + self.of_adhesion
     }

@@ -1,4 +1,4 @@
-//! What is observed of the whole slider at t_n.
+//! Measures of the whole slider at t_n.
 
 use slipfront::Friction;
 
@@ -117,7 +117,7 @@ impl Reference<'_> {
         })
     }
 
-    /// Energy of the springs in contacts, `k_t (u - a)^2/2`; of those that break now it is lost.
+    /// Energy of the springs in contacts, `k_t (u - a)^2/2`; springs that break now have lost theirs.
     pub(crate) fn contact_energy(&self) -> f64 {
         let Friction::ContactSprings(law) = self.model.friction else {
             return 0.0;
@@ -142,7 +142,7 @@ impl Reference<'_> {
         self.sum_over(|b| 0.5 * law.stiffness * broken(b))
     }
 
-    /// Powers at t_n. What springs in contacts take is stored, and lost when they break.
+    /// Powers at t_n. Energy that springs in contacts take is stored, and lost when they break.
     fn powers(&self) -> Powers {
         let is_stored = matches!(self.model.friction, Friction::ContactSprings(_));
         let friction = |b: usize| -dot(self.force_friction[b], self.velocity_now(b));

@@ -1,7 +1,7 @@
 //! The model of `docs/model.md`, to be read beside the paper: one thread, plain loops, one function per equation, every option.
 //!
-//! It takes lattices, surfaces and parameters from the library, and computes everything itself: no force, threshold, friction or sum
-//! is the library's. Units are those of the library (Eq. 11).
+//! Lattices, surfaces and parameters come from the library; every force, threshold, friction and sum is computed here. Units
+//! are those of the library (Eq. 11).
 
 mod contact_springs;
 mod coulomb;
@@ -23,37 +23,37 @@ use self::measure::Losses;
 use self::step::{Motion, Update};
 use self::vector::{Vector, difference, length, sum, times};
 
-/// What never changes of a block.
+/// Properties of a block that never change.
 #[derive(Clone, Debug)]
 struct Block {
     exists: bool,
     in_contact: bool,
     mass: f64,
     springs: Vec<Spring>,
-    /// Stiffness `k_s,i` of its drive spring.
+    /// Stiffness `k_s,i` of the block's drive spring.
     drive_stiffness: f64,
-    /// Direction **g** of the far end of its drive spring.
+    /// Direction **g** of the far end of the block's drive spring.
     direction: Vector,
-    /// Constant force beside its drive spring.
+    /// Constant force beside the block's drive spring.
     constant_force: Vector,
     normal_force: f64,
     kinetic: Threshold,
 }
 
-/// What a law of friction remembers of a block.
+/// Memory of a law of friction about a block.
 #[derive(Clone, Copy, Debug)]
 struct Memory {
-    /// When it has stopped.
+    /// Time at which the block has stopped.
     stopped_at: f64,
-    /// How far it has slipped since it was whole.
+    /// Slip of the block since it was whole.
     slip: f64,
-    /// When it has moved last.
+    /// Time at which the block has moved last.
     moved_at: f64,
-    /// State of its contact.
+    /// State of the contact.
     theta: f64,
-    /// Where the spring of its contact has no force.
+    /// Displacement at which the spring of the contact has no force.
     anchor: Vector,
-    /// How often that has broken.
+    /// Number of times that this spring has broken.
     breaks: u64,
 }
 
@@ -63,29 +63,29 @@ pub(crate) struct Reference<'a> {
     contact: &'a Contact,
     dt: f64,
     step: u64,
-    /// Steps in which the drive has moved, and that number a step before.
+    /// Steps in which the drive has moved, and their number a step before.
     pub(crate) drive_steps: u64,
     drive_steps_before: u64,
     blocks: Vec<Block>,
     memory: Vec<Memory>,
     /// **u** at t_n.
     pub(crate) displacement: Vec<Vector>,
-    /// Half a step before t_n.
+    /// Velocities half a step before t_n.
     velocity_before: Vec<Vector>,
-    /// Half a step after t_n.
+    /// Velocities half a step after t_n.
     pub(crate) velocity: Vec<Vector>,
-    /// `F_s` with the constant force.
+    /// Drive forces `F_s` with the constant force.
     pub(crate) force_drive: Vec<Vector>,
-    /// `F_v` of the dampers.
+    /// Forces `F_v` of the dampers.
     force_dampers: Vec<Vector>,
-    /// `F_c` with the dampers.
+    /// Lattice forces `F_c` with the dampers.
     pub(crate) force_lattice: Vec<Vector>,
-    /// `F_f`.
+    /// Friction `F_f`.
     pub(crate) force_friction: Vec<Vector>,
     /// Stretch `u - a` of the springs that break now.
     broken: Vec<Option<Vector>>,
     pub(crate) slides: Vec<bool>,
-    /// The t_n of the first slip of each block in contact; NaN before.
+    /// Times t_n of the first slip of each block in contact; NaN before.
     pub(crate) first_slips: Vec<f64>,
     losses: Losses,
 }
@@ -152,7 +152,7 @@ impl<'a> Reference<'a> {
         reference
     }
 
-    /// Puts blocks where a state has them, with its velocities for those half a step after t_n; memory stays.
+    /// Puts blocks where a state has them; its velocities become those half a step after t_n. The memory stays.
     pub(crate) fn move_to(&mut self, state: &State) {
         let [u, v] = [&state.displacement, &state.velocity];
         for b in 0..self.blocks.len() {
@@ -171,14 +171,14 @@ impl<'a> Reference<'a> {
         self.drive_steps as f64 * self.dt
     }
 
-    /// Whether the drive moves from t_n to t_n+1: if it is held, only where no block in contact slides.
+    /// Whether the drive moves from t_n to t_n+1: a held one only where no block in contact slides.
     pub(crate) fn drive_moves(&self) -> bool {
         let slips = |b: usize| self.blocks[b].in_contact && self.slides[b];
         !self.model.drive.is_held() || !(0..self.blocks.len()).any(slips)
     }
 
-    /// From t_n to t_n+1, in which the drive moves or stands: the displacements (Eq. 8), what contacts remember of the way, and all that belongs
-    /// to the new instant.
+    /// From t_n to t_n+1, in which the drive moves or stands: the displacements (Eq. 8), the memory of contacts, and all
+    /// that belongs to the new instant.
     pub(crate) fn step(&mut self, drive_moves: bool) {
         self.step += 1;
         self.drive_steps_before = self.drive_steps;
@@ -196,7 +196,7 @@ impl<'a> Reference<'a> {
         self.evaluate();
     }
 
-    /// Forces at t_n (Eqs. 2, 3), friction (Eq. 4), velocities half a step later (Eqs. 5 to 8), and what is measured.
+    /// Finds forces at t_n (Eqs. 2, 3), friction (Eq. 4), velocities half a step later (Eqs. 5 to 8), and the measures.
     fn evaluate(&mut self) {
         for b in 0..self.blocks.len() {
             self.force_drive[b] = self.drive_force(b);
@@ -214,7 +214,7 @@ impl<'a> Reference<'a> {
         self.add_losses();
     }
 
-    /// Eq. 2, and the constant force.
+    /// Force of the drive spring (Eq. 2), and the constant force.
     fn drive_force(&self, b: usize) -> Vector {
         let (block, path) = (&self.blocks[b], drive::path(self.model, self.drive_time()));
         let u = self.displacement[b];
@@ -222,20 +222,20 @@ impl<'a> Reference<'a> {
         sum(spring, block.constant_force)
     }
 
-    /// Eq. 3.
+    /// Force of the springs between blocks (Eq. 3).
     fn elastic_force(&self, b: usize) -> Vector {
         let (springs, epsilon) = (&self.blocks[b].springs, self.model.epsilon);
         springs::elastic_force(b, springs, &self.displacement, epsilon)
     }
 
-    /// Internal viscosity.
+    /// Force of the dampers between blocks.
     fn damper_force(&self, b: usize) -> Vector {
         let (u, v) = (&self.displacement, &self.velocity_before);
         let (time, epsilon) = (self.model.slider().viscosity_time, self.model.epsilon);
         springs::damper_force(b, &self.blocks[b].springs, u, v, time, epsilon)
     }
 
-    /// The update of block `b` (Eqs. 4 to 8) by the law of friction, which takes note of it.
+    /// The update of block `b` (Eqs. 4 to 8) by the law of friction, which remembers it.
     fn friction(&mut self, b: usize) -> Update {
         let (block, memory, now) = (&self.blocks[b], self.memory[b], self.time());
         let force = sum(self.force_drive[b], self.force_lattice[b]);

@@ -2,7 +2,7 @@
 
 use super::vector::{Vector, sum, times};
 
-/// How a block moves at t_n, and what changes its velocity.
+/// Motion of a block at t_n, and the parameters by which its velocity changes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Motion {
     /// Velocity half a step before t_n.
@@ -15,7 +15,7 @@ pub(crate) struct Motion {
     pub(crate) dt: f64,
 }
 
-/// What a step makes of a block.
+/// Outcome of a step for a block.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Update {
     /// Velocity half a step after t_n.
@@ -30,12 +30,12 @@ impl Motion {
         self.velocity == [0.0, 0.0]
     }
 
-    /// `c_+ = 1 + Omega dt/2`.
+    /// Factor `c_+ = 1 + Omega dt/2`.
     fn c_plus(&self) -> f64 {
         1.0 + 0.5 * self.damping * self.dt
     }
 
-    /// `c_- = 1 - Omega dt/2`.
+    /// Factor `c_- = 1 - Omega dt/2`.
     fn c_minus(&self) -> f64 {
         1.0 - 0.5 * self.damping * self.dt
     }

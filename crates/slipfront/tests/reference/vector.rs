@@ -3,17 +3,17 @@
 /// A vector with its x and y components.
 pub(crate) type Vector = [f64; 2];
 
-/// `a + b`.
+/// Sum `a + b`.
 pub(crate) fn sum(a: Vector, b: Vector) -> Vector {
     [a[0] + b[0], a[1] + b[1]]
 }
 
-/// `a - b`.
+/// Difference `a - b`.
 pub(crate) fn difference(a: Vector, b: Vector) -> Vector {
     [a[0] - b[0], a[1] - b[1]]
 }
 
-/// `s a`.
+/// Product `s a`.
 pub(crate) fn times(s: f64, a: Vector) -> Vector {
     [s * a[0], s * a[1]]
 }
@@ -38,7 +38,7 @@ pub(crate) fn unit(a: Vector) -> Vector {
     }
 }
 
-/// `z x a`: the vector a quarter turn to the left.
+/// Vector product `z x a`: the vector a quarter turn to the left.
 pub(crate) fn left_of(a: Vector) -> Vector {
     [-a[1], a[0]]
 }

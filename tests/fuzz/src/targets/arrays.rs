@@ -197,7 +197,7 @@ fn images() -> Vec<Vec<u8>> {
     images
 }
 
-/// What is read of all rows at once is what is read row by row, of which the first error counts.
+/// Reads all rows at once and row by row, and demands the same result; the first error counts.
 fn read<T>(read: impl Fn(&Slab) -> Result<Vec<T>, ArrayError>) -> Result<Vec<T>, ArrayError>
 where
     T: PartialEq + std::fmt::Debug,
@@ -255,7 +255,7 @@ fn csv_table(input: &[u8]) {
     field("field.csv", input);
 }
 
-/// Whatever is read has a finite mean in every block, within what the file holds, and a roughness.
+/// A height map that is read has a finite mean in every block, within the range of the file, and a roughness.
 fn height_map(input: &[u8]) {
     let room = Room {
         blocks: [NX, NY],

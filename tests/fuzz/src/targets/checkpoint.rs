@@ -19,8 +19,8 @@ use slipfront_run::running::Running;
 use crate::checks::readable;
 use crate::{Memory, Target, scratch};
 
-/// The first byte chooses one of [`CASES`]. The rest is read as it is, then with the right checksum, then with the right header
-/// as well, but for the columns that it tells; a run is resumed from what can be read.
+/// The first byte chooses one of [`CASES`]. The rest is read as it is, then with the right checksum, then with the right
+/// header as well, but for its columns; a run is resumed if the file can be read.
 pub(crate) const CHECKPOINTS: Target = Target {
     name: "checkpoint",
     check: checkpoint,

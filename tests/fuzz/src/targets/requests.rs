@@ -1,7 +1,7 @@
 //! Messages of the laboratory's page, each to a session that has had those before it.
 //!
-//! An input that begins with a brace holds messages as they are, one in a line. Of the bytes of any other one messages are chosen: of
-//! every kind, with keys of the case and others, long paths, nested values, huge numbers, shapes, images.
+//! An input that begins with a brace holds messages as they are, one in a line. The bytes of any other input choose messages
+//! of every kind, with keys of the case and others, long paths, nested values, huge numbers, shapes, images.
 
 use std::thread;
 
@@ -33,8 +33,8 @@ pub(crate) const REQUESTS: Target = Target {
     repetitions: 10,
 };
 
-/// Stack of the thread that answers: an eighth of that of a page's own thread, so that what takes too much of it is seen early. A
-/// stack that overflows ends the process.
+/// Stack of the thread that answers: an eighth of that of a page's own thread, so that excessive use shows early. A stack
+/// that overflows ends the process.
 const STACK: usize = 256 << 10;
 
 /// Most messages of an input.
@@ -137,7 +137,7 @@ fn with_small_numbers(text: &str) -> String {
     out
 }
 
-/// Bytes by which is chosen; zeros when they are used up.
+/// Bytes that make choices; zeros when they are used up.
 struct Choices<'b> {
     bytes: &'b [u8],
 }

@@ -8,7 +8,7 @@ use slipfront_run::series::{SeriesRow, read_csv, to_csv};
 use crate::checks::readable;
 use crate::{Memory, Target, scratch};
 
-/// `series.csv`.
+/// Target for `series.csv`.
 pub(crate) const SERIES: Target = Target {
     name: "series",
     check: series,
@@ -24,7 +24,7 @@ pub(crate) const SERIES: Target = Target {
     repetitions: 60,
 };
 
-/// `precursors.csv`.
+/// Target for `precursors.csv`.
 pub(crate) const PRECURSORS: Target = Target {
     name: "precursors",
     check: events,
@@ -32,7 +32,7 @@ pub(crate) const PRECURSORS: Target = Target {
     ..SERIES
 };
 
-/// So many events, the last of which goes on.
+/// Events as CSV, `count` of them, the last of which goes on.
 pub(crate) fn events_csv(count: u32) -> Vec<u8> {
     let event = |number: u32| SlipEvent {
         from_star: 16.5 * f64::from(number),
@@ -78,7 +78,7 @@ fn events(input: &[u8]) {
     assert_eq!(format!("{again:?}"), format!("{rows:?}"));
 }
 
-/// A series of so many rows.
+/// A series of `rows` rows.
 pub(crate) fn csv(rows: u64) -> Vec<u8> {
     let row = |step: u64| {
         let time_star = step as f64 * 16.0;

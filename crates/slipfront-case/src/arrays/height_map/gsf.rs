@@ -10,7 +10,7 @@ use crate::quantity::Length;
 use crate::text::truncated;
 
 const MAGIC: &[u8] = b"Gwyddion Simple Field 1.0\n";
-/// Comments make a header longer than a few hundred bytes.
+/// Largest length of a header: comments may make it longer than a few hundred bytes.
 const HEADER_MAX_BYTES: u64 = 1 << 20;
 
 pub(super) fn read(

@@ -1,4 +1,4 @@
-//! Heights as the grey levels of a picture: PNG of 16 bits. The top row is that of the largest y.
+//! Heights as the grey levels of a picture: PNG of 16 bits. The top row lies at the largest y.
 
 use std::io::{BufRead, Seek};
 use std::path::Path;
@@ -50,20 +50,20 @@ pub(super) fn read(
     })
 }
 
-/// Of a picture in colours: which of them is how high, nothing tells.
+/// An error about a picture in colours, whose order of heights is unknown.
 pub(super) fn in_colours(path: &Path) -> ArrayError {
     let problem = "is a picture in colours, which do not tell heights: export the heights themselves, as grey levels of 16 bits or \
                    as a .gsf, .x3p or .npy file";
     contents_error(path, problem.to_owned())
 }
 
-/// Of a picture that has something beside its grey levels.
+/// An error about a picture that has more than grey levels.
 pub(super) fn beside_grey(path: &Path) -> ArrayError {
     let problem = "has grey levels with a second channel, such as opacity (alpha): save the grey levels alone, without transparency";
     contents_error(path, problem.to_owned())
 }
 
-/// Of a picture of fewer bits than heights need.
+/// An error about a picture of fewer bits than heights need.
 pub(super) fn too_coarse(path: &Path, bits: u8) -> ArrayError {
     let problem = format!(
         "has grey levels of {bits} bits, too coarse for heights: export it with 16 bits, or as a .gsf, .x3p or .npy file"

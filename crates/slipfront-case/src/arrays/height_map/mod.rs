@@ -1,6 +1,7 @@
 //! Measured topography: height maps of many formats, as the mean height of every block, and their roughness.
 //!
-//! A file is read twice, for its mean and for what is counted from that, so that no more than a line of it is in memory, a strip or tile, or a MiB of numbers.
+//! A file is read twice, for its mean and for the deviations from it, so that only a line of it, a strip or tile, or a MiB
+//! of numbers is in memory.
 
 mod averages;
 mod grid;
@@ -24,21 +25,21 @@ use super::error::{ArrayError, contents_error, extension, unknown_extension};
 use super::{npy, table};
 use crate::number_format::{four_digits, with_si_prefix};
 
-/// What the case says of the units of a height map, m; a file that has them itself is not contradicted.
+/// Units of a height map that the case states, m; a unit that the file states too is refused.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct HeightMapUnits {
-    /// The height that a value of 1 in the file means.
+    /// Height in m of the value 1 in the file.
     pub height: Option<f64>,
     /// Distance of neighbouring points along x and along y.
     pub pixel: Option<[f64; 2]>,
 }
 
-/// What a height map is laid over.
+/// The blocks over which a height map is laid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Room {
     /// Blocks along x and along y.
     pub blocks: [usize; 2],
-    /// Whether they are a place of a pattern, and not the slider.
+    /// Whether the blocks are a place of a pattern, and not the slider.
     pub is_place: bool,
 }
 
@@ -47,7 +48,7 @@ pub struct Room {
 pub struct HeightMap {
     /// Points of the file along x and along y.
     pub points: [usize; 2],
-    /// Its true size along x and along y, m.
+    /// True size of the map along x and along y, m.
     pub size: [f64; 2],
     /// Roughness of all points.
     pub roughness: Roughness,
@@ -57,8 +58,8 @@ pub struct HeightMap {
 
 /// Reads the height map called `path`, and averages it over the blocks of a room.
 ///
-/// An array, `.npy` or `.csv`, begins with the row of the smallest y, every other file with the top row, which is that of the largest y.
-/// `watch` is told the share that is done, and its error ends the work.
+/// An array, `.npy` or `.csv`, begins with the row of the smallest y, every other file with the top row, which lies at the
+/// largest y. `watch` gets the share that is done, and its error ends the work.
 ///
 /// # Errors
 /// [`ArrayError`] if the file is of another format or has more than 2^28 points or 2^20 along a side, a height is missing, a unit
@@ -184,7 +185,7 @@ fn pixel(path: &Path, grid: &HeightGrid, units: &HeightMapUnits) -> Result<[f64;
     }
 }
 
-/// What a height of 1 in the file is, m, from the file or from the case.
+/// Height in m of the value 1 in the file, from the file or from the case.
 fn height_unit(path: &Path, grid: &HeightGrid, units: &HeightMapUnits) -> Result<f64, ArrayError> {
     match (grid.height_unit, units.height) {
         (Some(unit), None) | (None, Some(unit)) => Ok(unit),
@@ -201,7 +202,7 @@ fn height_unit(path: &Path, grid: &HeightGrid, units: &HeightMapUnits) -> Result
     }
 }
 
-/// Refuses a map whose longer side is not that of the blocks to within half a block, as many as the shorter side has.
+/// Refuses a map whose sides have another ratio than those of the blocks, by more than half a block of the longer side.
 fn keep_aspect(path: &Path, size: [f64; 2], room: &Room) -> Result<(), ArrayError> {
     let blocks = room.blocks;
     let aspect = size[0] / size[1];

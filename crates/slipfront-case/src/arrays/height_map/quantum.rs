@@ -2,8 +2,9 @@
 
 use super::roughness::HeightRange;
 
-/// The height of which heights are whole multiples, counted from the lowest: a power of two, between 2^-53 and 2^-52 of their range,
-/// so that grey levels and integers are not rounded, and other numbers by no more than they were when they were written.
+/// The quantum of which all heights, counted from the lowest, are whole multiples: a power of two, between 2^-53 and 2^-52
+/// of their range, so that grey levels and integers are not rounded, and other numbers by no more than they were when they
+/// were written.
 #[derive(Clone, Copy)]
 pub(super) struct Quantum {
     lowest: f64,
@@ -11,7 +12,7 @@ pub(super) struct Quantum {
 }
 
 impl Quantum {
-    /// Of heights in a finite range.
+    /// The quantum of heights in a finite range.
     pub(super) fn of(range: HeightRange) -> Self {
         const EXPONENT: u64 = 0x7ff << 52;
         const SMALLEST: f64 = f64::from_bits(1);
@@ -22,12 +23,12 @@ impl Quantum {
         }
     }
 
-    /// How many quanta a height is, less than 2^53.
+    /// Number of quanta in a height, less than 2^53.
     pub(super) fn count(self, height: f64) -> i64 {
         ((height - self.lowest) / self.size).round() as i64
     }
 
-    /// The height of so many quanta.
+    /// The height of a number of quanta.
     pub(super) fn height(self, quanta: f64) -> f64 {
         self.lowest + quanta * self.size
     }

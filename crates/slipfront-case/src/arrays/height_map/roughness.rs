@@ -10,7 +10,8 @@ pub(super) struct HeightRange {
 /// The mean height and the range of points that come one after the other.
 #[derive(Default)]
 pub(super) struct Mean {
-    /// The first height, from which the others are counted, so that a map far above its zero loses no digits; and their range.
+    /// The first height, from which the others are counted so that a map far above its zero loses no digits, and the range
+    /// of all heights.
     first: Option<(f64, HeightRange)>,
     sum: f64,
     count: f64,
@@ -52,9 +53,9 @@ pub struct Roughness {
     pub sa: f64,
     /// Root mean square height Sq, m.
     pub sq: f64,
-    /// Skewness Ssk; none of a plane.
+    /// Skewness Ssk; none for a plane.
     pub ssk: Option<f64>,
-    /// Kurtosis Sku; none of a plane.
+    /// Kurtosis Sku; none for a plane.
     pub sku: Option<f64>,
 }
 

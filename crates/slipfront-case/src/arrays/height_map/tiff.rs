@@ -1,4 +1,4 @@
-//! Heights as the grey levels of a TIFF picture, of 16 bits or more, in strips or tiles. The top row is that of the largest y.
+//! Heights as the grey levels of a TIFF picture, of 16 bits or more, in strips or tiles. The top row lies at the largest y.
 
 use std::io::{BufRead, Seek};
 use std::ops::Range;
@@ -14,9 +14,9 @@ use crate::arrays::error::{ArrayError, broken, contents_error};
 
 /// The largest strip or tile, in bytes.
 const PIECE_MAX_BYTES: usize = 1 << 26;
-/// Grey levels that rise towards black.
+/// Value of the tag for grey levels that rise towards black.
 const WHITE_IS_ZERO: u32 = 0;
-/// Rows from the top, each from the left.
+/// Value of the tag for rows from the top, each from the left.
 const TOP_LEFT: u16 = 1;
 
 pub(super) fn read(

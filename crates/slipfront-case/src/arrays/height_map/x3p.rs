@@ -1,8 +1,9 @@
 //! X3P files (ISO 25178-72): a zip archive of `main.xml`, which describes the points, and of a file with their heights in metres,
 //! row by row.
 //!
-//! ISO 25178-72 counts y along with the rows and says nothing of how a surface is shown. Programs show the first row on top, and so do
-//! the files that they make of it; the first row is that of the largest y here, so that none of them is the mirror image of another.
+//! ISO 25178-72 counts y along with the rows and says nothing of how a surface is shown. Programs show the first row on top,
+//! and write it so into other formats. The first row therefore lies at the largest y, so that no file is the mirror image of
+//! another.
 
 use std::io::{BufRead, Read, Seek};
 use std::path::Path;
@@ -15,7 +16,7 @@ use super::grid::{HeightGrid, Line, Take, points};
 use crate::arrays::error::{ArrayError, broken, contents_error};
 use crate::text::truncated;
 
-/// A description takes a few thousand bytes.
+/// Largest length of `main.xml`: a description takes a few thousand bytes.
 const XML_MAX_BYTES: u64 = 1 << 20;
 
 pub(super) fn read(
@@ -97,7 +98,7 @@ pub(super) fn read(
     })
 }
 
-/// Refuses a map in which a point was not measured: of every point one bit says so, the lowest of a byte first.
+/// Refuses a map in which a point was not measured: one bit for every point says so, the lowest of a byte first.
 fn all_valid(path: &Path, stored: &mut dyn Read, n_points: usize) -> Result<(), ArrayError> {
     let mut piece = [0; 4096];
     let mut first = 0;
@@ -119,7 +120,7 @@ fn all_valid(path: &Path, stored: &mut dyn Read, n_points: usize) -> Result<(), 
     Ok(())
 }
 
-/// How a height is stored.
+/// Type of the numbers that store heights.
 #[derive(Clone, Copy)]
 enum HeightType {
     Int16,
@@ -150,17 +151,17 @@ impl HeightType {
     }
 }
 
-/// What `main.xml` says.
+/// Contents of `main.xml`.
 struct Description {
     points: [usize; 2],
     pixel: [f64; 2],
     number: HeightType,
-    /// A height is the stored number times this, plus `offset`, m.
+    /// Height of the stored number 1, m; `offset` is added.
     increment: f64,
     offset: f64,
     /// The file with the heights.
     data: String,
-    /// The file with a bit for every point, whether it was measured.
+    /// The file with a bit for every point that tells whether it was measured, if there is one.
     valid: Option<String>,
 }
 

@@ -15,7 +15,7 @@ pub(super) const KEYS: &[Key] = &[
         "static friction that grows while a block is stuck"),
 ];
 
-/// Growth with age.
+/// Kind of the key `beta`: growth with age.
 const BETA: KeyKind = number(
     within(0.0, 10.0),
     "it is the growth per unit of the logarithm of the age",
@@ -34,15 +34,15 @@ pub struct Ageing {
     pub law: AgeingLaw,
     /// Growth per unit of the logarithm, 0 to 10.
     pub beta: f64,
-    /// Time after which it shows, t*; more than 0, at most 1e9.
+    /// Time after which the growth shows, t*; more than 0, at most 1e9.
     pub time_star: f64,
 }
 
-/// How static friction depends on age.
+/// Dependence of static friction on age.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum AgeingLaw {
-    /// With the logarithm of the age.
+    /// Growth with the logarithm of the age.
     Logarithmic,
 }
 
@@ -61,7 +61,7 @@ impl Ageing {
     }
 }
 
-/// The law in words, behind those of static and kinetic friction.
+/// The law in words, for the end of a sentence about static and kinetic friction.
 pub(super) fn in_words(law: &Law) -> String {
     let (beta, time) = (four_digits(law.beta), four_digits(law.time));
     format!(", ageing by {beta} ln(1 + t*/{time})")

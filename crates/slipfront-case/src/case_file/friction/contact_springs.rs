@@ -25,25 +25,25 @@ pub(super) const SYNONYMS: &[(&str, &str)] = &[
 const ADVICE: &str = "springs in contact are `friction.contact` = \"springs\", of stiffness `friction.contact_stiffness_star`, or \
      `friction.contact_stiffness_per_area` with its unit";
 
-/// Why other keys have no meaning beside springs.
+/// Reason for which other keys have no meaning beside springs.
 pub(super) const ALONE: &str = "with `contact` = \"springs\" a block is held by its spring at any speed, and there is no kinetic \
                                 friction; leave it out, or take `contact` = \"rigid\"";
 
-/// Why the keys of springs have no meaning beside another contact.
+/// Reason for which the keys of springs have no meaning beside another contact.
 pub(super) const ELSEWHERE: &str = "it belongs to `contact` = \"springs\"; set that, or leave it out";
 
-/// What is wrong with springs of which no stiffness is given, at the key of this path.
+/// Error of springs without a stiffness, at the key of this path.
 pub(super) fn without_stiffness(path: &str) -> String {
     format!(
         "`{path}` = \"springs\" needs their stiffness, `contact_stiffness_star` or `contact_stiffness_per_area`"
     )
 }
 
-/// Why springs that are drawn anew take one rank.
+/// Reason for which springs that are drawn anew take one rank.
 pub(super) const ONE_RANK: &str = "a spring that forms again takes the coefficient of any block of the slider, and a rank knows those of its own \
                                    rows alone: take one rank, or redraw = false";
 
-/// The law in words, behind those of static friction.
+/// The law in words, for the end of a sentence about static friction.
 pub(super) fn in_words(law: &ContactSprings) -> String {
     let again = if law.redraw.is_some() {
         ", thresholds drawn anew"

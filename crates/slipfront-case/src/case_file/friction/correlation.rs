@@ -17,10 +17,10 @@ pub(super) const SYNONYMS: &[(&str, &str)] = &[
 ];
 const ADVICE: &str = "coefficients that are alike over a length are `friction.correlation_length` = \"5 um\"";
 
-/// Why there is nothing to correlate where no coefficient is drawn.
+/// Reason for which a correlation length has no meaning where no coefficient is drawn.
 pub(super) const GIVEN: &str =
     "all coefficients are given by files, and none is drawn; leave out it or one of the files";
 
-/// Why springs are not drawn anew of a field.
+/// Reason for which springs are not drawn anew from a field.
 pub(super) const REDRAW: &str = "a spring that forms again takes the coefficient of any block, so that neighbours would no longer be alike over \
                                  `correlation_length`; leave one of them out";

@@ -1,7 +1,7 @@
-//! `[friction]`: the law, the local coefficients and what they depend on.
+//! The table `[friction]`: the law, the local coefficients and their dependences.
 //!
-//! Each law is a file, with its keys, the words that people try for them, the law of the model that they make, and the sentences about it.
-//! What stands here is common to all, and a row for each.
+//! Each law is a file, with its keys, the words that people try for them, the law of the model that they make, and the
+//! sentences about it. This file holds the common part, and a row for each law.
 
 mod ageing;
 mod contact_springs;
@@ -88,7 +88,7 @@ pub(super) const SYNONYMS: &[&[(&str, &str)]] = &[
     rate_and_state::SYNONYMS,
 ];
 
-/// The law of friction.
+/// Law of friction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Law {
@@ -102,13 +102,13 @@ pub enum Law {
     RateAndState,
 }
 
-/// What holds a block until its threshold.
+/// Connection that holds a block until its threshold.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ContactModel {
-    /// It does not move.
+    /// Contact that does not yield.
     Rigid,
-    /// A spring, which breaks.
+    /// Spring between block and substrate, which breaks.
     Springs,
 }
 
@@ -124,7 +124,7 @@ pub struct Friction {
     pub kinetic: KineticFriction,
     /// Standard deviation of the static coefficients over their mean, 0 to 1.
     pub sigma_static_star: f64,
-    /// Standard deviation of the kinetic coefficients over *their* mean, 0 to 1.
+    /// Standard deviation of the kinetic coefficients over the mean of the kinetic ones, 0 to 1.
     pub sigma_kinetic_star: f64,
     /// Seed of the random coefficients, 0 to 2^63 - 1.
     pub seed: u64,
@@ -146,25 +146,26 @@ pub struct Friction {
     pub slip_weakening: Option<SlipWeakeningLength>,
     /// Time for which a block must be stuck to be whole again, t*; never if not given.
     pub healing_time_star: Option<f64>,
-    /// What holds a block until its threshold.
+    /// Connection that holds a block until its threshold.
     pub contact: ContactModel,
-    /// Stiffness of the spring in the contact of a block over `young_modulus` times the thickness, of contacts that are springs.
+    /// Stiffness of the spring in the contact of a block over `young_modulus` times the thickness; for `contact` =
+    /// "springs".
     pub contact_stiffness_star: Option<f64>,
-    /// Stiffness of the springs in the contact per area, of contacts that are springs, N/m^3.
+    /// Stiffness of the springs in the contact per area, N/m^3; for `contact` = "springs".
     pub contact_stiffness_per_area: Option<StiffnessPerArea>,
     /// Whether a spring that forms again has another threshold.
     pub redraw: bool,
     /// Direct effect of rate and state.
     pub a: Option<f64>,
-    /// Its evolution effect.
+    /// Evolution effect of rate and state.
     pub b: Option<f64>,
-    /// Slip over which its state follows, in units of P mu_s l^2/(E h).
+    /// Slip over which the state of rate and state follows, in units of P mu_s l^2/(E h).
     pub d_c_star: Option<f64>,
-    /// Its reference speed, in the unit of V*.
+    /// Reference speed of rate and state, in the unit of V*.
     pub v_0_star: Option<f64>,
-    /// Its coefficient of steady sliding at that speed; `mu_static` if not given.
+    /// Coefficient of steady sliding of rate and state at the reference speed; `mu_static` if not given.
     pub mu_0: Option<f64>,
-    /// Its state at the start, t*; `d_c_star/v_0_star` if not given.
+    /// State of rate and state at the start, t*; `d_c_star/v_0_star` if not given.
     pub theta_0_star: Option<f64>,
     /// Speed above which a block counts as sliding, in the unit of V*; a tenth of V* if not given.
     pub slip_speed_star: Option<f64>,
@@ -219,7 +220,7 @@ impl Friction {
         self.law != Law::RateAndState
     }
 
-    /// Whether friction has a kinetic coefficient, too.
+    /// Whether friction has a kinetic coefficient beside the static one.
     pub fn has_kinetic_coefficient(&self) -> bool {
         self.has_static_coefficient() && self.contact == ContactModel::Rigid
     }
@@ -233,7 +234,7 @@ impl Friction {
         }
     }
 
-    /// Lengths of friction that are those of a block, since no key gives them.
+    /// Lengths of friction that equal the length of a block because no key gives them.
     pub(crate) fn lengths_of_a_block(&self) -> impl Iterator<Item = LengthOfABlock> {
         let falls_at_once =
             self.has_kinetic_coefficient() && self.slip_weakening.is_none() && self.mean_ratio() < 1.0;
@@ -254,7 +255,7 @@ impl Friction {
         slip.into_iter().chain(coefficients)
     }
 
-    /// The law that the keys, which fit each other, ask for at this V*.
+    /// The law of the model that the keys, which fit each other, define at this V*.
     pub fn in_model(&self, v_star: f64, scales: &Scales) -> slipfront::Friction {
         let per_area = self.contact_stiffness_per_area.as_ref();
         let of_area = per_area.map(|per_area| scales.stiffness_of_area(per_area.si()));
@@ -325,7 +326,7 @@ impl Friction {
         }
     }
 
-    /// A key that takes one rank, and why.
+    /// A key that takes one rank, and the reason.
     pub fn takes_one_rank(&self) -> Option<(&'static str, &'static str)> {
         self.redraw
             .then_some(("friction.redraw", contact_springs::ONE_RANK))
@@ -381,7 +382,7 @@ impl Friction {
         refuse_set(check, &[("law", self.law != Law::Projection), springs], HELD)
     }
 
-    /// Refuses a correlation length where nothing is drawn of a field.
+    /// Refuses a correlation length where no coefficient is drawn from a field.
     fn check_correlation(&self, check: &Check) -> Result<(), CaseError> {
         let is_correlated = self.correlation_length.is_some();
         let draws_kinetic = self.has_kinetic_coefficient() && self.mu_kinetic_field.is_none();
@@ -432,7 +433,7 @@ impl Friction {
         set.map_or(Ok(()), |set| refuse_set(check, &[set], rate_and_state::ELSEWHERE))
     }
 
-    /// What thresholds follow, and whether it is set.
+    /// Options of thresholds, and whether each is set.
     fn options(&self) -> [(&'static str, bool); 4] {
         [
             ("velocity", self.velocity.is_some()),
@@ -442,7 +443,8 @@ impl Friction {
         ]
     }
 
-    /// The keys of kinetic friction, and whether they are set. Where there is no such coefficient their defaults are no contradiction.
+    /// The keys of kinetic friction, and whether they are set. Defaults are no contradiction where there is no kinetic
+    /// coefficient.
     fn of_kinetic(&self) -> [(&'static str, bool); 5] {
         [
             (
@@ -476,20 +478,20 @@ fn refuse_set(check: &Check, keys: &[(&str, bool)], why: &str) -> Result<(), Cas
     })
 }
 
-/// Why what goes on in time has no meaning under a held drive.
+/// Reason for which laws that depend on time have no meaning under a held drive.
 const HELD_IN_TIME: &str = "with `drive.loading` = \"held\" the drive waits for slip to end, and loads as slowly as you like: no time passes in which \
                             contacts could grow stronger; leave one of them out";
 
-/// Why other laws have no meaning under a held drive.
+/// Reason for which other laws have no meaning under a held drive.
 const HELD: &str = "with `drive.loading` = \"held\" the drive moves while all blocks in contact are stuck, as they are by \
                     `law` = \"projection\" and `contact` = \"rigid\" alone; take these, or `drive.loading` = \"constant\"";
 
-/// Whether a spread is set; where there are no coefficients that it spreads, 0 and its default are no contradiction.
+/// Whether a spread is set; 0 and the default are no contradiction where there are no coefficients that it spreads.
 fn is_spread(sigma: f64) -> bool {
     sigma != 0.0 && sigma != DEFAULT_SIGMA
 }
 
-/// Defaults of keys that a case may have where they have no meaning: it is printed with every default.
+/// Default spread, which a printed case has even where it has no meaning.
 const DEFAULT_SIGMA: f64 = 0.05;
 const DEFAULT_R_STAR: f64 = 0.5;
 

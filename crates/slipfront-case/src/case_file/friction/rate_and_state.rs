@@ -20,7 +20,7 @@ pub(super) const KEYS: &[Key] = &[
     key("slip_speed_star", "", SPEED_STAR, "speed above which a block counts as sliding under rate and state"),
 ];
 
-/// How many of the [`KEYS`] have no default and must be there, the first of them.
+/// Number of the [`KEYS`] that have no default and must be given, which stand first.
 pub(super) const NEEDED: usize = 4;
 
 pub(super) const SYNONYMS: &[(&str, &str)] = &[
@@ -43,20 +43,20 @@ const ADVICE: &str = "rate and state is `friction.law` = \"rate_and_state\"";
 const SLIP: &str = "the slip of rate and state is `friction.d_c_star`";
 const REFERENCE_SPEED: &str = "the reference speed of rate and state is `friction.v_0_star`";
 
-/// Why other keys have no meaning beside this law.
+/// Reason for which other keys have no meaning beside this law.
 pub(super) const ALONE: &str = "`law` = \"rate_and_state\" has no static and kinetic coefficients, and its friction follows speed and age \
                                 already; leave it out, or take `law` = \"projection\"";
 
-/// Why the keys of this law have no meaning beside another.
+/// Reason for which the keys of this law have no meaning beside another law.
 pub(super) const ELSEWHERE: &str = "it belongs to `law` = \"rate_and_state\"; set that, or leave it out";
 
-/// What is wrong where a key is missing that the law needs, which stands at this path.
+/// Error of a missing key that the law needs, at this path.
 pub(super) fn without_key(path: &str, key: &str) -> String {
     format!("`{path}` = \"rate_and_state\" needs `{key}`: it needs `a`, `b`, `d_c_star` and `v_0_star`")
 }
 
-/// The law of the model, with coefficients over `mu_static`, from the values of the [`KEYS`] and the speed of the drive. The file has the
-/// keys without a default, or it would not have been read.
+/// The law of the model, with coefficients over `mu_static`, from the values of the [`KEYS`] and the speed of the drive. A
+/// file that was read has the keys without a default.
 pub(super) fn law(values: [Option<f64>; KEYS.len()], mu_static: f64, v_star: f64) -> RateAndState {
     let [a, b, d_c, v_0, mu_0, theta_0, slip_speed] = values;
     let given = |key: Option<f64>| key.unwrap_or(f64::NAN);

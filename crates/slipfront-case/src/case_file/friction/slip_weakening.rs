@@ -31,10 +31,10 @@ pub(super) const SYNONYMS: &[(&str, &str)] = &[
 ];
 const ADVICE: &str = "strength that falls with slip is `friction.slip_weakening` = { length = \"0.5 um\" }, with the fracture energy (S - K) length/2 of a block";
 
-/// Why other laws have no meaning beside it.
+/// Reason for which other laws have no meaning beside slip weakening.
 pub(super) const ALONE: &str = "beside `slip_weakening` it is not derived; leave one of them out";
 
-/// Why healing has no meaning without it.
+/// Reason for which healing has no meaning without slip weakening.
 pub(super) const ELSEWHERE: &str = "it belongs to `slip_weakening`; set that, or leave it out";
 
 /// `slip_weakening`: the slip over which strength falls from the static to the kinetic threshold.
@@ -74,7 +74,7 @@ impl SlipWeakeningLength {
     }
 }
 
-/// The law in words, behind those of static and kinetic friction.
+/// The law in words, for the end of a sentence about static and kinetic friction.
 pub(super) fn in_words(law: &SlipWeakening) -> String {
     let healing = law.healing_time.map_or(String::new(), |time| {
         format!(", whole again after t* = {} at rest", four_digits(time))

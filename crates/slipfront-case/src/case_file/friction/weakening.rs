@@ -15,7 +15,7 @@ pub(super) const KEYS: &[Key] = &[
         "kinetic friction that falls with speed"),
 ];
 
-/// A share of kinetic friction.
+/// Kind of the key `ratio`: a share of kinetic friction.
 const RATIO: KeyKind = number(
     within(0.0, 1.0),
     "it is kinetic friction at high speed over that at rest",
@@ -44,11 +44,11 @@ pub struct Velocity {
     pub ratio: f64,
 }
 
-/// How kinetic friction depends on speed.
+/// Dependence of kinetic friction on speed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum VelocityLaw {
-    /// It falls.
+    /// Friction that falls with speed.
     Weakening,
 }
 
@@ -67,7 +67,7 @@ impl Velocity {
     }
 }
 
-/// The law in words, behind those of static and kinetic friction.
+/// The law in words, for the end of a sentence about static and kinetic friction.
 pub(super) fn in_words(law: &Weakening) -> String {
     let (ratio, speed) = (four_digits(law.ratio), four_digits(law.critical_speed));
     format!(", falling to {ratio} of mu_k about V* = {speed}")

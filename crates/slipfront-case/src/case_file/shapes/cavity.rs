@@ -66,13 +66,13 @@ const RADIUS: &str = "the radius of a circle is `lambda`";
 pub struct Cavity {
     /// Kind of outline (s), 1 to 64: an ellipse for 1, else a polygon of s + 1 curved edges.
     pub s: u32,
-    /// How far the outline is from a circle (w): |w| < 1 for s = 1, |w| <= 1/s, where vertices are sharp, otherwise.
+    /// Departure of the outline from a circle (w): |w| < 1 for s = 1; otherwise |w| <= 1/s, where vertices are sharp.
     pub w: f64,
     /// The size: `coverage` or `lambda`.
     pub size: CavitySize,
     /// Whether x and y of the outline are swapped: an ellipse of w > 0 is then elongated along y, not x.
     pub across: bool,
-    /// The centre, or that of the pattern.
+    /// The centre of the cavity, or of the pattern.
     pub center: Center,
     /// Rotation about the centre, degrees from x towards y, -360 to 360.
     pub rotate: f64,
@@ -87,13 +87,13 @@ pub enum CavitySize {
     Lambda(Length),
 }
 
-/// Where a cavity lies.
+/// Place of a cavity.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "CenterKey", into = "CenterKey")]
 pub enum Center {
-    /// `"middle"`: the middle of the slider.
+    /// The value `"middle"`: the middle of the slider.
     Middle,
-    /// `[x, y]` from the slider's lower left corner, m.
+    /// The value `[x, y]` from the slider's lower left corner, m.
     At([Length; 2]),
 }
 
@@ -167,7 +167,7 @@ keys_with_choice! {
     }
 }
 
-/// `center` as it stands in the file.
+/// The key `center` as it stands in the file.
 #[derive(Serialize, Deserialize)]
 #[serde(
     untagged,
@@ -175,7 +175,7 @@ keys_with_choice! {
 )]
 enum CenterKey {
     Word(String),
-    /// Texts, so that a length that cannot be read keeps its own message.
+    /// Two texts, so that a length that cannot be read keeps its own message.
     At(Pair<String>),
 }
 

@@ -45,7 +45,7 @@ pub struct Groove {
     pub orientation: Orientation,
     /// The size: `coverage` or `width`.
     pub size: GrooveSize,
-    /// Distance of the groove's middle line from the slider's, m.
+    /// Distance of the groove's middle line from the slider's middle line, m.
     pub offset: Length,
 }
 
@@ -54,7 +54,7 @@ pub struct Groove {
 pub enum GrooveSize {
     /// `coverage`: percent of the whole area, more than 0, less than 100.
     Coverage(f64),
-    /// `width`: m.
+    /// The key `width`, m.
     Width(Length),
 }
 

@@ -1,4 +1,4 @@
-//! `shape = "height_map"` of a `[[texture]]`: measured topography, of which the highest parts touch.
+//! Key `shape = "height_map"` of a `[[texture]]`: measured topography whose highest parts touch.
 
 use serde::{Deserialize, Serialize};
 
@@ -29,23 +29,23 @@ pub(super) const SYNONYMS: &[(&str, &str)] = &[
 const HEIGHT_MAP: &str =
     "measured heights are `shape` = \"height_map\" with `file` and `bearing_percent` or `depth`";
 
-/// A measured surface stretched over the slider: what lies below the height of contact is textured.
+/// A measured surface stretched over the slider: parts below the height of contact are textured.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "HeightMapKeys", into = "HeightMapKeys")]
 pub struct HeightMap {
     /// A `.npy`, `.csv`, `.gsf`, `.x3p`, or a `.png` or `.tif` of grey levels, relative to the case file.
     pub file: String,
-    /// Which heights touch: `bearing_percent` or `depth`.
+    /// Heights that touch: `bearing_percent` or `depth`.
     pub bearing: Bearing,
-    /// The height from which `depth` is counted, m; none is that of the highest block.
+    /// The height from which `depth` is counted, m; the highest block if there is none.
     pub reference: Option<Length>,
-    /// The height that a value of 1 in the file means, m; none where the file has a unit.
+    /// The height of the value 1 in the file, m; none where the file has a unit.
     pub height_unit: Option<Length>,
     /// Distance of neighbouring points along x and along y, m; none where the file has it.
     pub pixel_size: Option<Pitch>,
 }
 
-/// Which heights touch.
+/// Heights that touch.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Bearing {
     /// `bearing_percent`: the highest blocks, this share of all in percent; more than 0, less than 100.
@@ -55,7 +55,7 @@ pub enum Bearing {
 }
 
 impl HeightMap {
-    /// Why a height map covers no block.
+    /// Reason for which a height map covers no block.
     pub(super) fn why_empty(&self) -> &'static str {
         match self.bearing {
             Bearing::Percent(_) => "none is lower than the lowest that touch; lower `bearing_percent`",

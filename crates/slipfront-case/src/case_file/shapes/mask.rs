@@ -31,7 +31,7 @@ pub struct Mask {
     pub threshold: f64,
 }
 
-/// Halfway to white.
+/// Default threshold, halfway to white.
 pub const DEFAULT_THRESHOLD: f64 = 0.5;
 
 impl Mask {
@@ -40,7 +40,7 @@ impl Mask {
         check.value("threshold", &self.threshold)
     }
 
-    /// Why a mask covers no block.
+    /// Reason for which a mask covers no block.
     pub(super) const EMPTY: &str =
         "no pixel at the centre of a block is dark, and no number of an array is 1; look at its file";
 }

@@ -1,7 +1,7 @@
 //! The shapes of `[[texture]]`.
 //!
-//! Each is a file, with its keys, the words that people try for them, what a user calls it, and the shape in blocks that they make. What
-//! stands here is a row for each.
+//! Each shape is a file, with its keys, the words that people try for them, its name for a user, and the shape in blocks
+//! that they make. This file has a row for each shape.
 
 mod cavity;
 mod groove;
@@ -23,7 +23,7 @@ use super::error::CaseError;
 use super::key::{Key, count, joined};
 use super::pattern;
 
-/// The keys of a shape, and those that all shapes have.
+/// Joins the keys of a shape and the keys that all shapes have.
 macro_rules! keys {
     ($own:expr) => {
         &joined::<{ count(&[$own, pattern::KEYS]) }>(&[$own, pattern::KEYS])
@@ -64,18 +64,18 @@ pub enum Shape {
     HeightMap(HeightMap),
 }
 
-/// Where the inside of a shape comes from.
+/// Origin of the inside of a shape.
 pub(crate) enum Inside<'a> {
-    /// An outline.
+    /// The inside of an outline.
     Outline(&'a dyn Outlined),
-    /// A file of blocks that are inside.
+    /// The blocks of a file.
     Mask(&'a Mask),
-    /// A file of heights.
+    /// The heights of a file.
     HeightMap(&'a HeightMap),
 }
 
 impl Shape {
-    /// Its name in the file.
+    /// Name of the shape in the file.
     pub(super) fn name(&self) -> &'static str {
         match self {
             Self::Cavity(_) => "cavity",
@@ -86,7 +86,7 @@ impl Shape {
         }
     }
 
-    /// Where its inside comes from.
+    /// Origin of the shape's inside.
     pub(crate) fn form(&self) -> Inside<'_> {
         match self {
             Self::Cavity(cavity) => Inside::Outline(cavity),
@@ -97,7 +97,7 @@ impl Shape {
         }
     }
 
-    /// Its outline, if that is known before any file is read.
+    /// Outline of the shape, if it is known before any file is read.
     pub(crate) fn outline(&self) -> Option<&dyn Outlined> {
         match self.form() {
             Inside::Outline(outline) => Some(outline),
@@ -105,12 +105,12 @@ impl Shape {
         }
     }
 
-    /// Whether its outline is known before any file is read.
+    /// Whether the outline of the shape is known before any file is read.
     pub fn has_outline(&self) -> bool {
         self.outline().is_some()
     }
 
-    /// Why it covers no block, and what to look at.
+    /// Reason for which the shape covers no block, with the keys to check.
     pub(crate) fn why_empty(&self) -> &'static str {
         match self.form() {
             Inside::Outline(_) => {

@@ -1,4 +1,4 @@
-//! Shapes of which outlines are known before any file is read.
+//! Shapes whose outlines are known before any file is read.
 
 use slipfront::surface::{self, Array};
 use slipfront::{Lattice, Scales};
@@ -9,7 +9,7 @@ use crate::quantity::Length;
 pub(crate) struct Blocks<'a> {
     pub(crate) scales: &'a Scales,
     pub(crate) lattice: &'a Lattice,
-    /// How many of them exist.
+    /// Number of the blocks that exist.
     pub(crate) n_blocks: usize,
     /// The pattern of the copies of a shape.
     pub(crate) arrays: &'a [Array],
@@ -24,10 +24,10 @@ impl Blocks<'_> {
 
 /// A shape with an outline.
 pub(crate) trait Outlined {
-    /// What its user calls one of its copies.
+    /// Name of one copy of the shape, in the words of a user.
     fn noun(&self) -> &'static str;
 
-    /// The shape in blocks, and the area of all copies as asked for, % of that of the blocks that exist, if it is known before the shape is
-    /// meshed.
+    /// The shape in blocks, and the area of all copies as asked for, % of the area of the blocks that exist, if it is known
+    /// before the shape is meshed.
     fn in_blocks(&self, on: &Blocks) -> (surface::Shape, Option<f64>);
 }

@@ -32,7 +32,7 @@ use crate::report;
 use crate::signals::Signals;
 use crate::threads::{count_from_one, set_threads};
 
-/// What the help says of checkpoints.
+/// Help on checkpoints.
 pub(crate) const CHECKPOINTS_HELP: &str = "The whole state of the run is saved in its folder every --checkpoint and on SIGUSR1, \
 after which it goes on, and on Ctrl-C, SIGTERM and SIGHUP, which stop it with status 130, 143 and 129. A run that was stopped \
 and resumed, however often, writes the same bytes as one that was not.";
@@ -72,7 +72,7 @@ pub(crate) struct RunCommand {
 }
 
 impl RunCommand {
-    /// Runs it, with all ranks that there are.
+    /// Runs the command on all ranks.
     pub(crate) fn execute(self, ranks: &CommandRanks) -> Result<(), RankFailure> {
         let started = clock::now();
         ranks.expect_same(|| self.shared_options())?;
@@ -104,8 +104,8 @@ impl RunCommand {
         complete(running, folder, checkpoints, options)
     }
 
-    /// The options on which it depends what the ranks do together. Where the others are, threads and the folder, each rank may have
-    /// its own, and what is printed is asked of the first one.
+    /// The options that all ranks must share. Each rank may have its own threads and folder, and the options on printing
+    /// count on the first rank.
     fn shared_options(&self) -> Given {
         let flag = |is_given: bool| if is_given { "given" } else { "not given" }.to_owned();
         let options = [
@@ -157,7 +157,8 @@ fn claim_folder(
         .map_err(|error| with_free_folder(error, out))
 }
 
-/// Writes to the folder of a new run all that the run needs to go on if it is stopped, in the place of an earlier one.
+/// Writes the case and its inputs to the folder of a new run, in the place of an earlier one, so that the run can go on if
+/// it is stopped.
 fn begin_folder(claimed: ClaimedFolder, case: &Case) -> Result<RunFolder, Failure> {
     let mut folder = claimed.take().map_err(Failure::input)?;
     results::write_case(case, &mut folder).map_err(Failure::running)?;
@@ -184,8 +185,8 @@ fn with_free_folder(error: FolderError, out: &Path) -> Failure {
     }
 }
 
-/// Refuses a folder that holds the case to be run, or a file that it reads, where the results go: with `--force` it would be
-/// gone, and lost if the run fails.
+/// Refuses a folder that holds the case to be run, or a file that it reads, where the results go: with `--force` the file
+/// would be replaced, and lost if the run fails.
 fn refuse_to_replace(path: Option<&Path>, case: &Case, out: &Path) -> Result<(), Failure> {
     let inputs = case.inputs.iter().map(|input| input.original.as_path());
     let replaced = path.into_iter().chain(inputs).find(|path| {

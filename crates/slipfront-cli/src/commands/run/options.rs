@@ -1,10 +1,10 @@
-//! How a run is executed and shown.
+//! Options for executing and showing a run.
 
 use crate::checkpoint_timer::Interval;
 use crate::ranks::CommandRanks;
 use crate::signals::Signals;
 
-/// How a run is executed and shown.
+/// Options for executing and showing a run.
 pub(super) struct RunOptions {
     pub(super) ranks: CommandRanks,
     pub(super) threads: usize,

@@ -68,7 +68,7 @@ fn check_disk(run: &Inspection, case: &Case, options: &RunOptions) -> Result<(),
         .map_err(Failure::input)
 }
 
-/// Goes on from a checkpoint, if there is one; says from where.
+/// Goes on from a checkpoint, if there is one, and names its step.
 fn begin(
     run: &Inspection,
     case: &Arc<Case>,
@@ -136,7 +136,7 @@ fn case_to_resume(run: &Inspection, file: CaseFile, options: &RunOptions) -> Res
     Ok(case)
 }
 
-/// Answers for a run in which nothing is left to do.
+/// Answers for a run that is complete already.
 fn report_complete(run: &Inspection, options: &RunOptions) -> Result<(), Failure> {
     run.case_to_resume().map_err(Failure::input)?;
     run.manifest().map_err(Failure::input)?;
@@ -192,7 +192,8 @@ fn load(
     }
 }
 
-/// A checkpoint that cannot be used, with the remedy. All ranks refuse it; the first one, which says so, looks for the remedy.
+/// Failure of a checkpoint that cannot be used, with the remedy. All ranks refuse it; the first one, which prints, looks for
+/// the remedy.
 fn refused(
     ranks: &CommandRanks,
     error: &CheckpointError,

@@ -42,7 +42,7 @@ pub(crate) struct StudyRun {
     yes: bool,
 }
 
-/// Most runs of a study that is run without `--yes`.
+/// Largest number of runs of a study that is run without `--yes`.
 const MAX_UNCONFIRMED_RUNS: u64 = 10_000;
 
 /// Refuses a very large study unless the user has confirmed it.
@@ -98,7 +98,7 @@ fn refuse_to_replace(path: &Path, file: &StudyFile, out: &Path) -> Result<(), Fa
     Err(Failure::input(anyhow::anyhow!(sentence)))
 }
 
-/// The folder for the results by default; each shard has its own.
+/// Default folder for the results; each shard has its own.
 fn default_out(name: &str, shard: Option<Shard>) -> PathBuf {
     let name = match shard {
         Some(shard) => format!("{name}-{}", shard.to_string().replace('/', "-of-")),
@@ -107,7 +107,7 @@ fn default_out(name: &str, shard: Option<Shard>) -> PathBuf {
     PathBuf::from("results").join(name)
 }
 
-/// Runs what the folder lacks.
+/// Makes the runs that the folder lacks.
 pub(in crate::commands) fn run_all(
     plan: &Plan,
     folder: &StudyFolder,
@@ -129,7 +129,7 @@ pub(in crate::commands) fn run_all(
     })
 }
 
-/// Prints what the user must know before the runs: of axes that change nothing, and of a folder that has been used before.
+/// Prints notes before the runs: on axes that change nothing, and on a folder that has been used before.
 fn print_notes(plan: &Plan, folder: &StudyFolder) {
     let note = |sentence: &str| print_stderr(&for_stderr(&format!("note: {sentence}")));
     for axis in study::idle_axes(plan) {

@@ -1,4 +1,4 @@
-//! What the tables and pictures say, and on what they do not depend.
+//! Content of tables and pictures, and its independence of the way they were made.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -44,7 +44,7 @@ fn any_number_of_threads_gives_the_same_bytes() {
     );
 }
 
-/// Tables tell of precursors where a run has some: what its summary says. Without such a run they have no such columns.
+/// Tables have columns of precursors where a run has some, with the values of its summary, and none otherwise.
 #[test]
 fn tables_tell_of_precursors() {
     let study = |list: &str| {
@@ -275,8 +275,8 @@ fn pictures_are_those_that_the_axes_ask_for() {
     );
 }
 
-/// Quantities are numbers: curves and a map with the unit of their ticks, and what the intervals are. Where there are no curves, the
-/// plan and the answer say why.
+/// Quantities are numbers: curves and a map with the unit of their ticks, and the meaning of the intervals. Where there are
+/// no curves, the plan and the answer say why.
 #[test]
 fn axes_of_quantities_are_drawn_in_their_unit() {
     let study = |levels: [usize; 2]| {
@@ -322,7 +322,7 @@ fn axes_of_quantities_are_drawn_in_their_unit() {
     assert!(!workspace.results("out").has("static_friction_star.svg"));
 }
 
-/// Directions are drawn around a centre and told in a table of their own, which belongs to the study as the others do.
+/// Directions are drawn around a centre and listed in a table of their own, which belongs to the study as the others do.
 #[test]
 fn directions_have_a_polar_picture_and_their_table() {
     let study = |key: &str| {
@@ -385,7 +385,7 @@ fn directions_have_a_polar_picture_and_their_table() {
     assert!(!many.has("friction_polar.svg") && many.table("anisotropy.csv").len() == 10);
 }
 
-/// Its largest mu* is that of a run which never slid, and no mean may have it.
+/// Runs without a transition are pointed out: the largest mu* of a run which never slid must not enter a mean.
 #[test]
 fn runs_without_a_transition_are_pointed_out() {
     let workspace = Workspace::with_study(&SMALL.replace("stop = \"after_onset\"", "duration_star = 25"));
@@ -503,7 +503,7 @@ fn a_slider_that_creeps_has_no_static_friction() {
     );
 }
 
-/// The cases of a study have no other place to say it.
+/// Remarks on the cases of a study are printed once, because there is no other place for them.
 #[test]
 fn what_deserves_a_word_is_said_once() {
     let workspace = Workspace::with_study(
@@ -531,7 +531,8 @@ fn what_deserves_a_word_is_said_once() {
     }
 }
 
-/// Of 25 columns, 5 % are one and 15 % are three: 4 and 12 %. A study that asks for these has the same runs, and the same pictures.
+/// Coverages are drawn and listed as they are meshed: of 25 columns, 5 % are one and 15 % are three, 4 and 12 %. A study
+/// that asks for these has the same runs, and the same pictures.
 #[test]
 fn coverages_are_drawn_and_told_as_they_are_meshed() {
     let study = |axes: &str| {
@@ -594,7 +595,8 @@ fn coverages_are_drawn_and_told_as_they_are_meshed() {
     }
 }
 
-/// 5 and 6 % of 25 columns are one column: what is drawn at one place is told, and a map keeps its columns apart.
+/// 5 and 6 % of 25 columns are one column: a note names the points that are drawn at one place, and a map keeps its columns
+/// apart.
 #[test]
 fn coverages_that_are_meshed_to_one_are_told() {
     let workspace = Workspace::with_study(
@@ -635,7 +637,7 @@ fn an_axis_that_changes_nothing_is_pointed_out() {
     assert!(stderr(&quiet).is_empty(), "{}", stderr(&quiet));
 }
 
-/// An interval is printed to three figures, with what it is of where that is little.
+/// An interval is printed to three figures, with the number of values where that is small.
 #[test]
 fn intervals_are_rounded_and_say_what_varies() {
     let study = "base.slider.blocks = [30, 30]\nbase.time.stop = 'after_onset'\nbase.drive.v_star = 0.2\n\

@@ -1,4 +1,4 @@
-//! What can be written in a study file.
+//! Content of a study file.
 
 use crate::support::process::stderr;
 use crate::support::workspace::Workspace;
@@ -132,7 +132,7 @@ fn copies_do_not_overwrite_what_is_still_to_be_copied() {
     assert_eq!(points("out"), points("fresh_out"));
 }
 
-/// What a link leads to is somebody else's.
+/// Copies do not go behind a link, whose target is somebody else's.
 #[cfg(unix)]
 #[test]
 fn copies_do_not_go_behind_a_link() {

@@ -1,4 +1,4 @@
-//! The folder of a study: what it keeps, what it makes of damage, change and strangers.
+//! The folder of a study: kept files, damage, changes and foreign files.
 
 use std::collections::BTreeSet;
 
@@ -157,7 +157,7 @@ fn a_study_file_that_names_its_base_is_not_replaced() {
     );
 }
 
-/// Whatever they are called: only what a study has drawn is its own.
+/// Pictures of others stay, whatever their names: only pictures that a study has drawn are its own.
 #[test]
 fn pictures_of_others_stay() {
     let workspace = Workspace::with_study(SMALL);

@@ -1,4 +1,4 @@
-//! `slipfront study` from outside: what it answers, how it survives, what it refuses.
+//! The command `slipfront study` from outside: its answers, interruptions and refusals.
 
 mod answers;
 mod files;

@@ -1,4 +1,4 @@
-//! What is refused, with which sentence, before anything is run.
+//! Refusals before any run, with their sentences.
 
 use crate::support::process::stderr;
 use crate::support::workspace::Workspace;

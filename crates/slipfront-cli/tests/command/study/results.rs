@@ -1,4 +1,4 @@
-//! A small study, and what is asked of the folders of results.
+//! A small study, and checks of the folders of its results.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -52,7 +52,7 @@ pub(crate) struct Results {
 }
 
 impl Results {
-    /// Tables and pictures by their names: all that must not depend on how they came about.
+    /// Tables and pictures by their names: all files that must not depend on the way they were made.
     pub(crate) fn answer(&self) -> BTreeMap<String, Vec<u8>> {
         let files = std::fs::read_dir(&self.path)
             .unwrap()

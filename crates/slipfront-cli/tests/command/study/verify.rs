@@ -92,7 +92,7 @@ fn run_folders_of_a_study_are_verified_too() {
     );
 }
 
-/// As after a new version of the program, whose runs would be others.
+/// Records of something else are reported as such, as after a new version of the program, whose runs would differ.
 #[test]
 fn records_of_something_else_are_called_so() {
     let workspace = Workspace::with_study(SMALL);

@@ -6,7 +6,7 @@ use slipfront_plot::mask_outline;
 
 use super::{TextureFileError, textured_blocks};
 
-/// Most corners of all outlines: a file of about a gigabyte.
+/// Largest number of corners of all outlines: a file of about a gigabyte.
 const MAX_CORNERS: usize = 1 << 24;
 
 /// The outlines of a texture, or of all.
@@ -16,29 +16,29 @@ pub struct OutlineDrawing {
     pub size: [usize; 2],
     /// Edge of a block, mm.
     pub block: f64,
-    /// Outlines in blocks, a layer for each texture; textured is what any of them fills.
+    /// Outlines in blocks, a layer for each texture; a block is textured if any layer fills it.
     pub layers: Vec<Layer>,
-    /// What there is to say about it.
+    /// Notes about the drawing.
     pub notes: Vec<String>,
 }
 
 /// Outlines that are filled together.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Layer {
-    /// Its name: that of a texture, counted from 1.
+    /// Name of the layer: that of a texture, counted from 1.
     pub name: String,
-    /// What of it is filled.
+    /// Filling of the outlines.
     pub fill: Fill,
-    /// The outlines.
+    /// Outlines of the layer.
     pub contours: Vec<Contour>,
 }
 
-/// What outlines fill.
+/// Filling of outlines.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fill {
-    /// What lies inside any of them.
+    /// The points inside any of the outlines.
     Each,
-    /// What lies inside an odd number of them.
+    /// The points inside an odd number of the outlines.
     EvenOdd,
 }
 

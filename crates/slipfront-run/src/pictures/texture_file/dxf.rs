@@ -1,4 +1,5 @@
-//! Outlines as DXF of AutoCAD 2000, the oldest that has ellipses, in millimetres. A layer for each texture, and one for the slider.
+//! Outlines as DXF of AutoCAD 2000, the oldest version that has ellipses, in millimetres. A layer for each texture, and one
+//! for the slider.
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 use std::fmt::Display;
@@ -7,7 +8,7 @@ use slipfront::surface::{Contour, Ellipse, Piece};
 
 use super::drawing::OutlineDrawing;
 
-/// Handles of what every drawing has; entities and layers have those from [`FIRST_FREE`] on.
+/// Handles of the parts that every drawing has; entities and layers have handles from [`FIRST_FREE`] on.
 const MODEL_SPACE: u64 = 0x1f;
 const PAPER_SPACE: u64 = 0x1b;
 const FIRST_FREE: u64 = 0x100;
@@ -74,7 +75,7 @@ pub(super) fn text(drawing: &OutlineDrawing) -> String {
 
 /// A code, and its value.
 type GroupPair<'a> = (u16, &'a dyn Display);
-/// The class of a record, its name, and what follows.
+/// The class of a record, its name, and its pairs.
 type TableRecord<'a> = (&'a str, &'a str, &'a [GroupPair<'a>]);
 
 fn hex(handle: u64) -> String {
@@ -159,7 +160,7 @@ impl File {
         }
     }
 
-    /// An ellipse, or what lies between two parameters of it.
+    /// An ellipse, or a part of it between two parameters.
     fn ellipse(&mut self, layer: &str, ellipse: &Ellipse, parameters: Option<[f64; 2]>, block: f64) {
         let [x, y] = ellipse.center.map(|length| length * block);
         let [a, b] = ellipse.semi_axes.map(|length| length * block);
@@ -274,7 +275,7 @@ impl File {
         self.pairs(&[(0, &"ENDSEC")]);
     }
 
-    /// A table of records, each a class, a name and what follows.
+    /// A table of records, each a class, a name and pairs.
     fn table(&mut self, name: &str, handle: &str, records: &[TableRecord]) {
         self.pairs(&[
             (0, &"TABLE"),

@@ -16,10 +16,10 @@ use slipfront_case::case::Case;
 use slipfront_case::case_file::CaseError;
 use slipfront_case::disk::write_atomic;
 
-/// Most pixels of a picture along a side, and of all of it: no program, this one included, reads more.
+/// Largest number of pixels of a picture along a side, and of all: no program, this one included, reads more.
 const MAX_PIXELS: [usize; 2] = [1 << 20, 1 << 28];
 
-/// What is wrong with a file of a texture that was asked for.
+/// An error of a file of a texture that was asked for.
 #[derive(Debug, thiserror::Error)]
 #[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
 pub enum TextureFileError {
@@ -49,13 +49,13 @@ pub enum TextureFileError {
 }
 
 impl TextureFileError {
-    /// Whether another file could have been asked for, in place of what failed.
+    /// Whether the request is to blame, so that another file could be asked for.
     pub fn is_input(&self) -> bool {
         !matches!(self, Self::Write(_))
     }
 }
 
-/// Whether each block is textured: what does not exist has no contact either, but is no texture.
+/// Whether each block is textured: a block that does not exist has no contact either, but is no texture.
 pub fn textured_blocks(case: &Case) -> Vec<bool> {
     let (surface, slider) = (&case.model.surface, case.model.slider());
     let blocks = surface.textured.iter().enumerate();
@@ -69,11 +69,10 @@ pub fn smallest(case: &Case) -> Result<Clearance, CaseError> {
     Ok(clearance(&case.model.lattice, &case.textures_in_blocks()?))
 }
 
-/// Writes the texture of a case to `path`, in the format that its ending names; `scale` is how many pixels a block has along a side
-/// of a picture, one if there is none. Gives what there is to say about the file.
+/// Writes the texture of a case to `path`, in the format of its ending; `scale` is the number of pixels of a block along a
+/// side of a picture, one if there is none. Returns notes about the file.
 ///
-/// # Errors
-/// [`TextureFileError`], if the ending is none of these, too much would be written, or the file cannot be.
+/// # Errors [`TextureFileError`], if the ending names no format, the file would be too large, or cannot be written.
 pub fn write(case: &Case, path: &Path, scale: Option<usize>) -> Result<Vec<String>, TextureFileError> {
     let name = || path.display().to_string();
     let ending = extension(path);

@@ -38,7 +38,7 @@ fn elements(drawing: &OutlineDrawing, layer: &Layer) -> String {
     }
 }
 
-/// The page that a drawing is laid on.
+/// The page on which a drawing is laid.
 struct SvgPage<'a>(&'a OutlineDrawing);
 
 impl SvgPage<'_> {

@@ -1,4 +1,4 @@
-//! What follows the first peak: how far and how fast friction falls, and how it comes back.
+//! Friction after the first peak: the size and speed of its fall, and its recovery.
 //!
 //! With `z_i = s3_(p+i)` of 60 of 400 behind the peak p, the least of them at j, and the largest of 50 of 400 behind p + j at l:
 //!
@@ -44,7 +44,7 @@ pub(super) fn summaries(curve: &Curve) -> Vec<f64> {
     found
 }
 
-/// Position of the value that is largest as `by` has it, of the first of several.
+/// Position of the value for which `by` is largest, the first of several.
 fn position_of_largest(values: &[f64], by: impl Fn(f64) -> f64) -> usize {
     let mut largest = 0;
     for (i, &value) in values.iter().enumerate() {

@@ -1,4 +1,4 @@
-//! Steady sliding: how much friction scatters in the second half of the record, how fast, and how regularly.
+//! Steady sliding: size, speed and regularity of the scatter of friction in the second half of the record.
 //!
 //! With `e_i = y_i - m` of the second half, d_L its differences over L of 400, and quantities over a window as in [the whole](super):
 //!
@@ -89,7 +89,7 @@ fn moment(values: &[f64], power: impl Fn(f64) -> f64) -> f64 {
     values.iter().map(|&value| power(value)).sum::<f64>() / values.len() as f64
 }
 
-/// `sum e_i e_(i+L)/sum e_i^2` for values about 0.
+/// Autocorrelation `sum e_i e_(i+L)/sum e_i^2` for values about 0.
 fn autocorrelation(e: &[f64], distance: usize) -> f64 {
     let products: Vec<f64> = e.iter().zip(&e[distance..]).map(|(a, b)| a * b).collect();
     mean(&products) * products.len() as f64 / e.iter().map(|e| e * e).sum::<f64>()

@@ -10,14 +10,15 @@ use crate::vector_field::{VectorField, dot};
 /// Logarithmic ageing: `mu_s(t) = mu_s [1 + beta ln(1 + t_stuck/tau)]`, with age 0 at t = 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ageing {
-    /// `beta`.
+    /// Factor `beta` of the logarithm.
     pub beta: f64,
-    /// `tau`, t*.
+    /// Time `tau`, t*.
     pub time: f64,
 }
 
 impl Ageing {
-    /// The threshold at the present age, whether age counts, and when the block has stopped, which it remembers.
+    /// Needs of ageing: the threshold at the present age, whether age counts, and the time at which the block stopped, which
+    /// is remembered.
     pub(super) const NEEDS: Needs = Needs {
         is_fused: false,
         bytes: 2 * size_of::<f64>() + size_of::<bool>(),
@@ -46,8 +47,8 @@ impl Ageing {
         young + self.growth(age) * (young - adhesion).max(0.0)
     }
 
-    /// Pull at which a block slips that has been stuck since the pull was 0, if it rises at this `rate` and the threshold is above kinetic
-    /// friction.
+    /// Pull at which a block slips that has been stuck since the pull was 0, if the pull rises at `rate` and the threshold
+    /// is above kinetic friction.
     pub(super) fn first_slip_pull(&self, young: f64, adhesion: f64, rate: f64) -> f64 {
         // The threshold grows more slowly than the pull, from a pull at which it is higher: each round comes nearer.
         let aged = |pull: f64| self.static_limit(young, adhesion, pull / rate);
@@ -64,9 +65,9 @@ pub(super) struct Aged {
     law: Ageing,
     adhesion: f64,
     pub(super) static_limit: Vec<f64>,
-    /// Whose thresholds these ages raise.
+    /// Blocks whose thresholds are raised by their ages.
     is_old: Vec<bool>,
-    /// When a block that is stuck has stopped, t*. The memory of the law.
+    /// Time t* at which a block that is stuck has stopped: the memory of the law.
     pub(super) stopped_at: Vec<f64>,
 }
 
@@ -81,7 +82,8 @@ impl Aged {
         }
     }
 
-    /// Static thresholds of the blocks that are stuck and whose force exceeds what they had at age 0: only there does age matter.
+    /// Finds the static thresholds of the blocks that are stuck and whose force exceeds the threshold of age 0: only there
+    /// does age matter.
     #[inline(always)]
     pub(super) fn update(
         &mut self,
@@ -114,7 +116,7 @@ impl Aged {
         }
     }
 
-    /// Notes the blocks that stop now. Evaluated again from the same velocities, a step notes the same.
+    /// Notes the blocks that stop now. A step that is evaluated again from the same velocities notes the same blocks.
     #[inline(always)]
     pub(super) fn note_stops(
         &mut self,

@@ -25,7 +25,7 @@ use crate::state::State;
 use crate::surface::{Adhesion, Surface};
 use crate::vector_field::VectorField;
 
-/// Eq. 4, and what its thresholds may depend on.
+/// Coulomb friction (Eq. 4), and the dependences of its thresholds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Coulomb {
     /// Reading of Eq. 4.
@@ -34,7 +34,7 @@ pub struct Coulomb {
     pub weakening: Option<Weakening>,
     /// Static friction that grows while a block is stuck.
     pub ageing: Option<Ageing>,
-    /// Strength that falls with slip; alone.
+    /// Strength that falls with slip; not combined with weakening by speed or ageing.
     pub slip_weakening: Option<SlipWeakening>,
 }
 
@@ -50,7 +50,7 @@ impl From<FrictionLaw> for Coulomb {
 }
 
 impl Coulomb {
-    /// What the law needs with its options.
+    /// Needs of the law with its options.
     pub(super) fn needs(&self) -> Needs {
         let reading = Needs {
             is_fused: self.law == FrictionLaw::Projection,
@@ -62,13 +62,13 @@ impl Coulomb {
             .and(self.slip_weakening.map(|law| law.needs()))
     }
 
-    /// Kinetic friction in steady sliding at a speed, from that at rest, of which a part is `adhesion`.
+    /// Kinetic friction in steady sliding at `speed`, from the kinetic friction `at_rest`, of which a part is `adhesion`.
     pub(super) fn steady_force(&self, at_rest: f64, adhesion: f64, speed: f64) -> f64 {
         self.weakening
             .map_or(at_rest, |law| law.kinetic_force(at_rest, adhesion, speed))
     }
 
-    /// Pull of the drive springs of stiffness `k`, which rises as `k V t`, at which a block of this threshold slips.
+    /// Pull of drive springs of stiffness `k`, which rises as `k V t`, at which a block of this threshold slips.
     pub(super) fn first_slip_pull(&self, surface: &Surface, threshold: f64, k: f64, speed: f64) -> f64 {
         let adhesion = surface.adhesion().of_static;
         self.ageing.map_or(threshold, |law| {
@@ -77,7 +77,7 @@ impl Coulomb {
     }
 }
 
-/// Coulomb's law of the blocks of a band, with thresholds at the present step where they are not those of the surface.
+/// Coulomb's law of the blocks of a band, with thresholds of the present step where they differ from those of the surface.
 #[derive(Debug)]
 pub(crate) struct CoulombContact {
     law: FrictionLaw,
@@ -121,8 +121,8 @@ impl CoulombContact {
         }
     }
 
-    /// Finds friction, the next velocities and which blocks slide, of some blocks. `limits`: static thresholds of age 0 and kinetic ones
-    /// at rest.
+    /// Finds friction, the next velocities and the blocks that slide, among some blocks. `limits`: static thresholds of age
+    /// 0 and kinetic thresholds at rest.
     #[inline(always)]
     pub(super) fn apply(
         &mut self,

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use crate::friction::integrator::Integrator;
 use crate::vector_field::{add, dot, length};
 
-/// Which reading of Eq. 4 is used.
+/// Reading of Eq. 4.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum FrictionLaw {
@@ -20,11 +20,11 @@ pub enum FrictionLaw {
     Literal,
 }
 
-/// What a friction law needs of a block at t_n.
+/// State of a block at t_n that a friction law reads.
 pub(crate) struct BlockState {
-    /// Velocity at `t - dt/2`. It is zero if and only if the block is stuck (D12).
+    /// Velocity at `t - dt/2`, which is zero if and only if the block is stuck (D12).
     pub velocity: [f64; 2],
-    /// `F_s + F_c`, and any constant force.
+    /// Force of the springs, `F_s + F_c`, with any constant force.
     pub force: [f64; 2],
     /// Static threshold `mu_s F_n`.
     pub static_limit: f64,
@@ -32,13 +32,13 @@ pub(crate) struct BlockState {
     pub kinetic_force: f64,
 }
 
-/// What the update that starts at t_n does with the block.
+/// Outcome of the update of a block that starts at t_n.
 pub(crate) struct Update {
     /// Velocity at `t + dt/2`.
     pub velocity: [f64; 2],
     /// Friction force `F_f`; for a block that sticks, minus the sum of the other forces.
     pub friction: [f64; 2],
-    /// Whether it slides from t_n on.
+    /// Whether the block slides from t_n on.
     pub slides: bool,
 }
 
@@ -64,7 +64,7 @@ fn friction_against(motion: [f64; 2], kinetic_force: f64) -> [f64; 2] {
 pub(crate) struct Projection;
 
 impl LawReading for Projection {
-    /// Without branches, so that the loop over blocks is vectorised.
+    /// The update of [`Projection`], without branches, so that the loop over blocks is vectorised.
     #[inline(always)]
     fn update(&self, block: &BlockState, integrator: &Integrator) -> Update {
         let force = block.force;
@@ -101,7 +101,7 @@ fn select(first: bool, one: [f64; 2], other: [f64; 2]) -> [f64; 2] {
 pub(crate) struct Reversal;
 
 impl LawReading for Reversal {
-    /// Without branches, as that of [`Projection`].
+    /// The update of [`Reversal`], without branches, so that the loop over blocks is vectorised.
     #[inline(always)]
     fn update(&self, block: &BlockState, integrator: &Integrator) -> Update {
         let (force, total) = (block.force, length(block.force));
@@ -123,7 +123,7 @@ impl LawReading for Reversal {
 pub(crate) struct Literal;
 
 impl LawReading for Literal {
-    /// Without branches, as that of [`Projection`].
+    /// The update of [`Literal`], without branches, so that the loop over blocks is vectorised.
     #[inline(always)]
     fn update(&self, block: &BlockState, integrator: &Integrator) -> Update {
         let (force, starts) = (block.force, is_zero(block.velocity));

@@ -17,13 +17,13 @@ use crate::vector_field::{VectorField, length};
 pub struct SlipWeakening {
     /// Slip `D_c` over which strength falls, in units of `P mu_s l^2/(E h)`.
     pub length: f64,
-    /// Time after which a block that is stuck is whole again, t*; never if there is none.
+    /// Time t* after which a block that is stuck is whole again; no block heals if there is none.
     pub healing_time: Option<f64>,
 }
 
 impl SlipWeakening {
-    /// Slip, and with healing when a block has moved last and what it has lost before it healed; both thresholds at present. The fused
-    /// kernel has the fall of strength in place of the static one.
+    /// Needs of slip weakening: the slip, both thresholds at present, and with healing the time of the last motion and the
+    /// share lost before it healed. The fused kernel keeps the fall of strength in place of the static threshold.
     pub(super) fn needs(&self) -> Needs {
         let columns = if self.healing_time.is_some() { 3 } else { 1 };
         Needs {
@@ -71,7 +71,7 @@ impl SlipWeakening {
         0.5 * drop * self.length * (lost_before + self.share_lost(slip))
     }
 
-    /// Whether a block that is stuck and has moved last at `moved_at` is whole again.
+    /// Whether a block that is stuck and has moved last at `moved_at` is whole again at `time_star`.
     #[inline(always)]
     pub(crate) fn heals(&self, moved_at: f64, time_star: f64) -> bool {
         self.healing_time
@@ -79,14 +79,14 @@ impl SlipWeakening {
     }
 }
 
-/// Thresholds of the blocks of a band at their present slip, and what they remember of it.
+/// Thresholds of the blocks of a band at their present slip, with the slip that the law remembers.
 #[derive(Debug)]
 pub(super) struct Slipped {
     law: SlipWeakening,
     pub(super) static_limit: Vec<f64>,
     pub(super) kinetic_force: Vec<f64>,
     slip: Vec<f64>,
-    /// When a block has moved last, t*, and the shares that it has lost before it healed; nothing without healing.
+    /// Time t* of the last motion of each block, and the shares lost before it healed; present only with healing.
     healing: Option<[Vec<f64>; 2]>,
 }
 
@@ -116,7 +116,7 @@ impl Slipped {
         [&mut self.slip].into_iter().chain(healing).map(Vec::as_mut_slice)
     }
 
-    /// Adds what some blocks have slipped in the step that ends now, at these velocities.
+    /// Adds the slip of some blocks in the step that ends now, at these velocities.
     #[inline(always)]
     pub(super) fn add_slip(&mut self, blocks: &Range<usize>, velocity: &VectorField, dt_star: f64) {
         let (n, [vx, vy]) = (blocks.len(), part(velocity, blocks));
@@ -126,7 +126,8 @@ impl Slipped {
         }
     }
 
-    /// Thresholds at the present slip, from the whole ones. A step that is evaluated again finds the same.
+    /// Finds the thresholds at the present slip from the whole ones. A step that is evaluated again finds the same
+    /// thresholds.
     #[inline(always)]
     pub(super) fn update(
         &mut self,

@@ -17,7 +17,7 @@ pub struct Weakening {
 }
 
 impl Weakening {
-    /// Kinetic friction at the present speed.
+    /// Needs of velocity weakening: kinetic friction at the present speed.
     pub(super) const NEEDS: Needs = Needs {
         varies: true,
         bytes: size_of::<f64>(),
@@ -25,7 +25,7 @@ impl Weakening {
         ..Needs::NONE
     };
 
-    /// Share of kinetic friction that is lost at a speed, in the form that is exactly 0 at rest:
+    /// Share of kinetic friction that is lost at a speed, in a form that is exactly 0 at rest:
     ///
     /// ```text
     /// 1 - mu_k(v)/mu_k = (1 - ratio) |v|/(v_c + |v|)
@@ -41,8 +41,8 @@ impl Weakening {
         (1.0 - self.ratio) * (speed / (self.critical_speed + speed))
     }
 
-    /// Kinetic friction `mu_k(v) F_n + tau_ak l^2` at a speed, from that at rest. Adhesion does not weaken: the law is one of the
-    /// coefficient.
+    /// Kinetic friction `mu_k(v) F_n + tau_ak l^2` at `speed`, from the kinetic friction `at_rest`. Adhesion does not
+    /// weaken: the law is one of the coefficient.
     ///
     /// The operations have this order in every kernel: `x = v/(v_c + v)`, `s = (1 - ratio) x`, `m = max(K - tau_ak l^2, 0)`,
     /// `K - s m`.
@@ -69,7 +69,7 @@ impl Weakened {
         }
     }
 
-    /// Kinetic friction at the velocities half a step before.
+    /// Finds kinetic friction at the velocities half a step before.
     #[inline(always)]
     pub(super) fn update(&mut self, blocks: &Range<usize>, at_rest: &[f64], velocity: &VectorField) {
         let (n, [vx, vy]) = (blocks.len(), part(velocity, blocks));

@@ -34,14 +34,14 @@ pub struct RateAndState {
     pub mu_0: f64,
     /// State at the start, t*.
     pub theta_0: f64,
-    /// A block counts as sliding above this speed.
+    /// Speed above which a block counts as sliding.
     pub slip_speed: f64,
 }
 
 /// `[c_0, c_1]` of the logarithm of the factor of V as a function of the state, `c_0 + c_1 ln(theta)`.
 type LogFactors = [f64; 2];
 
-/// `asinh(exp(y))`, without overflow.
+/// The function `asinh(exp(y))`, without overflow.
 fn asinh_of_exp(y: f64) -> f64 {
     if y > LARGE {
         y + std::f64::consts::LN_2
@@ -51,7 +51,7 @@ fn asinh_of_exp(y: f64) -> f64 {
 }
 
 impl RateAndState {
-    /// The state and the load of a block.
+    /// Needs of rate and state: the state and the load of a block.
     pub(super) const NEEDS: Needs = Needs {
         is_fused: false,
         bytes: 2 * size_of::<f64>(),
@@ -60,13 +60,13 @@ impl RateAndState {
         ..Needs::NONE
     };
 
-    /// What does not change from block to block of [`log_factor`](Self::log_factor).
+    /// Part of [`log_factor`](Self::log_factor) that is equal for all blocks.
     fn log_factors(&self) -> LogFactors {
         let at_one = (self.mu_0 + self.b * ln(self.v_0 / self.d_c)) / self.a - ln(2.0 * self.v_0);
         [at_one, self.b / self.a]
     }
 
-    /// `ln` of the factor of V in the regularised law, `(mu_0 + b ln(V_0 theta/D_c))/a - ln(2 V_0)`.
+    /// Logarithm of the factor of V in the regularised law, `(mu_0 + b ln(V_0 theta/D_c))/a - ln(2 V_0)`.
     #[inline(always)]
     fn log_factor([at_one, slope]: LogFactors, theta: f64) -> f64 {
         at_one + slope * ln(theta)
@@ -86,7 +86,7 @@ impl RateAndState {
         self.a * asinh_of_exp(Self::log_factor(self.log_factors(), theta) + libm::log(speed))
     }
 
-    /// Coefficient of steady sliding at a speed: that of the state `D_c/V`.
+    /// Coefficient of steady sliding at a speed, where the state is `D_c/V`.
     pub fn steady_coefficient(&self, speed: f64) -> f64 {
         self.coefficient(speed, self.d_c / speed)
     }
@@ -116,7 +116,8 @@ impl RateAndState {
         theta * decay + dt * mean_decay
     }
 
-    /// [`evolve`](Self::evolve) of some blocks.
+    /// Takes the states of some blocks forward by `dt` at constant speed: [`evolve`](Self::evolve) for several blocks at
+    /// once.
     #[inline(always)]
     fn evolve_all<const BLOCKS: usize>(&self, theta: &mut [f64; BLOCKS], speed: &[f64; BLOCKS], dt: f64) {
         // Slip over a step is nearly always short, which takes no exponential.
@@ -187,9 +188,9 @@ const AT_ONCE: usize = 32;
 pub(crate) struct StateContact {
     law: RateAndState,
     log_factors: LogFactors,
-    /// `theta`, t*.
+    /// States `theta`, t*.
     pub(super) theta: Vec<f64>,
-    /// `F_n`; 0 over a texture.
+    /// Normal forces `F_n`; 0 over a texture.
     normal_force: Vec<f64>,
 }
 
@@ -288,7 +289,7 @@ impl StateContact {
         }
     }
 
-    /// Adds the states of those of some blocks that are in contact. There is room for the terms.
+    /// Adds the states of those of some blocks that are in contact. The sums have room for the terms.
     #[inline(always)]
     pub(super) fn add_states(
         &self,
@@ -371,8 +372,8 @@ mod tests {
         );
     }
 
-    /// At the speed that is found friction is that of the law, and both together take the block from its free speed. A speed is as
-    /// exact as `w`, of some hundreds; and friction and free speed cancel where the law is steep.
+    /// At the speed that is found, friction is that of the law, and both together take the block from its free speed. A
+    /// speed is as exact as `w`, of some hundreds; and friction and free speed cancel where the law is steep.
     #[test]
     fn speed_and_friction_fulfil_the_law() {
         for a in [0.01, 0.1, 1e-3] {

@@ -2,14 +2,16 @@
 
 use crate::elementary::{exp, ln};
 
-/// Above this logarithm of its argument, `asinh x = ln(2 x)` to the last bit; and above this argument `sinh` has one exponential.
+/// Bound on logarithms and arguments: above it `asinh x = ln(2 x)` to the last bit for the logarithm of x, and `sinh` has
+/// one exponential for the argument.
 pub(super) const LARGE: f64 = 20.0;
 
-/// Steps that no solution needs: far from the root each takes two units off the unknown, which begins less than 16 above it or 7
-/// below for any `a` of 1e-8 and more, and comes no farther beyond it than 22; the last few triple the digits.
+/// Limit on the steps of an iteration, which no solution reaches: far from the root each step takes two units off the
+/// unknown, which begins less than 16 above it or 7 below for any `a` of 1e-8 and more, and comes no farther beyond it than
+/// 22; the last few steps triple the digits.
 const MAX_STEPS: usize = 40;
 
-/// After a step of this size the error, which is below its third power, is beyond the last digit.
+/// Size of a step after which the error, which is below the third power of the step, is beyond the last digit.
 const LAST_STEP: f64 = 1e-5;
 
 /// The speed before is a good guess of the next if it is more than this share of the speed without friction.
@@ -18,7 +20,7 @@ const SLOW: f64 = 1e-3;
 /// Least speed of which there is a logarithm; blocks that would be slower do not move.
 const MIN_SPEED: f64 = 1e-300;
 
-/// Least logarithm of the factor of V: below, there is no friction.
+/// Least logarithm of the factor of V, below which there is no friction.
 const MIN_LOG_FACTOR: f64 = -300.0;
 
 /// Speeds and magnitudes of friction of some blocks.
@@ -99,26 +101,26 @@ pub(super) fn slide<const BLOCKS: usize>(
 struct Equations<const BLOCKS: usize> {
     /// Speed without friction.
     target: [f64; BLOCKS],
-    /// `g F_n a`.
+    /// Factor of `w`, `g F_n a`.
     per_unit: [f64; BLOCKS],
-    /// `L`.
+    /// Logarithm `L` of the factor of V.
     log_factor: [f64; BLOCKS],
 }
 
 /// Approximate solutions of [`Equations`].
 struct Roots<const BLOCKS: usize> {
     w: [f64; BLOCKS],
-    /// `e^(w - L)`.
+    /// The rising exponential `e^(w - L)`.
     rising: [f64; BLOCKS],
-    /// `e^-(w + L)`.
+    /// The falling exponential `e^-(w + L)`.
     falling: [f64; BLOCKS],
-    /// By how much `w` was lowered at last; infinite before the first time.
+    /// Amount by which `w` was lowered last; infinite before the first step.
     step: [f64; BLOCKS],
 }
 
 impl<const BLOCKS: usize> Roots<BLOCKS> {
-    /// Roots to begin with: those that belong to the speeds `guess` or to the speeds without friction, and none beyond the friction that
-    /// stops a block.
+    /// Initial guesses of the roots: those that belong to the speeds `guess` or to the speeds without friction, and none
+    /// beyond the friction that stops a block.
     #[inline(always)]
     fn near(equations: &Equations<BLOCKS>, guess: &[f64; BLOCKS]) -> Self {
         let Equations {
@@ -165,7 +167,7 @@ impl<const BLOCKS: usize> Roots<BLOCKS> {
         }
     }
 
-    /// Takes a step of Halley's method towards each root that is not found yet; whether there was such.
+    /// Takes a step of Halley's method towards each root that is not found yet; returns whether there was such a root.
     #[inline(always)]
     fn improve(&mut self, equations: &Equations<BLOCKS>) -> bool {
         let Equations {
@@ -220,13 +222,13 @@ impl<const BLOCKS: usize> Roots<BLOCKS> {
     }
 }
 
-/// `sinh w e^-L` and `cosh w e^-L` from `e^(w - L)` and `e^-(w + L)`.
+/// The products `sinh w e^-L` and `cosh w e^-L` from `e^(w - L)` and `e^-(w + L)`.
 #[inline(always)]
 fn sinh_and_cosh(rising: f64, falling: f64) -> [f64; 2] {
     [rising - falling, rising + falling].map(|sum| 0.5 * sum)
 }
 
-/// `x e^-step` of a step of at most [`LAST_STEP`].
+/// The product `x e^-step` for a step of at most [`LAST_STEP`].
 #[inline(always)]
 fn decayed(x: f64, step: f64) -> f64 {
     x - x * (step * (1.0 - step * (0.5 - step / 6.0)))

@@ -7,7 +7,7 @@ use super::vector::LANES;
 /// A fixed number of f64 on a 64-byte boundary.
 #[derive(Debug, Default)]
 pub(super) struct Aligned {
-    /// The numbers, after up to seven unused ones. It never grows, so that its memory never moves.
+    /// The numbers, after up to seven unused ones. The vector never grows, so that its memory never moves.
     storage: Vec<f64>,
     first: usize,
     len: usize,

@@ -30,38 +30,38 @@ use crate::state::State;
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct TileState {
     pub(super) sums: Sums<i64, f64>,
-    /// Whether an element of it moves, ghosts included.
+    /// Whether an element of the tile moves, ghosts included.
     pub(super) moving: bool,
-    /// Whether the steps and energies of its vectors are known, so that vectors of it can be swept alone.
+    /// Whether the first active steps and energies of the tile's vectors are known, so that they can be swept one by one.
     pub(super) settled: bool,
-    /// The first step at which a block of it may slip if nothing around it moves; 0 if unknown.
+    /// The first step at which a block of the tile may slip if nothing around it moves; 0 if unknown.
     pub(super) active_from_step: u64,
-    /// Largest u_x, -u_x, u_y, -u_y of its blocks at the latest measurement.
+    /// Largest u_x, -u_x, u_y, -u_y of the tile's blocks at the latest measurement.
     pub(super) extent: [f64; 4],
-    /// Largest difference of u_x and of u_y between its blocks and their neighbours, likewise.
+    /// Largest difference of u_x and of u_y between the tile's blocks and their neighbours at the latest measurement.
     pub(super) difference: [f64; 2],
-    /// Whether any of them has moved since.
+    /// Whether a block of the tile has moved since the latest measurement.
     pub(super) displacements_are_old: bool,
 }
 
-/// What is to be done with a tile in a sweep. A mask has one bit per vector.
+/// Work to be done on a tile in a sweep. A mask has one bit per vector.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct TileTask {
     /// The vectors that are swept: one of their blocks or a neighbour moves, or one of their blocks may slip.
     pub(super) active: u32,
-    /// Those of them that were skipped at the step before.
+    /// Active vectors that were skipped at the previous step.
     pub(super) was_skipped: u32,
     /// Vectors with a moving block or a neighbour of one.
     pub(super) touched: u32,
-    /// The active vectors are few, and are swept one by one.
+    /// Whether the active vectors are few, and are swept one by one.
     pub(super) sparse: bool,
-    /// All are swept, and few are touched: from now on they can be swept one by one, or not at all.
+    /// Whether all vectors are swept and few are touched, so that from now on they can be swept one by one, or not at all.
     pub(super) settles: bool,
-    /// Its springs to the next row are needed, by itself or by a tile to the north.
+    /// Whether the tile's springs to the next row are needed, by the tile itself or by one to the north.
     pub(super) needs_springs: bool,
 }
 
-/// Consecutive tiles with all that one thread needs to take them through a step.
+/// Consecutive tiles with the arrays by which one thread takes them through a step.
 ///
 /// Indices of the arrays count from the first element of the front halo; those of arrays without halos from the first
 /// element of the band.
@@ -75,14 +75,14 @@ pub(super) struct Band {
     pub(super) len: usize,
     pub(super) tiles: Vec<TileState>,
     pub(super) tasks: Vec<TileTask>,
-    /// Sums over its tiles after the latest sweep.
+    /// Sums over the band's tiles after the latest sweep.
     pub(super) sums: Sums<i128, f64, u64>,
-    /// The first step at which a block of it may slip if nothing around it moves; 0 if unknown or something moves.
+    /// The first step at which a block of the band may slip if nothing around it moves; 0 if unknown or something moves.
     pub(super) next_active_step: u64,
-    /// Largest [`TileState::extent`] and [`TileState::difference`] of its tiles at the latest measurement.
+    /// Largest [`TileState::extent`] and [`TileState::difference`] of the band's tiles at the latest measurement.
     pub(super) extent: [f64; 4],
     pub(super) difference: [f64; 2],
-    /// See [`halo`].
+    /// Number of elements before and after the band whose displacements it keeps, see [`halo`].
     pub(super) halo: usize,
     /// Displacements at t_n, with halos.
     pub(super) displacement: Vectors,
@@ -94,25 +94,26 @@ pub(super) struct Band {
     kinetic_impulses: Aligned,
     /// The step of the first slip in contact, or [`NEVER`].
     pub(super) first_slip: Vec<u32>,
-    /// Which elements have a spring to the east, north, north-east and north-west; with the front halo.
+    /// Masks of the elements that have a spring to the east, north, north-east and north-west; with the front halo.
     pub(super) masks: [Vec<u8>; 4],
-    /// Which elements are blocks.
+    /// Mask of the elements that are blocks.
     pub(super) blocks: Vec<u8>,
-    /// Which elements are blocks in contact.
+    /// Mask of the elements that are blocks in contact.
     in_contact: Vec<u8>,
-    /// Which elements move, ghosts included.
+    /// Mask of the elements that move, ghosts included.
     pub(super) moving: Vec<u8>,
-    /// Which blocks in contact have ever slid.
+    /// Mask of the blocks in contact that have ever slid.
     slipped: Vec<u8>,
-    /// The first step at which a block of each vector may slip; 0 of a touched one. Known in settled tiles.
+    /// The first step at which a block of each vector may slip; 0 for a touched vector. Known in settled tiles.
     pub(super) active_from_step: Vec<u64>,
     /// Energy of the springs of each vector, as in [`Sums`]. Known in settled tiles.
     pub(super) lattice_energy: Vec<i64>,
-    /// Of a slider whose blocks differ.
+    /// Springs, drive springs and masses of a heterogeneous slider.
     pub(super) variations: Option<Variations>,
-    /// Of a law of friction whose thresholds change.
+    /// Thresholds of a law of friction under which they change.
     thresholds: Option<Thresholds>,
-    /// Locked while fields are read; a sweep, which nothing runs beside, takes it without.
+    /// Arrays of intermediate results. The lock is held while fields are read; a sweep, which runs alone, takes the arrays
+    /// without it.
     scratch: Mutex<Scratch>,
     /// Elements from a row to the next.
     pub(super) stride: usize,
@@ -126,14 +127,14 @@ pub(super) const BYTES_PER_ELEMENT: f64 = {
     element as f64 + vector as f64 / LANES as f64 + tile as f64 / TILE as f64
 };
 
-/// What is found on the way through the tiles; nothing of it is needed later.
+/// Intermediate results on the way through the tiles, which are not needed later.
 #[derive(Debug, Default)]
 pub(super) struct Scratch {
     /// Forces of the latest springs to the next row: a ring buffer over the elements.
     upward: [Vectors; 3],
-    /// `F_c` of the present tile.
+    /// Lattice forces `F_c` of the present tile.
     pub(super) lattice: Vectors,
-    /// `F_s` of the present tile.
+    /// Drive forces `F_s` of the present tile.
     drive: Vectors,
     /// Velocities without friction of the present tile.
     free: Vectors,
@@ -141,13 +142,13 @@ pub(super) struct Scratch {
     free_speed: Aligned,
 }
 
-/// In place of the step at which a block first slips, if it has not slipped.
+/// Marks a block that has not slipped, in place of the step of its first slip.
 pub(super) const NEVER: u32 = u32::MAX;
 
 /// Number of elements that are repeated after the end of the ring buffer, for vectors that extend over its end.
 const MIRROR: usize = 2 * LANES;
 
-/// Number of elements in as many whole vectors as these need.
+/// Number of elements in as many whole vectors as hold `elements`.
 fn whole_vectors(elements: usize) -> usize {
     elements.next_multiple_of(LANES)
 }
@@ -157,7 +158,8 @@ pub(super) fn halo(layout: &Layout) -> usize {
     whole_vectors(layout.stride + 1 + LANES)
 }
 
-/// Which of the four springs of each element are there: of the `halo` before element `first`, and of `len` from there on.
+/// Masks of the springs of each element that exist, along the four bonds: for the `halo` of elements before `first`, and for
+/// `len` elements from there on.
 fn spring_masks(
     layout: &Layout,
     model: &Model,
@@ -177,7 +179,7 @@ fn spring_masks(
 }
 
 impl Band {
-    /// The given tiles of a lattice in `state`, or at rest, with time steps of `dt_star`.
+    /// The band of the given tiles of a lattice in `state`, or at rest, with time steps of `dt_star`.
     pub(super) fn new(
         layout: &Layout,
         model: &Model,
@@ -271,7 +273,7 @@ impl Band {
         }
     }
 
-    /// Memory for what is found while fields are read.
+    /// Locks the memory for intermediate results while fields are read.
     pub(super) fn lock_scratch(&self) -> MutexGuard<'_, Scratch> {
         self.scratch.lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -280,7 +282,7 @@ impl Band {
         self.scratch.get_mut().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Takes over the values of a column of a checkpoint, from block `first` on, as far as these blocks are its own.
+    /// Takes over the values of a column of a checkpoint from block `first` on, as far as these blocks belong to the band.
     pub(super) fn set_column(
         &mut self,
         layout: &Layout,
@@ -307,7 +309,7 @@ impl Band {
         }
     }
 
-    /// Gives the values of a column of a checkpoint, from block `first` on, as far as these blocks are its own.
+    /// Writes to `values` a column of a checkpoint from block `first` on, as far as these blocks belong to the band.
     pub(super) fn read_column(
         &self,
         layout: &Layout,
@@ -337,7 +339,8 @@ impl Band {
         }
     }
 
-    /// Takes over what the law of friction remembers, a column of a checkpoint from block `first` on, as far as these blocks are its own.
+    /// Takes over a column of the memory of the law of friction from block `first` on, as far as these blocks belong to the
+    /// band.
     pub(super) fn set_memory(&mut self, layout: &Layout, column: usize, first: usize, values: &[f64]) {
         for [of_values, own] in self.common(layout, first, values.len()) {
             let memory = self
@@ -350,7 +353,8 @@ impl Band {
         }
     }
 
-    /// Gives what the law of friction remembers at t*, from block `first` on, as far as these blocks are its own.
+    /// Writes to `values` a column of the memory of the law of friction at t*, from block `first` on, as far as these blocks
+    /// belong to the band.
     pub(super) fn read_memory(
         &self,
         layout: &Layout,
@@ -370,7 +374,7 @@ impl Band {
         }
     }
 
-    /// Which of `count` blocks from `first` on are its own, and which of its elements they are, row after row.
+    /// Blocks of the band among the `count` from `first` on, and the elements that hold them, row after row.
     fn common(
         &self,
         layout: &Layout,
@@ -404,7 +408,7 @@ impl Band {
         self.begin_thresholds();
     }
 
-    /// The elements before the band and after it of which it keeps the displacements. Its last vector may extend beyond the last
+    /// The elements before the band and after it whose displacements it keeps. Its last vector may extend beyond the last
     /// row.
     pub(super) fn halos(&self, layout: &Layout) -> [Range<isize>; 2] {
         let (first, halo) = (self.first as isize, self.halo as isize);
@@ -439,7 +443,7 @@ impl Band {
         }
     }
 
-    /// Adds to `counts` its blocks in contact that move, or those that do not, each in its bin.
+    /// Adds the blocks in contact of the band to `counts`, each in its bin: those that move, or those that do not.
     pub(super) fn count_in_contact(
         &self,
         layout: &Layout,
@@ -527,7 +531,7 @@ impl Band {
         self.add_up();
     }
 
-    /// Sums over the tiles, of which those that were skipped keep theirs.
+    /// Adds up the sums over the tiles; tiles that were skipped keep theirs.
     fn add_up(&mut self) {
         (self.sums, self.next_active_step) = (Sums::default(), u64::MAX);
         for tile in &self.tiles {
@@ -549,7 +553,8 @@ impl Band {
         (self.stride + MIRROR).div_ceil(TILE)
     }
 
-    /// Eq. 8: `u += dt v` in a tile that moves. A function of its own, compiled once for all formulas of springs.
+    /// Moves the blocks of a tile (Eq. 8), `u += dt v`, if the tile moves. A function of its own, compiled once for all
+    /// formulas of springs.
     #[inline(never)]
     fn advance_tile<S: Simd>(&mut self, simd: S, step: &Step, quanta: &Quanta, t: usize) {
         simd.vectorize(
@@ -580,8 +585,8 @@ impl Band {
         }
     }
 
-    /// Springs of the elements `from..to` to the next row, into the ring buffer. A function of its own, compiled once for all that
-    /// call it.
+    /// Forces of the springs to the next row of the elements `from..to`, into the ring buffer. A function of its own,
+    /// compiled once for all that call it.
     #[inline(never)]
     pub(super) fn upward<S: Simd, G: Geometry>(
         &self,
@@ -769,8 +774,8 @@ impl Band {
         sum
     }
 
-    /// What Eqs. 2 and 4-7 of some elements of a tile need, whose lattice forces are at `place` in the scratch array. `next`
-    /// are the first of those that need friction next, and of those that move next.
+    /// Input of [`friction`] (Eqs. 2 and 4-7) for some elements of a tile, whose lattice forces are at `place` in the
+    /// scratch array. `next`: the elements that need friction next, and those that move next.
     #[inline(always)]
     pub(super) fn friction_loop<'a, S: Simd, const DIFFER: bool>(
         &'a mut self,
@@ -820,7 +825,7 @@ impl Band {
         }
     }
 
-    /// Kinetic friction of an element at the latest sweep, from that of slow sliding.
+    /// Kinetic friction of an element at the latest sweep, from its friction `at_rest`.
     pub(super) fn kinetic_force(&self, k: usize, at_rest: f64, velocity_to_force: f64) -> f64 {
         let Some(thresholds) = &self.thresholds else {
             return at_rest;
@@ -843,8 +848,8 @@ impl Band {
         times_factor::<S, G>(simd, force, factors, 0)
     }
 
-    /// Factors of the springs along a bond of the `n` elements from `first` on, counted from the front halo; nothing where all are
-    /// alike.
+    /// Factors of the springs along a bond of the `n` elements from `first` on, counted from the front halo; empty where all
+    /// springs are alike.
     #[inline(always)]
     pub(super) fn spring_factors<G: Geometry>(&self, bond: usize, first: usize, n: usize) -> Chunks<'_> {
         match &self.variations {
@@ -853,7 +858,7 @@ impl Band {
         }
     }
 
-    /// For how many steps vector `v` at rest can be skipped; its lattice forces are at `place` in the scratch array.
+    /// Number of steps for which vector `v` at rest can be skipped; its lattice forces are at `place` in the scratch array.
     #[inline(always)]
     pub(super) fn steps_until_slip<S: Simd>(
         &self,
@@ -932,7 +937,8 @@ impl Band {
         tile.displacements_are_old = false;
     }
 
-    /// The springs of vector `v` to the east, north, north-east and north-west: which are present, and where their other ends are.
+    /// Springs of vector `v` to the east, north, north-east and north-west: masks of those that exist, and the positions of
+    /// their other ends.
     #[inline(always)]
     pub(super) fn springs_of(&self, v: usize) -> [(u8, usize); 4] {
         let here = self.halo + v * LANES;

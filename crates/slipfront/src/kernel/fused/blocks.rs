@@ -21,18 +21,18 @@ use crate::lattice::Bond;
 /// x and y of a quantity of the springs to the next row: north, north-east and north-west.
 pub(super) type Upward<T> = [[T; 2]; 3];
 
-/// Input of [`lattice_forces`], and where the sums are stored.
+/// Input of [`lattice_forces`], and the arrays in which the sums are stored.
 pub(super) struct LatticeLoop<'a> {
     pub(super) here: [Chunks<'a>; 2],
     pub(super) east: [Chunks<'a>; 2],
     pub(super) has_east: &'a [u8],
-    /// Factors of the springs to the east, where they differ.
+    /// Factors of the springs to the east, for a heterogeneous slider.
     pub(super) to_east: Chunks<'a>,
     /// Upward springs of these blocks.
     pub(super) own: Upward<Chunks<'a>>,
     /// Upward springs of the blocks to the south, south-west and south-east.
     pub(super) behind: Upward<Chunks<'a>>,
-    /// `F_c`.
+    /// Lattice forces `F_c`.
     pub(super) force: [ChunksMut<'a>; 2],
 }
 
@@ -49,7 +49,7 @@ pub(super) fn spring<S: Simd, G: Geometry>(
     zero_missing(simd, present, geometry.force(simd, bond, subtract(there, here)))
 }
 
-/// Forces of springs that may differ, times the factor of each.
+/// Forces of springs times the factor of each, for a heterogeneous slider.
 #[inline(always)]
 pub(super) fn times_factor<S: Simd, G: Geometry>(
     simd: S,
@@ -64,13 +64,14 @@ pub(super) fn times_factor<S: Simd, G: Geometry>(
     }
 }
 
-/// Zero where a bit of `present` is 0.
+/// Sets the lanes to zero where a bit of `present` is 0.
 #[inline(always)]
 pub(super) fn zero_missing<S: Simd>(simd: S, present: u8, a: Vec2x8<S>) -> Vec2x8<S> {
     or_else(simd, present, a, [splat(simd, 0.0); 2])
 }
 
-/// `other` where a bit of `present` is 0. Few vectors have such bits, so that without AVX-512 the test is cheaper than the mask.
+/// Takes `other` in the lanes where a bit of `present` is 0. Few vectors have such bits, so that without AVX-512 the test is
+/// cheaper than the mask.
 #[inline(always)]
 pub(super) fn or_else<S: Simd>(simd: S, present: u8, a: Vec2x8<S>, other: Vec2x8<S>) -> Vec2x8<S> {
     if present == u8::MAX {
@@ -80,8 +81,9 @@ pub(super) fn or_else<S: Simd>(simd: S, present: u8, a: Vec2x8<S>, other: Vec2x8
     }
 }
 
-/// Eq. 3: the springs to the next row, each computed once for the blocks at its two ends, from the displacements of the blocks
-/// and of their neighbours along the three bonds. `force` is that on the lower blocks; masks tell which springs are there.
+/// Eq. 3: the springs to the next row, each computed once for the blocks at its two ends, from the displacements of the
+/// blocks and of their neighbours along the three bonds. `force` is the force on the lower blocks; masks mark the springs
+/// that exist.
 #[inline(always)]
 pub(super) fn upward_springs<S: Simd, G: Geometry>(
     simd: S,
@@ -128,7 +130,7 @@ pub(super) fn upward_springs<S: Simd, G: Geometry>(
 /// Eq. 3: the sum of all eight springs of every block. Opposite neighbours are paired, straight ones before diagonal ones,
 /// so that the trajectory of a rotated or mirrored problem is the rotated or mirrored trajectory, with the same bits.
 ///
-/// `west`: springs to the east of the eight elements before these; becomes that of the last eight.
+/// `west`: forces of the springs to the east of the eight elements before these; becomes those of the last eight elements.
 #[inline(always)]
 pub(super) fn lattice_forces<S: Simd, G: Geometry>(
     simd: S,
@@ -224,7 +226,7 @@ pub(super) fn vector_energy<S: Simd, G: Geometry>(
     integer_sum(spring_energies(simd, squares, blocks, quantum), quantum, 1)
 }
 
-/// What eight blocks add to the sums of `w (u - c)` and `w (u - c)^2`.
+/// Contribution of eight blocks to the sums of `w (u - c)` and `w (u - c)^2`.
 #[inline(always)]
 pub(super) fn displacement_sums<S: Simd, const DIFFER: bool>(
     simd: S,
@@ -271,27 +273,27 @@ pub(super) struct FrictionLoop<'a> {
     pub(super) static_limit_squares: Chunks<'a>,
     /// Change of velocity by kinetic friction in a step, `q = dt mu_k F_n/(m c+)`.
     pub(super) kinetic_impulses: Chunks<'a>,
-    /// Which elements are blocks.
+    /// Mask of the elements that are blocks.
     pub(super) blocks: &'a [u8],
-    /// Which elements are blocks in contact.
+    /// Mask of the elements that are blocks in contact.
     pub(super) in_contact: &'a [u8],
-    /// At `t - dt/2`, then at `t + dt/2`.
+    /// Velocities at `t - dt/2`, then at `t + dt/2`.
     pub(super) velocity: [ChunksMut<'a>; 2],
-    /// Which blocks move after the step.
+    /// Mask of the blocks that move after the step.
     pub(super) moving: &'a mut [u8],
-    /// Which blocks in contact have ever slid.
+    /// Mask of the blocks in contact that have ever slid.
     pub(super) slipped: &'a mut [u8],
-    /// The step at which they first did.
+    /// The step at which each block in contact first slid.
     pub(super) first_slip: &'a mut [[u32; LANES]],
-    /// `F_s`, found by [`free_motion`].
+    /// Drive forces `F_s`, found by [`free_motion`].
     pub(super) drive: [ChunksMut<'a>; 2],
-    /// Velocity that the block would have without friction, likewise.
+    /// Velocities that the blocks would have without friction, found by [`free_motion`].
     pub(super) free: [ChunksMut<'a>; 2],
     /// Magnitude of the velocity without friction, found by [`free_motion`].
     pub(super) free_speed: ChunksMut<'a>,
     /// Memory of later tiles, fetched ahead.
     pub(super) prefetched: [CacheLines; 6],
-    /// Of a slider whose blocks differ.
+    /// Drive springs and masses of a heterogeneous slider.
     pub(super) variation: Variation<'a>,
 }
 
@@ -299,19 +301,21 @@ pub(super) struct FrictionLoop<'a> {
 /// number for each of eight lanes.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Sums<I, M, N = u32> {
-    /// `sum w (u - c)`, with the relative stiffness w of the drive springs and the centre c of the window.
+    /// Sum of weighted displacements, `sum w (u - c)`, with the relative stiffness w of the drive springs and the centre c
+    /// of the window.
     pub(super) displacement: [I; 2],
-    /// `sum w v(t + dt/2)`.
+    /// Sum of weighted velocities, `sum w v(t + dt/2)`.
     pub(super) velocity: [I; 2],
-    /// `sum m (v(t - dt/2) + v(t + dt/2))^2`.
+    /// Four times `sum m v^2` at t_n, with v the mean of the half steps: `sum m (v(t - dt/2) + v(t + dt/2))^2`.
     pub(super) motion_square: I,
-    /// `sum -F_f . (v(t - dt/2) + v(t + dt/2))`.
+    /// Twice the power that friction takes at t_n, `sum -F_f . (v(t - dt/2) + v(t + dt/2))`.
     pub(super) friction_work: I,
-    /// Energy of the springs times `2 k_1`, at steps at which energies are needed. It is found vector by vector, not in lanes.
+    /// Energy of the springs times `2 k_1`, at steps at which energies are needed. The sum is found vector by vector, not in
+    /// lanes.
     pub(super) lattice_energy: I,
-    /// `sum m (v(t - dt/2)^2 + v(t + dt/2)^2)`, at steps at which energies are needed.
+    /// Sum for the kinetic energy, `sum m (v(t - dt/2)^2 + v(t + dt/2)^2)`, at steps at which energies are needed.
     pub(super) velocity_squares: I,
-    /// `sum w (u - c)^2`, at steps at which energies are needed.
+    /// Sum for the energy of the drive springs, `sum w (u - c)^2`, at steps at which energies are needed.
     pub(super) displacement_square: I,
     /// Largest `tau_c^2` of a block in contact.
     pub(super) stress_square: M,
@@ -323,7 +327,7 @@ pub(super) struct Sums<I, M, N = u32> {
     pub(super) slipping: N,
 }
 
-/// What [`integers`] adds to numbers for the sums of every step, and the centres of the displacements, for each of eight lanes.
+/// Numbers that [`integers`] adds for the sums of every step, and the centres of the displacements, for each of eight lanes.
 #[derive(Clone, Copy)]
 struct Shifts<S: Simd> {
     centres: Vec2x8<S>,
@@ -369,7 +373,7 @@ impl<S: Simd> Sums<i64x8<S>, f64x8<S>> {
         }
     }
 
-    /// Adds what eight blocks contribute to the sum of `w (u - c)`.
+    /// Adds the contribution of eight blocks to the sum of `w (u - c)`.
     #[inline(always)]
     fn add_displacement<const DIFFER: bool>(
         &mut self,
@@ -391,7 +395,7 @@ impl<S: Simd> Sums<i64x8<S>, f64x8<S>> {
         }
     }
 
-    /// Adds what eight blocks contribute to the sum of `w v(t + dt/2)`.
+    /// Adds the contribution of eight blocks to the sum of `w v(t + dt/2)`.
     #[inline(always)]
     fn add_velocity<const DIFFER: bool>(
         &mut self,
@@ -407,7 +411,7 @@ impl<S: Simd> Sums<i64x8<S>, f64x8<S>> {
         *vy += integers(y, shifts.velocity);
     }
 
-    /// Adds what eight blocks contribute to the sum of `w (u - c)^2`.
+    /// Adds the contribution of eight blocks to the sum of `w (u - c)^2`.
     #[inline(always)]
     fn add_stretch<const DIFFER: bool>(
         &mut self,
@@ -424,7 +428,7 @@ impl<S: Simd> Sums<i64x8<S>, f64x8<S>> {
         self.displacement_square += integers(stretch, shift);
     }
 
-    /// Adds the zeros that so many vectors at rest contribute to the sums of what moves.
+    /// Adds the zeros that `vectors` vectors at rest contribute to the sums over moving blocks.
     #[inline(always)]
     fn add_zeros<const ENERGY: bool>(&mut self, simd: S, quanta: &Quanta, vectors: i64) {
         let zeros =
@@ -438,7 +442,7 @@ impl<S: Simd> Sums<i64x8<S>, f64x8<S>> {
         }
     }
 
-    /// Sums over all lanes after so many vectors.
+    /// Sums over all lanes after `vectors` vectors.
     #[inline(always)]
     pub(super) fn totals<const ENERGY: bool>(&self, quanta: &Quanta, vectors: usize) -> Sums<i64, f64> {
         let [x, y] = quanta.weighted_displacement;
@@ -471,7 +475,7 @@ impl<S: Simd> Sums<i64x8<S>, f64x8<S>> {
 }
 
 impl Sums<i128, f64, u64> {
-    /// Takes a tile or a band into account.
+    /// Adds the sums of a tile or a band.
     pub(super) fn include<I: Copy + Into<i128>, N: Copy + Into<u64>>(&mut self, part: &Sums<I, f64, N>) {
         for axis in 0..2 {
             self.displacement[axis] += part.displacement[axis].into();
@@ -488,7 +492,7 @@ impl Sums<i128, f64, u64> {
         self.slipping += part.slipping.into();
     }
 
-    /// Adds those of all ranks, and takes the soonest of a step that each of them names.
+    /// Adds the sums of all ranks, and lowers `step` to the soonest that a rank names.
     pub(super) fn over_ranks(&mut self, step: &mut u64, communicator: &dyn Communicator) {
         let [ux, uy] = &mut self.displacement;
         let [vx, vy] = &mut self.velocity;
@@ -527,14 +531,14 @@ fn integers<S: Simd>(numbers: f64x8<S>, shift: f64x8<S>) -> i64x8<S> {
     (numbers + shift).bitcast()
 }
 
-/// Sum of the multiples of a quantum in [`integers`] of so many vectors.
+/// Sum of the multiples of a quantum in the [`integers`] of `vectors` vectors.
 #[inline(always)]
 fn integer_sum<S: Simd>(lanes: i64x8<S>, quantum: FixedPoint, vectors: usize) -> i64 {
     let added = ((vectors * LANES) as i64).wrapping_mul(quantum.shift().to_bits() as i64);
     lane_sum(lanes).wrapping_sub(added)
 }
 
-/// Eq. 2: `F_s = k_s (V t - u)`, with any constant force.
+/// Force of the drive springs (Eq. 2), `F_s = k_s (V t - u)`, with any constant force.
 #[inline(always)]
 pub(super) fn pull<S: Simd>(simd: S, step: Step, u: Vec2x8<S>) -> Vec2x8<S> {
     let ([x, y], [fx, fy]) = (step.drive_position, step.constant_force);
@@ -562,7 +566,8 @@ fn rest<S: Simd>(
         ) == u8::MAX
 }
 
-/// The first part of the friction law: drive (Eq. 2), damping (Eq. 5), and the velocity without friction, of vectors that do not [`rest`].
+/// The first part of the friction law: drive (Eq. 2), damping (Eq. 5), and the velocity without friction, for vectors that
+/// do not [`rest`].
 #[inline(always)]
 fn free_motion<S: Simd, const DIFFER: bool>(simd: S, step: Step, arrays: &mut FrictionLoop) {
     let n = arrays.free_speed.len();
@@ -692,7 +697,7 @@ pub(super) fn friction<S: Simd, const ENERGY: bool, const DIFFER: bool>(
     sums.add_zeros::<ENERGY>(simd, quanta, resting);
 }
 
-/// Numbers of eight blocks, times the weight of each where blocks differ.
+/// Numbers of eight blocks, times the weight of each block for a heterogeneous slider.
 #[inline(always)]
 fn weighted<S: Simd, const DIFFER: bool>(
     simd: S,

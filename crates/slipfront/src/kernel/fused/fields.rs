@@ -1,5 +1,6 @@
-//! What a sweep does not keep, found again from displacements and velocities, by the exact spring law whatever formula the sweep
-//! used: the forces on one block, and one field of all blocks, tile after tile, with the same bits.
+//! Forces and fields that a sweep does not keep, found again from displacements and velocities, by the exact spring law
+//! whatever formula the sweep used: the forces on one block, and one field of all blocks, tile after tile, with the same
+//! bits.
 
 use fearless_simd::{Simd, SimdBase, SimdFloat};
 
@@ -14,7 +15,7 @@ use crate::lattice::{Bond, harmonic_mean};
 use crate::model::Model;
 use crate::vector_field::length;
 
-/// Block `b` at this time of the drive. `motion` gives displacement and velocity of a block.
+/// Block `b` at the given time of the drive. `motion` gives displacement and velocity of a block.
 pub(super) fn block(
     model: &Model,
     drive_time_star: f64,
@@ -59,8 +60,8 @@ fn lattice_force(model: &Model, b: usize, u: [f64; 2], displacement: impl Fn(usi
     [(e[0] + n[0]) + (ne[0] + nw[0]), (e[1] + n[1]) + (ne[1] + nw[1])]
 }
 
-/// `F_f` of the projection law: kinetic friction against the velocity that the update left, or for a stuck block minus the
-/// sum of the other forces.
+/// Friction `F_f` of the projection law: kinetic friction against the velocity that the update left; for a stuck block minus
+/// the sum of the other forces.
 fn friction(kinetic_force: f64, velocity: [f64; 2], drive: [f64; 2], lattice: [f64; 2]) -> [f64; 2] {
     if velocity == [0.0, 0.0] {
         return [-(drive[0] + lattice[0]), -(drive[1] + lattice[1])];
@@ -144,8 +145,8 @@ fn round(values: &mut [f32; TILE], exact: &[f64]) {
     }
 }
 
-/// Contact stress `|F_f + F_c|` (Eq. 10) or traction `|F_f|` in a tile, with friction as for one block. `forces` are the kinetic
-/// friction of every element, and become what is found.
+/// Contact stress `|F_f + F_c|` (Eq. 10) or traction `|F_f|` in a tile, with friction as for one block. `forces` holds the
+/// kinetic friction of every element, and is overwritten by the result.
 #[inline(always)]
 fn stresses<S: Simd, G: Geometry>(
     simd: S,

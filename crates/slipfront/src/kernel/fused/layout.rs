@@ -14,7 +14,7 @@ use crate::lattice::{Edges, Lattice};
 /// Number of elements in a tile, which is scheduled as a whole.
 pub(super) const TILE: usize = 256;
 
-/// Number of vectors in a tile: one bit each of a `u32`.
+/// Number of vectors in a tile: one bit each in a `u32`.
 pub(super) const VECTORS: usize = TILE / LANES;
 
 /// Least number of elements in a row: a vector must not contain two blocks that a spring to the next row joins.
@@ -33,7 +33,7 @@ pub(super) struct Layout {
 }
 
 impl Layout {
-    /// Of some rows of a lattice.
+    /// The layout of the given rows of a lattice.
     pub(super) fn new(lattice: &Lattice, rows: &Range<usize>) -> Self {
         let ghosts = usize::from(lattice.edges[0] == Edges::Periodic);
         Self {
@@ -71,7 +71,7 @@ impl Layout {
         self.element(i, j)
     }
 
-    /// Column of an element; none of one that is no block.
+    /// Column of an element; none for an element that is no block.
     fn column(&self, element: usize) -> Option<usize> {
         let i = (element % self.stride).checked_sub(self.ghosts)?;
         (i < self.lattice.nx).then_some(i)
@@ -125,7 +125,7 @@ impl Layout {
         self.lattice.edges[1] == Edges::Periodic
     }
 
-    /// Whether the rows below the first and above the last of these are neighbours that other ranks hold.
+    /// Whether other ranks hold the rows below the first and above the last of the stored rows, as neighbours of these.
     pub(super) fn has_neighbours(&self) -> [bool; 2] {
         if self.rows == self.lattice.ny {
             return [false; 2];
@@ -134,12 +134,13 @@ impl Layout {
         [self.first_row > 0, end < self.lattice.ny].map(|inside| inside || self.is_periodic_along_y())
     }
 
-    /// Whether the last of these rows and the first are neighbours.
+    /// Whether the last and the first of the stored rows are neighbours.
     pub(super) fn wraps_along_y(&self) -> bool {
         self.is_periodic_along_y() && self.rows == self.lattice.ny
     }
 
-    /// Row, counted from the first of these, and column of an element, ghosts included; the column counts from the first ghost.
+    /// Row and column of an element, ghosts included; the row counts from the first stored row, the column from the first
+    /// ghost.
     pub(super) fn row_column(&self, element: isize) -> (isize, usize) {
         let stride = self.stride as isize;
         (element.div_euclid(stride), element.rem_euclid(stride) as usize)
@@ -155,8 +156,8 @@ impl Layout {
         }
     }
 
-    /// Column and row of the lattice of the block at an element, or of the one that is copied there. It may lie before the first or
-    /// after the last row; none beyond a free edge or between the rows.
+    /// Column and row of the lattice of the block at an element, or of the block that is copied there; none beyond a free
+    /// edge or between the rows. The element may lie before the first or after the last row.
     pub(super) fn place(&self, element: isize) -> Option<[usize; 2]> {
         let (nx, ny) = (self.lattice.nx, self.lattice.ny as isize);
         let (row, column) = self.row_column(element);
@@ -168,8 +169,8 @@ impl Layout {
         is_stored.then(|| [(column + nx - self.ghosts) % nx, j as usize])
     }
 
-    /// Which springs of an element to the east, north, north-east and north-west the lattice has. It may lie before the first or
-    /// after the last row.
+    /// Springs of an element to the east, north, north-east and north-west: whether the lattice has them. The element may
+    /// lie before the first or after the last row.
     pub(super) fn springs(&self, element: isize) -> [bool; 4] {
         let ghosts = self.ghosts as isize;
         let (nx, ny) = (self.lattice.nx as isize, self.lattice.ny as isize);
@@ -183,8 +184,8 @@ impl Layout {
         [east, north && is_stored, north && east, north && west]
     }
 
-    /// The elements from `from` to `to`, each piece with where it begins. Those before the first row or after the last are left out,
-    /// or taken from the other end if the axis is periodic.
+    /// The elements from `from` to `to`, each piece with its first element. Elements before the first row or after the last
+    /// are left out, or taken from the other end if the axis is periodic.
     pub(super) fn pieces(
         &self,
         from: isize,
@@ -208,8 +209,8 @@ impl Layout {
         })
     }
 
-    /// Marks the vectors that contain the elements from `first` to `last`, which may lie outside, or neighbours of them: see
-    /// [`mark_vectors`].
+    /// Marks the vectors that contain the elements from `first` to `last`, which may lie outside, or neighbours of these
+    /// elements: see [`mark_vectors`].
     pub(super) fn mark_around(&self, first: isize, last: isize, masks: &[AtomicU32]) {
         let (n, stride) = (self.len() as isize, self.stride as isize);
         for row in [-stride, 0, stride] {
@@ -265,7 +266,7 @@ mod tests {
         masks.into_iter().map(AtomicU32::into_inner).collect()
     }
 
-    /// Compared with the neighbours that the lattice itself knows.
+    /// The vectors found are compared with the neighbours that the lattice itself knows.
     #[test]
     fn neighbouring_vectors_hold_all_neighbouring_blocks() {
         use Edges::{Free, Periodic};

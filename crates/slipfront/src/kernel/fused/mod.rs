@@ -69,14 +69,14 @@ use crate::totals::{StoredEnergy, Totals};
 /// Steps between two measurements of displacements and their differences; in between they are bounded.
 const MEASUREMENT_INTERVAL: u64 = 16;
 
-/// How spring forces are computed in a sweep.
+/// Formula for spring forces in a sweep.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Springs {
-    /// Small strains: 1e-4 and less.
+    /// The short series, for small strains of 1e-4 and less.
     ShortSeries,
-    /// Up to 1e-2.
+    /// The long series, for strains up to 1e-2.
     LongSeries,
-    /// At any strain.
+    /// The square root, for any strain.
     SquareRoot,
 }
 
@@ -86,32 +86,32 @@ pub(crate) struct Fused {
     layout: Layout,
     dt_star: f64,
     bands: Vec<Band>,
-    /// Those of them that need nothing of other ranks.
+    /// Bands that need nothing of other ranks.
     inner: Range<usize>,
     /// Threads that share out the bands.
     threads: usize,
     level: Level,
     /// Whether tiles at rest are skipped.
     skips: bool,
-    /// For every tile, which of its vectors have a moving block or a neighbour of one.
+    /// Mask for every tile of the vectors that have a moving block or a neighbour of one.
     touched: Vec<AtomicU32>,
     /// The first step at which a block may slip, if nothing moves.
     active_from_step: u64,
     /// Step of the latest sweep.
     swept_step: Option<u64>,
-    /// How the latest sweep computed springs.
+    /// Formula by which the latest sweep computed springs.
     springs: Option<Springs>,
-    /// Whether the first step has begun, or the first after a checkpoint.
+    /// Whether the first step has begun, since the start or since a checkpoint.
     has_begun: bool,
     /// Sums of the latest sweep, and their quanta.
     sums: Option<(Sums<i128, f64, u64>, Quanta)>,
-    /// The same as numbers.
+    /// `sums` as floating-point totals.
     totals: Totals,
     motion_bounds: MotionBounds,
     /// Largest strains for the short and for the long series.
     strain_limits: [f64; 2],
     stress_square_max: f64,
-    /// The rows beside those of this rank.
+    /// The rows below and above the rows of this rank.
     neighbours: Neighbours,
     largest: LargestFactors,
     /// Sum of the relative stiffness of all drive springs: the number of blocks where all are alike.
@@ -181,8 +181,8 @@ impl Fused {
         kernel
     }
 
-    /// Continues from a checkpoint. Every tile is swept at the next step, also those that could be skipped: both give the same
-    /// bits. The step of the checkpoint counts as one in which all tiles were swept.
+    /// Continues from a checkpoint. Every tile is swept at the next step, including those that could be skipped: both give
+    /// the same bits. The step of the checkpoint counts as one in which all tiles were swept.
     pub(crate) fn resume<E>(
         model: &Model,
         dt_star: f64,
@@ -223,8 +223,8 @@ impl Fused {
         })
     }
 
-    /// How to compute springs in a step, by the bound on all strains, and whether sums have other quanta than before. It must be
-    /// called at every step, swept or not, so that skipping does not change the choice.
+    /// Chooses the formula for springs in a step by the bound on all strains; returns it, and whether sums have other quanta
+    /// than before. The function must be called at every step, swept or not, so that skipping does not change the choice.
     fn choose_springs(&mut self, model: &Model, step: &Step) -> (Springs, bool) {
         let bounds = &mut self.motion_bounds;
         if step.number.is_multiple_of(MEASUREMENT_INTERVAL) {
@@ -258,7 +258,8 @@ impl Fused {
         (springs, self.motion_bounds.move_ranges())
     }
 
-    /// The sweep to a step. Bands that need nothing of other ranks are swept while the rows beside this rank's are on their way.
+    /// Makes the sweep to a step. Bands that need nothing of other ranks are swept while the rows beside this rank's are on
+    /// their way.
     fn sweep(&mut self, model: &Model, step: Step, springs: Springs, renews_sums: bool, energies: bool) {
         let schedule = SweepConditions {
             number: step.number,
@@ -304,8 +305,8 @@ impl Fused {
         self.sum_bands(&quanta);
     }
 
-    /// Displacements beyond the ends of every band, as they will be after moving by `move_dt`: of `all` elements of this rank, or of
-    /// those that move. Those beyond a free edge stay zero: no spring leads there.
+    /// Displacements beyond the ends of every band, as they will be after moving by `move_dt`: for `all` elements of this
+    /// rank, or for those that move. Displacements beyond a free edge stay zero: no spring leads there.
     fn fill_halos(&mut self, move_dt: f64, all: bool) {
         if self.bands.len() == 1 && !self.layout.wraps_along_y() {
             return;
@@ -320,7 +321,7 @@ impl Fused {
         }
     }
 
-    /// What ranks have to tell each other before their first step, also one after a checkpoint.
+    /// Exchanges with other ranks the numbers that the first step needs, also the first step after a checkpoint.
     fn begin(&mut self, model: &Model) {
         self.has_begun = true;
         self.write_own_rows(0.0);
@@ -349,7 +350,8 @@ impl Fused {
         }
     }
 
-    /// The displacements that the rows at the ends of this rank will have after moving by `move_dt`, for the neighbouring ranks.
+    /// Writes the displacements that the rows at the ends of this rank will have after moving by `move_dt`, for the
+    /// neighbouring ranks.
     fn write_own_rows(&mut self, move_dt: f64) {
         let (stride, len) = (self.layout.stride, self.layout.len());
         for (end, first) in [0, len - stride].into_iter().enumerate() {
@@ -361,7 +363,7 @@ impl Fused {
         }
     }
 
-    /// Displacements of some elements to band `b`, from index `k` on.
+    /// Copies displacements of some elements to band `b`, from index `k` on.
     fn fill_halo(&mut self, b: usize, mut k: usize, elements: Range<usize>, move_dt: f64, all: bool) {
         let mut element = elements.start;
         while element < elements.end {
@@ -384,13 +386,14 @@ impl Fused {
         self.bands[band].kinetic_force(k, model.surface.kinetic_force(b), velocity_to_force)
     }
 
-    /// Band of an element, and its index there.
+    /// Band of an element, and the index of the element in it.
     fn locate(&self, element: usize) -> (usize, usize) {
         let band = self.bands.partition_point(|band| band.first <= element) - 1;
         (band, element - self.bands[band].first)
     }
 
-    /// Copies displacements and velocities to the ghosts from their blocks: from `all`, or from those that were swept.
+    /// Copies displacements and velocities to the ghosts from their blocks: from `all` blocks, or from those that were
+    /// swept.
     fn copy_ghosts(&mut self, all: bool) {
         if !self.layout.has_ghosts() {
             return;
@@ -412,7 +415,7 @@ impl Fused {
         }
     }
 
-    /// Sums over the lattice, from those over the bands after a sweep.
+    /// Adds up the sums over the bands after a sweep to the sums over the lattice.
     fn sum_bands(&mut self, quanta: &Quanta) {
         let (mut sums, mut active_from_step) = (Sums::<i128, f64, u64>::default(), u64::MAX);
         for band in &self.bands {
@@ -610,7 +613,7 @@ impl Engine for Fused {
     }
 }
 
-/// Bytes per block without what is kept of the rows beside a band, which a row of blocks takes.
+/// Bytes per block without the rows that are kept beside a band, which take the memory of a row of blocks.
 pub(crate) fn bytes_per_block(options: &ModelOptions) -> f64 {
     let varied = if variations::options_differ(options) {
         variations::BYTES_PER_ELEMENT
@@ -621,11 +624,11 @@ pub(crate) fn bytes_per_block(options: &ModelOptions) -> f64 {
     band::BYTES_PER_ELEMENT + kept as f64 + size_of::<AtomicU32>() as f64 / TILE as f64
 }
 
-/// Least number of tiles in a band of several: more bands than threads share out the work more evenly, but each finds springs
-/// of a row before it once more.
+/// Least number of tiles in a band of several: more bands than threads share out the work more evenly, but each finds the
+/// springs of the row before it once more.
 const MIN_BAND_TILES: usize = 1024;
 
-/// The tiles of every band, and which of the bands need nothing of other ranks.
+/// The tiles of every band, and the bands that need nothing of other ranks.
 fn bands_of(layout: &Layout, threads: usize) -> (Vec<Range<usize>>, Range<usize>) {
     let n_tiles = layout.n_tiles();
     // What lies within a halo of the rows of other ranks; the last tile may be short.
@@ -652,7 +655,7 @@ fn bands_of(layout: &Layout, threads: usize) -> (Vec<Range<usize>>, Range<usize>
     )
 }
 
-/// Displacements in the halos of these bands that other ranks hold.
+/// Fills the halos of these bands with the displacements that other ranks hold.
 fn fill_from_neighbours(bands: &mut [Band], layout: &Layout, neighbours: &Neighbours) {
     for band in bands {
         for element in band.halos(layout).into_iter().flatten() {

@@ -9,13 +9,13 @@ use crate::communicator::Communicator;
 /// Displacements of the row below the first of this rank and of the row above the last, ghosts included; none beyond a free edge.
 pub(super) struct Neighbours {
     pub(super) communicator: Arc<dyn Communicator>,
-    /// The first and the last row of this rank, which the ranks below and above are told.
+    /// The first and the last row of this rank, which are sent to the ranks below and above.
     pub(super) own: [Vec<[f64; 2]>; 2],
     /// The rows of the ranks below and above.
     rows: [Vec<[f64; 2]>; 2],
-    /// What they were before the latest exchange.
+    /// Rows of the ranks below and above before the latest exchange.
     before: [Vec<[f64; 2]>; 2],
-    /// Elements of these rows that have moved in the latest exchange, counted from the first of this rank.
+    /// Elements of the rows beside this rank that have moved in the latest exchange, counted from the first of this rank.
     pub(super) moved: Vec<isize>,
 }
 
@@ -40,7 +40,7 @@ impl Neighbours {
         self.communicator.size() == 1
     }
 
-    /// Tells the neighbours the rows in `own` and hears theirs, while `meanwhile` runs.
+    /// Sends the rows in `own` to the neighbours and receives theirs, while `meanwhile` runs.
     pub(super) fn exchange(&mut self, layout: &Layout, meanwhile: &mut dyn FnMut()) {
         std::mem::swap(&mut self.rows, &mut self.before);
         let [below, above] = &mut self.rows;

@@ -1,5 +1,5 @@
-//! The quanta of all sums over blocks: see [`FixedPoint`]. They follow from bounds on what is summed, and these from the extent of
-//! displacements and the highest speed, which every rank and thread knows.
+//! The quanta of all sums over blocks: see [`FixedPoint`]. They follow from bounds on the terms, and these from the extent
+//! of displacements and the highest speed, which every rank and thread knows.
 
 use super::step::Step;
 use super::variations::LargestFactors;
@@ -10,23 +10,23 @@ use crate::lattice::{K_DIAGONAL, K_STRAIGHT};
 /// Quanta of the sums in a sweep.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Quanta {
-    /// Of `u - c`, for each axis; c is the centre of the window.
+    /// Windows of `u - c` for each axis; c is the centre of the window.
     pub(super) displacement: [Window; 2],
-    /// Of `w (u - c)`, with the relative stiffness w of the drive springs.
+    /// Quanta of `w (u - c)`, with the relative stiffness w of the drive springs.
     pub(super) weighted_displacement: [FixedPoint; 2],
-    /// Of `w (u - c)^2`.
+    /// Quanta of `w (u - c)^2`.
     pub(super) displacement_square: FixedPoint,
-    /// Of `w v`.
+    /// Quanta of `w v`.
     pub(super) velocity: FixedPoint,
-    /// Of masses times squares of sums of two velocities.
+    /// Quanta of masses times squares of sums of two velocities.
     pub(super) motion_square: FixedPoint,
-    /// Of products of a force and a sum of two velocities.
+    /// Quanta of products of a force and a sum of two velocities.
     pub(super) friction_work: FixedPoint,
-    /// Of squares of spring forces over the factors of the springs.
+    /// Quanta of squares of spring forces over the factors of the springs.
     pub(super) lattice_energy: FixedPoint,
 }
 
-/// Rounding in the bounds and in what they bound.
+/// Factor for rounding in the bounds and in the numbers that they bound.
 const MARGIN: f64 = 1.0 + 1e-6;
 
 impl Quanta {
@@ -59,7 +59,7 @@ impl Quanta {
     }
 }
 
-/// A bound on all speeds half a step after `step`: they change at most as without friction.
+/// A bound on all speeds half a step after `step`: speeds change at most as without friction.
 fn highest_speed(step: &Step, bounds: &MotionBounds, largest: &LargestFactors) -> f64 {
     let mut force = 0.0;
     for axis in 0..2 {

@@ -17,11 +17,11 @@ use super::vector::{Vec2x8, add, dot, lane_max, scale, splat, square};
 /// Eight blocks in and around which nothing moves.
 pub(super) struct RestingVector<S: Simd> {
     pub(super) displacement: Vec2x8<S>,
-    /// `F_c`.
+    /// Lattice forces `F_c`.
     pub(super) lattice: Vec2x8<S>,
     pub(super) static_limit_square: f64x8<S>,
     pub(super) kinetic_impulse: f64x8<S>,
-    /// Relative stiffness of the drive springs and masses, of a slider whose blocks differ.
+    /// Relative stiffness of the drive springs, and masses, of a heterogeneous slider.
     pub(super) variation: Option<[f64x8<S>; 2]>,
 }
 

@@ -1,4 +1,5 @@
-//! What is done with every tile of a band in a sweep: nothing, if nothing moves in it or around it and none of its blocks may slip.
+//! The schedule of a sweep: the work on every tile of a band, which is none if nothing moves in it or around it and none of
+//! its blocks may slip.
 
 use std::sync::atomic::{AtomicU32, Ordering};
 
@@ -6,19 +7,19 @@ use super::band::{Band, TileTask};
 use super::layout::{Layout, TILE, VECTORS};
 use super::vector::LANES;
 
-/// Most vectors of a tile that are swept one by one: more cost more than the whole tile.
+/// Largest number of vectors of a tile that are swept one by one: more cost more than the whole tile.
 const MAX_SPARSE_VECTORS: u32 = 14;
 
-/// Most touched vectors of a tile after whose sweep its vectors are swept one by one.
+/// Largest number of touched vectors of a tile after whose sweep its vectors are swept one by one.
 const MAX_SETTLING_VECTORS: u32 = 9;
 
 /// Number of moving vectors in a tile above which all around it are marked, instead of those around each vector.
 const MAX_MARKED_VECTORS: usize = 10;
 
-/// What is common to all tiles in a sweep.
+/// Conditions common to all tiles in a sweep.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SweepConditions {
-    /// The step.
+    /// Number of the step.
     pub(super) number: u64,
     /// Whether tiles at rest are skipped.
     pub(super) skips: bool,
@@ -26,7 +27,7 @@ pub(super) struct SweepConditions {
     pub(super) renews_sums: bool,
     /// Whether there was no sweep before.
     pub(super) is_first: bool,
-    /// Whether the sweep before was that of the step before.
+    /// Whether the latest sweep was made at the step before.
     pub(super) is_next: bool,
 }
 
@@ -53,7 +54,7 @@ impl Band {
         }
     }
 
-    /// Decides what is done with every tile, and takes back the marks.
+    /// Decides the work on every tile, and clears the marks.
     pub(super) fn schedule(&mut self, sweep: &SweepConditions, touched: &[AtomicU32]) {
         for t in 0..self.tiles.len() {
             let all = u32::MAX >> (VECTORS - self.vectors(t).len());

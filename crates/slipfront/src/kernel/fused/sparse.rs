@@ -29,7 +29,7 @@ impl Band {
             .fold(0, |mask, (v, &step)| mask | u32::from(step <= number) << v)
     }
 
-    /// Eq. 8 in the moving vectors of a tile.
+    /// Moves the blocks of the moving vectors of a tile (Eq. 8).
     #[inline(always)]
     pub(super) fn advance_vectors<S: Simd>(&mut self, simd: S, step: Step, quanta: &Quanta, t: usize) {
         let dt = splat(simd, step.move_dt);
@@ -97,8 +97,8 @@ impl Band {
         })
     }
 
-    /// Eqs. 2 and 4-7 in the active vectors of a settled tile, whose lattice forces follow each other in the scratch array. A function
-    /// of its own, compiled once for all formulas of springs.
+    /// Drive, friction and damping (Eqs. 2 and 4-7) in the active vectors of a settled tile, whose lattice forces follow
+    /// each other in the scratch array. A function of its own, compiled once for all formulas of springs.
     #[inline(never)]
     fn friction_of_vectors<S: Simd, const DIFFER: bool>(
         &mut self,
@@ -135,8 +135,8 @@ impl Band {
         );
     }
 
-    /// Finds what is needed to sweep vectors of a tile alone, after a sweep of all of it with its energies. A function of its own,
-    /// compiled once for all formulas of springs.
+    /// Finds the numbers by which vectors of a tile can be swept alone, after a sweep of the whole tile with its energies. A
+    /// function of its own, compiled once for all formulas of springs.
     #[inline(never)]
     pub(super) fn settle<S: Simd>(&mut self, simd: S, step: &Step, t: usize, scratch: &Scratch) {
         simd.vectorize(
@@ -221,7 +221,7 @@ impl Band {
         ]
     }
 
-    /// Eq. 3 for eight blocks, to a place in the scratch array; gives the energy of their springs.
+    /// Lattice forces (Eq. 3) on eight blocks, to a place in the scratch array; returns the energy of their springs.
     #[inline(always)]
     fn vector_forces<S: Simd, G: Geometry>(
         &self,

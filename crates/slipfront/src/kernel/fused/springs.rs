@@ -5,7 +5,7 @@ use fearless_simd::{Simd, SimdFloat, f64x8};
 use super::vector::{Vec2x8, scale, splat, square};
 use crate::lattice::Bond;
 
-/// How the force of a spring is computed.
+/// Formula for the force of a spring.
 pub(super) trait Geometry: Copy {
     /// Whether springs, masses or anything else differs from block to block.
     const BLOCKS_DIFFER: bool = false;
@@ -15,7 +15,7 @@ pub(super) trait Geometry: Copy {
     fn force<S: Simd>(self, simd: S, bond: &Bond, e: Vec2x8<S>) -> Vec2x8<S>;
 }
 
-/// The same of a slider whose blocks differ. Forces are those of a spring of factor 1.
+/// A formula for springs of a heterogeneous slider. Its forces are those of a spring of factor 1.
 #[derive(Clone, Copy)]
 pub(super) struct Differing<G>(pub(super) G);
 
@@ -28,7 +28,7 @@ impl<G: Geometry> Geometry for Differing<G> {
     }
 }
 
-/// By the length of the spring, exact at any strain, with the same bits as [`Bond::force`].
+/// The formula with the length of the spring, exact at any strain, with the same bits as [`Bond::force`].
 #[derive(Clone, Copy)]
 pub(super) struct SquareRoot {
     pub(super) epsilon: f64,
@@ -51,7 +51,7 @@ impl Geometry for SquareRoot {
     }
 }
 
-/// By a series without square root or division, exact to rounding at small strain.
+/// The formula with a series without square root or division, exact to rounding at small strain.
 ///
 /// With the stretch `s = (r^2 - d^2)/eps = 2 d.e + eps e^2` and `z = eps s/d^2`, so that `r = d sqrt(1 + z)`:
 ///
@@ -86,7 +86,7 @@ impl<const DEGREE: usize> Series<DEGREE> {
         libm::exp2(-55.0 / (DEGREE + 1) as f64)
     }
 
-    /// `k/d^2 g` as a polynomial in the stretch s.
+    /// Coefficients of `k/d^2 g` as a polynomial in the stretch s.
     #[inline(always)]
     fn coefficients(self, bond: &Bond) -> [f64; 8] {
         let per_square = 1.0 / (bond.rest[0] * bond.rest[0] + bond.rest[1] * bond.rest[1]);
@@ -126,7 +126,7 @@ impl<const DEGREE: usize> Geometry for Series<DEGREE> {
     }
 }
 
-/// `tension d + correction` for a component d of the rest vector, which is 0, 1 or -1.
+/// The sum `tension d + correction` for a component d of the rest vector, which is 0, 1 or -1.
 #[inline(always)]
 fn along_axis<S: Simd>(rest: isize, tension: f64x8<S>, correction: f64x8<S>) -> f64x8<S> {
     match rest {
@@ -152,7 +152,7 @@ mod tests {
         })
     }
 
-    /// Both formulas against [`Bond::force`]: each has a rounding error of some units of the last place.
+    /// Asserts that both formulas agree with [`Bond::force`]: each has a rounding error of some units of the last place.
     fn assert_same<const DEGREE: usize>(bond: &Bond, e: [f64; 2], epsilon: f64) {
         let exact = bond.force(e, epsilon);
         let by_root = force(SquareRoot { epsilon }, bond, e);
@@ -169,7 +169,7 @@ mod tests {
         }
     }
 
-    /// Up to the largest strain, in all directions.
+    /// Asserts that the series is exact up to its largest strain, in all directions.
     fn series_is_exact<const DEGREE: usize>() {
         let limit = Series::<DEGREE>::strain_limit();
         assert!((2.0 * limit.powi(DEGREE as i32 + 1) * 2_f64.powi(54) - 1.0).abs() < 1e-12);
@@ -196,7 +196,7 @@ mod tests {
         series_is_exact::<7>();
     }
 
-    /// The bound on the truncation error of [`Series`], which is at most ten times too large.
+    /// The error bound of [`Series`] is kept, and at most ten times too large.
     #[test]
     fn the_truncation_error_is_bounded() {
         for degree in [3, 7] {

@@ -1,15 +1,15 @@
-//! What a step of the fused kernel has in common for all blocks.
+//! Numbers of a step of the fused kernel that are common to all blocks.
 
 use crate::clock::Clock;
 use crate::friction::Integrator;
 use crate::model::Model;
 
-/// What is common to all blocks in a step.
+/// Numbers common to all blocks in a step.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Step {
-    /// n.
+    /// Number of the step, n.
     pub(super) number: u64,
-    /// `dt*`.
+    /// Time step `dt*`.
     pub(super) dt_star: f64,
     /// Time for which displacements move before forces are evaluated: `dt*`, or 0 at the start.
     pub(super) move_dt: f64,
@@ -17,11 +17,11 @@ pub(super) struct Step {
     pub(super) k_drive: f64,
     /// Displacement of the driven ends of the drive springs.
     pub(super) drive_position: [f64; 2],
-    /// The same at the step before.
+    /// Displacement of the driven ends of the drive springs at the step before.
     position_before: [f64; 2],
     /// The first step at which the drive may change its speed next.
     pub(super) next_change: u64,
-    /// By how much the force of a drive spring on a block at rest grows per time, `k_s V`; a drive that is held loads more slowly.
+    /// Growth per time of the force of a drive spring on a block at rest, `k_s V`; a drive that is held loads more slowly.
     pub(super) force_growth: [f64; 2],
     pub(super) constant_force: [f64; 2],
     pub(super) integrator: Integrator,
@@ -51,12 +51,12 @@ impl Step {
         }
     }
 
-    /// `t*_n`.
+    /// Time `t*_n` of the blocks.
     pub(super) fn time_star(&self) -> f64 {
         self.number as f64 * self.dt_star
     }
 
-    /// The step before this one, of which there must be one.
+    /// The step before this one, which must not be the first.
     pub(super) fn before(&self) -> Self {
         Self {
             number: self.number - 1,

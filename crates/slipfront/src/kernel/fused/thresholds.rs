@@ -1,4 +1,4 @@
-//! Thresholds that change within a run, as options of Coulomb's law say.
+//! Thresholds that change within a run, by the options of Coulomb's law.
 
 use std::ops::Range;
 
@@ -18,7 +18,7 @@ pub(super) struct Thresholds {
     law: ChangingLaw,
 }
 
-/// What thresholds follow.
+/// Law by which thresholds change.
 #[derive(Debug)]
 enum ChangingLaw {
     /// Kinetic friction falls with speed; adhesion does not.
@@ -27,19 +27,19 @@ enum ChangingLaw {
     Slip(Slipped),
 }
 
-/// What elements remember of their slip.
+/// Slip of the elements, as far as the law remembers it.
 #[derive(Debug)]
 struct Slipped {
     law: SlipWeakening,
-    /// Kinetic impulses of the strength that slip takes.
+    /// Kinetic impulses of the strength that falls with slip.
     drops: Aligned,
     slip: Aligned,
-    /// t* at which an element has moved last, and the shares that it has lost before it healed; nothing without healing.
+    /// t* of the last motion of an element, and the shares that it has lost before it healed; present only with healing.
     healing: Option<[Aligned; 2]>,
 }
 
 impl Thresholds {
-    /// None of a model whose thresholds stay as they are.
+    /// Thresholds of a model in which they change; none for other models.
     pub(super) fn of(model: &Model, n_elements: usize) -> Option<Self> {
         let coulomb = model.friction.coulomb()?;
         let zeros = || Aligned::filled(n_elements, 0.0);
@@ -62,12 +62,12 @@ impl Thresholds {
         })
     }
 
-    /// Whether a block is held by its strength at its present slip, which is both its thresholds, if friction falls at all.
+    /// Whether both thresholds of a block are its strength at its present slip.
     pub(super) fn follow_slip(&self) -> bool {
         matches!(self.law, ChangingLaw::Slip(_))
     }
 
-    /// Notes by how much friction of an element can fall from that at which it slips first.
+    /// Sets the largest fall of friction of an element from the threshold at which it first slips, as an impulse.
     pub(super) fn set_drop(&mut self, k: usize, impulse: f64) {
         if let ChangingLaw::Slip(slipped) = &mut self.law {
             slipped.drops[k] = impulse;
@@ -83,8 +83,8 @@ impl Thresholds {
         }
     }
 
-    /// Finds the kinetic impulses of some elements, which have moved at these velocities in the step that ends now, from those of slow
-    /// sliding without slip; where friction follows speed, on blocks with these inverse masses.
+    /// Finds the kinetic impulses of some elements, which have moved at these velocities in the step that ends now, from the
+    /// impulses of slow sliding without slip. Where friction follows speed, the inverse masses of the blocks count.
     #[inline(always)]
     pub(super) fn update<S: Simd>(
         &mut self,
@@ -128,8 +128,8 @@ impl Thresholds {
         }
     }
 
-    /// A number of a column of a checkpoint at t*, of an element that moves or is stuck. One that has healed since it was swept last has
-    /// the numbers that its next sweep finds.
+    /// Number of an element in a column of a checkpoint at t*; the element moves or is stuck. An element that has healed
+    /// since it was last swept has the numbers that its next sweep finds.
     pub(super) fn memory(&self, column: usize, k: usize, is_moving: bool, time_star: f64) -> f64 {
         let ChangingLaw::Slip(Slipped {
             law, slip, healing, ..
@@ -199,9 +199,9 @@ impl Slipped {
     }
 }
 
-/// Kinetic impulses at these velocities, from those of slow sliding: the operations of [`Weakening::kinetic_force`]. `adhesive` is
-/// the impulse of adhesion on a block of mass 1. What is no block has an infinite impulse, which becomes no number, and moves as
-/// little.
+/// Kinetic impulses at these velocities, from the impulses of slow sliding: the operations of [`Weakening::kinetic_force`].
+/// `adhesive` is the impulse of adhesion on a block of mass 1. Elements that are no blocks have infinite impulses, which
+/// become NaN and hold them as well.
 #[inline(always)]
 fn weaken<S: Simd>(
     simd: S,

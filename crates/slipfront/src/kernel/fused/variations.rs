@@ -1,4 +1,4 @@
-//! What differs from block to block beside the thresholds: springs, drive springs and masses.
+//! Heterogeneous sliders: springs, drive springs and masses that differ from block to block.
 //!
 //! Where all blocks are alike none of it is stored or computed: the sweep is compiled for both kinds of slider ([`Geometry`]).
 //! An outline needs nothing of it, either: blocks outside are elements that are no blocks, and their springs are masked.
@@ -19,7 +19,8 @@ use crate::options::ModelOptions;
 /// Numbers of the elements of a band.
 #[derive(Debug)]
 pub(super) struct Variations {
-    /// Stiffness of the springs to the east, north, north-east and north-west over that of their bonds; with the front halo.
+    /// Stiffness of the springs to the east, north, north-east and north-west over the stiffness of their bonds; with the
+    /// front halo.
     pub(super) springs: [Aligned; 4],
     /// Stiffness of the drive springs over `k_s`.
     pub(super) drive_springs: Aligned,
@@ -30,13 +31,13 @@ pub(super) struct Variations {
 /// Bytes of [`Variations`] per element: four springs, the drive spring, mass and its inverse.
 pub(super) const BYTES_PER_ELEMENT: usize = (4 + 3) * size_of::<f64>();
 
-/// Whether blocks of a model with these options need [`Variations`], as far as can be told before it is made.
+/// Whether blocks of a model with these options need [`Variations`], as far as is known before the model is made.
 pub(super) fn options_differ(options: &ModelOptions) -> bool {
     let slider = &options.slider;
     slider.has_moduli || slider.has_densities || slider.drives_some || options.friction.needs().varies
 }
 
-/// [`Variations`] of some elements, in vectors of eight; nothing of it where all blocks are alike.
+/// [`Variations`] of some elements, in vectors of eight; empty where all blocks are alike.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Variation<'a> {
     pub(super) drive_springs: Chunks<'a>,
@@ -74,7 +75,7 @@ pub(super) fn blocks_differ(model: &Model, largest: &LargestFactors) -> bool {
 /// Largest factors of any block of the lattice.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LargestFactors {
-    /// Young's modulus, and so the factor of a spring between blocks.
+    /// Largest Young's modulus, and so the largest factor of a spring between blocks.
     pub(super) modulus: f64,
     pub(super) drive_spring: f64,
     pub(super) mass: f64,
@@ -82,7 +83,7 @@ pub(super) struct LargestFactors {
 }
 
 impl LargestFactors {
-    /// Of all blocks of this rank and of the others, which call this together.
+    /// Largest factors of all blocks of this rank and of the others, which call this together.
     pub(super) fn of(model: &Model, communicator: &dyn Communicator) -> Self {
         let slider = &model.slider;
         let largest = |differs: bool, value: &dyn Fn(usize) -> f64| {
@@ -110,7 +111,7 @@ impl LargestFactors {
 }
 
 impl Variations {
-    /// Of the elements from `first` on, and of springs also of a `halo` of elements before.
+    /// Variations of the elements from `first` on; for springs also of a `halo` of elements before.
     pub(super) fn new(
         layout: &Layout,
         model: &Model,
@@ -149,7 +150,7 @@ impl Variations {
 }
 
 impl Variations {
-    /// Those of some elements, counted from the first of the band.
+    /// Variations of some elements, counted from the first of the band.
     #[inline(always)]
     pub(super) fn of(&self, elements: Range<usize>) -> Variation<'_> {
         Variation {
@@ -160,7 +161,7 @@ impl Variations {
     }
 }
 
-/// Which of the springs of an element to the east, north, north-east and north-west are there.
+/// Springs of an element to the east, north, north-east and north-west: whether they exist.
 pub(super) fn present(moduli: &Moduli, model: &Model, layout: &Layout, element: isize) -> [bool; 4] {
     match &model.slider.outline {
         None => layout.springs(element),
@@ -168,7 +169,7 @@ pub(super) fn present(moduli: &Moduli, model: &Model, layout: &Layout, element: 
     }
 }
 
-/// Stiffness of these springs over that of their bonds; 0 of those that are not there.
+/// Stiffness of the springs of an element over the stiffness of their bonds; 0 for springs that do not exist.
 fn springs(moduli: &Moduli, layout: &Layout, element: isize) -> [f64; 4] {
     let mut springs = [0.0; 4];
     if let Some(place) = layout.place(element) {

@@ -91,7 +91,7 @@ pub(super) fn or_zero<S: Simd>(simd: S, mask: mask64x8<S>, a: Vec2x8<S>) -> Vec2
     select(mask, a, [zero, zero])
 }
 
-/// Zero of their sign in place of components below `least`; what is no number stays so.
+/// Replaces components below `least` by zero of the same sign; keeps NaN.
 #[inline(always)]
 pub(super) fn or_zero_below<S: Simd>(simd: S, least: f64, [x, y]: Vec2x8<S>) -> Vec2x8<S> {
     let (least, zero) = (splat(simd, least), splat(simd, 0.0));

@@ -38,17 +38,17 @@ fn parts(model: &Model) -> impl Iterator<Item = Range<usize>> + use<> {
 /// Sums over blocks that every step finds, as [`Summed`] names them.
 pub(super) type BandSums = [RunningSum; 12];
 
-/// What belongs to each of the [`BandSums`]. The first three are of the drive springs.
+/// One value for each of the [`BandSums`]. The first three are sums over the drive springs.
 pub(super) struct Summed<T> {
     pub(super) displacement: [T; 2],
     pub(super) velocity: [T; 2],
     pub(super) velocity_after: [T; 2],
     pub(super) velocity_square: T,
-    /// `F_f . v`.
+    /// Power of friction, `F_f . v`.
     pub(super) friction_power: T,
-    /// `F_v . v`.
+    /// Power of the dampers, `F_v . v`.
     pub(super) viscous_power: T,
-    /// What the law of friction adds up, see [`BandContact::add_up`].
+    /// Sums of the law of friction, see [`BandContact::add_up`].
     pub(super) contact: [T; 3],
 }
 
@@ -85,7 +85,7 @@ impl<T> From<[T; 12]> for Summed<T> {
 #[derive(Debug)]
 struct Dampers {
     force: VectorField,
-    /// Of the damper along each bond.
+    /// Force of the damper along each bond.
     bonds: [VectorField; 4],
 }
 
@@ -96,28 +96,28 @@ pub(super) struct Band {
     /// Displacements at t_n, velocities half a step later.
     pub(super) state: State,
     pub(super) forces: Forces,
-    /// `mu_s F_n`, or what the law of friction has made of it since a block last slipped.
+    /// Static thresholds `mu_s F_n`, as the law of friction has changed them since a block last slipped.
     static_limit: Vec<f64>,
-    /// `mu_k F_n`.
+    /// Kinetic friction `mu_k F_n`.
     kinetic_force: Vec<f64>,
     driven: DrivenBlocks,
     pub(super) contact: BandContact,
-    /// Relative stiffness of the spring of every block of the rows along each bond, if they are not all alike.
+    /// Relative stiffness of the spring of every block of the rows along each bond, for a heterogeneous slider.
     relative_springs: Option<[Vec<f64>; 4]>,
     dampers: Option<Dampers>,
     pub(super) sums: BandSums,
-    /// Those of energies: kinetic half a step before and after, and of the drive springs.
+    /// Sums of energies: kinetic half a step before and after, and of the drive springs.
     pub(super) energy_sums: [RunningSum; 3],
     /// Energies of the springs between blocks along each bond, one number per row.
     pub(super) row_energies: [Vec<f64>; 4],
-    /// Blocks that slide, and those of them in contact.
+    /// Number of blocks that slide, and of those among them that are in contact.
     pub(super) counts: [i64; 2],
     scratch: WeightedScratch,
     pub(super) first_slip: Vec<f64>,
     pub(super) stress_square_max: f64,
 }
 
-/// Bytes of a [`Band`] per block of its rows, without what it keeps of rows beside them.
+/// Bytes of a [`Band`] per block of its rows, without the rows beside them.
 pub(super) fn bytes_per_block(options: &ModelOptions) -> usize {
     // Displacement and velocity; four forces and velocities.
     let vectors = 2 + 4 + if options.slider.has_dampers { 1 } else { 0 };
@@ -128,8 +128,8 @@ pub(super) fn bytes_per_block(options: &ModelOptions) -> usize {
         + options.friction.needs().bytes
 }
 
-/// Bytes per block of what a [`Band`] has along each of the four bonds, also of the rows beside its own: forces of springs and of
-/// dampers, and relative stiffness.
+/// Bytes per block that a [`Band`] has along each of the four bonds, for its rows and the rows beside them: forces of
+/// springs and of dampers, and relative stiffness.
 pub(super) fn bytes_per_block_of_bonds(slider: &SliderOptions) -> usize {
     let dampers = if slider.has_dampers { VECTOR } else { 0 };
     let springs = if slider.has_equal_springs() {
@@ -144,7 +144,7 @@ pub(super) fn bytes_per_block_of_bonds(slider: &SliderOptions) -> usize {
 const VECTOR: usize = 2 * size_of::<f64>();
 
 impl Band {
-    /// The rows of a model. `moduli`: those of the whole rank.
+    /// The band of the rows of a model. `moduli`: moduli of the whole rank.
     pub(super) fn new(model: &Model, moduli: &Moduli, dt_star: f64, state: State) -> Self {
         let n = model.surface.n_blocks();
         let rows = Rows::new(model);
@@ -183,7 +183,7 @@ impl Band {
         }
     }
 
-    /// Finds what follows from the memory of the law of friction, after a checkpoint has given it.
+    /// Finds the values that follow from the memory of the law of friction, after a checkpoint has restored it.
     pub(super) fn resume(&mut self, model: &Model) {
         self.contact.resume(&model.surface, &mut self.static_limit);
     }
@@ -247,7 +247,7 @@ impl Band {
         self.row_energies = row_energies(&self.rows, u, relative, model.epsilon, &mut self.scratch.terms);
     }
 
-    /// Lets the velocities of this step be those of the step before, for the next.
+    /// Makes the velocities of this step those of the step before, for the next step.
     pub(super) fn end_step(&mut self) {
         std::mem::swap(&mut self.state.velocity, &mut self.forces.velocity);
     }
@@ -263,7 +263,7 @@ impl Band {
         }
     }
 
-    /// Lets the law of friction remember what some blocks did in the step before, and moves them.
+    /// Lets the law of friction remember the motion of some blocks in the step before, and moves them.
     #[inline(always)]
     fn move_blocks(&mut self, model: &Model, blocks: &Range<usize>) {
         let (state, limit) = (&self.state, &mut self.static_limit);
@@ -301,8 +301,8 @@ impl Band {
         }
     }
 
-    /// Eqs. 4-7: friction and damping, and the velocity half a step later, of some blocks. `integrator`: of the first, the second
-    /// and so on of them.
+    /// Friction and damping of some blocks, and their velocities half a step later (Eqs. 4-7). `integrator`: one for each of
+    /// these blocks.
     #[inline(always)]
     fn apply_friction(
         &mut self,
@@ -317,7 +317,7 @@ impl Band {
             .apply(&model.surface, blocks, limits, now, integrator, forces);
     }
 
-    /// Counts which of some blocks slide, and which of these are in contact; notes the first slips of these.
+    /// Counts the blocks that slide among some blocks, and those of them in contact; notes the first slips of the latter.
     #[inline(always)]
     fn count(&mut self, model: &Model, blocks: &Range<usize>, time_star: f64) {
         let n = blocks.len();
@@ -336,7 +336,7 @@ impl Band {
         self.counts[1] += i64::from(n_slipping);
     }
 
-    /// Adds up what every step sums over blocks, after their next velocities are known.
+    /// Adds up the sums of every step over blocks, after their next velocities are known.
     #[inline(always)]
     fn add_up(&mut self, model: &Model, blocks: &Range<usize>) {
         let (n, scratch) = (blocks.len(), &mut self.scratch);
@@ -389,7 +389,7 @@ impl Band {
         self.find_largest_stress(model, blocks);
     }
 
-    /// Eq. 10: the largest contact stress of a block in contact at any step.
+    /// Finds the largest contact stress (Eq. 10) of a block in contact at any step.
     #[inline(always)]
     fn find_largest_stress(&mut self, model: &Model, blocks: &Range<usize>) {
         let (n, squares) = (blocks.len(), &mut self.scratch.terms);
@@ -408,7 +408,7 @@ impl Band {
     }
 }
 
-/// Masses of some blocks, if they are not all alike.
+/// Masses of some blocks, for a heterogeneous slider.
 #[inline(always)]
 fn masses<'a>(model: &'a Model, blocks: &Range<usize>) -> Option<&'a [f64]> {
     let masses = model.slider.density.as_ref()?;
@@ -425,7 +425,7 @@ fn add_to(field: &mut VectorField, other: &VectorField, blocks: &Range<usize>) {
     }
 }
 
-/// Eq. 8: `u(t + dt) = u(t) + dt v(t + dt/2)`.
+/// Moves some blocks over a step (Eq. 8), `u(t + dt) = u(t) + dt v(t + dt/2)`.
 #[inline(always)]
 fn move_blocks(displacement: &mut VectorField, velocity: &VectorField, blocks: &Range<usize>, dt_star: f64) {
     for (u, v) in part_mut(displacement, blocks)

@@ -8,15 +8,15 @@ use crate::forces::{part, part_mut};
 use crate::model::Model;
 use crate::vector_field::VectorField;
 
-/// What drives each block beyond the drive springs of its model.
+/// Properties of the drive of each block beside the drive springs of its model.
 #[derive(Debug)]
 pub(super) struct DrivenBlocks {
-    /// Of a drive that rotates `g`, see [`Drive::direction_at`](crate::Drive::direction_at).
+    /// Direction `g` of a drive that rotates, see [`Drive::direction_at`](crate::Drive::direction_at).
     direction: Option<VectorField>,
 }
 
 impl DrivenBlocks {
-    /// Bytes per block: the direction, of a drive that rotates.
+    /// Bytes per block: the direction, for a drive that rotates.
     pub(super) const fn bytes_per_block(rotates: bool) -> usize {
         if rotates { 2 * size_of::<f64>() } else { 0 }
     }
@@ -34,7 +34,7 @@ impl DrivenBlocks {
         }
     }
 
-    /// Eq. 2: `F_s = k_s,i (V t - u)`, of some blocks, at a time of the drive.
+    /// Forces of the drive springs (Eq. 2) on some blocks at a time of the drive, `F_s = k_s,i (V t - u)`.
     #[inline(always)]
     pub(super) fn forces(
         &self,
@@ -109,8 +109,8 @@ impl DrivenBlocks {
         add_weighted(sum, squares, relative(model, blocks), &mut scratch.products);
     }
 
-    /// Adds the two components of a vector of some blocks, weighted with the relative stiffness of the springs; of a rotation those
-    /// along the direction at each block and to its left.
+    /// Adds the two components of a vector over some blocks, weighted with the relative stiffness of the springs; for a
+    /// rotation the components along the direction at each block and to its left.
     #[inline(always)]
     pub(super) fn add(
         &self,

@@ -49,38 +49,39 @@ const MIN_BAND_ROWS: usize = 8;
 pub(crate) struct General {
     threads: usize,
     ranks: Arc<dyn Communicator>,
-    /// Whether the first step has been evaluated, which does not move the blocks.
+    /// Whether the first step, which does not move the blocks, has been evaluated.
     started: bool,
     bands: Vec<BandOfRank>,
-    /// How the first and the last row of each band move, for the bands beside it.
+    /// Motion of the first and the last row of each band, for the bands beside it.
     ends: Vec<[Vec<f64>; 2]>,
-    /// How the rows below and above this rank move.
+    /// Motion of the rows below and above this rank.
     beside: [Vec<f64>; 2],
     sums: BandSums,
     energy_sums: [RunningSum; 3],
     /// Power that the dampers take.
     viscous_power: f64,
     contact_totals: ContactTotals,
-    /// Largest square of a contact stress before the checkpoint that it continues from.
+    /// Largest square of a contact stress before the checkpoint from which the run continues.
     stress_square_before: f64,
 }
 
 /// A band of the rows of a rank.
 struct BandOfRank {
-    /// Its blocks among those of this rank.
+    /// Blocks of the band among those of this rank.
     blocks: Range<usize>,
-    /// That of its rows, unless these are all of this rank.
+    /// Model of the band's rows, unless these are all rows of this rank.
     model: Option<Model>,
     band: Band,
 }
 
 impl BandOfRank {
-    /// The band, and the model of its rows given that of the rank.
+    /// The band and the model of its rows, given the model of the rank.
     fn with_model<'a>(&'a mut self, of_rank: &'a Model) -> (&'a Model, &'a mut Band) {
         (self.model.as_ref().unwrap_or(of_rank), &mut self.band)
     }
 
-    /// Which of the `count` blocks of the rank from `first` on are in this band: their places in it, and among those blocks.
+    /// Blocks of the band among the `count` blocks of the rank from `first` on: their places in the band, and among the
+    /// `count` blocks.
     fn common(&self, first: usize, count: usize) -> Option<[Range<usize>; 2]> {
         let both = first.max(self.blocks.start)..(first + count).min(self.blocks.end);
         let from = |start: usize| both.start - start..both.end - start;
@@ -209,13 +210,13 @@ impl General {
         }
     }
 
-    /// The band of block `b`, and its number there.
+    /// The band of block `b`, and the number of the block in it.
     fn locate(&self, b: usize) -> (&Band, usize) {
         let one = &self.bands[self.bands.partition_point(|one| one.blocks.end <= b)];
         (&one.band, b - one.blocks.start)
     }
 
-    /// Tells every band how the rows beside it move.
+    /// Exchanges the motion of the rows beside every band.
     fn exchange(&mut self) {
         for (ends, one) in self.ends.iter_mut().zip(&self.bands) {
             one.band.rows.read_ends(&one.band.state, ends);
@@ -265,8 +266,8 @@ impl General {
         }
     }
 
-    /// Sum of numbers of all rows of the whole lattice, given those of the rows of every band: in the same order for any number of bands
-    /// and ranks, and so with the same bits.
+    /// Sum over all rows of the whole lattice, given the numbers of the rows of every band. The order is equal for any
+    /// number of bands and ranks, and so are the bits.
     fn sum_rows<'a>(&self, model: &Model, of_bands: impl Iterator<Item = &'a [f64]>) -> f64 {
         let mut bits = vec![0; model.lattice.ny];
         for (bits, number) in bits[model.rows.clone()].iter_mut().zip(of_bands.flatten()) {
@@ -428,8 +429,8 @@ pub(crate) fn bytes_per_block(options: &ModelOptions) -> usize {
     band::bytes_per_block(options)
 }
 
-/// Most bytes per block that bands of rows take in addition where there are several: each has the model of its rows, the motion of its
-/// blocks among those of the rows beside them, these rows themselves, and room for what a thread sweeps at once.
+/// Most bytes per block that bands of rows add where there are several: each has the model of its rows, the motion of its
+/// blocks among those of the rows beside them, these rows themselves, and room for the intermediate results of a thread.
 pub(crate) fn bytes_per_block_of_bands(options: &ModelOptions) -> f64 {
     // A row below and a row above those of a band.
     let beside = 2.0 / MIN_BAND_ROWS as f64;

@@ -9,24 +9,24 @@ use crate::moduli::Moduli;
 use crate::state::State;
 use crate::vector_field::VectorField;
 
-/// The rows of a band with the row below and the row above, if other bands hold these: what the forces of the springs between blocks
-/// are found from. Where there is one band, all of the lattice.
+/// The rows of a band, and the row below and the row above if other bands hold these: the input of the forces of the springs
+/// between blocks. With one band, all rows of the lattice.
 pub(super) struct Rows {
-    /// Of these rows alone. Nothing is known beyond them, so that it ends there.
+    /// Lattice of these rows, with free ends.
     pub(super) lattice: Lattice,
-    /// Those of its blocks that this band holds.
+    /// Blocks of this lattice that the band holds.
     own: Range<usize>,
-    /// Rows of the whole lattice, and the first of them that this band holds.
+    /// Rows of the whole lattice, and the first row that this band holds.
     n_rows: usize,
     first_row: usize,
     beside: Option<Beside>,
 }
 
-/// What a band knows of the rows beside its own.
+/// Data of a band about the rows beside its own.
 struct Beside {
     /// Whether there is a row below, and one above.
     has: [bool; 2],
-    /// Of all blocks of the rows. Only dampers need velocities.
+    /// Displacements of all blocks of the rows; velocities only with dampers.
     state: State,
     has_dampers: bool,
 }
@@ -68,7 +68,7 @@ impl Rows {
         }
     }
 
-    /// Those that this band holds.
+    /// Rows of this lattice that the band holds.
     pub(super) fn own_rows(&self) -> Range<usize> {
         self.own.start / self.lattice.nx..self.own.end / self.lattice.nx
     }
@@ -129,14 +129,14 @@ impl Rows {
         self.beside.as_ref().map_or(own, |beside| &beside.state)
     }
 
-    /// What some blocks of this band are among all blocks of these rows.
+    /// Place of some blocks of this band among all blocks of these rows.
     #[inline(always)]
     pub(super) fn among_all(&self, blocks: &Range<usize>) -> Range<usize> {
         self.own.start + blocks.start..self.own.start + blocks.end
     }
 
-    /// Blocks behind the first of this band along a bond, which no blocks before it are: those of the row below, or where a periodic
-    /// axis begins those of the last row.
+    /// Blocks behind the first of this band along a bond that no blocks before it are: those of the row below, or where a
+    /// periodic axis begins those of the last row.
     pub(super) fn behind(&self) -> Range<usize> {
         let last_row = self.lattice.block(0, self.lattice.ny - 1)..self.lattice.n_blocks();
         match self.lattice.edges[1] {
@@ -145,7 +145,8 @@ impl Rows {
         }
     }
 
-    /// Stiffness of the spring from every block along `bond` over that of its bond; 0 of the blocks of the row above.
+    /// Stiffness of the spring from every block along `bond` over the stiffness of the bond; 0 for the blocks of the row
+    /// above.
     pub(super) fn springs_along(&self, moduli: &Moduli, bond: &Bond) -> Vec<f64> {
         let Lattice { nx, ny, .. } = self.lattice;
         let Range { start: below, end } = self.own_rows();
@@ -162,13 +163,13 @@ impl Rows {
     }
 }
 
-/// What the forces between blocks follow from.
+/// Fields from which the forces between blocks follow: displacements, and velocities with dampers.
 #[inline(always)]
 fn fields(state: &State, has_dampers: bool) -> impl Iterator<Item = &VectorField> {
     std::iter::once(&state.displacement).chain(has_dampers.then_some(&state.velocity))
 }
 
-/// The same, to be filled.
+/// Fields from which the forces between blocks follow, to be filled.
 #[inline(always)]
 fn fields_mut(state: &mut State, has_dampers: bool) -> impl Iterator<Item = &mut VectorField> {
     std::iter::once(&mut state.displacement).chain(has_dampers.then_some(&mut state.velocity))

@@ -10,8 +10,9 @@ use crate::model::Model;
 use crate::state::State;
 use crate::vector_field::VectorField;
 
-/// Eq. 3: `F_c = sum_j k_ij (r_ij - d_ij) e_ij` over the eight neighbours, every spring computed once. Of some blocks, after those before
-/// them. `relative`: stiffness of each over that of its bond, if they are not all alike.
+/// Eq. 3: `F_c = sum_j k_ij (r_ij - d_ij) e_ij` over the eight neighbours, every spring computed once. Called for some
+/// blocks after the blocks before them. `relative`: stiffness of each spring over that of its bond, for a heterogeneous
+/// slider.
 #[inline(always)]
 pub(super) fn lattice_forces(
     model: &Model,
@@ -29,8 +30,8 @@ pub(super) fn lattice_forces(
     sum_all(rows, blocks, &spring, relative, force, springs);
 }
 
-/// Forces of dampers beside all springs (Kelvin-Voigt), `F_v = sum_j tau_v k_ij (e_ij . (v_j - v_i)) e_ij`, of the velocities half a
-/// step before; as [`lattice_forces`].
+/// Forces of dampers beside all springs (Kelvin-Voigt), `F_v = sum_j tau_v k_ij (e_ij . (v_j - v_i)) e_ij`, with the
+/// velocities half a step before. Arguments as for [`lattice_forces`].
 #[inline(always)]
 pub(super) fn damper_forces(
     model: &Model,
@@ -50,12 +51,12 @@ pub(super) fn damper_forces(
     sum_all(rows, blocks, &damper, relative, force, dampers);
 }
 
-/// What acts between a block and its neighbour along a bond.
+/// A connection between a block and its neighbour along a bond.
 trait Connection {
     /// The force on a block from its neighbour.
     fn one(&self, bond: &Bond, b: usize, other: usize) -> [f64; 2];
 
-    /// The same of consecutive blocks, whose neighbours are all equally far away.
+    /// The forces on consecutive blocks from their neighbours, which are all equally far away.
     fn many(&self, bond: &Bond, blocks: &Range<usize>, neighbours: &Range<usize>, force: [&mut [f64]; 2]);
 }
 
@@ -124,7 +125,7 @@ fn difference(field: &VectorField, b: usize, other: usize) -> [f64; 2] {
     [field.x[other] - field.x[b], field.y[other] - field.y[b]]
 }
 
-/// Sums what acts along the bonds of every block, `relative` times as strong. What acts along those of the blocks before is known.
+/// Sums the forces along the bonds of every block, times `relative`. Forces along the bonds of the blocks before are known.
 #[inline(always)]
 fn sum_all(
     rows: &Rows,
@@ -154,7 +155,7 @@ fn sum_all(
     sum_springs(lattice, blocks, y.each_ref().map(|along| &*along.y), force_y);
 }
 
-/// Those of some blocks that stand in column `i`.
+/// Blocks among `blocks` that stand in column `i`.
 #[inline(always)]
 fn in_column(lattice: &Lattice, blocks: &Range<usize>, i: usize) -> impl Iterator<Item = usize> {
     let before = (blocks.start + lattice.nx - i - 1) / lattice.nx;
@@ -295,8 +296,9 @@ fn add_bottom_row(own: [&[f64]; 4], before: &[f64], total: &mut [f64]) {
     }
 }
 
-/// Energies of the springs between blocks at displacements `u`: along each bond one number for every row of this band. `relative`:
-/// stiffness of each over that of its bond, if they are not all alike. `row`: room for the energies of a row.
+/// Energies of the springs between blocks at displacements `u`: along each bond one number for every row of this band.
+/// `relative`: stiffness of each spring over that of its bond, for a heterogeneous slider. `row`: room for the energies of a
+/// row.
 #[inline(always)]
 pub(super) fn row_energies(
     rows: &Rows,
@@ -315,7 +317,8 @@ pub(super) fn row_energies(
     found
 }
 
-/// The energy of the springs along one bond of one row. Nothing of it is left to closures, which may be compiled without the vectors of the step.
+/// The energy of the springs along one bond of one row. No part of it is a closure, which might be compiled without the
+/// vector instructions of the step.
 #[inline(always)]
 fn row_energy(
     rows: &Rows,

@@ -1,4 +1,4 @@
-//! Sums over blocks that do not all count alike.
+//! Sums over blocks with a weight for each.
 
 use crate::fixed_point::RunningSum;
 use crate::vector_field::VectorField;
@@ -25,7 +25,8 @@ impl WeightedScratch {
     }
 }
 
-/// Adds a term of each of some blocks times its weight; all weights are 1 if there are none. There is room for the products.
+/// Adds a term for each of some blocks times its weight; all weights are 1 if there are none. The sum has room for the
+/// products.
 #[inline(always)]
 pub(super) fn add_weighted(
     sum: &mut RunningSum,

@@ -10,11 +10,11 @@ use crate::lattice::Lattice;
 
 /// Fewest blocks of a cluster that counts as a nucleation site.
 const SITE_MIN_BLOCKS: usize = 9;
-/// The same as a share of all blocks in contact: one in so many.
+/// Smallest nucleation site as a share of all blocks in contact: one in this many.
 const SITE_MIN_SHARE: usize = 100;
 
-/// Least share of the windows through which a front passes, for it to have a speed. Of times that are random, but alike over as many
-/// blocks as a window has, it passes through less than a fifth.
+/// Least share of the windows through which a front passes, for it to have a speed. Through random times that are alike over
+/// as many blocks as a window has, a front passes in less than a fifth of the windows.
 const LEAST_SHARE: f64 = 0.5;
 
 /// How slip has spread over a slider.
@@ -35,37 +35,40 @@ pub struct Front {
 /// q (n - 1), counted from 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Quantiles {
-    /// 5 % are smaller.
+    /// Quantile of 5 %.
     pub low: f64,
-    /// Half are smaller.
+    /// Median.
     pub median: f64,
-    /// 95 % are smaller.
+    /// Quantile of 95 %.
     pub high: f64,
 }
 
 impl Front {
-    /// Bytes per block that it takes to find a front, beside the times: each time again with its place in their order, and its cluster;
-    /// then the slope around the block, and the speed.
+    /// Bytes per block for finding a front, beside the times: each time again with its place in their order, and its
+    /// cluster; then the slope around the block, and the speed.
     pub const BYTES_PER_BLOCK: usize = 4 * size_of::<f64>();
 
-    /// Of the `times` at which the blocks of a lattice have first slipped, NaN for those that have not and for those without contact;
-    /// `n_contact` blocks are in contact. None if no block has slipped.
+    /// The front of a lattice whose blocks have first slipped at `times`, NaN for blocks that have not slipped or have no
+    /// contact; `n_contact` blocks are in contact. None if no block has slipped.
     ///
-    /// Slip nucleates in clusters of neighbours that have slipped, which grow block by block in the order of time (of blocks that slip
-    /// at once in that of their indices). Where clusters meet, the oldest takes the others in. One that reaches
+    /// Slip nucleates in clusters of neighbours that have slipped, which grow block by block in the order of time (of blocks
+    /// that slip at once in that of their indices). Where clusters meet, the oldest takes the others in. A cluster that
+    /// reaches
     ///
     /// ```text
     /// max(9, n_contact/100) blocks
     /// ```
     ///
-    /// or all of them before an older one takes it in is a nucleation site, unless its blocks have slipped at once; its place is its
-    /// first block. One that has not is taken in by a site whatever its age: a block that slips alone and early nucleates nothing.
+    /// or all of them before an older one takes it in is a nucleation site, unless its blocks have slipped at once; its
+    /// place is its first block. A smaller cluster is taken in by a site whatever its age: a block that slips alone and
+    /// early nucleates nothing.
     ///
-    /// The front runs at `1/|g|`, with the slope g of the plane that fits best (in the sense of least squares) to the times of 7 x 7
-    /// blocks around one that has slipped; in a chain of 7. There are windows around all blocks but those in which slip nucleates, and
-    /// those where too few have slipped: fewer than 25, or 5 times the number of rows (or columns) of a lattice that has fewer than five.
-    /// A front passes through a window where the plane explains half of the variance of the times, and g turns by no more than 60
-    /// degrees to the windows 3 blocks away along either axis: where two fronts meet, it does.
+    /// The front runs at `1/|g|`, with the slope g of the plane that fits best (in the sense of least squares) to the times
+    /// of 7 x 7 blocks around one that has slipped; 7 blocks in a chain. There are windows around all blocks but those in
+    /// which slip nucleates, and those where too few have slipped: fewer than 25, or 5 times the number of rows (or columns)
+    /// of a lattice that has fewer than five. A front passes through a window where the plane explains half of the variance
+    /// of the times, and g turns by no more than 60 degrees to the windows 3 blocks away along either axis: where two fronts
+    /// meet, it does.
     ///
     /// ```
     /// use slipfront::{Lattice, observe::Front};

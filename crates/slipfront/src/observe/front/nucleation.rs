@@ -4,7 +4,7 @@ use std::cmp::Ordering;
 
 use crate::lattice::Lattice;
 
-/// In place of the cluster of a block that has not slipped yet.
+/// Marks a block that has not slipped yet, in place of its cluster.
 const NOT_YET: u32 = u32::MAX;
 
 const NEIGHBOURS: [[isize; 2]; 8] = [
@@ -18,8 +18,8 @@ const NEIGHBOURS: [[isize; 2]; 8] = [
     [1, 1],
 ];
 
-/// The first block of every cluster that has reached `least` blocks, not all at once, before an older one took it in, in the order of
-/// time.
+/// The first block of every cluster that has reached `least` blocks, not all at once, before an older one took it in, in the
+/// order of time.
 pub(super) fn nucleations(lattice: &Lattice, times: &[f64], least: usize) -> Vec<usize> {
     assert!(times.len() < NOT_YET as usize, "blocks are numbered with 32 bits");
     let slipped = times.iter().zip(0..).filter(|(time, _)| !time.is_nan());
@@ -77,7 +77,7 @@ fn earlier(one: &(f64, u32), other: &(f64, u32)) -> Ordering {
 
 /// Disjoint sets of blocks. The root of each is its first block.
 struct Clusters {
-    /// Another block of the same cluster, nearer to the root; of a root itself.
+    /// Another block of the same cluster, nearer to the root; the root itself for a root.
     parent: Vec<u32>,
     /// Blocks of the cluster of a root.
     size: Vec<u32>,
@@ -92,7 +92,7 @@ impl Clusters {
         self.size[root as usize] as usize >= self.least && self.has_grown[root as usize]
     }
 
-    /// The root of the cluster of a block, if this has slipped.
+    /// The root of the cluster of a block, if the block has slipped.
     fn root_of(&mut self, mut block: u32) -> Option<u32> {
         let mut parent = self.parent[block as usize];
         if parent == NOT_YET {
@@ -115,7 +115,7 @@ impl Clusters {
         self.has_grown[to] |= self.has_grown[from] || times[from] != times[to];
     }
 
-    /// Adds a block to the cluster of a root, or begins one if it is its own.
+    /// Adds a block to the cluster of a root, or begins a cluster if it is its own root.
     fn add(&mut self, block: u32, root: u32, times: &[f64]) {
         let [to, added] = [root, block].map(|block| block as usize);
         self.parent[added] = root;

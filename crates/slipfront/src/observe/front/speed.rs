@@ -5,20 +5,21 @@ use crate::vector_field::dot;
 
 /// Blocks from the middle of a window to its edge.
 const REACH: usize = 3;
-/// Fewest blocks of a window that have slipped, of each of the rows that it has, up to five of them.
+/// Least number of blocks of a window that have slipped, for each of its rows, up to five of them.
 const LEAST_PER_ROW: usize = 5;
 
 /// Least share of the variance of the times in a window that a plane explains where a front passes. White noise reaches it in one of
 /// ten million windows, and a front whose blocks are early and late by twice the time in which it passes one (rms) in half of them.
 const LEAST_EXPLAINED: f64 = 0.5;
-/// Least cosine of the angle by which a front turns from a window to those around it, 60 degrees. Where two meet it turns by more.
+/// Least cosine of the angle by which a front turns from a window to those around it, 60 degrees. Where two fronts meet, the
+/// direction turns by more.
 const LEAST_COSINE: f64 = 0.5;
 
-/// Where the front passes.
+/// Passages of the front through windows.
 pub(super) struct Passages {
-    /// Its speed in every window through which it passes, in blocks per unit of time.
+    /// Speed of the front in every window through which it passes, in blocks per unit of time.
     pub(super) speeds: Vec<f64>,
-    /// Windows that were looked at.
+    /// Number of windows that have enough blocks for a plane.
     pub(super) n_windows: usize,
 }
 
@@ -75,7 +76,8 @@ fn turns(lattice: &Lattice, axes: &[WindowAxis; 2], slopes: &[[f64; 2]], block: 
 struct WindowAxis {
     count: usize,
     is_periodic: bool,
-    /// Blocks from the middle of a window to its edge, fewer on a short axis: of a periodic one none stands in a window twice.
+    /// Blocks from the middle of a window to its edge, fewer on a short axis: on a periodic one no block stands in a window
+    /// twice.
     reach: usize,
 }
 
@@ -89,7 +91,7 @@ impl WindowAxis {
         }
     }
 
-    /// Most places of a window.
+    /// Largest number of places of a window.
     fn window(&self) -> usize {
         let all = 2 * REACH + 1;
         if self.is_periodic {
@@ -131,7 +133,7 @@ struct WindowSums {
 }
 
 impl WindowSums {
-    /// Over the blocks around one that have slipped.
+    /// Sums over the blocks around one that have slipped.
     fn around(lattice: &Lattice, axes: &[WindowAxis; 2], times: &[f64], block: usize) -> Self {
         let (i, j) = lattice.column_row(block);
         let mut sums = Self::default();
@@ -161,7 +163,7 @@ impl WindowSums {
         self.tt += t * t;
     }
 
-    /// n^2 times the covariances of place and time.
+    /// Covariances of place and time, times n^2.
     fn with_time(&self) -> [f64; 2] {
         let n = f64::from(self.n);
         [
@@ -170,7 +172,7 @@ impl WindowSums {
         ]
     }
 
-    /// g of the plane `t = a + g . r` of least squares; of blocks in a row the one that does not rise across it.
+    /// Slope g of the plane `t = a + g . r` of least squares; for blocks in a row the one that does not rise across it.
     fn slope(&self) -> [f64; 2] {
         // n^2 times the variances and covariances.
         let [xx, xy, yy] = [
@@ -187,7 +189,7 @@ impl WindowSums {
         [xt, yt].map(|g| g / (xx + yy))
     }
 
-    /// R^2, the share of the variance of the times that the plane of this slope explains; none of a window that slips at once.
+    /// Share R^2 of the variance of the times that the plane of this slope explains; none for a window that slips at once.
     fn explained(&self, slope: [f64; 2]) -> f64 {
         let variance = f64::from(self.n) * self.tt - self.t * self.t;
         if variance > 0.0 {

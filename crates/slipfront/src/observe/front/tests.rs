@@ -305,7 +305,7 @@ fn periodic_edges_are_no_edges() {
     }
 }
 
-/// The same by clusters that are coloured anew at every meeting, over random times with ties and holes.
+/// Sites are those of clusters that are coloured anew at every meeting, over random times with ties and holes.
 #[test]
 fn sites_are_those_of_a_plain_search() {
     let mut state = 7;
