@@ -10,8 +10,7 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 if [ $# -eq 0 ]; then
-  # The laboratory is on its way.
-  set -- '*.rs' '*.py' ':!crates/slipfront-lab'
+  set -- '*.rs' '*.py'
 fi
 
 # Comments of Rust, as `file:line: text` with the lines of each joined; without examples in code and the headings of sections. The first

@@ -8,10 +8,10 @@ use std::time::{Duration, Instant};
 
 use slipfront_session::{Event, Task, Work, Worker};
 
-/// Work in a thread of its own, which is asked to stop when this is dropped.
+/// Work in a thread of its own. Dropping the task asks the work to stop.
 pub(crate) struct BackgroundTask {
     stop: Arc<AtomicBool>,
-    /// What the work tells; closed once it has ended.
+    /// Events that the work sends; the channel closes once the work has ended.
     events: Receiver<Event>,
     is_lost: bool,
 }

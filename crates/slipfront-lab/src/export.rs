@@ -18,13 +18,13 @@ use crate::{assets, presets};
 /// The name of the session as WebAssembly, beside the program and in an exported folder.
 pub const MODULE: &str = "slipfront.wasm";
 
-/// What the session begins with.
+/// The file with the presets and the case with which the session begins.
 const BEGINNING: &str = "start.json";
 
-/// What the page of an exported folder may do: take files from its own folder, and compile the module.
+/// Content security policy of the page of an exported folder: it may take files from its own folder, and compile the module.
 const POLICY_OF_FOLDER: &str = include_str!("../export/folder.policy");
 
-/// What a page of one file may do: run its loader, show its styles, and what the loader makes of its files.
+/// Content security policy of a page of one file: it may run its loader, show its styles, and use what the loader makes of its files.
 const POLICY_OF_SINGLE: &str = include_str!("../export/single.policy");
 
 /// The manifest by which a browser offers to keep the page like a program.
@@ -48,24 +48,24 @@ pub enum ExportError {
         places(.0)
     )]
     NoModule(Vec<PathBuf>),
-    /// A module that is none.
+    /// The file of the module holds no WebAssembly.
     #[error("{} is no module of WebAssembly: build it anew by crates/slipfront-wasm/build.sh of the sources", display_path(.0))]
     NotModule(PathBuf),
     /// A run folder needs a server that reads it.
     #[error("a folder of a run cannot be exported: name the case.toml in it")]
     Folder,
-    /// The case cannot be made.
+    /// The case with which the page opens cannot be made.
     #[error("{0}")]
     Case(String),
     /// A folder that is not empty, and was not exported.
     #[error("{} holds other things than an exported laboratory: name another folder", display_path(.0))]
     OtherThings(PathBuf),
-    /// The system refuses.
+    /// The system refuses to write a file or folder.
     #[error("{} cannot be written: {source}", display_path(path))]
     Write {
-        /// What cannot be written.
+        /// The file or folder that cannot be written.
         path: PathBuf,
-        /// Why.
+        /// Why the system refuses to write it.
         source: std::io::Error,
     },
 }
@@ -93,7 +93,7 @@ struct Parts {
 /// Finds the module, in the first of some folders that has it.
 ///
 /// # Errors
-/// When none has it, or it is none.
+/// When none of the folders has the module.
 pub fn find_module(folders: &[PathBuf]) -> Result<PathBuf, ExportError> {
     let paths = folders.iter().map(|folder| folder.join(MODULE));
     let found = paths.into_iter().find(|path| path.is_file());

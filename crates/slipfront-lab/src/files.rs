@@ -24,7 +24,7 @@ pub(crate) fn document(path: &Path, name: &str, allowed: &[PathBuf]) -> Result<D
 /// or by symbolic links, is refused.
 pub(crate) struct ReadableFolders<'a> {
     folder: &'a Path,
-    /// What the folder is called in messages.
+    /// The owner of the folder in messages, such as `the case`.
     of: &'static str,
     /// The folders without symbolic links.
     roots: Vec<PathBuf>,
@@ -50,10 +50,10 @@ impl<'a> ReadableFolders<'a> {
         })
     }
 
-    /// The path of what has this name, without symbolic links.
+    /// The path of a file or folder of this name, without symbolic links.
     ///
     /// # Errors
-    /// A sentence, if there is none, or it lies elsewhere.
+    /// A sentence, if nothing has this name, or it lies outside the folders.
     pub(crate) fn resolve(&self, name: impl AsRef<Path>) -> Result<PathBuf, String> {
         let resolved = self.folder.join(name).canonicalize();
         let resolved = resolved.map_err(|error| error.to_string())?;
@@ -73,7 +73,7 @@ impl<'a> ReadableFolders<'a> {
     /// Reads a file.
     ///
     /// # Errors
-    /// A sentence, if there is none, it lies elsewhere, is too large, or is no file.
+    /// A sentence, if there is no such file, or it lies outside the folders, is too large, or is no file.
     pub(crate) fn read(&self, name: &str) -> Result<Vec<u8>, String> {
         let path = self.resolve(name)?;
         let sentence = |error: std::io::Error| error.to_string();
@@ -174,7 +174,7 @@ mod tests {
         assert!(ReadableFolders::new(&case, "the case", &[all.path().join("none")]).is_err());
     }
 
-    /// The file is found, and then its folder becomes a link to another one.
+    /// A file is refused whose folder becomes a link to another folder between finding and opening the file.
     #[cfg(unix)]
     #[test]
     fn a_file_that_was_replaced_by_a_link_is_noticed() {

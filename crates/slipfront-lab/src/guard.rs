@@ -9,7 +9,7 @@ use axum::http::{StatusCode, Uri};
 use axum::middleware::Next;
 use axum::response::{IntoResponse, Response};
 
-/// What every answer says: the page takes files from here alone, and nobody else shows it or reads it.
+/// Headers of every answer: the page takes files from this server alone, and no other site shows the page or reads it.
 const HEADERS: [(HeaderName, &str); 6] = [
     (
         header::CONTENT_SECURITY_POLICY,
@@ -43,7 +43,7 @@ pub(crate) async fn guard(State(port): State<u16>, request: Request, next: Next)
     response
 }
 
-/// Whether this is a name of this machine with the port of the server.
+/// Tells whether a `Host` header names this machine with the port of the server.
 fn is_this_server(host: &str, port: u16) -> bool {
     let names = ["127.0.0.1", "localhost", "[::1]"];
     names.iter().any(|name| host == format!("{name}:{port}"))

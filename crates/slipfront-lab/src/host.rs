@@ -12,12 +12,12 @@ use crate::outbox::Outbox;
 use crate::saves::Saves;
 use crate::{presets, replay};
 
-/// What all sessions share.
+/// Start, folders, threads, presets and running saves, which all sessions share.
 pub(crate) struct Setting {
     pub(crate) start: Start,
     /// The folder of results.
     pub(crate) results: PathBuf,
-    /// Other folders in which files that cases name may lie.
+    /// Folders other than that of the case in which files that cases name may lie.
     pub(crate) allow_files: Vec<PathBuf>,
     pub(crate) saves: Arc<Saves>,
     pub(crate) threads: usize,
@@ -28,7 +28,7 @@ pub(crate) struct Setting {
 pub(crate) struct PageHost {
     pub(crate) setting: Arc<Setting>,
     pub(crate) outbox: Arc<Outbox>,
-    /// Held by every thread as long as it works.
+    /// A sender that every thread holds as long as it works.
     pub(crate) working: Sender<()>,
 }
 

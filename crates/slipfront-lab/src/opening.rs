@@ -7,18 +7,18 @@ use slipfront_session::Document;
 
 use crate::{files, replay};
 
-/// What the page shows first.
+/// The case or run that the page shows first.
 #[derive(Default)]
 pub struct Start(pub(crate) StartSource);
 
 #[derive(Default)]
 pub(crate) enum StartSource {
-    /// A case of the laboratory itself.
+    /// The preset with which the page opens by default.
     #[default]
     Preset,
-    /// A case of the user.
+    /// A case of the user, given as a document.
     Case(Box<Document>),
-    /// The folder of a run.
+    /// The folder of a recorded run.
     Folder(PathBuf),
 }
 

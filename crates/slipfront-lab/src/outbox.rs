@@ -1,4 +1,4 @@
-//! What a session has for its page: replies in their order, and of pictures the newest alone.
+//! Messages of a session that wait for its page: replies in their order, and only the newest picture.
 
 use std::collections::VecDeque;
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
@@ -12,7 +12,7 @@ const MAX_WAITING_REPLIES: usize = 64;
 /// Bytes of replies that may wait before the next request does: those to a page that does not read them do not fill the memory.
 const MAX_WAITING_BYTES: usize = 4 << 20;
 
-/// Filled by the session and the work it has begun, emptied by the connection.
+/// Messages that wait for a page. The session and the work it has begun fill the outbox, the connection empties it.
 #[derive(Default)]
 pub(crate) struct Outbox {
     waiting: Mutex<Queue>,

@@ -27,11 +27,11 @@ const WORK_TIMEOUT: Duration = Duration::from_secs(10);
 
 /// How the laboratory is started.
 pub struct ServerOptions {
-    /// What the page shows first.
+    /// The case or run that the page shows first.
     pub start: Start,
     /// The folder of results: where runs are saved, and of which runs can be shown again.
     pub results: PathBuf,
-    /// Other folders in which files that cases name may lie: else they lie in the folder of the case.
+    /// Folders other than that of the case in which files that cases name may lie.
     pub allow_files: Vec<PathBuf>,
     /// Prints a sentence in the terminal: what became of a run that was saved.
     pub print: fn(&str),
@@ -39,18 +39,18 @@ pub struct ServerOptions {
     pub port: u16,
     /// Threads of a run.
     pub threads: usize,
-    /// How long those are waited for who say or read nothing.
+    /// How long the server waits for clients that send or read nothing.
     pub patience: Patience,
 }
 
-/// How long the server waits for those who say or read nothing.
+/// How long the server waits for clients that send or read nothing.
 #[derive(Clone, Copy, Debug)]
 pub struct Patience {
-    /// For the next header of a connection.
+    /// Time to wait for the next header of a connection.
     pub header: Duration,
-    /// For a page that is to receive a message.
+    /// Time to wait for a page that is to receive a message.
     pub message: Duration,
-    /// For all pages together, once they are told that the server ends.
+    /// Time to wait for all pages together, once they are told that the server ends.
     pub end: Duration,
 }
 

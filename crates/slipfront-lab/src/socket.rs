@@ -35,16 +35,16 @@ const MAX_WAITING_REQUESTS: usize = 64;
 /// Time between two attempts to hand a request to a session that is busy.
 const RETRY_INTERVAL: Duration = Duration::from_millis(5);
 
-/// What all connections share.
+/// Setting, token, start page and limits, which all connections share.
 #[derive(Clone)]
 pub(crate) struct Shared {
     pub(crate) setting: Arc<Setting>,
     pub(crate) token: Arc<Token>,
     pub(crate) start_page: StartPage,
     pub(crate) pages: Arc<Semaphore>,
-    /// Turns true when the server ends.
+    /// A flag that turns true when the server ends.
     pub(crate) ends: watch::Receiver<bool>,
-    /// Held by every thread as long as it works.
+    /// A sender that every thread holds as long as it works.
     pub(crate) working: Sender<()>,
     /// How long a page may take to receive a message.
     pub(crate) message_timeout: Duration,

@@ -36,7 +36,7 @@ impl StartPage {
     }
 }
 
-/// The file of a start page in the folder of temporary files of this process; it is removed when this is dropped.
+/// The file of a start page in the folder of temporary files of this process. Dropping the value removes the file.
 struct StartPageFile {
     page: NamedTempFile,
     _folder: Arc<TemporaryFolder>,

@@ -12,7 +12,7 @@ use sha2::Sha256;
 /// A random number of the system as 32 hexadecimal digits.
 pub(crate) struct Token(String);
 
-/// What a page says of itself: the name of its tab and a nonce, each of 32 hexadecimal digits.
+/// Identity of a page: the name of its tab and a nonce, each of 32 hexadecimal digits.
 #[derive(Clone, Copy)]
 pub(crate) struct Caller<'a> {
     tab: &'a str,
@@ -42,12 +42,12 @@ impl Token {
         &self.0
     }
 
-    /// What the server tells a page, which can be known only with the token.
+    /// Proof of the server to a page, in hexadecimal digits: the code of "server NONCE", which only those who know the token can compute.
     pub(crate) fn proof_of_server(&self, caller: Caller) -> String {
         hexadecimal(&self.code("server", caller).finalize().into_bytes())
     }
 
-    /// Whether this is what only a page that knows the token can tell.
+    /// Tells whether a page proves that it knows the token: `proof` is the code of "page NONCE", in hexadecimal digits.
     pub(crate) fn is_proof_of_page(&self, caller: Caller, proof: &str) -> bool {
         let bytes: Option<Vec<u8>> = (proof.len() == 64 && proof.is_ascii())
             .then(|| {

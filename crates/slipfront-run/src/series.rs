@@ -67,7 +67,7 @@ pub struct SeriesRow {
     /// Energy lost with springs in contact that broke since the start, J.
     #[serde(default, deserialize_with = "number", skip_serializing_if = "Option::is_none")]
     pub broken_spring_loss_j: Option<f64>,
-    /// Part of the loss to friction since the start that is the energy of slip weakening, J; none where strength does not
+    /// Part of the loss to friction since the start that is the energy that falling strength takes, J; none where strength does not
     /// fall.
     #[serde(default, deserialize_with = "number", skip_serializing_if = "Option::is_none")]
     pub weakening_loss_j: Option<f64>,

@@ -159,7 +159,7 @@ pub struct Summary {
     /// Energy lost with contacts that broke, J; none for contacts that store no energy.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub broken_spring_loss_j: Option<f64>,
-    /// Part of the loss to friction that is the energy of slip weakening, J; none where strength does not fall.
+    /// Part of the loss to friction that is the energy that falling strength takes, J; none where strength does not fall.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub weakening_loss_j: Option<f64>,
     /// Mean state of the contacts at the end, t*; none for contacts without a state.

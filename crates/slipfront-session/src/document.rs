@@ -410,7 +410,7 @@ mod tests {
         assert_eq!(error, "the case has no place for the key `drive.v_star.more`");
     }
 
-    /// A byte of the image holds eight blocks; most of these sizes are no multiple of eight.
+    /// Masks come back from their image unchanged, also where the width is no multiple of the eight blocks that a byte holds.
     #[test]
     fn a_mask_is_the_texture_it_was_painted_as() {
         for (nx, ny) in [(1, 2), (7, 3), (8, 8), (13, 5), (100, 9)] {

@@ -1,4 +1,4 @@
-//! Messages of work beside a session, and the worker who does such work.
+//! Events by which work beside a session reports to it, and the worker that does such work.
 
 use std::ops::Deref;
 use std::sync::Arc;
@@ -11,7 +11,7 @@ use crate::protocol::{Estimate, RepeatedReply};
 
 /// Whoever does work beside a session: it passes on what the work tells, and tells it the time and whether it shall stop.
 pub trait Worker {
-    /// Passes on what the work tells.
+    /// Passes an event of the work on to the session.
     fn tell(&self, event: Event);
 
     /// Whether the work shall stop: nobody listens to it any more.
@@ -21,7 +21,7 @@ pub trait Worker {
     fn now(&self) -> Duration;
 }
 
-/// Message of work beside a session. It can be sent as JSON.
+/// A report of work beside a session to the session, which can be sent as JSON.
 #[derive(Debug, Serialize, Deserialize)]
 pub struct Event(pub(crate) EventKind);
 
@@ -42,7 +42,7 @@ pub(crate) enum EventKind {
     Tried(Tried),
     /// The best texture of a search, or why there is none.
     Searched(Result<Mask, String>),
-    /// The best texture beside what is painted, or why they cannot be compared.
+    /// The comparison of the best texture of a search with the painted one, or why they cannot be compared.
     Compared(Result<Comparison, String>),
     /// The work has ended by a defect of its own.
     Lost,
@@ -79,21 +79,21 @@ impl From<Mask> for String {
 pub(crate) struct Tried {
     /// Textures that were tried.
     pub(crate) textures: usize,
-    /// Change of static friction by the best of them, %.
+    /// Change of static friction by the best texture tried, against the slider without texture, %.
     pub(crate) best_percent: Option<f64>,
-    /// Textured blocks of the best of them.
+    /// Textured blocks of the best texture tried.
     pub(crate) best_texture: Option<Mask>,
 }
 
-/// Static friction of the texture that a search has found and of the painted one, on surfaces that the search has not seen.
+/// Comparison of the best texture of a search with the painted one, on surfaces that the search has not seen.
 #[derive(Debug, Serialize, Deserialize)]
 pub(crate) struct Comparison {
-    /// Number of the surfaces.
+    /// Number of surfaces on which the textures are compared.
     pub(crate) surfaces: usize,
-    /// Change of static friction against the slider without texture, %.
+    /// Change of static friction by the best texture of the search, against the slider without texture, %.
     pub(crate) best: Option<Estimate>,
-    /// Change of static friction by the painted texture, %; none where nothing is painted.
+    /// Change of static friction by the painted texture, against the slider without texture, %; none where nothing is painted.
     pub(crate) painted: Option<Estimate>,
-    /// Whether what was found is better than what is painted, by more than the scatter over surfaces.
+    /// Whether the best texture of the search is better than the painted one, by more than the scatter over surfaces.
     pub(crate) is_better: bool,
 }

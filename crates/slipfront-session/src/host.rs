@@ -1,4 +1,4 @@
-//! Host of a session: the functions that a session needs of whoever holds it.
+//! The interface of a session to its host, which holds the session and connects it with page, folders and threads.
 
 use crate::document::Document;
 use crate::event::Event;
@@ -56,7 +56,7 @@ pub trait Host {
     fn stop_saving(&self, name: &str);
 }
 
-/// Work that was begun beside the session. It ends when this is dropped.
+/// Work that was begun beside the session. Dropping the task ends the work.
 pub trait Task {
     /// Gives the next thing that the work tells; none if it has told nothing new.
     fn next_event(&mut self) -> Option<Event>;
@@ -64,9 +64,9 @@ pub trait Task {
 
 /// A case that is opened.
 pub struct Opened {
-    /// The case.
+    /// The case as a document.
     pub document: Document,
-    /// The run of it that was recorded, if there is one.
+    /// The recorded run of the case, if there is one.
     pub recorded: Option<RecordedRun>,
 }
 

@@ -12,13 +12,13 @@ use crate::protocol::PeakReply;
 /// A run from rest, and the legs that changes of its case have begun since.
 pub(crate) struct LiveRun {
     running: Running,
-    /// Number of this leg, 0 for the one that begins at rest.
+    /// Number of the present leg; 0 for the leg that begins at rest.
     pub(crate) leg: usize,
-    /// Steps and time of the legs before this one.
+    /// Steps and time of the legs before the present one.
     before: Elapsed,
-    /// Where the drive stood when this leg began, m, block by block; none from rest.
+    /// Position of the drive when the present leg began, m, block by block; none from rest.
     origin: Option<Vec<[f32; 2]>>,
-    /// Points of the curve of this leg that the page has been sent.
+    /// Number of points of the curve of the present leg that the page has been sent.
     n_sent: usize,
     /// Why the run ended, if it did.
     pub(crate) ended: Option<StopReason>,
@@ -34,7 +34,7 @@ struct Elapsed {
     time_s: f64,
 }
 
-/// Points of a curve: t* since rest, that of the drive, mu*, N*.
+/// Points of a curve: t* since rest, t* of the drive, mu* and N*.
 #[derive(Default)]
 pub(crate) struct CurvePoints {
     pub(crate) time_star: Vec<f64>,
@@ -128,17 +128,17 @@ impl LiveRun {
         self.before.time_s + self.running.snapshot().time_star * self.case().scales.time()
     }
 
-    /// Time of the legs before this one, s.
+    /// Time of the legs before the present one, s.
     pub(crate) fn time_before_s(&self) -> f64 {
         self.before.time_s
     }
 
-    /// t* of the legs before this one.
+    /// t* of the legs before the present one.
     pub(crate) fn time_before_star(&self) -> f64 {
         self.before.time_star
     }
 
-    /// t* of the drive of the legs before this one.
+    /// t* of the drive in the legs before the present one.
     pub(crate) fn drive_time_before_star(&self) -> f64 {
         self.before.drive_time_star
     }

@@ -8,7 +8,7 @@ fn is_plain(c: char) -> bool {
     c.is_alphanumeric() || "_-. ()+".contains(c)
 }
 
-/// Whether a text is a name within a folder, and not a path that may lead out of it.
+/// Tells whether `name` is a name within a folder, and not a path that may lead out of the folder.
 pub fn is_plain_name(name: &str) -> bool {
     !name.is_empty() && name.len() <= 100 && !name.starts_with('.') && name.chars().all(is_plain)
 }

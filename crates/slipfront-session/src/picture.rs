@@ -39,7 +39,7 @@ pub(crate) struct Painter {
     high: Option<(DisplayedField, f32)>,
 }
 
-/// Description of a picture beside its values.
+/// Header of a picture: step, time, friction, sliding share, size and textured blocks.
 pub(crate) struct PictureFrame<'a> {
     pub(crate) step: u64,
     pub(crate) time_star: f64,
@@ -47,7 +47,7 @@ pub(crate) struct PictureFrame<'a> {
     pub(crate) sliding_percent: f64,
     pub(crate) size: [usize; 2],
     pub(crate) textured: &'a [bool],
-    /// Whether the picture was recorded before.
+    /// Whether the picture shows a snapshot of a recorded run.
     pub(crate) recorded: bool,
 }
 

@@ -12,11 +12,11 @@ use crate::protocol::PresetEntry;
 /// A case to choose.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Preset {
-    /// The name by which it is chosen.
+    /// The name by which the case is chosen.
     pub name: String,
-    /// The group of the list in which it stands: `cases` or `paper`.
+    /// The group of the list in which the case stands: `cases` or `paper`.
     pub group: String,
-    /// A sentence that tells what the case shows.
+    /// A sentence that says what the case shows.
     pub title: String,
     /// The case as a text.
     pub toml: String,

@@ -1,6 +1,6 @@
 //! Messages between the page and a session: requests as JSON, replies as JSON, pictures as bytes.
 //!
-//! The page is written against the types of `types/protocol.d.ts`, which a test holds against those here.
+//! The page is written against the types of `types/protocol.d.ts`; a test holds them against the types of this module.
 
 use std::collections::BTreeMap;
 
@@ -14,7 +14,7 @@ use crate::view::ViewChange;
 /// Longest message of the page, in bytes: an image of the texture.
 pub const MAX_MESSAGE: usize = 8 << 20;
 
-/// A message of the page: what it asks for.
+/// A message of the page, which holds one request.
 #[derive(Debug)]
 pub struct Message(pub(crate) Request);
 
@@ -31,50 +31,50 @@ impl Message {
     }
 }
 
-/// Request of the page.
+/// A request of the page.
 #[derive(Debug, Deserialize)]
 #[serde(tag = "do", rename_all = "snake_case", deny_unknown_fields)]
 pub(crate) enum Request {
-    /// Another case, from rest.
+    /// Opens another case, from rest.
     Open { source: Source },
-    /// Keys of the case, with values as in TOML; null removes a key.
+    /// Sets keys of the case to values as in TOML; null removes a key.
     Set { keys: Map<String, Value>, gesture: u64 },
-    /// Blocks within a radius of a line through points become texture, or contact. Lengths are in blocks.
+    /// Makes blocks within a radius of a line through points texture, or contact. Lengths are in blocks.
     Paint {
         points: Vec<[f64; 2]>,
         radius: f64,
         textured: bool,
         gesture: u64,
     },
-    /// The texture is this PNG image, in Base64: what is darker than the threshold.
+    /// Replaces the texture by the parts of a PNG image, in Base64, that are darker than a threshold.
     Image {
         png: String,
         threshold: f64,
         gesture: u64,
     },
-    /// The case before the last gesture.
+    /// Returns to the case before the last gesture.
     Undo,
-    /// The case before the last undo.
+    /// Returns to the case before the last undo.
     Redo,
-    /// The present case again, from rest.
+    /// Runs the present case again, from rest.
     Rest,
-    /// Choice of the field that is shown, and of the pace.
+    /// Changes what is shown of the run, and its pace.
     View(ViewChange),
-    /// Some steps of a paused run.
+    /// Takes some steps of a paused run.
     Step { count: u64 },
-    /// Static friction over several seeds; 0 stops it.
+    /// Computes static friction over several seeds; 0 stops the computation.
     Repeat { seeds: u64 },
-    /// A texture with less static friction than that of the present case.
+    /// Searches for a texture with less static friction than that of the present case.
     Find { gesture: u64 },
-    /// Ends the search for a texture; the best so far counts.
+    /// Ends the search for a texture; the best texture so far counts.
     FindStop,
-    /// The present case from rest, into a run folder of this name.
+    /// Runs the present case from rest, and saves the run in a folder of this name.
     Save { name: String },
     /// Stops saving the run of this name.
     SaveStop { name: String },
-    /// The case as files.
+    /// Asks for the case as files.
     Export,
-    /// A recorded snapshot in place of the live field, or the live field again.
+    /// Shows a recorded snapshot in place of the live field, or the live field again.
     FramesOf { index: Option<usize> },
 }
 
@@ -116,7 +116,7 @@ pub(crate) struct Source {
     pub(crate) files: BTreeMap<String, String>,
 }
 
-/// Reply of a session.
+/// A reply or report of a session to the page.
 #[derive(Debug, Serialize)]
 #[serde(tag = "is", rename_all = "snake_case")]
 pub(crate) enum Reply<'a> {
@@ -223,12 +223,12 @@ pub(crate) struct CaseReply<'a> {
     pub(crate) search: SearchLimits,
 }
 
-/// Limits of the textures that a search for a better one may find.
+/// Bounds of the textures that a search for a better one may try.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub(crate) struct SearchLimits {
-    /// Smallest width of a feature and of a gap.
+    /// Smallest width of a feature and of a gap, in blocks.
     pub(crate) width_blocks: usize,
-    /// Largest share of the slider that is textured, %.
+    /// Largest coverage: textured share of the slider, %.
     pub(crate) most_percent: f64,
 }
 
@@ -320,25 +320,25 @@ pub(crate) struct FindingReply {
     pub(crate) of_seconds: f64,
     /// Textures that were tried.
     pub(crate) textures: usize,
-    /// Whether the best is compared with what is painted, on surfaces that the search has not seen.
+    /// Whether the best texture is being compared with the painted one, on surfaces that the search has not seen.
     pub(crate) compares: bool,
-    /// Change of static friction by the best so far against no texture, %, on the surfaces of the search.
+    /// Change of static friction by the best texture so far against no texture, %, on the surfaces of the search.
     pub(crate) best_percent: Option<f64>,
-    /// Strips of blocks of the best so far: the row, the first column and the one after the last.
+    /// Strips of textured blocks of the best texture so far: the row, the first column and the column after the last.
     pub(crate) best_texture: Vec<[usize; 3]>,
 }
 
-/// Result of a search for a better texture.
+/// The result of a search for a better texture.
 #[derive(Debug, Serialize)]
 pub(crate) struct FoundReply {
     pub(crate) outcome: FoundOutcome,
     /// Textures that were tried.
     pub(crate) textures: usize,
-    /// Surfaces that the search has not seen, on which the best and what was painted were compared.
+    /// Number of surfaces, unseen by the search, on which the best texture and the painted one were compared.
     pub(crate) surfaces: usize,
-    /// Change of static friction by the best against no texture, %.
+    /// Change of static friction by the best texture of the search against no texture, %.
     pub(crate) best: Option<Estimate>,
-    /// Change of static friction by what was painted against no texture, %.
+    /// Change of static friction by the painted texture against no texture, %.
     pub(crate) painted: Option<Estimate>,
 }
 
@@ -346,13 +346,13 @@ pub(crate) struct FoundReply {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum FoundOutcome {
-    /// The best of the search has taken its place.
+    /// The best texture of the search has replaced the painted one.
     Replaced,
-    /// The painted texture stays, since nothing better was found.
+    /// The painted texture stays, since the search found no better one.
     Kept,
-    /// The painted texture was changed by hand before the search had ended.
+    /// The case was changed before the search had ended, so that the search was given up.
     GivenUp,
-    /// The painted texture stays, since the search has failed, as a sentence before has told.
+    /// The painted texture stays, since the search has failed; a refusal sent before says why.
     Failed,
 }
 

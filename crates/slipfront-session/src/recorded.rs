@@ -7,9 +7,9 @@ use crate::picture::{DisplayedField, lengths};
 
 /// A run that was recorded before.
 pub struct RecordedRun {
-    /// t* of the drive at the points of its curve.
+    /// t* of the drive at the points of the recorded curve.
     pub time_star: Vec<f64>,
-    /// mu* at the points of its curve.
+    /// mu* at the points of the recorded curve.
     pub mu_star: Vec<f64>,
     /// The snapshots of the run, unless they are too large, or of fewer blocks than the lattice has.
     pub snapshots: Option<FieldsData>,

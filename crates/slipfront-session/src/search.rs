@@ -23,23 +23,23 @@ const MAX_RUNS: usize = 10_000;
 /// Smallest width of a feature and of a gap, in blocks: what a laser writes has round corners, which three blocks can show.
 const WIDTH: usize = 3;
 
-/// Largest coverage, %, where nothing is painted.
+/// Largest coverage of a search, %, where nothing is painted.
 const PLAIN_PERCENT: f64 = 10.0;
 
-/// Largest coverage, %, where less than this is painted.
+/// Largest coverage of a search, %, where the painted coverage is below 3 %.
 const LEAST_PERCENT: f64 = 3.0;
 
 /// Most block-steps in which a texture is tried, for each thread: with some 1e8 of them in a second, there is time for several hundred
 /// textures in a minute, and for a comparison of the best in less than another one.
 const MAX_BLOCK_STEPS: f64 = 1e7;
 
-/// Surfaces on which what was found is compared with what is painted; the search has seen none of them.
+/// Number of surfaces, unseen by the search, on which the best texture is compared with the painted one.
 const FRESH_SURFACES: u64 = 8;
 
 /// Confidence of the intervals.
 const CONFIDENCE: f64 = 0.95;
 
-/// Limits of the textures that a search for a case may find.
+/// Bounds of the textures that a search for a case may try.
 pub(crate) fn limits(case: &Case) -> SearchLimits {
     let painted = case.texture.meshed_percent;
     SearchLimits {
@@ -114,7 +114,7 @@ fn design_for(document: &Document) -> Result<(Design, Option<Vec<bool>>), String
     design(&case).map_err(|error| error.to_string())
 }
 
-/// Searches for [`SEARCH_TIME`]; the best texture.
+/// Searches for a texture for [`SEARCH_TIME`], and gives the best one.
 ///
 /// # Errors
 /// A sentence, if there is none, or the search was stopped.
@@ -150,7 +150,7 @@ pub(crate) fn search(document: &Document, worker: &dyn Worker) -> Result<Mask, S
 pub(crate) const NOTHING_TRIED: &str =
     "the search was stopped before it had tried a texture: nothing has changed";
 
-/// Compares what was found with what is painted, on surfaces that the search has not seen.
+/// Compares the best texture of a search with the painted one, on surfaces that the search has not seen.
 ///
 /// # Errors
 /// A sentence, if runs cannot be made, or the comparison was stopped.

@@ -19,7 +19,7 @@ use crate::work::Work;
 /// Time that passes for work between two looks at its clock.
 const TICK: Duration = Duration::from_secs(3);
 
-/// Host of a session under test: it keeps the replies of the session and what was asked of it.
+/// A host for tests, which keeps what a session has sent its page and asked its host for.
 #[derive(Default)]
 pub(crate) struct TestHost {
     replies: RefCell<Vec<String>>,
@@ -89,7 +89,7 @@ impl Host for TestHost {
     }
 }
 
-/// Work that was done, of which every other look shows the next thing.
+/// Finished work, whose next event appears at every other look.
 struct TestTask {
     events: VecDeque<Event>,
     is_next: bool,
@@ -158,7 +158,7 @@ impl Tried {
         self.replies()
     }
 
-    /// Works once; when there is something to do next.
+    /// Works once, and gives the time at which there is something to do next.
     pub(crate) fn work(&mut self) -> Option<Duration> {
         self.session.work(self.now)
     }

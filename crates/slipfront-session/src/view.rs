@@ -1,10 +1,10 @@
-//! View of a run: which field is shown, and how fast the run goes. Nothing here changes the case.
+//! The view of a run and its pace. Changes of the view never change the case.
 
 use serde::Deserialize;
 
 use crate::picture::DisplayedField;
 
-/// Change of the view that the page asks for.
+/// Changes of the view that the page asks for; parts that are not given stay as they are.
 #[derive(Debug, Default, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub(crate) struct ViewChange {
@@ -32,14 +32,14 @@ fn deserialize_nullable<'de, D: serde::Deserializer<'de>>(
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum AfterChange {
-    /// From rest.
+    /// The run begins again, from rest.
     #[default]
     Rest,
-    /// From the state in which it is.
+    /// The run goes on from its present state.
     GoOn,
 }
 
-/// View of a run.
+/// The view of a run: the field, its pace, and what runs or is drawn beside it.
 #[derive(Debug)]
 pub(crate) struct View {
     pub(crate) field: DisplayedField,

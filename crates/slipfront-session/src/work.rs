@@ -16,11 +16,11 @@ pub struct Work {
 
 #[derive(Debug, Serialize, Deserialize)]
 enum WorkKind {
-    /// Static friction over this number of seeds.
+    /// A computation of static friction over this number of seeds.
     Repeat(u64),
-    /// A texture with less static friction than the painted one.
+    /// A search for a texture with less static friction than the painted one.
     Search,
-    /// Comparison of the texture that a search has found with the painted one.
+    /// A comparison of the best texture of a search with the painted one.
     Compare(Mask),
 }
 

@@ -1,4 +1,4 @@
-//! Functions that the Worker calls.
+//! Functions of the module that the Worker calls.
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -21,7 +21,7 @@ thread_local! {
     static PAGE: RefCell<Option<(Session, Rc<WorkerHost>)>> = const { RefCell::new(None) };
 }
 
-/// Bytes that the Worker has given, read as JSON.
+/// Reads the bytes that the Worker has given as JSON.
 fn given<T: for<'de> Deserialize<'de>>() -> Result<T, String> {
     let bytes = GIVEN.take();
     serde_json::from_slice(&bytes).map_err(|error| error.to_string())
@@ -50,7 +50,7 @@ pub(crate) fn begin() {
     }));
 }
 
-/// Presets and opening case with which the page begins.
+/// Presets and the case with which the page opens.
 #[derive(Deserialize)]
 struct Beginning {
     presets: Presets,

@@ -12,7 +12,7 @@ use crate::imports::{Saying, tell};
 /// Replies that the page may not have read yet before it is given no more than answers.
 const MAX_UNREAD: u32 = 64;
 
-/// Events of all work, by its number.
+/// Events of all work that the session has not read yet, by the number of the work.
 type Told = Rc<RefCell<HashMap<u32, VecDeque<Event>>>>;
 
 /// The host of a session in a Worker.

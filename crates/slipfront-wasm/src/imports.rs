@@ -1,8 +1,8 @@
-//! Functions that the Worker gives the module.
+//! Functions that the Worker gives the module: messages to it, and its clock.
 
 use std::time::Duration;
 
-/// Kind of a message of the module.
+/// Kinds of messages from the module to the Worker.
 #[derive(Clone, Copy)]
 #[repr(u32)]
 pub(crate) enum Saying {
@@ -16,7 +16,7 @@ pub(crate) enum Saying {
     Work,
     /// The number of work that is to be ended.
     End,
-    /// Event of work.
+    /// An event of work beside a session, as JSON.
     Event,
     /// A run that is to be saved.
     Save,
@@ -28,7 +28,7 @@ pub(crate) enum Saying {
     Archive,
     /// Bits of a run.
     Bits,
-    /// Sentence that tells what is wrong.
+    /// A sentence that says why a call was refused.
     Refusal,
     /// A defect, as the terminal of a program would show it.
     Defect,

@@ -112,7 +112,7 @@ impl Snapshot<'_> {
             .expect("an observer needs the energies of this step")
     }
 
-    /// Energy of slip weakening since the start, a part of the loss to friction: for each block the integral of `f - K` over
+    /// Energy that falling strength takes since the start, a part of the loss to friction: for each block the integral of `f - K` over
     /// its slip; 0 where strength does not fall. All ranks must call this together.
     pub fn weakening_energy(&self) -> f64 {
         let Some(law) = self.model.friction.strength_over_slip() else {

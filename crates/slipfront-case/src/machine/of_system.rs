@@ -1,4 +1,4 @@
-//! Name and free disk space of a machine, as its system tells them.
+//! Name of the machine and free bytes on its disks, as the operating system gives them.
 
 use std::ffi::OsString;
 use std::path::Path;

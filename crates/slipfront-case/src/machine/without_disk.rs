@@ -1,14 +1,14 @@
-//! Name and free disk space of a machine without a disk, such as a page of a browser: neither is known.
+//! Name and free disk of a machine that has neither, such as a page of a browser.
 
 use std::ffi::OsString;
 use std::path::Path;
 
-/// The name of this machine: it has none.
+/// The name of this machine: empty, since a page of a browser has none.
 pub fn host_name() -> OsString {
     OsString::new()
 }
 
-/// Bytes that are free on the disk of a folder: nobody knows.
+/// Bytes that are free on the disk of a folder: always `None`, since there is no disk.
 pub fn free_disk(_folder: &Path) -> Option<f64> {
     None
 }

@@ -162,10 +162,10 @@ fn every_link_in_the_book_leads_somewhere() {
 fn the_guides_show_what_run_and_check_print() {
     let guide = |name: &str| std::fs::read_to_string(repository().join("docs/guide").join(name)).unwrap();
     let workspace = Workspace::new();
-    let circle = "[slider]\nblocks = [50, 50]\n[[texture]]\nshape = 'cavity'\ncoverage = 10\n";
-    workspace.write("circle.toml", circle);
+    let cavity = "[slider]\nblocks = [50, 50]\n[[texture]]\nshape = 'cavity'\ncoverage = 10\n";
+    workspace.write("cavity.toml", cavity);
     let page = guide("getting-started.md");
-    for line in ["run", "check circle.toml"] {
+    for line in ["run", "check cavity.toml"] {
         let printed = workspace.succeed(line);
         assert!(printed.lines().count() > 10, "{line}: {printed}");
         for printed in printed.lines() {

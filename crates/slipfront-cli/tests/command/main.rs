@@ -23,6 +23,7 @@ mod looks;
 mod output;
 mod paper;
 mod plot;
+mod printed;
 mod repetition;
 mod study;
 mod texture;

@@ -31,7 +31,7 @@ pub(crate) struct Step {
     pub(crate) set: Vec<Button>,
 }
 
-/// What a step shows.
+/// The view of a step: the field, the pace, and whether the page shows the twin and the kymograph.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct View {
@@ -56,7 +56,7 @@ pub(crate) struct Button {
     pub(crate) view: ViewChange,
 }
 
-/// What of the view a button changes.
+/// Changes of the view by a button.
 #[derive(Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct ViewChange {
@@ -95,7 +95,7 @@ pub(crate) struct StepWords {
     pub(crate) text: Vec<String>,
     /// Paragraphs that are shown when the reader asks for them.
     pub(crate) answer: Vec<String>,
-    /// Labels of its buttons.
+    /// Labels of the buttons of the step.
     pub(crate) set: BTreeMap<String, String>,
 }
 
@@ -110,24 +110,24 @@ pub(crate) struct Number {
     pub(crate) quantity: Quantity,
     /// The key whose value is meant, of the quantity `key`.
     pub(crate) key: Option<String>,
-    /// What a reduction is relative to: the same case with these keys.
+    /// Keys of the reference of a reduction, which is otherwise the same case.
     pub(crate) against: Option<Keys>,
     /// Surfaces over which the mean is taken; that of the case if there are none.
     #[serde(default)]
     pub(crate) seeds: Vec<u64>,
 }
 
-/// What a number is.
+/// The quantity whose value a text says.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Quantity {
     /// The value of a key of the case.
     Key,
-    /// mu_s*.
+    /// Static friction mu_s*.
     StaticFrictionStar,
-    /// mu_k*.
+    /// Kinetic friction mu_k*.
     KineticFrictionStar,
-    /// t_s*.
+    /// Onset time t_s*.
     OnsetTimeStar,
     /// t* of the first slip of a block in contact.
     FirstSlipTimeStar,
@@ -141,14 +141,14 @@ pub(crate) enum Quantity {
     TexturePercent,
     /// Median speed of the front over the speed of long shear waves.
     FrontSpeedCS,
-    /// V*.
+    /// Drive speed V*.
     VStar,
     /// V* N_x, the speed of loading for a slider of this size.
     VStarNX,
 }
 
 impl Quantity {
-    /// What stands behind the number.
+    /// The unit that a text writes behind a number; empty for none.
     pub(crate) fn unit(self, key: Option<&str>) -> &'static str {
         match self {
             Self::StaticReductionPercent | Self::SlippedPercentAtPeak | Self::TexturePercent => "%",
@@ -160,7 +160,7 @@ impl Quantity {
 }
 
 impl StepWords {
-    /// Its paragraphs.
+    /// All paragraphs of a step, those of its answer last.
     pub(crate) fn paragraphs(&self) -> impl Iterator<Item = &String> {
         self.text.iter().chain(&self.answer)
     }

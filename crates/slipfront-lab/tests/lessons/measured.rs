@@ -1,4 +1,4 @@
-//! What the engine computes for the numbers of the lessons.
+//! Values that the engine computes for the numbers of the lessons.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;

@@ -7,7 +7,7 @@ use crate::measured::Runs;
 use crate::said::Said;
 use crate::words::ids;
 
-/// What the key of a case with every default filled in says, as text: `0.05`, `50 × 50`, `1 kPa`.
+/// Value of a key of a case in which every default is filled in.
 fn value_of_key(case: &Case, key: &str) -> toml::Value {
     let text = case.file.to_toml().expect("the case is within its bounds");
     let table: toml::Table = text.parse().expect("what is written can be read");

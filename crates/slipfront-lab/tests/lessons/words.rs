@@ -1,4 +1,4 @@
-//! What stands in a text: no digits but those of numbers that are checked, every number used.
+//! Texts of the lessons hold no digits but those of numbers that are checked, and use every such number.
 
 use std::collections::BTreeSet;
 

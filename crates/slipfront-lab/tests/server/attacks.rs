@@ -1,4 +1,4 @@
-//! What is refused.
+//! Requests and messages that the server refuses.
 
 use std::io::Write;
 use std::time::{Duration, Instant};

@@ -13,10 +13,10 @@ use serde_json::json;
 use crate::laboratory::{Served, TIMEOUT};
 use crate::page::{NONCE, Page, TAB, proof, try_connect};
 
-/// Connections of somebody who means harm.
+/// Number of connections that an attacker opens.
 const MANY: usize = 300;
 
-/// Whether the other side has closed it, or answered.
+/// Tells whether the server has closed a connection, or answered.
 fn is_over(stream: &mut TcpStream) -> bool {
     stream.set_nonblocking(true).unwrap();
     let read = stream.read(&mut [0; 64]);

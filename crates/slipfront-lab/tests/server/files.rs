@@ -108,7 +108,7 @@ fn a_case_names_files_of_its_folder_and_of_those_that_are_allowed() {
     }
 }
 
-/// What is handed on holds what lies inside, and what was allowed.
+/// Links and exports of a case hold files that lie in its folder or in an allowed one.
 #[test]
 fn links_and_exports_hold_the_files_that_were_read() {
     let all = folders();

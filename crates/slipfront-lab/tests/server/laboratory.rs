@@ -14,7 +14,7 @@ use tokio::sync::oneshot;
 /// Long enough for a slow machine, short enough for a test that fails.
 pub(crate) const TIMEOUT: Duration = Duration::from_secs(30);
 
-/// What all servers have told in their terminals.
+/// Sentences that all servers of the tests have printed in their terminals.
 static TOLD: Mutex<Vec<String>> = Mutex::new(Vec::new());
 
 /// A server, which ends with the test.
@@ -85,7 +85,7 @@ impl Served {
         self.folder.path().join("results")
     }
 
-    /// What this server has told of a folder of its results.
+    /// Sentences of the terminal that name this folder of the results of this server.
     pub(crate) fn told_of(&self, name: &str) -> Vec<String> {
         let folder = self.results().join(name).display().to_string();
         let mut told = TOLD.lock().unwrap().clone();

@@ -1,4 +1,4 @@
-//! What a page is given.
+//! Replies, pictures and files that the server gives a page.
 
 use std::time::{Duration, Instant};
 
@@ -25,7 +25,7 @@ fn ended(page: &mut Page) -> Value {
     })
 }
 
-/// What the page is told is what a run of the same case gives, to the last digit.
+/// Numbers that the page receives equal those of a run of the same case, to the last digit.
 #[test]
 fn the_numbers_are_those_of_a_run() {
     let lab = Served::new();
@@ -56,7 +56,7 @@ fn the_numbers_are_those_of_a_run() {
     }
 }
 
-/// Byte by byte, but for the manifest, which names the program and the time.
+/// A run saved by the page has the bytes of `slipfront run`, except in the manifest, which names the program and the time.
 #[test]
 fn a_saved_run_has_the_bytes_of_the_command() {
     let lab = Served::new();

@@ -35,7 +35,7 @@ fn wait_for_names(page: &mut Page, wanted: &[&str]) -> Value {
     })
 }
 
-/// As when the page is loaded again, or its tab closed.
+/// A page goes when it is loaded again or its tab is closed; the runs that are being saved go on.
 #[test]
 fn a_page_that_goes_ends_no_save() {
     let lab = Served::new();
@@ -128,7 +128,7 @@ fn nothing_is_saved_through_a_link() {
     assert_eq!(std::fs::read_dir(elsewhere.path()).unwrap().count(), 0);
 }
 
-/// It is told in the terminal, and leaves no half of a folder.
+/// A save that the end of the server interrupts is told in the terminal, and leaves no unfinished folder.
 #[test]
 fn the_end_of_the_server_gives_up_what_is_being_saved() {
     let mut lab = Served::new();

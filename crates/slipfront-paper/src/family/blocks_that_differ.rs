@@ -60,7 +60,7 @@ pub(super) fn chapter() -> Result<Chapter, PaperError> {
         ));
     }
     Ok(Chapter {
-        title: "Blocks that differ, and dampers between them",
+        title: "Heterogeneous blocks, and dampers between them",
         name: "blocks",
         text: include_str!("text/blocks.md"),
         answers,

@@ -6,16 +6,16 @@ use std::vec::IntoIter;
 
 use serde_json::{Map, Value, json};
 
-/// Type of the values of a key.
+/// The type of the value of a key.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Type {
     Text,
     Number,
     Boolean,
     Null,
-    /// Anything: `unknown`.
+    /// Any value: `unknown`.
     Unknown,
-    /// A certain text.
+    /// A text that is always the same, such as `"case"`.
     Literal(String),
     List(Box<Type>),
     /// An object with any keys.
@@ -26,7 +26,7 @@ pub(super) enum Type {
 }
 
 impl Type {
-    /// Innermost type of lists and of objects with any keys.
+    /// The type of the innermost elements of lists and of objects with any keys; any other type itself.
     fn within(&self) -> &Self {
         match self {
             Self::List(of) | Self::Map(of) => of.within(),
@@ -57,7 +57,7 @@ pub(super) struct Declarations {
     unions: BTreeMap<String, Type>,
 }
 
-/// Findings of `check` in examples: names of interfaces and keys, with the types of their values.
+/// Findings of `check` in examples: names of interfaces and keys, with the types of the values of these keys.
 pub(super) type Seen = BTreeSet<(String, String, Option<Type>)>;
 
 impl Declarations {
@@ -141,7 +141,7 @@ impl Declarations {
                 })
     }
 
-    /// Findings of `check` if examples show all values that an interface and those within it, `except` one, may hold.
+    /// Adds to `all` each finding of `check` that examples can show for an interface and, except for `except`, the interfaces within it.
     pub(super) fn all_of(&self, interface: &str, except: &str, all: &mut Seen) {
         for (key, DeclaredKey { optional, holds }) in &self.interface(interface).keys {
             if *optional {

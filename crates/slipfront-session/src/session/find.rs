@@ -12,7 +12,7 @@ use crate::work::Work;
 /// Time between two reports of how far a search is.
 const REPORT_INTERVAL: Duration = Duration::from_millis(250);
 
-/// Result of a search: the best texture and its comparison with the painted one; or a sentence that tells why there is none.
+/// The outcome of a search: the best texture and its comparison with the painted one, or why there is none.
 type Outcome = Result<(Mask, Comparison), String>;
 
 impl Session {
@@ -40,7 +40,7 @@ impl Session {
         Ok(())
     }
 
-    /// Ends the search, if there is one; its best so far counts.
+    /// Ends the search, if there is one; its best texture so far counts.
     pub(super) fn stop_search(&mut self) {
         if let Some(search) = &mut self.search {
             search.is_enough = true;
@@ -55,7 +55,7 @@ impl Session {
         }
     }
 
-    /// Tells how far the search is, or what came of it: a texture that is better takes the place of the painted one.
+    /// Reports the progress of the search, or its result: a texture that is better replaces the painted one.
     pub(super) fn follow_search(&mut self, now: Duration) {
         let Some(search) = &mut self.search else { return };
         let began = *search.began.get_or_insert(now);
@@ -82,7 +82,7 @@ impl Session {
         self.host.reply(Reply::Found(found).json());
     }
 
-    /// Result of the search, once it has ended. Its best texture is compared with the painted one first, once textures are no longer tried.
+    /// Gives the outcome of the search once it has ended. Begins the comparison of the best texture once no more textures are tried.
     fn outcome_of_search(&mut self) -> Option<Outcome> {
         let search = self.search.as_mut()?;
         let mut searched = None;
@@ -111,10 +111,10 @@ impl Session {
         self.compare(searched?).err().map(Err)
     }
 
-    /// Ends the search, and begins to compare what it has found with what is painted.
+    /// Ends the search, and begins to compare its best texture with the painted one.
     ///
     /// # Errors
-    /// A sentence, if it has found nothing, or the system refuses.
+    /// A sentence, if the search has found nothing, or the system refuses the work.
     fn compare(&mut self, searched: Result<Mask, String>) -> Result<(), String> {
         let best = searched?;
         let document = self.document()?.clone();
@@ -127,7 +127,7 @@ impl Session {
         Ok(())
     }
 
-    /// Makes what was found the texture of the case, and runs it.
+    /// Makes the best texture of the search the texture of the case, and runs the case.
     fn adopt(&mut self, texture: &[bool], gesture: u64) -> Result<(), String> {
         let columns = self.columns();
         let document = self.document()?.with_mask(texture, columns);
@@ -166,7 +166,7 @@ impl TextureSearch {
 }
 
 impl FoundReply {
-    /// A search that has compared nothing.
+    /// The result of a search that has compared no textures.
     fn without(outcome: FoundOutcome) -> Self {
         Self {
             outcome,
@@ -177,7 +177,7 @@ impl FoundReply {
         }
     }
 
-    /// Reply that tells the result of a search which has tried so many textures.
+    /// The result of a search that has tried so many textures, from its comparison.
     fn of(comparison: &Comparison, textures: usize) -> Self {
         Self {
             outcome: if comparison.is_better {

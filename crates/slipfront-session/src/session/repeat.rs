@@ -9,7 +9,7 @@ use crate::work::Work;
 const MAX_SEEDS: u64 = 32;
 
 impl Session {
-    /// Begins to find static friction of the case over so many seeds; with 0, ends that.
+    /// Begins to compute static friction of the case over so many seeds; 0 ends a computation under way.
     pub(super) fn repeat(&mut self, seeds: u64) -> Result<(), String> {
         self.repeating = None;
         if seeds == 0 {

@@ -1,4 +1,4 @@
-//! Requests of a page.
+//! Requests of a page, and how a session meets them.
 
 use super::state::Session;
 use crate::history::History;

@@ -1,4 +1,4 @@
-//! State of a session.
+//! The state of a session.
 
 use std::rc::Rc;
 use std::time::Duration;
@@ -28,18 +28,18 @@ pub(super) struct PendingEdit {
 
 /// A search for a better texture, and then the comparison of what it has found with what is painted.
 pub(super) struct TextureSearch {
-    /// The gesture of the page that asked for it.
+    /// The gesture by which the page asked for the search.
     pub(super) gesture: u64,
-    /// Time at which the search was looked after first.
+    /// Time of the host at which the session first looked after the search.
     pub(super) began: Option<Duration>,
-    /// How long it has taken up to now.
+    /// Time that the search has taken up to now.
     pub(super) elapsed: Duration,
-    /// Whether the page has asked to end it.
+    /// Whether the page has asked to end the search.
     pub(super) is_enough: bool,
-    /// The search, or the comparison.
+    /// The work under way: the search, or the comparison after it.
     pub(super) task: Box<dyn Task>,
     pub(super) tried: Tried,
-    /// Texture that is compared with the painted one; none while textures are tried.
+    /// The texture that is being compared; none while textures are tried.
     pub(super) compared: Option<Mask>,
 }
 
@@ -59,19 +59,19 @@ pub struct Session {
     pub(super) clock: Clock,
     /// Whether steps are being taken that are due before the next picture.
     pub(super) is_stepping: bool,
-    /// Steps that were asked for one by one.
+    /// Steps that requests to step a paused run have asked for, and that are still to be taken.
     pub(super) single_steps: u64,
-    /// Static friction over seeds, while it is being found.
+    /// The work that computes static friction over several seeds, while it is under way.
     pub(super) repeating: Option<Box<dyn Task>>,
     pub(super) search: Option<TextureSearch>,
-    /// Updates that are to be sent with the next points.
+    /// Updates to send with the next points of the curves.
     pub(super) pending: PendingUpdates,
 }
 
 /// Updates that the page has not been sent yet.
 #[derive(Default)]
 pub(super) struct PendingUpdates {
-    /// Something is to be drawn although nothing moved.
+    /// Whether a picture is to be drawn although nothing moved.
     pub(super) redraw: bool,
     pub(super) from_rest: bool,
     pub(super) twin_reset: bool,

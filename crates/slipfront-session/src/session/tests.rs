@@ -34,7 +34,7 @@ impl Tried {
         panic!("no {is} came after {all:?}");
     }
 
-    /// Result of the search.
+    /// The reply with the result of the search.
     fn found(&mut self) -> Value {
         self.follow("found", |_| true).pop().unwrap()
     }

@@ -1,4 +1,4 @@
-//! Updates of a page: the case, the curve, pictures, numbers.
+//! Updates of the page: the case, the curve, pictures and numbers.
 
 use std::time::Duration;
 
@@ -70,7 +70,7 @@ impl Session {
         self.host.reply(Reply::Case(Box::new(reply)).json());
     }
 
-    /// Sends what is new: curve, picture, numbers.
+    /// Sends new points of the curve, the picture and the numbers.
     pub(super) fn send_updates(&mut self, now: Duration) {
         let ends = self.count_ended();
         let Some(live) = &mut self.live else { return };
@@ -195,7 +195,7 @@ impl Session {
         self.host.reply(Reply::Numbers(Box::new(reply)).json());
     }
 
-    /// Sends what the block under the pointer has.
+    /// Sends the state of the block under the pointer.
     fn send_probe(&mut self) {
         let (Some(live), Some([i, j])) = (&self.live, self.view.probe) else {
             return;

@@ -1,12 +1,12 @@
 //! Estimates of unknowns from records, by a training.
 
 use rayon::prelude::*;
+use slipfront_regression::{Prediction, Regression};
 
 use super::grid::Grid;
 use super::intervals::Distribution;
 use super::misfit::{Check, Misfit};
 use super::normals::{Stream, noisy, normals};
-use super::regression::{Prediction, Regression};
 use super::scaling::{Scaling, summaries_of};
 use super::training::Training;
 

@@ -1,6 +1,6 @@
 //! From a prediction and the residuals of training runs to a distribution of the unknown.
 
-use super::regression::{Prediction, Regression};
+use slipfront_regression::{Prediction, Regression};
 
 /// Values of an unknown with their weights, in rising order: its distribution over its range, from 0 to 1.
 #[derive(Clone, Debug, PartialEq)]

@@ -2,11 +2,10 @@
 
 use rayon::prelude::*;
 use serde::Serialize;
+use slipfront_regression::{Regression, squared_distances};
 
-use super::dense::squared_distances;
 use super::intervals::Distribution;
 use super::normals::{Stream, draws, noisy, normals};
-use super::regression::Regression;
 use super::scaling::{Scaling, summaries_of};
 use super::training::Training;
 

@@ -9,7 +9,6 @@
 //! prediction has not seen.
 
 mod calibration;
-mod dense;
 mod file;
 mod findings;
 mod folder;
@@ -18,7 +17,6 @@ mod intervals;
 mod misfit;
 mod normals;
 mod predicted;
-mod regression;
 mod report;
 mod scaling;
 mod set_up;

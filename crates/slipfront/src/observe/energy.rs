@@ -25,7 +25,7 @@ pub struct Energies {
     pub contact_springs: f64,
     /// Energy lost with springs between blocks and substrate that broke since the start.
     pub broken_springs_loss: f64,
-    /// Part of the loss to friction since the start that is the energy of slip weakening, see
+    /// Part of the loss to friction since the start that is the energy that falling strength takes, see
     /// [`Snapshot::weakening_energy`](crate::Snapshot::weakening_energy).
     pub weakening_loss: f64,
     /// Energy stored at the start.

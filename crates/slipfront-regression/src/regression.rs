@@ -11,7 +11,7 @@
 //! The prediction of a run by all others, from which intervals are made, needs no regression of its own: `u_i -
 //! f_without_i(x_i) = a_i/[(K + lambda)^-1]_ii`.
 
-use super::dense::{Factor, squared_distances};
+use crate::dense::{Factor, squared_distances};
 
 /// Largest number of runs from which weights and lengths are found.
 const MAX_SEARCHED: usize = 800;
@@ -50,7 +50,7 @@ const RIDGES: std::ops::RangeInclusive<i32> = -14..=0;
 
 /// Regression of an unknown on the summaries of training runs.
 #[derive(Clone, Debug)]
-pub(crate) struct Regression {
+pub struct Regression {
     /// Mean of the unknown over the training runs.
     mean: f64,
     /// Factors of the summaries; empty if the summaries tell nothing.
@@ -61,19 +61,20 @@ pub(crate) struct Regression {
     /// Power to which the kernel is raised where residuals are averaged over runs nearby.
     power: i32,
     /// Predictions of every run by all others.
-    pub(crate) predictions: Vec<f64>,
+    pub predictions: Vec<f64>,
     /// Root mean square of the residuals near every run, without its own.
-    pub(crate) scales: Vec<f64>,
+    scales: Vec<f64>,
     /// Squares of the residuals.
     squares: Vec<f64>,
 }
 
 /// Prediction from a record.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Prediction {
-    pub(crate) value: f64,
+pub struct Prediction {
+    /// The unknown.
+    pub value: f64,
     /// Root mean square of the residuals of training runs nearby.
-    pub(crate) scale: f64,
+    pub scale: f64,
 }
 
 /// Widths over which training runs count as like a record, in its prediction (of the range) and in the logarithm of its scale.
@@ -89,7 +90,7 @@ impl Prediction {
 
 impl Regression {
     /// Prediction of a training run by all others.
-    pub(crate) fn left_out(&self, run: usize) -> Prediction {
+    pub fn left_out(&self, run: usize) -> Prediction {
         Prediction {
             value: self.predictions[run],
             scale: self.scales[run],
@@ -97,7 +98,7 @@ impl Regression {
     }
 
     /// Squared distance of a training run from a record, `(f - f_i)^2/0.15^2 + log^2(s/s_i)/0.5^2`.
-    pub(crate) fn distance(&self, run: usize, record: &Prediction) -> f64 {
+    pub fn distance(&self, run: usize, record: &Prediction) -> f64 {
         let other = self.left_out(run);
         let away = (record.bounded() - other.bounded()) / LIKE_VALUE;
         let wider = libm::log(record.scale / other.scale) / LIKE_SCALE;
@@ -106,7 +107,7 @@ impl Regression {
 
     /// The residual of a training run with this truth, in units of its scale, around the prediction from a record: `f + s
     /// (u_i - f_i)/s_i`.
-    pub(crate) fn moved(&self, run: usize, truth: f64, record: &Prediction) -> f64 {
+    pub fn moved(&self, run: usize, truth: f64, record: &Prediction) -> f64 {
         let other = self.left_out(run);
         let residual = (truth - other.bounded()) / other.scale;
         (record.bounded() + record.scale * residual).clamp(0.0, 1.0)
@@ -115,7 +116,7 @@ impl Regression {
 
 impl Regression {
     /// Learns an unknown from `unknown.len()` rows of summaries.
-    pub(crate) fn learn(summaries: &[f64], unknown: &[f64]) -> Self {
+    pub fn learn(summaries: &[f64], unknown: &[f64]) -> Self {
         let (n, d) = (unknown.len(), summaries.len() / unknown.len());
         let mean = unknown.iter().sum::<f64>() / n as f64;
         let targets: Vec<f64> = unknown.iter().map(|u| u - mean).collect();
@@ -160,7 +161,7 @@ impl Regression {
     }
 
     /// Likeness of every training run to a record in this regression and in another: the product of their kernels.
-    pub(crate) fn likeness(&self, summaries: &[f64], other: &Self) -> Vec<f64> {
+    pub fn likeness(&self, summaries: &[f64], other: &Self) -> Vec<f64> {
         let own = |of: &Self| {
             if of.lengths.is_empty() {
                 return vec![1.0; of.predictions.len()];
@@ -171,7 +172,7 @@ impl Regression {
     }
 
     /// The prediction for these summaries of a record.
-    pub(crate) fn predict(&self, summaries: &[f64]) -> Prediction {
+    pub fn predict(&self, summaries: &[f64]) -> Prediction {
         if self.lengths.is_empty() {
             return Prediction {
                 value: self.mean,
@@ -441,16 +442,31 @@ fn scales(kernel: &[f64], squares: &[f64]) -> (i32, Vec<f64>) {
 
 #[cfg(test)]
 mod tests {
-    use super::super::normals::{Stream, normals};
-    use super::super::unknowns::design_point;
     use super::*;
 
-    /// Points of the unit cube, less their mean.
-    fn cube(n: usize, d: usize) -> Vec<f64> {
-        (0..n)
-            .flat_map(|run| design_point(run, d))
-            .map(|x| x - 0.5)
+    /// Point `run` of the unit cube, less its mean: multiples of the roots of 2, 3 and 5, which fill it.
+    fn point(run: usize, d: usize) -> Vec<f64> {
+        let roots = [2.0_f64, 3.0, 5.0].into_iter().take(d);
+        roots
+            .map(|root| (root.sqrt() * (run as f64 + 1.0)).fract() - 0.5)
             .collect()
+    }
+
+    fn cube(n: usize, d: usize) -> Vec<f64> {
+        (0..n).flat_map(|run| point(run, d)).collect()
+    }
+
+    /// Pseudorandom numbers from 0 to 1 (SplitMix64).
+    fn chance(n: usize) -> Vec<f64> {
+        let mut state = 0_u64;
+        let mut next = || {
+            state = state.wrapping_add(0x9E37_79B9_7F4A_7C15);
+            let mut z = state;
+            z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+            z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+            ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
+        };
+        (0..n).map(|_| next()).collect()
     }
 
     #[test]
@@ -461,7 +477,7 @@ mod tests {
         let truths: Vec<f64> = table.chunks_exact(d).map(unknown).collect();
         let found = Regression::learn(&table, &truths);
         for run in n..n + 20 {
-            let row: Vec<f64> = design_point(run, d).iter().map(|x| x - 0.5).collect();
+            let row = point(run, d);
             let Prediction { value, scale } = found.predict(&row);
             // A Gaussian kernel of some units of length bends a line by the cube of their ratio.
             assert!(
@@ -493,7 +509,7 @@ mod tests {
     #[test]
     fn summaries_that_tell_nothing_predict_the_mean() {
         let n = 150;
-        let truths: Vec<f64> = normals(Stream::Noise, 0, 0).take(n).collect();
+        let truths = chance(n);
         let found = Regression::learn(&cube(n, 3), &truths);
         assert!(found.lengths.is_empty());
         assert_eq!(found.predict(&[0.1, 0.2, 0.3]).value, mean(&truths));

@@ -165,7 +165,7 @@ impl Factor {
 }
 
 /// Squared distances between points of `d` numbers each, row after row of `points` and column after column of `others`.
-pub(crate) fn squared_distances(points: &[f64], others: &[f64], d: usize) -> Vec<f64> {
+pub fn squared_distances(points: &[f64], others: &[f64], d: usize) -> Vec<f64> {
     dispatch!(Level::new(), simd => simd.vectorize(
         #[inline(always)]
         || distances(simd, points, others, d)

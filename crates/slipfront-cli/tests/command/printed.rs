@@ -1,0 +1,278 @@
+//! Every output that the guides show is printed by the command beside it: each block of a console is run.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use crate::support::process::{program, stderr, stdout};
+use crate::support::workspace::Workspace;
+
+/// Blocks of text in the guides that are formulas, or that a test of their own compares with results.
+const OTHER_TEXTS: [(&str, &str); 7] = [
+    // `the_guide_shows_what_is_printed` in `converge.rs`.
+    (
+        "experiment.md",
+        "block   textured   static_reduction_percent   static_friction_star   kinetic",
+    ),
+    // `the_guides_have_the_reductions_of_their_studies` in `study/answers.rs`.
+    (
+        "experiment.md",
+        "block   textured   static_reduction_percent   static_friction_star\n",
+    ),
+    ("experiment.md", "sigma*(l) = s a/l"),
+    ("family.md", "max(mu_1, f R* mu_1 + (1 - f) mu_2)"),
+    // Arithmetic with numbers that are printed above it.
+    ("getting-started.md", "100 (0.8763 - 0.6893)/0.8763 = 21.3 %"),
+    // `tests/same_run.rs` of slipfront-mpi.
+    ("long.md", "error: `drive.v_star` is 0.2 on rank 1"),
+    // `studies_show_what_is_printed` below.
+    ("studies.md", "friction.sigma_static_star  0.00  0.05"),
+];
+
+/// Blocks of a page between fences: the word after the fence, and the lines.
+fn blocks(page: &str) -> Vec<(String, Vec<String>)> {
+    let mut blocks = Vec::new();
+    let mut open: Option<(String, Vec<String>)> = None;
+    for line in page.lines() {
+        match (line.strip_prefix("```"), &mut open) {
+            (Some(_), Some(_)) => blocks.extend(open.take()),
+            (Some(info), None) => open = Some((info.to_owned(), Vec::new())),
+            (None, Some((_, lines))) => lines.push(line.to_owned()),
+            (None, None) => {}
+        }
+    }
+    blocks
+}
+
+/// The commands of a console, each with the output shown below it.
+fn commands(lines: &[String]) -> Vec<(String, Vec<String>)> {
+    let mut commands: Vec<(String, Vec<String>)> = Vec::new();
+    for line in lines {
+        match (line.strip_prefix("$ "), commands.last_mut()) {
+            (Some(command), _) => commands.push((command.to_owned(), Vec::new())),
+            (None, Some((_, shown))) => shown.push(line.clone()),
+            (None, None) => panic!("a console begins with a command and not with {line:?}"),
+        }
+    }
+    commands
+}
+
+/// The part of a line that is the same on every machine.
+fn without_machine(line: &str) -> String {
+    if line.starts_with("cost ") {
+        line.split(',').next().unwrap_or_default().to_owned()
+    } else if line.starts_with("memory ") {
+        line.replace(|c: char| c.is_ascii_digit() || ".KMGT".contains(c), "")
+    } else {
+        line.trim_end().to_owned()
+    }
+}
+
+/// Whether lines are those shown, where a line `...` stands for any lines.
+fn agrees(shown: &[String], printed: &[&str]) -> bool {
+    match (shown.split_first(), printed.split_first()) {
+        (None, None) => true,
+        (Some((first, rest)), _) if first == "..." => {
+            (0..=printed.len()).any(|k| agrees(rest, &printed[k..]))
+        }
+        (Some((first, rest)), Some((line, others))) => {
+            without_machine(first) == without_machine(line) && agrees(rest, others)
+        }
+        _ => false,
+    }
+}
+
+fn repository() -> std::path::PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+fn guide(name: &str) -> String {
+    std::fs::read_to_string(repository().join("docs/guide").join(name)).unwrap()
+}
+
+/// A folder with the cases of the repository.
+fn with_cases() -> Workspace {
+    let workspace = Workspace::new();
+    let copied = std::process::Command::new("cp")
+        .arg("-r")
+        .arg(repository().join("cases"))
+        .arg(workspace.path("cases"))
+        .status();
+    assert!(copied.unwrap().success());
+    workspace
+}
+
+/// Runs a line of a console in the shell; returns its results, or its errors where it has none. Progress, which depends on time, goes to
+/// stderr.
+fn run(workspace: &Workspace, line: &str) -> String {
+    let output = workspace.shell(&format!("slipfront() {{ '{}' \"$@\"; }}\n{line}", program()));
+    if output.stdout.is_empty() {
+        stderr(&output)
+    } else {
+        stdout(&output)
+    }
+}
+
+/// Runs the consoles of a guide that show an output, or all of them, after the cases above them are written to the files that their first
+/// lines name; returns the number of outputs.
+fn check(name: &str, runs_all: bool) -> usize {
+    check_in(&with_cases(), name, runs_all)
+}
+
+fn check_in(workspace: &Workspace, name: &str, runs_all: bool) -> usize {
+    let mut n_outputs = 0;
+    for (info, lines) in blocks(&guide(name)) {
+        let file = lines
+            .first()
+            .and_then(|line| line.strip_prefix("# ")?.split([':', ' ']).next())
+            .filter(|file| info.starts_with("toml") && file.ends_with(".toml"));
+        if let Some(file) = file {
+            workspace.write(file, lines.join("\n"));
+        }
+        if info != "console" {
+            continue;
+        }
+        let commands = commands(&lines);
+        if !runs_all && commands.iter().all(|(_, shown)| shown.is_empty()) {
+            continue;
+        }
+        for (command, shown) in commands {
+            if !runs_all && shown.is_empty() && !command.starts_with("slipfront ") {
+                continue;
+            }
+            if runs_all && command.starts_with("cargo ") {
+                continue;
+            }
+            let printed = run(workspace, &command);
+            if shown.is_empty() {
+                assert!(
+                    !printed.contains("error: "),
+                    "docs/guide/{name}, {command}\n{printed}"
+                );
+                continue;
+            }
+            n_outputs += 1;
+            let lines: Vec<&str> = printed.lines().collect();
+            assert!(
+                agrees(&shown, &lines),
+                "docs/guide/{name} shows other lines than `{command}` prints:\n{printed}\n--- shown ---\n{}",
+                shown.join("\n")
+            );
+        }
+    }
+    n_outputs
+}
+
+#[test]
+fn getting_started_shows_what_is_printed() {
+    assert!(check("getting-started.md", true) >= 6);
+}
+
+#[test]
+fn textures_show_what_is_printed() {
+    assert!(check("textures.md", false) >= 3);
+}
+
+#[test]
+fn the_way_from_an_experiment_shows_what_is_printed() {
+    assert!(check("experiment.md", false) >= 5);
+}
+
+/// Every other guide, most of which show no output.
+#[test]
+fn other_guides_show_what_is_printed() {
+    for entry in std::fs::read_dir(repository().join("docs/guide")).unwrap() {
+        let name = entry.unwrap().file_name().into_string().unwrap();
+        let have_a_test = ["getting-started.md", "textures.md", "experiment.md", "studies.md"];
+        if name.ends_with(".md") && !have_a_test.contains(&name.as_str()) {
+            check(&name, false);
+        }
+    }
+}
+
+/// The first study and friction over directions, with the statistics that the guide makes of the first.
+#[test]
+fn studies_show_what_is_printed() {
+    let workspace = with_cases();
+    assert!(check_in(&workspace, "studies.md", false) >= 3);
+
+    let number = |row: &BTreeMap<String, String>, column: &str| row[column].parse::<f64>().unwrap();
+    let results = workspace.results("results/first");
+    let reductions: Vec<f64> = results
+        .table("points.csv")
+        .iter()
+        .filter(|row| row["quantity"] == "static_reduction_percent")
+        .map(|row| number(row, "mean"))
+        .collect();
+    let mut runs: BTreeMap<(String, String), Vec<f64>> = BTreeMap::new();
+    for row in results.table("runs.csv") {
+        if row["role"] == "point" {
+            let point = ["texture.0.coverage", "friction.sigma_static_star"].map(|axis| row[axis].clone());
+            let [coverage, sigma] = point;
+            runs.entry((coverage, sigma))
+                .or_default()
+                .push(number(&row, "static_friction_star"));
+        }
+    }
+    let page = guide("studies.md");
+    for (k, coverage) in ["1", "5", "10", "20"].into_iter().enumerate() {
+        let line = format!(
+            "{coverage:<27} {:.1}  {:.1}\n",
+            reductions[2 * k],
+            reductions[2 * k + 1]
+        );
+        assert!(page.contains(&line), "docs/guide/studies.md lacks\n{line}");
+        let of = |sigma: &str| &runs[&(coverage.to_owned(), sigma.to_owned())];
+        let differences: Vec<f64> = of("0.05")
+            .iter()
+            .zip(of("0"))
+            .map(|(rough, even)| rough - even)
+            .collect();
+        let n = differences.len() as f64;
+        let mean = differences.iter().sum::<f64>() / n;
+        let variance = differences.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / (n - 1.0);
+        let line = format!("{coverage:<18} {mean:>7.4}  {:.4}\n", variance.sqrt());
+        assert!(page.contains(&line), "docs/guide/studies.md lacks\n{line}");
+    }
+}
+
+#[test]
+fn no_text_in_the_guides_is_left_without_a_test() {
+    let mut found = Vec::new();
+    for entry in std::fs::read_dir(repository().join("docs/guide")).unwrap() {
+        let name = entry.unwrap().file_name().into_string().unwrap();
+        if !name.ends_with(".md") {
+            continue;
+        }
+        for (info, lines) in blocks(&guide(&name)) {
+            let is_output = ["text", "json", "csv", ""].contains(&info.as_str());
+            if is_output {
+                let text = format!("{}\n", lines.join("\n").trim_start());
+                let known = OTHER_TEXTS
+                    .iter()
+                    .find(|(page, start)| *page == name && text.starts_with(start));
+                assert!(
+                    known.is_some(),
+                    "docs/guide/{name}: no command and no test gives\n{text}"
+                );
+                found.extend(known);
+            }
+        }
+    }
+    for text in &OTHER_TEXTS {
+        assert!(found.contains(&text), "{} has no text {:?}", text.0, text.1);
+    }
+}
+
+#[test]
+fn dots_stand_for_any_lines_and_other_lines_must_be_equal() {
+    let shown = |text: &str| text.lines().map(str::to_owned).collect::<Vec<_>>();
+    assert!(agrees(&shown("a\n...\nd"), &["a", "b", "c", "d"]));
+    assert!(agrees(&shown("a\n...\nb"), &["a", "b"]));
+    assert!(!agrees(&shown("a\n...\nd"), &["a", "b", "c"]));
+    assert!(!agrees(&shown("a"), &["a", "b"]));
+    assert!(agrees(
+        &shown("memory 3.5 MiB of 1 GiB"),
+        &["memory 4 KiB of 2.2 GiB"]
+    ));
+    assert!(!agrees(&shown("disk 3.5 MiB"), &["disk 4 MiB"]));
+}

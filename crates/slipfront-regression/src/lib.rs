@@ -1,0 +1,10 @@
+//! Kernel ridge regression of an unknown on many numbers, with the residuals of samples that are left out, and distances between points.
+//!
+//! It stands apart from the calibrations that use it since it solves systems of thousands of equations: it is compiled for speed, and they are
+//! not.
+
+mod dense;
+mod regression;
+
+pub use dense::squared_distances;
+pub use regression::{Prediction, Regression};
