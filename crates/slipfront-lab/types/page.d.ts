@@ -120,6 +120,9 @@ export interface Elements {
   bar: HTMLCanvasElement;
   field: HTMLSelectElement;
   colourmap: HTMLSelectElement;
+  'next-paint': HTMLButtonElement;
+  'next-repeat': HTMLButtonElement;
+  'next-find': HTMLButtonElement;
   repeat: HTMLButtonElement;
   'repeat-seeds': HTMLInputElement;
   'repeat-progress': HTMLProgressElement;

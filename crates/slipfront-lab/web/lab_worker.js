@@ -3,7 +3,9 @@
 //
 // It asks nothing and knows nothing but the module and the texts that the page sends it.
 
-/** What the module says, by its number: `Saying` in imports.rs of slipfront-wasm. */
+/** @import { Asked, Begin, BytesSaying, SessionModule, TextSaying } from '../types/worker' */
+
+/** Names of the messages of the module, by their numbers: `Saying` in imports.rs of slipfront-wasm. */
 const SAYINGS = ['reply', 'picture', 'kymograph', 'work', 'end', 'event', 'save', 'stop_saving', 'share', 'archive', 'bits', 'refusal', 'defect'];
 /** Sayings that are bytes; all others are texts. */
 const BYTES = ['picture', 'kymograph', 'archive'];
@@ -12,8 +14,8 @@ const MOST_PICTURES = 2;
 /** How long steps are taken before messages are looked for. */
 const SLICE_MS = 10;
 
-/** @type {any} */
-let module = null;
+/** The module; until it has begun there is none. @type {SessionModule} */
+let module;
 let unread = 0;
 let unreadPictures = 0;
 /** Pictures that wait for the page, by their kind. @type {Map<string, Uint8Array>} */
@@ -63,50 +65,30 @@ function work() {
 }
 later.onmessage = () => work();
 
-/** What the page asks for. @type {Record<string, (asked: any) => void>} */
-const ASKED = {
-  open({ text }) {
-    give(text);
-    module.open();
-  },
-  handle({ text }) {
-    give(text);
-    module.handle();
-  },
-  hear({ number, text }) {
-    give(text);
-    module.hear(number);
-  },
-  lost({ number }) {
-    module.hear_lost(number);
-  },
-  read({ pictures, messages }) {
-    unread -= messages;
-    unreadPictures -= pictures;
+/** Does what the page asks for. @param {Asked} asked */
+function carryOut(asked) {
+  if ('text' in asked) give(asked.text);
+  if (asked.do === 'hear') module.hear(asked.number);
+  else if (asked.do === 'lost') module.hear_lost(asked.number);
+  else if (asked.do === 'read') {
+    unread -= asked.messages;
+    unreadPictures -= asked.pictures;
     for (const [is, bytes] of waiting) {
       if (unreadPictures >= MOST_PICTURES) break;
       waiting.delete(is);
       post(is, 0, bytes);
     }
-  },
-  run({ text }) {
-    give(text);
-    module.run();
-    post('done', 0, '');
-  },
-  save({ text }) {
-    give(text);
-    module.save();
-  },
-};
+  } else module[asked.do]();
+  if (asked.do === 'run') post('done', 0, '');
+}
 
-/** What was asked before the module was ready. @type {any[]} */
+/** Messages that came before the module was ready. @type {Asked[]} */
 let early = [];
 
-/** @param {any} asked */
+/** @param {Asked} asked */
 function answer(asked) {
   try {
-    ASKED[asked.do](asked);
+    carryOut(asked);
     if (asked.do !== 'run' && asked.do !== 'save') {
       clearTimeout(timer);
       timer = setTimeout(work, 0);
@@ -116,11 +98,12 @@ function answer(asked) {
   }
 }
 
+/** @param {MessageEvent<Begin|Asked>} event */
 onmessage = async ({ data }) => {
   if (data.do === 'begin') {
     try {
-      const instance = await WebAssembly.instantiate(/** @type {WebAssembly.Module} */ (data.module), { env: { say, now: () => performance.now() } });
-      module = instance.exports;
+      const instance = await WebAssembly.instantiate(data.module, { env: { say, now: () => performance.now() } });
+      module = /** @type {SessionModule} */ (/** @type {unknown} */ (instance.exports));
       module.begin();
     } catch (error) {
       return post('defect', 0, String(error));

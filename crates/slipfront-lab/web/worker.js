@@ -29,7 +29,7 @@ const saves = new Map();
 /** When the session has failed. @type {number[]} */
 let failures = [];
 
-/** @typedef {{is: string, number: number, data: any}} Said */
+/** @import { Said } from '../types/worker' */
 
 /** Begins a Worker. @param {(said: Said, worker: Worker) => void} hear */
 function begin(hear) {
@@ -72,7 +72,8 @@ function tellSaving() {
 function beginSave(text) {
   const { name, document } = JSON.parse(text);
   if (saves.has(name)) return put('refused', { of: 'save', sentence: say('save_taken', { name }) });
-  const worker = begin(({ is, number, data }) => {
+  const worker = begin((said) => {
+    const { is, number, data } = said;
     if (is === 'share') {
       const save = saves.get(name);
       if (save) save.share = number / 1e6;
@@ -104,7 +105,7 @@ function hear({ is, number, data }, worker) {
   else if (is === 'end') endTask(number);
   else if (is === 'save') beginSave(data);
   else if (is === 'stop_saving') endSave(data);
-  else return fail(data);
+  else return fail(String(data));
   worker.postMessage({ do: 'read', messages: 1, pictures: is === 'picture' || is === 'kymograph' ? 1 : 0 });
 }
 
