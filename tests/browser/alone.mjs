@@ -86,7 +86,7 @@ test('a folder that was opened once opens without its server', withoutServer, as
 test('a simulation that fails begins anew with the case that is shown, and is given up when it fails again and again', withoutServer, async (t) => {
   const lab = await open(t, { toml: SMALL });
   lab.breaks = true;
-  // What a Worker does not know it fails at.
+  // A Worker fails at a message that it does not know.
   const breakIt = () => lab.page.evaluate(() => window.workers.at(-1).postMessage({ do: 'none' }));
   await lab.after(breakIt, 'case', ({ why }) => why === 'open');
   await lab.notice(say('worker_failed'));

@@ -203,7 +203,7 @@ export class Lab {
   /** Software graphics are slow to read back, which Chromium tells as a warning; a lost connection is told only where a test makes it so. */
   mayFail(text) {
     return /GPU stall due to ReadPixels|GL Driver Message/.test(text) || (this.alone && /WebSocket connection|net::ERR_CONNECTION_REFUSED/.test(text))
-      || (this.breaks && /TypeError: ASKED/.test(text));
+      || (this.breaks && /TypeError: module\[asked\.do\] is not a function/.test(text));
   }
 
   hear(payload) {
