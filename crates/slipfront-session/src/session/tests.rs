@@ -62,6 +62,9 @@ fn count(replies: &[Value], is: &str) -> usize {
 fn nothing_is_due_before_a_case_is_open_and_while_nothing_moves() {
     let mut tried = Tried::new();
     assert_eq!(tried.work(), None);
+    // A page sends its view first: there is nothing to draw yet.
+    tried.ask(json!({ "do": "view", "field": "speed" }));
+    assert_eq!(tried.work(), None);
     tried.ask(json!({ "do": "open", "source": { "toml": PLAIN } }));
     assert!(tried.work().is_some());
     tried.ask(json!({ "do": "view", "paused": true }));

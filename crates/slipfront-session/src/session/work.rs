@@ -53,10 +53,10 @@ impl Session {
         if self.has_edits() {
             return false;
         }
-        if !self.view.visible {
+        if !self.view.visible || self.live.is_none() {
             return true;
         }
-        let runs = usize::from(self.live.is_some()) + usize::from(self.twin.is_some());
+        let runs = 1 + usize::from(self.twin.is_some());
         let moves = self.count_ended() < runs && (!self.view.paused || self.single_steps > 0);
         !(moves || self.pending.redraw || self.pending.ends_sent != self.count_ended())
     }
