@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::fs;
+use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use base64::Engine as _;
@@ -26,6 +27,15 @@ const POLICY_OF_FOLDER: &str = include_str!("../export/folder.policy");
 
 /// Content security policy of a page of one file: it may run its loader, show its styles, and use what the loader makes of its files.
 const POLICY_OF_SINGLE: &str = include_str!("../export/single.policy");
+
+/// Element with which an exported page says that it has no server, and by which it is known as one.
+const BEGINNING_OF_PAGE: &str = "<html data-channel=\"worker\">";
+
+/// Bytes among which that element is looked for.
+const BYTES_OF_BEGINNING: u64 = 256;
+
+/// Styles of the page.
+const STYLES: [&str; 2] = ["vendor/uPlot.min.css", "style.css"];
 
 /// The manifest by which a browser offers to keep the page like a program.
 const MANIFEST: &str = r##"{
@@ -60,6 +70,17 @@ pub enum ExportError {
     /// A folder that is not empty, and was not exported.
     #[error("{} holds other things than an exported laboratory: name another folder", display_path(.0))]
     OtherThings(PathBuf),
+    /// A file that is no exported laboratory.
+    #[error("{} exists, and is no exported laboratory: choose another name", display_path(.0))]
+    OtherFile(PathBuf),
+    /// The system refuses to read the module.
+    #[error("{} cannot be read: {source}", display_path(path))]
+    Read {
+        /// The file of the module.
+        path: PathBuf,
+        /// Why the system refuses to read it.
+        source: std::io::Error,
+    },
     /// The system refuses to write a file or folder.
     #[error("{} cannot be written: {source}", display_path(path))]
     Write {
@@ -108,7 +129,7 @@ impl Parts {
             StartSource::Case(document) => Document::clone(document),
             StartSource::Folder(_) => return Err(ExportError::Folder),
         };
-        let contents = fs::read(module).map_err(|source| ExportError::Write {
+        let contents = fs::read(module).map_err(|source| ExportError::Read {
             path: module.to_owned(),
             source,
         })?;
@@ -144,7 +165,7 @@ impl Parts {
             "<meta charset=\"utf-8\">\n<meta http-equiv=\"Content-Security-Policy\" content=\"{policy}\">\n{more}"
         );
         self.text("index.html")
-            .replacen("<html>", "<html data-channel=\"worker\">", 1)
+            .replacen("<html>", BEGINNING_OF_PAGE, 1)
             .replacen("<meta charset=\"utf-8\">\n", &head, 1)
     }
 }
@@ -205,10 +226,13 @@ fn service_worker(files: &BTreeMap<String, Vec<u8>>) -> String {
 /// Writes the laboratory as one file, which opens from the disk: a page that opens with a case of the start, and asks for nothing.
 ///
 /// # Errors
-/// When the module is none, or the system refuses.
+/// When the module is none, there is another file of this name that was not exported, or the system refuses.
 pub fn export_single(start: &Start, module: &Path, out: &Path) -> Result<(), ExportError> {
+    if out.is_file() && !is_exported(out) {
+        return Err(ExportError::OtherFile(out.to_owned()));
+    }
     let parts = Parts::new(start, module)?;
-    let styles = ["vendor/uPlot.min.css", "style.css"].map(|name| parts.text(name));
+    let styles = STYLES.map(|name| parts.text(name));
     let loader = include_str!("../export/single.js");
     let hash = |text: &str| format!("'sha256-{}'", BASE64_STANDARD.encode(Sha256::digest(text)));
     let policy = POLICY_OF_SINGLE.replacen("LOADER", &hash(loader), 1).replacen(
@@ -217,7 +241,7 @@ pub fn export_single(start: &Start, module: &Path, out: &Path) -> Result<(), Exp
         1,
     );
     let mut page = parts.page(&policy, "");
-    for (name, style) in ["vendor/uPlot.min.css", "style.css"].iter().zip(&styles) {
+    for (name, style) in STYLES.iter().zip(&styles) {
         let link = format!("<link rel=\"stylesheet\" href=\"{name}\">");
         page = page.replacen(&link, &format!("<style>{style}</style>"), 1);
     }
@@ -237,6 +261,14 @@ pub fn export_single(start: &Start, module: &Path, out: &Path) -> Result<(), Exp
         path: out.to_owned(),
         source,
     })
+}
+
+/// Whether a file is a page that was exported.
+fn is_exported(path: &Path) -> bool {
+    let mut beginning = Vec::new();
+    let read =
+        fs::File::open(path).and_then(|file| file.take(BYTES_OF_BEGINNING).read_to_end(&mut beginning));
+    read.is_ok() && String::from_utf8_lossy(&beginning).contains(BEGINNING_OF_PAGE)
 }
 
 /// The files that a page of one file asks for, as JSON within a script: texts, and the module in Base64.
@@ -346,6 +378,15 @@ mod tests {
         assert!(said(export_folder(&start, &module, &other)).contains("holds other things"));
         assert_eq!(fs::read_dir(&other).unwrap().count(), 1);
         assert!(said(export_single(&start, &other.join("mine"), &other.join("x"))).contains("is no module"));
+        assert!(
+            said(export_single(&start, &module, &other.join("mine"))).contains("is no exported laboratory")
+        );
+        assert_eq!(fs::read_to_string(other.join("mine")).unwrap(), "mine");
+        // A page that was exported is replaced.
+        let page = folder.path().join("page.html");
+        export_single(&start, &module, &page).unwrap();
+        export_single(&start, &module, &page).unwrap();
+        assert!(said(export_single(&start, &other, &page)).contains("cannot be read"));
         let missing = find_module(&[other.clone(), folder.path().join("none")]).unwrap_err();
         assert!(
             missing
