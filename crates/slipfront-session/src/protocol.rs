@@ -6,6 +6,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
+use slipfront_study::Sample;
 
 use crate::controls::{Control, ControlValue};
 use crate::shapes::ShapeOutlines;
@@ -356,9 +357,23 @@ pub(crate) enum FoundOutcome {
     Failed,
 }
 
+/// Confidence of the intervals.
+const CONFIDENCE: f64 = 0.95;
+
 /// A mean and the half width of its interval.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(crate) struct Estimate {
     pub(crate) mean: f64,
     pub(crate) half_width: Option<f64>,
+}
+
+impl Estimate {
+    /// The mean of values with the half width of its 95 % interval; none without values.
+    pub(crate) fn of(values: &[f64]) -> Option<Self> {
+        let sample = Sample::of(values, CONFIDENCE)?;
+        Some(Self {
+            mean: sample.mean,
+            half_width: sample.half_width,
+        })
+    }
 }

@@ -6,15 +6,11 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use slipfront_case::case::Case;
 use slipfront_run::running::run_unless;
 use slipfront_run::summary::Summary;
-use slipfront_study::Sample;
 use toml::Value;
 
 use crate::document::Document;
 use crate::event::{Event, EventKind, Worker};
 use crate::protocol::{Estimate, RepeatedReply};
-
-/// Confidence of the intervals.
-const CONFIDENCE: f64 = 0.95;
 
 /// Runs the case, and if it has texture the same without, with the seeds from 1 on, each to the end of its first peak. Runs without a
 /// transition have no static friction: they are counted, and neither a mean nor a change has them.
@@ -46,13 +42,10 @@ pub(crate) fn repeat(document: &Document, seeds: u64, worker: &dyn Worker) {
     }
 }
 
+/// The estimate of the values that there are.
 fn estimate(values: &[Option<f64>]) -> Option<Estimate> {
     let values: Vec<f64> = values.iter().copied().flatten().collect();
-    let sample = Sample::of(&values, CONFIDENCE)?;
-    Some(Estimate {
-        mean: sample.mean,
-        half_width: sample.half_width,
-    })
+    Estimate::of(&values)
 }
 
 /// mu_s* of a case with this seed, which is none of a run without a transition; none if it was stopped.

@@ -7,8 +7,8 @@ use std::time::Duration;
 use slipfront_case::case::Case;
 use slipfront_case::number_format::count;
 use slipfront_run::pictures::texture_file::textured_blocks;
+use slipfront_study::StudyError;
 use slipfront_study::design::{Bounds, Design, Limits, Quantity, Wish};
-use slipfront_study::{Sample, StudyError};
 
 use crate::document::Document;
 use crate::event::{Comparison, Event, EventKind, Mask, Tried, Worker};
@@ -35,9 +35,6 @@ const MAX_BLOCK_STEPS: f64 = 1e7;
 
 /// Number of surfaces, unseen by the search, on which the best texture is compared with the painted one.
 const FRESH_SURFACES: u64 = 8;
-
-/// Confidence of the intervals.
-const CONFIDENCE: f64 = 0.95;
 
 /// Bounds of the textures that a search for a case may try.
 pub(crate) fn limits(case: &Case) -> SearchLimits {
@@ -164,7 +161,7 @@ pub(crate) fn compare(document: &Document, best: &Mask, stop: &AtomicBool) -> Re
     let losses = losses.map_err(|error| error.to_string())?;
     let changes = |losses: &Vec<f64>| {
         let changes: Vec<f64> = losses.iter().map(|loss| 100.0 * (loss - 1.0)).collect();
-        estimate(&changes)
+        Estimate::of(&changes)
     };
     // Without texture nothing changes.
     let gain = |(surface, loss): (usize, &f64)| losses.get(1).map_or(1.0, |painted| painted[surface]) - loss;
@@ -173,15 +170,7 @@ pub(crate) fn compare(document: &Document, best: &Mask, stop: &AtomicBool) -> Re
         surfaces: losses[0].len(),
         best: changes(&losses[0]),
         painted: losses.get(1).and_then(changes),
-        is_better: estimate(&gain).is_some_and(|gain| gain.mean - gain.half_width.unwrap_or(0.0) > 0.0),
-    })
-}
-
-fn estimate(values: &[f64]) -> Option<Estimate> {
-    let sample = Sample::of(values, CONFIDENCE)?;
-    Some(Estimate {
-        mean: sample.mean,
-        half_width: sample.half_width,
+        is_better: Estimate::of(&gain).is_some_and(|gain| gain.mean - gain.half_width.unwrap_or(0.0) > 0.0),
     })
 }
 
