@@ -4,12 +4,9 @@ use std::path::{Path, PathBuf};
 
 use assert_cmd::Command;
 
+use crate::support::book::{blocks, repository};
 use crate::support::process::program;
 use crate::support::workspace::Workspace;
-
-fn repository() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
-}
 
 fn pages() -> Vec<PathBuf> {
     let repository = repository();
@@ -48,15 +45,9 @@ fn words(line: &str) -> Vec<String> {
 /// takes the same, in the `$` lines of the console blocks.
 fn commands(page: &str) -> Vec<Vec<String>> {
     let mut found = Vec::new();
-    let mut console = false;
-    for line in page.lines() {
-        if let Some(info) = line.trim_start().strip_prefix("```") {
-            console = info.trim() == "console";
-            continue;
-        }
-        let Some(line) = line.strip_prefix("$ ").filter(|_| console) else {
-            continue;
-        };
+    let consoles = blocks(page).into_iter().filter(|(info, _)| info == "console");
+    let lines: Vec<String> = consoles.flat_map(|(_, lines)| lines).collect();
+    for line in lines.iter().filter_map(|line| line.strip_prefix("$ ")) {
         let arguments = ["slipfront ", "cargo run --release -- "]
             .iter()
             .find_map(|program| line.strip_prefix(program))

@@ -1,8 +1,8 @@
 //! Every output that the guides show is printed by the command beside it: each block of a console is run.
 
 use std::collections::BTreeMap;
-use std::path::Path;
 
+use crate::support::book::{blocks, repository};
 use crate::support::process::{program, stderr, stdout};
 use crate::support::workspace::Workspace;
 
@@ -27,21 +27,6 @@ const OTHER_TEXTS: [(&str, &str); 7] = [
     // `studies_show_what_is_printed` below.
     ("studies.md", "friction.sigma_static_star  0.00  0.05"),
 ];
-
-/// Blocks of a page between fences: the word after the fence, and the lines.
-fn blocks(page: &str) -> Vec<(String, Vec<String>)> {
-    let mut blocks = Vec::new();
-    let mut open: Option<(String, Vec<String>)> = None;
-    for line in page.lines() {
-        match (line.strip_prefix("```"), &mut open) {
-            (Some(_), Some(_)) => blocks.extend(open.take()),
-            (Some(info), None) => open = Some((info.to_owned(), Vec::new())),
-            (None, Some((_, lines))) => lines.push(line.to_owned()),
-            (None, None) => {}
-        }
-    }
-    blocks
-}
 
 /// The commands of a console, each with the output shown below it.
 fn commands(lines: &[String]) -> Vec<(String, Vec<String>)> {
@@ -79,10 +64,6 @@ fn agrees(shown: &[String], printed: &[&str]) -> bool {
         }
         _ => false,
     }
-}
-
-fn repository() -> std::path::PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
 
 fn guide(name: &str) -> String {

@@ -3,5 +3,6 @@
 // Every test binary uses a part of it.
 #![allow(dead_code)]
 
+pub(crate) mod book;
 pub(crate) mod process;
 pub(crate) mod workspace;
