@@ -72,10 +72,10 @@ impl Limits {
         }
         // Of many drafts, few are too narrow: by how much is looked for then.
         let narrow = |set: &[bool], least| {
-            if grid.opened(set, least) == set {
+            if grid.lattice.opened(set, least) == set {
                 None
             } else {
-                grid.width(set)
+                grid.lattice.width(set)
             }
         };
         if let Some(found) = narrow(textured, self.feature) {
@@ -104,7 +104,7 @@ impl Limits {
             return Err(Illegal::Forbidden { blocks });
         }
         if let Some(most) = self.max_features {
-            let found = grid.n_pieces(textured);
+            let found = grid.lattice.n_pieces(textured);
             if found > most {
                 return Err(Illegal::Features { found, most });
             }
@@ -168,16 +168,16 @@ impl Limits {
 
     /// A set without parts that are too narrow, and without gaps that are.
     fn smoothed(&self, grid: &Grid, set: &[bool]) -> Vec<bool> {
-        let opened = grid.opened(set, self.feature);
+        let opened = grid.lattice.opened(set, self.feature);
         if self.gap <= 1 {
             return opened;
         }
-        let contact = grid.opened(&grid.others(&opened), self.gap);
+        let contact = grid.lattice.opened(&grid.others(&opened), self.gap);
         let closed = grid.others(&contact);
         if closed == opened {
             return opened;
         }
-        grid.opened(&closed, self.feature)
+        grid.lattice.opened(&closed, self.feature)
     }
 
     /// The block at this place of the first cell.

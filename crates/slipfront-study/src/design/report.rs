@@ -129,11 +129,11 @@ impl Report<'_> {
     fn as_meshed(&self, design: &Design, texture: &[bool], case: &Case) -> AsMeshed {
         let grid = &design.evaluator.grid;
         let size = case.scales.block_size;
-        let width = |set: &[bool]| grid.width(set).map(|blocks| blocks as f64 * size);
+        let width = |set: &[bool]| grid.lattice.width(set).map(|blocks| blocks as f64 * size);
         let area = 0.01 * grid.percent(texture) * grid.n_blocks() as f64 * size * size;
         AsMeshed {
             coverage_percent: grid.percent(texture),
-            features: grid.n_pieces(texture),
+            features: grid.lattice.n_pieces(texture),
             feature_m: width(texture),
             gap_m: width(&grid.others(texture)),
             writing_length_m: self.file.line_spacing().map(|spacing| area / spacing),

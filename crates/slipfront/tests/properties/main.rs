@@ -7,6 +7,7 @@ mod against_reference;
 #[path = "../common/mod.rs"]
 mod common;
 mod meshes;
+mod openings;
 mod ranks;
 #[path = "../reference/mod.rs"]
 mod reference;
