@@ -79,10 +79,10 @@ pub enum StudyError {
     Training(#[from] TrainingError),
     #[error("cannot write the texture: {0}")]
     Texture(#[from] TextureFileError),
-    #[error("another study is running in {path}: wait for it, or choose another folder with --out")]
+    #[error("another slipfront is running in {path}: wait for it, or choose another folder with --out")]
     Busy { path: PathBuf },
     #[error(
-        "cannot {action} {path}: {source}; finished runs are safe, and the study goes on from there when started again"
+        "cannot {action} {path}: {source}; finished runs are safe, and the same command goes on from there"
     )]
     Records {
         action: &'static str,
@@ -90,15 +90,14 @@ pub enum StudyError {
         source: std::io::Error,
     },
     #[error(
-        "cannot write {}: {source}; finished runs are safe, and the study goes on from there when started again",
+        "cannot write {}: {source}; finished runs are safe, and the same command goes on from there",
         display_path(path)
     )]
     Write { path: PathBuf, source: std::io::Error },
-    #[error("{path} is not the record file of a study")]
+    #[error("{path} is no file of recorded runs")]
     NotRecords { path: PathBuf },
     #[error(
-        "cannot keep the folder of a run: {0}; finished runs are safe, and the study goes on from there when \
-        started again"
+        "cannot keep the folder of a run: {0}; finished runs are safe, and the same command goes on from there"
     )]
     Keep(#[from] RunPictureError),
     #[error(

@@ -146,6 +146,11 @@ fn a_signal_keeps_the_best() {
     let has_runs =
         || workspace.exists("found/design.jsonl") && workspace.read("found/design.jsonl").len() > 10_000;
     wait_for("a few batches of runs", has_runs);
+    let beside_it = workspace.fail("design wish.toml -o found", 2);
+    assert!(
+        beside_it.contains("another slipfront is running in found"),
+        "{beside_it}"
+    );
     send(&child, "-INT");
     let output = child.wait_with_output().unwrap();
     let said = unwrapped(&stderr(&output));

@@ -145,7 +145,7 @@ fn two_processes_do_not_share_a_folder() {
     first.wait().unwrap();
     assert_eq!(second.status.code(), Some(2));
     assert!(
-        stderr(&second).contains("another study is running"),
+        stderr(&second).contains("another slipfront is running"),
         "{}",
         stderr(&second)
     );
