@@ -46,6 +46,17 @@ test('the page has no error when a case that is unpacked is none', async (t) => 
   assert.equal(lab.sockets, IS_ALONE ? 0 : 1);
 });
 
+test('an address opens a case of the list by its name, and says when there is none', async (t) => {
+  const lab = await open(t, {});
+  await lab.after(() => lab.page.evaluate(() => (location.hash = '#preset=groove_across')), 'case', ({ name }) => name === 'groove_across');
+  await lab.after(() => lab.page.evaluate(() => (location.hash = '#preset=none')), 'case', ({ name }) => name !== 'groove_across');
+  await lab.notice(say('broken_link'));
+  // From its beginning on.
+  const address = IS_ALONE ? `${lab.address}preset=groove_along` : `${lab.address}&preset=groove_along`;
+  const other = await open(t, { address });
+  await other.reads('case-name', 'groove_along');
+});
+
 test('the page has no error when a case of the address is broken, and says so', async (t) => {
   const lab = await open(t, {});
   await lab.page.evaluate(() => (location.hash = '#case=broken'));

@@ -24,8 +24,10 @@ export const hasToken = () => new URLSearchParams(location.hash.slice(1)).has('t
 /** Takes the token out of the address and out of what the browser remembers, and keeps the key of this tab; whether it was one. */
 export async function takeToken() {
   const parts = new URLSearchParams(location.hash.slice(1));
-  const [token, link] = [parts.get('token') ?? '', parts.get('case')];
-  history.replaceState(null, '', link ? `#case=${link}` : location.pathname);
+  const token = parts.get('token') ?? '';
+  parts.delete('token');
+  const rest = parts.toString();
+  history.replaceState(null, '', rest ? `#${rest}` : location.pathname);
   if (!/^[0-9a-f]{32}$/.test(token)) return false;
   const tab = draw();
   sessionStorage.setItem('key', await code(token, tab));

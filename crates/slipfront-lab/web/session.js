@@ -29,11 +29,20 @@ export function exported() {
   return answer;
 }
 
+/** The case that the address names or holds; throws if there is none. @returns {Promise<Source>} */
+async function ofAddress() {
+  const parts = new URLSearchParams(location.hash.slice(1));
+  const [preset, link] = [parts.get('preset'), parts.get('case')];
+  if (preset) {
+    if (!state.hello?.presets.some(({ name }) => name === preset)) throw new RangeError('no such case');
+    return { preset };
+  }
+  return link ? readLink(link) : {};
+}
+
 async function first() {
-  const link = new URLSearchParams(location.hash.slice(1)).get('case');
-  if (!link) return open({});
   try {
-    open(await readLink(link));
+    open(await ofAddress());
   } catch {
     put('problem', { key: 'broken_link' });
     open({});

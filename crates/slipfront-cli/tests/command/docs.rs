@@ -1,23 +1,15 @@
-//! Every command line in the book is understood by the command, every link leads somewhere, and every `unsafe` is listed.
+//! Every case in the book can be read, every command line is understood by the command, every link leads somewhere, and every `unsafe` is
+//! listed.
 
 use std::path::{Path, PathBuf};
 
 use assert_cmd::Command;
+use slipfront_case::case_file::CaseFile;
+use slipfront_session::Document;
 
-use crate::support::book::{blocks, repository};
+use crate::support::book::{blocks, pages, repository};
 use crate::support::process::program;
 use crate::support::workspace::Workspace;
-
-fn pages() -> Vec<PathBuf> {
-    let repository = repository();
-    let mut pages = vec![repository.join("README.md"), repository.join("SECURITY.md")];
-    for folder in ["docs", "docs/guide", "docs/reference", "docs/validation"] {
-        let entries = std::fs::read_dir(repository.join(folder)).expect("the book can be listed");
-        pages.extend(entries.flatten().map(|entry| entry.path()));
-    }
-    pages.retain(|page| page.extension().is_some_and(|extension| extension == "md"));
-    pages
-}
 
 /// The words of a shell line up to a pipe, a redirection or a comment.
 fn words(line: &str) -> Vec<String> {
@@ -55,6 +47,50 @@ fn commands(page: &str) -> Vec<Vec<String>> {
         found.extend(arguments.map(words));
     }
     found
+}
+
+/// Cases, or parts of cases, whose other keys have their defaults: the site opens them in the laboratory, but for those that name a file.
+#[test]
+fn every_case_in_the_book_can_be_read_and_shown() {
+    let (mut read, mut shown, mut refused) = (0, 0, String::new());
+    for page in pages() {
+        for (info, lines) in blocks(&std::fs::read_to_string(&page).unwrap()) {
+            if info != "toml" {
+                continue;
+            }
+            let text = lines.join("\n");
+            let result = if lines.iter().any(|line| line.starts_with("file = ")) {
+                CaseFile::parse(&text, "the block", &[]).map(|_| read += 1)
+            } else {
+                let document = Document::new("the block", &text, |name| {
+                    Err(format!("{name} is no file of a link"))
+                });
+                document
+                    .and_then(|document| document.case_to_show())
+                    .map(|_| shown += 1)
+            };
+            if let Err(error) = result {
+                refused += &format!("{}:\n{text}\n{error}\n\n", page.display());
+            }
+        }
+    }
+    assert!(refused.is_empty(), "{refused}");
+    assert!(read >= 3, "only {read} cases with a file were found");
+    assert!(shown >= 30, "only {shown} other cases were found");
+}
+
+#[test]
+fn fences_are_told_apart() {
+    let page = "```toml\na = 1\n```\ntext\n```toml ignore\nb\n```\n```console\nc\n```\n";
+    let block = |info: &str, line: &str| (info.to_owned(), vec![line.to_owned()]);
+    assert_eq!(
+        blocks(page),
+        [
+            block("toml", "a = 1"),
+            block("toml ignore", "b"),
+            block("console", "c")
+        ]
+    );
 }
 
 #[test]
@@ -146,6 +182,24 @@ fn every_link_in_the_book_leads_somewhere() {
     assert!(broken.is_empty(), "{broken}");
     assert!(count >= 50, "only {count} links were found");
     assert_eq!(anchor(" What 31 % means"), "what-31--means");
+}
+
+/// The site takes its pages and their order from `docs/README.md`.
+#[test]
+fn every_page_of_the_book_is_in_its_contents() {
+    let docs = repository().join("docs");
+    let contents = std::fs::read_to_string(docs.join("README.md")).unwrap();
+    let listed: Vec<PathBuf> = contents
+        .split("](")
+        .skip(1)
+        .filter_map(|part| part.split(')').next())
+        .map(|target| docs.join(target))
+        .collect();
+    let own = pages().into_iter().filter(|page| page.starts_with(&docs));
+    let missing: Vec<PathBuf> = own
+        .filter(|page| *page != docs.join("README.md") && !listed.contains(page))
+        .collect();
+    assert!(missing.is_empty(), "docs/README.md has no link to {missing:?}");
 }
 
 /// The guides show the output of `run` and `check`, but for lines that depend on the machine.

@@ -1,10 +1,37 @@
-//! The pages of the book: README.md and `docs/`.
+//! The pages of the repository in Markdown.
 
 use std::path::{Path, PathBuf};
+
+/// Folders without pages: of tools, of results, and of texts that become part of `docs/validation/family.md`, in which their links begin.
+const WITHOUT_PAGES: [&str; 5] = [".git", "target", "results", "node_modules", "text"];
 
 /// The folder of the repository.
 pub(crate) fn repository() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+/// All pages of the repository.
+pub(crate) fn pages() -> Vec<PathBuf> {
+    let mut pages = Vec::new();
+    add_pages(&repository(), &mut pages);
+    pages
+}
+
+/// Adds the pages in a folder and in folders below it.
+fn add_pages(folder: &Path, pages: &mut Vec<PathBuf>) {
+    for entry in std::fs::read_dir(folder).expect("a folder of the repository can be listed") {
+        let path = entry.expect("a folder of the repository can be listed").path();
+        if path.is_dir() {
+            let has_pages = path
+                .file_name()
+                .is_some_and(|name| WITHOUT_PAGES.iter().all(|without| name != *without));
+            if has_pages {
+                add_pages(&path, pages);
+            }
+        } else if path.extension().is_some_and(|extension| extension == "md") {
+            pages.push(path);
+        }
+    }
 }
 
 /// Blocks of a page between fences: the words after the fence, and the lines.
@@ -19,5 +46,6 @@ pub(crate) fn blocks(page: &str) -> Vec<(String, Vec<String>)> {
             (None, None) => {}
         }
     }
+    assert!(open.is_none(), "a fence is left open");
     blocks
 }

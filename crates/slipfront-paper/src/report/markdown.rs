@@ -34,10 +34,10 @@ pub fn page(paper: &Paper) -> String {
         let other = paper.results_by_paper_step.get(k);
         let mut remark = match claim.remark.as_str() {
             "" => String::new(),
-            remark => format!(" *{remark}*"),
+            remark => format!(" {}", emphasised(remark)),
         };
         if !claim.revised.is_empty() {
-            remark += &format!(" *Revised: {}*", claim.revised);
+            remark += &format!(" {}", emphasised(&format!("Revised: {}", claim.revised)));
         }
         let cells = [
             claim.number.to_string(),
@@ -53,6 +53,11 @@ pub fn page(paper: &Paper) -> String {
     }
     write_figures(paper, &mut text);
     text
+}
+
+/// A text in italics, with symbols. Its stars, those of dimensionless quantities, would end the italics.
+fn emphasised(text: &str) -> String {
+    format!("*{}*", greek(text).replace('*', "\\*"))
 }
 
 /// Number of verdicts in which the paper's step differs.
@@ -81,5 +86,18 @@ fn write_figures(paper: &Paper, text: &mut String) {
                 let _ = writeln!(text, "| {} |", greek(&row.join(" | ")));
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::emphasised;
+
+    #[test]
+    fn a_star_does_not_end_italics() {
+        assert_eq!(
+            emphasised("the rise of mu_s* was"),
+            "*the rise of \u{3bc}_s\\* was*"
+        );
     }
 }
