@@ -5,7 +5,7 @@ use crate::canvas::Canvas;
 use crate::frame::{LOWER_ROOM, left_room, left_side, lower_title, right_end};
 use crate::friction_curve::{FrictionAxes, FrictionCurve};
 use crate::geometry::{Area, CanvasPoint};
-use crate::style::{BLACK, COLUMN_WIDTH, MARGIN, SIZE_LABEL, TICK_LENGTH, WIDTH_LEADER};
+use crate::style::{BLACK, MARGIN, SIZE_LABEL, TICK_LENGTH, WIDTH_LEADER};
 use crate::text::Text;
 use crate::ticks::{Direction, MAX_STEPS, Tick};
 
@@ -21,8 +21,12 @@ pub(crate) struct Panels {
 }
 
 impl Panels {
-    /// Panels that hold all curves and their marks, at the top of the picture.
-    pub(crate) fn of(curves: &[FrictionCurve]) -> Self {
+    /// Panels that hold all curves and their marks, at the top of a picture of this width; with the room below them they are as
+    /// high as the given height, or as usual.
+    pub(crate) fn of(curves: &[FrictionCurve], width: f64, height: Option<f64>) -> Self {
+        // The panels share the height in the usual proportion.
+        let usual = HEIGHT_FRICTION + HEIGHT_SLIDING;
+        let larger = height.map_or(1.0, |height| (height - MARGIN - GAP - LOWER_ROOM) / usual);
         let (from, to) = range(curves.iter().flat_map(|curve| curve.x.iter().copied()));
         let values = curves.iter().flat_map(|curve| {
             let marks = [
@@ -37,16 +41,17 @@ impl Panels {
             lo = 0.0;
         }
         let room = 0.1 * (hi - lo);
-        let mu_bottom = MARGIN + HEIGHT_FRICTION;
+        let mu_bottom = MARGIN + larger * HEIGHT_FRICTION;
         let sliding_top = mu_bottom + GAP;
         let mu =
             DrawnAxis::linear(if lo == 0.0 { lo } else { lo - room }, hi + room).placed(mu_bottom, MARGIN);
-        let sliding = DrawnAxis::linear(0.0, 100.0).placed(sliding_top + HEIGHT_SLIDING, sliding_top);
+        let sliding =
+            DrawnAxis::linear(0.0, 100.0).placed(sliding_top + larger * HEIGHT_SLIDING, sliding_top);
         let left = left_room(&[mu_ticks(&mu), sliding_ticks(&sliding)].concat());
         // The last number on the axis may stand half beyond its end.
-        let right = COLUMN_WIDTH.round() - 28.0;
+        let right = width.round() - 28.0;
         let x = DrawnAxis::linear(from, to).placed(left, right);
-        let x = x.placed(left, right_end(&x_ticks(&x), left, right, COLUMN_WIDTH));
+        let x = x.placed(left, right_end(&x_ticks(&x), left, right, width));
         Self { x, mu, sliding }
     }
 
@@ -120,6 +125,7 @@ fn sliding_ticks(sliding: &DrawnAxis) -> Vec<Tick> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::style::COLUMN_WIDTH;
 
     #[test]
     fn no_number_on_the_horizontal_axis_is_cut_off() {
@@ -130,7 +136,7 @@ mod tests {
                 sliding_percent: vec![0.0, 100.0],
                 ..FrictionCurve::default()
             };
-            let panels = Panels::of(&[curve]);
+            let panels = Panels::of(&[curve], COLUMN_WIDTH, None);
             for (x, text) in x_ticks(&panels.x) {
                 assert!(x + 0.5 * text.width() <= COLUMN_WIDTH, "{end}");
             }

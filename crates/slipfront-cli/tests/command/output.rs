@@ -356,6 +356,7 @@ fn a_movie_shows_every_snapshot() {
     assert_eq!(workspace.read("run/movie.gif"), bytes);
     workspace.succeed("movie run --field displacement_x -o other.gif");
     assert_ne!(workspace.read("other.gif"), bytes);
+    workspace.write("empty/note.txt", "");
     for (line, sentence) in [
         (
             "movie run --field velocity_x -o none.gif",
@@ -367,9 +368,10 @@ fn a_movie_shows_every_snapshot() {
         ),
         ("movie run -o movie.avi", "name a file that ends in .gif or .mp4"),
         (
-            "movie nowhere",
+            "movie empty",
             "holds no summary.json: name the folder of a run that is finished",
         ),
+        ("movie nowhere", "there is no folder nowhere"),
     ] {
         let said = workspace.fail(line, 2);
         assert!(said.contains(sentence), "{line}: {said}");
