@@ -362,6 +362,7 @@ mod tests {
                     friction: mu(t),
                 })
                 .to_vec(),
+            ..FrictionCurve::default()
         }
     }
 

@@ -8,7 +8,7 @@ use toml::Value;
 
 use crate::input_copies::plain_name;
 use slipfront_case::case_file::{Override, exclude_each_other, names_a_file, partners_of};
-use slipfront_case::number_format::exact;
+use slipfront_case::number_format::{exact, si_prefix};
 use slipfront_case::quantity::WrittenQuantity;
 use slipfront_case::text::truncated;
 
@@ -134,6 +134,7 @@ impl Axis {
         let texts = lists.first().filter(|(key, _)| !names_a_file(key));
         let mut quantities = texts.iter().flat_map(|(_, values)| values).filter_map(quantity);
         let first = quantities.next();
+        let first = first.map(|first| in_plain_numbers(first, &lists[0].1));
         let number = |value| match &first {
             Some(first) => quantity(value)?.in_unit_of(first),
             None => number(value),
@@ -298,6 +299,26 @@ fn variant((variant, keys): (String, Value)) -> Result<Level, String> {
             "the variant `{variant}` must be a set of keys, such as {{ drive.v_star = 0.05 }}"
         )),
     }
+}
+
+/// Sizes of numbers that an axis shows without a power of ten.
+const PLAIN_NUMBERS: std::ops::Range<f64> = 1e-4..1e6;
+
+/// A quantity in whose unit these values are plain numbers: the first of them, or one with an SI prefix before its unit.
+fn in_plain_numbers(first: WrittenQuantity, values: &[Value]) -> WrittenQuantity {
+    let numbers = values
+        .iter()
+        .filter_map(|value| quantity(value)?.in_unit_of(&first));
+    let largest = numbers.fold(0.0, |largest: f64, number| largest.max(number.abs()));
+    if largest == 0.0 || PLAIN_NUMBERS.contains(&largest) {
+        return first;
+    }
+    // A unit that has a prefix takes no other.
+    let (_, prefix) = si_prefix(largest);
+    let other = quantity(&Value::String(format!("1 {prefix}{}", first.unit())));
+    other
+        .filter(|other| other.in_unit_of(&first).is_some())
+        .unwrap_or(first)
 }
 
 /// The quantity of a level, if its value has a unit; for a pair of equal quantities the one.
@@ -574,6 +595,13 @@ mod tests {
         assert_eq!(spacing, Spacing::Logarithmic);
         let (numbers, ..) = of("list = [['1 um', '1 um'], ['2 um', '2 um']]");
         assert_eq!(numbers, [1.0, 2.0]);
+        // Where the unit of the first would take powers of ten, it has a prefix, if it can.
+        let (numbers, _, _, unit) = of("list = ['1e-6 m', '3e-6 m', '7e-6 m']");
+        assert_eq!((numbers, unit.as_str()), (vec![1.0, 3.0, 7.0], "um"));
+        let (numbers, _, _, unit) = of("list = ['2e9 Pa', '1e8 Pa']");
+        assert_eq!((numbers, unit.as_str()), (vec![2.0, 0.1], "GPa"));
+        let (numbers, _, _, unit) = of("list = ['1e-6 mm', '2e-6 mm']");
+        assert_eq!((numbers, unit.as_str()), (vec![1e-6, 2e-6], "mm"));
         // Of several kinds they are names, which have their units.
         let (numbers, _, spacing, unit) = of("list = ['1 um', 'auto', '2 um']");
         assert_eq!((numbers.len(), spacing, unit.as_str()), (0, Spacing::Named, ""));

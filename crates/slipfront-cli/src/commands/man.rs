@@ -1,6 +1,7 @@
 //! `slipfront man`: manual pages.
 
 use clap::{Args, Command};
+use slipfront_run::program::VERSION;
 
 use crate::failure::Failure;
 use crate::print::print;
@@ -33,6 +34,7 @@ impl ManCommand {
         }
         let mut page = Vec::new();
         clap_mangen::Man::new(command.clone())
+            .source(format!("slipfront {VERSION}"))
             .render(&mut page)
             .map_err(Failure::running)?;
         print(&String::from_utf8_lossy(&page))

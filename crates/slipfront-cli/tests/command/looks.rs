@@ -79,7 +79,7 @@ fn manual_pages_have_options_and_examples() {
         ),
         (
             "man study merge",
-            &[".TH slipfront-study-merge 1", "Unite the shards"],
+            &[".TH slipfront-study-merge 1  \"slipfront ", "Unite the shards"],
         ),
     ] {
         let page = workspace.succeed(line);

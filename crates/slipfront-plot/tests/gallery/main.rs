@@ -13,8 +13,9 @@ use std::path::Path;
 
 use slipfront_plot::{
     Bar, BarChart, BarGroup, FieldMap, FieldMaps, FrictionAxes, FrictionCurve, HeatAxis, HeatMap,
-    KineticLine, Picture, PictureError, Polar, Response, Responses, Shape, Sketch, Stroke, StrokeStyle, bars,
-    field_maps, friction, front, heat_map, polar, response, shapes, sketch, stress,
+    KineticLine, Picture, PictureError, PictureSize, Polar, Response, Responses, Shape, Sketch, Stroke,
+    StrokeStyle, bars, field_maps, friction, friction_of_size, front, heat_map, kymograph, polar, response,
+    shapes, sketch, stress,
 };
 
 use page::Page;
@@ -98,6 +99,8 @@ fn legend(page: &Page, count: usize) -> Vec<String> {
     let texts = page.texts.iter().map(|written| written.text.clone());
     let names: Vec<String> = texts
         .filter(|text| text.contains("run") || text.contains('\u{2026}'))
+        // The folder that all have in common stands above them.
+        .filter(|text| !text.starts_with("results/a_rather"))
         .collect();
     assert_eq!(names.len(), count, "{names:?}");
     names
@@ -122,11 +125,36 @@ fn overlays() {
     overlay("overlay-30", &numbered(30, &|k| format!("run {k}")));
     let measured = FrictionCurve {
         instants: Vec::new(),
+        is_record: true,
         ..at_speed("force.csv", 0.1)
     };
     check("overlay-measured", star(&[baseline(), measured]));
     let long = "results/a_rather_long_name_of_a_study_of_many_materials";
-    overlay("overlay-long", &numbered(4, &|k| format!("{long}/speed_0.{k}")));
+    // The folder that all names begin with stands above them, once.
+    let speeds: Vec<FrictionCurve> = (1..=4)
+        .map(|k| at_speed(&format!("{long}/speed_0.{k}"), 0.05 * f64::from(k)))
+        .collect();
+    let page = check("overlay-long", star(&speeds));
+    let texts: Vec<&str> = page.texts.iter().map(|written| written.text.as_str()).collect();
+    for k in 1..=4 {
+        assert!(texts.contains(&format!("speed_0.{k}").as_str()), "{texts:?}");
+    }
+    assert_eq!(
+        texts
+            .iter()
+            .filter(|text| text.starts_with("results/a_rather"))
+            .count(),
+        1
+    );
+    let small = PictureSize {
+        width_mm: Some(60.0),
+        height_mm: Some(120.0),
+        font_pt: Some(7.0),
+    };
+    check(
+        "overlay-size",
+        friction_of_size(&speeds, &FrictionAxes::default(), small),
+    );
     overlay(
         "overlay-equal",
         &numbered(4, &|k| format!("series_{k}/{long}/{long}")),
@@ -195,6 +223,7 @@ fn fronts_on_every_shape() {
         ("front-200x50", front_of(200, 50, UM, SMOOTH, 2)),
     ] {
         check(name, front(&map, &space_time));
+        check(&name.replace("front", "kymograph"), kymograph(&space_time));
     }
 }
 
