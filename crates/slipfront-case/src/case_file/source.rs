@@ -53,7 +53,7 @@ impl Source {
         }
     }
 
-    /// This text as that of the table `table` of a file that the user wrote, in which errors name their places.
+    /// Says that the text is that of the table `table` of a file which the user wrote: errors name their places there.
     pub fn of_table(mut self, whole: Source, table: &str) -> Self {
         let table = table.to_owned();
         self.whole = Some(Arc::new(Whole { source: whole, table }));

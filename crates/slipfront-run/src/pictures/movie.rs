@@ -37,9 +37,9 @@ pub enum MoviePace {
     /// About 16 s, with instants A-F shown longer.
     #[default]
     Usual,
-    /// This many seconds, with instants A-F shown longer.
+    /// Duration in seconds, with instants A-F shown longer.
     Seconds(f64),
-    /// This many pictures per second, each shown as long as the others.
+    /// Number of pictures per second, each shown as long as the others.
     PerSecond(f64),
 }
 

@@ -161,7 +161,7 @@ fn print_notes(plan: &Plan, folder: &StudyFolder) {
     }
 }
 
-/// What is printed of the answer of a study.
+/// Form in which the answer of a study is printed.
 pub(super) enum Shown {
     /// Tables for a reader.
     Tables,
