@@ -5,7 +5,7 @@ use crate::canvas::Canvas;
 use crate::frame::{LOWER_ROOM, left_room, left_side, lower_title, right_end};
 use crate::friction_curve::{FrictionAxes, FrictionCurve};
 use crate::geometry::{Area, CanvasPoint};
-use crate::style::{BLACK, MARGIN, SIZE_LABEL, TICK_LENGTH, WIDTH_LEADER};
+use crate::style::{BLACK, MARGIN, SIZE_LABEL, SIZE_TICK, TICK_LENGTH, WIDTH_LEADER};
 use crate::text::Text;
 use crate::ticks::{Direction, MAX_STEPS, Tick};
 
@@ -83,9 +83,12 @@ impl Panels {
 
     /// Draws ticks, numbers and titles.
     pub(crate) fn draw_axes(&self, canvas: &mut Canvas, axes: &FrictionAxes) {
-        let title = Text::math(&axes.friction, SIZE_LABEL);
+        // Between the panels there is room for the ends of both titles.
+        let room = |axis: &DrawnAxis| self.area(axis).height + GAP;
+        let words = axes.friction.split(" = ").next().unwrap_or_default();
+        let title = fitted([&axes.friction, &axes.friction, words], room(&self.mu));
         left_side(canvas, self.area(&self.mu), 0.0, &mu_ticks(&self.mu), &title);
-        let title = Text::plain("sliding N* (%)", SIZE_LABEL);
+        let title = fitted(["sliding N* (%)", "N* (%)", "N* (%)"], room(&self.sliding));
         left_side(
             canvas,
             self.area(&self.sliding),
@@ -98,7 +101,8 @@ impl Panels {
             canvas.tick_below((x, self.sliding.start), &text);
             canvas.line((x, foot), (x, foot + TICK_LENGTH), WIDTH_LEADER, BLACK);
         }
-        let title = Text::math(&axes.x, SIZE_LABEL);
+        let across = 2.0 * (canvas.width - self.area(&self.sliding).centre().0 - MARGIN);
+        let title = fitted([&axes.x, &axes.x, &axes.x], across);
         lower_title(canvas, self.area(&self.sliding), &title);
     }
 
@@ -108,6 +112,17 @@ impl Panels {
             canvas.frame(self.area(axis));
         }
     }
+}
+
+/// The first title that is no longer than `room`: the first in the size of a label, the second in that of a number, or else the
+/// third in that of a number.
+fn fitted(titles: [&str; 3], room: f64) -> Text {
+    let [label, number, last] = titles;
+    let sized = [(label, SIZE_LABEL), (number, SIZE_TICK)];
+    let mut texts = sized.iter().map(|(title, size)| Text::math(title, *size));
+    texts
+        .find(|text| text.width() <= room)
+        .unwrap_or_else(|| Text::math(last, SIZE_TICK))
 }
 
 fn x_ticks(x: &DrawnAxis) -> Vec<Tick> {

@@ -162,8 +162,11 @@ fn share_bar(space_time: &SpaceTime, height: f64) -> ColourBar {
 /// The marks of the map in words, those that it has.
 fn meaning_of_marks(map: &FrontMap, lines: &[Vec<(f64, f64)>]) -> String {
     let marks = [
-        (!map.nucleations.is_empty(), "dot: where slip began first"),
-        (map.nucleations.len() > 1, "circles: where it began"),
+        (
+            !map.nucleations.is_empty(),
+            "filled circle: first nucleation site",
+        ),
+        (map.nucleations.len() > 1, "circles: the others"),
         (!lines.is_empty(), "white lines: equal times"),
     ];
     let drawn: Vec<&str> = marks
@@ -481,8 +484,8 @@ mod tests {
         assert_eq!(share_bar(&shares, 100.0).range, [0.0, 0.25]);
         let written = |map: &FrontMap, words: &str| front(map, &shares).unwrap().svg.contains(words);
         for words in [
-            "dot: where slip began first",
-            "circles: where it began",
+            "filled circle: first nucleation site",
+            "circles: the others",
             "white lines: equal times",
         ] {
             assert!(written(&map, words), "{words}");
@@ -492,7 +495,7 @@ mod tests {
         assert!(!written(&plain, "circles"));
         plain.nucleations.clear();
         plain.first_slips.fill(3.0);
-        assert!(!written(&plain, "dot") && !written(&plain, "lines"));
+        assert!(!written(&plain, "filled circle") && !written(&plain, "lines"));
         shares.shares.fill(0.0);
         assert_eq!(share_bar(&shares, 100.0).range, [0.0, 1.0]);
         let svg = kymograph(&shares).unwrap().svg;

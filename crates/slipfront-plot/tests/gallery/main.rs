@@ -146,15 +146,18 @@ fn overlays() {
             .count(),
         1
     );
-    let small = PictureSize {
-        width_mm: Some(60.0),
-        height_mm: Some(120.0),
-        font_pt: Some(7.0),
-    };
-    check(
-        "overlay-size",
-        friction_of_size(&speeds, &FrictionAxes::default(), small),
-    );
+    for (name, [width, height, font]) in [
+        ("overlay-narrow", [60.0, 120.0, 7.0]),
+        ("overlay-wide", [120.0, 70.0, 11.0]),
+        ("overlay-smallest", [43.0, 48.0, 8.0]),
+    ] {
+        let size = PictureSize {
+            width_mm: Some(width),
+            height_mm: Some(height),
+            font_pt: Some(font),
+        };
+        check(name, friction_of_size(&speeds, &FrictionAxes::default(), size));
+    }
     overlay(
         "overlay-equal",
         &numbered(4, &|k| format!("series_{k}/{long}/{long}")),
