@@ -54,7 +54,7 @@ pub fn friction_of_size(
     axes: &FrictionAxes,
     size: PictureSize,
 ) -> Result<Picture, PictureError> {
-    size.check(COLUMN_WIDTH)?;
+    size.check_width(COLUMN_WIDTH)?;
     if curves.is_empty() {
         return Err(PictureError::Nothing("curve"));
     }
@@ -80,6 +80,7 @@ pub fn friction_of_size(
     let names: Vec<_> = own.into_iter().zip(samples).collect();
     let legend = Legend::of(folder, &names, panels.x.start, panels.x.end);
     let above = if curves.len() > 1 { legend.height } else { ABOVE };
+    size.check_height(above)?;
     let panels = match size.height() {
         Some(height) => Panels::of(curves, width, Some(height - above)),
         None => panels,

@@ -5,8 +5,10 @@ use crate::style::MM;
 
 /// Size of labels unless another is asked for, pt.
 const LABEL_PT: f64 = 8.0;
-/// Least width and height of a picture, in units of letters of the usual size: less leaves no room for a curve.
-const MIN_SIDES: [f64; 2] = [500.0, 560.0];
+/// Least width of a picture, and least height below its legend, in units of letters of the usual size: less leaves no room for a
+/// curve.
+const MIN_WIDTH: f64 = 500.0;
+const MIN_HEIGHT: f64 = 330.0;
 
 /// Size of a picture and of its letters; what is not given is as usual. Lines, marks and numbers grow and shrink with the letters.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -44,21 +46,30 @@ impl PictureSize {
         Some(self.height_mm? * MM / self.scale())
     }
 
-    /// Refuses a size in which letters leave no room for curves.
+    /// Refuses a width in which letters leave no room for curves.
     ///
-    /// # Errors [`PictureError::TooSmall`], with the least size for these letters.
-    pub(crate) fn check(self, usual: f64) -> Result<(), PictureError> {
-        let sides = [Some(self.width(usual)), self.height()];
-        for ((side, least), name) in sides.into_iter().zip(MIN_SIDES).zip(["width", "height"]) {
-            if let Some(side) = side.filter(|side| !(*side >= least)) {
-                return Err(PictureError::TooSmall {
-                    side: name,
-                    mm: (side * self.scale() / MM).round(),
-                    least_mm: (least * self.scale() / MM).ceil(),
-                    font_pt: self.font_pt.unwrap_or(LABEL_PT),
-                });
-            }
+    /// # Errors [`PictureError::TooSmall`], with the least width for these letters.
+    pub(crate) fn check_width(self, usual: f64) -> Result<(), PictureError> {
+        self.expect("width", self.width(usual), MIN_WIDTH)
+    }
+
+    /// Refuses a height in which a legend of height `above` leaves no room for curves.
+    ///
+    /// # Errors [`PictureError::TooSmall`], with the least height for these letters.
+    pub(crate) fn check_height(self, above: f64) -> Result<(), PictureError> {
+        let height = self.height().unwrap_or(f64::INFINITY);
+        self.expect("height", height, above + MIN_HEIGHT)
+    }
+
+    fn expect(self, side: &'static str, found: f64, least: f64) -> Result<(), PictureError> {
+        if found >= least {
+            return Ok(());
         }
-        Ok(())
+        Err(PictureError::TooSmall {
+            side,
+            mm: (found * self.scale() / MM).round(),
+            least_mm: (least * self.scale() / MM).ceil(),
+            font_pt: self.font_pt.unwrap_or(LABEL_PT),
+        })
     }
 }

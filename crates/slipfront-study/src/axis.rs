@@ -134,7 +134,8 @@ impl Axis {
         let texts = lists.first().filter(|(key, _)| !names_a_file(key));
         let mut quantities = texts.iter().flat_map(|(_, values)| values).filter_map(quantity);
         let first = quantities.next();
-        let first = first.map(|first| in_plain_numbers(first, &lists[0].1));
+        let prefixed = first.as_ref().and_then(|first| with_prefix(first, &lists[0].1));
+        let first = prefixed.as_ref().and_then(quantity).or(first);
         let number = |value| match &first {
             Some(first) => quantity(value)?.in_unit_of(first),
             None => number(value),
@@ -304,21 +305,20 @@ fn variant((variant, keys): (String, Value)) -> Result<Level, String> {
 /// Sizes of numbers that an axis shows without a power of ten.
 const PLAIN_NUMBERS: std::ops::Range<f64> = 1e-4..1e6;
 
-/// A quantity in whose unit these values are plain numbers: the first of them, or one with an SI prefix before its unit.
-fn in_plain_numbers(first: WrittenQuantity, values: &[Value]) -> WrittenQuantity {
+/// A quantity of one unit, that of the first of these values with an SI prefix, where the values would not be plain numbers without.
+fn with_prefix(first: &WrittenQuantity, values: &[Value]) -> Option<Value> {
     let numbers = values
         .iter()
-        .filter_map(|value| quantity(value)?.in_unit_of(&first));
+        .filter_map(|value| quantity(value)?.in_unit_of(first));
     let largest = numbers.fold(0.0, |largest: f64, number| largest.max(number.abs()));
     if largest == 0.0 || PLAIN_NUMBERS.contains(&largest) {
-        return first;
+        return None;
     }
-    // A unit that has a prefix takes no other.
     let (_, prefix) = si_prefix(largest);
-    let other = quantity(&Value::String(format!("1 {prefix}{}", first.unit())));
-    other
-        .filter(|other| other.in_unit_of(&first).is_some())
-        .unwrap_or(first)
+    let one = Value::String(format!("1 {prefix}{}", first.unit()));
+    // A unit that has a prefix takes no other.
+    quantity(&one)?.in_unit_of(first)?;
+    Some(one)
 }
 
 /// The quantity of a level, if its value has a unit; for a pair of equal quantities the one.

@@ -158,6 +158,19 @@ fn overlays() {
         };
         check(name, friction_of_size(&speeds, &FrictionAxes::default(), size));
     }
+    // A legend of thirty names takes the whole height.
+    let low = PictureSize {
+        height_mm: Some(80.0),
+        ..PictureSize::default()
+    };
+    let many: Vec<FrictionCurve> = (0..30).map(|k| at_speed(&format!("run {k}"), 0.1)).collect();
+    let said = friction_of_size(&many, &FrictionAxes::default(), low)
+        .unwrap_err()
+        .to_string();
+    assert!(
+        said.starts_with("a height of 80 mm leaves no room for the curves beside letters of 8 pt"),
+        "{said}"
+    );
     overlay(
         "overlay-equal",
         &numbered(4, &|k| format!("series_{k}/{long}/{long}")),
