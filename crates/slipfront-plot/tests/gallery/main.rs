@@ -160,7 +160,7 @@ fn overlays() {
     }
     // A legend of thirty names takes the whole height.
     let low = PictureSize {
-        height_mm: Some(80.0),
+        height_mm: Some(50.0),
         ..PictureSize::default()
     };
     let many: Vec<FrictionCurve> = (0..30).map(|k| at_speed(&format!("run {k}"), 0.1)).collect();
@@ -168,7 +168,7 @@ fn overlays() {
         .unwrap_err()
         .to_string();
     assert!(
-        said.starts_with("a height of 80 mm leaves no room for the curves beside letters of 8 pt"),
+        said.starts_with("a height of 50 mm leaves no room for the curves beside letters of 8 pt"),
         "{said}"
     );
     overlay(

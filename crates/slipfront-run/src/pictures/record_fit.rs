@@ -147,7 +147,8 @@ mod tests {
         let (xs, ys) = curve();
         let (at, of) = record(0.1, 0.8, 0.37);
         let found = fitting_shifts((&at, &of), (&xs, &ys));
-        assert!((found[0].shift - 0.37).abs() < 1e-6, "{found:?}");
+        // A tenth of the distance of the points of the curve, between which it is straight.
+        assert!((found[0].shift - 0.37).abs() < 1e-4, "{found:?}");
         assert_eq!(rival(found[0], &found, 0.7), None);
     }
 
