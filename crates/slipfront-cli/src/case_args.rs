@@ -4,17 +4,22 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use slipfront_case::case::Case;
-use slipfront_case::case_file::CaseFile;
+use slipfront_case::case_file::{CaseFile, read_text_from};
 
 use crate::failure::Failure;
 use crate::make_case::make_case;
 use crate::ranks::CommandRanks;
 use crate::signals::Signals;
 
+/// Name of the case that is run where none is named.
+const BASELINE: &str = "baseline";
+/// Name of standard input in messages.
+const STDIN: &str = "standard input";
+
 /// The case file and the changes of it that the command line asks for.
 #[derive(Args)]
 pub(crate) struct CaseArgs {
-    /// Case file; without one, the embedded baseline: Fig. 3 of the paper
+    /// Case file, or - for standard input; without one, the embedded baseline: Fig. 3 of the paper
     #[arg(value_name = "CASE.toml")]
     case: Option<PathBuf>,
     /// Sets a key of the case file, such as drive.v_star=0.05 or texture.0.coverage=5; repeatable
@@ -35,13 +40,29 @@ impl CaseArgs {
     pub(crate) fn load(self, ranks: &CommandRanks, signals: &Signals, quiet: bool) -> Result<Case, Failure> {
         let mut overrides = self.overrides;
         overrides.extend(self.seed.map(|seed| format!("friction.seed={seed}")));
-        make_case(ranks, signals, quiet, |watch, ranks| match self.case {
-            Some(path) => Case::load(&path, &overrides, watch, ranks),
-            None => {
-                let (text, name) = (include_str!("baseline.toml"), "baseline");
-                let file = ranks.agree(CaseFile::parse(text, name, &overrides))?;
-                Case::to_run(file, name, Path::new(""), watch, ranks)
+        // Without a file every key is at its default: errors name keys and `--set`, and no line that the user has not written.
+        let (text, file, name) = match &self.case {
+            None => (String::new(), BASELINE, BASELINE),
+            Some(path) if path == Path::new("-") => (read_stdin(ranks)?, STDIN, "stdin"),
+            Some(path) => {
+                return make_case(ranks, signals, quiet, |watch, ranks| {
+                    Case::load(path, &overrides, watch, ranks)
+                });
             }
+        };
+        make_case(ranks, signals, quiet, |watch, ranks| {
+            let file = ranks.agree(CaseFile::parse(&text, file, &overrides))?;
+            Case::to_run(file, name, Path::new(""), watch, ranks)
         })
     }
+}
+
+/// Reads the text of a case from standard input, which the processes that share a lattice do not share.
+fn read_stdin(ranks: &CommandRanks) -> Result<String, Failure> {
+    if ranks.size() > 1 {
+        return Err(Failure::input(anyhow::anyhow!(
+            "ranks share no standard input: name the file of the case in the place of -"
+        )));
+    }
+    read_text_from(std::io::stdin().lock(), Path::new(STDIN)).map_err(Failure::input)
 }

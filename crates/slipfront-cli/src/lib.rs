@@ -11,6 +11,7 @@ mod browser;
 mod case_args;
 mod checkpoint_timer;
 mod commands;
+mod divided_override;
 mod failure;
 mod make_case;
 mod print;
@@ -35,6 +36,7 @@ use slipfront_run::program::this_build;
 use slipfront_study::StudyFile;
 
 use crate::commands::run::{CHECKPOINTS_HELP, RunCommand};
+use crate::divided_override::divided_override;
 use crate::failure::{Failure, report};
 use crate::print::{expect_printed, print};
 use crate::print_stderr::silence;
@@ -84,6 +86,7 @@ enum Command {
     Lab(commands::lab::LabCommand),
     Verify(commands::verify::VerifyCommand),
     Completions(commands::completions::CompletionsCommand),
+    Man(commands::man::ManCommand),
     Licences(commands::licences::LicencesCommand),
 }
 
@@ -121,6 +124,10 @@ Examples:
 ///
 /// The command needs a process of its own: signals are caught and the number of threads is set for the whole process, once.
 pub fn main(args: impl IntoIterator<Item = OsString>) -> u8 {
+    let args: Vec<OsString> = args.into_iter().collect();
+    if let Some(sentence) = divided_override(&args) {
+        return Failure::input(anyhow::anyhow!(sentence)).report();
+    }
     let command = match Cli::try_parse_from(args) {
         Ok(cli) => cli.command,
         Err(error) => {
@@ -146,6 +153,7 @@ pub fn main(args: impl IntoIterator<Item = OsString>) -> u8 {
             Command::Lab(lab) => lab.execute(),
             Command::Verify(verify) => verify.execute(),
             Command::Completions(completions) => completions.execute(Cli::command()),
+            Command::Man(man) => man.execute(Cli::command()),
             Command::Licences(licences) => licences.execute(),
         };
         done.map_err(RankFailure::from)
@@ -194,6 +202,10 @@ impl Parsed {
 
 /// Request of the arguments; wrong arguments of one rank are a failure of all.
 fn parse_on_rank(args: impl IntoIterator<Item = OsString>) -> Result<Parsed, Failure> {
+    let args: Vec<OsString> = args.into_iter().collect();
+    if let Some(sentence) = divided_override(&args) {
+        return Err(Failure::input(anyhow::anyhow!(sentence)));
+    }
     match RanksCli::try_parse_from(args) {
         Ok(cli) => Ok(match cli.command {
             RanksCommand::Run(run) => Parsed::Run(Box::new(run)),

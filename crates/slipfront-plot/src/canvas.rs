@@ -8,6 +8,8 @@ use crate::text::{Text, width};
 pub(crate) struct Canvas {
     pub(crate) width: f64,
     pub(crate) height: f64,
+    /// Factor by which the picture is larger than its canvas.
+    pub(crate) scale: f64,
     /// Images, which lie below everything else.
     pub(crate) images: Vec<Image>,
     pub(crate) elements: Vec<Element>,
@@ -51,9 +53,15 @@ impl Canvas {
         Self {
             width: width.round(),
             height: height.round(),
+            scale: 1.0,
             images: Vec::new(),
             elements: Vec::new(),
         }
+    }
+
+    /// Width and height in pixels of the PNG.
+    pub(crate) fn pixels(&self) -> [u32; 2] {
+        [self.width, self.height].map(|side| (self.scale * side).round() as u32)
     }
 
     fn add(&mut self, primitive: Primitive, colour: Rgb, opacity: f64) {
@@ -122,10 +130,15 @@ impl Canvas {
         self.polyline(corners.to_vec(), WIDTH_FRAME, BLACK);
     }
 
+    /// Adds a disc.
+    pub(crate) fn disc(&mut self, centre: CanvasPoint, radius: f64, colour: Rgb) {
+        self.add(Primitive::Disc { centre, radius }, colour, 1.0);
+    }
+
     /// Adds a disc with a thin white rim, which parts it from the curve below.
     pub(crate) fn dot(&mut self, centre: CanvasPoint, radius: f64, colour: Rgb) {
         for (radius, colour) in [(radius + 1.5, WHITE), (radius, colour)] {
-            self.add(Primitive::Disc { centre, radius }, colour, 1.0);
+            self.disc(centre, radius, colour);
         }
     }
 

@@ -9,12 +9,16 @@ use crate::label_placement::{Placer, around};
 use crate::legend::{Legend, LegendSample};
 use crate::picture::{Picture, PictureError, check_columns};
 use crate::series::segments;
+use crate::short_names::without_common_folder;
+use crate::size::PictureSize;
 use crate::style::{
     BLACK, COLUMN_WIDTH, CURVES, CurveStyle, GREY, Rgb, SIZE_LABEL, WIDTH_LEADER, WIDTH_MARK, curve_style,
 };
 use crate::text::{Text, number};
 
 const DOT: f64 = 7.0;
+/// Radius of a point of a record.
+const POINT: f64 = 3.0;
 /// Height above the panels of one curve for the names written there.
 const ABOVE: f64 = 42.0;
 /// Distance between two names above the panels.
@@ -37,6 +41,20 @@ pub const FRICTION_BYTES: usize = 6 << 20;
 ///
 /// No curve, or a curve whose columns differ in length.
 pub fn friction(curves: &[FrictionCurve], axes: &FrictionAxes) -> Result<Picture, PictureError> {
+    friction_of_size(curves, axes, PictureSize::default())
+}
+
+/// Draws what [`friction`] draws, in this size.
+///
+/// # Errors
+///
+/// Errors of [`friction`], and a size that leaves no room for the curves.
+pub fn friction_of_size(
+    curves: &[FrictionCurve],
+    axes: &FrictionAxes,
+    size: PictureSize,
+) -> Result<Picture, PictureError> {
+    size.check_width(COLUMN_WIDTH)?;
     if curves.is_empty() {
         return Err(PictureError::Nothing("curve"));
     }
@@ -47,15 +65,31 @@ pub fn friction(curves: &[FrictionCurve], axes: &FrictionAxes) -> Result<Picture
         ];
         check_columns(&curve.label, ("abscissae", curve.x.len()), &columns)?;
     }
-    let panels = Panels::of(curves);
-    let named = curves.iter().filter(|_| curves.len() > 1);
-    let names: Vec<_> = named
-        .map(|curve| (curve.label.as_str(), LegendSample::Line))
-        .collect();
-    let legend = Legend::of("", &names, panels.x.start, panels.x.end);
-    let panels = panels.lowered(if curves.len() > 1 { legend.height } else { ABOVE });
+    let width = size.width(COLUMN_WIDTH);
+    let panels = Panels::of(curves, width, None);
+    let named: Vec<&FrictionCurve> = curves.iter().filter(|_| curves.len() > 1).collect();
+    let labels: Vec<&str> = named.iter().map(|curve| curve.label.as_str()).collect();
+    let (folder, own) = without_common_folder(&labels);
+    let samples = named.iter().map(|curve| {
+        if curve.is_record {
+            LegendSample::Points
+        } else {
+            LegendSample::Line
+        }
+    });
+    let names: Vec<_> = own.into_iter().zip(samples).collect();
+    let legend = Legend::of(folder, &names, panels.x.start, panels.x.end);
+    let above = if curves.len() > 1 { legend.height } else { ABOVE };
+    size.check_height(above)?;
+    let panels = match size.height() {
+        Some(height) => Panels::of(curves, width, Some(height - above)),
+        None => panels,
+    };
+    let panels = panels.lowered(above);
+    let mut canvas = Canvas::new(width, panels.bottom());
+    canvas.scale = size.scale();
     let mut drawing = FrictionDrawing {
-        canvas: Canvas::new(COLUMN_WIDTH, panels.bottom()),
+        canvas,
         panels,
         axes,
         placer: Placer::new(panels.area(&panels.mu)),
@@ -142,7 +176,11 @@ impl FrictionDrawing<'_> {
 
     /// Draws several curves, with their peaks.
     fn draw_many(&mut self, curves: &[FrictionCurve]) {
-        for (index, curve) in curves.iter().enumerate() {
+        // Points of records first: they hide no curve.
+        for (index, curve) in curves.iter().enumerate().filter(|(_, curve)| curve.is_record) {
+            self.draw_points(curve, curve_style(index).colour);
+        }
+        for (index, curve) in curves.iter().enumerate().filter(|(_, curve)| !curve.is_record) {
             self.draw_curve(curve, curve_style(index));
         }
         // Peaks last: no curve may hide one.
@@ -192,6 +230,14 @@ impl FrictionDrawing<'_> {
                 [point] => self.canvas.dot(point, 0.6 * DOT, style.colour),
                 _ => self.canvas.curve(segment, style),
             }
+        }
+    }
+
+    /// Draws the points of a record.
+    fn draw_points(&mut self, curve: &FrictionCurve, colour: Rgb) {
+        let Panels { x: across, mu, .. } = &self.panels;
+        for point in segments(&curve.x, &curve.friction, across, mu).concat() {
+            self.canvas.disc(point, POINT, colour);
         }
     }
 
@@ -317,6 +363,7 @@ mod tests {
                     friction: mu(t),
                 })
                 .to_vec(),
+            ..FrictionCurve::default()
         }
     }
 

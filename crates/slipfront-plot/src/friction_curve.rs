@@ -50,6 +50,9 @@ pub struct FrictionCurve {
     pub kinetic: Option<KineticLine>,
     /// Instants with letters.
     pub instants: Vec<Instant>,
+    /// Whether the curve is a measured record, whose points are drawn below the curves.
+    #[serde(default)]
+    pub is_record: bool,
 }
 
 /// Kinetic friction: its mean over a window.

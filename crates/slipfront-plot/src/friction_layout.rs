@@ -5,7 +5,7 @@ use crate::canvas::Canvas;
 use crate::frame::{LOWER_ROOM, left_room, left_side, lower_title, right_end};
 use crate::friction_curve::{FrictionAxes, FrictionCurve};
 use crate::geometry::{Area, CanvasPoint};
-use crate::style::{BLACK, COLUMN_WIDTH, MARGIN, SIZE_LABEL, TICK_LENGTH, WIDTH_LEADER};
+use crate::style::{BLACK, MARGIN, SIZE_LABEL, SIZE_TICK, TICK_LENGTH, WIDTH_LEADER};
 use crate::text::Text;
 use crate::ticks::{Direction, MAX_STEPS, Tick};
 
@@ -21,8 +21,12 @@ pub(crate) struct Panels {
 }
 
 impl Panels {
-    /// Panels that hold all curves and their marks, at the top of the picture.
-    pub(crate) fn of(curves: &[FrictionCurve]) -> Self {
+    /// Panels that hold all curves and their marks, at the top of a picture of this width; with the room below them they are as
+    /// high as the given height, or as usual.
+    pub(crate) fn of(curves: &[FrictionCurve], width: f64, height: Option<f64>) -> Self {
+        // The panels share the height in the usual proportion.
+        let usual = HEIGHT_FRICTION + HEIGHT_SLIDING;
+        let larger = height.map_or(1.0, |height| (height - MARGIN - GAP - LOWER_ROOM) / usual);
         let (from, to) = range(curves.iter().flat_map(|curve| curve.x.iter().copied()));
         let values = curves.iter().flat_map(|curve| {
             let marks = [
@@ -37,16 +41,17 @@ impl Panels {
             lo = 0.0;
         }
         let room = 0.1 * (hi - lo);
-        let mu_bottom = MARGIN + HEIGHT_FRICTION;
+        let mu_bottom = MARGIN + larger * HEIGHT_FRICTION;
         let sliding_top = mu_bottom + GAP;
         let mu =
             DrawnAxis::linear(if lo == 0.0 { lo } else { lo - room }, hi + room).placed(mu_bottom, MARGIN);
-        let sliding = DrawnAxis::linear(0.0, 100.0).placed(sliding_top + HEIGHT_SLIDING, sliding_top);
+        let sliding =
+            DrawnAxis::linear(0.0, 100.0).placed(sliding_top + larger * HEIGHT_SLIDING, sliding_top);
         let left = left_room(&[mu_ticks(&mu), sliding_ticks(&sliding)].concat());
         // The last number on the axis may stand half beyond its end.
-        let right = COLUMN_WIDTH.round() - 28.0;
+        let right = width.round() - 28.0;
         let x = DrawnAxis::linear(from, to).placed(left, right);
-        let x = x.placed(left, right_end(&x_ticks(&x), left, right, COLUMN_WIDTH));
+        let x = x.placed(left, right_end(&x_ticks(&x), left, right, width));
         Self { x, mu, sliding }
     }
 
@@ -78,9 +83,12 @@ impl Panels {
 
     /// Draws ticks, numbers and titles.
     pub(crate) fn draw_axes(&self, canvas: &mut Canvas, axes: &FrictionAxes) {
-        let title = Text::math(&axes.friction, SIZE_LABEL);
+        // Between the panels there is room for the ends of both titles.
+        let room = |axis: &DrawnAxis| self.area(axis).height + GAP;
+        let words = axes.friction.split(" = ").next().unwrap_or_default();
+        let title = fitted([&axes.friction, &axes.friction, words], room(&self.mu));
         left_side(canvas, self.area(&self.mu), 0.0, &mu_ticks(&self.mu), &title);
-        let title = Text::plain("sliding N* (%)", SIZE_LABEL);
+        let title = fitted(["sliding N* (%)", "N* (%)", "N* (%)"], room(&self.sliding));
         left_side(
             canvas,
             self.area(&self.sliding),
@@ -93,7 +101,8 @@ impl Panels {
             canvas.tick_below((x, self.sliding.start), &text);
             canvas.line((x, foot), (x, foot + TICK_LENGTH), WIDTH_LEADER, BLACK);
         }
-        let title = Text::math(&axes.x, SIZE_LABEL);
+        let across = 2.0 * (canvas.width - self.area(&self.sliding).centre().0 - MARGIN);
+        let title = fitted([&axes.x, &axes.x, &axes.x], across);
         lower_title(canvas, self.area(&self.sliding), &title);
     }
 
@@ -103,6 +112,17 @@ impl Panels {
             canvas.frame(self.area(axis));
         }
     }
+}
+
+/// The first title that is no longer than `room`: the first in the size of a label, the second in that of a number, or else the
+/// third in that of a number.
+fn fitted(titles: [&str; 3], room: f64) -> Text {
+    let [label, number, last] = titles;
+    let sized = [(label, SIZE_LABEL), (number, SIZE_TICK)];
+    let mut texts = sized.iter().map(|(title, size)| Text::math(title, *size));
+    texts
+        .find(|text| text.width() <= room)
+        .unwrap_or_else(|| Text::math(last, SIZE_TICK))
 }
 
 fn x_ticks(x: &DrawnAxis) -> Vec<Tick> {
@@ -120,6 +140,7 @@ fn sliding_ticks(sliding: &DrawnAxis) -> Vec<Tick> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::style::COLUMN_WIDTH;
 
     #[test]
     fn no_number_on_the_horizontal_axis_is_cut_off() {
@@ -130,7 +151,7 @@ mod tests {
                 sliding_percent: vec![0.0, 100.0],
                 ..FrictionCurve::default()
             };
-            let panels = Panels::of(&[curve]);
+            let panels = Panels::of(&[curve], COLUMN_WIDTH, None);
             for (x, text) in x_ticks(&panels.x) {
                 assert!(x + 0.5 * text.width() <= COLUMN_WIDTH, "{end}");
             }

@@ -12,6 +12,7 @@ use crate::geometry::Area;
 use crate::lattice_map::{
     Cells, MARK, MIN_RATIO, block_count, check_block_size, check_length, circle, place, unit_of,
 };
+use crate::note::Note;
 use crate::picture::{Picture, PictureError};
 use crate::style::{MARGIN, RADIUS_MARKER, TEXT_WIDTH, WHITE, WIDTH_FRAME};
 use crate::text::Text;
@@ -28,6 +29,8 @@ const MAX_RATIO: f64 = 3.0;
 const MIN_RATIO_ABOVE: f64 = 1.0 / 12.0;
 /// Height of the other panel below a map.
 const HEIGHT_BELOW: f64 = 340.0;
+/// Height of the other panel in a picture of its own.
+const HEIGHT_ALONE: f64 = 900.0;
 /// Largest number of steps between contours.
 const CONTOUR_STEPS: usize = 8;
 /// Share of the map over whose cells means are taken around each cell for the contours.
@@ -95,18 +98,86 @@ fn is_above(ratio: f64) -> bool {
 pub fn front(map: &FrontMap, space_time: &SpaceTime) -> Result<Picture, PictureError> {
     check(map, space_time)?;
     let layout = FrontLayout::of(map, space_time);
-    let mut canvas = Canvas::new(layout.width, layout.height);
-    draw_map(&mut canvas, map, &layout);
-    draw_space_time(&mut canvas, space_time, &layout);
+    let lines = contour_lines(map, layout.map.bar.range);
+    let note = Note::of(&meaning_of_marks(map, &lines), 0.5 * layout.width, layout.width);
+    let mut canvas = Canvas::new(layout.width, layout.height + note.height);
+    draw_map(&mut canvas, map, &layout, lines);
+    let [.., place] = &layout.titles;
+    draw_space_time(&mut canvas, space_time, &layout.space_time, place);
+    note.draw(&mut canvas);
     canvas.finish()
 }
 
-fn check(map: &FrontMap, space_time: &SpaceTime) -> Result<(), PictureError> {
-    block_count(map.nx, map.ny)?;
-    check_block_size(map.block_size)?;
-    let [columns, rows] = CellMeans::cells(map.nx, map.ny);
-    check_length("the texture", map.textured.len(), columns * rows)?;
-    check_length("the map of first slips", map.first_slips.len(), columns * rows)?;
+/// Largest number of bytes while [`kymograph`] draws, in pixels and primitives.
+pub const KYMOGRAPH_BYTES: usize = 12 << 20;
+
+/// Draws the share of the sliding blocks against place and time alone, as wide as a journal's text (175 mm).
+///
+/// # Errors
+///
+/// No instant, or an array of the wrong length.
+pub fn kymograph(space_time: &SpaceTime) -> Result<Picture, PictureError> {
+    check_space_time(space_time)?;
+    let (axes, place) = space_time_axes(space_time);
+    let left = left_room(&axes[1].placed(HEIGHT_ALONE, 0.0).ticks(Direction::Y, 5));
+    let bar = share_bar(space_time, HEIGHT_ALONE);
+    let top = TOP + bar.upper_room();
+    let width = (TEXT_WIDTH - left - GAP - bar.room() - MARGIN).round();
+    let area = Area::new(left, top, width, HEIGHT_ALONE);
+    let panel = FrontPanel {
+        area,
+        edge: 0.0,
+        axes,
+        bar,
+    };
+    let mut canvas = Canvas::new(panel.right() + MARGIN, area.bottom() + LOWER_ROOM);
+    draw_space_time(&mut canvas, space_time, &panel, &place);
+    canvas.finish()
+}
+
+/// The axes of places and times, and the title of the first.
+fn space_time_axes(space_time: &SpaceTime) -> ([DrawnAxis; 2], String) {
+    let [from, to] = space_time.places;
+    let (unit, factor) = unit_of(from.abs().max(to.abs()));
+    let around = |[from, to]: [f64; 2]| {
+        let (lo, hi) = range([from, to].into_iter());
+        DrawnAxis::linear(lo, hi)
+    };
+    let axes = [around([from * factor, to * factor]), around(space_time.times)];
+    (axes, format!("{} ({unit})", space_time.place))
+}
+
+/// The colour bar of the shares, which ends at the largest of them.
+fn share_bar(space_time: &SpaceTime, height: f64) -> ColourBar {
+    let shares = space_time
+        .shares
+        .iter()
+        .copied()
+        .filter(|share| share.is_finite());
+    let largest = f64::from(shares.fold(0.0, f32::max));
+    let largest = if largest > 0.0 { largest } else { 1.0 };
+    ColourBar::labelled("share that slides", [0.0, largest], height)
+}
+
+/// The marks of the map in words, those that it has.
+fn meaning_of_marks(map: &FrontMap, lines: &[Vec<(f64, f64)>]) -> String {
+    let marks = [
+        (
+            !map.nucleations.is_empty(),
+            "filled circle: first nucleation site",
+        ),
+        (map.nucleations.len() > 1, "circles: the others"),
+        (!lines.is_empty(), "white lines: equal times"),
+    ];
+    let drawn: Vec<&str> = marks
+        .iter()
+        .filter(|(is_drawn, _)| *is_drawn)
+        .map(|(_, words)| *words)
+        .collect();
+    drawn.join("; ")
+}
+
+fn check_space_time(space_time: &SpaceTime) -> Result<(), PictureError> {
     let rows = space_time
         .shares
         .len()
@@ -117,6 +188,15 @@ fn check(map: &FrontMap, space_time: &SpaceTime) -> Result<(), PictureError> {
     }
     let expected = rows * space_time.columns;
     check_length("what slides", space_time.shares.len(), expected)
+}
+
+fn check(map: &FrontMap, space_time: &SpaceTime) -> Result<(), PictureError> {
+    block_count(map.nx, map.ny)?;
+    check_block_size(map.block_size)?;
+    let [columns, rows] = CellMeans::cells(map.nx, map.ny);
+    check_length("the texture", map.textured.len(), columns * rows)?;
+    check_length("the map of first slips", map.first_slips.len(), columns * rows)?;
+    check_space_time(space_time)
 }
 
 /// A panel with its axes and its colour bar.
@@ -177,16 +257,10 @@ impl FrontLayout {
         let lengths = [map.nx, map.ny].map(|count| count as f64 * map.block_size);
         let units = lengths.map(unit_of);
         let sides = [0, 1].map(|axis| DrawnAxis::linear(0.0, lengths[axis] * units[axis].1));
-        let [from, to] = space_time.places;
-        let (place_unit, factor) = unit_of(from.abs().max(to.abs()));
-        let around = |[from, to]: [f64; 2]| {
-            let (lo, hi) = range([from, to].into_iter());
-            DrawnAxis::linear(lo, hi)
-        };
-        let axes = [around([from * factor, to * factor]), around(space_time.times)];
+        let (axes, place) = space_time_axes(space_time);
         let first_slips: [f64; 2] = range(quantiles(&map.first_slips).into_iter()).into();
         let map_bar = |height| ColourBar::labelled("first slip t*", first_slips, height);
-        let bar = |height| ColourBar::labelled("share that slides", [0.0, 1.0], height);
+        let bar = |height| share_bar(space_time, height);
         let left = |axis: DrawnAxis| left_room(&axis.placed(MAX_SIDE, 0.0).ticks(Direction::Y, 5));
         let [map_left, left] = [left(sides[1]), left(axes[1])];
         let panel = |area: Area, room: f64, axes: [DrawnAxis; 2], bar: ColourBar| FrontPanel {
@@ -197,9 +271,9 @@ impl FrontLayout {
         };
         let ratio = lengths[1] / lengths[0];
         let titles = [
-            ("x", units[0].0),
-            ("y", units[1].0),
-            (&space_time.place, place_unit),
+            format!("x ({})", units[0].0),
+            format!("y ({})", units[1].0),
+            place,
         ];
         let (map, space_time) = if is_above(ratio) {
             let left = map_left.max(left);
@@ -235,7 +309,7 @@ impl FrontLayout {
             height: lowest + LOWER_ROOM,
             map,
             space_time,
-            titles: titles.map(|(title, unit)| format!("{title} ({unit})")),
+            titles,
         }
     }
 }
@@ -251,18 +325,25 @@ fn quantiles(times: &[f32]) -> [f64; 2] {
     [at(0.0), at(0.98)]
 }
 
-fn draw_map(canvas: &mut Canvas, map: &FrontMap, layout: &FrontLayout) {
-    let (area, panel) = (layout.map.area, &layout.map);
+/// Lines of equal first slips in a map whose colours have this range, as shares of its sides.
+fn contour_lines(map: &FrontMap, range: [f64; 2]) -> Vec<Vec<(f64, f64)>> {
     let [columns, rows] = CellMeans::cells(map.nx, map.ny);
-    Cells::of(map.nx, map.ny, &map.textured).draw(canvas, area, &map.first_slips, panel.bar.range);
     let reach = 1 + columns.max(rows) / SMOOTHED_SHARE;
     let means = smoothed(&map.first_slips, columns, reach);
-    for level in levels(panel.bar.range, &map.first_slips, &means, columns.min(rows)) {
-        for line in contours(&means, columns, level) {
-            let at = |(x, y): (f64, f64)| ((x + 0.5) / columns as f64, (y + 0.5) / rows as f64);
-            let points = line.into_iter().map(|point| place(area, at(point)));
-            canvas.polyline(points.collect(), WIDTH_FRAME, WHITE);
-        }
+    let at = |(x, y): (f64, f64)| ((x + 0.5) / columns as f64, (y + 0.5) / rows as f64);
+    levels(range, &map.first_slips, &means, columns.min(rows))
+        .into_iter()
+        .flat_map(|level| contours(&means, columns, level))
+        .map(|line| line.into_iter().map(at).collect())
+        .collect()
+}
+
+fn draw_map(canvas: &mut Canvas, map: &FrontMap, layout: &FrontLayout, lines: Vec<Vec<(f64, f64)>>) {
+    let (area, panel) = (layout.map.area, &layout.map);
+    Cells::of(map.nx, map.ny, &map.textured).draw(canvas, area, &map.first_slips, panel.bar.range);
+    for line in lines {
+        let points = line.into_iter().map(|point| place(area, point));
+        canvas.polyline(points.collect(), WIDTH_FRAME, WHITE);
     }
     let sides = [map.nx, map.ny].map(|count| count as f64 * map.block_size);
     // The first above all others.
@@ -301,8 +382,7 @@ fn levels([lo, hi]: [f64; 2], first_slips: &[f32], means: &[f32], side: usize) -
     }
 }
 
-fn draw_space_time(canvas: &mut Canvas, space_time: &SpaceTime, layout: &FrontLayout) {
-    let panel = &layout.space_time;
+fn draw_space_time(canvas: &mut Canvas, space_time: &SpaceTime, panel: &FrontPanel, place: &str) {
     let rows = space_time.shares.len() / space_time.columns;
     let means = CellMeans::of(space_time.columns, rows, space_time.shares.iter().copied());
     let [columns, _] = CellMeans::cells(space_time.columns, rows);
@@ -315,7 +395,6 @@ fn draw_space_time(canvas: &mut Canvas, space_time: &SpaceTime, layout: &FrontLa
             .map(|&share| level(f64::from(share), panel.bar.range))
             .collect(),
     });
-    let [.., place] = &layout.titles;
     panel.draw_axes(canvas, [place, "t*"]);
 }
 
@@ -393,6 +472,39 @@ mod tests {
         let mut level = plain.clone();
         level.first_slips.fill(3.0);
         assert!(lines(&plain) > lines(&level));
+    }
+
+    /// The scale of the shares ends at the largest of them, and the marks that are drawn are named.
+    #[test]
+    fn the_scale_ends_with_the_data_and_marks_are_named() {
+        let (map, mut shares) = (map(40, 40), space_time(40, 60));
+        for share in &mut shares.shares {
+            *share *= 0.25;
+        }
+        assert_eq!(share_bar(&shares, 100.0).range, [0.0, 0.25]);
+        let written = |map: &FrontMap, words: &str| front(map, &shares).unwrap().svg.contains(words);
+        for words in [
+            "filled circle: first nucleation site",
+            "circles: the others",
+            "white lines: equal times",
+        ] {
+            assert!(written(&map, words), "{words}");
+        }
+        let mut plain = map;
+        plain.nucleations.truncate(1);
+        assert!(!written(&plain, "circles"));
+        plain.nucleations.clear();
+        plain.first_slips.fill(3.0);
+        assert!(!written(&plain, "filled circle") && !written(&plain, "lines"));
+        shares.shares.fill(0.0);
+        assert_eq!(share_bar(&shares, 100.0).range, [0.0, 1.0]);
+        let svg = kymograph(&shares).unwrap().svg;
+        assert!(svg.contains("place along the drive") && svg.matches("<image").count() == 2);
+        shares.shares.clear();
+        assert_eq!(
+            kymograph(&shares).unwrap_err().to_string(),
+            "there is no instant to draw"
+        );
     }
 
     /// Blocks that slip at random have no contours, nor have strips.

@@ -4,13 +4,15 @@ use std::borrow::Cow;
 
 use gif::{DisposalMethod, Encoder, EncodingError, Frame, Repeat};
 
-use crate::movie::MOVIE_PIXELS;
+use crate::movie::MovieSize;
 use crate::picture::PictureError;
 
 /// An animated GIF file of pictures of a movie, which begins again when it has ended. For every picture the file has the
 /// rectangle in which it differs from the picture before.
 pub struct MovieGif {
     encoder: Encoder<Vec<u8>>,
+    /// Width and height of the pictures in pixels.
+    pixels: [usize; 2],
     /// The pixels of the picture before.
     before: Vec<u8>,
     /// Index of a colour that no pixel has, for pixels that do not change.
@@ -18,18 +20,19 @@ pub struct MovieGif {
 }
 
 impl MovieGif {
-    /// A file without pictures, whose pixels have these colours, at most 255.
+    /// A file without pictures, which will be of this size and have these colours, at most 255.
     ///
     /// # Errors When there are more colours.
-    pub fn of(palette: &[[u8; 3]]) -> Result<Self, PictureError> {
+    pub fn of(palette: &[[u8; 3]], size: MovieSize) -> Result<Self, PictureError> {
         let transparent = palette.len();
         let mut colours = palette.concat();
         colours.extend([255; 3]);
-        let [width, height] = MOVIE_PIXELS.map(|pixels| pixels as u16);
+        let [width, height] = size.pixels().map(|pixels| pixels as u16);
         let mut encoder = Encoder::new(Vec::new(), width, height, &colours)?;
         encoder.set_repeat(Repeat::Infinite)?;
         Ok(Self {
             encoder,
+            pixels: size.pixels(),
             before: Vec::new(),
             transparent: transparent as u8,
         })
@@ -39,7 +42,7 @@ impl MovieGif {
     ///
     /// # Errors When the picture has another number of pixels.
     pub fn add(&mut self, pixels: Vec<u8>, delay: u16) -> Result<(), PictureError> {
-        let [width, height] = MOVIE_PIXELS;
+        let [width, height] = self.pixels;
         let [left, top, right, bottom] = if self.before.len() == pixels.len() {
             changed(&self.before, &pixels, width)
         } else {
@@ -112,6 +115,8 @@ fn changed(before: &[u8], now: &[u8], width: usize) -> [usize; 4] {
 mod tests {
     use super::*;
 
+    const MOVIE_PIXELS: [usize; 2] = MovieSize::Usual.pixels();
+
     /// A program that reads the file shows the colours of the pictures, whatever part of them the file holds.
     #[test]
     fn what_is_shown_is_what_was_drawn() {
@@ -123,7 +128,7 @@ mod tests {
         third[399 * MOVIE_PIXELS[0] + 799] = 2;
         third[5 * MOVIE_PIXELS[0] + 7] = 0;
         let pictures = [vec![0; size], second.clone(), second, third];
-        let mut file = MovieGif::of(&palette).unwrap();
+        let mut file = MovieGif::of(&palette, MovieSize::Usual).unwrap();
         for (picture, delay) in pictures.iter().zip([8, 8, 8, 40]) {
             file.add(picture.clone(), delay).unwrap();
         }

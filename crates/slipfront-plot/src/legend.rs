@@ -21,6 +21,8 @@ pub(crate) struct Legend {
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum LegendSample {
     Line,
+    /// Points without a line.
+    Points,
     /// A line with the curve's marker.
     Marker,
     /// A patch of colour.
@@ -84,6 +86,10 @@ impl Legend {
             if entry.sample == LegendSample::Patch {
                 let patch = Area::new(middle - 14.0, y - 12.0, 28.0, 24.0);
                 canvas.fill(patch, bar_colour(index, self.entries.len()), OPACITY_BAR);
+            } else if entry.sample == LegendSample::Points {
+                for share in [0.2, 0.5, 0.8] {
+                    canvas.disc((x + share * SAMPLE_WIDTH, y), 3.0, style.colour);
+                }
             } else {
                 canvas.curve(vec![(x, y), (end, y)], style);
             }

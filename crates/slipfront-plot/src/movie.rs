@@ -1,7 +1,7 @@
 //! A movie of a run: maps of a field one after the other, beside the friction curve with a mark at the instant that is shown.
 //!
-//! Pictures of a movie have 800 x 400 pixels of 256 colours at the most. They are drawn twice as large, and every pixel is the mean of
-//! four, so that letters are as large as in the other pictures beside their lines.
+//! Pictures of a movie usually have 800 x 400 pixels of 256 colours at the most. They are drawn twice as large, and every pixel is the
+//! mean of four, so that letters are as large as in the other pictures beside their lines. A long slider has its map above the curve.
 
 use crate::axis::DrawnAxis;
 use crate::canvas::Canvas;
@@ -21,16 +21,46 @@ use crate::style::{
 use crate::text::{Text, number};
 use crate::ticks::{Direction, MAX_STEPS};
 
-/// Pixels of a picture along x and along y.
-pub const MOVIE_PIXELS: [usize; 2] = [800, 400];
-/// Factor by which a picture is drawn larger.
-const DRAWN: usize = 2;
-const DRAWN_PIXELS: [usize; 2] = [DRAWN * MOVIE_PIXELS[0], DRAWN * MOVIE_PIXELS[1]];
-/// Bytes while a picture is drawn: four for each pixel that is drawn, and one for each that is kept.
-pub const MOVIE_PICTURE_BYTES: usize =
-    4 * DRAWN_PIXELS[0] * DRAWN_PIXELS[1] + MOVIE_PIXELS[0] * MOVIE_PIXELS[1];
-/// Bytes of a picture in its file (measured: 25 kB where all of a map changes).
-pub const MOVIE_FILE_BYTES: usize = 25_000;
+/// Size of the pictures of a movie, which are twice as wide as high.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum MovieSize {
+    /// 400 x 200 pixels.
+    Small,
+    /// 800 x 400 pixels.
+    #[default]
+    Usual,
+    /// 1600 x 800 pixels.
+    Large,
+}
+
+impl MovieSize {
+    /// Pixels of a picture along x and along y.
+    pub const fn pixels(self) -> [usize; 2] {
+        [DRAWN_PIXELS[0] / self.drawn(), DRAWN_PIXELS[1] / self.drawn()]
+    }
+
+    /// Factor by which a picture is drawn larger.
+    const fn drawn(self) -> usize {
+        match self {
+            Self::Small => 4,
+            Self::Usual => 2,
+            Self::Large => 1,
+        }
+    }
+
+    /// Bytes while a picture is drawn: four for each pixel that is drawn, and one for each that is kept.
+    pub const fn picture_bytes(self) -> usize {
+        let [width, height] = self.pixels();
+        4 * DRAWN_PIXELS[0] * DRAWN_PIXELS[1] + width * height
+    }
+
+    /// Bytes of a picture in its file (measured: 25 kB where all of a map of the usual size changes).
+    pub const fn file_bytes(self) -> usize {
+        100_000 / (self.drawn() * self.drawn())
+    }
+}
+
+const DRAWN_PIXELS: [usize; 2] = [1600, 800];
 /// The largest map, as drawn.
 const MAP_SIDE: f64 = 600.0;
 /// Left end of the map.
@@ -41,6 +71,13 @@ const TOP: f64 = 110.0;
 const CURVE_LEFT: f64 = 790.0;
 /// Lower end of the curve, above its numbers and title.
 const CURVE_BOTTOM: f64 = 690.0;
+/// Ratio of length to height above which a slider has its map above the curve.
+const LONG: f64 = 3.0;
+/// Width of a map above the curve, and its least height over its width.
+const LONG_SIDE: f64 = 1400.0;
+const MIN_RATIO_ABOVE: f64 = 1.0 / 12.0;
+/// Distance of the curve from a map above it.
+const BELOW: f64 = 60.0;
 
 /// A movie of a run.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -79,22 +116,62 @@ pub struct MovieFrame {
 /// A movie that can be drawn: its layout and its colours.
 pub struct MoviePictures<'a> {
     movie: &'a Movie,
+    size: MovieSize,
     cells: Cells,
     colours: Colours,
     /// Part that is the same in all pictures.
     ground: Pixels,
-    map: Area,
-    bar: Area,
+    layout: MovieLayout,
     x: DrawnAxis,
     mu: DrawnAxis,
 }
 
+/// Places of the parts of a picture, as drawn.
+struct MovieLayout {
+    map: Area,
+    /// Room of the map, over the middle of which its titles stand.
+    room: Area,
+    bar: Area,
+    /// Left end of the curve's part.
+    curve_left: f64,
+    /// Upper end of the curve.
+    curve_top: f64,
+}
+
+impl MovieLayout {
+    fn of(nx: usize, ny: usize, cells: [usize; 2], size: MovieSize) -> Self {
+        let ratio = ny as f64 / nx as f64;
+        if ratio * LONG >= 1.0 {
+            let room = Area::new(MAP_LEFT, TOP, MAP_SIDE, MAP_SIDE);
+            let ratio = ratio.clamp(MIN_RATIO, 1.0 / MIN_RATIO);
+            let sides = [MAP_SIDE.min(MAP_SIDE / ratio), MAP_SIDE.min(MAP_SIDE * ratio)];
+            return Self {
+                map: map_area(room, sides, cells, size),
+                room,
+                bar: Area::new(room.right() + 2.0 * MARGIN, TOP, BAR_WIDTH, CURVE_BOTTOM - TOP),
+                curve_left: CURVE_LEFT,
+                curve_top: TOP,
+            };
+        }
+        let sides = [LONG_SIDE, LONG_SIDE * ratio.max(MIN_RATIO_ABOVE)];
+        let room = Area::new(MAP_LEFT, TOP, sides[0], sides[1]);
+        let map = map_area(room, sides, cells, size);
+        Self {
+            bar: Area::new(map.right() + 2.0 * MARGIN, TOP, BAR_WIDTH, map.height),
+            curve_left: 0.0,
+            curve_top: map.bottom() + BELOW,
+            map,
+            room,
+        }
+    }
+}
+
 impl<'a> MoviePictures<'a> {
-    /// Lays a movie out.
+    /// Lays a movie out in pictures of this size.
     ///
     /// # Errors
     /// A lattice without blocks, an array of the wrong length, no picture, or no memory for one.
-    pub fn of(movie: &'a Movie) -> Result<Self, PictureError> {
+    pub fn of(movie: &'a Movie, size: MovieSize) -> Result<Self, PictureError> {
         block_count(movie.nx, movie.ny)?;
         let [columns, rows] = CellMeans::cells(movie.nx, movie.ny);
         if movie.frames.is_empty() {
@@ -111,23 +188,21 @@ impl<'a> MoviePictures<'a> {
             ("times", curve.x.len()),
             &[("friction", curve.friction.len())],
         )?;
-        let map = map_area(movie.nx, movie.ny, [columns, rows]);
-        let bar_left = MAP_LEFT + MAP_SIDE + 2.0 * MARGIN;
-        let bar = Area::new(bar_left, TOP, BAR_WIDTH, CURVE_BOTTOM - TOP);
+        let layout = MovieLayout::of(movie.nx, movie.ny, [columns, rows], size);
         let times = movie.frames.iter().map(|frame| frame.time_star);
         let times: Vec<f64> = curve.x.iter().copied().chain(times).collect();
         let frictions: Vec<f64> = curve.friction.iter().copied().chain([0.0]).collect();
-        let mu = DrawnAxis::around(&frictions, false, 0.06).placed(CURVE_BOTTOM, TOP);
+        let mu = DrawnAxis::around(&frictions, false, 0.06).placed(CURVE_BOTTOM, layout.curve_top);
         let right = DRAWN_PIXELS[0] as f64 - 3.0 * MARGIN;
-        let left = CURVE_LEFT + left_room(&mu.ticks(Direction::Y, MAX_STEPS));
+        let left = layout.curve_left + left_room(&mu.ticks(Direction::Y, MAX_STEPS));
         let [width, height] = DRAWN_PIXELS.map(|pixels| pixels as u32);
         let mut pictures = Self {
             movie,
+            size,
             cells: Cells::of(movie.nx, movie.ny, &movie.textured),
             colours: Colours::default(),
             ground: Pixels::blank(width, height).ok_or_else(no_memory)?,
-            map,
-            bar,
+            layout,
             x: DrawnAxis::around(&times, false, 0.0).placed(left, right),
             mu,
         };
@@ -136,6 +211,11 @@ impl<'a> MoviePictures<'a> {
         pictures.draw_curve(&mut canvas);
         pictures.ground.draw(&canvas);
         Ok(pictures)
+    }
+
+    /// Size of the pictures.
+    pub fn size(&self) -> MovieSize {
+        self.size
     }
 
     /// The colours of the pixels: red, green and blue of each.
@@ -151,17 +231,18 @@ impl<'a> MoviePictures<'a> {
         self.draw_mark(&mut canvas, frame);
         let mut drawn = self.ground.clone();
         drawn.draw(&canvas);
-        let [nx, ny] = MOVIE_PIXELS;
+        let [nx, ny] = self.size.pixels();
+        let larger = self.size.drawn();
         let pixel = |at: usize| {
-            let first = DRAWN * (at / nx) * DRAWN_PIXELS[0] + DRAWN * (at % nx);
+            let first = larger * (at / nx) * DRAWN_PIXELS[0] + larger * (at % nx);
             let mut sum = [0_u32; 3];
-            for k in 0..DRAWN * DRAWN {
-                let colour = drawn.colour(first + k / DRAWN * DRAWN_PIXELS[0] + k % DRAWN);
+            for k in 0..larger * larger {
+                let colour = drawn.colour(first + k / larger * DRAWN_PIXELS[0] + k % larger);
                 for (sum, channel) in sum.iter_mut().zip(colour) {
                     *sum += u32::from(channel);
                 }
             }
-            let count = (DRAWN * DRAWN) as u32;
+            let count = (larger * larger) as u32;
             self.colours
                 .nearest(sum.map(|sum| ((sum + count / 2) / count) as u8))
         };
@@ -170,8 +251,9 @@ impl<'a> MoviePictures<'a> {
 
     fn draw_map(&self, canvas: &mut Canvas, frame: &MovieFrame) {
         let movie = self.movie;
-        self.cells.draw(canvas, self.map, &frame.values, movie.range);
-        canvas.frame(self.map);
+        let MovieLayout { map, room, .. } = self.layout;
+        self.cells.draw(canvas, map, &frame.values, movie.range);
+        canvas.frame(map);
         let time = format!("t* = {}", number(frame.time_star, 1));
         let label = match frame.label.as_str() {
             "" => time,
@@ -182,17 +264,16 @@ impl<'a> MoviePictures<'a> {
         } else {
             Text::default()
         };
-        let room = Area::new(MAP_LEFT, TOP, MAP_SIDE, MAP_SIDE);
         draw_titles(canvas, room, &Text::plain(&label, SIZE_LABEL), &friction);
     }
 
     fn draw_bar(&self, canvas: &mut Canvas) {
-        let movie = self.movie;
-        colour_bar(canvas, self.bar, movie.range);
+        let (movie, bar) = (self.movie, self.layout.bar);
+        colour_bar(canvas, bar, movie.range);
         let title = Text::math(&movie.title, SIZE_LABEL);
-        let room = bar_room(movie.range, self.bar.height);
-        let start = (self.bar.x + room - title.width()).min(self.bar.x);
-        canvas.text(&title, (start, self.bar.y - 22.0), Align::Start, BLACK);
+        let room = bar_room(movie.range, bar.height);
+        let start = (bar.x + room - title.width()).min(bar.x);
+        canvas.text(&title, (start, bar.y - 22.0), Align::Start, BLACK);
     }
 
     fn curve_area(&self) -> Area {
@@ -206,7 +287,7 @@ impl<'a> MoviePictures<'a> {
         left_side(
             canvas,
             area,
-            CURVE_LEFT,
+            self.layout.curve_left,
             &self.mu.ticks(Direction::Y, MAX_STEPS),
             &title,
         );
@@ -217,14 +298,23 @@ impl<'a> MoviePictures<'a> {
             placer.avoid(&segment);
             canvas.polyline(segment, WIDTH_CURVE, CURVES[0]);
         }
-        let dots: Vec<CanvasPoint> = curve
-            .instants
-            .iter()
-            .map(|instant| (self.x.at(instant.x), self.mu.clamped(instant.friction)))
-            .collect();
-        for (instant, &dot) in curve.instants.iter().zip(&dots) {
+        // Letters of instants whose dots cover each other are joined.
+        let mut marks: Vec<(CanvasPoint, Vec<String>)> = Vec::new();
+        for instant in &curve.instants {
+            let dot = (self.x.at(instant.x), self.mu.clamped(instant.friction));
+            let covers = |(at, _): &&mut (CanvasPoint, Vec<String>)| {
+                libm::hypot(dot.0 - at.0, dot.1 - at.1) < RADIUS_MARKER
+            };
+            let letter = instant.letter.to_string();
+            match marks.iter_mut().find(covers) {
+                Some((_, letters)) => letters.push(letter),
+                None => marks.push((dot, vec![letter])),
+            }
+        }
+        let dots: Vec<CanvasPoint> = marks.iter().map(|(dot, _)| *dot).collect();
+        for (dot, letters) in marks {
             canvas.dot(dot, RADIUS_MARKER, GREY);
-            let letter = Text::plain(&instant.letter.to_string(), SIZE_TICK);
+            let letter = Text::plain(&letters.join(", "), SIZE_TICK);
             if let Some(place) = placer.place(around(dot, (letter.width(), letter.height()), &dots)) {
                 if let Some([from, to]) = place.leader {
                     canvas.line(from, to, WIDTH_LEADER, GREY);
@@ -256,22 +346,22 @@ fn no_memory() -> PictureError {
     PictureError::Gif("there is no memory for a picture".to_owned())
 }
 
-/// Area of the map, in the middle of its room: every cell has an equal, whole number of pixels.
-fn map_area(nx: usize, ny: usize, cells: [usize; 2]) -> Area {
-    let ratio = (ny as f64 / nx as f64).clamp(MIN_RATIO, 1.0 / MIN_RATIO);
-    let sides = [MAP_SIDE.min(MAP_SIDE / ratio), MAP_SIDE.min(MAP_SIDE * ratio)];
+/// Area of a map of these sides, in the middle of its room: every cell has an equal, whole number of pixels.
+fn map_area(room: Area, sides: [f64; 2], cells: [usize; 2], size: MovieSize) -> Area {
     let whole = |axis: usize| {
-        let cell = (DRAWN * cells[axis]) as f64;
+        let cell = (size.drawn() * cells[axis]) as f64;
         (sides[axis] / cell).floor().max(1.0) * cell
     };
-    let drawn = DRAWN as f64;
-    let indent = (0.5 * (MAP_SIDE - whole(0)) / drawn).floor() * drawn;
-    Area::new(MAP_LEFT + indent, TOP, whole(0), whole(1))
+    let drawn = size.drawn() as f64;
+    let indent = (0.5 * (room.width - whole(0)) / drawn).floor().max(0.0) * drawn;
+    Area::new(room.x + indent, room.y, whole(0), whole(1))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    const PIXELS: [usize; 2] = MovieSize::Usual.pixels();
 
     fn movie(nx: usize, ny: usize) -> Movie {
         let [columns, rows] = CellMeans::cells(nx, ny);
@@ -299,7 +389,7 @@ mod tests {
 
     /// Positions of map and curve, in pixels of the picture.
     fn halves(area: Area) -> [usize; 4] {
-        area.sides().map(|side| side as usize / DRAWN)
+        area.sides().map(|side| side as usize / MovieSize::Usual.drawn())
     }
 
     /// Every block of the map has its own colour in whole pixels, with no others between.
@@ -307,10 +397,10 @@ mod tests {
     fn blocks_have_whole_pixels_of_their_colour() {
         let mut movie = movie(100, 100);
         movie.textured.fill(false);
-        let pictures = MoviePictures::of(&movie).unwrap();
+        let pictures = MoviePictures::of(&movie, MovieSize::Usual).unwrap();
         let pixels = pictures.draw(2);
-        assert_eq!(pixels.len(), MOVIE_PIXELS[0] * MOVIE_PIXELS[1]);
-        let [left, top, width, height] = halves(pictures.map);
+        assert_eq!(pixels.len(), PIXELS[0] * PIXELS[1]);
+        let [left, top, width, height] = halves(pictures.layout.map);
         assert_eq!([width, height], [300, 300]);
         // The edge of the map is drawn over the outermost pixels.
         for row in 1..99 {
@@ -320,7 +410,7 @@ mod tests {
                 let wanted = crate::style::ramp(share);
                 for k in 0..9 {
                     let (x, y) = (left + 3 * column as usize + k % 3, top + 3 * row as usize + k / 3);
-                    let found = pictures.palette()[usize::from(pixels[y * MOVIE_PIXELS[0] + x])];
+                    let found = pictures.palette()[usize::from(pixels[y * PIXELS[0] + x])];
                     let far = wanted
                         .iter()
                         .zip(found)
@@ -337,17 +427,17 @@ mod tests {
     #[test]
     fn the_mark_stands_at_the_instant() {
         let movie = movie(20, 10);
-        let pictures = MoviePictures::of(&movie).unwrap();
+        let pictures = MoviePictures::of(&movie, MovieSize::Usual).unwrap();
         let [first, last] = [0, 2].map(|index| pictures.draw(index));
         let mark = |pixels: &[u8], time_star: f64| {
-            let x = pictures.x.at(time_star) as usize / DRAWN;
-            let y = pictures.mu.end as usize / DRAWN + 30;
-            let colour = pictures.palette()[usize::from(pixels[y * MOVIE_PIXELS[0] + x])];
+            let x = pictures.x.at(time_star) as usize / MovieSize::Usual.drawn();
+            let y = pictures.mu.end as usize / MovieSize::Usual.drawn() + 30;
+            let colour = pictures.palette()[usize::from(pixels[y * PIXELS[0] + x])];
             colour[0] > 150 && colour[1] < 140
         };
         assert!(mark(&last, 20.0) && !mark(&first, 20.0));
         let changed = (0..first.len()).filter(|&at| first[at] != last[at]);
-        let in_curve = changed.filter(|at| at % MOVIE_PIXELS[0] > CURVE_LEFT as usize / DRAWN);
+        let in_curve = changed.filter(|at| at % PIXELS[0] > CURVE_LEFT as usize / MovieSize::Usual.drawn());
         // Two lines of two pixels, with their smoothed edges, and two dots.
         assert!(in_curve.count() < 2 * 4 * 290 + 500);
     }
@@ -356,12 +446,68 @@ mod tests {
     fn every_shape_is_drawn() {
         for (nx, ny) in [(1, 1), (300, 1), (1, 300), (1000, 4), (257, 256)] {
             let movie = movie(nx, ny);
-            let pictures = MoviePictures::of(&movie).unwrap();
-            let map = pictures.map;
-            assert!(map.x >= 0.0 && map.right() <= MAP_LEFT + MAP_SIDE, "{nx} x {ny}");
+            let pictures = MoviePictures::of(&movie, MovieSize::Usual).unwrap();
+            let MovieLayout { map, room, bar, .. } = pictures.layout;
+            assert!(map.x >= room.x && map.right() <= room.right(), "{nx} x {ny}");
             assert!(map.bottom() <= TOP + MAP_SIDE && map.height >= 40.0 && map.width >= 40.0);
+            assert!(bar.x >= map.right() && pictures.mu.end < pictures.mu.start);
             pictures.draw(1);
         }
+    }
+
+    /// A long slider fills the picture from side to side, above its curve.
+    #[test]
+    fn a_long_slider_fills_the_picture() {
+        let movie = movie(200, 10);
+        let pictures = MoviePictures::of(&movie, MovieSize::Usual).unwrap();
+        let MovieLayout { map, curve_top, .. } = pictures.layout;
+        // Six pixels for each of 200 blocks.
+        assert_eq!(map.width, 1200.0);
+        assert!(map.height >= LONG_SIDE * MIN_RATIO_ABOVE - 20.0 && curve_top > map.bottom());
+        assert!(pictures.x.start < 200.0 && pictures.x.end > 1500.0);
+        assert!(pictures.mu.start - pictures.mu.end > 300.0);
+    }
+
+    #[test]
+    fn pictures_have_the_size_that_is_asked_for() {
+        let movie = movie(20, 10);
+        for (size, pixels) in [
+            (MovieSize::Small, [400, 200]),
+            (MovieSize::Usual, [800, 400]),
+            (MovieSize::Large, [1600, 800]),
+        ] {
+            let pictures = MoviePictures::of(&movie, size).unwrap();
+            assert_eq!(size.pixels(), pixels);
+            assert_eq!(pictures.draw(0).len(), pixels[0] * pixels[1]);
+        }
+    }
+
+    /// Letters at one point stand there together.
+    #[test]
+    fn letters_at_one_point_are_joined() {
+        let mut movie = movie(20, 10);
+        movie.curve.instants = [('A', 10.0), ('B', 10.01), ('C', 20.0)]
+            .map(|(letter, x)| crate::friction_curve::Instant {
+                letter,
+                x,
+                friction: 0.01 * x,
+            })
+            .to_vec();
+        let pictures = MoviePictures::of(&movie, MovieSize::Usual).unwrap();
+        let mut canvas = blank();
+        pictures.draw_curve(&mut canvas);
+        let written: Vec<&str> = canvas
+            .elements
+            .iter()
+            .filter_map(|element| match &element.primitive {
+                crate::canvas::Primitive::Letters { text, .. } => Some(text.as_str()),
+                _ => None,
+            })
+            .collect();
+        assert!(
+            written.contains(&"A, B") && written.contains(&"C") && !written.contains(&"A"),
+            "{written:?}"
+        );
     }
 
     #[test]
@@ -369,7 +515,10 @@ mod tests {
         let said = |change: &dyn Fn(&mut Movie)| {
             let mut movie = movie(2, 3);
             change(&mut movie);
-            MoviePictures::of(&movie).err().unwrap().to_string()
+            MoviePictures::of(&movie, MovieSize::Usual)
+                .err()
+                .unwrap()
+                .to_string()
         };
         assert_eq!(said(&|m| m.frames.clear()), "there is no snapshot to draw");
         assert_eq!(said(&|m| m.nx = 0), "a lattice of 0 x 3 blocks cannot be drawn");

@@ -15,7 +15,7 @@ impl Picture {
 }
 
 /// Error of a picture that could not be made.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
 pub enum PictureError {
     #[error("there is no {0} to draw")]
@@ -45,6 +45,15 @@ pub enum PictureError {
         what: String,
         found: usize,
         expected: usize,
+    },
+    #[error(
+        "a {side} of {mm} mm leaves no room for the curves beside letters of {font_pt} pt: at least {least_mm} mm are needed"
+    )]
+    TooSmall {
+        side: &'static str,
+        mm: f64,
+        least_mm: f64,
+        font_pt: f64,
     },
     #[error("the PNG could not be written: {0}")]
     Png(String),

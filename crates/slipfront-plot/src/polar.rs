@@ -15,8 +15,8 @@ use crate::style::{
     BLACK, BLANK, COLUMN_WIDTH, MARGIN, RADIUS_MARKER, Rgb, SIZE_TICK, WIDTH_FRAME, WIDTH_LEADER, WIDTH_MARK,
     curve_style,
 };
-use crate::text::Text;
-use crate::ticks::{Direction, MAX_STEPS};
+use crate::text::{Text, number};
+use crate::ticks::{Direction, MAX_STEPS, round_values};
 
 /// Radius of the largest circle.
 const RADIUS: f64 = 380.0;
@@ -24,8 +24,13 @@ const RADIUS: f64 = 380.0;
 const GAP: f64 = 12.0;
 /// Distance from the largest circle to the axis of the radius below it.
 const BELOW: f64 = 64.0;
-/// Angle between two numbered directions, degrees.
+/// Angle between two lines of directions, degrees, and between two that are numbered.
 const SPOKES: usize = 30;
+const NUMBERED: usize = 90;
+/// Share of the largest value below which all values are alike: from the centre, their differences could not be seen.
+const ALIKE: f64 = 0.4;
+/// Least range of values, over the largest of them, that fills half of the radius.
+const LEAST_RANGE: f64 = 0.1;
 /// Difference in degrees below which two directions are one.
 const SAME: f64 = 1e-9;
 
@@ -42,8 +47,9 @@ pub struct Polar {
     pub curves: Vec<Response>,
 }
 
-/// Draws means around a centre, which is zero, with their confidence bands, as wide as a journal's column (85 mm). A curve whose
-/// directions go all the way round is closed, and has a gap where a value is missing or below zero.
+/// Draws means around a centre with their confidence bands, as wide as a journal's column (85 mm). The centre is zero, unless all values
+/// are alike, and the note says what it is then. A curve whose directions go all the way round is closed, and has a gap where a value is
+/// missing or below zero.
 ///
 /// # Errors
 ///
@@ -54,6 +60,11 @@ pub fn polar(polar: &Polar) -> Result<Picture, PictureError> {
     let tops = rounds.iter().flat_map(|round| round.parts.iter().flatten());
     let largest = tops.map(|point| point.high.max(point.mean)).fold(0.0, f64::max);
     let largest = if largest > 0.0 { largest } else { 1.0 };
+    let bottoms = rounds.iter().flat_map(|round| round.parts.iter().flatten());
+    let smallest = bottoms
+        .map(|point| point.low.min(point.mean))
+        .fold(largest, f64::min);
+    let start = centre_value(smallest, largest);
 
     let centre_x = (0.5 * COLUMN_WIDTH).round();
     let [left, right] = [centre_x - RADIUS, centre_x + RADIUS];
@@ -67,8 +78,8 @@ pub fn polar(polar: &Polar) -> Result<Picture, PictureError> {
     let centre = (centre_x, legend.height + numbers + RADIUS);
     // The axis of the radius, from the centre to the right, below the circles.
     let side = Area::new(centre.0, centre.1 + RADIUS + BELOW, RADIUS, 0.0);
-    let radius = DrawnAxis::linear(0.0, 1.05 * largest).placed(0.0, RADIUS);
-    let note = Note::of(&polar.note, centre.0, COLUMN_WIDTH);
+    let radius = DrawnAxis::linear(start, largest + 0.05 * (largest - start)).placed(0.0, RADIUS);
+    let note = Note::of(&with_centre(&polar.note, start), centre.0, COLUMN_WIDTH);
 
     let mut canvas = Canvas::new(COLUMN_WIDTH, side.y + LOWER_ROOM + note.height);
     let ring = Ring { centre, radius };
@@ -92,6 +103,32 @@ pub fn polar(polar: &Polar) -> Result<Picture, PictureError> {
     }
     note.draw(&mut canvas);
     canvas.finish()
+}
+
+/// Value at the centre: 0, or a round value as far below the smallest as the largest is above it, where they are alike.
+fn centre_value(smallest: f64, largest: f64) -> f64 {
+    let range = (largest - smallest).max(LEAST_RANGE * largest);
+    let start = smallest - range;
+    if largest - smallest > ALIKE * largest || start <= 0.0 {
+        return 0.0;
+    }
+    let (step, _) = round_values(start, largest, MAX_STEPS);
+    (step * (start / step).floor()).max(0.0)
+}
+
+/// A note, with the value of the centre if that is not zero.
+fn with_centre(note: &str, start: f64) -> String {
+    let decimals = (1.0 - libm::log10(start).floor()).clamp(0.0, 6.0) as usize;
+    let mut text = number(start, decimals);
+    if text.contains('.') {
+        text.truncate(text.trim_end_matches('0').trim_end_matches('.').len());
+    }
+    let centre = format!("the centre is {text}");
+    match (start == 0.0, note.is_empty()) {
+        (true, _) => note.to_owned(),
+        (false, true) => centre,
+        (false, false) => format!("{note}; {centre}"),
+    }
 }
 
 /// The points of a curve, by rising direction.
@@ -179,7 +216,7 @@ impl Ring {
         (self.centre.0 + radius * cosine, self.centre.1 - radius * sine)
     }
 
-    /// Draws circles at round values, and every numbered direction; the first two are the axes x and y.
+    /// Draws circles at round values and lines of directions; the first two that are numbered are the axes x and y.
     fn draw_grid(&self, canvas: &mut Canvas) {
         let circle = |radius: f64| {
             (0..=180)
@@ -194,6 +231,9 @@ impl Ring {
         for degrees in (0..360).step_by(SPOKES) {
             let angle = degrees as f64;
             canvas.line(self.centre, self.around(angle, RADIUS), WIDTH_LEADER, BLANK);
+            if degrees % NUMBERED != 0 {
+                continue;
+            }
             let axis = match degrees {
                 0 => "x ",
                 90 => "y ",
@@ -347,11 +387,34 @@ mod tests {
             "friction",
             "x 0\u{b0}",
             "y 90\u{b0}",
-            "330\u{b0}",
+            "180\u{b0}",
+            "270\u{b0}",
         ] {
             assert!(two.contains(&format!(">{text}</text>")), "{text}");
         }
         assert!(!svg(&[curve("static", &all, 0.8)]).contains(">static</text>"));
+    }
+
+    /// Values that are alike are drawn from a round value below them, which the note tells; others from zero.
+    #[test]
+    fn the_centre_is_zero_unless_that_hides_the_effect() {
+        assert_eq!(centre_value(0.3, 0.9), 0.0);
+        assert_eq!(centre_value(0.0, 0.0), 0.0);
+        let start = centre_value(0.8, 0.9);
+        // 0.8 - 0.1, in steps of 0.05, which are rounded.
+        assert!((0.6..0.7 + 1e-9).contains(&start), "{start}");
+        // Equal values are not blown up to the last digit.
+        let start = centre_value(0.9, 0.9);
+        assert!((0.7..=0.81).contains(&start), "{start}");
+        let all = [0.0, 90.0, 180.0, 270.0];
+        let narrow = |mean: f64| Response {
+            low: vec![mean - 0.01; 4],
+            high: vec![mean + 0.01; 4],
+            ..curve("", &all, mean)
+        };
+        assert!(svg(&[narrow(0.8)]).contains("the centre is 0."));
+        assert!(!svg(&[narrow(0.8), narrow(0.1)]).contains("the centre is"));
+        assert_eq!(with_centre("bands: 95 %", 0.5), "bands: 95 %; the centre is 0.5");
     }
 
     #[test]

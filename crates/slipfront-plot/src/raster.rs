@@ -9,12 +9,13 @@ use tiny_skia::{
 use crate::canvas::{Canvas, Element, Primitive};
 use crate::color_image::{Image, palette};
 use crate::font;
-use crate::geometry::CanvasPoint;
+use crate::geometry::{Area, CanvasPoint};
 use crate::style::Rgb;
 
 /// Red, green and blue of every pixel, row by row; none if there are too many for the memory.
 pub(crate) fn rgb(canvas: &Canvas) -> Option<Vec<u8>> {
-    let mut ground = Pixels::blank(canvas.width as u32, canvas.height as u32)?;
+    let [width, height] = canvas.pixels();
+    let mut ground = Pixels::blank(width, height)?;
     ground.draw(canvas);
     // In place, without opacity, which is full: the page is white below everything.
     let mut bytes = ground.0.take();
@@ -41,10 +42,10 @@ impl Pixels {
     /// Draws a canvas over the pixels.
     pub(crate) fn draw(&mut self, canvas: &Canvas) {
         for image in &canvas.images {
-            draw_image(&mut self.0, image);
+            draw_image(&mut self.0, image, canvas.scale);
         }
         for element in &canvas.elements {
-            draw(&mut self.0, element);
+            draw(&mut self.0, element, canvas.scale);
         }
     }
 
@@ -55,8 +56,8 @@ impl Pixels {
     }
 }
 
-/// Draws an element; an element without extent leaves no trace.
-fn draw(pixmap: &mut Pixmap, element: &Element) {
+/// Draws an element, larger by a factor; an element without extent leaves no trace.
+fn draw(pixmap: &mut Pixmap, element: &Element, scale: f64) {
     let [red, green, blue] = element.colour;
     let mut paint = Paint::default();
     paint.set_color_rgba8(red, green, blue, (element.opacity * 255.0).round() as u8);
@@ -78,6 +79,7 @@ fn draw(pixmap: &mut Pixmap, element: &Element) {
         } => letters(text, f64::from(*size), *at, *upwards),
     };
     let Some(path) = path else { return };
+    let larger = Transform::from_scale(scale as f32, scale as f32);
     if let Primitive::Line { width, dashes, .. } = &element.primitive {
         let stroke = Stroke {
             width: *width as f32,
@@ -86,9 +88,9 @@ fn draw(pixmap: &mut Pixmap, element: &Element) {
             dash: StrokeDash::new(dashes.iter().map(|&length| length as f32).collect(), 0.0),
             ..Stroke::default()
         };
-        pixmap.stroke_path(&path, &paint, &stroke, Transform::identity(), None);
+        pixmap.stroke_path(&path, &paint, &stroke, larger, None);
     } else {
-        pixmap.fill_path(&path, &paint, FillRule::Winding, Transform::identity(), None);
+        pixmap.fill_path(&path, &paint, FillRule::Winding, larger, None);
     }
 }
 
@@ -136,8 +138,9 @@ fn letters(text: &str, size: f64, at: CanvasPoint, upwards: bool) -> Option<Path
 const SAMPLES: usize = 4;
 
 /// Draws an image onto whole pixels. Where cells meet within a pixel, their colours are mixed.
-fn draw_image(pixmap: &mut Pixmap, image: &Image) {
-    let area = image.area;
+fn draw_image(pixmap: &mut Pixmap, image: &Image, scale: f64) {
+    let [x, y, width, height] = image.area.sides().map(|side| scale * side);
+    let area = Area::new(x, y, width, height);
     let [left, top] = [area.x, area.y].map(|side| side.round() as usize);
     let pitch = pixmap.width() as usize;
     let width = pitch.min(area.right().round() as usize) - left;

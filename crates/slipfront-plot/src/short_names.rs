@@ -57,6 +57,24 @@ fn shortened(name: &[char], from: &[char], before: &str, cut: Cut, size: u32, ro
     cuts.find(|cut| fits(cut)).unwrap_or_default()
 }
 
+/// The folder that all names begin with, with its slash, and the names without it. A folder that is the whole of a name, and one
+/// of a single name, is no folder in common.
+pub(crate) fn without_common_folder<'n>(names: &[&'n str]) -> (&'n str, Vec<&'n str>) {
+    let letters: Vec<Vec<char>> = names.iter().map(|name| name.chars().collect()).collect();
+    let Some(first) = names.first().filter(|_| names.len() > 1) else {
+        return ("", names.to_vec());
+    };
+    let shared: usize = first.chars().take(common(&letters)).map(char::len_utf8).sum();
+    let folder = first[..shared].rfind('/').map_or(0, |slash| slash + 1);
+    if names.iter().any(|name| name.len() == folder) {
+        return ("", names.to_vec());
+    }
+    (
+        &first[..folder],
+        names.iter().map(|name| &name[folder..]).collect(),
+    )
+}
+
 /// Number of characters with which all names start.
 fn common(names: &[Vec<char>]) -> usize {
     let Some((first, others)) = names.split_first() else {
@@ -102,6 +120,23 @@ mod tests {
         ];
         let cut = fitted(&middle, 250.0);
         assert!(cut[0].contains("circle") && cut[1].contains("groove"), "{cut:?}");
+    }
+
+    #[test]
+    fn a_common_folder_is_named_once() {
+        let names = ["results/steel/a", "results/steel/b1"];
+        assert_eq!(without_common_folder(&names), ("results/steel/", vec!["a", "b1"]));
+        for apart in [
+            &["a", "b"][..],
+            &["results/a"],
+            &["results/", "results/a"],
+            &["/a", "b"],
+            &[],
+        ] {
+            assert_eq!(without_common_folder(apart), ("", apart.to_vec()));
+        }
+        // The same run twice has a name left.
+        assert_eq!(without_common_folder(&["r/a", "r/a"]).1, ["a", "a"]);
     }
 
     #[test]

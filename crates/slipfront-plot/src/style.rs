@@ -3,7 +3,7 @@
 /// Pixels in an inch.
 pub(crate) const DPI: f64 = 300.0;
 /// Pixels in a millimetre.
-const MM: f64 = DPI / 25.4;
+pub(crate) const MM: f64 = DPI / 25.4;
 /// Width of a journal's column, 85 mm.
 pub(crate) const COLUMN_WIDTH: f64 = 85.0 * MM;
 /// Width of a journal's text, 175 mm.

@@ -23,8 +23,8 @@ pub(crate) fn svg(canvas: &Canvas) -> Result<String, PictureError> {
          <style>@font-face{{font-family:'DejaVu Sans';\
          src:url('data:font/woff2;base64,{}') format('woff2');}}</style>\n\
          <rect width=\"{width}\" height=\"{height}\" fill=\"#ffffff\"/>\n",
-        width / DPI * 25.4,
-        height / DPI * 25.4,
+        canvas.scale * width / DPI * 25.4,
+        canvas.scale * height / DPI * 25.4,
         BASE64.encode(WOFF2),
     );
     for image in &canvas.images {

@@ -43,6 +43,7 @@ fn curve() -> FrictionCurve {
             x: 20.0,
             friction: 0.25,
         }],
+        ..FrictionCurve::default()
     }
 }
 
@@ -188,5 +189,5 @@ response: ba4e4a0d0d72a45c 555ac14d0b627db3
 bars: ec38e49d1f4e2ea0 223f61650297411f
 heat map: 44f526d6ddb16eb7 208f875d32cac2e7
 shapes: 60442453361eadd4 1a6b0ca345f59c48
-polar: b7a78d4616bf89ba 2db9a60b0f4856b8
+polar: 254c6d494ee4a309 e1f0ef3e06fb7d07
 ";

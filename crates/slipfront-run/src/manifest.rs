@@ -85,13 +85,23 @@ pub struct ManifestFile {
     pub blake3: String,
 }
 
+/// The command that goes on with a run which did not end, where the folder holds the case of one.
+fn way_to_go_on(folder: &Path) -> String {
+    if folder.join(CASE).exists() {
+        let command = resume_command("slipfront", folder);
+        format!("; if it did not, `{command}` goes on with it")
+    } else {
+        String::new()
+    }
+}
+
 /// Reason for which a manifest cannot be used.
 #[derive(Clone, Debug, Error)]
 #[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
 pub enum ManifestError {
     #[error(
-        "{path} holds no manifest.json: it is no run folder, or its run did not end; if it did not, `{}` goes on with it",
-        resume_command("slipfront", path)
+        "{path} holds no manifest.json: it is no run folder, or its run did not end{}",
+        way_to_go_on(path)
     )]
     Missing { path: PathBuf },
     #[error("cannot read {path}: {why}")]

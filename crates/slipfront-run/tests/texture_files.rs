@@ -373,7 +373,18 @@ fn circles_and_ellipses_are_written_as_such_and_cavities_as_4096_corners() {
     assert_eq!(count(&written(ellipse, "a.svg"), "<ellipse "), 1);
     assert_eq!(count(&written(ellipse, "a.dxf"), "\nELLIPSE\n"), 1);
     let square = "lambda = '5 um'\ns = 3\nw = 0.2";
-    assert_eq!(count(&written(square, "a.svg"), "L"), 4095);
+    let svg = written(square, "a.svg");
+    let path = svg.lines().find(|line| line.starts_with("<path")).unwrap();
+    assert_eq!(count(path, "L"), 4095);
+    // The edge of the slider, for registration, in both.
+    assert!(
+        svg.contains("<rect id=\"SLIDER\" width=\"0.04\" height=\"0.03\" fill=\"none\" stroke=\"black\" "),
+        "{svg:.300}"
+    );
+    assert_eq!(
+        count(&written(square, "a.dxf"), "\nSLIDER\n"),
+        count(&written(ellipse, "b.dxf"), "\nSLIDER\n")
+    );
     assert!(written(square, "a.dxf").contains("\n90\n4096\n70\n1\n"));
     // In true size: 40 blocks of 1 um.
     assert!(written(square, "a.svg").contains("width=\"0.04mm\" height=\"0.03mm\""));

@@ -8,7 +8,7 @@ use toml::Value;
 
 use crate::input_copies::plain_name;
 use slipfront_case::case_file::{Override, exclude_each_other, names_a_file, partners_of};
-use slipfront_case::number_format::exact;
+use slipfront_case::number_format::{exact, si_prefix};
 use slipfront_case::quantity::WrittenQuantity;
 use slipfront_case::text::truncated;
 
@@ -134,6 +134,8 @@ impl Axis {
         let texts = lists.first().filter(|(key, _)| !names_a_file(key));
         let mut quantities = texts.iter().flat_map(|(_, values)| values).filter_map(quantity);
         let first = quantities.next();
+        let prefixed = first.as_ref().and_then(|first| with_prefix(first, &lists[0].1));
+        let first = prefixed.as_ref().and_then(quantity).or(first);
         let number = |value| match &first {
             Some(first) => quantity(value)?.in_unit_of(first),
             None => number(value),
@@ -298,6 +300,25 @@ fn variant((variant, keys): (String, Value)) -> Result<Level, String> {
             "the variant `{variant}` must be a set of keys, such as {{ drive.v_star = 0.05 }}"
         )),
     }
+}
+
+/// Sizes of numbers that an axis shows without a power of ten.
+const PLAIN_NUMBERS: std::ops::Range<f64> = 1e-4..1e6;
+
+/// A quantity of one unit, that of the first of these values with an SI prefix, where the values would not be plain numbers without.
+fn with_prefix(first: &WrittenQuantity, values: &[Value]) -> Option<Value> {
+    let numbers = values
+        .iter()
+        .filter_map(|value| quantity(value)?.in_unit_of(first));
+    let largest = numbers.fold(0.0, |largest: f64, number| largest.max(number.abs()));
+    if largest == 0.0 || PLAIN_NUMBERS.contains(&largest) {
+        return None;
+    }
+    let (_, prefix) = si_prefix(largest);
+    let one = Value::String(format!("1 {prefix}{}", first.unit()));
+    // A unit that has a prefix takes no other.
+    quantity(&one)?.in_unit_of(first)?;
+    Some(one)
 }
 
 /// The quantity of a level, if its value has a unit; for a pair of equal quantities the one.
@@ -574,6 +595,13 @@ mod tests {
         assert_eq!(spacing, Spacing::Logarithmic);
         let (numbers, ..) = of("list = [['1 um', '1 um'], ['2 um', '2 um']]");
         assert_eq!(numbers, [1.0, 2.0]);
+        // Where the unit of the first would take powers of ten, it has a prefix, if it can.
+        let (numbers, _, _, unit) = of("list = ['1e-6 m', '3e-6 m', '7e-6 m']");
+        assert_eq!((numbers, unit.as_str()), (vec![1.0, 3.0, 7.0], "um"));
+        let (numbers, _, _, unit) = of("list = ['2e9 Pa', '1e8 Pa']");
+        assert_eq!((numbers, unit.as_str()), (vec![2.0, 0.1], "GPa"));
+        let (numbers, _, _, unit) = of("list = ['1e-6 mm', '2e-6 mm']");
+        assert_eq!((numbers, unit.as_str()), (vec![1e-6, 2e-6], "mm"));
         // Of several kinds they are names, which have their units.
         let (numbers, _, spacing, unit) = of("list = ['1 um', 'auto', '2 um']");
         assert_eq!((numbers.len(), spacing, unit.as_str()), (0, Spacing::Named, ""));

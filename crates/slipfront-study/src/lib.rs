@@ -8,6 +8,7 @@
 //! Every finished run is a line of the journal. A study that was stopped is continued from there.
 
 mod anisotropy;
+mod answer;
 mod axis;
 pub mod calibrate;
 pub mod converge;
@@ -45,6 +46,7 @@ mod told_warnings;
 pub mod verify;
 
 pub use anisotropy::{Anisotropy, OverDirections, anisotropies};
+pub use answer::answer;
 pub use axis::{Axis, Level, Spacing};
 pub use error::StudyError;
 pub use estimate_cost::{CostLimits, estimated_seconds};

@@ -12,8 +12,8 @@ use crate::error::StudyError;
 use crate::input_copies::{self, Copy};
 use crate::summary_values::{REDUCTION, is_column, known};
 use slipfront_case::case_file::{
-    CASE_TABLES, CaseError, ParsedCase, Place, STUDY_TABLES, Source, Tables, header_below, limit_nesting,
-    names_of, read_text, syntax_error, unknown_case_table, unknown_key,
+    CASE_TABLES, CaseError, Override, ParsedCase, Place, STUDY_TABLES, Source, Tables, header_below,
+    limit_nesting, names_of, read_text, syntax_error, unknown_case_table, unknown_key,
 };
 
 /// A study file.
@@ -40,12 +40,31 @@ pub struct Base {
     pub name: String,
     /// The folder to which the files of the case are relative.
     pub folder: PathBuf,
+    /// Keys that are set beside the file, as by `--set`.
+    pub(crate) overrides: Vec<Override>,
+    /// The file that holds the case as its table `base`, in which errors name their places.
+    pub(crate) whole: Option<Source>,
 }
 
 impl Base {
     /// The case file, parsed.
     pub(crate) fn parse(&self) -> Result<ParsedCase<'_>, CaseError> {
-        ParsedCase::parse(&self.text, &self.name)
+        let mut source = Source::new(&self.name, &self.text);
+        if let Some(whole) = &self.whole {
+            source = source.of_table(whole.clone(), "base");
+        }
+        ParsedCase::parse_from(&self.text, source)?.set(&self.overrides)
+    }
+
+    /// A base case of this text.
+    fn new(text: String, name: String, folder: PathBuf) -> Self {
+        Self {
+            text,
+            name,
+            folder,
+            overrides: Vec::new(),
+            whole: None,
+        }
     }
 }
 
@@ -198,6 +217,29 @@ impl StudyFile {
         portable(&self.base, &self.table)
     }
 
+    /// Sets keys of the base case, each by a text such as `drive.v_star=0.05`.
+    ///
+    /// # Errors A text that is no override, and a key that an axis sets.
+    pub fn set(&mut self, overrides: &[String]) -> Result<(), CaseError> {
+        for text in overrides {
+            let change = Override::parse(text)?;
+            let set = BTreeSet::from([change.key()]);
+            let keys = self.axes.iter().flat_map(Axis::keys);
+            if let Some(key) = keys
+                .into_iter()
+                .find(|key| axis::replaced_key(key, &set).is_some())
+            {
+                let mut source = Source::default();
+                let sentence =
+                    format!("an axis of the study sets `{key}`: change its levels, or remove the axis");
+                let start = source.add_override(text);
+                return Err(source.error_at(start..start + text.len(), sentence));
+            }
+            self.base.overrides.push(change);
+        }
+        Ok(())
+    }
+
     /// Whether the file has anything of a study: an empty file is a study, too, which varies nothing.
     pub fn is_study(&self) -> bool {
         !self.table.is_empty()
@@ -311,9 +353,7 @@ pub(crate) fn portable(base: &Base, table: &toml::Table) -> Result<(String, Vec<
 
 /// The keys of a base case.
 fn base_table(base: &Base) -> Result<toml::Table, CaseError> {
-    let source = Source::new(&base.name, &base.text);
-    let table: Result<toml::Table, _> = limit_nesting(&source, 0, &base.text)?.parse();
-    table.map_err(|error| syntax_error(&source, 0, &error))
+    base.parse()?.to_table()
 }
 
 /// The text of a study. Keys in an axis or under `[study]` keep their order, which is that of columns and points: a table in
@@ -344,7 +384,7 @@ pub(crate) fn read_base(tables: &mut Tables, file: &str, folder: &Path) -> Resul
     let Some(value) = tables.root.remove("base") else {
         // Without a base the baseline is varied.
         let (text, name) = (String::new(), format!("{file} [base]"));
-        return Ok(Base { text, name, folder });
+        return Ok(Base::new(text, name, folder));
     };
     let span = value.span();
     match value.into_inner() {
@@ -353,13 +393,16 @@ pub(crate) fn read_base(tables: &mut Tables, file: &str, folder: &Path) -> Resul
             let text = read_text(&path).map_err(|error| tables.source.error_at(span, error.to_string()))?;
             let folder = path.parent().unwrap_or(Path::new("")).to_owned();
             let name = path.display().to_string();
-            Ok(Base { text, name, folder })
+            Ok(Base::new(text, name, folder))
         }
         table @ DeValue::Table(_) => {
             let table: toml::Table = tables.read_table(Spanned::new(span, table), "[base]")?;
             let text = toml::to_string(&table).map_err(CaseError::from)?;
             let name = format!("[base] of {file}");
-            Ok(Base { text, name, folder })
+            Ok(Base {
+                whole: Some(tables.source.clone()),
+                ..Base::new(text, name, folder)
+            })
         }
         _ => {
             let sentence = "`base` must be the path of a case file, or a table [base] that holds its keys";

@@ -52,7 +52,7 @@ pub(crate) fn runs(plan: &Plan, results: &StudyResults, to: impl Write) -> csv::
 
 /// The quantities that the tables of a study have: a reduction only against a reference, and an optional quantity only if
 /// one run has it, or if it decides on replication.
-fn quantities(plan: &Plan, results: &StudyResults) -> Vec<(&'static str, RunQuantity)> {
+pub(crate) fn quantities(plan: &Plan, results: &StudyResults) -> Vec<(&'static str, RunQuantity)> {
     let until = plan.settings.until.as_ref();
     let is_there = |name: &str, quantity: RunQuantity| match quantity {
         RunQuantity::Reduction => plan.has_reference(),

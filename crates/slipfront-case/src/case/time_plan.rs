@@ -77,8 +77,9 @@ impl TimePlan {
         let steps = (end_star / dt_star - 1e-6).ceil().max(1.0);
         if steps > MAX_STEPS {
             let sentence = format!(
-                "a run to t* = {end_star:.4e} in steps of {dt_star} takes {steps:.2e} steps, more than {MAX_STEPS:.0e}: \
-                 shorten it or raise the step"
+                "a run to t* = {end_star:.4e} in steps of {} takes {steps:.2e} steps, more than {MAX_STEPS:.0e}: \
+                 shorten it or raise the step",
+                four_digits(dt_star)
             );
             return Err(file.source.error(key, sentence));
         }

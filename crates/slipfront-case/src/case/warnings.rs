@@ -9,7 +9,7 @@ use super::runnable::Case;
 use super::textures::arrays;
 use super::topography::Topography;
 use crate::case_file::{
-    Count, DEFAULT_THRESHOLD, Law, Mask, Pattern, Pitch, Shape, Texture, friction_warning,
+    Count, DEFAULT_THRESHOLD, Law, Mask, Outlined, Pattern, Pitch, Shape, Texture, friction_warning,
 };
 use crate::number_format::{are, count, four_digits, with_si_prefix};
 
@@ -20,6 +20,8 @@ const LARGE_SEAM: f64 = 0.5;
 const LARGE_SCALE: f64 = 0.01;
 /// Difference between the texture as asked and as meshed, relative to the asked one, above which there is a warning.
 const LARGE_MISFIT: f64 = 0.25;
+/// A coverage, in percent, below which a share of 1 may have been meant.
+const SMALL_COVERAGE: f64 = 1.0;
 /// Relative difference between `mu_static` and the mean of given coefficients above which there is a warning.
 const LARGE_MISMATCH: f64 = 0.1;
 /// Standard deviation of the mean of a surface from seed to seed, relative to that of the coefficients, above which there is a warning.
@@ -62,12 +64,14 @@ impl Case {
             // But for rounding.
             if (against_front / v_star - 1.0).abs() < 1e-9 {
                 return format!(
-                    "V* = {v_star} is above {LARGE_V_STAR}: the slider slips as a whole before any front can cross it"
+                    "V* = {} is above {LARGE_V_STAR}: the slider slips as a whole before any front can cross it",
+                    four_digits(v_star)
                 );
             }
             format!(
-                "V* = {v_star} loads this slider as fast as {} loads equal blocks on the paper's springs, which is above \
+                "V* = {} loads this slider as fast as {} loads equal blocks on the paper's springs, which is above \
                  {LARGE_V_STAR}: loading is faster than a slip front",
+                four_digits(v_star),
                 four_digits(against_front)
             )
         });
@@ -75,7 +79,10 @@ impl Case {
             "law = \"literal\" is for comparison only: its results depend on the time step".to_owned()
         });
         warn(dt_star > 0.5, &|| {
-            format!("dt* = {dt_star} is stable but coarse: with 0.1, mu_s* is good to 1e-3")
+            format!(
+                "dt* = {} is stable but coarse: with 0.1, mu_s* is good to 1e-3",
+                four_digits(dt_star)
+            )
         });
         let increment = self.model.drive.k_drive * self.model.driven_share() * v_star * dt_star;
         warn(is_held && increment > LARGE_INCREMENT, &|| {
@@ -152,6 +159,15 @@ impl Case {
             ));
         }
         for (texture, number) in self.file.texture.iter().zip(1..) {
+            if let Some(percent) = texture.shape.outline().and_then(Outlined::coverage)
+                && percent < SMALL_COVERAGE
+            {
+                warnings.push(format!(
+                    "`coverage` = {percent} of texture {number} is {percent} percent of the area; {} percent are `coverage` = {}",
+                    four_digits(100.0 * percent),
+                    four_digits(100.0 * percent)
+                ));
+            }
             if let Shape::Mask(Mask { file, threshold }) = &texture.shape
                 && *threshold != DEFAULT_THRESHOLD
                 && is_array(Path::new(file))
@@ -303,8 +319,9 @@ impl Case {
             if differs(means[1], expected) {
                 warnings.push(format!(
                     "the given kinetic coefficients have a mean of {:.4}, R* mu_static is {expected:.4}: the run takes the given \
-                     ones, and R* = {r_star} says nothing of it",
-                    means[1]
+                     ones, and R* = {} says nothing of it",
+                    means[1],
+                    four_digits(r_star)
                 ));
             }
         }

@@ -45,11 +45,58 @@ pub fn syntax_error(source: &Source, offset: usize, error: &toml::de::Error) -> 
             source.slice(span.clone())
         )
     } else {
-        let plain = GRAMMAR.iter().find(|(start, _)| message.starts_with(start));
-        let message = plain.map_or(message.as_str(), |(_, plain)| *plain);
-        format!("this is not valid TOML: {message}")
+        let advice = advice_on_words(source, &span, &message).or_else(|| {
+            let plain = GRAMMAR.iter().find(|(start, _)| message.starts_with(start));
+            plain.map(|(_, plain)| (*plain).to_owned())
+        });
+        format!("this is not valid TOML: {}", advice.unwrap_or(message))
     };
     source.error_at(span, sentence)
+}
+
+/// Quotation marks of printed text, which word processors put in the place of straight ones.
+const PRINTED_QUOTES: [char; 8] = [
+    '\u{201c}', '\u{201d}', '\u{201e}', '\u{2018}', '\u{2019}', '\u{201a}', '\u{ab}', '\u{bb}',
+];
+
+/// Advice on the words at a span that is not TOML, where they show what was meant: the message of the parser is about what it
+/// takes them for.
+fn advice_on_words(source: &Source, span: &Range<usize>, message: &str) -> Option<String> {
+    let (before, after) = source.line_around(span.start);
+    let marked = source.slice(span.clone());
+    // A text that seems not to be closed is marked behind its end.
+    let in_text = if message.starts_with("invalid basic string") {
+        before
+    } else {
+        ""
+    };
+    let mut looked_at = in_text.chars().chain(marked.chars()).chain(after.chars().next());
+    if let Some(quote) = looked_at.find(|c| PRINTED_QUOTES.contains(c)) {
+        return Some(format!(
+            "{quote} is a quotation mark of printed text: a text stands in straight ones, such as \"100 kPa\""
+        ));
+    }
+    let words: Vec<&str> = marked.split_whitespace().collect();
+    if words.len() > 1 && words.iter().all(|word| word.parse::<f64>().is_ok()) {
+        let list = words.join(", ");
+        return Some(format!(
+            "the numbers of a list have commas between them: [{}]",
+            truncated(&list)
+        ));
+    }
+    let rest = after.strip_prefix(',')?;
+    let whole = before.rsplit(|c: char| c.is_whitespace() || c == '=').next()?;
+    let digits = rest.find(|c: char| !c.is_ascii_digit()).unwrap_or(rest.len());
+    let decimals = &rest[..digits];
+    // Only digits stand where a comma divides a number.
+    (!decimals.is_empty() && whole.parse::<i64>().is_ok()).then(|| {
+        let (point, list) = (format!("{whole}.{decimals}"), format!("[{whole}, {decimals}]"));
+        format!(
+            "one value stands behind `=`; the decimal sign is a point, {}, and a list stands in brackets, {}",
+            truncated(&point),
+            truncated(&list)
+        )
+    })
 }
 
 /// An error of serde at `span`, while the table under `header` is read, whose keys are `known`; they are the keys of

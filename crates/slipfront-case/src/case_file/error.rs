@@ -23,7 +23,9 @@ pub enum CaseError {
     Folder { path: PathBuf },
     #[error("{} is larger than {limit_mib} MiB, so it is no case or study file", path.display())]
     TooLarge { path: PathBuf, limit_mib: u64 },
-    #[error("{}:{line}: the file is not UTF-8 text", path.display())]
+    #[error("{} is UTF-16 text, not UTF-8: save it again with the encoding UTF-8", path.display())]
+    Utf16 { path: PathBuf },
+    #[error("{}:{line}: the file is not UTF-8 text: save it again with the encoding UTF-8", path.display())]
     NotText { path: PathBuf, line: usize },
     #[error("the case cannot be written as TOML: {0}")]
     Unwritable(#[from] toml::ser::Error),

@@ -3,7 +3,8 @@
 use std::path::Path;
 
 use serde::Serialize;
-use toml::de::DeTable;
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
 
 use super::check::Check;
 use super::depth::limit_nesting;
@@ -224,7 +225,13 @@ impl<'t> ParsedCase<'t> {
     ///
     /// # Errors [`CaseError::Invalid`] for text that is not TOML.
     pub fn parse(text: &'t str, name: &str) -> Result<Self, CaseError> {
-        let source = Source::new(name, text);
+        Self::parse_from(text, Source::new(name, text))
+    }
+
+    /// Parses the text of a case file; `source` is that text, with what is known of its places.
+    ///
+    /// # Errors [`CaseError::Invalid`] for text that is not TOML.
+    pub fn parse_from(text: &'t str, source: Source) -> Result<Self, CaseError> {
         let root = DeTable::parse(limit_nesting(&source, 0, text)?);
         let root = root.map_err(|error| syntax_error(&source, 0, &error))?;
         Ok(Self {
@@ -232,6 +239,28 @@ impl<'t> ParsedCase<'t> {
             source,
             plain: None,
         })
+    }
+
+    /// Sets these keys of the file, one after the other, as `--set` does.
+    ///
+    /// # Errors [`CaseError::Invalid`] for an override that does not fit; errors of the case come from [`with`](Self::with).
+    pub fn set(mut self, overrides: &'t [Override]) -> Result<Self, CaseError> {
+        for change in overrides {
+            change.apply(&mut self.root, &mut self.source)?;
+        }
+        Ok(self)
+    }
+
+    /// The keys of the file, without defaults.
+    ///
+    /// # Errors [`CaseError::Invalid`] for a value that no table of TOML can hold.
+    pub fn to_table(&self) -> Result<toml::Table, CaseError> {
+        let tables = Tables {
+            root: DeTable::default(),
+            source: &self.source,
+        };
+        let root = Spanned::new(0..0, DeValue::Table(self.root.clone()));
+        tables.read_table(root, "a case")
     }
 
     /// Makes the case with these overrides the base of many cases. The base is read once, so that [`with`](Self::with) only

@@ -45,7 +45,7 @@ pub use keys::{
     unknown as unknown_key, unknown_table as unknown_case_table,
 };
 pub use length_of_a_block::LengthOfABlock;
-pub use load::read_text;
+pub use load::{read_text, read_text_from};
 pub use motion::{Along, Load, Profile};
 pub use output::{Output, Snapshots};
 pub use overrides::Override;

@@ -26,6 +26,15 @@ pub struct Source {
     overrides: Vec<(usize, String)>,
     /// The span of every value by its key, such as `drive.v_star` or `texture.0.coverage`; longer keys are left out.
     places: BTreeMap<String, Range<usize>>,
+    /// The file that this text is a table of, if it is not as the user wrote it.
+    whole: Option<Arc<Whole>>,
+}
+
+/// A file that holds a case as one of its tables.
+#[derive(Debug)]
+struct Whole {
+    source: Source,
+    table: String,
 }
 
 impl PartialEq for Source {
@@ -44,8 +53,15 @@ impl Source {
         }
     }
 
+    /// Says that the text is that of the table `table` of a file which the user wrote: errors name their places there.
+    pub fn of_table(mut self, whole: Source, table: &str) -> Self {
+        let table = table.to_owned();
+        self.whole = Some(Arc::new(Whole { source: whole, table }));
+        self
+    }
+
     /// Adds the text of an override; returns the position of its first byte.
-    pub(super) fn add_override(&mut self, text: &str) -> usize {
+    pub fn add_override(&mut self, text: &str) -> usize {
         let end = match self.overrides.last() {
             Some((start, last)) => start + last.len(),
             None => self.file.len(),
@@ -68,6 +84,17 @@ impl Source {
         piece.unwrap_or_default()
     }
 
+    /// The text before and after a position, within the line of the file or the override that holds it.
+    pub(super) fn line_around(&self, position: usize) -> (&str, &str) {
+        let (start, text) = match self.override_at(position) {
+            Some((start, text)) => (*start, text.as_str()),
+            None => (0, &*self.file),
+        };
+        let (before, after) = text.split_at(text.floor_char_boundary(position - start));
+        let before = before.rsplit('\n').next().unwrap_or_default();
+        (before, after.lines().next().unwrap_or_default())
+    }
+
     /// Returns the source without the places of values in these top-level tables.
     pub(super) fn without(&self, tables: &[&str]) -> Self {
         let table = |key: &str| key.split('.').next().is_some_and(|table| tables.contains(&table));
@@ -77,6 +104,7 @@ impl Source {
             name: Arc::clone(&self.name),
             file: Arc::clone(&self.file),
             overrides: self.overrides.clone(),
+            whole: self.whole.clone(),
         }
     }
 
@@ -125,8 +153,28 @@ impl Source {
     pub fn place(&self, span: Range<usize>) -> Place {
         match self.override_at(span.start) {
             Some((_, text)) => Place::Override(truncated(text)),
-            None => Place::in_file(&self.name, &self.file, span),
+            None => self
+                .place_in_whole(&span)
+                .unwrap_or_else(|| Place::in_file(&self.name, &self.file, span)),
         }
+    }
+
+    /// The place of a span in the file that this text is a table of: of the value or key there, or of the table around it.
+    fn place_in_whole(&self, span: &Range<usize>) -> Option<Place> {
+        let Whole { source, table } = self.whole.as_deref()?;
+        // The span is that of a value, or of a key, whose value is the next with its name.
+        let name = self.slice(span.clone());
+        let named = self
+            .places
+            .iter()
+            .filter(|(key, place)| key.rsplit('.').next() == Some(name) && place.start >= span.end);
+        let key = named
+            .min_by_key(|(_, place)| place.start)
+            .map(|(key, _)| key.as_str());
+        let keys = [key, self.key_at(span)].into_iter().flatten();
+        let mut keys = keys.map(|key| format!("{table}.{key}")).chain([table.clone()]);
+        let place = keys.find_map(|key| source.places.get(&key).cloned());
+        place.map(|span| source.place(span))
     }
 
     /// The override that holds a position, and the position where it begins.
@@ -155,5 +203,19 @@ fn note_value(places: &mut BTreeMap<String, Range<usize>>, key: String, value: &
         }
         _ => {}
     }
-    places.insert(key, value.span());
+    places.insert(key, span_of(value));
+}
+
+/// The span of a value; of a list of numbers or words one of which an override has set, the span of the last of these: what
+/// the file holds is not what the list is.
+fn span_of(value: &Spanned<DeValue<'_>>) -> Range<usize> {
+    let span = value.span();
+    let DeValue::Array(values) = value.get_ref() else {
+        return span;
+    };
+    let elements = values.iter().filter(|element| !element.get_ref().is_table());
+    let set = elements
+        .map(Spanned::span)
+        .filter(|element| element.start >= span.end);
+    set.max_by_key(|element| element.start).unwrap_or(span)
 }

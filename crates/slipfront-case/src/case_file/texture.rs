@@ -7,7 +7,7 @@ use toml::de::{DeTable, DeValue};
 use super::check::Check;
 use super::error::CaseError;
 use super::key_table::SECTIONS;
-use super::keys::{texture_header, unknown_shape};
+use super::keys::{texture_header, unknown, unknown_shape};
 use super::pattern::Pattern;
 use super::probe::names_of;
 use super::shapes::Shape;
@@ -32,6 +32,23 @@ impl Texture {
 }
 
 impl<'i> Tables<'_, 'i> {
+    /// An error about the first key of a texture without `shape` that no shape has, if there is one.
+    fn unknown_to_all_shapes(&self, table: &DeTable<'i>) -> Option<CaseError> {
+        let mut known: Vec<&str> = vec!["shape"];
+        let shapes = SECTIONS.iter().filter(|section| section.is_shape);
+        for name in shapes.flat_map(|section| section.keys.iter().map(|key| key.name)) {
+            if !known.contains(&name) {
+                known.push(name);
+            }
+        }
+        let others = table
+            .keys()
+            .filter(|key| !known.contains(&key.get_ref().as_ref()));
+        let first = others.min_by_key(|key| key.span().start)?;
+        let sentence = unknown(first.get_ref(), "[[texture]]", &known);
+        Some(self.source.error_at(first.span(), sentence))
+    }
+
     pub(super) fn read_textures(&mut self) -> Result<Vec<Texture>, CaseError> {
         let Some(value) = self.root.remove("texture") else {
             return Ok(Vec::new());
@@ -58,7 +75,18 @@ impl<'i> Tables<'_, 'i> {
             .iter()
             .find(|section| section.is_shape && Some(section.name) == name);
         let Some(section) = section else {
-            return Err(self.source.error_at(shape_span, unknown_shape(name)));
+            if shape.is_none()
+                && let Some(error) = self.unknown_to_all_shapes(&table)
+            {
+                return Err(error);
+            }
+            // The span of a table that an override has added is that of the override.
+            let made = match self.source.override_at(span.start) {
+                Some(_) if shape.is_none() => ". The case has no such texture, so that this begins one",
+                _ => "",
+            };
+            let sentence = unknown_shape(name) + made;
+            return Err(self.source.error_at(shape_span, sentence));
         };
         section.fill_in(&mut table);
         // The keys of the pattern, which all shapes have, are read apart.

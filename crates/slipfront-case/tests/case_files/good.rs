@@ -200,6 +200,8 @@ fn fast_loading_is_told_in_the_speed_that_equal_blocks_would_have() {
     };
     assert_eq!(fast(""), None);
     assert_eq!(fast("drive.v_star = 0.3"), Some("V* = 0.3 is".to_owned()));
+    // 2 mm/s over a scale of 1 mm/s sqrt(10).
+    assert_eq!(fast("drive.speed = '2 mm/s'"), Some("V* = 0.6325 is".to_owned()));
     // sqrt(10) 0.03 = 0.095, and sqrt(1000) 0.03 = 0.9487.
     assert_eq!(fast(&grade("stiffness", 10.0, 10.0)), None);
     let of_equal = |speed: &str| {
@@ -281,6 +283,22 @@ fn times_are_held_against_the_end_of_the_run_itself() {
     }
     let refused = case("2", "time.kinetic_from_star=60").unwrap_err().to_string();
     assert!(refused.contains("the run ends at 40.0000"), "{refused}");
+}
+
+/// A coverage below 1 % is noted with what it would be as a share of 1; 1 % and more, and sizes, are not.
+#[test]
+fn a_coverage_that_may_be_a_share_is_noted() {
+    let note = |size: &str| {
+        let text = format!("slider.blocks = [50, 50]\n[[texture]]\nshape = 'groove'\n{size}");
+        let warnings = Case::parse(&text, "case", "", &[]).unwrap().warnings();
+        warnings
+            .into_iter()
+            .find(|warning| warning.contains("percent of the area"))
+    };
+    let expected = "`coverage` = 0.1 of texture 1 is 0.1 percent of the area; 10 percent are `coverage` = 10";
+    assert_eq!(note("coverage = 0.1").as_deref(), Some(expected));
+    assert_eq!(note("coverage = 1"), None);
+    assert_eq!(note("width = '0.1 um'"), None);
 }
 
 /// The coverage of a pattern does not depend on its form: a pitch that fills the slider, a count, an array in an array, or a

@@ -93,7 +93,7 @@ fn files_that_cannot_be_read_say_why() {
     assert!(
         load(&path)
             .to_string()
-            .ends_with("case.toml:2: the file is not UTF-8 text")
+            .ends_with("case.toml:2: the file is not UTF-8 text: save it again with the encoding UTF-8")
     );
     fs::write(&path, vec![b'\n'; (16 << 20) + 1]).unwrap();
     assert!(load(&path).to_string().contains("is larger than 16 MiB"));

@@ -15,10 +15,14 @@ use crate::threads::set_threads;
 #[derive(Args)]
 #[command(after_help = "Examples:
   slipfront check cases/circle.toml
-  slipfront check cases/circle.toml --set texture.0.coverage=25")]
+  slipfront check cases/circle.toml --set texture.0.coverage=25
+  slipfront check cases/circle.toml --json | jq .memory_bytes")]
 pub(crate) struct CheckCommand {
     #[command(flatten)]
     case: CaseArgs,
+    /// Print all this as JSON
+    #[arg(long)]
+    json: bool,
 }
 
 impl CheckCommand {
@@ -26,8 +30,11 @@ impl CheckCommand {
         set_threads(None)?;
         let signals = Signals::catch().map_err(Failure::running)?;
         let case = self.case.load(&CommandRanks::alone(), &signals, false)?;
+        let seconds = || seconds_per_step(&case) * case.time_plan.last_step as f64;
+        if self.json {
+            return print(&report::text_of(&report::check(&case, seconds())));
+        }
         print(&(report::physics(&case) + &report::lengths(&case)))?;
-        let seconds = seconds_per_step(&case) * case.time_plan.last_step as f64;
-        print(&report::cost(&case, seconds))
+        print(&report::cost(&case, seconds()))
     }
 }

@@ -8,6 +8,7 @@ pub(crate) mod design;
 pub(crate) mod family;
 pub(crate) mod lab;
 pub(crate) mod licences;
+pub(crate) mod man;
 pub(crate) mod movie;
 pub(crate) mod paper;
 pub(crate) mod plot;

@@ -4,31 +4,33 @@ use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 
-use clap::Args;
+use clap::{Args, ValueEnum};
 use slipfront::observe::Field;
 use slipfront_case::arrays::extension;
 use slipfront_case::case::mapped_field;
 use slipfront_case::case_file::CaseFile;
 use slipfront_case::disk::{folder_of, is_same, write_atomic};
 use slipfront_case::field_info::{FIELDS, field_info, field_named};
+use slipfront_case::number_format::{count, four_digits};
 use slipfront_case::unfinished::TemporaryFolder;
-use slipfront_plot::{MOVIE_PIXELS, MoviePictures};
+use slipfront_plot::{MoviePictures, MovieSize};
 use slipfront_run::names::MOVIE;
+use slipfront_run::pictures::movie::MoviePace;
 use slipfront_run::pictures::{self, movie};
 use slipfront_run::verify::{expect_as_written, inspect};
 
-use super::plot::{expect_memory, expect_results, in_the_way, refuse_other_run};
+use super::plot::{expect_memory, expect_results, in_the_way, refuse_other_run, within};
 use crate::failure::Failure;
 use crate::print::print_message;
 use crate::signals::Signals;
 use crate::threads::set_threads;
 
-/// Show the snapshots of a run one after the other, beside its friction curve with a mark at the instant, as an animated GIF of 800 x
-/// 400 pixels
+/// Show the snapshots of a run one after the other, beside its friction curve with a mark at the instant, as an animated GIF
 #[derive(Args)]
 #[command(after_help = "Examples:
   slipfront run cases/circle.toml -o results/circle --set output.snapshots={every=1.5}
   slipfront movie results/circle
+  slipfront movie results/circle --seconds 8 --size 1600x800 -o circle.gif
   slipfront movie results/circle --field displacement_x -o circle.mp4    where ffmpeg is installed")]
 pub(crate) struct MovieCommand {
     /// Run folder
@@ -40,13 +42,47 @@ pub(crate) struct MovieCommand {
     /// The file: .gif, or .mp4, which ffmpeg makes [default: movie.gif in the folder of the run]
     #[arg(short, long, value_name = "FILE")]
     out: Option<PathBuf>,
+    /// Duration in seconds, in which instants A-F are shown five times as long as other snapshots [default: about 16]
+    #[arg(long, value_name = "S", value_parser = seconds)]
+    seconds: Option<f64>,
+    /// Snapshots per second, each shown as long as the others
+    #[arg(long, value_name = "N", value_parser = per_second, conflicts_with = "seconds")]
+    fps: Option<f64>,
+    /// Size in pixels
+    #[arg(long, default_value = "800x400")]
+    size: SizeName,
     /// Replace the file if it exists
     #[arg(long)]
     force: bool,
 }
 
-/// Number of pictures per second of an MP4 file.
-const RATE: usize = 25;
+/// Size of a movie in pixels.
+#[derive(Clone, Copy, ValueEnum)]
+enum SizeName {
+    #[value(name = "400x200")]
+    Small,
+    #[value(name = "800x400")]
+    Usual,
+    #[value(name = "1600x800")]
+    Large,
+}
+
+fn seconds(text: &str) -> Result<f64, String> {
+    within(text, 0.1, 3600.0, "s")
+}
+
+fn per_second(text: &str) -> Result<f64, String> {
+    within(text, 0.1, 50.0, "1/s")
+}
+
+/// Pictures per second of an MP4 file with these durations of pictures: no picture is left out.
+fn rate(delays: &[u16]) -> usize {
+    if delays.iter().any(|delay| *delay < 4) {
+        50
+    } else {
+        25
+    }
+}
 
 fn known_field(name: &str) -> Result<Field, String> {
     let names = || FIELDS.iter().map(|info| info.name).collect::<Vec<_>>().join(", ");
@@ -82,25 +118,46 @@ impl MovieCommand {
         {
             return Err(refused(sentence));
         }
-        expect_memory(movie::memory(folder).map_err(Failure::input)?)?;
+        expect_memory(movie::memory(folder, self.size()).map_err(Failure::input)?)?;
         let movie = movie::of_run(folder, self.field).map_err(Failure::input)?;
         let movie = movie.ok_or_else(|| refused(self.no_snapshots(run.case.as_ref().ok())))?;
+        let delays = movie::delays(&movie, self.pace()).map_err(Failure::input)?;
         let bytes = if is_mp4 {
-            mp4(folder, &movie)?
+            mp4(folder, &movie, self.size(), &delays)?
         } else {
-            let bytes = movie::gif(&movie).map_err(Failure::input)?;
+            let bytes = movie::gif(&movie, self.size(), &delays).map_err(Failure::input)?;
             // Not before: until here a signal ends the process, and nothing is left behind.
             Signals::catch().map_err(Failure::running)?;
             bytes
         };
         write_atomic(&out, &bytes)
             .map_err(|error| Failure::running(anyhow::anyhow!("cannot write {}: {error}", out.display())))?;
-        print_message(&format!("{}\n", out.display()));
+        let hundredths: u64 = delays.iter().map(|delay| u64::from(*delay)).sum();
+        let [width, height] = self.size().pixels();
+        print_message(&format!(
+            "{} in {} s, {width} x {height} pixels\n{}\n",
+            count(delays.len(), "picture"),
+            four_digits(hundredths as f64 / 100.0),
+            out.display()
+        ));
         Ok(())
     }
 }
 
 impl MovieCommand {
+    fn size(&self) -> MovieSize {
+        match self.size {
+            SizeName::Small => MovieSize::Small,
+            SizeName::Usual => MovieSize::Usual,
+            SizeName::Large => MovieSize::Large,
+        }
+    }
+
+    fn pace(&self) -> MoviePace {
+        let seconds = self.seconds.map(MoviePace::Seconds);
+        seconds.or(self.fps.map(MoviePace::PerSecond)).unwrap_or_default()
+    }
+
     /// A sentence that the run has no snapshots of the field, with the fields of which it has.
     fn no_snapshots(&self, case: Option<&CaseFile>) -> String {
         let field = self
@@ -124,21 +181,26 @@ fn refused(sentence: String) -> Failure {
 }
 
 /// The movie of a run folder as an MP4 file, made by ffmpeg.
-fn mp4(run: &Path, movie: &slipfront_plot::Movie) -> Result<Vec<u8>, Failure> {
+fn mp4(
+    run: &Path,
+    movie: &slipfront_plot::Movie,
+    size: MovieSize,
+    delays: &[u16],
+) -> Result<Vec<u8>, Failure> {
     let failed = |error: std::io::Error| Failure::running(anyhow::anyhow!("cannot make the movie: {error}"));
     // An MP4 file that begins with its index, which players want, cannot be written through a pipe.
     let signals = Signals::catch().map_err(failed)?;
     let folder = TemporaryFolder::new(run).map_err(failed)?;
     let path = folder.path().join("movie.mp4");
-    let [width, height] = MOVIE_PIXELS;
-    let pictures = movie::pictures(movie).map_err(Failure::input)?;
+    let [width, height] = size.pixels();
+    let pictures = movie::pictures(movie, size).map_err(Failure::input)?;
     let started = Command::new("ffmpeg")
         .args(["-loglevel", "error", "-f", "rawvideo", "-pix_fmt", "rgb24"])
         .args([
             "-s",
             &format!("{width}x{height}"),
             "-r",
-            &RATE.to_string(),
+            &rate(delays).to_string(),
             "-i",
             "-",
         ])
@@ -154,7 +216,7 @@ fn mp4(run: &Path, movie: &slipfront_plot::Movie) -> Result<Vec<u8>, Failure> {
         ),
         _ => failed(error),
     })?;
-    feed(child, movie, &pictures, &signals)?;
+    feed(child, movie, &pictures, delays, &signals)?;
     std::fs::read(&path).map_err(failed)
 }
 
@@ -163,11 +225,15 @@ fn feed(
     mut child: Child,
     movie: &slipfront_plot::Movie,
     pictures: &MoviePictures,
+    delays: &[u16],
     signals: &Signals,
 ) -> Result<(), Failure> {
     let palette = pictures.palette();
     let mut pipe = child.stdin.take();
-    let mut delays = movie::delays(movie).into_iter();
+    let (rate, mut delays) = (rate(delays), delays.iter());
+    // Hundredths of a second before a picture; it begins at the nearest picture of the file.
+    let mut before = 0;
+    let nearest = |hundredths: usize| (hundredths * rate + 50) / 100;
     let fed: Result<(), ()> = movie::draw(movie, pictures, |pixels| {
         if signals.stopped().is_some() {
             return Err(());
@@ -176,8 +242,10 @@ fn feed(
             .iter()
             .flat_map(|&pixel| palette[usize::from(pixel)])
             .collect();
-        let hundredths = usize::from(delays.next().unwrap_or_default());
-        for _ in 0..(hundredths * RATE).div_ceil(100).max(1) {
+        let end = before + delays.next().map_or(0, |delay| usize::from(*delay));
+        let times = nearest(end) - nearest(before);
+        before = end;
+        for _ in 0..times {
             // A program that ends early says why.
             let written = pipe.as_mut().map(|pipe| pipe.write_all(&bytes));
             written.and_then(Result::ok).ok_or(())?;

@@ -9,13 +9,13 @@ use slipfront_case::case::PROGRAM;
 use slipfront_case::disk::{is_same, make_folders, read_limited, write_atomic};
 use slipfront_case::field_info::{FIELDS, field_info, field_named};
 use slipfront_case::machine::available_of;
-use slipfront_case::number_format::{byte_size, four_digits, with_si_prefix};
-use slipfront_plot::Picture;
+use slipfront_case::number_format::{byte_size, count, four_digits, with_si_prefix};
+use slipfront_plot::{KYMOGRAPH_BYTES, Picture, PictureSize};
 use slipfront_run::measured::{Column, Measure, MeasuredError, MeasuredRecord};
 use slipfront_run::names::MANIFEST;
 use slipfront_run::pictures;
 use slipfront_run::pictures::friction::{
-    Against, AxisUnits, Fit, OverlaidRecord, Overlay, overlay, overlay_measured,
+    Against, AxisUnits, Fit, FrictionLook, OverlaidRecord, Overlay, overlay, overlay_measured,
 };
 use slipfront_run::run_folder::inspection::Inspection;
 use slipfront_run::verify::{expect_as_written, inspect};
@@ -33,7 +33,9 @@ use crate::threads::set_threads;
   slipfront plot results/circle results/groove_across -o results/overlay
   slipfront plot results/circle --units si --against displacement -o results/newtons
   slipfront plot results/circle --data force.csv --x time_s --y force_n
-  slipfront plot results/circle --field traction -o results/traction")]
+  slipfront plot results/a results/b --width 120 --height 90 --font-size 10 --name smooth --name textured -o both
+  slipfront plot results/circle --field traction -o results/traction
+  slipfront plot results/circle --field kymograph -o results/kymograph")]
 pub(crate) struct PlotCommand {
     /// Run folders
     #[arg(required = true, value_name = "DIR")]
@@ -44,9 +46,27 @@ pub(crate) struct PlotCommand {
     /// Draw friction alone, against this [default: time, or where runs of different materials can be compared]
     #[arg(long)]
     against: Option<AgainstName>,
-    /// Draw maps of this field of one run alone
-    #[arg(long, value_name = "NAME", value_parser = PossibleValuesParser::new(FIELDS.map(|info| info.name)), conflicts_with_all = ["units", "against", "data"])]
+    /// Draw maps of this field of one run alone; kymograph is the share of sliding blocks against place and time, over the whole run
+    #[arg(long, value_name = "NAME", value_parser = PossibleValuesParser::new(FIELDS.map(|info| info.name).into_iter().chain([KYMOGRAPH])), conflicts_with_all = ["units", "against", "data"])]
     field: Option<String>,
+    /// Draw friction alone, this wide, in mm [default: 85]
+    #[arg(long, value_name = "MM", value_parser = millimetres, conflicts_with = "field")]
+    width: Option<f64>,
+    /// Draw friction alone, this high, in mm
+    #[arg(long, value_name = "MM", value_parser = millimetres, conflicts_with = "field")]
+    height: Option<f64>,
+    /// Draw friction alone, with labels of this size, in pt [default: 8]; numbers, lines and marks grow with them
+    #[arg(long, value_name = "PT", value_parser = points, conflicts_with = "field")]
+    font_size: Option<f64>,
+    /// Draw friction alone, with this name of a run in the legend; once for each folder, and a last time for the record of --data
+    #[arg(long = "name", value_name = "TEXT", conflicts_with = "field")]
+    names: Vec<String>,
+    /// Draw friction alone, with this title of the horizontal axis; a character after _ is a subscript
+    #[arg(long, value_name = "TEXT", conflicts_with = "field")]
+    x_label: Option<String>,
+    /// Draw friction alone, with this title of the axis of friction
+    #[arg(long, value_name = "TEXT", conflicts_with = "field")]
+    y_label: Option<String>,
     /// A measured record to draw with the curves, in SI units: a table of text (.csv)
     #[arg(long, value_name = "FILE", requires_all = ["x", "y"])]
     data: Option<PathBuf>,
@@ -80,7 +100,8 @@ pub(crate) struct PlotCommand {
         allow_negative_numbers = true
     )]
     y_offset: f64,
-    /// Number added to the record's times or displacements, in s or m [default: what fits the first run best]
+    /// Number added to the record's times or displacements, in s or m [default: what fits the first run
+    /// best, if nothing else fits about as well]
     #[arg(long, value_name = "NUMBER", requires = "data", allow_negative_numbers = true)]
     shift: Option<f64>,
     /// Folder for the pictures [default: the run's own; results/overlay for several, for friction and for a field alone]
@@ -120,23 +141,24 @@ impl PlotCommand {
             expect_as_written(&run, |name| pictures::DRAWN_FROM.contains(&name)).map_err(Failure::input)?;
             runs.push(run);
         }
-        expect_memory(pictures::memory(&self.folders).map_err(Failure::input)?)?;
-        let (out, drawn) = match (
-            self.field.as_deref().and_then(field_named),
-            self.folders.as_slice(),
-        ) {
-            (Some(field), [folder]) => {
-                let picture = pictures::draw_field(folder, field).map_err(Failure::input)?;
-                (
-                    PathBuf::from("results/overlay"),
-                    vec![(field_info(field).name, picture)],
-                )
+        self.expect_names()?;
+        let memory = pictures::memory(&self.folders).map_err(Failure::input)?;
+        let drawn = self.size().bytes().max(KYMOGRAPH_BYTES as f64);
+        expect_memory(memory + drawn)?;
+        let (out, drawn) = match (self.field.as_deref(), self.folders.as_slice()) {
+            (Some(name), [folder]) => {
+                let (name, picture) = match field_named(name) {
+                    Some(field) => (field_info(field).name, pictures::draw_field(folder, field)),
+                    None => (KYMOGRAPH, pictures::draw_kymograph(folder)),
+                };
+                let picture = picture.map_err(Failure::input)?;
+                (PathBuf::from("results/overlay"), vec![(name, picture)])
             }
             (Some(_), _) => {
                 let sentence = "--field draws the maps of one run: name one folder";
                 return Err(Failure::input(anyhow::anyhow!(sentence)));
             }
-            (None, [folder]) if self.units.is_none() && self.against.is_none() && self.data.is_none() => {
+            (None, [folder]) if !self.draws_friction_alone() => {
                 (folder.clone(), pictures::draw(folder).map_err(Failure::input)?)
             }
             (None, folders) => {
@@ -190,6 +212,47 @@ impl PlotCommand {
 }
 
 impl PlotCommand {
+    fn size(&self) -> PictureSize {
+        PictureSize {
+            width_mm: self.width,
+            height_mm: self.height,
+            font_pt: self.font_size,
+        }
+    }
+
+    /// Whether an option asks for the picture of friction, where a run has others.
+    fn draws_friction_alone(&self) -> bool {
+        let has_labels = !self.names.is_empty() || self.x_label.is_some() || self.y_label.is_some();
+        has_labels
+            || self.units.is_some()
+            || self.against.is_some()
+            || self.data.is_some()
+            || self.size() != PictureSize::default()
+    }
+
+    fn look(&self) -> FrictionLook {
+        FrictionLook {
+            names: self.names.clone(),
+            x_label: self.x_label.clone(),
+            y_label: self.y_label.clone(),
+            size: self.size(),
+        }
+    }
+
+    /// Refuses names of which there are not as many as folders, or one more for a record.
+    fn expect_names(&self) -> Result<(), Failure> {
+        let (given, runs) = (self.names.len(), self.folders.len());
+        let most = runs + usize::from(self.data.is_some());
+        if given == 0 || (runs..=most).contains(&given) {
+            return Ok(());
+        }
+        Err(Failure::input(anyhow::anyhow!(
+            "{} for {}: give --name once for each, in their order",
+            count(given, "name"),
+            count(runs, "run")
+        )))
+    }
+
     fn against(&self) -> Option<Against> {
         self.against.map(|name| match name {
             AgainstName::Time => Against::Time,
@@ -206,10 +269,15 @@ impl PlotCommand {
             }
             (_, Some(path)) => {
                 let measured = self.measured(path).map_err(Failure::input)?;
-                overlay_measured(folders, self.against().unwrap_or_default(), &measured)
+                overlay_measured(
+                    folders,
+                    self.against().unwrap_or_default(),
+                    &measured,
+                    &self.look(),
+                )
             }
-            (Some(UnitsName::Si), None) => overlay(folders, AxisUnits::Si, self.against()),
-            (_, None) => overlay(folders, AxisUnits::Star, self.against()),
+            (Some(UnitsName::Si), None) => overlay(folders, AxisUnits::Si, self.against(), &self.look()),
+            (_, None) => overlay(folders, AxisUnits::Star, self.against(), &self.look()),
         };
         drawn.map_err(Failure::input)
     }
@@ -251,6 +319,25 @@ impl PlotCommand {
         }
         text
     }
+}
+
+/// The kymograph as `--field` names it, and its picture.
+const KYMOGRAPH: &str = "kymograph";
+
+/// A side of a picture in mm.
+fn millimetres(text: &str) -> Result<f64, String> {
+    within(text, 20.0, PictureSize::MAX_MM, "mm")
+}
+
+/// A size of letters in pt.
+fn points(text: &str) -> Result<f64, String> {
+    within(text, 3.0, 40.0, "pt")
+}
+
+/// A number with a unit within bounds.
+pub(super) fn within(text: &str, least: f64, most: f64, unit: &str) -> Result<f64, String> {
+    let number = text.parse().ok().filter(|number| (least..=most).contains(number));
+    number.ok_or_else(|| format!("a number of {unit} from {least} to {most}"))
 }
 
 /// Refuses the name of a picture where a folder for several is asked for, unless there is such a folder.
@@ -295,6 +382,7 @@ pub(super) fn expect_results(folder: &Path) -> Result<(), Failure> {
             "{} is the folder of a study, which holds its pictures: name folders of runs",
             folder.display()
         ),
+        Ok(false) if !folder.exists() => missing_folder(folder),
         Ok(false) => format!(
             "{} holds no summary.json: name the folder of a run that is finished",
             folder.display()
@@ -302,6 +390,17 @@ pub(super) fn expect_results(folder: &Path) -> Result<(), Failure> {
         Err(error) => format!("cannot read {}: {error}", path.display()),
     };
     Err(Failure::input(anyhow::anyhow!(sentence)))
+}
+
+/// The sentence about a folder that is not there, with the one among the results that was probably meant.
+pub(super) fn missing_folder(folder: &Path) -> String {
+    let among_results = Path::new("results").join(folder);
+    let meant = if among_results.is_dir() {
+        format!(": did you mean {}?", among_results.display())
+    } else {
+        String::new()
+    };
+    format!("there is no folder {}{meant}", folder.display())
 }
 
 /// Refuses a folder of a run to which these pictures do not belong.

@@ -38,6 +38,8 @@ use crate::wrap;
   slipfront verify results/*
   slipfront verify --rerun results/baseline   runs its case again and compares every file
 
+Folders that hold pictures alone, as `slipfront plot` writes them, are passed over.
+
 Exit status 0 says that all is well, 1 that something differs, 2 that a folder is not one of a run or a study.")]
 pub(crate) struct VerifyCommand {
     /// Folders of runs or studies
@@ -64,8 +66,19 @@ impl VerifyCommand {
             .then(Signals::catch)
             .transpose()
             .map_err(Failure::running)?;
-        let (mut different, mut unusable) = (0, 0);
+        let (mut different, mut unusable, mut pictures) = (0, 0, 0);
         for folder in &self.folders {
+            if holds_pictures_alone(folder) {
+                pictures += 1;
+                if !self.quiet {
+                    let sentence = format!(
+                        "{} holds pictures alone, of which nothing is recorded",
+                        folder.display()
+                    );
+                    print(&wrap::note(&sentence))?;
+                }
+                continue;
+            }
             let mut verdict = Verdict::default();
             let looked_at = self.look_at(folder, signals.as_ref(), &mut verdict);
             different += usize::from(!verdict.differences.is_empty());
@@ -83,6 +96,9 @@ impl VerifyCommand {
         let of_all = format!("of {}", count(self.folders.len(), "folder"));
         let differ = if different == 1 { "differs" } else { "differ" };
         match (unusable, different) {
+            (0, 0) if pictures == self.folders.len() => Err(Failure::input(anyhow::anyhow!(
+                "there is nothing to verify: name folders of runs or studies"
+            ))),
             (0, 0) => Ok(()),
             (0, _) => Err(Failure::running(anyhow::anyhow!(
                 "{different} {of_all} {differ} from what was written"
@@ -199,6 +215,21 @@ impl VerifyCommand {
         }
         text
     }
+}
+
+/// Whether a folder holds pictures or movies and nothing else, as `slipfront plot` writes it.
+fn holds_pictures_alone(folder: &Path) -> bool {
+    let Ok(entries) = std::fs::read_dir(folder) else {
+        return false;
+    };
+    let mut names = entries
+        .map(|entry| entry.map_or_else(|_| PathBuf::new(), |entry| PathBuf::from(entry.file_name())))
+        .peekable();
+    let is_picture = |name: &PathBuf| {
+        let ending = name.extension().and_then(|ending| ending.to_str());
+        ending.is_some_and(|ending| ["svg", "png", "gif", "mp4"].contains(&ending))
+    };
+    names.peek().is_some() && names.all(|name| is_picture(&name))
 }
 
 /// Completes the folder of a repeated run, with pictures unless the first run has drawn none.

@@ -10,9 +10,14 @@ use super::times::{duration, instant};
 
 /// The expected onset, the stability of the step, the cost and the warnings; `seconds` is the time that the run takes.
 pub(crate) fn cost(case: &Case, seconds: f64) -> String {
-    let (loading, note) = loading(case);
-    let warnings: Vec<String> = case.warnings().into_iter().chain(note).collect();
-    onset(case) + &loading + &scales(case) + &resources(case, seconds) + &notes(&warnings)
+    let (loading, _) = loading(case);
+    onset(case) + &loading + &scales(case) + &resources(case, seconds) + &notes(&warnings(case))
+}
+
+/// Warnings about a case, with the note on a drive that loads it faster than a front crosses it.
+pub(super) fn warnings(case: &Case) -> Vec<String> {
+    let (_, note) = loading(case);
+    case.warnings().into_iter().chain(note).collect()
 }
 
 /// The time in which a slip front crosses the slider, about a block per t*, over the time in which the drive loads it, about

@@ -3,6 +3,7 @@
 
 mod anisotropy;
 mod cost;
+mod json;
 mod lengths;
 mod physics;
 mod study;
@@ -10,6 +11,7 @@ mod summary;
 mod times;
 
 pub(crate) use cost::cost;
+pub(crate) use json::{check, text_of};
 pub(crate) use lengths::lengths;
 pub use physics::physics;
 pub(crate) use physics::{smallest, texture};

@@ -66,6 +66,87 @@ fn a_case_that_is_no_file_is_refused() {
     assert!(workspace.fail("run binary.toml", 2).contains("not UTF-8"));
 }
 
+/// Text of editors that do not write UTF-8 is refused with the remedy, with and without a mark of its byte order.
+#[test]
+fn utf16_is_refused_by_its_name() {
+    let workspace = Workspace::small();
+    let text = "[slider]\nblocks = [5, 6]\n";
+    let little: Vec<u8> = text.encode_utf16().flat_map(u16::to_le_bytes).collect();
+    let big: Vec<u8> = text.encode_utf16().flat_map(u16::to_be_bytes).collect();
+    for (mark, bytes) in [
+        (&[0xff, 0xfe][..], &little),
+        (&[], &little),
+        (&[0xfe, 0xff], &big),
+        (&[], &big),
+    ] {
+        workspace.write("wide.toml", [mark, bytes].concat());
+        let said = workspace.fail("check wide.toml", 2);
+        assert_eq!(
+            said,
+            "error: wide.toml is UTF-16 text, not UTF-8: save it again with the encoding UTF-8\n"
+        );
+    }
+}
+
+/// A key and its value are one word: where a shell has divided them, the word that was meant is told.
+#[test]
+fn divided_overrides_are_told() {
+    let workspace = Workspace::small();
+    for (command, meant) in [
+        ("check --set drive.v_star 0.05", "drive.v_star=0.05"),
+        ("run small.toml --set drive.v_star 0.05", "drive.v_star=0.05"),
+        ("check --set drive.v_star = 0.05", "drive.v_star=0.05"),
+        ("check --set drive.v_star= 0.05", "drive.v_star=0.05"),
+        ("check --set drive.direction -30", "drive.direction=-30"),
+        ("check --set=drive.v_star 0.05", "drive.v_star=0.05"),
+        ("check --set slider.blocks=[50, 50]", "'slider.blocks=[50, 50]'"),
+        (
+            "check small.toml --set slider.blocks=[50, 50] --seed 2",
+            "'slider.blocks=[50, 50]'",
+        ),
+    ] {
+        let said = workspace.fail(command, 2);
+        let end = format!(": --set {meant}\n");
+        let or_quoted = format!(": put it in quotes, --set {meant}\n");
+        assert!(
+            said.ends_with(&end) || said.ends_with(&or_quoted),
+            "{command}: {said}"
+        );
+    }
+    // A case, another option and nothing at all are no values.
+    for command in [
+        "check --set drive.v_star small.toml",
+        "check --set drive.v_star --seed 2",
+        "check --set drive.v_star",
+        "check --set slider.blocks=[50,",
+    ] {
+        let said = workspace.fail(command, 2);
+        assert!(
+            !said.contains("one word") && !said.contains("in quotes"),
+            "{command}: {said}"
+        );
+    }
+}
+
+/// A case that is not named has no file: errors point at the command line, or name the key alone.
+#[test]
+fn errors_of_the_baseline_show_no_line_of_a_file() {
+    let workspace = Workspace::small();
+    let said = workspace.fail(
+        "check --set slider.blocks.0=60000 --set slider.blocks.1=60000 --set output.snapshots=[]",
+        2,
+    );
+    assert!(
+        said.starts_with("error: --set slider.blocks.1=60000: ") && said.contains("`slider.blocks`"),
+        "{said}"
+    );
+    let said = workspace.fail(
+        "run --set output.stride=9 --set drive.v_star=1e-6 --set time.step=1e-6",
+        2,
+    );
+    assert!(!said.contains("baseline:"), "{said}");
+}
+
 /// A pipe would be waited for, and a device never ends.
 #[cfg(unix)]
 #[test]

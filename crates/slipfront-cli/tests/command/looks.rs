@@ -7,7 +7,15 @@ use crate::support::workspace::Workspace;
 fn help_names_every_subcommand_and_says_what_it_does() {
     let workspace = Workspace::small();
     let help = workspace.succeed("--help");
-    for command in ["run", "check", "texture", "plot", "completions", "licences"] {
+    for command in [
+        "run",
+        "check",
+        "texture",
+        "plot",
+        "completions",
+        "man",
+        "licences",
+    ] {
         assert!(help.contains(&format!("\n  {command} ")), "{command}: {help}");
         let own = workspace.succeed(&format!("{command} --help"));
         assert!(
@@ -52,6 +60,45 @@ fn completions_know_subcommands_and_options() {
     assert!(workspace.fail("completions dos", 2).contains("bash"));
 }
 
+/// Manual pages are those of every subcommand, with its options and examples.
+#[test]
+fn manual_pages_have_options_and_examples() {
+    let workspace = Workspace::small();
+    for (line, words) in [
+        (
+            "man",
+            &[
+                ".TH slipfront 1",
+                "slipfront\\-study",
+                "Friction of micro\\-textured surfaces",
+            ][..],
+        ),
+        (
+            "man run",
+            &[".TH slipfront-run 1", "\\-\\-checkpoint", "Examples:"],
+        ),
+        (
+            "man study merge",
+            &[".TH slipfront-study-merge 1  \"slipfront ", "Unite the shards"],
+        ),
+    ] {
+        let page = workspace.succeed(line);
+        for word in words {
+            assert!(page.contains(word), "{line} lacks {word}:\n{page}");
+        }
+    }
+    assert!(
+        workspace
+            .fail("man rum", 2)
+            .contains("there is no subcommand \"rum\": it can be run, check, study")
+    );
+    assert!(
+        workspace
+            .fail("man run fast", 2)
+            .contains("`run` has no subcommands")
+    );
+}
+
 /// The licences of slipfront and of its parts are printed; that they are those of every crate is tested by
 /// `tests/licences/run.sh`.
 #[test]
@@ -68,6 +115,91 @@ fn licences_are_told_of_slipfront_and_of_what_it_contains() {
     ] {
         assert!(told.contains(words), "{words}");
     }
+}
+
+/// The report for programs has the numbers of the summary of the run, and of what is printed for a reader.
+#[test]
+fn check_prints_json() {
+    let workspace = Workspace::small();
+    let report: serde_json::Value =
+        serde_json::from_str(&workspace.succeed("check small.toml --json")).unwrap();
+    let summary = workspace.succeed("run small.toml --json --no-pictures");
+    let summary: serde_json::Value = serde_json::from_str(&summary).unwrap();
+    for key in [
+        "v_star",
+        "r_star",
+        "omega_star",
+        "epsilon",
+        "n_blocks",
+        "texture_percent",
+        "dt_star",
+        "steps",
+        "seed",
+    ] {
+        assert_eq!(report[key], summary[key], "{key}");
+    }
+    for key in [
+        "time_unit_s",
+        "displacement_unit_m",
+        "stress_unit_pa",
+        "block_size_m",
+    ] {
+        assert_eq!(report[key], summary["si"][key], "{key}");
+    }
+    // A run may add some of its own.
+    let [before, of_run] = [&report, &summary].map(|of| of["warnings"].as_array().unwrap());
+    assert!(
+        !before.is_empty() && before.iter().all(|warning| of_run.contains(warning)),
+        "{of_run:?}"
+    );
+    let lengths = report["lengths"].as_array().unwrap();
+    assert!(
+        lengths
+            .iter()
+            .any(|length| length["name"] == "screening length along")
+    );
+    for key in ["memory_bytes", "disk_bytes", "block_steps", "seconds"] {
+        assert!(report[key].as_f64().unwrap() > 0.0, "{key}");
+    }
+    assert!(!workspace.succeed("check small.toml --json").contains('\u{251c}'));
+}
+
+/// A case from standard input is the case of the file, but for its name; errors name where it came from.
+#[test]
+fn a_case_can_come_from_standard_input() {
+    let workspace = Workspace::small();
+    let from = |script: &str| {
+        let command = crate::support::process::program();
+        workspace.shell(&script.replace("slipfront", &format!("'{command}'")))
+    };
+    let said = from("slipfront check - --set drive.v_star=0.2 < small.toml");
+    let printed = String::from_utf8(said.stdout).unwrap();
+    assert!(
+        printed.starts_with("stdin\n") && printed.contains("V* = 0.2"),
+        "{printed}"
+    );
+    assert!(from("cat small.toml | slipfront run - --quiet").status.success());
+    workspace.succeed("run small.toml --quiet");
+    for file in ["summary.json", "series.csv", "case.toml"] {
+        assert_eq!(
+            workspace.read(&format!("results/stdin/{file}")),
+            workspace.read(&format!("results/small/{file}")),
+            "{file}"
+        );
+    }
+    let said = from("echo 'drive.vstar = 1' | slipfront check -");
+    let errors = String::from_utf8(said.stderr).unwrap();
+    assert_eq!(said.status.code(), Some(2));
+    assert!(
+        errors.contains("standard input:1:7: unknown key `vstar`"),
+        "{errors}"
+    );
+    let said = from("printf '\\377' | slipfront check -");
+    let errors = String::from_utf8(said.stderr).unwrap();
+    assert!(
+        errors.contains("standard input:1: the file is not UTF-8 text"),
+        "{errors}"
+    );
 }
 
 #[test]

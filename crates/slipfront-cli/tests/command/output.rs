@@ -356,7 +356,32 @@ fn a_movie_shows_every_snapshot() {
     assert_eq!(workspace.read("run/movie.gif"), bytes);
     workspace.succeed("movie run --field displacement_x -o other.gif");
     assert_ne!(workspace.read("other.gif"), bytes);
+    // Length, pace and size are as asked for, and the length is told.
+    let told = workspace.succeed("movie run --force");
+    let told_as = format!(
+        "{snapshots} pictures in {} s, 800 x 400 pixels\nrun/movie.gif\n",
+        f64::from(time) / 100.0
+    );
+    assert_eq!(told, told_as);
+    let told = workspace.succeed("movie run --seconds 20 --size 400x200 -o timed.gif");
+    assert!(
+        told.starts_with(&format!("{snapshots} pictures in 20 s, 400 x 200 pixels\n")),
+        "{told}"
+    );
+    assert_eq!(shown(&workspace.read("timed.gif")), ([400, 200], snapshots, 2000));
+    workspace.succeed("movie run --fps 10 --size 1600x800 -o paced.gif");
+    assert_eq!(
+        shown(&workspace.read("paced.gif")),
+        ([1600, 800], snapshots, 10 * snapshots as u32)
+    );
+    workspace.write("empty/note.txt", "");
     for (line, sentence) in [
+        ("movie run --seconds 0.1 -o none.gif", "pictures take at least"),
+        (
+            "movie run --fps 10 --seconds 3 -o none.gif",
+            "cannot be used with",
+        ),
+        ("movie run --size 3x4 -o none.gif", "400x200, 800x400, 1600x800"),
         (
             "movie run --field velocity_x -o none.gif",
             "has kept no snapshots of velocity_x: name a field that it has with --field (its case keeps",
@@ -367,9 +392,10 @@ fn a_movie_shows_every_snapshot() {
         ),
         ("movie run -o movie.avi", "name a file that ends in .gif or .mp4"),
         (
-            "movie nowhere",
+            "movie empty",
             "holds no summary.json: name the folder of a run that is finished",
         ),
+        ("movie nowhere", "there is no folder nowhere"),
     ] {
         let said = workspace.fail(line, 2);
         assert!(said.contains(sentence), "{line}: {said}");

@@ -38,6 +38,12 @@ fn figures_are_made_judged_and_reported() {
         assert!(workspace.exists(&format!("paper/{name}")), "{name}");
     }
     assert!(workspace.exists("docs/paper.md"));
+    let report = workspace.read_text("paper/report.html");
+    assert!(
+        report.contains("Table 1, Fig. 13, and 3 claims about them, of <cite>")
+            && !report.contains("Every figure and claim"),
+        "{report:.2000}"
+    );
     let claims = workspace.read_text("paper/claims.csv");
     assert_eq!(claims.lines().count(), 4);
     // A part of them leaves the rest in the report.

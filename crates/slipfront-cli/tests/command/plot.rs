@@ -63,8 +63,9 @@ fn long_names_of_runs_are_told_apart() {
     }
     workspace.succeed(&format!("plot {}", folders.join(" ")));
     let svg = svg(&workspace, "results/overlay");
+    // The folder that both have in common stands above them, and no whole name beside it.
     assert!(
-        svg.contains("slow") && svg.contains("fast") && !svg.contains(long),
+        svg.contains(">slow/") && svg.contains(">fast/") && svg.matches(long).count() <= 1,
         "{svg}"
     );
 }
@@ -105,7 +106,17 @@ fn plot_draws_maps_of_a_field_that_was_kept() {
 #[test]
 fn plot_refuses_what_is_no_run() {
     let workspace = Workspace::small();
-    assert!(workspace.fail("plot nowhere", 2).contains("summary.json"));
+    assert_eq!(
+        workspace.fail("plot nowhere", 2),
+        "error: there is no folder nowhere\n"
+    );
+    workspace.write("results/first/note.txt", "");
+    assert!(
+        workspace
+            .fail("plot first", 2)
+            .contains("there is no folder first: did you mean results/first?")
+    );
+    assert!(workspace.fail("plot results/first", 2).contains("summary.json"));
     workspace.succeed("run small.toml -o a");
     workspace.write("a/fields.nc", "CDF");
     assert!(workspace.fail("plot a", 2).contains("fields.nc"));
@@ -216,4 +227,139 @@ fn a_measured_record_finds_its_place() {
     );
     let said = workspace.fail("plot a --units star --data force.csv --x t --y F", 2);
     assert!(said.contains("leave `--units star` out"), "{said}");
+}
+
+/// Size, letters, titles and names are as asked for: in the SVG in millimetres, in the PNG in pixels of 300 dots per inch.
+#[test]
+fn pictures_have_the_size_and_the_names_that_are_asked_for() {
+    let workspace = Workspace::small();
+    workspace.succeed("run small.toml -o results/a");
+    workspace.succeed("run small.toml --seed 2 -o results/b");
+    let pixels = |folder: &str| {
+        let bytes = workspace.read(&format!("{folder}/friction.png"));
+        [16, 20].map(|at| u32::from_be_bytes(bytes[at..at + 4].try_into().unwrap()))
+    };
+    workspace.succeed("plot results/a results/b -o usual");
+    let usual = svg(&workspace, "usual");
+    // What both names begin with stands there once.
+    assert!(
+        usual.contains(">results/<") && usual.contains(">a<") && usual.contains(">b<"),
+        "{usual}"
+    );
+    assert!(usual.contains("width=\"85.01mm\"") && pixels("usual")[0] == 1004);
+    workspace.succeed(
+        "plot results/a results/b --width 120 --height 90 --name plain --name other --x-label time --y-label F_T -o sized",
+    );
+    let sized = svg(&workspace, "sized");
+    for words in [">plain<", ">other<", ">time<", ">F<", ">T<"] {
+        assert!(sized.contains(words), "{words}: {sized}");
+    }
+    assert!(
+        sized.contains("width=\"119.97mm\" height=\"90.00mm\""),
+        "{:.300}",
+        sized
+    );
+    assert_eq!(pixels("sized"), [1417, 1063]);
+    // Letters half as large again on the same width.
+    workspace.succeed("plot results/a results/b --font-size 12 -o large");
+    let large = svg(&workspace, "large");
+    assert!(
+        large.contains("width=\"84.96mm\"") && large.contains("viewBox=\"0 0 669 "),
+        "{:.300}",
+        large
+    );
+    assert!((1003..=1005).contains(&pixels("large")[0]));
+    // One run: friction alone, and not in its folder.
+    workspace.succeed("plot results/a --width 60 -o narrow");
+    assert_eq!(workspace.files("narrow").len(), 2);
+    for (options, sentence) in [
+        (
+            "--width 30 --font-size 12",
+            "a width of 30 mm leaves no room for the curves beside letters of 12 pt: at least 64 mm are needed",
+        ),
+        ("--width 1000", "a number of mm from 20 to 400"),
+        ("--font-size big", "a number of pt from 3 to 40"),
+        ("--name one", "1 name for 2 runs: give --name once for each"),
+        ("--field traction --width 90", "cannot be used with"),
+    ] {
+        let said = workspace.fail(&format!("plot results/a results/b {options} -o none"), 2);
+        assert!(said.contains(sentence), "{options}: {said}");
+    }
+    assert!(!workspace.exists("none"));
+}
+
+#[test]
+fn the_kymograph_is_a_field() {
+    let workspace = Workspace::small();
+    workspace.succeed("run small.toml -o a");
+    workspace.succeed("plot a --field kymograph -o picture");
+    let svg = workspace.read_text("picture/kymograph.svg");
+    assert!(
+        svg.contains("place along the drive") && svg.contains("share that slides"),
+        "{svg}"
+    );
+    assert!(workspace.exists("picture/kymograph.png"));
+    workspace.remove("a/kymograph.nc");
+    workspace.remove("a/manifest.json");
+    assert!(
+        workspace
+            .fail("plot a --field kymograph -o none", 2)
+            .contains("kymograph.nc")
+    );
+}
+
+/// A record beside the curves is refused, and so is one whose shift is not clear: it fits another run as well, elsewhere, or
+/// is a plateau.
+#[test]
+fn the_place_of_a_record_is_found_or_asked_for() {
+    let workspace = Workspace::small();
+    workspace.succeed("run small.toml -o a");
+    workspace.succeed("run small.toml --set drive.v_star=0.05 -o slow");
+    let record = |rows: &mut dyn Iterator<Item = (f64, f64)>| {
+        let rows = rows.map(|(time, force)| format!("{time:e},{force:e}\n"));
+        "t [s],F [N]\n".to_owned() + &rows.collect::<String>()
+    };
+    let of = |folder: &str, shift: f64| {
+        let times = column(&workspace, folder, "time_s");
+        let forces = column(&workspace, folder, "friction_force_n");
+        record(
+            &mut times
+                .into_iter()
+                .zip(forces)
+                .map(|(time, force)| (time - shift, force)),
+        )
+    };
+    workspace.write("slow.csv", of("slow", 3e-9));
+    let line = "--data slow.csv --x t --y F -o both";
+    let said = workspace.fail(&format!("plot a slow {line}"), 2);
+    assert!(
+        said.contains("slow.csv fits a best when it is shifted by ")
+            && said.contains(", and slow by 3 ns: give its shift with --shift"),
+        "{said}"
+    );
+    assert!(!workspace.exists("both"));
+    // The first run decides where the other fits worse.
+    assert!(
+        workspace
+            .succeed(&format!("plot slow a {line}"))
+            .contains("shifted by 3 ns\n")
+    );
+    let said = workspace.succeed(&format!("plot a slow {line} --force --shift 3e-9"));
+    assert!(said.contains("  slow: RMS misfit "), "{said}");
+    let said = workspace.fail("plot a --data slow.csv --x t --y F --shift 1 -o none", 2);
+    assert!(
+        said.contains("no point of slow.csv lies within the curve of a run: shifted, the record goes from 1 s to 1 s, and a from 0 s to "),
+        "{said}"
+    );
+    let plateau = column(&workspace, "a", "friction_force_n").pop().unwrap();
+    workspace.write(
+        "flat.csv",
+        record(&mut (0..50).map(|k| (1e-10 * f64::from(k), plateau))),
+    );
+    let said = workspace.fail("plot a --data flat.csv --x t --y F -o none", 2);
+    assert!(
+        said.contains("flat.csv fits about as well when it is shifted by ") && said.contains("--shift"),
+        "{said}"
+    );
+    assert!(!workspace.exists("none"));
 }

@@ -145,7 +145,20 @@ fn check_in(workspace: &Workspace, name: &str, runs_all: bool) -> usize {
 
 #[test]
 fn getting_started_shows_what_is_printed() {
-    assert!(check("getting-started.md", true) >= 6);
+    let workspace = with_cases();
+    assert!(check_in(&workspace, "getting-started.md", true) >= 6);
+    // The example of the help of `verify`, on the folders that the page leaves behind.
+    let printed = run(&workspace, "slipfront verify results/*");
+    assert!(
+        printed.contains("results/cavity: ") && printed.contains("results/overlay holds pictures alone"),
+        "{printed}"
+    );
+    assert!(
+        workspace
+            .output("verify results/cavity results/overlay")
+            .status
+            .success()
+    );
 }
 
 #[test]

@@ -222,6 +222,44 @@ fn what_is_no_run_folder_is_said_with_status_2() {
     workspace.fail("verify", 2);
 }
 
+/// Folders of pictures beside those of runs, which `slipfront plot` writes, are no reason to fail; alone there is nothing to
+/// verify, and a folder without a case is not one to be resumed.
+#[test]
+fn folders_of_pictures_are_passed_over() {
+    let workspace = workspace_with_a_run();
+    workspace.succeed("plot a a --units si");
+    let (status, said, errors) = verified(&workspace, "a results/overlay");
+    assert_eq!((status, errors.as_str()), (0, ""), "{said}");
+    assert!(
+        said.starts_with("a: 12 files")
+            && said.contains("note: results/overlay holds pictures alone, of which nothing is recorded"),
+        "{said}"
+    );
+    assert_eq!(
+        verified(&workspace, "a results/overlay --quiet"),
+        (0, String::new(), String::new())
+    );
+    let (status, _, errors) = verified(&workspace, "results/overlay");
+    assert_eq!(status, 2);
+    assert!(
+        errors.contains("there is nothing to verify: name folders of runs or studies"),
+        "{errors}"
+    );
+    workspace.write("results/overlay/notes.txt", "");
+    let (status, _, errors) = verified(&workspace, "a results/overlay");
+    assert_eq!(status, 2);
+    assert!(
+        errors.contains("results/overlay holds no manifest.json") && !errors.contains("--resume"),
+        "{errors}"
+    );
+    remove(&workspace, "a/manifest.json");
+    let (_, _, errors) = verified(&workspace, "a");
+    assert!(
+        errors.contains("`slipfront run --resume a` goes on with it"),
+        "{errors}"
+    );
+}
+
 #[test]
 fn a_manifest_of_another_version_is_understood() {
     let workspace = workspace_with_a_run();

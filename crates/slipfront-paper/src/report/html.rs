@@ -7,9 +7,10 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 use super::symbols::greek;
 use crate::claims::{ClaimResult, ClaimVerdict, NUMBERING, REVISED};
 use crate::figure_data::{FigureData, Panel, Table};
-use crate::figures::Figure;
+use crate::figures::{FIGURES, Figure};
 use crate::paper::Paper;
 use crate::step_rule::StepRule;
+use slipfront_case::number_format::count;
 use slipfront_plot::Picture;
 
 const STYLE: &str = include_str!("style.css");
@@ -61,7 +62,7 @@ fn header(paper: &Paper) -> Markup {
         header {
             h1 { "The paper, run again" }
             p {
-                "Every figure and claim of " cite { "2D Spring-block model to study the transition from static \
+                (contents(paper)) " of " cite { "2D Spring-block model to study the transition from static \
                 to kinetic friction of complex-micro-textured contact surfaces" } ", Tribology International 2023, "
                 a href="https://doi.org/10.1016/j.triboint.2023.108866" { "doi 10.1016/j.triboint.2023.108866" }
                 ", measured with slipfront " (env!("CARGO_PKG_VERSION")) "."
@@ -74,6 +75,23 @@ fn header(paper: &Paper) -> Markup {
             @if paper.reduced { p { "Reduced version: two random surfaces, one time step." } }
         }
     }
+}
+
+/// The figures and claims of the report, in words.
+fn contents(paper: &Paper) -> String {
+    if paper.figures.len() == FIGURES.len() {
+        return "Every figure and claim".to_owned();
+    }
+    let titles: Vec<&str> = paper
+        .figures
+        .iter()
+        .map(|(figure, _)| figure.title.split(':').next().unwrap_or_default())
+        .collect();
+    format!(
+        "{}, and {} about them,",
+        titles.join(", "),
+        count(paper.results.len(), "claim")
+    )
 }
 
 fn claims_table(paper: &Paper) -> Markup {

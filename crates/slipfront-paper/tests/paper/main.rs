@@ -48,6 +48,7 @@ fn every_verdict_is_the_expected_one_and_the_documentation_tells_it() {
 
     slipfront_paper::write(&paper, folder.path()).unwrap();
     let report = std::fs::read_to_string(folder.path().join("report.html")).unwrap();
+    assert!(report.contains("Every figure and claim of <cite>"));
     let pictures: usize = paper.figures.iter().map(|(_, found)| found.panels.len()).sum();
     assert_eq!(report.matches("data:image/png;base64,").count(), pictures);
     // Nothing is fetched when it is opened.

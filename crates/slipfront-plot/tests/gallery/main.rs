@@ -13,8 +13,9 @@ use std::path::Path;
 
 use slipfront_plot::{
     Bar, BarChart, BarGroup, FieldMap, FieldMaps, FrictionAxes, FrictionCurve, HeatAxis, HeatMap,
-    KineticLine, Picture, PictureError, Polar, Response, Responses, Shape, Sketch, Stroke, StrokeStyle, bars,
-    field_maps, friction, front, heat_map, polar, response, shapes, sketch, stress,
+    KineticLine, Picture, PictureError, PictureSize, Polar, Response, Responses, Shape, Sketch, Stroke,
+    StrokeStyle, bars, field_maps, friction, friction_of_size, front, heat_map, kymograph, polar, response,
+    shapes, sketch, stress,
 };
 
 use page::Page;
@@ -98,6 +99,8 @@ fn legend(page: &Page, count: usize) -> Vec<String> {
     let texts = page.texts.iter().map(|written| written.text.clone());
     let names: Vec<String> = texts
         .filter(|text| text.contains("run") || text.contains('\u{2026}'))
+        // The folder that all have in common stands above them.
+        .filter(|text| !text.starts_with("results/a_rather"))
         .collect();
     assert_eq!(names.len(), count, "{names:?}");
     names
@@ -122,11 +125,52 @@ fn overlays() {
     overlay("overlay-30", &numbered(30, &|k| format!("run {k}")));
     let measured = FrictionCurve {
         instants: Vec::new(),
+        is_record: true,
         ..at_speed("force.csv", 0.1)
     };
     check("overlay-measured", star(&[baseline(), measured]));
     let long = "results/a_rather_long_name_of_a_study_of_many_materials";
-    overlay("overlay-long", &numbered(4, &|k| format!("{long}/speed_0.{k}")));
+    // The folder that all names begin with stands above them, once.
+    let speeds: Vec<FrictionCurve> = (1..=4)
+        .map(|k| at_speed(&format!("{long}/speed_0.{k}"), 0.05 * f64::from(k)))
+        .collect();
+    let page = check("overlay-long", star(&speeds));
+    let texts: Vec<&str> = page.texts.iter().map(|written| written.text.as_str()).collect();
+    for k in 1..=4 {
+        assert!(texts.contains(&format!("speed_0.{k}").as_str()), "{texts:?}");
+    }
+    assert_eq!(
+        texts
+            .iter()
+            .filter(|text| text.starts_with("results/a_rather"))
+            .count(),
+        1
+    );
+    for (name, [width, height, font]) in [
+        ("overlay-narrow", [60.0, 120.0, 7.0]),
+        ("overlay-wide", [120.0, 70.0, 11.0]),
+        ("overlay-smallest", [43.0, 48.0, 8.0]),
+    ] {
+        let size = PictureSize {
+            width_mm: Some(width),
+            height_mm: Some(height),
+            font_pt: Some(font),
+        };
+        check(name, friction_of_size(&speeds, &FrictionAxes::default(), size));
+    }
+    // A legend of thirty names takes the whole height.
+    let low = PictureSize {
+        height_mm: Some(50.0),
+        ..PictureSize::default()
+    };
+    let many: Vec<FrictionCurve> = (0..30).map(|k| at_speed(&format!("run {k}"), 0.1)).collect();
+    let said = friction_of_size(&many, &FrictionAxes::default(), low)
+        .unwrap_err()
+        .to_string();
+    assert!(
+        said.starts_with("a height of 50 mm leaves no room for the curves beside letters of 8 pt"),
+        "{said}"
+    );
     overlay(
         "overlay-equal",
         &numbered(4, &|k| format!("series_{k}/{long}/{long}")),
@@ -195,6 +239,7 @@ fn fronts_on_every_shape() {
         ("front-200x50", front_of(200, 50, UM, SMOOTH, 2)),
     ] {
         check(name, front(&map, &space_time));
+        check(&name.replace("front", "kymograph"), kymograph(&space_time));
     }
 }
 

@@ -61,6 +61,7 @@ pub(crate) fn run(
         sliding_percent: column(2),
         x,
         friction,
+        ..FrictionCurve::default()
     }
 }
 

@@ -3,9 +3,7 @@
 use std::path::PathBuf;
 
 use slipfront_case::case::{Budget, Case, MAX_MAPS, mapped_field};
-use slipfront_plot::{
-    CellMeans, FRICTION_BYTES, MOVIE_FILE_BYTES, STRESS_BYTES, STRESS_FILE_BYTES, front_bytes,
-};
+use slipfront_plot::{CellMeans, FRICTION_BYTES, MovieSize, STRESS_BYTES, STRESS_FILE_BYTES, front_bytes};
 
 use super::error::RunPictureError;
 use super::files::found;
@@ -34,11 +32,16 @@ pub fn run_budget(case: &Case) -> RunBudget {
     budget.pictures = PictureBytes {
         cells: cells * CELL_BYTES,
         // One after the other.
-        snapshots: (maps * cells * MAP_CELL_BYTES).max(frames * movie::snapshot_bytes(cells)),
+        snapshots: (maps * cells * MAP_CELL_BYTES)
+            .max(frames * movie::snapshot_bytes(cells, MovieSize::Usual)),
         row: ROW_BYTES,
         two: (front_bytes(lattice.nx, lattice.ny) as f64).max(with_maps),
-        batch: if frames > 0.0 { movie::BATCH_BYTES } else { 0.0 },
-        files: maps * cells * STRESS_FILE_BYTES as f64 + frames * MOVIE_FILE_BYTES as f64,
+        batch: if frames > 0.0 {
+            movie::batch_bytes(MovieSize::Usual)
+        } else {
+            0.0
+        },
+        files: maps * cells * STRESS_FILE_BYTES as f64 + frames * MovieSize::Usual.file_bytes() as f64,
     };
     budget
 }

@@ -34,9 +34,46 @@ pub enum RunPictureError {
     )]
     NotComparable(PathBuf),
     #[error(
+        "no point of {record} lies within the curve of a run: shifted, the record goes from {from} to {to}, and {} from {start} to {end}; look at \
+        its units, and give the shift with --shift",
+        run.display()
+    )]
+    NothingInCommon {
+        record: String,
+        from: String,
+        to: String,
+        run: PathBuf,
+        start: String,
+        end: String,
+    },
+    #[error(
+        "{record} fits {} best when it is shifted by {own}, and {} by {of_other}: give its shift with --shift",
+        first.display(),
+        other.display()
+    )]
+    ShiftsOfRuns {
+        record: String,
+        first: PathBuf,
+        own: String,
+        other: PathBuf,
+        of_other: String,
+    },
+    #[error(
+        "{record} fits about as well when it is shifted by {one} as by {other}: give its shift with --shift"
+    )]
+    UnclearShift {
+        record: String,
+        one: String,
+        other: String,
+    },
+    #[error(
         "a movie has at most {0} pictures, and the run has kept more snapshots: raise `every` of `output.snapshots`"
     )]
     TooManySnapshots(usize),
+    #[error(
+        "programs show a picture for at least a fiftieth of a second, so that these {pictures} pictures take at least {seconds} s"
+    )]
+    TooFast { pictures: usize, seconds: f64 },
     #[error(
         "{path} has no maps of {field}: name it in `output.fields`, leave `output.snapshots` at its default or list instants, and run the case again"
     )]

@@ -3,10 +3,11 @@
 use std::path::{Path, PathBuf};
 
 use slipfront_case::case_file::Motion;
-use slipfront_case::number_format::{in_print, si_prefix};
-use slipfront_plot::{self as plot, FrictionAxes, FrictionCurve, Instant, KineticLine, Picture};
+use slipfront_case::number_format::{in_print, si_prefix, with_si_prefix};
+use slipfront_plot::{self as plot, FrictionAxes, FrictionCurve, Instant, KineticLine, Picture, PictureSize};
 
 use super::error::RunPictureError;
+use super::record_fit::{Points, ends, fitting_shifts, misfit, rival};
 use crate::measured::{Measure, MeasuredRecord};
 use crate::names::SERIES;
 use crate::series::{self, SeriesRow};
@@ -59,6 +60,37 @@ pub struct Fit {
     pub misfits: Vec<Option<f64>>,
 }
 
+/// Names and size of a picture of friction that differ from the usual ones.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct FrictionLook {
+    /// Names of the runs in the legend, in their order, and then of a record; the folders where there are none.
+    pub names: Vec<String>,
+    /// Title of the horizontal axis.
+    pub x_label: Option<String>,
+    /// Title of the axis of friction.
+    pub y_label: Option<String>,
+    /// Size of the picture and of its letters.
+    pub size: PictureSize,
+}
+
+impl FrictionLook {
+    fn draw(&self, scale: Scale, mut curves: Vec<FrictionCurve>) -> Result<Picture, RunPictureError> {
+        let Scale { mut axes, .. } = scale;
+        for (title, own) in [(&mut axes.x, &self.x_label), (&mut axes.friction, &self.y_label)] {
+            if let Some(own) = own {
+                own.clone_into(title);
+            }
+        }
+        for (curve, name) in curves.iter_mut().zip(&self.names) {
+            name.clone_into(&mut curve.label);
+        }
+        plot::friction_of_size(&curves, &axes, self.size).map_err(|source| RunPictureError::Picture {
+            name: "friction",
+            source,
+        })
+    }
+}
+
 /// A picture, and a sentence about its axes if they are not the expected ones.
 pub struct Overlay {
     /// Fit of a record that was laid over the curves.
@@ -105,133 +137,137 @@ pub fn overlay(
     folders: &[PathBuf],
     units: AxisUnits,
     against: Option<Against>,
+    look: &FrictionLook,
 ) -> Result<Overlay, RunPictureError> {
     let runs = DrawnRun::read_all(folders)?;
     let (scale, note) = match units {
         AxisUnits::Si => (in_si(&runs, against.unwrap_or_default(), Measure::Force)?, None),
         AxisUnits::Star => dimensionless(&runs, against)?,
     };
-    let (picture, fit) = (draw(&scale, &scale.curves(&runs))?, None);
-    Ok(Overlay { fit, picture, note })
+    let curves = scale.curves(&runs);
+    Ok(Overlay {
+        fit: None,
+        picture: look.draw(scale, curves)?,
+        note,
+    })
 }
 
 /// Draws the friction curves of run folders and a measured record over each other, in SI units.
 ///
 /// # Errors
-/// As for [`overlay`].
+/// As for [`overlay`]; when no point of the record lies within a curve, and when a shift that is not given could be one or
+/// another.
 pub fn overlay_measured(
     folders: &[PathBuf],
     against: Against,
     measured: &OverlaidRecord,
+    look: &FrictionLook,
 ) -> Result<Overlay, RunPictureError> {
     let runs = DrawnRun::read_all(folders)?;
     let scale = in_si(&runs, against, measured.record.of)?;
     let mut curves = scale.curves(&runs);
     let [along, up] = scale.prefixes;
     let MeasuredRecord { x, y, .. } = &measured.record;
-    let first = (&curves[0].x[..], &curves[0].friction[..]);
     let scaled = (
         x.iter().map(|x| x / along).collect::<Vec<_>>(),
         y.iter().map(|y| y / up).collect::<Vec<_>>(),
     );
+    let record = (&scaled.0[..], &scaled.1[..]);
+    let in_units = |along_x: f64| with_si_prefix(along * along_x, measured.record.along.unit());
     let shift = match measured.shift {
         Some(shift) => shift / along,
-        None => best_shift((&scaled.0, &scaled.1), first),
+        None => own_shift(record, &curves).map_err(|rival| match rival {
+            Rival::Other { run, own, of_run } => RunPictureError::ShiftsOfRuns {
+                record: measured.label.clone(),
+                first: folders[0].clone(),
+                own: in_units(own),
+                other: folders[run].clone(),
+                of_other: in_units(of_run),
+            },
+            Rival::Same { own, rival } => RunPictureError::UnclearShift {
+                record: measured.label.clone(),
+                one: in_units(own),
+                other: in_units(rival),
+            },
+        })?,
     };
-    let misfits = curves.iter().map(|curve| {
-        let misfit = misfit((&scaled.0, &scaled.1), (&curve.x, &curve.friction), shift);
-        misfit.map(|misfit| up * misfit)
-    });
+    let misfits: Vec<Option<f64>> = curves
+        .iter()
+        .map(|curve| Some(up * misfit(record, (&curve.x, &curve.friction), shift)?))
+        .collect();
+    if misfits.iter().all(Option::is_none) {
+        let [from, to] = ends(record.0).map(|x| in_units(x + shift));
+        let [start, end] = ends(&curves[0].x).map(in_units);
+        return Err(RunPictureError::NothingInCommon {
+            record: measured.label.clone(),
+            from,
+            to,
+            run: folders[0].clone(),
+            start,
+            end,
+        });
+    }
     let fit = Fit {
         measures: [measured.record.along, measured.record.of],
         shift: along * shift,
-        misfits: misfits.collect(),
+        misfits,
     };
     curves.push(FrictionCurve {
         label: measured.label.clone(),
         sliding_percent: vec![f64::NAN; x.len()],
         x: scaled.0.iter().map(|x| x + shift).collect(),
         friction: scaled.1,
+        is_record: true,
         ..FrictionCurve::default()
     });
-    let picture = draw(&scale, &curves)?;
     Ok(Overlay {
         fit: Some(fit),
-        picture,
+        picture: look.draw(scale, curves)?,
         note: None,
     })
 }
 
-fn draw(scale: &Scale, curves: &[FrictionCurve]) -> Result<Picture, RunPictureError> {
-    plot::friction(curves, &scale.axes).map_err(|source| RunPictureError::Picture {
-        name: "friction",
-        source,
-    })
+/// Another shift of a record that may be the right one as well as the best on the first run.
+enum Rival {
+    /// The shift that fits another run best.
+    Other { run: usize, own: f64, of_run: f64 },
+    /// Another shift that fits the first run.
+    Same { own: f64, rival: f64 },
 }
 
-/// Value at `x` of a curve whose abscissae never fall, between its points in proportion; none beyond its ends.
-fn value_at((xs, ys): (&[f64], &[f64]), x: f64) -> Option<f64> {
-    let after = xs.partition_point(|&other| other < x);
-    let (&from, &to) = (xs.get(after.saturating_sub(1))?, xs.get(after)?);
-    if x < from {
-        return None;
-    }
-    let share = if to > from { (x - from) / (to - from) } else { 0.0 };
-    let (y, end) = (ys[after.saturating_sub(1)], ys[after]);
-    Some(y + share * (end - y))
-}
-
-/// Root mean square of the difference between a record, shifted, and a curve, over the points of the record within the curve.
-fn misfit((xs, ys): (&[f64], &[f64]), curve: (&[f64], &[f64]), shift: f64) -> Option<f64> {
-    let differences = xs
-        .iter()
-        .zip(ys)
-        .filter_map(|(x, y)| Some(value_at(curve, x + shift)? - y));
-    let (mut sum, mut n) = (0.0, 0_u32);
-    for difference in differences {
-        (sum, n) = (sum + difference * difference, n + 1);
-    }
-    (n > 0).then(|| (sum / f64::from(n)).sqrt())
-}
-
-/// The shift with the least [`misfit`] among those at which record and curve overlap by at least half of the shorter one.
-fn best_shift(record: (&[f64], &[f64]), curve: (&[f64], &[f64])) -> f64 {
-    const POINTS: usize = 2000;
-    const SHIFTS: u32 = 400;
-    const ROUNDS: u32 = 40;
-    // Some points tell as much as all, sooner.
-    let thin = |values: &[f64]| -> Vec<f64> {
-        let step = values.len().div_ceil(POINTS);
-        values.iter().step_by(step).copied().collect()
+/// The shift with which a record fits the first curve best, if no other fits that curve, or another one, about as well.
+fn own_shift(record: Points, curves: &[FrictionCurve]) -> Result<f64, Rival> {
+    let length = |xs: &[f64]| {
+        let [from, to] = ends(xs);
+        to - from
     };
-    let (xs, ys) = (thin(record.0), thin(record.1));
-    let ends = |values: &[f64]| [values.first(), values.last()].map(|end| end.copied().unwrap_or_default());
-    let ([from, to], [start, end]) = (ends(record.0), ends(curve.0));
-    let common = 0.5 * (to - from).min(end - start);
-    let (low, high) = (start - to + common, end - from - common);
-    let badness = |shift: f64| misfit((&xs, &ys), curve, shift).unwrap_or(f64::INFINITY);
-    let step = (high - low) / f64::from(SHIFTS);
-    let shifts = (0..=SHIFTS).map(|k| low + step * f64::from(k));
-    let best = shifts
-        .min_by(|a, b| badness(*a).total_cmp(&badness(*b)))
-        .unwrap_or(low);
-    // Golden section around the best of them.
-    let (mut low, mut high) = ((best - step).max(low), (best + step).min(high));
-    let ratio = 0.5 * (5_f64.sqrt() - 1.0);
-    for _ in 0..ROUNDS {
-        let (inner, outer) = (high - ratio * (high - low), low + ratio * (high - low));
-        if badness(inner) <= badness(outer) {
-            high = outer;
-        } else {
-            low = inner;
+    let shorter = length(record.0).min(length(&curves[0].x));
+    let of = |curve: &FrictionCurve| fitting_shifts(record, (&curve.x, &curve.friction));
+    let found = of(&curves[0]);
+    let best = found[0];
+    for (run, curve) in curves.iter().enumerate().skip(1) {
+        if let Some(other) = rival(best, &of(curve)[..1], shorter) {
+            return Err(Rival::Other {
+                run,
+                own: best.shift,
+                of_run: other.shift,
+            });
         }
     }
-    0.5 * (low + high)
+    match rival(best, &found[1..], shorter) {
+        Some(rival) => Err(Rival::Same {
+            own: best.shift,
+            rival: rival.shift,
+        }),
+        None => Ok(best.shift),
+    }
 }
 
 /// Draws the friction curve of a run folder against t*.
 pub(super) fn of_run(folder: &Path) -> Result<Picture, RunPictureError> {
-    overlay(&[folder.to_owned()], AxisUnits::Star, Some(Against::Time)).map(|overlay| overlay.picture)
+    let look = FrictionLook::default();
+    let overlay = overlay(&[folder.to_owned()], AxisUnits::Star, Some(Against::Time), &look)?;
+    Ok(overlay.picture)
 }
 
 /// The curve of mu* against t* with all marks that a summary has, without its points.

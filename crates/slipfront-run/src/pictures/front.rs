@@ -9,7 +9,7 @@ use slipfront_plot::{self as plot, CellMeans, FrontMap, Picture, SpaceTime};
 
 use super::error::RunPictureError;
 use super::files::found;
-use crate::fields;
+use crate::fields::{self, KymographData};
 use crate::names::{FIELDS, KYMOGRAPH};
 use crate::summary::{Summary, read_summary};
 
@@ -38,12 +38,36 @@ pub(super) fn of_run(folder: &Path) -> Result<Option<Picture>, RunPictureError> 
             .collect(),
     };
     let rows = rows_of_the_front(&kymograph.time_star, &summary);
+    let space_time = space_time(&kymograph, rows, &summary);
+    let drawn = plot::front(&map, &space_time).map(Some);
+    drawn.map_err(|source| RunPictureError::Picture {
+        name: "front",
+        source,
+    })
+}
+
+/// Draws the kymograph of a run folder from its first instant to its last.
+///
+/// # Errors When the folder cannot be read, or holds no kymograph.
+pub fn draw_kymograph(folder: &Path) -> Result<Picture, RunPictureError> {
+    let (summary, path) = (read_summary(folder)?, folder.join(KYMOGRAPH));
+    let kymograph = fields::read_kymograph(&path)?;
+    let rows = 0..kymograph.time_star.len();
+    let drawn = plot::kymograph(&space_time(&kymograph, rows, &summary));
+    drawn.map_err(|source| RunPictureError::Picture {
+        name: "the kymograph",
+        source,
+    })
+}
+
+/// Rows of a kymograph as they are drawn.
+fn space_time(kymograph: &KymographData, rows: Range<usize>, summary: &Summary) -> SpaceTime {
     let columns = kymograph.columns();
     let times = &kymograph.time_star[rows.clone()];
     let [first, last] = [times.first(), times.last()].map(|time| time.copied().unwrap_or_default());
     // A row stands for the time around it.
     let half = 0.5 * (last - first) / (times.len() as f64 - 1.0).max(1.0);
-    let space_time = SpaceTime {
+    SpaceTime {
         place: match summary.motion {
             Some(Motion::Rotation) => "distance from the axis".to_owned(),
             _ => "place along the drive".to_owned(),
@@ -52,12 +76,7 @@ pub(super) fn of_run(folder: &Path) -> Result<Option<Picture>, RunPictureError> 
         times: [first - half, last + half],
         columns,
         shares: kymograph.sliding_share[rows.start * columns..rows.end * columns].to_vec(),
-    };
-    let drawn = plot::front(&map, &space_time).map(Some);
-    drawn.map_err(|source| RunPictureError::Picture {
-        name: "front",
-        source,
-    })
+    }
 }
 
 /// The rows of a kymograph while the front passes, with a quarter of that time before and as much again after it.

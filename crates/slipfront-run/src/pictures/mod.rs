@@ -11,18 +11,21 @@ mod front;
 mod maps;
 pub mod movie;
 mod precursors;
+mod record_fit;
 pub mod texture_file;
 
 use std::path::Path;
 
 use rayon::prelude::*;
 use slipfront_case::case::Case;
-use slipfront_plot::Picture;
+use slipfront_plot::{MovieSize, Picture};
 
 pub use self::budget::{memory, run_budget};
 use self::error::RunPictureError;
 pub use self::files::DRAWN_FROM;
+pub use self::front::draw_kymograph;
 pub use self::maps::draw_field;
+use self::movie::MoviePace;
 use crate::manifest::Manifest;
 use crate::names::{MOVIE, RunPicture};
 use crate::results;
@@ -58,7 +61,8 @@ pub fn complete(
     if case.output.movie
         && let Some(movie) = movie::of_run(folder.path(), None)?
     {
-        folder.write(MOVIE, &movie::gif(&movie)?)?;
+        let delays = movie::delays(&movie, MoviePace::Usual)?;
+        folder.write(MOVIE, &movie::gif(&movie, MovieSize::Usual, &delays)?)?;
     }
     Ok(folder.complete(case, started, threads)?)
 }

@@ -7,8 +7,7 @@ use slipfront::observe::Field;
 use slipfront_case::case::{Budget, MAX_PICTURES};
 use slipfront_case::case_file::Motion;
 use slipfront_plot::{
-    CellMeans, FrictionAxes, MOVIE_FILE_BYTES, MOVIE_PICTURE_BYTES, Movie, MovieFrame, MovieGif,
-    MoviePictures, PictureError,
+    CellMeans, FrictionAxes, Movie, MovieFrame, MovieGif, MoviePictures, MovieSize, PictureError,
 };
 
 use super::error::RunPictureError;
@@ -29,16 +28,33 @@ const INSTANT: usize = 5;
 
 /// Largest number of pictures that are drawn at once.
 const BATCH: usize = 8;
+/// Shortest time of a picture that programs show as it is, in hundredths of a second.
+const SHORTEST_SHOWN: f64 = 2.0;
+
+/// Pace of a movie.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum MoviePace {
+    /// About 16 s, with instants A-F shown longer.
+    #[default]
+    Usual,
+    /// Duration in seconds, with instants A-F shown longer.
+    Seconds(f64),
+    /// Number of pictures per second, each shown as long as the others.
+    PerSecond(f64),
+}
+
 /// Bytes while [`BATCH`] pictures are drawn.
-pub(super) const BATCH_BYTES: f64 = (BATCH * MOVIE_PICTURE_BYTES) as f64;
+pub(super) fn batch_bytes(size: MovieSize) -> f64 {
+    (BATCH * size.picture_bytes()) as f64
+}
 
 /// Bytes of a snapshot of `cells` cells while a movie is made: its values, and its picture in the file.
-pub(super) fn snapshot_bytes(cells: f64) -> f64 {
-    cells * size_of::<f32>() as f64 + MOVIE_FILE_BYTES as f64
+pub(super) fn snapshot_bytes(cells: f64, size: MovieSize) -> f64 {
+    cells * size_of::<f32>() as f64 + size.file_bytes() as f64
 }
 
 /// Memory for making the movie of a run folder, in bytes.
-pub fn memory(folder: &Path) -> Result<f64, RunPictureError> {
+pub fn memory(folder: &Path, size: MovieSize) -> Result<f64, RunPictureError> {
     let snapshots = fields::count_snapshots(&folder.join(FIELDS))?;
     let rows = series::estimate_rows(&folder.join(SERIES))?;
     let snapshots = snapshots.min(MAX_PICTURES) as f64;
@@ -46,8 +62,8 @@ pub fn memory(folder: &Path) -> Result<f64, RunPictureError> {
     Ok(Budget::resident(
         cells * CELL_BYTES
             + Budget::grown(rows) * ROW_BYTES
-            + snapshots * snapshot_bytes(cells)
-            + BATCH_BYTES,
+            + snapshots * snapshot_bytes(cells, size)
+            + batch_bytes(size),
     ))
 }
 
@@ -105,7 +121,41 @@ pub fn of_run(folder: &Path, field: Option<Field>) -> Result<Option<Movie>, RunP
 }
 
 /// Duration of each picture of a movie, in hundredths of a second.
-pub fn delays(movie: &Movie) -> Vec<u16> {
+///
+/// # Errors When pictures would be shown for too short a time.
+pub fn delays(movie: &Movie, pace: MoviePace) -> Result<Vec<u16>, RunPictureError> {
+    let weight = |frame: &MovieFrame| {
+        if frame.label.is_empty() {
+            1.0
+        } else {
+            INSTANT as f64
+        }
+    };
+    let (unit, weights): (f64, Vec<f64>) = match pace {
+        MoviePace::Usual => return Ok(usual_delays(movie)),
+        MoviePace::Seconds(seconds) => {
+            let weights: Vec<f64> = movie.frames.iter().map(weight).collect();
+            (100.0 * seconds / weights.iter().sum::<f64>(), weights)
+        }
+        MoviePace::PerSecond(rate) => (100.0 / rate, vec![1.0; movie.frames.len()]),
+    };
+    if unit < SHORTEST_SHOWN {
+        return Err(RunPictureError::TooFast {
+            pictures: movie.frames.len(),
+            seconds: SHORTEST_SHOWN * weights.iter().sum::<f64>() / 100.0,
+        });
+    }
+    // Rounded at their ends, so that all together take as long as they should.
+    let mut end = 0.0;
+    let ends = weights.iter().map(|weight| {
+        let start: f64 = end;
+        end += unit * weight;
+        (end.round() - start.round()).min(f64::from(u16::MAX)) as u16
+    });
+    Ok(ends.collect())
+}
+
+fn usual_delays(movie: &Movie) -> Vec<u16> {
     let delay = (DURATION / movie.frames.len().max(1)).clamp(SHORTEST, LONGEST);
     let frames = movie.frames.iter();
     frames
@@ -119,8 +169,8 @@ pub fn delays(movie: &Movie) -> Vec<u16> {
 /// The pictures of a movie before they are drawn, and their colours.
 ///
 /// # Errors When the pictures cannot be drawn.
-pub fn pictures(movie: &Movie) -> Result<MoviePictures<'_>, RunPictureError> {
-    MoviePictures::of(movie).map_err(not_drawn)
+pub fn pictures(movie: &Movie, size: MovieSize) -> Result<MoviePictures<'_>, RunPictureError> {
+    MoviePictures::of(movie, size).map_err(not_drawn)
 }
 
 /// Draws the pictures of a movie one after the other, and passes each to `take`.
@@ -139,14 +189,14 @@ pub fn draw<E>(
     Ok(())
 }
 
-/// A movie as an animated GIF file.
+/// A movie as an animated GIF file, with the duration of each picture in hundredths of a second.
 ///
 /// # Errors
 /// When a picture cannot be drawn.
-pub fn gif(movie: &Movie) -> Result<Vec<u8>, RunPictureError> {
-    let pictures = pictures(movie)?;
-    let mut delays = delays(movie).into_iter();
-    let mut file = MovieGif::of(pictures.palette()).map_err(not_drawn)?;
+pub fn gif(movie: &Movie, size: MovieSize, delays: &[u16]) -> Result<Vec<u8>, RunPictureError> {
+    let pictures = pictures(movie, size)?;
+    let mut delays = delays.iter().copied();
+    let mut file = MovieGif::of(pictures.palette(), size).map_err(not_drawn)?;
     let drawn = draw(movie, &pictures, |pixels| {
         file.add(pixels, delays.next().unwrap_or_default())
     });
@@ -176,8 +226,21 @@ mod tests {
                 .collect(),
             ..Movie::default()
         };
-        assert_eq!(delays(&movie(199))[..2], [100, 8]);
-        assert_eq!(delays(&movie(3))[..2], [200, 100]);
-        assert_eq!(delays(&movie(999))[..2], [100, 5]);
+        let usual = |others: usize| delays(&movie(others), MoviePace::Usual).unwrap();
+        assert_eq!(usual(199)[..2], [100, 8]);
+        assert_eq!(usual(3)[..2], [200, 100]);
+        assert_eq!(usual(999)[..2], [100, 5]);
+        // 5 and 95 parts of 10 s.
+        let timed = delays(&movie(95), MoviePace::Seconds(10.0)).unwrap();
+        assert_eq!(timed[..3], [50, 10, 10]);
+        let timed = delays(&movie(196), MoviePace::Seconds(7.0)).unwrap();
+        assert_eq!(timed.iter().map(|delay| usize::from(*delay)).sum::<usize>(), 700);
+        // 100/30 hundredths, in turns of 3, 4 and 3.
+        let paced = delays(&movie(5), MoviePace::PerSecond(30.0)).unwrap();
+        assert_eq!(paced, [3, 4, 3, 3, 4, 3]);
+        let said = delays(&movie(995), MoviePace::Seconds(5.0))
+            .unwrap_err()
+            .to_string();
+        assert!(said.contains("996 pictures take at least 20 s"), "{said}");
     }
 }

@@ -92,9 +92,11 @@ pub(super) fn warning(law: &RateAndState, model: &Model) -> Option<String> {
     let critical = law.critical_stiffness(model.surface.mean_normal_force(), model.damping, v_star);
     (k_drive < critical).then(|| {
         format!(
-            "the drive, of stiffness {k_drive} E h per block, is softer than {}, below which steady sliding at V* = {v_star} is \
+            "the drive, of stiffness {} E h per block, is softer than {}, below which steady sliding at V* = {} is \
              unstable: stick-slip is to be expected",
-            four_digits(critical)
+            four_digits(k_drive),
+            four_digits(critical),
+            four_digits(v_star)
         )
     })
 }

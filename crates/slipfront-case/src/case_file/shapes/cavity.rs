@@ -123,6 +123,13 @@ impl Outlined for Cavity {
         "dimple"
     }
 
+    fn coverage(&self) -> Option<f64> {
+        match self.size {
+            CavitySize::Coverage(percent) => Some(percent),
+            CavitySize::Lambda(_) => None,
+        }
+    }
+
     fn in_blocks(&self, on: &Blocks) -> (surface::Shape, Option<f64>) {
         let (s, w) = (self.s, self.w);
         let count = surface::n_copies(on.arrays);

@@ -70,6 +70,13 @@ impl Outlined for Groove {
         "groove"
     }
 
+    fn coverage(&self) -> Option<f64> {
+        match self.size {
+            GrooveSize::Coverage(percent) => Some(percent),
+            GrooveSize::Width(_) => None,
+        }
+    }
+
     fn in_blocks(&self, on: &Blocks) -> (surface::Shape, Option<f64>) {
         let of_width = |width: f64| {
             surface::Shape::Groove(surface::Groove {

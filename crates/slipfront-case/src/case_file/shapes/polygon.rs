@@ -51,6 +51,10 @@ impl Outlined for Polygon {
         "feature"
     }
 
+    fn coverage(&self) -> Option<f64> {
+        None
+    }
+
     fn in_blocks(&self, on: &Blocks) -> (surface::Shape, Option<f64>) {
         let points = self.points.iter().map(|point| on.point(point));
         (surface::Shape::Polygon(points.collect()), None)

@@ -6,7 +6,7 @@ use clap::Args;
 use slipfront_case::number_format::count;
 use slipfront_study::{Plan, StudyFolder, collect, is_study, refuse_foreign, study_of};
 
-use super::run::finish;
+use super::run::{Shown, finish};
 use crate::failure::Failure;
 use crate::print_stderr::print_stderr;
 use crate::threads::set_threads;
@@ -53,6 +53,7 @@ impl Merge {
                 .take_kept(&plan, &results, shard)
                 .map_err(Failure::running)?;
         }
-        finish(&plan, &results, &folder, self.quiet)
+        let shown = if self.quiet { Shown::Nothing } else { Shown::Tables };
+        finish(&plan, &results, &folder, shown)
     }
 }

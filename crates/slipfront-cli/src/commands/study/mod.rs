@@ -16,6 +16,8 @@ pub(super) use run::run_all;
 #[command(after_help = "Examples:
   slipfront study cases/studies/coverage.toml
   slipfront study cases/studies/coverage.toml --dry-run
+  slipfront study cases/studies/coverage.toml --set drive.v_star=0.1 -o results/faster
+  slipfront study cases/studies/coverage.toml --json | jq '.points[].static_reduction_percent.mean'
   slipfront study cases/studies/coverage.toml --shard 1/4 -o part1    a quarter of the points
   slipfront study merge part1 part2 part3 part4 -o results/whole
   slipfront study slurm cases/studies/coverage.toml --tasks 4 > coverage.sbatch

@@ -13,6 +13,7 @@ use crate::print::{print, print_message};
 use crate::print_stderr::print_stderr;
 use crate::progress::study::StudyProgress;
 use crate::report;
+use crate::report::text_of;
 use crate::signals::Signals;
 use crate::threads::{count_from_one, set_threads, set_worker_threads};
 use crate::wrap::for_stderr;
@@ -22,6 +23,9 @@ pub(crate) struct StudyRun {
     /// Study file
     #[arg(value_name = "STUDY.toml", required = true)]
     study: Option<PathBuf>,
+    /// Sets a key of the base case, such as drive.v_star=0.05 or texture.0.coverage=5; repeatable
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    overrides: Vec<String>,
     /// Folder for the results [default: results/ and the name of the study]
     #[arg(short, long, value_name = "DIR")]
     out: Option<PathBuf>,
@@ -31,6 +35,9 @@ pub(crate) struct StudyRun {
     /// Show neither progress nor tables
     #[arg(short, long)]
     quiet: bool,
+    /// Print the answer as JSON on stdout, and nothing else there
+    #[arg(long, conflicts_with = "dry_run")]
+    json: bool,
     /// Print the plan and what it will cost, and run nothing
     #[arg(long)]
     dry_run: bool,
@@ -67,7 +74,8 @@ impl StudyRun {
         let Some(path) = self.study else {
             return Err(Failure::input(anyhow::anyhow!("name a study file")));
         };
-        let file = StudyFile::load(&path).map_err(Failure::input)?;
+        let mut file = StudyFile::load(&path).map_err(Failure::input)?;
+        file.set(&self.overrides).map_err(Failure::input)?;
         refuse_large(&file, self.yes || self.dry_run)?;
         let plan = Plan::new(&file, self.shard).map_err(Failure::input)?;
         if self.dry_run {
@@ -81,7 +89,14 @@ impl StudyRun {
         let plan = plan.reading_copies(&folder.study);
         let signals = Signals::catch().map_err(Failure::running)?;
         let results = run_all(&plan, &folder, &signals, self.quiet)?;
-        finish(&plan, &results, &folder, self.quiet)
+        let shown = if self.json {
+            Shown::Json
+        } else if self.quiet {
+            Shown::Nothing
+        } else {
+            Shown::Tables
+        };
+        finish(&plan, &results, &folder, shown)
     }
 }
 
@@ -146,16 +161,27 @@ fn print_notes(plan: &Plan, folder: &StudyFolder) {
     }
 }
 
+/// Form in which the answer of a study is printed.
+pub(super) enum Shown {
+    /// Tables for a reader.
+    Tables,
+    /// One object of JSON.
+    Json,
+    Nothing,
+}
+
 /// Writes tables and pictures, and prints the answer of the study; fails if runs have failed.
 pub(super) fn finish(
     plan: &Plan,
     results: &StudyResults,
     folder: &StudyFolder,
-    quiet: bool,
+    shown: Shown,
 ) -> Result<(), Failure> {
     study::write(plan, results, folder).map_err(Failure::running)?;
-    if !quiet {
-        print_message(&report::study(plan, results, folder.path()));
+    match shown {
+        Shown::Tables => print_message(&report::study(plan, results, folder.path())),
+        Shown::Json => print(&text_of(&study::answer(plan, results)))?,
+        Shown::Nothing => {}
     }
     results.expect_no_failures(plan).map_err(Failure::running)
 }

@@ -16,6 +16,59 @@ fn adaptive(half_width: &str, max: &str) -> String {
     SMALL.replace("replicates = 3", &until)
 }
 
+/// A key of the base that `--set` changes gives the bytes of a study file that has it so, and the folder holds that study.
+#[test]
+fn keys_of_the_base_can_be_set() {
+    let workspace = Workspace::with_study(SMALL);
+    workspace.write(
+        "other.toml",
+        SMALL.replace("blocks = [6, 6]", "blocks = [6, 7]\nomega_star = 0.2"),
+    );
+    workspace.succeed("study other.toml -o other");
+    workspace.succeed("study study.toml -o set --set slider.blocks=[6,7] --set slider.omega_star=0.2");
+    workspace.results("set").assert_same(&workspace.results("other"));
+    assert_eq!(
+        workspace.read_text("set/study.toml"),
+        workspace.read_text("other/study.toml")
+    );
+    workspace.succeed("verify set");
+    assert_ne!(
+        workspace.study("plain").answer()["points.csv"],
+        workspace.results("set").answer()["points.csv"]
+    );
+}
+
+/// The answer for programs has the numbers of `points.csv`, and nothing else is printed with it.
+#[test]
+fn the_answer_is_printed_as_json() {
+    let workspace = Workspace::with_study(SMALL);
+    let printed = workspace.succeed("study study.toml -o out --json");
+    let answer: serde_json::Value = serde_json::from_str(&printed).unwrap();
+    assert_eq!(answer["study"], "study");
+    assert_eq!(answer["main_quantity"], "static_reduction_percent");
+    let points = answer["points"].as_array().unwrap();
+    assert_eq!(points.len(), 6);
+    let rows = workspace.results("out").table("points.csv");
+    for row in &rows {
+        let point = &points[row["point"].parse::<usize>().unwrap()];
+        assert_eq!(point["levels"]["drive.v_star"], row["drive.v_star"].as_str());
+        let quantity = &point[&row["quantity"]];
+        for column in ["n", "mean", "deviation", "low", "high", "min", "max"] {
+            assert_eq!(
+                quantity[column].as_f64(),
+                row[column].parse::<f64>().ok(),
+                "{row:?}"
+            );
+        }
+    }
+    assert!(rows.len() > 6 && answer["failures"].as_array().unwrap().is_empty());
+    // The study is done: the same is printed again.
+    assert_eq!(
+        workspace.succeed("study study.toml -o out --json --quiet"),
+        printed
+    );
+}
+
 #[test]
 fn any_number_of_threads_gives_the_same_bytes() {
     let workspace = Workspace::with_study(SMALL);
@@ -343,13 +396,11 @@ fn directions_have_a_polar_picture_and_their_table() {
         ("6", "3")
     );
     let picture = workspace.read_text("out/friction_polar.svg");
-    for text in [
-        "x 0\u{b0}",
-        "friction \u{3bc}*",
-        "95 % interval of the mean, n = 3",
-    ] {
+    for text in ["x 0\u{b0}", "friction \u{3bc}*"] {
         assert!(picture.contains(&format!(">{text}</text>")), "{text}");
     }
+    // Friction is much the same in all directions.
+    assert!(picture.contains(">95 % interval of the mean, n = 3; the centre is 0."));
     workspace.succeed("verify out");
     // Two surfaces are too few for numbers, and a sentence says so.
     let two = study("drive.direction")
@@ -527,7 +578,10 @@ fn what_deserves_a_word_is_said_once() {
         // Both levels cover the same blocks, which is said where nothing has run yet.
         let idle = said.contains("the axis of `texture.0.coverage` changes nothing");
         assert_eq!(idle, line.ends_with("--dry-run"), "{said}");
-        assert_eq!(said.matches("note: ").count(), 3 + usize::from(idle), "{said}");
+        let small =
+            "`coverage` = 0.2 of texture 1 is 0.2 percent of the area; 20 percent are `coverage` = 20";
+        assert_eq!(said.matches(small).count(), 1, "{said}");
+        assert_eq!(said.matches("note: ").count(), 4 + usize::from(idle), "{said}");
     }
 }
 

@@ -1,5 +1,6 @@
 //! Refusals before any run, with their sentences.
 
+use super::results::SMALL;
 use crate::support::process::stderr;
 use crate::support::workspace::Workspace;
 
@@ -149,6 +150,57 @@ fn bad_studies_are_refused_with_a_sentence() {
         assert!(stderr(&output).contains(sentence), "{text}\n{}", stderr(&output));
         assert!(!workspace.path("out").exists(), "{text}");
     }
+}
+
+/// Errors of a base that the study file holds point at its lines as they are written there.
+#[test]
+fn errors_of_the_base_show_the_lines_of_the_study_file() {
+    let large = "study.replicates = 2\n\n[base]\ndrive.v_star = 0.1\nslider.blocks = [60000, 60000]\n";
+    for (text, place) in [
+        (large, "study.toml:5:17: this case takes about"),
+        (
+            "study.replicates = 2\n\n[base.slider]\nomega_star = 0.1\nbloks = [4, 4]\n",
+            "study.toml:5:9: unknown key `bloks`",
+        ),
+    ] {
+        let workspace = Workspace::with_study(text);
+        let said = workspace.fail("study study.toml -o out", 2);
+        assert!(said.contains(place), "{said}");
+        let line = text.lines().nth(4).unwrap();
+        assert!(said.contains(&format!("\n  {line}\n")), "{said}");
+    }
+}
+
+/// A key that an axis sets cannot be set beside it.
+#[test]
+fn keys_of_axes_are_not_set() {
+    let workspace = Workspace::with_study(SMALL);
+    for key in ["drive.v_star=0.2", "drive.speed=1 mm/s"] {
+        let output = workspace
+            .process("study study.toml -o out --set")
+            .arg(key)
+            .output()
+            .unwrap();
+        let said = stderr(&output);
+        assert_eq!(output.status.code(), Some(2), "{said}");
+        assert_eq!(
+            said,
+            format!(
+                "error: --set {key}: an axis of the study sets `drive.v_star`: change its levels, or remove the axis\n"
+            )
+        );
+    }
+    let said = workspace.fail("study study.toml -o out --set slider.bloks=[4,4]", 2);
+    assert!(
+        said.contains("--set slider.bloks=[4,4]: unknown key `bloks`"),
+        "{said}"
+    );
+    assert!(
+        workspace
+            .fail("study study.toml --json --dry-run", 2)
+            .contains("--dry-run")
+    );
+    assert!(!workspace.exists("out"));
 }
 
 #[test]

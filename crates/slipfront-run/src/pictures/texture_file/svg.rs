@@ -1,10 +1,13 @@
-//! Outlines as SVG: user units are millimetres, and y points down.
+//! Outlines as SVG: user units are millimetres, and y points down. A group for each texture, and the edge of the slider.
 
 use std::fmt::Write;
 
 use slipfront::surface::{Contour, Ellipse, Piece};
 
 use super::drawing::{Fill, Layer, OutlineDrawing};
+
+/// Width of the slider's edge over the edge of a block; a program that cuts takes its middle.
+const EDGE_WIDTH: f64 = 0.05;
 
 /// The drawing as a page of the slider's size.
 pub(super) fn text(drawing: &OutlineDrawing) -> String {
@@ -18,6 +21,10 @@ pub(super) fn text(drawing: &OutlineDrawing) -> String {
         svg += &elements(drawing, layer);
         svg += "</g>\n";
     }
+    let stroke = EDGE_WIDTH * drawing.block;
+    svg += &format!(
+        "<rect id=\"SLIDER\" width=\"{width}\" height=\"{height}\" fill=\"none\" stroke=\"black\" stroke-width=\"{stroke}\"/>\n"
+    );
     svg + "</svg>\n"
 }
 

@@ -1,0 +1,65 @@
+//! Reports for programs, as JSON.
+
+use serde_json::{Value, json};
+use slipfront_case::case::Case;
+use slipfront_case::machine::available_memory;
+use slipfront_run::pictures;
+
+use super::cost::warnings;
+
+/// The text of a report as it is printed.
+pub(crate) fn text_of(report: &Value) -> String {
+    format!("{report:#}\n")
+}
+
+/// The physics and the cost of a case, with the names of `summary.json` where that has the same number; `seconds` is the time
+/// that the run takes. A number that is not finite, such as the critical size of slip that is stable at any size, is null.
+pub(crate) fn check(case: &Case, seconds: f64) -> Value {
+    let (groups, lattice, plan) = (&case.groups, &case.model.lattice, &case.time_plan);
+    let budget = pictures::run_budget(case);
+    let bytes = |estimate: f64| estimate.ceil() as u64;
+    let lengths: Vec<Value> = case
+        .lengths()
+        .iter()
+        .map(|length| {
+            json!({
+                "name": length.name,
+                "blocks": length.blocks,
+                "length_m": length.metres,
+                "enough_blocks": length.enough,
+            })
+        })
+        .collect();
+    json!({
+        "case": case.name,
+        "blocks": [lattice.nx, lattice.ny],
+        "n_blocks": case.model.n_blocks(),
+        "block_size_m": case.scales.block_size,
+        "v_star": groups.v_star,
+        "r_star": groups.r_star,
+        "omega_star": groups.omega_star,
+        "sigma_static_star": groups.sigma_static_star,
+        "sigma_kinetic_star": groups.sigma_kinetic_star,
+        "epsilon": groups.epsilon,
+        "seed": case.file.friction.seed,
+        "texture_percent": case.texture.meshed_percent,
+        "texture_percent_asked": case.texture.asked_percent,
+        "lengths": lengths,
+        "dt_star": plan.dt_star,
+        "dt_star_limit": plan.step_limit,
+        "steps": plan.last_step,
+        "duration_star": plan.end_star(),
+        "expected_onset_star": case.expected.onset_star,
+        "expected_steady_level_star": case.expected.steady_level,
+        "time_unit_s": case.scales.time(),
+        "displacement_unit_m": case.scales.displacement(),
+        "stress_unit_pa": case.scales.stress(),
+        "block_steps": case.block_steps(),
+        "seconds": seconds,
+        "memory_bytes": bytes(budget.memory()),
+        "memory_available_bytes": available_memory().map(bytes),
+        "disk_bytes": bytes(budget.disk()),
+        "disk_of_checkpoints_bytes": bytes(budget.disk_of_checkpoints()),
+        "warnings": warnings(case),
+    })
+}

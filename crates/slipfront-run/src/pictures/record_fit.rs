@@ -1,0 +1,173 @@
+//! The place of a measured record on the curve of a run: how far its times or displacements are shifted.
+
+/// Times or displacements that never fall, and the friction at each.
+pub(super) type Points<'p> = (&'p [f64], &'p [f64]);
+
+/// A shift of a record at which it fits a curve better than at the shifts around it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Fitting {
+    pub(super) shift: f64,
+    pub(super) misfit: f64,
+}
+
+/// Misfit relative to the least one up to which another shift may be the right one as well.
+const AS_GOOD: f64 = 2.0;
+
+/// Difference between two shifts, relative to the shorter of record and curve, up to which they are one in a picture.
+const SAME_SHIFT: f64 = 0.05;
+
+/// Largest number of shifts that are refined.
+const MAX_FITTING: usize = 8;
+
+/// Value at `x` of a curve whose abscissae never fall, between its points in proportion; none beyond its ends.
+fn value_at((xs, ys): Points, x: f64) -> Option<f64> {
+    let after = xs.partition_point(|&other| other < x);
+    let (&from, &to) = (xs.get(after.saturating_sub(1))?, xs.get(after)?);
+    if x < from {
+        return None;
+    }
+    let share = if to > from { (x - from) / (to - from) } else { 0.0 };
+    let (y, end) = (ys[after.saturating_sub(1)], ys[after]);
+    Some(y + share * (end - y))
+}
+
+/// Root mean square of the difference between a record, shifted, and a curve, over the points of the record within the curve.
+pub(super) fn misfit((xs, ys): Points, curve: Points, shift: f64) -> Option<f64> {
+    let differences = xs
+        .iter()
+        .zip(ys)
+        .filter_map(|(x, y)| Some(value_at(curve, x + shift)? - y));
+    let (mut sum, mut n) = (0.0, 0_u32);
+    for difference in differences {
+        (sum, n) = (sum + difference * difference, n + 1);
+    }
+    (n > 0).then(|| (sum / f64::from(n)).sqrt())
+}
+
+/// First and last of values, 0 where there are none.
+pub(super) fn ends(values: &[f64]) -> [f64; 2] {
+    [values.first(), values.last()].map(|end| end.copied().unwrap_or_default())
+}
+
+/// The shifts with the least [`misfit`], the best first, among those at which record and curve overlap by at least half of the
+/// shorter one. There is at least one.
+pub(super) fn fitting_shifts(record: Points, curve: Points) -> Vec<Fitting> {
+    const POINTS: usize = 2000;
+    const SHIFTS: u32 = 400;
+    // Some points tell as much as all, sooner.
+    let thin = |values: &[f64]| -> Vec<f64> {
+        let step = values.len().div_ceil(POINTS);
+        values.iter().step_by(step).copied().collect()
+    };
+    let (xs, ys) = (thin(record.0), thin(record.1));
+    let ([from, to], [start, end]) = (ends(record.0), ends(curve.0));
+    let common = 0.5 * (to - from).min(end - start);
+    let (low, high) = (start - to + common, end - from - common);
+    let badness = |shift: f64| misfit((&xs, &ys), curve, shift).unwrap_or(f64::INFINITY);
+    let step = (high - low) / f64::from(SHIFTS);
+    let tried: Vec<Fitting> = (0..=SHIFTS)
+        .map(|k| low + step * f64::from(k))
+        .map(|shift| Fitting {
+            shift,
+            misfit: badness(shift),
+        })
+        .collect();
+    let is_least = |k: usize| {
+        let around = &tried[k.saturating_sub(1)..tried.len().min(k + 2)];
+        around.iter().all(|other| tried[k].misfit <= other.misfit)
+    };
+    let mut least: Vec<Fitting> = (0..tried.len())
+        .filter(|&k| is_least(k))
+        .map(|k| tried[k])
+        .collect();
+    least.sort_by(|a, b| a.misfit.total_cmp(&b.misfit));
+    least.truncate(MAX_FITTING);
+    for found in &mut least {
+        found.shift = refined(found.shift - step, found.shift + step, [low, high], badness);
+        found.misfit = badness(found.shift);
+    }
+    least.sort_by(|a, b| a.misfit.total_cmp(&b.misfit));
+    least
+}
+
+/// The shift of the least badness between two, within bounds, by golden section.
+fn refined(from: f64, to: f64, [low, high]: [f64; 2], badness: impl Fn(f64) -> f64) -> f64 {
+    const ROUNDS: u32 = 40;
+    let (mut low, mut high) = (from.max(low), to.min(high));
+    let ratio = 0.5 * (5_f64.sqrt() - 1.0);
+    for _ in 0..ROUNDS {
+        let (inner, outer) = (high - ratio * (high - low), low + ratio * (high - low));
+        if badness(inner) <= badness(outer) {
+            high = outer;
+        } else {
+            low = inner;
+        }
+    }
+    0.5 * (low + high)
+}
+
+/// The first of the `others` that fits about as well as the best shift, or better, and is not that shift; `length` is that of
+/// the shorter of record and curve.
+pub(super) fn rival(best: Fitting, others: &[Fitting], length: f64) -> Option<Fitting> {
+    let is_other = |other: &&Fitting| {
+        (other.shift - best.shift).abs() > SAME_SHIFT * length && other.misfit <= AS_GOOD * best.misfit
+    };
+    others.iter().find(is_other).copied()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A curve that rises to a peak and falls to a plateau, over 0 to 1.
+    fn curve() -> (Vec<f64>, Vec<f64>) {
+        let xs: Vec<f64> = (0..=1000).map(|k| f64::from(k) / 1000.0).collect();
+        let ys = xs.iter().map(|&x| level(x)).collect();
+        (xs, ys)
+    }
+
+    fn level(x: f64) -> f64 {
+        if x < 0.3 {
+            x / 0.3
+        } else {
+            0.5 + 0.5 * (-(x - 0.3) / 0.02).exp()
+        }
+    }
+
+    fn record(from: f64, to: f64, shift: f64) -> (Vec<f64>, Vec<f64>) {
+        let xs: Vec<f64> = (0..=500)
+            .map(|k| from + (to - from) * f64::from(k) / 500.0)
+            .collect();
+        let ys = xs.iter().map(|&x| level(x)).collect();
+        (xs.iter().map(|x| x - shift).collect(), ys)
+    }
+
+    #[test]
+    fn a_record_with_a_peak_has_one_place() {
+        let (xs, ys) = curve();
+        let (at, of) = record(0.1, 0.8, 0.37);
+        let found = fitting_shifts((&at, &of), (&xs, &ys));
+        // A tenth of the distance of the points of the curve, between which it is straight.
+        assert!((found[0].shift - 0.37).abs() < 1e-4, "{found:?}");
+        assert_eq!(rival(found[0], &found, 0.7), None);
+    }
+
+    /// A plateau fits everywhere on a plateau.
+    #[test]
+    fn a_record_without_a_peak_has_many_places() {
+        let (xs, ys) = curve();
+        let at: Vec<f64> = (0..=100).map(|k| f64::from(k) / 500.0).collect();
+        let of: Vec<f64> = at.iter().map(|x| 0.5 + 1e-3 * (200.0 * x).sin()).collect();
+        let found = fitting_shifts((&at, &of), (&xs, &ys));
+        assert!(rival(found[0], &found, 0.2).is_some(), "{found:?}");
+    }
+
+    /// Beyond its ends a curve says nothing, and no point within it has no misfit.
+    #[test]
+    fn a_record_beside_the_curve_has_no_misfit() {
+        let (xs, ys) = curve();
+        let (at, of) = record(0.1, 0.8, 0.0);
+        assert_eq!(misfit((&at, &of), (&xs, &ys), 5.0), None);
+        assert!(misfit((&at, &of), (&xs, &ys), 0.0).unwrap() < 1e-2);
+    }
+}
