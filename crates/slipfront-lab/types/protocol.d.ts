@@ -76,6 +76,8 @@ export interface Source {
   name?: string;
   /** Contents of the files that the TOML names, in Base64. */
   files?: Record<string, string>;
+  /** Files of the folder of a recorded run, in Base64. */
+  run?: Record<string, string>;
 }
 
 export interface SetRequest {

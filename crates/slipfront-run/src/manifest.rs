@@ -151,10 +151,6 @@ impl Manifest {
     /// Reads the manifest of a run folder, if it is unchanged.
     pub fn read(folder: &Path) -> Result<Self, ManifestError> {
         let path = folder.join(MANIFEST);
-        let damaged = |why| ManifestError::Damaged {
-            path: path.clone(),
-            why,
-        };
         let bytes = read_limited(&path, TEXT_MAX_BYTES).map_err(|error| match error.kind() {
             std::io::ErrorKind::NotFound => ManifestError::Missing {
                 path: folder.to_owned(),
@@ -164,9 +160,18 @@ impl Manifest {
                 why: error.to_string(),
             },
         })?;
+        Self::of_bytes(&path, &bytes)
+    }
+
+    /// Reads the manifest whose bytes these are, if it is unchanged; errors call it by the path.
+    pub fn of_bytes(path: &Path, bytes: &[u8]) -> Result<Self, ManifestError> {
+        let damaged = |why| ManifestError::Damaged {
+            path: path.to_owned(),
+            why,
+        };
         let manifest: Self =
-            serde_json::from_slice(&bytes).map_err(|error| damaged(single_line(&error.to_string())))?;
-        if checksum_of(&bytes).as_ref() == Some(&manifest.checksum) {
+            serde_json::from_slice(bytes).map_err(|error| damaged(single_line(&error.to_string())))?;
+        if checksum_of(bytes).as_ref() == Some(&manifest.checksum) {
             return Ok(manifest);
         }
         let why = if manifest.checksum.is_empty() {
@@ -196,6 +201,13 @@ impl ManifestFile {
         let mut hasher = blake3::Hasher::new();
         hasher.update_reader(open_regular(&folder.join(name))?)?;
         Ok(Self::hashed(name, &hasher))
+    }
+
+    /// A file of this name with these contents.
+    pub fn of_bytes(name: &str, contents: &[u8]) -> Self {
+        let mut hasher = blake3::Hasher::new();
+        hasher.update(contents);
+        Self::hashed(name, &hasher)
     }
 
     /// The copy of a file that the case reads.

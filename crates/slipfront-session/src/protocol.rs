@@ -115,6 +115,9 @@ pub(crate) struct Source {
     /// Files that the TOML names, in Base64.
     #[serde(default)]
     pub(crate) files: BTreeMap<String, String>,
+    /// Files of the folder of a recorded run, in Base64.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) run: Option<BTreeMap<String, String>>,
 }
 
 /// A reply or report of a session to the page.

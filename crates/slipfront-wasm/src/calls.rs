@@ -72,7 +72,10 @@ pub(crate) fn handle() {
     let text = String::from_utf8(GIVEN.take()).unwrap_or_default();
     PAGE.with_borrow_mut(|page| {
         let Some((session, host)) = page else { return };
-        match Message::parse(&text) {
+        let message = Message::parse(&text);
+        // It may hold the files of a run.
+        drop(text);
+        match message {
             Ok(message) => session.handle(message),
             Err(sentence) => host.reply(failed(sentence)),
         }

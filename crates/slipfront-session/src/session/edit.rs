@@ -1,5 +1,6 @@
 //! Changes of the case.
 
+use std::path::Path;
 use std::sync::Arc;
 
 use slipfront_case::text::truncated;
@@ -11,7 +12,9 @@ use crate::base64;
 use crate::document::Document;
 use crate::history::History;
 use crate::host::Opened;
+use crate::names::is_plain_name;
 use crate::protocol::{Reply, Source};
+use crate::run_files::recorded_run;
 use crate::view::AfterChange;
 
 impl Session {
@@ -44,6 +47,12 @@ impl Session {
         }
         if let Some(name) = source.folder {
             return self.host.recorded_run(&name);
+        }
+        if let Some(files) = source.run {
+            let name = source.name.filter(|name| is_plain_name(name));
+            let name = name.unwrap_or_else(|| "run".to_owned());
+            let read = |file: &str| files.get(file).map(|text| base64::decode(text)).transpose();
+            return recorded_run(&name, Path::new(&name), read);
         }
         if source.toml.is_none() {
             return self.host.opening();
