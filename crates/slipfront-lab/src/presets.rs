@@ -9,15 +9,12 @@ use toml::{Table, Value};
 
 static CASES: Dir = include_dir!("$CARGO_MANIFEST_DIR/cases");
 
-/// The case with which the page opens unless another one is named: the circle, with more blocks.
+/// The case with which the page opens unless another one is named.
 ///
 /// # Errors
 /// A sentence, if the case cannot be made.
 pub(crate) fn opening(presets: &Presets) -> Result<Document, String> {
-    let blocks = Value::Array(vec![Value::Integer(100); 2]);
-    presets
-        .document("circle")?
-        .with([("slider.blocks".to_owned(), Some(blocks))])
+    presets.document("circle")
 }
 
 /// Names and texts of the cases of the folder.

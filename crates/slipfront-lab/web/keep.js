@@ -99,7 +99,7 @@ export function startKeep() {
   closing('copy-link', copyLink);
   closing('download-case', downloadCase);
   closing('png-field', fieldPng);
-  closing('png-curves', () => png(curvesFigure(), 'curves'));
+  closing('png-curves', () => curvesFigure((canvas) => png(canvas, 'curves')));
   closing('png-kymograph', () => png(kymographFigure(), 'kymograph'));
   find('save-form').addEventListener('submit', save);
   on('saving', showSaving);

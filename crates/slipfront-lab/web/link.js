@@ -13,10 +13,13 @@ async function through(bytes, stream) {
   return new Uint8Array(await new Response(body).arrayBuffer());
 }
 
+/** Bytes that become text at once: a call has no room for more than some ten thousand values. */
+const PIECE = 0x2000;
+
 /** Bytes as base64. @param {Uint8Array} bytes */
 export function toBase64(bytes) {
   let text = '';
-  for (const byte of bytes) text += String.fromCharCode(byte);
+  for (let k = 0; k < bytes.length; k += PIECE) text += String.fromCharCode(...bytes.subarray(k, k + PIECE));
   return btoa(text);
 }
 

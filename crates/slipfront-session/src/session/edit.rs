@@ -6,7 +6,7 @@ use std::sync::Arc;
 use slipfront_case::text::truncated;
 use toml::Value;
 
-use super::brush::stroke;
+use super::painting::Painting;
 use super::state::{PendingEdit, Session};
 use crate::base64;
 use crate::document::Document;
@@ -23,7 +23,7 @@ impl Session {
         // Whether it can be run is known before anything is given up.
         let case = Arc::new(document.case_to_show().map_err(|error| error.to_string())?);
         self.give_up_search();
-        (self.edited, self.mask) = (None, None);
+        (self.edited, self.painting) = (None, None);
         (self.repeating, self.shown_recording) = (None, None);
         self.history = Some(History::new(document));
         self.recorded = recorded;
@@ -65,7 +65,7 @@ impl Session {
         keys: serde_json::Map<String, serde_json::Value>,
         gesture: u64,
     ) -> Result<(), String> {
-        self.apply_painted_mask();
+        self.apply_painting();
         let mut changes = Vec::new();
         for (key, value) in keys {
             let value = match value {
@@ -94,18 +94,19 @@ impl Session {
         gesture: u64,
     ) -> Result<(), String> {
         self.apply_edited_document();
-        let live = self.live.as_ref().ok_or("no case is open yet")?;
-        let model = &live.case().model;
-        let lattice = &model.lattice;
-        let (mask, painted_by) = self
-            .mask
-            .get_or_insert_with(|| (model.surface.textured.clone(), gesture));
-        *painted_by = gesture;
-        stroke(mask, lattice, points, radius, textured)
+        let case = self.live.as_ref().ok_or("no case is open yet")?.case();
+        let mut painting = match self.painting.take() {
+            Some(painting) => painting,
+            None => Painting::begin(self.document()?, case, gesture)?,
+        };
+        painting.gesture = gesture;
+        let done = painting.stroke(case, points, radius, textured);
+        self.painting = Some(painting);
+        done
     }
 
     pub(super) fn image(&mut self, text: &str, threshold: f64, gesture: u64) -> Result<(), String> {
-        self.apply_painted_mask();
+        self.apply_painting();
         let image = base64::decode(text)?;
         let document = self
             .document()?
@@ -136,25 +137,23 @@ impl Session {
 
     /// Runs the case with all edits that are not run yet.
     pub(super) fn apply_edits(&mut self) {
-        self.apply_painted_mask();
+        self.apply_painting();
         self.apply_edited_document();
     }
 
-    /// Makes the painted mask the texture of the case, and runs it.
-    fn apply_painted_mask(&mut self) {
-        let Some((mask, gesture)) = self.mask.take() else {
+    /// Makes the painted layer a texture of the case, and runs it.
+    fn apply_painting(&mut self) {
+        let Some(painting) = self.painting.take() else {
             return;
         };
-        let made = self.document().map(|document| {
-            document
-                .with_mask(&mask, self.columns())
-                .map_err(|error| error.to_string())
-        });
-        match made.and_then(|made| made) {
+        let made = self
+            .document()
+            .and_then(|document| painting.document(document, self.columns()));
+        match made {
             Ok(document) => {
                 self.edited = Some(PendingEdit {
                     document,
-                    gesture,
+                    gesture: painting.gesture,
                     of: "paint",
                 });
                 self.apply_edited_document();
