@@ -108,10 +108,10 @@ test('what the page shows is explained: letters, numbers, the percentage', async
   const lab = await open(t, { toml: SMALL });
   await lab.runToEnd();
   await until(() => lab.find('#curve-letters').isVisible(), 'what letters are');
-  assert.equal(await lab.find('#curve-letters').getAttribute('title'), say('letters_hint'));
-  for (const hint of ['sliding_hint', 'number_without_hint']) assert.ok((await lab.find(`#numbers [title="${say(hint)}"]`).count()) > 0, hint);
+  assert.equal(await lab.find('#curve-letters').getAttribute('title'), say('meaning_letters_is'));
+  for (const hint of ['meaning_sliding_is', 'number_without_hint']) assert.ok((await lab.find(`#numbers [title="${say(hint)}"]`).count()) > 0, hint);
   await lab.find('#summary summary').click();
-  assert.ok((await lab.find(`#summary-values [title="${say('summary_front_hint')}"]`).count()) > 0);
+  assert.ok((await lab.find(`#summary-values [title="${say('meaning_front_is')}"]`).count()) > 0);
   await lab.press('open-help');
   for (const what of ['headline', 'percent', 'sliding', 'letters', 'front']) await lab.reads('meanings', new RegExp(say(`meaning_${what}_is`).replace(/[.*+?^${}()|[\]\\]/g, '\\$&')));
 });

@@ -3,7 +3,6 @@
 use std::collections::BTreeMap;
 
 use include_dir::{Dir, include_dir};
-use slipfront_case::case_file::CaseFile;
 use slipfront_session::{Document, Preset, Presets};
 use toml::{Table, Value};
 
@@ -38,13 +37,13 @@ pub(crate) fn all() -> Presets {
     Presets(all)
 }
 
-/// A case of the folder, with the files beside it that it names.
+/// A case of the folder, with the files beside it that it names. It is not parsed before it is chosen: a text in quotes is taken for the name of
+/// a file if there is such a file.
 fn case(name: &str, text: &str) -> Preset {
-    // What is wrong with a case is told when it is chosen.
-    let mut case = CaseFile::parse(text, name, &[]).unwrap_or_default();
-    let files = case.files_mut().0.filter_map(|file| {
-        let found = CASES.get_file(&*file.name)?;
-        Some((file.name.clone(), found.contents().to_vec()))
+    let files = CASES.files().filter_map(|file| {
+        let name = file.path().to_str()?;
+        text.contains(&format!("\"{name}\""))
+            .then(|| (name.to_owned(), file.contents().to_vec()))
     });
     let files = files.collect();
     Preset {

@@ -1,9 +1,9 @@
 // @ts-check
 // An image as texture: dropped on the page or chosen from a file. Dark is texture.
+import { toBase64 } from './base64.js';
 import { send } from './connection.js';
 import { newGesture } from './edit.js';
 import { find, onPress } from './element.js';
-import { toBase64 } from './link.js';
 import { notice } from './notices.js';
 import { state } from './store.js';
 import { say } from './text.js';

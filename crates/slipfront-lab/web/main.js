@@ -60,6 +60,6 @@ startKeep();
 startPresets();
 startClip();
 startSession();
-await startLessons();
+startLessons();
 connect();
 keepOffline();

@@ -1,8 +1,8 @@
 // @ts-check
 // The folder of a run, dropped on the page or chosen: its files are read here, and the session replays it.
 import { isAlone } from './assets.js';
+import { toBase64 } from './base64.js';
 import { find, onPress } from './element.js';
-import { toBase64 } from './link.js';
 import { notice } from './notices.js';
 import { open } from './session.js';
 import { put } from './store.js';

@@ -1,7 +1,7 @@
 // @ts-check
 // The session in a Worker of this page, as WebAssembly: there is no server and no disk. Work beside it, and runs that are saved, have
 // Workers of their own.
-import { bytesOf, isSingle, textOf } from './assets.js';
+import { bytesOf, isAlone, isSingle, textOf } from './assets.js';
 import { download } from './element.js';
 import { receive } from './receive.js';
 import { put } from './store.js';
@@ -127,16 +127,26 @@ function open() {
   session.postMessage({ do: 'open', text: beginning });
 }
 
-/** Loads the module and begins the session. */
+/** Loads and compiles the module, and what the session begins with; none where one of them is missing or damaged. */
+async function load() {
+  const compiled = async () => {
+    const bytes = await bytesOf('slipfront.wasm');
+    return bytes && WebAssembly.compile(bytes);
+  };
+  return Promise.all([compiled().catch(() => null), textOf('start.json').catch(() => null)]);
+}
+
+/** It goes on while the page is prepared. */
+const loading = isAlone && WebAssembly.validate(SIMD) ? load() : null;
+
+/** Begins the session once it is loaded. */
 export async function connect() {
   try {
-    if (!WebAssembly.validate(SIMD)) throw new Error(say('no_simd'));
-    const [bytes, texts] = await Promise.all([bytesOf('slipfront.wasm'), textOf('start.json')]);
-    if (!bytes || !texts) throw new Error(say('no_module'));
+    if (!loading) throw new Error(say('no_simd'));
+    const [compiled, texts] = await loading;
+    if (!compiled || !texts) throw new Error(say('no_module'));
     beginning = texts;
-    module = await WebAssembly.compile(bytes).catch(() => {
-      throw new Error(say('no_module'));
-    });
+    module = compiled;
     if (isSingle) script = URL.createObjectURL(new Blob([(await textOf('lab_worker.js')) ?? ''], { type: 'text/javascript' }));
     open();
     put('connected', { yes: true });

@@ -56,6 +56,9 @@ pub struct Manifest {
     /// Origin of the run's random numbers.
     #[serde(default)]
     pub random: Random,
+    /// Why the run has no pictures, if whoever ran it cannot draw.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub without_pictures: Option<String>,
     /// Every other file of the run.
     pub files: Vec<ManifestFile>,
     /// BLAKE3 hash of the manifest itself up to this key, whose name is `seal` in the file.
@@ -108,9 +111,41 @@ impl Manifest {
         started: jiff::Timestamp,
         threads: usize,
     ) -> Self {
-        let case_file = files.iter().find(|file| file.name == CASE);
         // The clock may have been set back since another process began the run.
-        let finished = clock::now().max(started);
+        Self::between(files, case, [started, clock::now().max(started)], threads)
+    }
+
+    /// The bytes of the manifest of a run on one thread, whose files are in memory, and which has no pictures for this reason. `times_ms` are
+    /// its beginning and its end, in milliseconds since 1970.
+    ///
+    /// # Errors
+    /// When a time lies beyond the year 9999.
+    pub fn of_run_in_memory(
+        files: &[(String, Vec<u8>)],
+        case: &Case,
+        times_ms: [i64; 2],
+        without_pictures: &str,
+    ) -> Result<Vec<u8>, jiff::Error> {
+        let [started, finished] = times_ms.map(jiff::Timestamp::from_millisecond);
+        let started = started?;
+        let files = files
+            .iter()
+            .map(|(name, contents)| ManifestFile::of_bytes(name, contents));
+        let manifest = Self {
+            without_pictures: Some(without_pictures.to_owned()),
+            ..Self::between(files.collect(), case, [started, finished?.max(started)], 1)
+        };
+        Ok(manifest.with_checksum().1)
+    }
+
+    /// Manifest of a run that began and ended at these times.
+    fn between(
+        files: Vec<ManifestFile>,
+        case: &Case,
+        [started, finished]: [jiff::Timestamp; 2],
+        threads: usize,
+    ) -> Self {
+        let case_file = files.iter().find(|file| file.name == CASE);
         Self {
             version: program::VERSION.to_owned(),
             revision: program::REVISION.map(str::to_owned),
@@ -129,6 +164,7 @@ impl Manifest {
                 seed: case.file.friction.seed,
                 streams: STREAMS.map(|(name, number)| (name.to_owned(), number)).into(),
             },
+            without_pictures: None,
             files,
             checksum: String::new(),
         }

@@ -13,7 +13,7 @@ use slipfront_session::{
 
 use crate::bits::bits_of_run;
 use crate::host::WorkerHost;
-use crate::imports::{Saying, clock, duration, tell};
+use crate::imports::{Saying, clock, date_ms, duration, tell};
 
 thread_local! {
     /// Bytes that the Worker has given.
@@ -140,7 +140,7 @@ pub(crate) fn run() {
 /// Runs a case from rest, and gives the archive of its files.
 pub(crate) fn save() {
     let told = |share: f64| tell(Saying::Share, (1e6 * share) as u32, &[]);
-    let archive = given().and_then(|document: Document| run_archive(&document, &told));
+    let archive = given().and_then(|document: Document| run_archive(&document, &date_ms, &told));
     refuse(archive.map(|archive| tell(Saying::Archive, 0, &archive)));
 }
 

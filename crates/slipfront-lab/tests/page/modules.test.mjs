@@ -5,11 +5,12 @@ import fs from 'node:fs';
 import path from 'node:path';
 import test from 'node:test';
 import { fileURLToPath } from 'node:url';
+import { fromBase64, toBase64 } from '../../web/base64.js';
 import { Camera } from '../../web/camera.js';
 import { COLOURMAPS } from '../../web/colourmaps.js';
 import { parse } from '../../web/frames.js';
 import { rowsOf } from '../../web/letters.js';
-import { fromBase64, makeLink, readLink, toBase64 } from '../../web/link.js';
+import { makeLink, readLink } from '../../web/link.js';
 import { fixed, length, metres, number, quantity, ticks, typed } from '../../web/quantity.js';
 import { center, coverageOf, create, enlarge, handles, inside, kind, move, turn } from '../../web/shapes.js';
 
