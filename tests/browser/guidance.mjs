@@ -155,6 +155,23 @@ test('on a telephone the header has two rows, friction is on the first screen, a
   assert.deepEqual(await small(), []);
 });
 
+test('the header keeps its height under a long name, at the end of a run and while a clip is recorded', async (t) => {
+  const lab = await open(t, {});
+  const height = async () => (await lab.find('header').boundingBox()).height;
+  const before = await height();
+  const long = 'a run whose name is long enough to fill half of the row of the header alone';
+  const rename = () => lab.page.evaluate((name) => (document.getElementById('case-name').textContent = name), long);
+  await lab.press('open-keep');
+  await lab.press('clip');
+  await lab.find('#clip-running').waitFor();
+  await rename();
+  assert.equal(await height(), before);
+  await lab.download(() => lab.press('clip-running'));
+  await lab.runToEnd();
+  await rename();
+  assert.equal(await height(), before);
+});
+
 test('letters grow on the screen of a projector', async (t) => {
   const sizes = async (viewport) => {
     const lab = await open(t, { toml: SMALL, viewport });

@@ -158,7 +158,10 @@ impl Document {
     ///
     /// # Errors
     /// A sentence, if a key has no place in the case.
-    pub fn with(&self, changes: impl IntoIterator<Item = (String, Option<Value>)>) -> Result<Self, String> {
+    pub(crate) fn with(
+        &self,
+        changes: impl IntoIterator<Item = (String, Option<Value>)>,
+    ) -> Result<Self, String> {
         let mut changed = self.clone();
         for (key, value) in changes {
             match value {
@@ -241,7 +244,9 @@ impl Document {
         let is_layer = |texture: &Value| {
             texture.as_table().is_some_and(|table| {
                 table.get("shape").and_then(Value::as_str) == Some("mask")
-                    && table.keys().all(|key| ["shape", "file", "threshold"].contains(&&**key))
+                    && table
+                        .keys()
+                        .all(|key| ["shape", "file", "threshold"].contains(&&**key))
             })
         };
         textures.iter().rposition(is_layer)

@@ -37,10 +37,12 @@ pub fn recorded_run(
     let written = |file: &str| {
         let contents = read(file)?;
         match (&contents, listed(file)) {
-            (Some(contents), Some(listed)) if ManifestFile::of_bytes(file, contents) != *listed => Err(format!(
-                "{} has other bytes than its run has written, so that it would not show what was run: run the case again",
-                display_path(&place.join(file))
-            )),
+            (Some(contents), Some(listed)) if ManifestFile::of_bytes(file, contents) != *listed => {
+                Err(format!(
+                    "{} has other bytes than its run has written, so that it would not show what was run: run the case again",
+                    display_path(&place.join(file))
+                ))
+            }
             _ => Ok(contents),
         }
     };
@@ -54,6 +56,12 @@ pub fn recorded_run(
     let text = String::from_utf8(needed(CASE)?)
         .map_err(|_| format!("{} is no text", display_path(&place.join(CASE))))?;
     let rows = series::from_csv(&place.join(SERIES), &needed(SERIES)?).map_err(sentence)?;
+    if rows.is_empty() {
+        return Err(format!(
+            "{} has no rows: it is no curve of a run",
+            display_path(&place.join(SERIES))
+        ));
+    }
     let summary = summary_of_bytes(&place.join(SUMMARY), &needed(SUMMARY)?).map_err(sentence)?;
     let input = |file: &str| written(file)?.ok_or_else(|| "there is no such file".to_owned());
     let document = Document::new(name, &text, input).map_err(sentence)?;

@@ -27,7 +27,10 @@ impl Painting {
         let model = &case.model;
         let index = document.painted_layer();
         let (layer, others) = match index {
-            None => (vec![false; model.lattice.n_blocks()], model.surface.textured.clone()),
+            None => (
+                vec![false; model.lattice.n_blocks()],
+                model.surface.textured.clone(),
+            ),
             Some(index) => {
                 let mut textures = case.textures_in_blocks().map_err(|error| error.to_string())?;
                 let layer = textures.remove(index);
@@ -58,7 +61,11 @@ impl Painting {
         let mut stroked = vec![false; self.layer.len()];
         stroke(&mut stroked, &case.model.lattice, points, radius, true)?;
         let takes_away = |others: &&mut Vec<bool>| {
-            !textured && stroked.iter().zip(&***others).any(|(stroked, other)| *stroked && *other)
+            !textured
+                && stroked
+                    .iter()
+                    .zip(&***others)
+                    .any(|(stroked, other)| *stroked && *other)
         };
         if let Some(others) = self.others.as_mut().filter(takes_away) {
             for (painted, other) in self.layer.iter_mut().zip(&*others) {
@@ -66,7 +73,11 @@ impl Painting {
             }
             self.others = None;
         }
-        let painted = self.layer.iter_mut().zip(&stroked).filter(|(_, stroked)| **stroked);
+        let painted = self
+            .layer
+            .iter_mut()
+            .zip(&stroked)
+            .filter(|(_, stroked)| **stroked);
         painted.for_each(|(painted, _)| *painted = textured);
         Ok(())
     }

@@ -384,7 +384,10 @@ fn paint_is_a_layer_beside_the_shapes_until_a_part_of_one_is_taken_away() {
     // Without paint there is no layer.
     assert_eq!(paint(1.5, false, 2).0, ["cavity", "groove", "mask"]);
     let (shapes, textured) = paint(3.5, false, 2);
-    assert_eq!((shapes, &textured), (vec!["cavity".to_owned(), "groove".to_owned()], &before));
+    assert_eq!(
+        (shapes, &textured),
+        (vec!["cavity".to_owned(), "groove".to_owned()], &before)
+    );
     // No texture takes a part of another one away.
     let (shapes, textured) = paint(10.5, false, 3);
     assert_eq!(shapes, ["mask"]);
@@ -396,7 +399,9 @@ fn paint_is_a_layer_beside_the_shapes_until_a_part_of_one_is_taken_away() {
 #[test]
 fn paint_below_a_shape_stays() {
     let mut tried = Tried::with("slider.blocks = [20, 20]\ntexture = [{ shape = 'cavity', coverage = 5 }]\n");
-    tried.ask(json!({ "do": "paint", "points": [[10.5, 10.5]], "radius": 0.3, "textured": true, "gesture": 1 }));
+    tried.ask(
+        json!({ "do": "paint", "points": [[10.5, 10.5]], "radius": 0.3, "textured": true, "gesture": 1 }),
+    );
     let table = json!([{ "shape": "cavity", "coverage": 5, "center": ["4 um", "4 um"] }, { "shape": "mask", "file": "texture.png" }]);
     tried.ask(json!({ "do": "set", "keys": { "texture": table }, "gesture": 2 }));
     assert!(tried.textured()[10 * 20 + 10]);
