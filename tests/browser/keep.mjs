@@ -54,7 +54,8 @@ test('a case too large for a link is downloaded instead', async (t) => {
   // Every pixel is at random below or above the threshold, by a generator of 32 bits: nothing in it can be packed.
   let random = 1;
   const noise = image(200, () => (random = (Math.imul(random, 1664525) + 1013904223) >>> 0) >>> 24);
-  const lab = await open(t, { toml: SMALL });
+  // As many blocks as pixels, since no more pixels are kept.
+  const lab = await open(t, { toml: SMALL.replace('[20, 20]', '[200, 200]') });
   await lab.after(() => lab.find('#image-file').setInputFiles({ name: 'noise.png', mimeType: 'image/png', buffer: noise }), 'case', ({ texture }) => texture[0].shape === 'mask');
   await lab.press('open-keep');
   await lab.press('copy-link');

@@ -1,8 +1,9 @@
 // @ts-check
 // The session in a Worker of this page, as WebAssembly: there is no server and no disk. Work beside it, and runs that are saved, have
 // Workers of their own.
-import { bytesOf, isAlone, isSingle, textOf } from './assets.js';
+import { isSingle, textOf } from './assets.js';
 import { download } from './element.js';
+import { loading } from './module.js';
 import { receive } from './receive.js';
 import { put } from './store.js';
 import { say } from './text.js';
@@ -10,9 +11,6 @@ import { say } from './text.js';
 /** A Worker that has failed is begun anew so often, and no more in this time: what fails again and again would for ever. */
 const MOST_FAILURES = 3;
 const FAILURES_MS = 60_000;
-
-/** A module without a function, of which one instruction is of SIMD. */
-const SIMD = Uint8Array.of(0, 97, 115, 109, 1, 0, 0, 0, 1, 5, 1, 96, 0, 1, 123, 3, 2, 1, 0, 10, 10, 1, 8, 0, 65, 0, 253, 15, 253, 98, 11);
 
 /** @type {WebAssembly.Module|null} */
 let module = null;
@@ -126,18 +124,6 @@ function open() {
   session = begin(hear);
   session.postMessage({ do: 'open', text: beginning });
 }
-
-/** Loads and compiles the module, and what the session begins with; none where one of them is missing or damaged. */
-async function load() {
-  const compiled = async () => {
-    const bytes = await bytesOf('slipfront.wasm');
-    return bytes && WebAssembly.compile(bytes);
-  };
-  return Promise.all([compiled().catch(() => null), textOf('start.json').catch(() => null)]);
-}
-
-/** It goes on while the page is prepared. */
-const loading = isAlone && WebAssembly.validate(SIMD) ? load() : null;
 
 /** Begins the session once it is loaded. */
 export async function connect() {

@@ -88,6 +88,17 @@ pub struct ManifestFile {
     pub blake3: String,
 }
 
+/// Times of a run, as a manifest has them.
+#[derive(Clone, Debug)]
+pub struct RunTimes {
+    /// Time at which the run began, UTC, as in RFC 3339.
+    pub started: String,
+    /// Time at which the run ended, UTC, as in RFC 3339.
+    pub finished: String,
+    /// Seconds from the beginning to the end, by a monotonic clock.
+    pub wall_time_s: f64,
+}
+
 /// Reason for which a manifest cannot be used.
 #[derive(Clone, Debug, Error)]
 #[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
@@ -112,39 +123,34 @@ impl Manifest {
         threads: usize,
     ) -> Self {
         // The clock may have been set back since another process began the run.
-        Self::between(files, case, [started, clock::now().max(started)], threads)
+        let finished = clock::now().max(started);
+        let times = RunTimes {
+            started: started.to_string(),
+            finished: finished.to_string(),
+            wall_time_s: finished.duration_since(started).as_secs_f64(),
+        };
+        Self::at(files, case, times, threads)
     }
 
-    /// The bytes of the manifest of a run on one thread, whose files are in memory, and which has no pictures for this reason. `times_ms` are
-    /// its beginning and its end, in milliseconds since 1970.
-    ///
-    /// # Errors
-    /// When a time lies beyond the year 9999.
+    /// The bytes of the manifest of a run on one thread, whose files are in memory, and which has no pictures for this reason.
     pub fn of_run_in_memory(
         files: &[(String, Vec<u8>)],
         case: &Case,
-        times_ms: [i64; 2],
+        times: RunTimes,
         without_pictures: &str,
-    ) -> Result<Vec<u8>, jiff::Error> {
-        let [started, finished] = times_ms.map(jiff::Timestamp::from_millisecond);
-        let started = started?;
+    ) -> Vec<u8> {
         let files = files
             .iter()
             .map(|(name, contents)| ManifestFile::of_bytes(name, contents));
         let manifest = Self {
             without_pictures: Some(without_pictures.to_owned()),
-            ..Self::between(files.collect(), case, [started, finished?.max(started)], 1)
+            ..Self::at(files.collect(), case, times, 1)
         };
-        Ok(manifest.with_checksum().1)
+        manifest.with_checksum().1
     }
 
     /// Manifest of a run that began and ended at these times.
-    fn between(
-        files: Vec<ManifestFile>,
-        case: &Case,
-        [started, finished]: [jiff::Timestamp; 2],
-        threads: usize,
-    ) -> Self {
+    fn at(files: Vec<ManifestFile>, case: &Case, times: RunTimes, threads: usize) -> Self {
         let case_file = files.iter().find(|file| file.name == CASE);
         Self {
             version: program::VERSION.to_owned(),
@@ -155,9 +161,9 @@ impl Manifest {
             threads,
             host: host_name().to_string_lossy().into_owned(),
             platform: format!("{} {}", std::env::consts::OS, std::env::consts::ARCH),
-            started: started.to_string(),
-            finished: finished.to_string(),
-            wall_time_s: finished.duration_since(started).as_secs_f64(),
+            started: times.started,
+            finished: times.finished,
+            wall_time_s: times.wall_time_s,
             case_blake3: case_file.map_or(String::new(), |file| file.blake3.clone()),
             random: Random {
                 generator: "ChaCha8".to_owned(),

@@ -13,7 +13,7 @@ use slipfront_session::{
 
 use crate::bits::bits_of_run;
 use crate::host::WorkerHost;
-use crate::imports::{Saying, clock, date_ms, duration, tell};
+use crate::imports::{Saying, ask_date, clock, duration, tell};
 
 thread_local! {
     /// Bytes that the Worker has given.
@@ -139,8 +139,12 @@ pub(crate) fn run() {
 
 /// Runs a case from rest, and gives the archive of its files.
 pub(crate) fn save() {
+    let now = || {
+        ask_date();
+        (String::from_utf8(GIVEN.take()).unwrap_or_default(), clock())
+    };
     let told = |share: f64| tell(Saying::Share, (1e6 * share) as u32, &[]);
-    let archive = given().and_then(|document: Document| run_archive(&document, &date_ms, &told));
+    let archive = given().and_then(|document: Document| run_archive(&document, &now, &told));
     refuse(archive.map(|archive| tell(Saying::Archive, 0, &archive)));
 }
 

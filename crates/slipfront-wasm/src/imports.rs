@@ -39,7 +39,7 @@ pub(crate) enum Saying {
 unsafe extern "C" {
     safe fn say(what: u32, number: u32, at: *const u8, length: usize);
     safe fn now() -> f64;
-    safe fn date() -> f64;
+    safe fn date();
 }
 
 /// Says something to the Worker, with a number where it has one.
@@ -47,9 +47,9 @@ pub(crate) fn tell(what: Saying, number: u32, bytes: &[u8]) {
     say(what as u32, number, bytes.as_ptr(), bytes.len());
 }
 
-/// The time of day by the clock of the Worker, ms since 1970.
-pub(crate) fn date_ms() -> i64 {
-    date() as i64
+/// Lets the Worker give the time of day, UTC as in RFC 3339, as it gives a text.
+pub(crate) fn ask_date() {
+    date();
 }
 
 /// The time by the clock of the Worker.
