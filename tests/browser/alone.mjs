@@ -50,8 +50,16 @@ for (const [kept, toml] of Object.entries(CASES)) {
     const folder = path.join(WORK, 'of the command', kept);
     await slipfront('run', `${kept}.toml`, '--quiet', '--out', folder);
     const names = ['case.toml', 'fields.nc', 'kymograph.nc', 'series.csv', 'summary.json'];
-    assert.deepEqual([...files.keys()].sort(), names);
+    assert.deepEqual([...files.keys()].sort(), [...names, 'manifest.json'].sort());
     for (const name of names) assert.ok(files.get(name).equals(readFileSync(path.join(folder, name))), `${name} differs`);
+    // The manifest is accepted by the command, and says why there are no pictures; the command draws them.
+    const unpacked = path.join(WORK, 'unpacked', kept);
+    mkdirSync(unpacked, { recursive: true });
+    for (const [name, contents] of files) writeFileSync(path.join(unpacked, name), contents);
+    assert.match(await slipfront('verify', unpacked), /5 files as slipfront/);
+    assert.match(JSON.parse(files.get('manifest.json')).without_pictures, /slipfront plot/);
+    await slipfront('plot', unpacked);
+    assert.ok(readdirSync(unpacked).includes('friction.png'));
     // What the command has beside them are pictures and who made them.
     const others = readdirSync(folder).filter((name) => !names.includes(name) && !name.startsWith('.'));
     assert.ok(others.every((name) => /\.(svg|png)$|^manifest\.json$/.test(name)), others.join(' '));

@@ -124,16 +124,17 @@ test('a change begins a leg when the run goes on after it, and starts from rest 
 });
 
 test('every field is shown with its name', async (t) => {
-  const lab = await open(t, { toml: SMALL });
+  // A run that does not end before it is stopped.
+  const lab = await open(t, { toml: SMALL.replace('= 120', '= 400') });
   const fields = await lab.find('#field option').evaluateAll((options) => options.map(({ value }) => value));
   assert.equal(fields.length, 6);
   await lab.press('pause');
   await until(() => lab.last.numbers?.t_star > 2, 'some time');
+  await lab.press('pause');
   for (const [k, field] of fields.entries()) {
     await lab.after(() => lab.find('#field').selectOption(field), 'picture', (picture) => picture.field === k);
     assert.equal(await lab.find('#legend-not-yet').isVisible(), field === 'first_slip');
   }
-  await lab.press('pause');
   await sleep(300);
   const viridis = await lab.find('#bar').screenshot();
   await lab.find('#colourmap').selectOption('cividis');

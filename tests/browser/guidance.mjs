@@ -1,7 +1,8 @@
 // What the page tells by itself: whither the drive pulls, what to try, that a run has ended and what it has found.
 import assert from 'node:assert/strict';
 import test from 'node:test';
-import { open, PLAIN, say, SMALL, until } from './page.mjs';
+import { SIZES } from './accessibility.mjs';
+import { open, PLAIN, say, SMALL, until, webJson } from './page.mjs';
 
 test('an arrow tells whither the drive pulls, unless it turns the slider', async (t) => {
   const lab = await open(t, { toml: SMALL });
@@ -66,5 +67,126 @@ test('the page prints without what can only be pressed', async (t) => {
   for (const id of ['tools', 'open-keep', 'controls', 'next', 'zoom']) assert.equal(await lab.find(`#${id}`).isVisible(), false, id);
   for (const id of ['case-name', 'canvas', 'headline', 'numbers', 'plot-mu', 'kymograph']) assert.equal(await lab.find(`#${id}`).isVisible(), true, id);
   const pages = (await lab.page.pdf({ format: 'A4' })).toString('latin1').match(/\/Type\s*\/Page\b/g).length;
-  assert.ok(pages <= 2, `${pages} sheets`);
+  assert.equal(pages, 1);
+});
+
+test('a lesson prints as a handout, with all its steps and its answers', async (t) => {
+  const lab = await open(t, {});
+  const [{ id, steps }] = await webJson('lessons.json');
+  const words = (await webJson('lessons.en.json'))[id];
+  await lab.press('open-lessons');
+  await lab.find('#lessons-list button').first().click();
+  await until(() => lab.find('#lesson').isVisible(), 'the lesson');
+  assert.equal(await lab.find('#handout').isVisible(), false);
+  await lab.page.emulateMedia({ media: 'print' });
+  const printed = await lab.find('#handout').innerText();
+  for (const step of steps) assert.ok(printed.includes(words.steps[step.id].title), step.id);
+  assert.ok(printed.includes(say('handout_answers')));
+  for (const selector of ['header', 'main', 'button']) assert.equal(await lab.find(selector).first().isVisible(), false, selector);
+  await lab.page.emulateMedia({ media: 'screen' });
+  await lab.press('lesson-close');
+  await lab.page.emulateMedia({ media: 'print' });
+  assert.ok(await lab.find('#canvas').isVisible());
+});
+
+test('the far end of the spring moves while the slider waits, and the page says whether blocks slip', async (t) => {
+  const lab = await open(t, { toml: PLAIN });
+  const place = async (id) => Number(/translate\((-?[\d.]+)/.exec(await lab.find(`#${id}`).getAttribute('transform'))[1]);
+  const [end, ground] = [await place('pull-end'), await place('pull-ground')];
+  await lab.reads('pull-state', say('pull_loads'));
+  await lab.press('pause');
+  await until(async () => (await place('pull-end')) > end + 5, 'a spring that is longer');
+  await lab.runToEnd();
+  await lab.reads('pull-state', say('pull_slips'));
+  assert.notEqual(await place('pull-ground'), ground);
+  await lab.find('#pace').press('Home');
+  await lab.press('rest');
+  await lab.reads('pull-state', say('pull_loads'));
+});
+
+test('what the page shows is explained: letters, numbers, the percentage', async (t) => {
+  const lab = await open(t, { toml: SMALL });
+  await lab.runToEnd();
+  await until(() => lab.find('#curve-letters').isVisible(), 'what letters are');
+  assert.equal(await lab.find('#curve-letters').getAttribute('title'), say('meaning_letters_is'));
+  for (const hint of ['meaning_sliding_is', 'number_without_hint']) assert.ok((await lab.find(`#numbers [title="${say(hint)}"]`).count()) > 0, hint);
+  await lab.find('#summary summary').click();
+  assert.ok((await lab.find(`#summary-values [title="${say('meaning_front_is')}"]`).count()) > 0);
+  await lab.press('open-help');
+  for (const what of ['headline', 'percent', 'sliding', 'letters', 'front']) await lab.reads('meanings', new RegExp(say(`meaning_${what}_is`).replace(/[.*+?^${}()|[\]\\]/g, '\\$&')));
+});
+
+test('a notice lies on neither the colour bar nor a button, and goes by itself', async (t) => {
+  const lab = await open(t, { toml: SMALL });
+  await lab.page.evaluate(() => {
+    const { setTimeout: real } = window;
+    // Twenty seconds are over at once.
+    window.setTimeout = (action, delay, ...rest) => real(action, delay >= 20_000 ? 3000 : delay, ...rest);
+  });
+  await lab.find('#control-r_star').fill('-1');
+  await lab.after(() => lab.find('#control-r_star').press('Enter'), 'refused');
+  const box = await lab.find('.notice').boundingBox();
+  for (const id of ['bar', 'field-choice', 'tools', 'zoom', 'controls', 'numbers-panel']) {
+    const other = await lab.find(`#${id}`).boundingBox();
+    const apart = box.x + box.width <= other.x || other.x + other.width <= box.x || box.y + box.height <= other.y || other.y + other.height <= box.y;
+    assert.ok(apart, `the notice lies on #${id}`);
+  }
+  await until(async () => (await lab.find('.notice').count()) === 0, 'no notice');
+});
+
+test('on a telephone the header has two rows, friction is on the first screen, and fingers have room', async (t) => {
+  const lab = await open(t, { toml: SMALL, viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true });
+  const header = await lab.find('header').boundingBox();
+  assert.ok(header.height <= 2 * 40 + 3 * 6, `the header is ${header.height} high`);
+  const headline = await lab.find('#headline').boundingBox();
+  assert.ok(headline.y + headline.height <= 844, `friction ends at ${headline.y + headline.height}`);
+  await lab.find('#shapes button').first().click();
+  const small = async () => lab.find('button:visible, select:visible, summary:visible, input:visible').evaluateAll((all) => all
+    .map((element) => [element, (element.matches('[type=radio]') ? element.closest('label') : element).getBoundingClientRect()])
+    .filter(([, { width, height }]) => width < 40 || height < 40)
+    .map(([element, { width, height }]) => `${element.id || element.textContent} ${width} x ${height}`));
+  assert.deepEqual(await small(), []);
+  await lab.press('more');
+  assert.ok(await lab.find('#pace').isVisible() && await lab.find('#theme').isVisible());
+  assert.deepEqual(await small(), []);
+  await lab.press('open-help');
+  const widths = await lab.find('#help dd').evaluateAll((all) => all.map((element) => element.getBoundingClientRect().width));
+  assert.ok(Math.min(...widths) > 200, `a column of the help is ${Math.min(...widths)} wide`);
+  assert.deepEqual(await small(), []);
+});
+
+test('the header keeps its height under a long name, at the end of a run and while a clip is recorded', async (t) => {
+  const lab = await open(t, {});
+  const height = async () => (await lab.find('header').boundingBox()).height;
+  const before = await height();
+  const long = 'a run whose name is long enough to fill half of the row of the header alone';
+  const rename = () => lab.page.evaluate((name) => (document.getElementById('case-name').textContent = name), long);
+  await lab.press('open-keep');
+  await lab.press('clip');
+  await lab.find('#clip-running').waitFor();
+  await rename();
+  assert.equal(await height(), before);
+  await lab.download(() => lab.press('clip-running'));
+  await lab.runToEnd();
+  await rename();
+  assert.equal(await height(), before);
+});
+
+test('letters grow on the screen of a projector', async (t) => {
+  const sizes = async (viewport) => {
+    const lab = await open(t, { toml: SMALL, viewport });
+    await lab.runToEnd();
+    return lab.page.evaluate(() => {
+      const texts = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
+      const found = [];
+      while (texts.nextNode()) {
+        const element = texts.currentNode.parentElement;
+        if (texts.currentNode.textContent.trim() && element.checkVisibility()) found.push(parseFloat(getComputedStyle(element).fontSize));
+      }
+      return { least: Math.min(...found), scrolls: document.documentElement.scrollHeight > innerHeight };
+    });
+  };
+  const [small, large] = [await sizes(SIZES.notebook), await sizes(SIZES.projector)];
+  assert.ok(large.least >= 13 && large.least > 1.2 * small.least, `${large.least} where ${small.least} are small`);
+  assert.ok(!small.scrolls && !large.scrolls);
 });

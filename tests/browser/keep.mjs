@@ -54,7 +54,8 @@ test('a case too large for a link is downloaded instead', async (t) => {
   // Every pixel is at random below or above the threshold, by a generator of 32 bits: nothing in it can be packed.
   let random = 1;
   const noise = image(200, () => (random = (Math.imul(random, 1664525) + 1013904223) >>> 0) >>> 24);
-  const lab = await open(t, { toml: SMALL });
+  // As many blocks as pixels, since no more pixels are kept.
+  const lab = await open(t, { toml: SMALL.replace('[20, 20]', '[200, 200]') });
   await lab.after(() => lab.find('#image-file').setInputFiles({ name: 'noise.png', mimeType: 'image/png', buffer: noise }), 'case', ({ texture }) => texture[0].shape === 'mask');
   await lab.press('open-keep');
   await lab.press('copy-link');
@@ -112,6 +113,11 @@ test('a run goes on being saved when its page is loaded again or closed, and is 
   await lab.press('open-presets');
   await lab.find('#presets-search').fill('reloaded');
   await lab.after(() => lab.find('#presets-search').press('Enter'), 'case', ({ name }) => name === 'reloaded');
+  // A list that is open has a new run at once.
+  await beginToSave(lab, 'listed');
+  await lab.press('open-presets');
+  await until(async () => (await lab.text('presets-list')).includes('listed'), 'the run in the list');
+  await lab.page.keyboard.press('Escape');
   await beginToSave(lab, 'closed');
   await lab.page.close();
   const closed = path.join(RESULTS, 'closed');
@@ -142,9 +148,34 @@ test('panels are kept as pictures', async (t) => {
     const { name, contents } = await lab.download(() => lab.press(`png-${panel}`));
     assert.match(name, new RegExp(`-${panel}\\.png$`));
     const { width, height } = PNG.sync.read(contents);
+    if (panel === 'curves') assert.deepEqual([width, height], [1600, 1000]);
+    // The kymograph has the colours of its bar, beyond those of what it shows, which is dark or bright.
+    if (panel === 'kymograph') assert.ok(colours(contents) > 200, `${colours(contents)} colours`);
     assert.ok(width >= 300 && width <= 4000 && height >= 150 && height <= 4000, `${panel}: ${width} x ${height}`);
     assert.ok(colours(contents) > 20, `${panel} has ${colours(contents)} colours`);
   }
+});
+
+test('the picture of the curves names them', async (t) => {
+  const lab = await open(t, { toml: SMALL, colorScheme: 'light' });
+  await lab.runToEnd();
+  await sleep(600);
+  const ofCurves = async () => {
+    await lab.press('open-keep');
+    const { data, width } = PNG.sync.read((await lab.download(() => lab.press('png-curves'))).contents);
+    // The row through the pieces of line of the legend.
+    const y = 2 * (12 + 24 + 7);
+    const seen = new Set();
+    for (let x = 0; x < width; x++) seen.add([...data.subarray(4 * (y * width + x), 4 * (y * width + x) + 3)].join());
+    return seen;
+  };
+  const [run, ghost] = await lab.page.evaluate(() => ['--curve', '--ghost'].map((name) => {
+    const sample = document.body.appendChild(document.createElement('i'));
+    sample.style.color = `var(${name})`;
+    return getComputedStyle(sample).color.match(/\d+/g).join();
+  }));
+  const both = await ofCurves();
+  assert.ok(both.has(run) && both.has(ghost), [...both].join(' '));
 });
 
 test('a clip is recorded', async (t) => {

@@ -62,3 +62,11 @@ test('the page has no error when a case of the address is broken, and says so', 
   await lab.page.evaluate(() => (location.hash = '#case=broken'));
   await lab.notice('cannot be read');
 });
+
+test('the opening slider changes friction by what its description says', async (t) => {
+  const lab = await open(t, {});
+  const { title } = lab.last.hello.presets.find(({ name }) => name === lab.last.case.name);
+  const { change_percent: change } = await lab.runToEnd();
+  const [, percent] = /static friction falls by (\d+) %/.exec(title);
+  assert.equal(Math.round(-change), Number(percent));
+});

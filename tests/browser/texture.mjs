@@ -1,7 +1,7 @@
 // Texture by hand: brush, eraser, shapes and images; and that the friction which the page shows is the command's.
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
-import { writeFileSync } from 'node:fs';
+import { readFileSync, writeFileSync } from 'node:fs';
 import path from 'node:path';
 import test from 'node:test';
 import { PNG } from 'pngjs';
@@ -123,6 +123,57 @@ test('a number that is typed after Tab takes the place of the one there, also wh
     await lab.page.keyboard.type('12');
     await lab.page.keyboard.press('Enter');
   }, 'case', ({ texture }) => micrometres(texture[0].center[0]) === 12);
+});
+
+test('what is painted is a layer of its own: shapes stay, and can be moved', async (t) => {
+  const lab = await open(t, { toml: SMALL });
+  const { texture_percent: cavity } = lab.last.case;
+  await lab.press('tool-brush');
+  await lab.find('#brush-size').fill('3');
+  // Away from the cavity: three rows of eight blocks, and three blocks beyond each end.
+  const stroke = 100 * (3 * 8 + 2 * 3) / 400;
+  const painted = await lab.after(() => lab.drag([5.5, 2.5], [12.5, 2.5]), 'case', (shown) => shown.texture_percent === cavity + stroke);
+  assert.deepEqual(painted.texture.map(({ shape }) => shape), ['cavity', 'mask']);
+  await lab.press('tool-probe');
+  const moved = await lab.after(() => lab.drag([10, 10], [10, 13]), 'case', ({ texture }) => texture[0].center && Math.abs(micrometres(texture[0].center[1]) - 13) < 0.1);
+  // The strokes stay where they are.
+  assert.deepEqual(moved.texture.map(({ shape }) => shape), ['cavity', 'mask']);
+  assert.ok(Math.abs(moved.texture_percent - cavity - stroke) <= 1, `${moved.texture_percent} %`);
+  await lab.press('tool-eraser');
+  const erased = await lab.after(() => lab.drag([5.5, 2.5], [12.5, 2.5]), 'case', ({ texture }) => texture.length === 1);
+  assert.equal(erased.texture[0].shape, 'cavity');
+  // Within a shape nothing but a mask can take blocks away.
+  const cut = await lab.after(() => lab.drag([10, 13]), 'case', ({ texture }) => texture.length === 1 && texture[0].shape === 'mask');
+  assert.ok(cut.texture_percent > 0 && cut.texture_percent < erased.texture_percent);
+});
+
+test('a shape is seen in its true form while it is dragged, as one step of undo', async (t) => {
+  const lab = await open(t, { toml: PLAIN });
+  await lab.press('tool-ellipse');
+  const [from, to] = await Promise.all([[10, 10], [10, 14]].map((point) => lab.at(point)));
+  await lab.page.mouse.move(...from);
+  await lab.page.mouse.down();
+  const dragged = await lab.after(() => lab.page.mouse.move(...to, { steps: 4 }), 'case', ({ shapes }) => shapes.length === 1);
+  const [xs, ys] = [0, 1].map((axis) => dragged.shapes[0].outlines[0].map((point) => point[axis]));
+  const [wide, high] = [xs, ys].map((places) => Math.max(...places) - Math.min(...places));
+  assert.ok(wide > 2 * high, `${wide} by ${high} blocks is no ellipse`);
+  await lab.page.mouse.up();
+  assert.equal(await lab.find('#shape-remove').count(), 1);
+  await lab.after(() => lab.press('undo'), 'case', ({ texture }) => texture.length === 0);
+  await until(() => lab.find('#undo').isDisabled(), 'nothing more to undo');
+});
+
+test('an image keeps no more pixels than the slider has blocks', async (t) => {
+  const lab = await open(t, { toml: PLAIN });
+  const shown = await lab.after(() => lab.find('#image-file').setInputFiles({ name: 'large.png', mimeType: 'image/png', buffer: image(1000, (x, y) => (x < 500 && y < 250 ? 0 : 255)) }), 'case', ({ texture }) => texture.length === 1);
+  assert.equal(shown.texture_percent, 12.5);
+  await lab.press('open-keep');
+  const { name, contents } = await lab.download(() => lab.press('download-case'));
+  const folder = path.join(WORK, 'large');
+  writeFileSync(path.join(WORK, name), contents);
+  execFileSync('python3', ['-m', 'zipfile', '-e', path.join(WORK, name), folder]);
+  const { width, height } = PNG.sync.read(readFileSync(path.join(folder, shown.texture[0].file)));
+  assert.deepEqual([width, height], [20, 20]);
 });
 
 test('an image becomes the texture, chosen as a file and dropped', async (t) => {

@@ -34,6 +34,9 @@ const BEGINNING_OF_PAGE: &str = "<html data-channel=\"worker\">";
 /// Bytes among which that element is looked for.
 const BYTES_OF_BEGINNING: u64 = 256;
 
+/// Scripts with which the page begins.
+const SCRIPTS: [&str; 2] = ["module.js", "main.js"];
+
 /// Styles of the page.
 const STYLES: [&str; 2] = ["vendor/uPlot.min.css", "style.css"];
 
@@ -249,14 +252,19 @@ pub fn export_single(start: &Start, module: &Path, out: &Path) -> Result<(), Exp
         "<script type=\"application/json\" id=\"files\">{}</script>\n",
         files_within(&parts)
     );
-    // Behind all elements, since it is not a module and would not wait for them.
-    page = page
-        .replacen("<script type=\"module\" src=\"main.js\"></script>\n", "", 1)
-        .replacen(
-            "</body>",
-            &format!("{script}<script>{loader}</script>\n</body>"),
+    for name in SCRIPTS {
+        page = page.replacen(
+            &format!("<script type=\"module\" src=\"{name}\"></script>\n"),
+            "",
             1,
         );
+    }
+    // Behind all elements, since it is not a module and would not wait for them.
+    page = page.replacen(
+        "</body>",
+        &format!("{script}<script>{loader}</script>\n</body>"),
+        1,
+    );
     write_atomic(out, page.as_bytes()).map_err(|source| ExportError::Write {
         path: out.to_owned(),
         source,
@@ -340,7 +348,7 @@ mod tests {
         let out = folder.path().join("lab.html");
         export_single(&Start::default(), &module, &out).unwrap();
         let page = fs::read_to_string(&out).unwrap();
-        assert!(!page.contains("<link rel=\"stylesheet\"") && !page.contains("src=\"main.js\""));
+        assert!(!page.contains("<link rel=\"stylesheet\"") && !page.contains("src=\"m"));
         let (_, within) = page.split_once("id=\"files\">").unwrap();
         let (within, loader) = within.split_once("</script>").unwrap();
         let files: BTreeMap<String, String> = serde_json::from_str(within).unwrap();

@@ -70,14 +70,22 @@ impl<'a> ReadableFolders<'a> {
         ))
     }
 
-    /// Reads a file.
+    /// Reads a file of at most [`MAX_FILES`] bytes.
     ///
     /// # Errors
     /// A sentence, if there is no such file, or it lies outside the folders, is too large, or is no file.
     pub(crate) fn read(&self, name: &str) -> Result<Vec<u8>, String> {
+        self.read_up_to(name, MAX_FILES)
+    }
+
+    /// Reads a file of at most `limit` bytes.
+    ///
+    /// # Errors
+    /// A sentence, if there is no such file, or it lies outside the folders, is too large, or is no file.
+    pub(crate) fn read_up_to(&self, name: &str, limit: u64) -> Result<Vec<u8>, String> {
         let path = self.resolve(name)?;
         let sentence = |error: std::io::Error| error.to_string();
-        let mut file = open_limited(&path, MAX_FILES).map_err(sentence)?;
+        let mut file = open_limited(&path, limit).map_err(sentence)?;
         // A link may have been put on the way to it since it was found.
         if !is_at(file.get_ref(), &path) {
             return Err("it was replaced while it was opened: try again".to_owned());

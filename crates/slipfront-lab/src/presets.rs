@@ -3,21 +3,17 @@
 use std::collections::BTreeMap;
 
 use include_dir::{Dir, include_dir};
-use slipfront_case::case_file::CaseFile;
 use slipfront_session::{Document, Preset, Presets};
 use toml::{Table, Value};
 
 static CASES: Dir = include_dir!("$CARGO_MANIFEST_DIR/cases");
 
-/// The case with which the page opens unless another one is named: the circle, with more blocks.
+/// The case with which the page opens unless another one is named.
 ///
 /// # Errors
 /// A sentence, if the case cannot be made.
 pub(crate) fn opening(presets: &Presets) -> Result<Document, String> {
-    let blocks = Value::Array(vec![Value::Integer(100); 2]);
-    presets
-        .document("circle")?
-        .with([("slider.blocks".to_owned(), Some(blocks))])
+    presets.document("circle")
 }
 
 /// Names and texts of the cases of the folder.
@@ -41,13 +37,13 @@ pub(crate) fn all() -> Presets {
     Presets(all)
 }
 
-/// A case of the folder, with the files beside it that it names.
+/// A case of the folder, with the files beside it that it names. It is not parsed before it is chosen: a text in quotes is taken for the name of
+/// a file if there is such a file.
 fn case(name: &str, text: &str) -> Preset {
-    // What is wrong with a case is told when it is chosen.
-    let mut case = CaseFile::parse(text, name, &[]).unwrap_or_default();
-    let files = case.files_mut().0.filter_map(|file| {
-        let found = CASES.get_file(&*file.name)?;
-        Some((file.name.clone(), found.contents().to_vec()))
+    let files = CASES.files().filter_map(|file| {
+        let name = file.path().to_str()?;
+        text.contains(&format!("\"{name}\""))
+            .then(|| (name.to_owned(), file.contents().to_vec()))
     });
     let files = files.collect();
     Preset {

@@ -102,6 +102,7 @@ export interface Elements {
   'open-keep': HTMLButtonElement;
   theme: HTMLButtonElement;
   'open-help': HTMLButtonElement;
+  more: HTMLButtonElement;
   'tool-image': HTMLButtonElement;
   'image-file': HTMLInputElement;
   'brush-size': HTMLInputElement;
@@ -138,6 +139,8 @@ export interface Elements {
   'find-progress': HTMLProgressElement;
   presets: HTMLDialogElement;
   'presets-search': HTMLInputElement;
+  'open-run': HTMLButtonElement;
+  'run-folder': HTMLInputElement;
   lessons: HTMLDialogElement;
   keep: HTMLDialogElement;
   'copy-link': HTMLButtonElement;

@@ -76,6 +76,8 @@ export interface Source {
   name?: string;
   /** Contents of the files that the TOML names, in Base64. */
   files?: Record<string, string>;
+  /** Files of the folder of a recorded run, in Base64. */
+  run?: Record<string, string>;
 }
 
 export interface SetRequest {
@@ -211,6 +213,8 @@ export interface CaseReply {
   kinetic_from_star: number | null;
   /** Direction of the drive, degrees from x towards y; null if it turns the slider. */
   drive_degrees: number | null;
+  /** Rise of mu* in one t* of the drive as long as no block slides; null if it turns the slider. */
+  loading_rate: number | null;
   steady_level: number;
   can_undo: boolean;
   can_redo: boolean;

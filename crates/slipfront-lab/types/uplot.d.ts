@@ -40,5 +40,6 @@ export class uPlot {
   valToPos(value: number, scale: string, canvasPixels: boolean): number;
   setData(data: Data): void;
   setSize(size: { width: number; height: number }): void;
+  destroy(): void;
   redraw(rebuildPaths: boolean, recalcAxes: boolean): void;
 }

@@ -1,5 +1,6 @@
 // @ts-check
 // The files of the page: beside it, or within it where the page is one file.
+import { fromBase64 } from './base64.js';
 
 /** Whether there is no server: the session runs in a Worker of the page. */
 export const isAlone = document.documentElement.dataset.channel === 'worker';
@@ -22,7 +23,7 @@ export const jsonOf = async (name) => JSON.parse((await textOf(name)) ?? 'null')
 
 /** The bytes of a file; null if there is none of this name. @param {string} name @returns {Promise<ArrayBuffer|null>} */
 export async function bytesOf(name) {
-  if (inside) return name in inside ? Uint8Array.from(atob(inside[name]), (letter) => letter.charCodeAt(0)).buffer : null;
+  if (inside) return name in inside ? fromBase64(inside[name]).buffer : null;
   const answer = await fetch(name);
   return answer.ok ? answer.arrayBuffer() : null;
 }

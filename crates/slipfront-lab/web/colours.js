@@ -24,26 +24,26 @@ export function table(name) {
 }
 
 /**
- * Draws the colour bar with its numbers, unit and title into a rectangle of a canvas, 40 pixels high.
+ * Draws the colour bar with its numbers, unit and title into a rectangle of a canvas, 40 pixels high times the size of its letters.
  * @param {CanvasRenderingContext2D} context
- * @param {{x: number, y: number, width: number, bytes: Uint8Array, low: number, high: number, unit: string, title: string}} bar
+ * @param {{x: number, y: number, width: number, bytes: Uint8Array, low: number, high: number, unit: string, title: string, scale?: number}} bar
  */
-export function drawBar(context, { x, y, width, bytes, low, high, unit, title }) {
+export function drawBar(context, { x, y, width, bytes, low, high, unit, title, scale = 1 }) {
   const [factor, letter] = unit === '' || unit === 't*' ? [1, ''] : prefix(Math.max(Math.abs(low), Math.abs(high)));
-  const height = 12;
+  const height = 12 * scale;
   const strip = new OffscreenCanvas(LARGEST + 1, 1);
   strip.getContext('2d')?.putImageData(new ImageData(new Uint8ClampedArray(bytes.subarray(0, 4 * (LARGEST + 1))), LARGEST + 1, 1), 0, 0);
   context.drawImage(strip, x, y, width, height);
   context.fillStyle = colour('text');
   context.strokeStyle = colour('text');
-  context.font = '12px system-ui, sans-serif';
+  context.font = `${12 * scale}px system-ui, sans-serif`;
   context.textBaseline = 'top';
   for (const tick of ticks(low / factor, high / factor)) {
     const at = high > low ? x + ((tick * factor - low) / (high - low)) * width : x;
-    context.fillRect(Math.min(Math.round(at), x + width - 1), y + height, 1, 4);
-    context.textAlign = at < x + 12 ? 'left' : at > x + width - 12 ? 'right' : 'center';
-    context.fillText(number(tick, 4), at, y + height + 5);
+    context.fillRect(Math.min(Math.round(at), x + width - 1), y + height, 1, 4 * scale);
+    context.textAlign = at < x + height ? 'left' : at > x + width - height ? 'right' : 'center';
+    context.fillText(number(tick, 4), at, y + height + 5 * scale);
   }
   context.textAlign = 'left';
-  context.fillText(unit === '' ? title : `${title} (${letter}${unit})`, x, y + height + 19);
+  context.fillText(unit === '' ? title : `${title} (${letter}${unit})`, x, y + height + 19 * scale);
 }

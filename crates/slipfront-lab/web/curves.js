@@ -2,9 +2,10 @@
 // The curves mu*(t*) and N*(t*), with the instants, the beginnings of legs, the slider without texture and a recorded curve.
 import vendored from './vendor/uPlot.esm.js';
 import { atMost, find } from './element.js';
+import { rowsOf } from './letters.js';
 import { on, state } from './store.js';
 import { say } from './text.js';
-import { colour, onTheme } from './theme.js';
+import { colour, enlargement, onTheme } from './theme.js';
 
 /** @import { CurveReply } from '../types/protocol' */
 /** @import { Scale, Series, uPlot } from '../types/uplot' */
@@ -12,6 +13,10 @@ import { colour, onTheme } from './theme.js';
 const Plot = /** @type {typeof uPlot} */ (/** @type {unknown} */ (vendored));
 
 const SPACING_MS = 200;
+/** Sizes of the letters of instants and axes, in pixels of a small screen, and the room that a letter needs. */
+const SMALL = 11;
+const LABEL = 12;
+const LETTER = 10;
 /** With more points than this every second one is left out: no screen shows more. */
 const MOST = 20_000;
 
@@ -26,6 +31,8 @@ const recorded = { t: [], mu: [], sliding: [] };
 const legs = [];
 /** @type {uPlot[]} */
 let plots = [];
+/** By how much the letters of the plots are larger than on a small screen. */
+let made = 1;
 
 /** @param {Run} curve */
 function clear(curve) {
@@ -60,11 +67,14 @@ function take(message) {
   refresh();
 }
 
-/** Vertical lines: dashed where legs begin, dotted with a letter at the instants. @param {uPlot} plot */
-function marks(plot) {
+/**
+ * Vertical lines: dashed where legs begin, dotted with a letter at the instants; a letter that would lie on the one before stands below it.
+ * @param {uPlot} plot @param {number} scale of letters and lines
+ */
+function marks(plot, scale) {
   const { ctx: context, bbox: { top, height, left, width } } = plot;
-  const ratio = devicePixelRatio;
-  const line = (/** @type {number} */ t, /** @type {number[]} */ dashes, /** @type {string} */ name) => {
+  const ratio = devicePixelRatio * scale;
+  const line = (/** @type {number} */ t, /** @type {number[]} */ dashes, name = '', row = 0) => {
     const x = Math.round(plot.valToPos(t, 'x', true));
     if (x < left || x > left + width) return;
     context.setLineDash(dashes.map((dash) => dash * ratio));
@@ -72,44 +82,60 @@ function marks(plot) {
     context.moveTo(x, top);
     context.lineTo(x, top + height);
     context.stroke();
-    context.fillText(name, x + 2 * ratio, top + 2 * ratio);
+    context.fillText(name, x + 2 * ratio, top + (2 + row * (SMALL + 1)) * ratio);
   };
   context.save();
   context.strokeStyle = colour('muted');
   context.fillStyle = colour('text');
-  context.font = `${11 * ratio}px system-ui, sans-serif`;
+  context.font = `${SMALL * ratio}px system-ui, sans-serif`;
   context.textAlign = 'left';
   context.textBaseline = 'top';
-  legs.forEach((t) => line(t, [6, 4], ''));
-  Object.entries(state.numbers?.instants ?? {}).forEach(([letter, t]) => line(t, [2, 3], letter));
+  legs.forEach((t) => line(t, [6, 4]));
+  const instants = Object.entries(state.numbers?.instants ?? {}).sort(([, one], [, other]) => one - other);
+  const rows = rowsOf(instants.map(([, t]) => plot.valToPos(t, 'x', true)), LETTER * ratio);
+  instants.forEach(([letter, t], k) => line(t, [2, 3], letter, rows[k]));
   context.restore();
 }
 
-/** @param {string} label @param {boolean} numbered whether t* is written below */
-function axes(label, numbered) {
-  const shared = { stroke: () => colour('text'), grid: { stroke: () => colour('grid'), width: 1 }, ticks: { stroke: () => colour('grid'), width: 1, size: 4 }, font: '11px system-ui, sans-serif', labelFont: '12px system-ui, sans-serif' };
+/** @param {string} label @param {boolean} numbered whether t* is written below @param {number} scale */
+function axes(label, numbered, scale) {
+  const shared = { stroke: () => colour('text'), grid: { stroke: () => colour('grid'), width: 1 }, ticks: { stroke: () => colour('grid'), width: 1, size: 4 }, font: `${SMALL * scale}px system-ui, sans-serif`, labelFont: `${LABEL * scale}px system-ui, sans-serif` };
   return [
-    { ...shared, size: numbered ? 22 : 8, label: numbered ? say('axis_t') : undefined, labelSize: 16, ...(numbered ? {} : { values: () => [] }) },
-    { ...shared, size: 40, gap: 3, label, labelSize: 16 },
+    { ...shared, size: (numbered ? 22 : 8) * scale, label: numbered ? say('axis_t') : undefined, labelSize: 16 * scale, ...(numbered ? {} : { values: () => [] }) },
+    { ...shared, size: 40 * scale, gap: 3, label, labelSize: 16 * scale },
   ];
 }
 
-/** @param {string} name @param {() => string} stroke @param {number[]} dash */
-const series = (name, stroke, dash = []) => ({ label: name, stroke, dash, width: 1.5, spanGaps: true, points: { show: false } });
+/** @param {string} name @param {() => string} stroke @param {number} scale @param {number[]} dash */
+const series = (name, stroke, scale, dash = []) => ({ label: name, stroke, dash: dash.map((length) => length * scale), width: 1.5 * scale, spanGaps: true, points: { show: false } });
 
-/** @param {HTMLElement} place @param {{scale: Scale, label: string, lines: Series[], numbered: boolean}} options */
-function plotIn(place, { scale, label, lines, numbered }) {
+/** @param {HTMLElement} place @param {[number, number]} size @param {number} scale @param {{range: Scale, label: string, lines: Series[], numbered: boolean}} options */
+function plotIn(place, [width, height], scale, { range, label, lines, numbered }) {
   return new Plot({
-    width: place.clientWidth,
-    height: place.clientHeight,
-    padding: [6, 8, 0, 0],
+    width,
+    height,
+    padding: [6 * scale, 14 * scale, 0, 0],
     legend: { show: false },
     cursor: { sync: { key: 'time' }, drag: { x: true, y: false }, points: { size: 6 } },
-    scales: { x: { time: false }, y: scale },
-    axes: axes(label, numbered),
+    scales: { x: { time: false }, y: range },
+    axes: axes(label, numbered, scale),
     series: [{ label: 't*' }, ...lines],
-    hooks: { draw: [marks], setCursor: [showCursor] },
+    hooks: { draw: [(plot) => marks(plot, scale)], setCursor: [showCursor] },
   }, [[], ...lines.map(() => [])], place);
+}
+
+/** Both plots, of friction and of sliding. @param {[HTMLElement, HTMLElement]} places @param {[number, number][]} sizes @param {number} scale */
+function plotsIn([above, below], [first, second], scale) {
+  const curve = series('run', () => colour('curve'), scale);
+  const lines = [
+    curve,
+    series('twin', () => colour('ghost'), scale, [6, 3]),
+    series('recorded', () => colour('recorded'), scale, [2, 3]),
+  ];
+  return [
+    plotIn(above, first, scale, { label: say('axis_mu'), lines, numbered: false, range: { range: (_, low, high) => [Math.min(0, low ?? 0), 1.08 * Math.max(high ?? 0, 0.1)] } }),
+    plotIn(below, second, scale, { label: say('axis_sliding'), lines: [curve], numbered: true, range: { range: [0, 100] } }),
+  ];
 }
 
 /** Tells the values under the cursor. @param {uPlot} plot */
@@ -120,41 +146,65 @@ function showCursor(plot) {
   find('curve-cursor').textContent = t === null || t === undefined || mu === null || mu === undefined ? '' : say('curve_cursor', { t: t.toFixed(1), mu: mu.toFixed(3) });
 }
 
-function draw() {
-  if (plots.length === 0) return;
+/** @param {uPlot[]} of */
+function fill([above, below]) {
   // Both plots have all times, so that one stands below the other.
   const [t, mu, sliding, ...others] = Plot.join([[run.t, run.mu, run.sliding], [twin.t, twin.mu], [recorded.t, recorded.mu]]);
-  plots[0].setData([t, mu, ...others]);
-  plots[1].setData([t, sliding]);
+  above.setData([t, mu, ...others]);
+  below.setData([t, sliding]);
+}
+
+function draw() {
+  if (plots.length === 0) return;
+  fill(plots);
   find('curve-twin').hidden = twin.t.length === 0;
   find('curve-recorded').hidden = recorded.t.length === 0;
+  find('curve-letters').hidden = Object.keys(state.numbers?.instants ?? {}).length === 0;
 }
 const refresh = atMost(draw, SPACING_MS);
 
 function fit() {
+  if (enlargement() !== made) return make();
   for (const plot of plots) {
     const place = plot.root.parentElement;
     if (place && place.clientWidth > 0 && place.clientHeight > 0) plot.setSize({ width: place.clientWidth, height: place.clientHeight });
   }
 }
 
-/** The canvases of the curves, from top to bottom. @returns {HTMLCanvasElement[]} */
-export const curveCanvases = () => plots.map((plot) => plot.ctx.canvas);
+/** The curves that there are: their names, colours and dashes. @returns {{name: string, stroke: string, dash: number[]}[]} */
+export function curveLines() {
+  const all = /** @type {Array<[Run, string, string, number[]]>} */ ([[run, 'run', 'curve', []], [twin, 'twin', 'ghost', [6, 3]], [recorded, 'recorded', 'recorded', [2, 3]]]);
+  return all.filter(([{ t }]) => t.length > 0).map(([, name, stroke, dash]) => ({ name: say(`curve_${name}`), stroke: colour(stroke), dash }));
+}
+
+/** Hands over canvases of the curves, from top to bottom, which are drawn for that in these sizes, in pixels. @param {[number, number][]} sizes @param {number} scale of letters and lines @param {(canvases: HTMLCanvasElement[]) => void} take */
+export function drawCurves(sizes, scale, take) {
+  const ratio = devicePixelRatio;
+  const places = /** @type {[HTMLElement, HTMLElement]} */ ([document.createElement('div'), document.createElement('div')]);
+  const drawn = plotsIn(places, sizes.map(([width, height]) => [width / ratio, height / ratio]), scale / ratio);
+  fill(drawn);
+  // They are drawn once what runs has ended.
+  setTimeout(() => {
+    take(drawn.map((plot) => plot.ctx.canvas));
+    drawn.forEach((plot) => plot.destroy());
+  });
+}
 
 /** The points of the newest run, for those who look at them. */
 export const curvePoints = () => run;
 
+/** Makes the plots, with letters of the size that the page has now. */
+function make() {
+  plots.forEach((plot) => plot.destroy());
+  const places = /** @type {[HTMLElement, HTMLElement]} */ ([find('plot-mu'), find('plot-sliding')]);
+  plots = plotsIn(places, places.map(({ clientWidth, clientHeight }) => [clientWidth, clientHeight]), enlargement());
+  made = enlargement();
+  draw();
+}
+
 /** Prepares the plots. */
 export function startCurves() {
-  const lines = [
-    series('run', () => colour('curve')),
-    series('twin', () => colour('ghost'), [6, 3]),
-    series('recorded', () => colour('recorded'), [2, 3]),
-  ];
-  plots = [
-    plotIn(find('plot-mu'), { label: say('axis_mu'), lines, numbered: false, scale: { range: (_, low, high) => [Math.min(0, low ?? 0), 1.08 * Math.max(high ?? 0, 0.1)] } }),
-    plotIn(find('plot-sliding'), { label: say('axis_sliding'), lines: [series('run', () => colour('curve'))], numbered: true, scale: { range: [0, 100] } }),
-  ];
+  make();
   on('curve', take);
   on('case', ({ why, twin: compared }) => {
     if (why === 'open') clear(recorded);

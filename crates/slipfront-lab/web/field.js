@@ -8,7 +8,7 @@ import { drawOverlay } from './overlay.js';
 import { Picture } from './picture.js';
 import { on, put, state } from './store.js';
 import { say } from './text.js';
-import { colour, onTheme } from './theme.js';
+import { colour, enlargement, onTheme } from './theme.js';
 import { setView } from './view.js';
 
 /** @import { FieldPicture } from '../types/page' */
@@ -66,21 +66,21 @@ export function drawNow() {
   for (const action of watchers) action(picture.canvas);
 }
 
-/** The colour bar of the newest picture, drawn at (x, y). @param {CanvasRenderingContext2D} context @param {number} x @param {number} y @param {number} width */
-export function barInto(context, x, y, width) {
+/** The colour bar of the newest picture, drawn at (x, y). @param {CanvasRenderingContext2D} context @param {number} x @param {number} y @param {number} width @param {number} [scale] */
+export function barInto(context, x, y, width, scale) {
   if (!newest) return;
   const { low, high, unit, field } = newest;
-  drawBar(context, { x, y, width, bytes: colours, low, high, unit, title: say(`field_${field}`) });
+  drawBar(context, { x, y, width, bytes: colours, low, high, unit, title: say(`field_${field}`), scale });
 }
 
 function drawBarOfPage() {
   const canvas = find('bar');
   const [ratio, width] = [devicePixelRatio, canvas.clientWidth];
   canvas.width = Math.round(width * ratio);
-  canvas.height = Math.round(BAR_HEIGHT * ratio);
+  canvas.height = Math.round(BAR_HEIGHT * enlargement() * ratio);
   const context = /** @type {CanvasRenderingContext2D} */ (canvas.getContext('2d'));
   context.setTransform(ratio, 0, 0, ratio, 0, 0);
-  barInto(context, 1, 0, width - 2);
+  barInto(context, 1, 0, width - 2, enlargement());
 }
 const refreshBar = atMost(drawBarOfPage, BAR_SPACING_MS);
 

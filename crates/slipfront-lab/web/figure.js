@@ -1,9 +1,11 @@
 // @ts-check
 // Panels as pictures: the field with its title and colour bar, the curves, the kymograph.
-import { barInto, camera } from './field.js';
-import { curveCanvases } from './curves.js';
+import { drawBar, table } from './colours.js';
+import { curveLines, drawCurves } from './curves.js';
 import { find } from './element.js';
-import { fixed } from './quantity.js';
+import { barInto, camera } from './field.js';
+import { kymographAxes } from './kymograph.js';
+import { fixed, number, prefix, ticks } from './quantity.js';
 import { state } from './store.js';
 import { say } from './text.js';
 import { colour } from './theme.js';
@@ -11,6 +13,9 @@ import { colour } from './theme.js';
 const MARGIN = 12;
 const TITLE = 24;
 const BAR = 40;
+/** Size of the picture of the curves, and pixels of a picture for each of its units. */
+const CURVES = [800, 500];
+const SCALE = 2;
 
 /** An empty canvas in the colours of the page. @param {number} width @param {number} height @param {number} scale @returns {[HTMLCanvasElement, CanvasRenderingContext2D]} */
 function blank(width, height, scale) {
@@ -56,33 +61,79 @@ export function fieldFigure(scale) {
   return [canvas, draw];
 }
 
-/** The curves below each other. */
-export function curvesFigure() {
-  const parts = curveCanvases();
-  const ratio = devicePixelRatio;
-  const width = Math.max(...parts.map((part) => part.width)) / ratio;
-  const height = parts.reduce((sum, part) => sum + part.height / ratio, 0);
-  const [canvas, context] = blank(width + 2 * MARGIN, height + 2 * MARGIN + TITLE, ratio);
-  begin(context, width + 2 * MARGIN, height + 2 * MARGIN + TITLE, state.case?.name ?? '');
-  let y = MARGIN + TITLE;
-  for (const part of parts) {
-    context.drawImage(part, MARGIN, y, part.width / ratio, part.height / ratio);
-    y += part.height / ratio;
+/** Names of the curves with a piece of each. @param {CanvasRenderingContext2D} context @param {number} y */
+function legend(context, y) {
+  let x = MARGIN;
+  for (const { name, stroke, dash } of curveLines()) {
+    context.strokeStyle = stroke;
+    context.lineWidth = 2;
+    context.setLineDash(dash);
+    context.beginPath();
+    context.moveTo(x, y + 7);
+    context.lineTo(x + 28, y + 7);
+    context.stroke();
+    context.fillText(name, x + 34, y);
+    x += 34 + context.measureText(name).width + 24;
   }
-  return canvas;
 }
 
-/** The kymograph with its axes. */
+/** Hands over a picture of the curves, one below the other, with their legend. @param {(canvas: HTMLCanvasElement) => void} take */
+export function curvesFigure(take) {
+  const [wide, high] = CURVES;
+  const [canvas, context] = blank(wide, high, SCALE);
+  const [left, room] = [wide - 2 * MARGIN, high - 2 * MARGIN - 2 * TITLE];
+  const heights = [0.6 * room, 0.4 * room];
+  drawCurves(heights.map((height) => [left * SCALE, height * SCALE]), SCALE, (parts) => {
+    begin(context, wide, high, say('figure_curves', { name: state.case?.name ?? '', percent: fixed(state.case?.texture_percent, 1) }));
+    legend(context, MARGIN + TITLE);
+    let y = MARGIN + 2 * TITLE;
+    parts.forEach((part, k) => {
+      context.drawImage(part, MARGIN, y, left, heights[k]);
+      y += heights[k];
+    });
+    take(canvas);
+  });
+}
+
+/** An axis with its numbers and title: below, or to the left if it is upright. @param {CanvasRenderingContext2D} context @param {{from: number[], length: number, upright: boolean, range: number[], title: string}} axis */
+function drawAxis(context, { from: [x, y], length, upright, range: [low, high], title }) {
+  context.save();
+  context.font = '12px system-ui, sans-serif';
+  context.textAlign = upright ? 'right' : 'center';
+  context.textBaseline = upright ? 'middle' : 'top';
+  for (const tick of ticks(low, high)) {
+    const at = (high > low ? (tick - low) / (high - low) : 0) * length;
+    if (upright) {
+      context.fillRect(x - 4, Math.round(y - at), 4, 1);
+      context.fillText(number(tick, 4), x - 7, y - at);
+    } else {
+      context.fillRect(Math.round(x + at), y, 1, 4);
+      context.fillText(number(tick, 4), x + at, y + 6);
+    }
+  }
+  context.textAlign = 'center';
+  context.textBaseline = 'top';
+  context.translate(...(upright ? /** @type {[number, number]} */ ([MARGIN, y - length / 2]) : /** @type {[number, number]} */ ([x + length / 2, y + 20])));
+  if (upright) context.rotate(-Math.PI / 2);
+  context.fillText(title, 0, 0);
+  context.restore();
+}
+
+/** The kymograph with its axes and its colour bar. */
 export function kymographFigure() {
-  const [wide, high] = [600, 240];
-  const [width, height] = [wide + 2 * MARGIN, high + 2 * MARGIN + TITLE + BAR];
-  const [canvas, context] = blank(width, height, 2);
-  const text = (/** @type {string} */ id) => find(id).textContent;
-  begin(context, width, height, say('figure_kymograph', { name: state.case?.name ?? '', low: text('kymograph-low'), high: text('kymograph-high') }));
+  const [wide, high, side] = [640, 260, 56];
+  const [width, height] = [wide + side + 3 * MARGIN, high + 3 * MARGIN + TITLE + 2 * BAR];
+  const [canvas, context] = blank(width, height, SCALE);
+  begin(context, width, height, say('figure_kymograph', { name: state.case?.name ?? '' }));
+  const [left, top] = [MARGIN + side, MARGIN + TITLE];
   context.imageSmoothingEnabled = false;
-  context.drawImage(find('kymograph'), MARGIN, MARGIN + TITLE, wide, high);
-  context.fillText(text('kymograph-first'), MARGIN, MARGIN + TITLE + high + 6);
-  context.textAlign = 'right';
-  context.fillText(text('kymograph-last'), MARGIN + wide, MARGIN + TITLE + high + 6);
+  context.drawImage(find('kymograph'), left, top, wide, high);
+  const axes = kymographAxes();
+  if (axes) {
+    const [factor, letter] = prefix(Math.max(...axes.place.map(Math.abs)));
+    drawAxis(context, { from: [left, top + high], length: wide, upright: false, range: axes.time, title: say('axis_t') });
+    drawAxis(context, { from: [left, top + high], length: high, upright: true, range: axes.place.map((metres) => metres / factor), title: say('axis_place', { unit: `${letter}m` }) });
+  }
+  drawBar(context, { x: left, y: top + high + BAR + MARGIN, width: wide, bytes: table(find('colourmap').value), low: 0, high: 100, unit: '%', title: say('kymograph_share') });
   return canvas;
 }

@@ -1,10 +1,11 @@
 // @ts-check
 // What is kept of a run: a link, the case, a run folder, pictures.
+import { fromBase64 } from './base64.js';
 import { send } from './connection.js';
 import { download, find, make, onPress } from './element.js';
 import { drawNow, watchField } from './field.js';
 import { curvesFigure, fieldFigure, kymographFigure } from './figure.js';
-import { fromBase64, makeLink } from './link.js';
+import { makeLink } from './link.js';
 import { announce, notice } from './notices.js';
 import { exported } from './session.js';
 import { on, state } from './store.js';
@@ -99,7 +100,7 @@ export function startKeep() {
   closing('copy-link', copyLink);
   closing('download-case', downloadCase);
   closing('png-field', fieldPng);
-  closing('png-curves', () => png(curvesFigure(), 'curves'));
+  closing('png-curves', () => curvesFigure((canvas) => png(canvas, 'curves')));
   closing('png-kymograph', () => png(kymographFigure(), 'kymograph'));
   find('save-form').addEventListener('submit', save);
   on('saving', showSaving);

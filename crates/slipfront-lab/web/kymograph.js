@@ -39,6 +39,14 @@ function draw() {
 }
 const refresh = atMost(draw, SPACING_MS);
 
+/** What the axes of the newest kymograph go over, t* and metres; null if there is none. */
+export function kymographAxes() {
+  if (!newest || newest.rows === 0 || newest.bins === 0) return null;
+  const { bins, firstStar, lastStar, edgeBlocks, binBlocks } = newest;
+  const size = state.case?.block_size_m ?? 1;
+  return { time: [firstStar, lastStar], place: [edgeBlocks * size, (edgeBlocks + bins * binBlocks) * size] };
+}
+
 /** Begins to listen. */
 export function startKymograph() {
   on('kymograph', (came) => {

@@ -102,7 +102,7 @@ function answer(asked) {
 onmessage = async ({ data }) => {
   if (data.do === 'begin') {
     try {
-      const instance = await WebAssembly.instantiate(data.module, { env: { say, now: () => performance.now() } });
+      const instance = await WebAssembly.instantiate(data.module, { env: { say, now: () => performance.now(), date: () => give(new Date().toISOString()) } });
       module = /** @type {SessionModule} */ (/** @type {unknown} */ (instance.exports));
       module.begin();
     } catch (error) {

@@ -61,9 +61,11 @@ async function prepare(step) {
 function show(place) {
   const left = !find('lesson').hidden && place === null;
   find('lesson').hidden = place === null;
+  document.body.classList.toggle('lesson', place !== null);
   if (left) setView({ twin: true });
   if (!place) return;
   const lesson = lessonOf(place.lesson);
+  handout(lesson);
   const step = lesson.steps[place.step];
   const said = words[lesson.id];
   const text = said.steps[step.id];
@@ -79,6 +81,23 @@ function show(place) {
   find('lesson').scrollIntoView({ block: 'nearest' });
   find('lesson-step').focus();
   prepare(step);
+}
+
+/** The whole lesson for a sheet of paper: all steps with their questions, the answers at the end. @param {Lesson} lesson */
+function handout({ id, steps }) {
+  const { title, summary, steps: texts } = words[id];
+  const step = (/** @type {LessonStep} */ { id: name, set }, /** @type {number} */ k) => {
+    const { title: heading, text, set: labels } = texts[name];
+    const tries = (set ?? []).map(({ id: button }) => make('li', { textContent: told(labels?.[button] ?? '') }));
+    return make('section', {}, [make('h2', { textContent: `${k + 1}  ${told(heading)}` }), ...text.map(paragraph), make('ul', {}, tries)]);
+  };
+  const answers = steps.map(({ id: name }) => make('li', {}, texts[name].answer.map(paragraph)));
+  find('handout').replaceChildren(
+    make('h1', { textContent: told(title) }),
+    make('p', { textContent: told(summary) }),
+    ...steps.map(step),
+    make('section', {}, [make('h2', { textContent: say('handout_answers') }), make('ol', {}, answers)]),
+  );
 }
 
 /** @param {number} by */

@@ -1,5 +1,6 @@
 // @ts-check
 // A case as part of an address: base64url of the deflated JSON {"name", "toml", "files"}.
+import { fromBase64, toBase64 } from './base64.js';
 
 /** A longer address is cut by some mail programs and chats. */
 const MAX_LENGTH = 16384;
@@ -12,16 +13,6 @@ async function through(bytes, stream) {
   const body = new Blob([/** @type {BlobPart} */ (bytes)]).stream().pipeThrough(stream);
   return new Uint8Array(await new Response(body).arrayBuffer());
 }
-
-/** Bytes as base64. @param {Uint8Array} bytes */
-export function toBase64(bytes) {
-  let text = '';
-  for (const byte of bytes) text += String.fromCharCode(byte);
-  return btoa(text);
-}
-
-/** @param {string} text @returns {Uint8Array<ArrayBuffer>} */
-export const fromBase64 = (text) => Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
 
 /** The link of a case, or null if it would be too long. @param {{name?: string, toml: string, files: Record<string, string>}} content */
 export async function makeLink(content) {

@@ -38,7 +38,7 @@ function showHeadline({ peak, twin_peak: twin, change_percent: change, ended }) 
   const against = change !== null && change !== undefined;
   find('headline').textContent = against ? signed(change) : peakValue(peak, 'mu_star');
   find('headline-name').textContent = say(against ? 'headline_change' : 'headline_static');
-  const note = peak ? (certain ? 'certain' : ended ? 'no_transition' : 'preliminary') : (state.case?.leg ?? 0) > 0 ? 'not_from_rest' : 'no_peak_yet';
+  const note = peak ? (certain ? 'certain' : ended ? 'no_transition' : state.case?.twin ? 'preliminary_twin' : 'preliminary') : (state.case?.leg ?? 0) > 0 ? 'not_from_rest' : 'no_peak_yet';
   find('headline-note').textContent = say(note);
   find('headline').classList.toggle('preliminary', !certain);
 }
@@ -48,11 +48,11 @@ function showRows(numbers) {
   const { peak, twin_peak: twin } = numbers;
   fill('numbers', [
     [say('number_static'), peakValue(peak, 'mu_star')],
-    [say('number_without'), peakValue(twin, 'mu_star')],
+    [say('number_without'), peakValue(twin, 'mu_star'), say('number_without_hint')],
     [say('number_onset'), peakValue(peak, 't_star', 1)],
     [say('number_kinetic'), fixed(numbers.kinetic)],
     [say('number_mu'), fixed(numbers.mu_star)],
-    [say('number_sliding'), `${fixed(numbers.sliding_percent, 1)} %`, say('sliding_hint')],
+    [say('number_sliding'), `${fixed(numbers.sliding_percent, 1)} %`, say('meaning_sliding_is')],
     [say('number_time'), `${fixed(numbers.t_star, 1)} = ${quantity(numbers.time_s, 's')}`],
     [say('number_texture'), `${fixed(state.case?.texture_percent, 1)} %`],
     [say('number_pace'), number(numbers.steps_per_second)],
@@ -68,7 +68,7 @@ function showSummary(summary) {
     [say('summary_static'), `${summary.transition ? '' : '\u2265 '}${fixed(summary.static_friction_star, 4)}`],
     [say('summary_onset'), fixed(summary.onset_time_star, 1)],
     [say('summary_kinetic'), fixed(summary.kinetic_friction_star, 4)],
-    [say('summary_front'), share === null || speed === null ? '\u2013' : say('summary_front_value', { share: number(share), speed: quantity(speed, 'm/s') })],
+    [say('summary_front'), share === null || speed === null ? '\u2013' : say('summary_front_value', { share: number(share), speed: quantity(speed, 'm/s') }), say('meaning_front_is')],
     [say('summary_duration'), fixed(summary.front_duration_star, 1)],
     [say('summary_sites'), String(summary.nucleation_sites ?? '\u2013')],
     [say('summary_energy'), number(summary.energy_error)],

@@ -53,4 +53,6 @@ export function startPresets() {
     find('presets-list').querySelector('button')?.click();
   });
   on('hello', show);
+  // The folders of runs are more then.
+  on('saved', show);
 }

@@ -44,5 +44,8 @@ export function startTheme() {
   matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => apply(choice));
 }
 
+/** By how much letters of the page are larger than those of a small screen: on canvases they grow as elsewhere. */
+export const enlargement = () => parseFloat(getComputedStyle(document.documentElement).fontSize) / 14;
+
 /** Draws anew when the colours have changed. @param {() => void} draw */
 export const onTheme = (draw) => on('theme', draw);

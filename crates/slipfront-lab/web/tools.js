@@ -115,28 +115,41 @@ function stroke(from) {
   };
 }
 
-/** Adds a shape around a point and selects it. @param {number[]} point @param {number} size radius in blocks, 0 for the ordinary size */
-function place(point, size) {
-  const table = create(state.tool, options(), point, size, slider());
-  const { texture } = presentCase();
-  change({ texture: [...texture, table] });
-  put('selected', texture.length);
+/** Selects a new shape, to be moved and sized. @param {number} index */
+function select(index) {
+  put('selected', index);
   chooseTool('probe');
 }
 
-/** A new shape whose size is dragged. @param {number[]} from */
+/** Adds a shape of ordinary size around a point. @param {number[]} point */
+function place(point) {
+  const { texture } = presentCase();
+  change({ texture: [...texture, create(state.tool, options(), point, 0, slider())] });
+  select(texture.length);
+}
+
+/** A new shape whose size is dragged: it is there from the first move on, so that its true form is seen. @param {number[]} from */
 function placing(from) {
-  let size = 0;
+  const { texture } = presentCase();
+  const [tool, chosen] = [state.tool, options()];
+  const steps = gradual();
+  let sized = false;
   return {
     move: (/** @type {number[]} */ point) => {
-      const blocks = Math.hypot(point[0] - from[0], point[1] - from[1]);
-      size = blocks * camera.scale < CLICK_PIXELS ? 0 : blocks;
-      pointers.ring = { point: from, radius: size };
-      redraw();
+      const size = Math.hypot(point[0] - from[0], point[1] - from[1]);
+      if (!sized && size * camera.scale < CLICK_PIXELS) return;
+      sized = true;
+      steps.change({ texture: [...texture, create(tool, chosen, from, size, slider())] });
     },
     end: () => {
-      pointers.ring = null;
-      place(from, size);
+      if (!sized) return place(from);
+      steps.end();
+      select(texture.length);
+    },
+    cancel: () => {
+      if (!sized) return;
+      steps.end();
+      send({ do: 'undo' });
     },
   };
 }
@@ -155,7 +168,7 @@ function probeSoon(point) {
   tellProbed();
 }
 
-/** @type {{move(point: number[]): void, end(): void}|null} */
+/** @type {{move(point: number[]): void, end(): void, cancel?(): void}|null} */
 let doing = null;
 
 /** What the pointers do. @type {import('./pointer.js').Hand} */
@@ -180,6 +193,7 @@ export const hand = {
   },
   cancel: () => {
     pointers.ring = null;
+    doing?.cancel?.();
     doing = null;
   },
   hover(point) {
@@ -199,7 +213,7 @@ export const hand = {
 export function press(point) {
   if (!state.case) return;
   if (paints()) stroke(point).end();
-  else if (state.tool !== 'probe') place(point, 0);
+  else if (state.tool !== 'probe') place(point);
   else {
     const shape = shapeAt(point);
     put('selected', shape ? shape.index : null);

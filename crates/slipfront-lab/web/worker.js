@@ -1,8 +1,9 @@
 // @ts-check
 // The session in a Worker of this page, as WebAssembly: there is no server and no disk. Work beside it, and runs that are saved, have
 // Workers of their own.
-import { bytesOf, isSingle, textOf } from './assets.js';
+import { isSingle, textOf } from './assets.js';
 import { download } from './element.js';
+import { loading } from './module.js';
 import { receive } from './receive.js';
 import { put } from './store.js';
 import { say } from './text.js';
@@ -10,9 +11,6 @@ import { say } from './text.js';
 /** A Worker that has failed is begun anew so often, and no more in this time: what fails again and again would for ever. */
 const MOST_FAILURES = 3;
 const FAILURES_MS = 60_000;
-
-/** A module without a function, of which one instruction is of SIMD. */
-const SIMD = Uint8Array.of(0, 97, 115, 109, 1, 0, 0, 0, 1, 5, 1, 96, 0, 1, 123, 3, 2, 1, 0, 10, 10, 1, 8, 0, 65, 0, 253, 15, 253, 98, 11);
 
 /** @type {WebAssembly.Module|null} */
 let module = null;
@@ -127,16 +125,14 @@ function open() {
   session.postMessage({ do: 'open', text: beginning });
 }
 
-/** Loads the module and begins the session. */
+/** Begins the session once it is loaded. */
 export async function connect() {
   try {
-    if (!WebAssembly.validate(SIMD)) throw new Error(say('no_simd'));
-    const [bytes, texts] = await Promise.all([bytesOf('slipfront.wasm'), textOf('start.json')]);
-    if (!bytes || !texts) throw new Error(say('no_module'));
+    if (!loading) throw new Error(say('no_simd'));
+    const [compiled, texts] = await loading;
+    if (!compiled || !texts) throw new Error(say('no_module'));
     beginning = texts;
-    module = await WebAssembly.compile(bytes).catch(() => {
-      throw new Error(say('no_module'));
-    });
+    module = compiled;
     if (isSingle) script = URL.createObjectURL(new Blob([(await textOf('lab_worker.js')) ?? ''], { type: 'text/javascript' }));
     open();
     put('connected', { yes: true });

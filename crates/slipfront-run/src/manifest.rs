@@ -56,6 +56,9 @@ pub struct Manifest {
     /// Origin of the run's random numbers.
     #[serde(default)]
     pub random: Random,
+    /// Why the run has no pictures, if whoever ran it cannot draw.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub without_pictures: Option<String>,
     /// Every other file of the run.
     pub files: Vec<ManifestFile>,
     /// BLAKE3 hash of the manifest itself up to this key, whose name is `seal` in the file.
@@ -95,6 +98,17 @@ fn way_to_go_on(folder: &Path) -> String {
     }
 }
 
+/// Times of a run, as a manifest has them.
+#[derive(Clone, Debug)]
+pub struct RunTimes {
+    /// Time at which the run began, UTC, as in RFC 3339.
+    pub started: String,
+    /// Time at which the run ended, UTC, as in RFC 3339.
+    pub finished: String,
+    /// Seconds from the beginning to the end, by a monotonic clock.
+    pub wall_time_s: f64,
+}
+
 /// Reason for which a manifest cannot be used.
 #[derive(Clone, Debug, Error)]
 #[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
@@ -118,9 +132,36 @@ impl Manifest {
         started: jiff::Timestamp,
         threads: usize,
     ) -> Self {
-        let case_file = files.iter().find(|file| file.name == CASE);
         // The clock may have been set back since another process began the run.
         let finished = clock::now().max(started);
+        let times = RunTimes {
+            started: started.to_string(),
+            finished: finished.to_string(),
+            wall_time_s: finished.duration_since(started).as_secs_f64(),
+        };
+        Self::at(files, case, times, threads)
+    }
+
+    /// The bytes of the manifest of a run on one thread, whose files are in memory, and which has no pictures for this reason.
+    pub fn of_run_in_memory(
+        files: &[(String, Vec<u8>)],
+        case: &Case,
+        times: RunTimes,
+        without_pictures: &str,
+    ) -> Vec<u8> {
+        let files = files
+            .iter()
+            .map(|(name, contents)| ManifestFile::of_bytes(name, contents));
+        let manifest = Self {
+            without_pictures: Some(without_pictures.to_owned()),
+            ..Self::at(files.collect(), case, times, 1)
+        };
+        manifest.with_checksum().1
+    }
+
+    /// Manifest of a run that began and ended at these times.
+    fn at(files: Vec<ManifestFile>, case: &Case, times: RunTimes, threads: usize) -> Self {
+        let case_file = files.iter().find(|file| file.name == CASE);
         Self {
             version: program::VERSION.to_owned(),
             revision: program::REVISION.map(str::to_owned),
@@ -130,15 +171,16 @@ impl Manifest {
             threads,
             host: host_name().to_string_lossy().into_owned(),
             platform: format!("{} {}", std::env::consts::OS, std::env::consts::ARCH),
-            started: started.to_string(),
-            finished: finished.to_string(),
-            wall_time_s: finished.duration_since(started).as_secs_f64(),
+            started: times.started,
+            finished: times.finished,
+            wall_time_s: times.wall_time_s,
             case_blake3: case_file.map_or(String::new(), |file| file.blake3.clone()),
             random: Random {
                 generator: "ChaCha8".to_owned(),
                 seed: case.file.friction.seed,
                 streams: STREAMS.map(|(name, number)| (name.to_owned(), number)).into(),
             },
+            without_pictures: None,
             files,
             checksum: String::new(),
         }
@@ -161,10 +203,6 @@ impl Manifest {
     /// Reads the manifest of a run folder, if it is unchanged.
     pub fn read(folder: &Path) -> Result<Self, ManifestError> {
         let path = folder.join(MANIFEST);
-        let damaged = |why| ManifestError::Damaged {
-            path: path.clone(),
-            why,
-        };
         let bytes = read_limited(&path, TEXT_MAX_BYTES).map_err(|error| match error.kind() {
             std::io::ErrorKind::NotFound => ManifestError::Missing {
                 path: folder.to_owned(),
@@ -174,9 +212,18 @@ impl Manifest {
                 why: error.to_string(),
             },
         })?;
+        Self::of_bytes(&path, &bytes)
+    }
+
+    /// Reads the manifest whose bytes these are, if it is unchanged; errors call it by the path.
+    pub fn of_bytes(path: &Path, bytes: &[u8]) -> Result<Self, ManifestError> {
+        let damaged = |why| ManifestError::Damaged {
+            path: path.to_owned(),
+            why,
+        };
         let manifest: Self =
-            serde_json::from_slice(&bytes).map_err(|error| damaged(single_line(&error.to_string())))?;
-        if checksum_of(&bytes).as_ref() == Some(&manifest.checksum) {
+            serde_json::from_slice(bytes).map_err(|error| damaged(single_line(&error.to_string())))?;
+        if checksum_of(bytes).as_ref() == Some(&manifest.checksum) {
             return Ok(manifest);
         }
         let why = if manifest.checksum.is_empty() {
@@ -206,6 +253,13 @@ impl ManifestFile {
         let mut hasher = blake3::Hasher::new();
         hasher.update_reader(open_regular(&folder.join(name))?)?;
         Ok(Self::hashed(name, &hasher))
+    }
+
+    /// A file of this name with these contents.
+    pub fn of_bytes(name: &str, contents: &[u8]) -> Self {
+        let mut hasher = blake3::Hasher::new();
+        hasher.update(contents);
+        Self::hashed(name, &hasher)
     }
 
     /// The copy of a file that the case reads.

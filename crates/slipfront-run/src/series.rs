@@ -207,6 +207,15 @@ pub fn read_csv(path: &Path) -> Result<Vec<SeriesRow>, SeriesError> {
     read_rows(path, SERIES, |row| row)
 }
 
+/// Reads the rows of a series whose bytes these are; errors call it by the path.
+pub fn from_csv(path: &Path, bytes: &[u8]) -> Result<Vec<SeriesRow>, SeriesError> {
+    rows_of(bytes, |row| row).map_err(|source| SeriesError {
+        path: path.to_owned(),
+        name: SERIES,
+        source,
+    })
+}
+
 /// Reads the rows of a table of a run, called `name` in its folder, and keeps `part` of each.
 pub(crate) fn read_rows<T: DeserializeOwned, U>(
     path: &Path,

@@ -608,7 +608,15 @@ impl Summary {
 pub fn read_summary(run: &Path) -> Result<Summary, ResultsError> {
     let path = run.join(SUMMARY);
     let bytes = read_limited(&path, TEXT_MAX_BYTES).map_err(FolderError::read(&path))?;
-    serde_json::from_slice(&bytes).map_err(|source| ResultsError::Summary { path, source })
+    summary_of_bytes(&path, &bytes)
+}
+
+/// The summary of a `summary.json` whose bytes these are; errors call it by the path.
+pub fn summary_of_bytes(path: &Path, bytes: &[u8]) -> Result<Summary, ResultsError> {
+    serde_json::from_slice(bytes).map_err(|source| ResultsError::Summary {
+        path: path.to_owned(),
+        source,
+    })
 }
 
 /// The summary as it stands in `summary.json`.

@@ -1,27 +1,39 @@
 //! A run from rest as one archive, with the bytes that `slipfront run` writes.
 
 use std::sync::Arc;
+use std::time::Duration;
 
 use slipfront::Execution;
+use slipfront_run::manifest::{Manifest, RunTimes};
+use slipfront_run::names::MANIFEST;
 use slipfront_run::results;
 use slipfront_run::running::Running;
 
 use crate::document::Document;
 use crate::zip;
 
+/// Why an archive has no pictures.
+const WITHOUT_PICTURES: &str = "a page without a server cannot draw them: slipfront plot FOLDER does";
+
 /// Share of a run after which its progress is told again.
 const SHARE: f64 = 0.01;
 
 /// Runs a case from rest to its end, and gives an archive of its files: the case and the files that it reads, summary, series, fields and
-/// kymograph, each with the bytes that `slipfront run` writes. `report_progress` is told the share of the run that is done.
+/// kymograph, each with the bytes that `slipfront run` writes, and the manifest of these files. `now` tells the time of day, UTC as in RFC 3339, and
+/// that of a monotonic clock; `report_progress` is told the share of the run that is done.
 ///
 /// # Errors
 /// A sentence, if the case cannot be run, or the run diverges.
-pub fn run_archive(document: &Document, report_progress: &dyn Fn(f64)) -> Result<Vec<u8>, String> {
+pub fn run_archive(
+    document: &Document,
+    now: &dyn Fn() -> (String, Duration),
+    report_progress: &dyn Fn(f64),
+) -> Result<Vec<u8>, String> {
     /// Any error as its sentence.
     fn sentence(error: impl std::fmt::Display) -> String {
         error.to_string()
     }
+    let (started, began) = now();
     let case = Arc::new(document.case().map_err(sentence)?);
     let mut running = Running::start(&case, None, Execution::default());
     let mut told = 0.0;
@@ -36,7 +48,15 @@ pub fn run_archive(document: &Document, report_progress: &dyn Fn(f64)) -> Result
         }
     };
     let mut record = running.record(reason);
-    let files = results::in_memory(&case, &mut record).map_err(sentence)?;
+    let mut files = results::in_memory(&case, &mut record).map_err(sentence)?;
+    let (finished, ended) = now();
+    let times = RunTimes {
+        started,
+        finished,
+        wall_time_s: ended.saturating_sub(began).as_secs_f64(),
+    };
+    let manifest = Manifest::of_run_in_memory(&files, &case, times, WITHOUT_PICTURES);
+    files.push((MANIFEST.to_owned(), manifest));
     let files = files
         .iter()
         .map(|(name, contents)| (name.as_str(), contents.as_slice()));

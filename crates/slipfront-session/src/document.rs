@@ -158,7 +158,10 @@ impl Document {
     ///
     /// # Errors
     /// A sentence, if a key has no place in the case.
-    pub fn with(&self, changes: impl IntoIterator<Item = (String, Option<Value>)>) -> Result<Self, String> {
+    pub(crate) fn with(
+        &self,
+        changes: impl IntoIterator<Item = (String, Option<Value>)>,
+    ) -> Result<Self, String> {
         let mut changed = self.clone();
         for (key, value) in changes {
             match value {
@@ -177,7 +180,15 @@ impl Document {
     /// # Errors
     /// When it is no case without the image either.
     pub(crate) fn with_image(&self, png: &[u8], threshold: f64) -> Result<Self, CaseError> {
-        let mut painted = self.without_texture();
+        self.without_texture().and_image(None, png, threshold)
+    }
+
+    /// The case with an image as a texture more, at this place among them, or behind them.
+    ///
+    /// # Errors
+    /// When it is no case without the image either.
+    fn and_image(self, index: Option<usize>, png: &[u8], threshold: f64) -> Result<Self, CaseError> {
+        let mut painted = self;
         painted.drop_unnamed_files()?;
         let mut name = PAINTED.to_owned();
         while painted.files.contains_key(&name) {
@@ -189,10 +200,14 @@ impl Document {
         if threshold != slipfront_case::case_file::DEFAULT_THRESHOLD {
             texture.insert("threshold".to_owned(), threshold.into());
         }
-        painted.files.insert(name.clone(), png.into());
-        painted
+        painted.files.insert(name, png.into());
+        let textures = painted
             .keys
-            .insert("texture".to_owned(), Value::Array(vec![texture.into()]));
+            .entry("texture")
+            .or_insert_with(|| Value::Array(Vec::new()));
+        if let Value::Array(textures) = textures {
+            textures.insert(index.unwrap_or(textures.len()), texture.into());
+        }
         Ok(painted)
     }
 
@@ -218,9 +233,48 @@ impl Document {
         if !textured.contains(&true) {
             return Ok(self.without_texture());
         }
-        let png = mask_image(textured, nx)
-            .map_err(|error| case_error(format!("the mask cannot be written: {error}")))?;
+        let png = mask_png(textured, nx)?;
         self.with_image(&png, slipfront_case::case_file::DEFAULT_THRESHOLD)
+    }
+
+    /// The place of the texture that a brush paints on, among all textures: the last image that is stretched over the slider as it is. None
+    /// if there is no such texture.
+    pub(crate) fn painted_layer(&self) -> Option<usize> {
+        let textures = self.keys.get("texture")?.as_array()?;
+        let is_layer = |texture: &Value| {
+            texture.as_table().is_some_and(|table| {
+                table.get("shape").and_then(Value::as_str) == Some("mask")
+                    && table
+                        .keys()
+                        .all(|key| ["shape", "file", "threshold"].contains(&&**key))
+            })
+        };
+        textures.iter().rposition(is_layer)
+    }
+
+    /// A copy of the case whose texture at `index` is this mask instead, one value per block from y = 0 upwards; without an index the mask is
+    /// a texture more. A mask of no block is none.
+    ///
+    /// # Errors
+    /// When the image of the mask cannot be written, or the case is none without it either.
+    pub(crate) fn with_layer(
+        &self,
+        index: Option<usize>,
+        textured: &[bool],
+        nx: usize,
+    ) -> Result<Self, CaseError> {
+        let mut others = self.clone();
+        if let Some(Value::Array(textures)) = others.keys.get_mut("texture") {
+            index.map(|index| textures.remove(index));
+        }
+        if !others.has_texture() {
+            others.keys.remove("texture");
+        }
+        if !textured.contains(&true) {
+            return Ok(others);
+        }
+        let png = mask_png(textured, nx)?;
+        others.and_image(index, &png, slipfront_case::case_file::DEFAULT_THRESHOLD)
     }
 
     /// The case that can be run, as `slipfront run` makes it.
@@ -284,6 +338,11 @@ impl Document {
             None => Ok(()),
         }
     }
+}
+
+/// The image of a mask.
+fn mask_png(textured: &[bool], nx: usize) -> Result<Vec<u8>, CaseError> {
+    mask_image(textured, nx).map_err(|error| case_error(format!("the mask cannot be written: {error}")))
 }
 
 /// An image of one pixel per block, black where it is texture, the largest y first.

@@ -115,6 +115,9 @@ pub(crate) struct Source {
     /// Files that the TOML names, in Base64.
     #[serde(default)]
     pub(crate) files: BTreeMap<String, String>,
+    /// Files of the folder of a recorded run, in Base64.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) run: Option<BTreeMap<String, String>>,
 }
 
 /// A reply or report of a session to the page.
@@ -208,6 +211,8 @@ pub(crate) struct CaseReply<'a> {
     pub(crate) kinetic_from_star: f64,
     /// Direction of the drive, degrees from x towards y; none if it turns the slider.
     pub(crate) drive_degrees: Option<f64>,
+    /// Rise of mu* in one t* of the drive as long as no block slides; none of a drive that turns the slider.
+    pub(crate) loading_rate: Option<f64>,
     pub(crate) steady_level: f64,
     pub(crate) can_undo: bool,
     pub(crate) can_redo: bool,

@@ -13,7 +13,7 @@ use slipfront_session::{
 
 use crate::bits::bits_of_run;
 use crate::host::WorkerHost;
-use crate::imports::{Saying, clock, duration, tell};
+use crate::imports::{Saying, ask_date, clock, duration, tell};
 
 thread_local! {
     /// Bytes that the Worker has given.
@@ -72,7 +72,10 @@ pub(crate) fn handle() {
     let text = String::from_utf8(GIVEN.take()).unwrap_or_default();
     PAGE.with_borrow_mut(|page| {
         let Some((session, host)) = page else { return };
-        match Message::parse(&text) {
+        let message = Message::parse(&text);
+        // It may hold the files of a run.
+        drop(text);
+        match message {
             Ok(message) => session.handle(message),
             Err(sentence) => host.reply(failed(sentence)),
         }
@@ -136,8 +139,12 @@ pub(crate) fn run() {
 
 /// Runs a case from rest, and gives the archive of its files.
 pub(crate) fn save() {
+    let now = || {
+        ask_date();
+        (String::from_utf8(GIVEN.take()).unwrap_or_default(), clock())
+    };
     let told = |share: f64| tell(Saying::Share, (1e6 * share) as u32, &[]);
-    let archive = given().and_then(|document: Document| run_archive(&document, &told));
+    let archive = given().and_then(|document: Document| run_archive(&document, &now, &told));
     refuse(archive.map(|archive| tell(Saying::Archive, 0, &archive)));
 }
 

@@ -35,15 +35,21 @@ pub(crate) enum Saying {
 }
 
 #[expect(unsafe_code, reason = "Rust cannot look at functions of the Worker")]
-// SAFETY: the Worker gives both with these types (`lab_worker.js`), and reads no more than the bytes that it is shown.
+// SAFETY: the Worker gives them with these types (`lab_worker.js`), and reads no more than the bytes that it is shown.
 unsafe extern "C" {
     safe fn say(what: u32, number: u32, at: *const u8, length: usize);
     safe fn now() -> f64;
+    safe fn date();
 }
 
 /// Says something to the Worker, with a number where it has one.
 pub(crate) fn tell(what: Saying, number: u32, bytes: &[u8]) {
     say(what as u32, number, bytes.as_ptr(), bytes.len());
+}
+
+/// Lets the Worker give the time of day, UTC as in RFC 3339, as it gives a text.
+pub(crate) fn ask_date() {
+    date();
 }
 
 /// The time by the clock of the Worker.

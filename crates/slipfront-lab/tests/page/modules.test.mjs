@@ -5,10 +5,12 @@ import fs from 'node:fs';
 import path from 'node:path';
 import test from 'node:test';
 import { fileURLToPath } from 'node:url';
+import { fromBase64, toBase64 } from '../../web/base64.js';
 import { Camera } from '../../web/camera.js';
 import { COLOURMAPS } from '../../web/colourmaps.js';
 import { parse } from '../../web/frames.js';
-import { fromBase64, makeLink, readLink, toBase64 } from '../../web/link.js';
+import { rowsOf } from '../../web/letters.js';
+import { makeLink, readLink } from '../../web/link.js';
 import { fixed, length, metres, number, quantity, ticks, typed } from '../../web/quantity.js';
 import { center, coverageOf, create, enlarge, handles, inside, kind, move, turn } from '../../web/shapes.js';
 
@@ -187,4 +189,9 @@ test('what is inside follows from the even-odd rule, and handles are on the box'
   assert.deepEqual([[0.5, 0.5], [2, 2], [5, 2]].map((point) => inside(ring, point)), [true, false, false]);
   assert.deepEqual(handles({ shape: 'cavity' }, ring[0]), [[0, 0], [4, 0], [4, 4], [0, 4]]);
   assert.deepEqual(handles({ shape: 'groove', orientation: 'across' }, ring[0]), [[0, 2], [4, 2]]);
+});
+
+test('letters that would lie on each other stand in rows', () => {
+  assert.deepEqual(rowsOf([0, 50, 100, 105, 108, 140], 10), [0, 0, 0, 1, 2, 0]);
+  assert.deepEqual(rowsOf([], 10), []);
 });

@@ -2,8 +2,7 @@
 //! reserved for its elements.
 
 use std::collections::HashSet;
-use std::fs::File;
-use std::io::{self, Read, Seek, SeekFrom};
+use std::io::{self, Cursor, Read, Seek, SeekFrom};
 use std::ops::Range;
 use std::path::Path;
 
@@ -30,9 +29,14 @@ pub(super) fn broken<T>(detail: impl Into<String>) -> Result<T, NetCdfError> {
     Err(NetCdfError::Broken(detail.into()))
 }
 
+/// Bytes that are read from any place: a file of the disk, or one in memory.
+trait Source: Read + Seek {}
+
+impl<T: Read + Seek> Source for T {}
+
 /// An open file and the content of its header.
 pub(super) struct NetCdf3Reader {
-    file: File,
+    file: Box<dyn Source>,
     file_bytes: u64,
     /// Number of records, that is of instants.
     pub(super) records: usize,
@@ -60,8 +64,18 @@ struct StoredVariable {
 impl NetCdf3Reader {
     /// Opens a file and reads its header.
     pub(super) fn open(path: &Path) -> Result<NetCdf3Reader, NetCdfError> {
-        let mut file = open_regular(path)?;
+        let file = open_regular(path)?;
         let file_bytes = file.metadata()?.len();
+        Self::begin(Box::new(file), file_bytes)
+    }
+
+    /// Reads the header of a file whose bytes these are.
+    pub(super) fn of_bytes(bytes: Vec<u8>) -> Result<NetCdf3Reader, NetCdfError> {
+        let file_bytes = bytes.len() as u64;
+        Self::begin(Box::new(Cursor::new(bytes)), file_bytes)
+    }
+
+    fn begin(mut file: Box<dyn Source>, file_bytes: u64) -> Result<NetCdf3Reader, NetCdfError> {
         let mut bytes = Vec::new();
         file.by_ref().take(HEADER_MAX_BYTES).read_to_end(&mut bytes)?;
         let mut header = HeaderReader::begin(&bytes)?;

@@ -20,22 +20,30 @@ pub fn read_fields(path: &Path) -> Result<FieldsData, FieldsError> {
     read_rows(path, 0..usize::MAX)
 }
 
+/// Reads a fields file whose bytes these are; errors call it by the path.
+pub fn fields_of_bytes(path: &Path, bytes: Vec<u8>) -> Result<FieldsData, FieldsError> {
+    let read = || all_of(&mut NetCdf3Reader::of_bytes(bytes)?, &(0..usize::MAX));
+    read().map_err(|error| in_words(error, path))
+}
+
 /// Reads these rows of a fields file alone, as far as it has them, counted from y = 0, for a file that is larger than the
 /// memory.
 pub fn read_rows(path: &Path, rows: Range<usize>) -> Result<FieldsData, FieldsError> {
-    let read = || {
-        let mut file = NetCdf3Reader::open(path)?;
-        let all: Vec<usize> = (0..file.records).collect();
-        let data = read_chosen::<Vec<f32>>(&mut file, |_| true, &all, &rows)?;
-        let part = values_of(&rows, data.columns());
-        Ok(FieldsData {
-            mu_static: file.values(MU_STATIC, &[Y, X], 0, part.clone())?,
-            mu_kinetic: file.values(MU_KINETIC, &[Y, X], 0, part.clone())?,
-            first_slip_time_star: file.values(FIRST_SLIP, &[Y, X], 0, part)?,
-            ..data
-        })
-    };
+    let read = || all_of(&mut NetCdf3Reader::open(path)?, &rows);
     read().map_err(|error| in_words(error, path))
+}
+
+/// All content of these rows of a file.
+fn all_of(file: &mut NetCdf3Reader, rows: &Range<usize>) -> Result<FieldsData, NetCdfError> {
+    let all: Vec<usize> = (0..file.records).collect();
+    let data = read_chosen::<Vec<f32>>(file, |_| true, &all, rows)?;
+    let part = values_of(rows, data.columns());
+    Ok(FieldsData {
+        mu_static: file.values(MU_STATIC, &[Y, X], 0, part.clone())?,
+        mu_kinetic: file.values(MU_KINETIC, &[Y, X], 0, part.clone())?,
+        first_slip_time_star: file.values(FIRST_SLIP, &[Y, X], 0, part)?,
+        ..data
+    })
 }
 
 fn values_of(rows: &Range<usize>, columns: usize) -> Range<u64> {

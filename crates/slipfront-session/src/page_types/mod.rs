@@ -143,6 +143,7 @@ fn each_reply(check: &mut impl FnMut(&Reply)) {
             duration_star: 400.0,
             kinetic_from_star,
             drive_degrees: too_coarse.is_none().then_some(30.0),
+            loading_rate: too_coarse.is_none().then_some(0.01),
             steady_level: 0.5,
             can_undo: true,
             can_redo: false,

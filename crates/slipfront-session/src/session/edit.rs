@@ -1,17 +1,20 @@
 //! Changes of the case.
 
+use std::path::Path;
 use std::sync::Arc;
 
 use slipfront_case::text::truncated;
 use toml::Value;
 
-use super::brush::stroke;
+use super::painting::Painting;
 use super::state::{PendingEdit, Session};
 use crate::base64;
 use crate::document::Document;
 use crate::history::History;
 use crate::host::Opened;
+use crate::names::is_plain_name;
 use crate::protocol::{Reply, Source};
+use crate::run_files::recorded_run;
 use crate::view::AfterChange;
 
 impl Session {
@@ -20,7 +23,7 @@ impl Session {
         // Whether it can be run is known before anything is given up.
         let case = Arc::new(document.case_to_show().map_err(|error| error.to_string())?);
         self.give_up_search();
-        (self.edited, self.mask) = (None, None);
+        (self.edited, self.painting) = (None, None);
         (self.repeating, self.shown_recording) = (None, None);
         self.history = Some(History::new(document));
         self.recorded = recorded;
@@ -45,6 +48,12 @@ impl Session {
         if let Some(name) = source.folder {
             return self.host.recorded_run(&name);
         }
+        if let Some(files) = source.run {
+            let name = source.name.filter(|name| is_plain_name(name));
+            let name = name.unwrap_or_else(|| "run".to_owned());
+            let read = |file: &str| files.get(file).map(|text| base64::decode(text)).transpose();
+            return recorded_run(&name, Path::new(&name), read);
+        }
         if source.toml.is_none() {
             return self.host.opening();
         }
@@ -56,7 +65,7 @@ impl Session {
         keys: serde_json::Map<String, serde_json::Value>,
         gesture: u64,
     ) -> Result<(), String> {
-        self.apply_painted_mask();
+        self.apply_painting();
         let mut changes = Vec::new();
         for (key, value) in keys {
             let value = match value {
@@ -85,18 +94,19 @@ impl Session {
         gesture: u64,
     ) -> Result<(), String> {
         self.apply_edited_document();
-        let live = self.live.as_ref().ok_or("no case is open yet")?;
-        let model = &live.case().model;
-        let lattice = &model.lattice;
-        let (mask, painted_by) = self
-            .mask
-            .get_or_insert_with(|| (model.surface.textured.clone(), gesture));
-        *painted_by = gesture;
-        stroke(mask, lattice, points, radius, textured)
+        let case = self.live.as_ref().ok_or("no case is open yet")?.case();
+        let mut painting = match self.painting.take() {
+            Some(painting) => painting,
+            None => Painting::begin(self.document()?, case, gesture)?,
+        };
+        painting.gesture = gesture;
+        let done = painting.stroke(case, points, radius, textured);
+        self.painting = Some(painting);
+        done
     }
 
     pub(super) fn image(&mut self, text: &str, threshold: f64, gesture: u64) -> Result<(), String> {
-        self.apply_painted_mask();
+        self.apply_painting();
         let image = base64::decode(text)?;
         let document = self
             .document()?
@@ -127,25 +137,23 @@ impl Session {
 
     /// Runs the case with all edits that are not run yet.
     pub(super) fn apply_edits(&mut self) {
-        self.apply_painted_mask();
+        self.apply_painting();
         self.apply_edited_document();
     }
 
-    /// Makes the painted mask the texture of the case, and runs it.
-    fn apply_painted_mask(&mut self) {
-        let Some((mask, gesture)) = self.mask.take() else {
+    /// Makes the painted layer a texture of the case, and runs it.
+    fn apply_painting(&mut self) {
+        let Some(painting) = self.painting.take() else {
             return;
         };
-        let made = self.document().map(|document| {
-            document
-                .with_mask(&mask, self.columns())
-                .map_err(|error| error.to_string())
-        });
-        match made.and_then(|made| made) {
+        let made = self
+            .document()
+            .and_then(|document| painting.document(document, self.columns()));
+        match made {
             Ok(document) => {
                 self.edited = Some(PendingEdit {
                     document,
-                    gesture,
+                    gesture: painting.gesture,
                     of: "paint",
                 });
                 self.apply_edited_document();

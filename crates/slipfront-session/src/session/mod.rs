@@ -4,6 +4,7 @@ mod brush;
 mod clock;
 mod edit;
 mod find;
+mod painting;
 mod repeat;
 mod requests;
 mod start;

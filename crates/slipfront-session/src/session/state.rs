@@ -4,6 +4,7 @@ use std::rc::Rc;
 use std::time::Duration;
 
 use super::clock::Clock;
+use super::painting::Painting;
 use crate::document::Document;
 use crate::event::{Mask, Tried};
 use crate::history::History;
@@ -50,7 +51,7 @@ pub struct Session {
     pub(super) history: Option<History>,
     pub(super) edited: Option<PendingEdit>,
     /// The texture while it is painted.
-    pub(super) mask: Option<(Vec<bool>, u64)>,
+    pub(super) painting: Option<Painting>,
     pub(super) live: Option<LiveRun>,
     pub(super) twin: Option<Twin>,
     pub(super) recorded: Option<RecordedRun>,
@@ -88,7 +89,7 @@ impl Session {
             view: View::default(),
             history: None,
             edited: None,
-            mask: None,
+            painting: None,
             live: None,
             twin: None,
             recorded: None,
@@ -124,6 +125,6 @@ impl Session {
 
     /// Whether there are edits that are not run yet.
     pub(super) fn has_edits(&self) -> bool {
-        self.edited.is_some() || self.mask.is_some()
+        self.edited.is_some() || self.painting.is_some()
     }
 }

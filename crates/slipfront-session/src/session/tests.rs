@@ -353,3 +353,103 @@ impl crate::host::Task for Silent {
         None
     }
 }
+
+/// Shapes of the textures of the present case.
+fn shapes(tried: &Tried) -> Vec<String> {
+    let textures = tried.session.document().unwrap().textures();
+    let shape = |texture: &Value| texture["shape"].as_str().unwrap().to_owned();
+    textures.as_array().unwrap().iter().map(shape).collect()
+}
+
+/// Painting between shapes, erasing the paint, and erasing a part of a shape.
+#[test]
+fn paint_is_a_layer_beside_the_shapes_until_a_part_of_one_is_taken_away() {
+    let mut tried = Tried::with(
+        "slider.blocks = [20, 20]\ntexture = [{ shape = 'cavity', coverage = 5 }, { shape = 'groove', coverage = 10, offset = '-8 um' }]\n",
+    );
+    let before = tried.textured();
+    let mut paint = |y: f64, textured: bool, gesture: u64| {
+        tried.ask(json!({
+            "do": "paint", "points": [[6.5, y], [17.5, y]], "radius": 0.3, "textured": textured, "gesture": gesture,
+        }));
+        (shapes(&tried), tried.textured())
+    };
+    // Two strokes are one layer, which has 12 blocks in each row, of which the groove has none.
+    for (y, blocks) in [(1.5, 12), (3.5, 24)] {
+        let (shapes, textured) = paint(y, true, 1);
+        assert_eq!(shapes, ["cavity", "groove", "mask"]);
+        let added = textured.iter().zip(&before).filter(|(now, then)| now != then);
+        assert_eq!(added.count(), blocks);
+    }
+    // Without paint there is no layer.
+    assert_eq!(paint(1.5, false, 2).0, ["cavity", "groove", "mask"]);
+    let (shapes, textured) = paint(3.5, false, 2);
+    assert_eq!(
+        (shapes, &textured),
+        (vec!["cavity".to_owned(), "groove".to_owned()], &before)
+    );
+    // No texture takes a part of another one away.
+    let (shapes, textured) = paint(10.5, false, 3);
+    assert_eq!(shapes, ["mask"]);
+    let row: Vec<usize> = (0..400).filter(|&b| before[b] != textured[b]).collect();
+    assert!(!row.is_empty() && row.iter().all(|b| (10 * 20 + 6..10 * 20 + 18).contains(b)));
+}
+
+/// A layer with paint below a shape, which is seen when the shape is moved away.
+#[test]
+fn paint_below_a_shape_stays() {
+    let mut tried = Tried::with("slider.blocks = [20, 20]\ntexture = [{ shape = 'cavity', coverage = 5 }]\n");
+    tried.ask(
+        json!({ "do": "paint", "points": [[10.5, 10.5]], "radius": 0.3, "textured": true, "gesture": 1 }),
+    );
+    let table = json!([{ "shape": "cavity", "coverage": 5, "center": ["4 um", "4 um"] }, { "shape": "mask", "file": "texture.png" }]);
+    tried.ask(json!({ "do": "set", "keys": { "texture": table }, "gesture": 2 }));
+    assert!(tried.textured()[10 * 20 + 10]);
+}
+
+/// A run of a case, as the files of its folder in Base64.
+fn run_files(case: &str) -> serde_json::Map<String, Value> {
+    let document = crate::document::Document::new("case", case, |_| Err("there is none".to_owned())).unwrap();
+    let case = std::sync::Arc::new(document.case().unwrap());
+    let mut record = slipfront_run::running::run(&case, 1).unwrap();
+    let files = slipfront_run::results::in_memory(&case, &mut record).unwrap();
+    let encoded = files.into_iter();
+    encoded
+        .map(|(name, contents)| (name, crate::base64::encode(&contents).into()))
+        .collect()
+}
+
+#[test]
+fn the_files_of_a_run_are_replayed_and_other_files_are_refused() {
+    let mut tried = Tried::with(PLAIN);
+    let files = run_files("slider.blocks = [4, 4]\ntime.duration_star = 20\noutput.snapshots = [5, 10]\n");
+    let open = |files: &serde_json::Map<String, Value>| json!({ "do": "open", "source": { "name": "kept", "run": files } });
+    let replies = tried.ask(open(&files));
+    let recorded = replies.iter().find(|reply| reply["is"] == "recorded").unwrap();
+    assert_eq!(recorded["times_star"], json!([5.0, 10.0]));
+    let case = replies.iter().find(|reply| reply["is"] == "case").unwrap();
+    assert_eq!((&case["name"], &case["blocks"]), (&json!("kept"), &json!([4, 4])));
+    let refused = |files: &serde_json::Map<String, Value>, tried: &mut Tried| {
+        let replies = tried.ask(open(files));
+        let refused = replies.iter().find(|reply| reply["is"] == "refused");
+        refused.map(|reply| reply["sentence"].as_str().unwrap().to_owned())
+    };
+    // Fields that are too large are left out.
+    let mut without = files.clone();
+    without.remove("fields.nc");
+    assert_eq!(refused(&without, &mut tried), None);
+    for name in ["case.toml", "series.csv", "summary.json"] {
+        let mut without = files.clone();
+        without.remove(name);
+        let said = refused(&without, &mut tried).unwrap();
+        assert_eq!(said, format!("kept is no folder of a run: it has no {name}"));
+        let mut damaged = files.clone();
+        damaged.insert(name.to_owned(), crate::base64::encode(b"[").into());
+        let said = refused(&damaged, &mut tried).unwrap();
+        assert!(said.contains(name) || said.contains("kept:"), "{name}: {said}");
+    }
+    let mut damaged = files;
+    damaged.insert("fields.nc".to_owned(), crate::base64::encode(b"CDF").into());
+    let said = refused(&damaged, &mut tried).unwrap();
+    assert!(said.contains("fields.nc"), "{said}");
+}

@@ -3,6 +3,7 @@
 use std::time::Duration;
 
 use slipfront::PositionBins;
+use slipfront::lattice::K_DRIVE;
 use slipfront_case::case_file::Motion;
 use slipfront_run::summary::summary_json;
 
@@ -26,6 +27,7 @@ impl Session {
         };
         let (document, case) = (history.present(), live.case());
         let (scales, lattice) = (&case.scales, &case.model.lattice);
+        let is_pulled = case.file.drive.motion == Motion::Translation;
         let reply = CaseReply {
             name: &document.name,
             toml: document.toml(),
@@ -52,8 +54,8 @@ impl Session {
                     .kinetic
                     .time_star(&peak, case.model.loading_speed())
             },
-            drive_degrees: (case.file.drive.motion == Motion::Translation)
-                .then_some(case.file.drive.direction),
+            drive_degrees: is_pulled.then_some(case.file.drive.direction),
+            loading_rate: is_pulled.then(|| case.model.loading_speed() * K_DRIVE),
             steady_level: case.expected.steady_level,
             can_undo: history.can_undo(),
             can_redo: history.can_redo(),

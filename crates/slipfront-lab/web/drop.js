@@ -1,0 +1,16 @@
+// @ts-check
+// What is dropped on the page: an image as texture, or the folder of a run.
+import { takeImage } from './image.js';
+import { filesOf, replayWhenRead } from './run_folder.js';
+
+/** Begins to listen. */
+export function startDrop() {
+  document.addEventListener('dragover', (event) => event.preventDefault());
+  document.addEventListener('drop', (event) => {
+    event.preventDefault();
+    const entry = event.dataTransfer?.items[0]?.webkitGetAsEntry();
+    const file = event.dataTransfer?.files[0];
+    if (entry?.isDirectory) replayWhenRead(entry.name, filesOf(/** @type {FileSystemDirectoryEntry} */ (entry)));
+    else if (file) takeImage(file);
+  });
+}

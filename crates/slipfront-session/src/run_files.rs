@@ -1,0 +1,85 @@
+//! A run that was recorded before, read from the files of its folder, wherever these are.
+
+use std::path::Path;
+
+use slipfront_case::text::display_path;
+use slipfront_run::fields::fields_of_bytes;
+use slipfront_run::manifest::{Manifest, ManifestFile};
+use slipfront_run::names::{CASE, FIELDS, MANIFEST, SERIES, SUMMARY};
+use slipfront_run::series;
+use slipfront_run::summary::summary_of_bytes;
+
+use crate::document::Document;
+use crate::host::Opened;
+use crate::recorded::RecordedRun;
+
+/// Any error as its sentence.
+fn sentence(error: impl std::fmt::Display) -> String {
+    error.to_string()
+}
+
+/// A complete run, which gets this name: its case with the files that the case names, its curve, and its snapshots where the fields are
+/// given. `read` gives the contents of a file of the run's folder, none if there is no such file; errors call the folder `place`. Each file
+/// is held to the manifest, if the folder has one.
+///
+/// # Errors
+/// A sentence, if the folder is not that of a run, or a file cannot be read or was changed since it was written.
+pub fn recorded_run(
+    name: &str,
+    place: &Path,
+    read: impl Fn(&str) -> Result<Option<Vec<u8>>, String>,
+) -> Result<Opened, String> {
+    let manifest = read(MANIFEST)?
+        .map(|bytes| Manifest::of_bytes(&place.join(MANIFEST), &bytes))
+        .transpose()
+        .map_err(sentence)?;
+    let listed = |file: &str| manifest.as_ref()?.files.iter().find(|listed| listed.name == file);
+    let written = |file: &str| {
+        let contents = read(file)?;
+        match (&contents, listed(file)) {
+            (Some(contents), Some(listed)) if ManifestFile::of_bytes(file, contents) != *listed => {
+                Err(format!(
+                    "{} has other bytes than its run has written, so that it would not show what was run: run the case again",
+                    display_path(&place.join(file))
+                ))
+            }
+            _ => Ok(contents),
+        }
+    };
+    let needed = |file: &str| {
+        let missing = || {
+            let place = display_path(place);
+            format!("{place} is no folder of a run: it has no {file}")
+        };
+        written(file)?.ok_or_else(missing)
+    };
+    let text = String::from_utf8(needed(CASE)?)
+        .map_err(|_| format!("{} is no text", display_path(&place.join(CASE))))?;
+    let rows = series::from_csv(&place.join(SERIES), &needed(SERIES)?).map_err(sentence)?;
+    if rows.is_empty() {
+        return Err(format!(
+            "{} has no rows: it is no curve of a run",
+            display_path(&place.join(SERIES))
+        ));
+    }
+    let summary = summary_of_bytes(&place.join(SUMMARY), &needed(SUMMARY)?).map_err(sentence)?;
+    let input = |file: &str| written(file)?.ok_or_else(|| "there is no such file".to_owned());
+    let document = Document::new(name, &text, input).map_err(sentence)?;
+    let fields = written(FIELDS)?
+        .map(|bytes| fields_of_bytes(&place.join(FIELDS), bytes))
+        .transpose()
+        .map_err(sentence)?;
+    let recorded = RecordedRun {
+        contact_stress_max_pa: summary.si.map_or(f64::NAN, |si| si.contact_stress_max_pa) as f32,
+        time_star: rows
+            .iter()
+            .map(|row| row.drive_time_star.unwrap_or(row.time_star))
+            .collect(),
+        mu_star: rows.iter().map(|row| row.mu_star).collect(),
+        snapshots: fields.filter(|fields| fields.stride == 1 && !fields.frames.is_empty()),
+    };
+    Ok(Opened {
+        document,
+        recorded: Some(recorded),
+    })
+}
