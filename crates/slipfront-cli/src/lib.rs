@@ -83,6 +83,7 @@ enum Command {
     Movie(commands::movie::MovieCommand),
     Lab(commands::lab::LabCommand),
     Verify(commands::verify::VerifyCommand),
+    Export(commands::export::ExportCommand),
     Completions(commands::completions::CompletionsCommand),
     Licences(commands::licences::LicencesCommand),
 }
@@ -145,6 +146,7 @@ pub fn main(args: impl IntoIterator<Item = OsString>) -> u8 {
             Command::Movie(movie) => movie.execute(),
             Command::Lab(lab) => lab.execute(),
             Command::Verify(verify) => verify.execute(),
+            Command::Export(export) => export.execute(),
             Command::Completions(completions) => completions.execute(Cli::command()),
             Command::Licences(licences) => licences.execute(),
         };
