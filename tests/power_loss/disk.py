@@ -1,4 +1,4 @@
-"""What a power loss may leave on a disk, of operations that a recorder has noted.
+"""States that a power loss may leave on a disk, of operations that a recorder has noted.
 
 Guaranteed is the content of a file from before its last fsync, and the entries of a folder from before the last fsync of the folder; a
 rename is guaranteed by an fsync of the folder into which it leads. Every other operation is on the disk or is not, whatever the order in
@@ -16,7 +16,7 @@ ALL_CHOICES_OF = 5
 
 
 class Disk:
-    """What is certain: contents of files, which are never changed but replaced, and entries of folders, by number."""
+    """Content that is certain to be on the disk: files, which are never changed but replaced, and entries of folders, by number."""
 
     def __init__(self, tree):
         self.data = {number: bytes(content) for number, content in tree.data.items()}
@@ -106,7 +106,7 @@ def flushed(disk, open_now, synced):
 
 
 def choices(open_now, newest):
-    """What of the open operations may be there, the newest at least in part: operations in order, and words for the choice."""
+    """Choices of the open operations that may be there, the newest at least in part: operations in order, and words for the choice."""
     entries = [one for one in open_now if one[0] in ("set", "remove", "move")]
     for there in subsets(entries, newest):
         there = {id(one): one for one in there}
@@ -131,7 +131,7 @@ def subsets(entries, newest):
 
 
 def contents(open_now, newest):
-    """What may be there of the open writes: words, and by the operations' identities what stands in their place, None for nothing."""
+    """Choices of the open writes: words, and by the operations' identities the operations in their place, None for nothing."""
     writes = [one for one in open_now if one[0] in ("write", "size")]
     whole = {id(one): one for one in writes}
     nothing = {id(one): None for one in writes}
@@ -157,7 +157,7 @@ def contents(open_now, newest):
 
 
 def parts(own):
-    """What may be there of the open writes to one file, but all and nothing."""
+    """Choices of the open writes to one file, but all and nothing."""
 
     def zeros(one):
         return (*one[:3], bytes(len(one[3]))) if one[0] == "write" else one

@@ -74,7 +74,7 @@ FILES = {
 
 
 class Defect(Exception):
-    """What became of a state is not what is promised."""
+    """A promise that was not kept for a state."""
 
 
 def slipfront(program, line, folder):
@@ -130,7 +130,7 @@ class Job:
     out = "out"
 
     def meanwhile(self, number, program, folder):
-        """What happens while a command runs."""
+        """Function that is called with the process of strace while a command runs."""
         return lambda process: None
 
     def statuses(self):
@@ -147,7 +147,7 @@ class Job:
         raise NotImplementedError
 
     def right(self, program, folder, expected):
-        """What the folder holds, of the expected ends; a defect if it is none of them."""
+        """Name of the expected end that the folder holds; a defect if it holds none of them."""
         out = os.path.join(folder, self.out)
         found = without_time(files_below(out))
         for name, files in expected.items():
@@ -179,18 +179,19 @@ class Run(Job):
             return f"{became}: resumed {at}"
         if ended is not None:
             raise Defect(f"the command had ended, and its run cannot be used: {said}")
-        sentence = said.strip().splitlines()[-1]
-        tried = []
+        # The sentence tells the remedy.
         if "--previous" in said:
-            tried.append(("by --previous", f"run --resume {self.out} --previous {self.options}"))
-        if "is no folder of a run to go on with" in said:
-            tried.append(("begun again", f"run {self.case} -o {self.out} {self.options}"))
-        tried.append(("begun again with --force", f"run {self.case} -o {self.out} {self.options} --force"))
-        for words, line in tried:
-            status, said = slipfront(program, line, folder)
-            if status == 0:
-                return f"refused, {words}: {self.right(program, folder, expected)}"
-        raise Defect(f"no remedy helps, neither that of: {sentence} nor --force: {said}")
+            remedy, line = "by --previous", f"run --resume {self.out} --previous {self.options}"
+        elif "--force" in said:
+            remedy, line = "begun again with --force", f"run {self.case} -o {self.out} {self.options} --force"
+        elif "begin the run again" in said:
+            remedy, line = "begun again", f"run {self.case} -o {self.out} {self.options}"
+        else:
+            raise Defect(f"a sentence without a remedy: {said}")
+        status, after = slipfront(program, line, folder)
+        if status:
+            raise Defect(f"the remedy does not help: {said}then `slipfront {line}`: {after}")
+        return f"refused, {remedy}: {self.right(program, folder, expected)}"
 
 
 class Pictures(Run):
@@ -254,6 +255,15 @@ class Study(Job):
         raise Defect(f"the same command does not go on: {said}")
 
 
+class Merge(Study):
+    """Two parts of a study, the run folders of which are copied."""
+
+    name = "study merge"
+    before = tuple(f"study study.toml --shard {part}/2 -o part{part} --threads 1 --quiet" for part in (1, 2))
+    line = "study merge part1 part2 -o out --quiet"
+    lines = (line,)
+
+
 class Design(Study):
     name = "design"
     line = "design design.toml -o out --threads 1 --quiet"
@@ -283,4 +293,4 @@ class Saved(Pictures):
         return saves
 
 
-JOBS = (Run, Stopped, Replaced, Repeated, Pictures, Saved, Study, Design)
+JOBS = (Run, Stopped, Replaced, Repeated, Pictures, Saved, Study, Merge, Design)

@@ -24,6 +24,10 @@ JOBS_BY_NAME = {job.name: job() for job in JOBS}
 MEMORY = "/dev/shm" if os.access("/dev/shm", os.W_OK) else None
 
 
+class TooLate(Exception):
+    """A command that was not stopped before its end, or has failed."""
+
+
 def fill(folder, files):
     for name, content in files.items():
         path = os.path.join(folder, name)
@@ -45,13 +49,14 @@ def record(job, program):
             status, said = slipfront(program, line, work)
             if status:
                 sys.exit(f"{line}: {said}")
-            expected["the earlier run"] = job.expected(work)["the results"]
+            if os.path.isdir(os.path.join(work, job.out)):
+                expected["the earlier run"] = job.expected(work)["the results"]
         recorder = Recorder(work)
         before = copy.deepcopy(recorder.tree)
         for number, line in enumerate(job.lines):
             status, out, err = recorder.run([program, *line.split()], job.meanwhile(number, program, work))
             if status != job.statuses()[number]:
-                sys.exit(f"{line} ends with {status}: {out}{err}")
+                raise TooLate(f"{line} ends with {status}: {out}{err}")
         shown = recorder.tree
         for name, content in files_of(shown).items():
             with open(os.path.join(work, name), "rb") as file:
@@ -72,7 +77,7 @@ def files_of(tree, folder=0, prefix=""):
 
 
 def tried(name, program, files, expected, ended):
-    """What became of a state, and whether it is a defect."""
+    """Outcome of a state in words, and whether it is a defect."""
     with tempfile.TemporaryDirectory(dir=MEMORY) as folder:
         fill(folder, files)
         try:
@@ -83,9 +88,14 @@ def tried(name, program, files, expected, ended):
 
 def simulate(job, program, share, keep, pool):
     """Tries the states of a job; returns the number of defects."""
-    operations, before, folders, expected = record(job, program)
-    running, count, last, became = {}, 0, None, collections.Counter()
-    defects = 0
+    for attempt in range(5):
+        try:
+            operations, before, folders, expected = record(job, program)
+            break
+        except TooLate as late:
+            if attempt == 4:
+                sys.exit(str(late))
+    running, count, became, defects = {}, 0, collections.Counter(), 0
 
     def take(done):
         nonlocal defects

@@ -1,4 +1,4 @@
-"""What a command does to the files below a folder, as strace tells it.
+"""Recorder of all that a command does to the files below a folder, as strace tells it.
 
 A record is a list of operations on numbered files and folders, in the order in which the system finished them:
 

@@ -52,7 +52,7 @@ class Copy(requests.adapters.BaseAdapter):
 
 
 def issues(crate, cache):
-    """What the validator complains about, as pairs of severity and message."""
+    """Complaints of the validator, as pairs of severity and message, and its numbers of checks."""
     command = [VALIDATOR, "-y", "validate", "--offline", "--cache-path", cache, "-p", PROFILE, "-l", "recommended", "-f", "json", crate]
     done = subprocess.run(command, capture_output=True, text=True)
     try:

@@ -40,7 +40,7 @@ pub(crate) struct ExportCommand {
     force: bool,
 }
 
-/// What is made of the runs.
+/// Form in which the runs are exported.
 #[derive(Args)]
 #[group(required = true, multiple = false)]
 struct Form {

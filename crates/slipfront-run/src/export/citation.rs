@@ -6,7 +6,7 @@ use serde_json::json;
 use super::ro_crate::identifier;
 use super::{ExportError, Told, WholeRun};
 
-/// What slipfront is.
+/// Description of slipfront.
 pub(super) const MODEL: &str = "a two-dimensional lattice spring-block model of the transition from static to kinetic friction of \
                                 micro-textured surfaces";
 /// Authors of slipfront.

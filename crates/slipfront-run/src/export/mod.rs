@@ -34,7 +34,7 @@ pub struct WholeRun {
     manifest_file: ManifestFile,
 }
 
-/// What only the user knows about results.
+/// Facts about results that only the user knows.
 #[derive(Clone, Debug, Default)]
 pub struct Told {
     /// Who made the runs.

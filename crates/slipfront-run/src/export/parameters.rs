@@ -93,7 +93,7 @@ mod tests {
         );
         assert_eq!(found("texture.0.coverage"), (json!(5.0), Some(("%", Some("P1")))));
         assert_eq!(found("texture.0.shape"), (json!("cavity"), None));
-        assert_eq!(found("friction.seed"), (json!(1), None));
+        assert_eq!(found("friction.seed"), (json!(1), Some(("1", Some("C62")))));
         assert_eq!(found("time.step"), (json!("auto"), None));
         assert_eq!(found("load.redistribute"), (json!(true), None));
         assert_eq!(found("slider.blocks"), (json!([25, 25]), None));
