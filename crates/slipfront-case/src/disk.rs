@@ -9,7 +9,8 @@ use tempfile::{NamedTempFile, TempPath};
 
 use crate::unfinished;
 
-/// Writes a file atomically: as a [hidden file](unfinished) in its folder, which is then renamed, or removed after an error.
+/// Writes a file atomically: as a [hidden file](unfinished) in its folder, which is then renamed, or removed after an error. A file that is
+/// written survives a power failure.
 pub fn write_atomic(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
     write_atomic_with(path, |file| file.write_all(bytes))
 }
@@ -20,7 +21,7 @@ pub fn write_atomic_with(
     fill: impl FnOnce(&mut File) -> std::io::Result<()>,
 ) -> std::io::Result<()> {
     write_beside(path, fill)?.persist(path)?;
-    Ok(())
+    sync_folder(folder_of(path))
 }
 
 /// Writes a [hidden file](unfinished) in the folder of the file that it is to become, and syncs it. The hidden file is
@@ -60,10 +61,15 @@ fn fill_and_sync(
 /// Syncs a folder, so that files renamed in it keep their names after a power failure.
 pub fn sync_folder(folder: &Path) -> std::io::Result<()> {
     // Only Unix opens folders as files.
-    if cfg!(unix) {
-        File::open(folder)?.sync_all()?;
+    if cfg!(not(unix)) {
+        return Ok(());
     }
-    Ok(())
+    match File::open(folder) {
+        Ok(folder) => folder.sync_all(),
+        // One that may be written to and not read cannot be synced.
+        Err(error) if error.kind() == ErrorKind::PermissionDenied => Ok(()),
+        Err(error) => Err(error),
+    }
 }
 
 /// Removes a file if it exists.
@@ -79,13 +85,19 @@ pub fn is_empty(folder: &Path) -> std::io::Result<bool> {
     Ok(std::fs::read_dir(folder)?.next().transpose()?.is_none())
 }
 
-/// Makes a folder, and the folders above it, where they are missing.
+/// Makes a folder, and the folders above it, where they are missing, such that they survive a power failure.
 pub fn make_folders(path: &Path) -> std::io::Result<()> {
     // Of a folder that is there, but cannot be looked at, the standard library says that it exists.
-    match found_behind(path)? {
-        Some(found) if found.is_dir() => Ok(()),
-        _ => std::fs::create_dir_all(path),
+    if found_behind(path)?.is_some_and(|found| found.is_dir()) {
+        return Ok(());
     }
+    let is_missing = |folder: &&Path| !folder.as_os_str().is_empty() && !folder.exists();
+    let missing: Vec<&Path> = path.ancestors().take_while(is_missing).collect();
+    std::fs::create_dir_all(path)?;
+    missing
+        .into_iter()
+        .rev()
+        .try_for_each(|made| sync_folder(folder_of(made)))
 }
 
 /// Opens a regular file, and nothing else: a pipe may block, and a device such as `/dev/zero` has no end.

@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use slipfront::Execution;
-use slipfront_case::disk::make_folders;
+use slipfront_case::disk::{folder_of, make_folders, sync_folder};
 use slipfront_case::text::{display_path, truncated};
 use slipfront_run::clock;
 use slipfront_run::pictures;
@@ -43,9 +43,10 @@ fn is_taken(folder: &Path) -> String {
 
 /// Makes a new folder. Fails if anything has that name already, even a link to an empty folder.
 fn make_folder(path: &Path) -> Result<(), String> {
-    let above = path.parent().map_or(Ok(()), make_folders);
-    above
+    let above = folder_of(path);
+    make_folders(above)
         .and_then(|()| std::fs::create_dir(path))
+        .and_then(|()| sync_folder(above))
         .map_err(|error| match error.kind() {
             ErrorKind::AlreadyExists => is_taken(path),
             _ => format!("{} cannot be made: {error}", display_path(path)),

@@ -15,6 +15,7 @@ pub mod clock;
 pub mod columns;
 pub mod error;
 pub mod estimate_cost;
+pub mod export;
 pub mod fields;
 pub mod folder_error;
 mod friction_unit;

@@ -16,6 +16,8 @@ pub const KYMOGRAPH: &str = "kymograph.nc";
 pub const FIELDS: &str = "fields.nc";
 /// The movie of a run, if the case asks for it.
 pub const MOVIE: &str = "movie.gif";
+/// The description of runs for data repositories, which `slipfront export` writes.
+pub const RO_CRATE: &str = "ro-crate-metadata.json";
 /// The hidden subfolder for everything that belongs to a run which is not complete.
 pub const UNFINISHED: &str = ".slipfront";
 /// In the hidden subfolder: the files that the run has finished, which also says that the subfolder is slipfront's.

@@ -7,10 +7,11 @@ use std::path::{Component, Path, PathBuf};
 use thiserror::Error;
 
 use crate::folder_error::FolderError;
-use crate::manifest::{ManifestError, ManifestFile};
-use crate::names::{CASE, MANIFEST, UNFINISHED};
+use crate::manifest::{Manifest, ManifestError, ManifestFile};
+use crate::names::{CASE, MANIFEST, RO_CRATE, UNFINISHED};
 use crate::run_folder::inspection::{CaseDefect, Inspection};
 use crate::run_folder::unfinished::Unfinished;
+use slipfront_case::disk::{TEXT_MAX_BYTES, read_limited};
 use slipfront_case::number_format::count;
 use slipfront_case::text::{single_line, truncated};
 use slipfront_case::unfinished::is_unfinished;
@@ -90,8 +91,25 @@ pub fn verify_run(run: &Inspection) -> Result<Verdict, VerifyError> {
         UNFINISHED => has_unfinished,
         name => is_unfinished(name),
     };
-    verdict.notes = unlisted_files(&run.path, &listed.chain([MANIFEST]).collect(), is_left);
+    let is_described = is_described(&run.path, manifest);
+    let described = is_described.map(|_| RO_CRATE);
+    let listed = listed.chain([MANIFEST]).chain(described).collect();
+    verdict.notes = unlisted_files(&run.path, &listed, is_left);
+    if is_described == Some(false) {
+        verdict.notes.push(single_line(&format!(
+            "{} describes other results than the folder holds: `slipfront export --ro-crate --force` writes it anew",
+            run.path.join(RO_CRATE).display()
+        )));
+    }
     Ok(verdict)
+}
+
+/// Whether the description in a folder, which names the checksum of a manifest, is of the run with this manifest; none if
+/// there is no description that can be read.
+fn is_described(folder: &Path, manifest: &Manifest) -> Option<bool> {
+    let text = read_limited(&folder.join(RO_CRATE), TEXT_MAX_BYTES).ok()?;
+    let checksum = manifest.checksum.as_bytes();
+    Some(text.windows(checksum.len()).any(|bytes| bytes == checksum))
 }
 
 /// Inspects the folder of a run, which must be a folder that can be listed.

@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::Write;
 use std::path::Path;
 
-use slipfront_case::disk::{folder_of, found_at, make_folders, write_atomic_with, write_beside};
+use slipfront_case::disk::{folder_of, found_at, make_folders, sync_folder, write_atomic_with, write_beside};
 use slipfront_plot::Picture;
 use slipfront_run::folder_error::FolderError;
 
@@ -59,7 +59,9 @@ pub(crate) fn copy_in(folder: &Path, copies: &[Copy]) -> Result<(), StudyError> 
     }
     for (file, path) in staged {
         let persisted = file.persist(&path).map_err(|error| error.error);
-        persisted.map_err(failed(&path))?;
+        persisted
+            .and_then(|()| sync_folder(folder_of(&path)))
+            .map_err(failed(&path))?;
     }
     Ok(())
 }

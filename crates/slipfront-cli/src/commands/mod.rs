@@ -5,6 +5,7 @@ pub(crate) mod check;
 pub(crate) mod completions;
 pub(crate) mod converge;
 pub(crate) mod design;
+pub(crate) mod export;
 pub(crate) mod family;
 pub(crate) mod lab;
 pub(crate) mod licences;

@@ -239,8 +239,11 @@ fn what_is_complete_or_has_not_begun() {
     // Where no run was begun there is none to resume, and nothing is touched.
     workspace.write("other/notes.txt", "mine");
     for (folder, why) in [
-        ("other", "it has no case.toml"),
-        ("nowhere", "there is none of this name"),
+        (
+            "other",
+            "it has no case.toml; begin the run again, there with --force",
+        ),
+        ("nowhere", "there is none of this name; begin the run again"),
         ("whole/case.toml", "it is a file: name its folder"),
     ] {
         let said = workspace.fail(&format!("run --quiet --resume {folder}"), 2);

@@ -14,6 +14,7 @@ mod checkpoints;
 mod converge;
 mod design;
 mod docs;
+mod export;
 mod fixtures;
 mod folder;
 mod input;

@@ -26,7 +26,12 @@ pub fn copy_run(from: &Path, to: &Path) -> Result<(), FolderError> {
         }
         let mut original = open_regular(&from.join(name)).map_err(failed)?;
         let file = write_temp(&copy.temporary(), |to| std::io::copy(&mut original, to).map(drop));
-        copy.place(name, file.map_err(failed)?)?;
+        let file = file.map_err(failed)?;
+        if name == MANIFEST {
+            copy.place_manifest(file)?;
+        } else {
+            copy.place(name, file)?;
+        }
     }
     // Of a run that failed there is the case alone, and the copy stays the folder of an interrupted run.
     if names.iter().any(|name| name == MANIFEST) {

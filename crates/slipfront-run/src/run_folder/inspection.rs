@@ -91,8 +91,10 @@ impl Inspection {
             CaseDefect::Invalid(_) | CaseDefect::NotResolved(_) => None,
         };
         let why = match unread.map(std::io::Error::kind) {
-            Some(ErrorKind::NotFound) if path.exists() => "it has no case.toml",
-            Some(ErrorKind::NotFound) => "there is none of this name",
+            Some(ErrorKind::NotFound) if path.exists() => {
+                "it has no case.toml; begin the run again, there with --force"
+            }
+            Some(ErrorKind::NotFound) => "there is none of this name; begin the run again",
             Some(ErrorKind::NotADirectory) => "it is a file: name its folder",
             None => {
                 "its case.toml is not as this version wrote it; put it back as it was, or run it to another folder"

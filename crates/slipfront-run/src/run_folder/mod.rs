@@ -162,7 +162,14 @@ impl ClaimedFolder {
     ///
     /// # Errors When a file cannot be removed.
     pub fn take(self) -> Result<RunFolder, FolderError> {
-        remove_files(&self.folder.path, self.replaced)?;
+        let (manifest, others): (Vec<_>, Vec<_>) =
+            self.replaced.into_iter().partition(|name| name == MANIFEST);
+        if !manifest.is_empty() {
+            remove_files(&self.folder.path, manifest)?;
+            // After a power failure a manifest would say that the run is complete, whatever else has gone.
+            self.folder.sync()?;
+        }
+        remove_files(&self.folder.path, others)?;
         Ok(self.folder)
     }
 
@@ -345,15 +352,23 @@ impl RunFolder {
         }
         let files = std::mem::take(&mut self.written);
         let (manifest, bytes) = Manifest::of(files, case, started, threads).with_checksum();
-        self.write(MANIFEST, &bytes)?;
-        if let Err(error) = sync_folder(&self.path) {
+        let file = write_temp(&self.temporary(), |file| file.write_all(&bytes));
+        self.place_manifest(file.map_err(FolderError::write(&self.path.join(MANIFEST)))?)?;
+        self.close();
+        Ok(manifest)
+    }
+
+    /// Makes a finished temporary file the manifest. Every other file has its name on the disk before, so that no power failure
+    /// leaves a manifest without the files that it lists, and the manifest has its own after.
+    fn place_manifest(&mut self, file: TempPath) -> Result<(), FolderError> {
+        self.sync()?;
+        self.place(MANIFEST, file)?;
+        sync_folder(&self.path).map_err(|error| {
             let path = self.path.join(MANIFEST);
             // What may not be on the disk is not complete.
             let _ = std::fs::remove_file(&path);
-            return Err(FolderError::write(&path)(error));
-        }
-        self.close();
-        Ok(manifest)
+            FolderError::write(&path)(error)
+        })
     }
 
     /// Ends a run that is complete: removes the hidden subfolder.

@@ -70,13 +70,10 @@ impl Unfinished {
         let run = self.path.parent().unwrap_or(&self.path);
         make_folder(&self.path, run)?;
         let path = self.journal();
-        let is_new = !path.exists();
         let journal = Journal::open(&path).map_err(FolderError::write(&path))?;
-        if is_new {
-            // What it lists must not outlast it in a power failure.
-            for folder in [&self.path, run] {
-                sync_folder(folder).map_err(FolderError::write(folder))?;
-            }
+        // What it lists must not outlast it in a power failure, also where a process that was killed has made it.
+        for folder in [&self.path, run] {
+            sync_folder(folder).map_err(FolderError::write(folder))?;
         }
         let temporary = self.temporary();
         make_folder(&temporary, &temporary)?;
@@ -126,7 +123,10 @@ impl Unfinished {
             Err(error) if error.kind() != ErrorKind::NotFound => return Err(error),
             _ => {}
         }
-        // Until here it says whose the rest is.
+        // Until here it says whose the rest is, which no power failure may bring back without it.
+        if self.has_journal().unwrap_or(true) {
+            sync_folder(&self.path)?;
+        }
         remove_if_there(&self.journal())?;
         let _ = std::fs::remove_dir(&self.path);
         Ok(())

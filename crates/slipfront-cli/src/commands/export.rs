@@ -1,0 +1,104 @@
+//! Command `slipfront export`: complete runs for a data repository, and their citations.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use slipfront_run::export::{
+    Author, ExportError, Licence, Told, WholeRun, bibtex, cff, crate_of_copies, describe_in_place,
+};
+
+use crate::failure::Failure;
+use crate::print::{print, print_message};
+use crate::wrap;
+
+/// Describe complete runs for a data repository (RO-Crate), or print their citations
+#[derive(Args)]
+#[command(after_help = "Examples:
+  slipfront export results/circle --ro-crate --author \"NAME\" --licence CC-BY-4.0
+  slipfront export results/first/runs/* --ro-crate -o first-as-crate     several runs as one crate
+  slipfront export results/circle --bibtex > circle.bib
+  slipfront export results/circle --cff --author \"NAME\" > CITATION.cff
+
+Only runs that `slipfront verify` finds as they were written are exported.")]
+pub(crate) struct ExportCommand {
+    /// Folders of complete runs
+    #[arg(required = true, value_name = "DIR")]
+    folders: Vec<PathBuf>,
+    #[command(flatten)]
+    form: Form,
+    /// Who made the runs: a name, or \"NAME <https://orcid.org/0000-0000-0000-0000>\"
+    #[arg(long, value_name = "NAME")]
+    author: Option<Author>,
+    /// Licence of the results: an identifier of SPDX such as CC-BY-4.0, or an address
+    #[arg(long, value_name = "ID")]
+    licence: Option<Licence>,
+    /// A new folder for the crate, to which the runs are copied [default: the folder of the run itself, of one run]
+    #[arg(short, long, value_name = "DIR", conflicts_with_all = ["bibtex", "cff"])]
+    out: Option<PathBuf>,
+    /// Replace a description that stands in the folder of the run
+    #[arg(long, conflicts_with_all = ["out", "bibtex", "cff"])]
+    force: bool,
+}
+
+/// Form in which the runs are exported.
+#[derive(Args)]
+#[group(required = true, multiple = false)]
+struct Form {
+    /// Write ro-crate-metadata.json, with which the folder is a Process Run Crate
+    #[arg(long)]
+    ro_crate: bool,
+    /// Print entries of BibTeX: each run, slipfront and the article of its model
+    #[arg(long)]
+    bibtex: bool,
+    /// Print a citation file, CITATION.cff; it needs --author
+    #[arg(long)]
+    cff: bool,
+}
+
+impl ExportCommand {
+    pub(crate) fn execute(self) -> Result<(), Failure> {
+        let told = Told {
+            author: self.author,
+            licence: self.licence,
+        };
+        let runs = self.folders.iter().map(|folder| WholeRun::read(folder));
+        let runs = runs.collect::<Result<Vec<_>, _>>().map_err(failure)?;
+        if self.form.bibtex {
+            return print(&bibtex(&runs, &told));
+        }
+        if self.form.cff {
+            return print(&cff(&runs, &told).map_err(failure)?);
+        }
+        let written = match (self.out, runs.as_slice()) {
+            (Some(out), runs) => crate_of_copies(runs, &out, &told),
+            (None, [run]) => describe_in_place(run, &told, self.force),
+            (None, _) => Err(ExportError::NeedsFolder),
+        };
+        let path = written.map_err(failure)?;
+        print_message(&format!("{}\n", path.display()));
+        for (is_told, missing) in [
+            (
+                told.author.is_some(),
+                "the crate names no author: add --author \"NAME\"",
+            ),
+            (
+                told.licence.is_some(),
+                "the crate has no licence, without which others may not use the results: add --licence, such as --licence CC-BY-4.0",
+            ),
+        ] {
+            if !is_told {
+                print_message(&wrap::note(missing));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// A change of the results, or a disk that cannot be written, is a failure of the work; all else is one of the input.
+fn failure(error: ExportError) -> Failure {
+    if matches!(error, ExportError::Changed { .. } | ExportError::Write { .. }) {
+        Failure::running(error)
+    } else {
+        Failure::input(error)
+    }
+}

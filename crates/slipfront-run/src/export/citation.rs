@@ -1,0 +1,157 @@
+//! Citations of runs, of slipfront and of the article whose model it implements, as BibTeX and as a citation file (CFF 1.2.0).
+
+use jiff::Timestamp;
+use serde_json::json;
+
+use super::ro_crate::identifier;
+use super::{ExportError, Told, WholeRun};
+
+/// Description of slipfront.
+pub(super) const MODEL: &str = "a two-dimensional lattice spring-block model of the transition from static to kinetic friction of \
+                                micro-textured surfaces";
+/// Authors of slipfront.
+pub(super) const DEVELOPERS: &str = "The slipfront developers";
+pub(super) const ARTICLE_TITLE: &str = "2D Spring-block model to study the transition from static to kinetic friction of \
+                                        complex-micro-textured contact surfaces";
+const ARTICLE_DOI: &str = "10.1016/j.triboint.2023.108866";
+pub(super) const ARTICLE_URL: &str = "https://doi.org/10.1016/j.triboint.2023.108866";
+const ARTICLE_JOURNAL: &str = "Tribology International";
+pub(super) const ARTICLE_YEAR: u16 = 2023;
+/// Remark in place of the names of the article's authors.
+const ARTICLE_NOTE: &str = "The model. The authors' names stand on the publisher's page of this DOI.";
+
+/// Entries of BibTeX: one for each run, one for slipfront and one for the article. Without an author the entries of runs have none.
+pub fn bibtex(runs: &[WholeRun], told: &Told) -> String {
+    let mut text = String::new();
+    for run in runs {
+        let manifest = &run.manifest;
+        let mut fields = vec![
+            (
+                "title",
+                format!("{{Friction computed with slipfront: {}}}", tex(&run.name)),
+            ),
+            (
+                "note",
+                tex(&format!(
+                    "Made with {}. BLAKE3 hash of case.toml: {}; seal of manifest.json: {}",
+                    manifest.program(),
+                    manifest.case_blake3,
+                    manifest.checksum
+                )),
+            ),
+        ];
+        fields.extend(
+            told.author
+                .iter()
+                .map(|author| ("author", format!("{{{}}}", tex(&author.name)))),
+        );
+        if let Ok(finished) = manifest.finished.parse::<Timestamp>() {
+            fields.push(("year", finished.strftime("%Y").to_string()));
+        }
+        fields.extend(
+            told.licence
+                .iter()
+                .map(|licence| ("copyright", tex(&licence.name))),
+        );
+        let seal = manifest.checksum.get(..16).unwrap_or_default();
+        text += &entry("misc", &format!("slipfront-run-{seal}"), &fields);
+    }
+    text += &entry(
+        "software",
+        "slipfront",
+        &[
+            ("title", "{slipfront}".to_owned()),
+            ("author", format!("{{{DEVELOPERS}}}")),
+            ("version", versions(runs)),
+            ("note", MODEL.to_owned()),
+        ],
+    );
+    text + &entry(
+        "article",
+        "slipfront-model",
+        &[
+            ("title", format!("{{{ARTICLE_TITLE}}}")),
+            ("journal", ARTICLE_JOURNAL.to_owned()),
+            ("year", ARTICLE_YEAR.to_string()),
+            ("doi", ARTICLE_DOI.to_owned()),
+            ("note", ARTICLE_NOTE.to_owned()),
+        ],
+    )
+}
+
+fn entry(kind: &str, key: &str, fields: &[(&str, String)]) -> String {
+    let lines = fields
+        .iter()
+        .map(|(name, value)| format!("  {name} = {{{value}}},\n"));
+    format!("@{kind}{{{key},\n{}}}\n", lines.collect::<String>())
+}
+
+/// Versions of slipfront that made the runs.
+fn versions(runs: &[WholeRun]) -> String {
+    let mut versions: Vec<&str> = runs.iter().map(|run| run.manifest.version.as_str()).collect();
+    versions.sort_unstable();
+    versions.dedup();
+    versions.join(", ")
+}
+
+/// A text in which TeX reads every sign as it stands.
+fn tex(text: &str) -> String {
+    let sign = |c: char| match c {
+        '&' | '%' | '$' | '#' | '_' | '{' | '}' => format!("\\{c}"),
+        '\\' => "\\textbackslash{}".to_owned(),
+        '~' => "\\textasciitilde{}".to_owned(),
+        '^' => "\\textasciicircum{}".to_owned(),
+        _ => c.to_string(),
+    };
+    text.chars().map(sign).collect()
+}
+
+/// A citation file (CFF 1.2.0) of runs, as `CITATION.cff` beside them.
+///
+/// # Errors
+/// [`ExportError::NeedsAuthor`]: the format demands one.
+pub fn cff(runs: &[WholeRun], told: &Told) -> Result<String, ExportError> {
+    let author = told.author.as_ref().ok_or(ExportError::NeedsAuthor)?;
+    let names: Vec<&str> = runs.iter().map(|run| run.name.as_str()).collect();
+    // Strings of JSON are strings of YAML.
+    let quoted = |text: &str| json!(text).to_string();
+    let mut text = format!(
+        "cff-version: 1.2.0\nmessage: \"If you use these results, please cite them, slipfront and the article of its model.\"\n\
+         type: dataset\ntitle: {}\nauthors:\n  - name: {}\n",
+        quoted(&format!("Friction computed with slipfront: {}", names.join(", "))),
+        quoted(&author.name)
+    );
+    if let Some(orcid) = &author.orcid {
+        text += &format!("    orcid: {}\n", quoted(orcid));
+    }
+    if let Some(licence) = &told.licence {
+        let key = if licence.url == licence.name {
+            "license-url"
+        } else {
+            "license"
+        };
+        text += &format!("{key}: {}\n", quoted(&licence.name));
+    }
+    text += "identifiers:\n";
+    for run in runs {
+        text += &format!(
+            "  - type: other\n    value: {}\n    description: {}\n",
+            quoted(&identifier(&run.manifest)),
+            quoted(&format!("Seal of manifest.json of the run {}", run.name))
+        );
+    }
+    text += &format!(
+        "references:\n  - type: software\n    title: slipfront\n    version: {}\n    authors:\n      - name: {}\n",
+        quoted(&versions(runs)),
+        quoted(DEVELOPERS)
+    );
+    text += &format!(
+        "  - type: article\n    title: {}\n    authors:\n      - name: {}\n    journal: {}\n    year: {ARTICLE_YEAR}\n    \
+         doi: {ARTICLE_DOI}\n    notes: {}\n",
+        quoted(ARTICLE_TITLE),
+        quoted(&format!("Authors of doi:{ARTICLE_DOI}")),
+        quoted(ARTICLE_JOURNAL),
+        quoted(ARTICLE_NOTE)
+    );
+    Ok(text)
+}

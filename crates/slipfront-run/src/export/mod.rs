@@ -1,0 +1,250 @@
+//! Complete runs told to other programs: as a Process Run Crate (RO-Crate) for data repositories, and as citations.
+//!
+//! Author and licence are not known to a run. What the user does not tell is told as missing, and never made up.
+
+mod citation;
+mod parameters;
+mod ro_crate;
+
+use std::path::{Path, PathBuf};
+use std::str::FromStr;
+
+use slipfront_case::case_file::CaseFile;
+use slipfront_case::disk::{
+    folder_of, is_empty, make_folders, open_regular, sync_folder, write_atomic, write_atomic_with,
+};
+use slipfront_case::text::truncated;
+use thiserror::Error;
+
+pub use self::citation::{bibtex, cff};
+use crate::clock;
+use crate::manifest::{Manifest, ManifestError, ManifestFile};
+use crate::names::{MANIFEST, RO_CRATE};
+use crate::verify::{VerifyError, differences, inspect, verify_run};
+
+/// A complete run, every file of which is as it was written.
+#[derive(Debug)]
+pub struct WholeRun {
+    folder: PathBuf,
+    /// Name of the folder.
+    name: String,
+    case: CaseFile,
+    manifest: Manifest,
+    /// Length and hash of the manifest.
+    manifest_file: ManifestFile,
+}
+
+/// Facts about results that only the user knows.
+#[derive(Clone, Debug, Default)]
+pub struct Told {
+    /// Who made the runs.
+    pub author: Option<Author>,
+    /// Terms under which others may use the results.
+    pub licence: Option<Licence>,
+}
+
+/// Name of an author, with the address of an ORCID record.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Author {
+    name: String,
+    orcid: Option<String>,
+}
+
+/// A licence, by its identifier in the list of SPDX or by its address.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Licence {
+    name: String,
+    url: String,
+}
+
+/// Reason for which a run is not exported.
+#[derive(Debug, Error)]
+#[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
+pub enum ExportError {
+    #[error(transparent)]
+    Run(#[from] VerifyError),
+    #[error(
+        "{difference}: only results that are as they were written are exported; run the case again to another folder"
+    )]
+    Changed { difference: String },
+    #[error("{path} exists: replace it with --force, or write the crate to a new folder with --out")]
+    Exists { path: PathBuf },
+    #[error("the folder {path} is not empty: choose another with --out")]
+    NotEmpty { path: PathBuf },
+    #[error(
+        "two of the runs stand in folders of the name {name}, as which both would be copied: rename one of them"
+    )]
+    SameName { name: String },
+    #[error("several runs make one crate in a folder of its own: name it with --out")]
+    NeedsFolder,
+    #[error("a citation file needs an author: add --author \"NAME\"")]
+    NeedsAuthor,
+    #[error("cannot write {path}: {source}; choose another folder with --out")]
+    Write { path: PathBuf, source: std::io::Error },
+}
+
+impl WholeRun {
+    /// Reads a run folder and compares every file with its checksum.
+    ///
+    /// # Errors
+    /// [`ExportError::Run`] for a folder without a complete run, [`ExportError::Changed`] when a file has changed.
+    pub fn read(folder: &Path) -> Result<Self, ExportError> {
+        let run = inspect(folder)?;
+        if let Some(difference) = verify_run(&run)?.differences.into_iter().next() {
+            return Err(ExportError::Changed { difference });
+        }
+        let manifest = run.manifest().map_err(VerifyError::from)?.clone();
+        let case = run.case_to_resume().map_err(VerifyError::from)?.clone();
+        let manifest_file = ManifestFile::of(folder, MANIFEST).map_err(|error| {
+            let (path, why) = (folder.join(MANIFEST), error.to_string());
+            VerifyError::from(ManifestError::Unreadable { path, why })
+        })?;
+        // A folder named `.` has the name that the system knows.
+        let path = folder.canonicalize().unwrap_or_else(|_| folder.to_owned());
+        let name = path
+            .file_name()
+            .unwrap_or_default()
+            .to_string_lossy()
+            .into_owned();
+        Ok(Self {
+            folder: folder.to_owned(),
+            name,
+            case,
+            manifest,
+            manifest_file,
+        })
+    }
+
+    /// Every file of the run, the manifest last.
+    fn files(&self) -> impl Iterator<Item = &ManifestFile> {
+        self.manifest.files.iter().chain([&self.manifest_file])
+    }
+
+    /// Copies every file of the run to a new folder, where it is compared with its checksum.
+    fn copy(&self, to: &Path) -> Result<(), ExportError> {
+        for ManifestFile { name, .. } in self.files() {
+            let (original, path) = (self.folder.join(name), to.join(name));
+            let copied = make_folders(folder_of(&path)).and_then(|()| {
+                write_atomic_with(&path, |to| {
+                    std::io::copy(&mut open_regular(&original)?, to).map(drop)
+                })
+            });
+            copied.map_err(|source| ExportError::Write { path, source })?;
+        }
+        match differences(self.files(), to, "were copied").into_iter().next() {
+            Some(difference) => Err(ExportError::Changed { difference }),
+            None => Ok(()),
+        }
+    }
+}
+
+impl FromStr for Author {
+    type Err = String;
+
+    /// Reads `NAME`, or `NAME <https://orcid.org/0000-0000-0000-0000>`.
+    fn from_str(text: &str) -> Result<Self, String> {
+        const FORM: &str = "write a name, or \"NAME <https://orcid.org/0000-0000-0000-0000>\"";
+        let (name, orcid) = match text.split_once('<') {
+            Some((name, orcid)) => (name, Some(orcid.strip_suffix('>').ok_or(FORM)?)),
+            None => (text, None),
+        };
+        let is_orcid = |address: &str| {
+            address.strip_prefix("https://orcid.org/").is_some_and(|digits| {
+                let parts = digits.split('-').collect::<Vec<_>>();
+                let is_part =
+                    |part: &&str| part.len() == 4 && part.bytes().all(|c| c.is_ascii_digit() || c == b'X');
+                parts.len() == 4 && parts.iter().all(is_part)
+            })
+        };
+        if name.trim().is_empty() || name.contains(char::is_control) || !orcid.is_none_or(is_orcid) {
+            return Err(FORM.to_owned());
+        }
+        Ok(Self {
+            name: name.trim().to_owned(),
+            orcid: orcid.map(str::to_owned),
+        })
+    }
+}
+
+impl FromStr for Licence {
+    type Err = String;
+
+    /// Reads an identifier such as `CC-BY-4.0`, or an address.
+    fn from_str(text: &str) -> Result<Self, String> {
+        let is_address = ["https://", "http://"]
+            .iter()
+            .any(|start| text.starts_with(start));
+        let is_identifier = |c: char| c.is_ascii_alphanumeric() || "-.+".contains(c);
+        if text.is_empty()
+            || (!is_address && !text.chars().all(is_identifier))
+            || text.contains(char::is_whitespace)
+        {
+            return Err(
+                "write an identifier of https://spdx.org/licenses, such as CC-BY-4.0, or an address"
+                    .to_owned(),
+            );
+        }
+        let url = if is_address {
+            text.to_owned()
+        } else {
+            format!("https://spdx.org/licenses/{text}")
+        };
+        Ok(Self {
+            name: text.to_owned(),
+            url,
+        })
+    }
+}
+
+/// Describes a run in its own folder, in `ro-crate-metadata.json`, and returns the path of this file. It is not one of the run's files.
+///
+/// # Errors
+/// When the file exists, without `force`, and when the system refuses to write.
+pub fn describe_in_place(run: &WholeRun, told: &Told, force: bool) -> Result<PathBuf, ExportError> {
+    let path = run.folder.join(RO_CRATE);
+    // A broken link is a file of the user as well.
+    if path.symlink_metadata().is_ok() && !force {
+        return Err(ExportError::Exists { path });
+    }
+    let bytes = ro_crate::metadata(&[(run, String::new())], told, clock::now());
+    write_durably(&path, &bytes)?;
+    Ok(path)
+}
+
+/// Copies runs to a new folder, each to a folder of its name, describes them there in `ro-crate-metadata.json`, which is written last, and
+/// returns the path of this file.
+///
+/// # Errors
+/// When the folder exists and is not empty, when two runs have one name, and when the system refuses to read or write.
+pub fn crate_of_copies(runs: &[WholeRun], out: &Path, told: &Told) -> Result<PathBuf, ExportError> {
+    let mut names: Vec<&String> = runs.iter().map(|run| &run.name).collect();
+    names.sort_unstable();
+    if let Some(pair) = names.windows(2).find(|pair| pair[0] == pair[1]) {
+        return Err(ExportError::SameName {
+            name: truncated(pair[0]),
+        });
+    }
+    let failed = |source| ExportError::Write {
+        path: out.to_owned(),
+        source,
+    };
+    make_folders(out).map_err(failed)?;
+    if !is_empty(out).map_err(failed)? {
+        return Err(ExportError::NotEmpty { path: out.to_owned() });
+    }
+    for run in runs {
+        run.copy(&out.join(&run.name))?;
+    }
+    let placed: Vec<_> = runs.iter().map(|run| (run, format!("{}/", run.name))).collect();
+    let path = out.join(RO_CRATE);
+    write_durably(&path, &ro_crate::metadata(&placed, told, clock::now()))?;
+    Ok(path)
+}
+
+fn write_durably(path: &Path, bytes: &[u8]) -> Result<(), ExportError> {
+    let written = write_atomic(path, bytes).and_then(|()| sync_folder(folder_of(path)));
+    written.map_err(|source| ExportError::Write {
+        path: path.to_owned(),
+        source,
+    })
+}
