@@ -21,7 +21,6 @@ version=$(sed -n 's/^version = "\(.*\)"$/\1/p' Cargo.toml)
 out=$PWD/target/dist
 stage=$PWD/target/dist-stage
 tools=$PWD/target/dist-tools
-host=x86_64-unknown-linux-gnu
 # Times of files in archives and wheels.
 SOURCE_DATE_EPOCH=$(git log -1 --format=%ct)
 export SOURCE_DATE_EPOCH
@@ -33,8 +32,6 @@ for path in "${paths[@]}"; do
     flags+=$'\x1f'"--remap-path-prefix=$path"
 done
 export CARGO_ENCODED_RUSTFLAGS=$flags CARGO_TARGET_DIR=$PWD/target/dist-build
-# The linker of Rust's own toolchain is the same on every machine, and knows every architecture.
-export CARGO_TARGET_X86_64_UNKNOWN_LINUX_MUSL_LINKER=rust-lld CARGO_TARGET_AARCH64_UNKNOWN_LINUX_MUSL_LINKER=rust-lld
 
 say() {
     printf '\n== %d s: %s\n' "$SECONDS" "$*"
@@ -63,7 +60,9 @@ command_for() {
     local name=slipfront-$version-$1 target=$2 program=$3 archive=$4
     add_target "$target"
     module
-    cargo build --profile dist --locked --package slipfront-cli --target "$target"
+    # The linker of Rust's own toolchain is the same on every machine, and knows every architecture.
+    CARGO_TARGET_X86_64_UNKNOWN_LINUX_MUSL_LINKER=rust-lld CARGO_TARGET_AARCH64_UNKNOWN_LINUX_MUSL_LINKER=rust-lld \
+        cargo build --profile dist --locked --package slipfront-cli --target "$target"
     rm -rf "${stage:?}/$name"
     mkdir -p "$stage/$name"
     cp "$CARGO_TARGET_DIR/$target/dist/$program" target/slipfront.wasm LICENSE-APACHE LICENSE-MIT "$stage/$name"
@@ -85,18 +84,15 @@ pack() {
     python3 -B release/pack.py "$stage/$1" "$out/$1.$2"
 }
 
-# A wheel: TARGET COMPATIBILITY.
+# A wheel: TARGET and options of maturin.
 wheel() {
     local target=$1
+    shift
     add_target "$target"
     venv
     module
     cp target/slipfront.wasm python/slipfront/
-    local zig=(--zig)
-    # mingw-w64 links what zig cannot.
-    [[ $target != *windows* ]] || zig=()
-    PATH=$tools/bin:$PATH "$tools/bin/maturin" build --profile dist --locked --target "$target" --compatibility "$2" "${zig[@]}" \
-        --manifest-path python/Cargo.toml --out "$out"
+    PATH=$tools/bin:$PATH "$tools/bin/maturin" build --profile dist --locked --target "$target" "$@" --manifest-path python/Cargo.toml --out "$out"
 }
 
 mingw() {
@@ -119,15 +115,15 @@ step() {
     elif [ "$1" = source ]; then
         source_distributions
     elif [ "$1" = wheel-linux-x86_64 ]; then
-        wheel x86_64-unknown-linux-gnu manylinux2014
+        wheel x86_64-unknown-linux-gnu --zig --compatibility manylinux2014
     elif [ "$1" = wheel-linux-aarch64 ]; then
-        wheel aarch64-unknown-linux-gnu manylinux2014
+        wheel aarch64-unknown-linux-gnu --zig --compatibility manylinux2014
     elif [ "$1" = wheel-musl-x86_64 ]; then
-        wheel x86_64-unknown-linux-musl musllinux_1_2
+        wheel x86_64-unknown-linux-musl --zig --compatibility musllinux_1_2
     elif [ "$1" = wheel-musl-aarch64 ]; then
-        wheel aarch64-unknown-linux-musl musllinux_1_2
+        wheel aarch64-unknown-linux-musl --zig --compatibility musllinux_1_2
     elif [ "$1" = wheel-windows-x86_64 ]; then
-        (mingw && wheel x86_64-pc-windows-gnu pypi)
+        (mingw && wheel x86_64-pc-windows-gnu)
     elif [ "$1" = reproducible ]; then
         reproducible
     else
