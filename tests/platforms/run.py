@@ -35,8 +35,8 @@ VERSION = re.search(r'(?m)^version = "(.*)"$', (ROOT / "Cargo.toml").read_text()
 STEPS = 500
 # The case whose pictures are drawn too.
 DRAWN = "circle"
-# Times, places and orders of events.
-NOT_HASHED = {"manifest.json", "journal.jsonl"}
+# They hold times, places and the order in which runs ended.
+NOT_HASHED = {"manifest.json", "records.jsonl"}
 BEGIN, END = "<!-- written by tests/platforms/run.py -->\n", "<!-- end -->\n"
 
 
