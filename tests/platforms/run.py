@@ -86,7 +86,6 @@ class Windows:
     """The command for Windows, under wine."""
 
     def __init__(self, program):
-        self.title = "Windows, x86-64, AVX2 or AVX-512"
         wine = tool("wine64", "wine64") if shutil.which("wine64") else tool("/usr/lib/wine/wine64", "wine64")
         folder = WORK / "windows"
         folder.mkdir(parents=True, exist_ok=True)
@@ -97,7 +96,14 @@ class Windows:
         subprocess.run([compiler, "-shared", "-O1", "-o", library, HERE / "bcryptprimitives.c", "-ladvapi32"], check=True)
         self.line = [wine, folder / "slipfront.exe"]
         self.environment = {"WINEPREFIX": str(WORK / "wine"), "WINEDEBUG": "-all", "WINEDLLOVERRIDES": "mscoree,mshtml="}
+        # Windows has no /proc: of this machine, the program sees the checkout alone.
+        subprocess.run([wine, "cmd", "/c", "ver"], env={**os.environ, **self.environment}, capture_output=True, check=True)
+        drives = WORK / "wine/dosdevices"
+        (drives / "z:").unlink(missing_ok=True)
+        if not (drives / "w:").is_symlink():
+            (drives / "w:").symlink_to(ROOT)
         self.how = version_of([wine, "--version"], r"wine-([\d.]+)", "wine", self.environment)
+        self.title = version_of([*self.line, "--version"], r"vectors: (\S+)", "Windows, x86-64,", self.environment)
         self.is_emulated = True
 
 
@@ -114,7 +120,7 @@ class Wasm:
 
 
 def version_of(line, pattern, name, environment=None):
-    """Name and version of an emulator."""
+    """A name with what a command says of its version."""
     said = subprocess.run(line, capture_output=True, text=True, env={**os.environ, **(environment or {})}).stdout
     return f"{name} {re.search(pattern, said)[1]}"
 
