@@ -137,7 +137,8 @@ lab() {
     local program=$stage/slipfront-$version-linux-x86_64/slipfront name=slipfront-$version-lab
     [ -x "$program" ] || step linux-x86_64
     rm -rf "${stage:?}/$name"
-    "$program" lab --export "$stage/$name" --single "$out/$name.html"
+    "$program" lab --export "$stage/$name"
+    "$program" lab --single "$out/$name.html"
     pack "$name" zip
 }
 
