@@ -1,4 +1,5 @@
-//! Hashes the sources, for the identity of the build, and asks for the git revision, where it is built in a checkout of its own.
+//! Hashes the sources, for the identity of the build, hands on the platform, and asks for the git revision, where it is built in a
+//! checkout of its own.
 
 mod hash_sources;
 
@@ -26,6 +27,8 @@ fn main() -> std::io::Result<()> {
             println!("cargo::rerun-if-changed={path}");
         }
     }
+    let platform = std::env::var("TARGET").unwrap_or_default();
+    println!("cargo::rustc-env=SLIPFRONT_PLATFORM={platform}");
     if let Some(revision) = revision() {
         println!("cargo::rustc-env=SLIPFRONT_REVISION={revision}");
     }

@@ -2,6 +2,7 @@
 
 import signal
 import sys
+from pathlib import Path
 
 from ._slipfront import command
 
@@ -10,7 +11,7 @@ def main() -> int:
     """Run the command with the arguments of this process; return its exit status."""
     # The command stops at signals by itself, with checkpoints; Python would only take note of them.
     signal.signal(signal.SIGINT, signal.SIG_DFL)
-    return command(["slipfront", *sys.argv[1:]])
+    return command(["slipfront", *sys.argv[1:]], Path(__file__).parent)
 
 
 if __name__ == "__main__":

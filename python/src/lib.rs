@@ -22,14 +22,15 @@ mod simulation;
 mod study;
 
 use std::ffi::OsString;
+use std::path::PathBuf;
 
 use pyo3::prelude::*;
 
 /// Runs the command with these arguments, the first of which is the name of the program, and returns its exit status. The
-/// command needs a process of its own.
+/// command needs a process of its own. The session of the laboratory as WebAssembly is looked for in the folder `package`.
 #[pyfunction]
-fn command(py: Python<'_>, arguments: Vec<OsString>) -> PyResult<u8> {
-    process::detached(py, || slipfront_cli::main(arguments))
+fn command(py: Python<'_>, arguments: Vec<OsString>, package: PathBuf) -> PyResult<u8> {
+    process::detached(py, || slipfront_cli::main(arguments, Some(&package)))
 }
 
 #[pymodule]

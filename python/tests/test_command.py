@@ -18,9 +18,19 @@ def command(*arguments: str | os.PathLike[str]) -> "subprocess.CompletedProcess[
 
 
 def test_the_command_has_its_version_and_status() -> None:
-    assert command("--version").stdout == f"slipfront {sf.__version__}\n"
+    assert command("--version").stdout.startswith(f"slipfront {sf.__version__}\nbuild ")
     refused = command("run", "cases/cirle.toml")
     assert refused.returncode == 2 and "did you mean" in refused.stderr
+
+
+def test_the_laboratory_takes_its_module_from_the_package(tmp_path: Path) -> None:
+    page = tmp_path / "page.html"
+    ended = command("lab", "--single", page)
+    # Wheels of a release have it, and others say where it was looked for.
+    if Path(sf.__file__).with_name("slipfront.wasm").exists():
+        assert ended.returncode == 0 and "slipfront.wasm" in page.read_text()
+    else:
+        assert ended.returncode == 2 and "slipfront.wasm, is not in" in " ".join(ended.stderr.split())
 
 
 def test_the_wheel_carries_the_licences_of_what_it_contains() -> None:

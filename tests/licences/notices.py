@@ -22,6 +22,7 @@ PACKAGES = ["crates/slipfront-cli", "python", "crates/slipfront-mpi"]
 TARGETS = [
     "aarch64-apple-darwin",
     "aarch64-unknown-linux-gnu",
+    "aarch64-unknown-linux-musl",
     "x86_64-apple-darwin",
     "x86_64-pc-windows-gnu",
     "x86_64-pc-windows-msvc",

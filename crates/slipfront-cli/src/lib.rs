@@ -24,6 +24,7 @@ mod threads;
 mod wrap;
 
 use std::ffi::OsString;
+use std::path::Path;
 use std::sync::Arc;
 
 use clap::error::{ContextKind, ContextValue, ErrorKind};
@@ -32,7 +33,7 @@ use clap::{CommandFactory, Parser, Subcommand};
 use slipfront::Communicator;
 use slipfront_case::text::shell_quoted;
 use slipfront_run::agree::RankFailure;
-use slipfront_run::program::this_build;
+use slipfront_run::program::{this_build, version_lines};
 use slipfront_study::StudyFile;
 
 use crate::commands::run::{CHECKPOINTS_HELP, RunCommand};
@@ -46,7 +47,7 @@ pub use crate::report::physics;
 /// Friction of micro-textured surfaces: the lattice spring-block model of the transition from static to kinetic
 /// friction.
 #[derive(Parser)]
-#[command(name = "slipfront", version, max_term_width = 100)]
+#[command(name = "slipfront", version, long_version = version_lines(), max_term_width = 100)]
 #[command(after_help = "Examples:
   slipfront run                                   the embedded baseline (Fig. 3 of the paper)
   slipfront run cases/circle.toml -o results/a    a case file, results in a folder of your choice
@@ -94,7 +95,7 @@ enum Command {
 /// Friction of micro-textured surfaces, with one lattice divided over many processes, on one machine or many: what `slipfront
 /// run` does, byte for byte.
 #[derive(Parser)]
-#[command(name = "slipfront-mpi", version, max_term_width = 100)]
+#[command(name = "slipfront-mpi", version, long_version = version_lines(), max_term_width = 100)]
 struct RanksCli {
     #[command(subcommand)]
     command: RanksCommand,
@@ -121,13 +122,17 @@ Examples:
     Licences(commands::licences::LicencesCommand),
 }
 
-/// Runs the command with these arguments, the first of which is the name of the program; returns its exit status.
+/// Runs the command with these arguments, the first of which is the name of the program; returns its exit status. The session of the
+/// laboratory as WebAssembly is looked for in `module_folder`, or beside the program if there is none.
 ///
 /// The command needs a process of its own: signals are caught and the number of threads is set for the whole process, once.
-pub fn main(args: impl IntoIterator<Item = OsString>) -> u8 {
+pub fn main(args: impl IntoIterator<Item = OsString>, module_folder: Option<&Path>) -> u8 {
     let args: Vec<OsString> = args.into_iter().collect();
     if let Some(sentence) = divided_override(&args) {
         return Failure::input(anyhow::anyhow!(sentence)).report();
+    }
+    if let Err(failure) = limit_vectors() {
+        return failure.report();
     }
     let command = match Cli::try_parse_from(args) {
         Ok(cli) => cli.command,
@@ -151,7 +156,7 @@ pub fn main(args: impl IntoIterator<Item = OsString>) -> u8 {
             Command::Texture(texture) => texture.execute(),
             Command::Plot(plot) => plot.execute(),
             Command::Movie(movie) => movie.execute(),
-            Command::Lab(lab) => lab.execute(),
+            Command::Lab(lab) => lab.execute(module_folder),
             Command::Verify(verify) => verify.execute(),
             Command::Export(export) => export.execute(),
             Command::Completions(completions) => completions.execute(Cli::command()),
@@ -172,7 +177,7 @@ pub fn main_on_ranks(args: impl IntoIterator<Item = OsString>, communicator: Arc
     execute(|| {
         // Before all else: ranks of other builds may not say the next thing at the same time.
         ranks.expect_same(|| vec![("the build".to_owned(), this_build().to_owned())])?;
-        let parsed = ranks.agree(parse_on_rank(args))?;
+        let parsed = ranks.agree(limit_vectors().and_then(|()| parse_on_rank(args)))?;
         ranks.expect_same(|| vec![("what is asked for".to_owned(), parsed.name().to_owned())])?;
         match parsed {
             Parsed::Run(run) => run.execute(&ranks),
@@ -224,6 +229,16 @@ fn parse_on_rank(args: impl IntoIterator<Item = OsString>) -> Result<Parsed, Fai
         }
         Err(shown) => Ok(Parsed::Shown(shown)),
     }
+}
+
+/// Limits the vector instructions to those that the environment names, as on a processor that has no others.
+fn limit_vectors() -> Result<(), Failure> {
+    const NAME: &str = "SLIPFRONT_SIMD";
+    let Some(widest) = std::env::var_os(NAME) else {
+        return Ok(());
+    };
+    slipfront::limit_simd_width(&widest.to_string_lossy())
+        .map_err(|error| Failure::input(anyhow::anyhow!("{NAME} in the environment: {error}")))
 }
 
 fn execute(work: impl FnOnce() -> Result<(), RankFailure>) -> u8 {

@@ -74,10 +74,17 @@ pub(crate) fn ignore_sigxfsz() -> std::io::Result<()> {
 }
 
 /// Number of SIGHUP, unless the signal is ignored, as under `nohup`, or the system does not tell.
+#[cfg(unix)]
 fn hangup() -> Option<i32> {
     const SIGHUP: i32 = 1;
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let ignored = status.lines().find_map(|line| line.strip_prefix("SigIgn:"))?;
     let ignored = u64::from_str_radix(ignored.trim(), 16).ok()?;
     (ignored & (1 << (SIGHUP - 1)) == 0).then_some(SIGHUP)
+}
+
+/// No SIGHUP: the system has none.
+#[cfg(not(unix))]
+fn hangup() -> Option<i32> {
+    None
 }

@@ -22,6 +22,9 @@ pub const MODULE: &str = "slipfront.wasm";
 /// The file with the presets and the case with which the session begins.
 const BEGINNING: &str = "start.json";
 
+/// The file with the licences of what an exported page contains.
+const NOTICES: &str = "THIRD-PARTY-NOTICES.txt";
+
 /// Content security policy of the page of an exported folder: it may take files from its own folder, and compile the module.
 const POLICY_OF_FOLDER: &str = include_str!("../export/folder.policy");
 
@@ -125,7 +128,7 @@ pub fn find_module(folders: &[PathBuf]) -> Result<PathBuf, ExportError> {
 }
 
 impl Parts {
-    fn new(start: &Start, module: &Path) -> Result<Self, ExportError> {
+    fn new(start: &Start, module: &Path, notices: &str) -> Result<Self, ExportError> {
         let presets = presets::all();
         let opening = match &start.0 {
             StartSource::Preset => presets::opening(&presets).map_err(ExportError::Case)?,
@@ -149,6 +152,7 @@ impl Parts {
         let beginning =
             serde_json::to_vec(&beginning).map_err(|error| ExportError::Case(error.to_string()))?;
         files.insert(BEGINNING.to_owned(), beginning);
+        files.insert(NOTICES.to_owned(), notices.as_bytes().to_vec());
         Ok(Self {
             files,
             module: contents,
@@ -174,11 +178,11 @@ impl Parts {
 }
 
 /// Writes the laboratory as a folder that any web server can serve: a page that opens with a case of the start, and asks for nothing outside
-/// of the folder.
+/// of the folder. It contains the licence notices of its parts.
 ///
 /// # Errors
 /// When the module is none, the folder holds other things, or the system refuses.
-pub fn export_folder(start: &Start, module: &Path, out: &Path) -> Result<(), ExportError> {
+pub fn export_folder(start: &Start, module: &Path, notices: &str, out: &Path) -> Result<(), ExportError> {
     let write = |path: &Path, contents: &[u8]| {
         let folder = path.parent().map_or(Ok(()), make_folders);
         let written = folder.and_then(|()| write_atomic(path, contents));
@@ -191,7 +195,7 @@ pub fn export_folder(start: &Start, module: &Path, out: &Path) -> Result<(), Exp
     if !is_free {
         return Err(ExportError::OtherThings(out.to_owned()));
     }
-    let mut parts = Parts::new(start, module)?;
+    let mut parts = Parts::new(start, module, notices)?;
     let page = parts.page(
         POLICY_OF_FOLDER,
         "<link rel=\"manifest\" href=\"manifest.webmanifest\">\n",
@@ -227,14 +231,15 @@ fn service_worker(files: &BTreeMap<String, Vec<u8>>) -> String {
 }
 
 /// Writes the laboratory as one file, which opens from the disk: a page that opens with a case of the start, and asks for nothing.
+/// It contains the licence notices of its parts.
 ///
 /// # Errors
 /// When the module is none, there is another file of this name that was not exported, or the system refuses.
-pub fn export_single(start: &Start, module: &Path, out: &Path) -> Result<(), ExportError> {
+pub fn export_single(start: &Start, module: &Path, notices: &str, out: &Path) -> Result<(), ExportError> {
     if out.is_file() && !is_exported(out) {
         return Err(ExportError::OtherFile(out.to_owned()));
     }
-    let parts = Parts::new(start, module)?;
+    let parts = Parts::new(start, module, notices)?;
     let styles = STYLES.map(|name| parts.text(name));
     let loader = include_str!("../export/single.js");
     let hash = |text: &str| format!("'sha256-{}'", BASE64_STANDARD.encode(Sha256::digest(text)));
@@ -317,7 +322,7 @@ mod tests {
     fn a_folder_has_all_files_of_the_page_and_asks_for_no_other() {
         let (folder, module) = with_module();
         let out = folder.path().join("lab");
-        export_folder(&Start::default(), &module, &out).unwrap();
+        export_folder(&Start::default(), &module, "notices", &out).unwrap();
         let page = fs::read_to_string(out.join("index.html")).unwrap();
         assert!(
             page.contains("<html data-channel=\"worker\">") && page.contains(POLICY_OF_FOLDER.trim_end())
@@ -333,12 +338,13 @@ mod tests {
             serde_json::from_slice(&fs::read(out.join(BEGINNING)).unwrap()).unwrap();
         assert_eq!(beginning["opening"]["name"], "circle");
         assert!(beginning["presets"].as_array().unwrap().len() > 30);
+        assert_eq!(fs::read_to_string(out.join(NOTICES)).unwrap(), "notices");
         // The same files have the same bytes and the same name in the browser; others have another.
         let again = folder.path().join("again");
-        export_folder(&Start::default(), &module, &again).unwrap();
+        export_folder(&Start::default(), &module, "notices", &again).unwrap();
         assert_eq!(kept, fs::read_to_string(again.join("service_worker.js")).unwrap());
         fs::write(&module, b"\0asm\x01\0\0\0\0").unwrap();
-        export_folder(&Start::default(), &module, &again).unwrap();
+        export_folder(&Start::default(), &module, "notices", &again).unwrap();
         assert_ne!(kept, fs::read_to_string(again.join("service_worker.js")).unwrap());
     }
 
@@ -346,13 +352,14 @@ mod tests {
     fn one_file_holds_the_files_that_its_page_asks_for() {
         let (folder, module) = with_module();
         let out = folder.path().join("lab.html");
-        export_single(&Start::default(), &module, &out).unwrap();
+        export_single(&Start::default(), &module, "notices", &out).unwrap();
         let page = fs::read_to_string(&out).unwrap();
         assert!(!page.contains("<link rel=\"stylesheet\"") && !page.contains("src=\"m"));
         let (_, within) = page.split_once("id=\"files\">").unwrap();
         let (within, loader) = within.split_once("</script>").unwrap();
         let files: BTreeMap<String, String> = serde_json::from_str(within).unwrap();
         assert_eq!(files[MODULE], BASE64_STANDARD.encode(b"\0asm\x01\0\0\0"));
+        assert_eq!(files[NOTICES], "notices");
         let asked: BTreeSet<&str> = files.keys().map(String::as_str).collect();
         for name in [
             "main.js",
@@ -383,18 +390,27 @@ mod tests {
         let other = folder.path().join("other");
         fs::create_dir(&other).unwrap();
         fs::write(other.join("mine"), "mine").unwrap();
-        assert!(said(export_folder(&start, &module, &other)).contains("holds other things"));
+        assert!(said(export_folder(&start, &module, "notices", &other)).contains("holds other things"));
         assert_eq!(fs::read_dir(&other).unwrap().count(), 1);
-        assert!(said(export_single(&start, &other.join("mine"), &other.join("x"))).contains("is no module"));
         assert!(
-            said(export_single(&start, &module, &other.join("mine"))).contains("is no exported laboratory")
+            said(export_single(
+                &start,
+                &other.join("mine"),
+                "notices",
+                &other.join("x")
+            ))
+            .contains("is no module")
+        );
+        assert!(
+            said(export_single(&start, &module, "notices", &other.join("mine")))
+                .contains("is no exported laboratory")
         );
         assert_eq!(fs::read_to_string(other.join("mine")).unwrap(), "mine");
         // A page that was exported is replaced.
         let page = folder.path().join("page.html");
-        export_single(&start, &module, &page).unwrap();
-        export_single(&start, &module, &page).unwrap();
-        assert!(said(export_single(&start, &other, &page)).contains("cannot be read"));
+        export_single(&start, &module, "notices", &page).unwrap();
+        export_single(&start, &module, "notices", &page).unwrap();
+        assert!(said(export_single(&start, &other, "notices", &page)).contains("cannot be read"));
         let missing = find_module(&[other.clone(), folder.path().join("none")]).unwrap_err();
         assert!(
             missing

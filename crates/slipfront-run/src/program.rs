@@ -8,6 +8,22 @@ pub const VERSION: &str = env!("CARGO_PKG_VERSION");
 /// The git commit from which the program was built, with `-dirty` if its sources were changed; none outside of a checkout.
 pub const REVISION: Option<&str> = option_env!("SLIPFRONT_REVISION");
 
+/// The platform that the program was built for, as the compiler names it.
+pub const PLATFORM: &str = env!("SLIPFRONT_PLATFORM");
+
+/// Version, identity of the build, git commit and platform, a line for each, as `--version` prints them after the name.
+pub fn version_lines() -> &'static str {
+    static LINES: LazyLock<String> = LazyLock::new(|| {
+        format!(
+            "{VERSION}\nbuild     {}\ncommit    {}\nplatform  {PLATFORM}, vectors: {}",
+            this_build(),
+            REVISION.unwrap_or("not known"),
+            slipfront::simd_width(),
+        )
+    });
+    &LINES
+}
+
 /// Name of this program in words.
 pub fn this_program() -> String {
     in_words(VERSION, REVISION)

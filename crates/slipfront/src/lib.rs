@@ -60,7 +60,7 @@ pub use communicator::Communicator;
 pub use drive::{Drive, Loading, Program, Rotation, Segment};
 pub use error::{RunError, SurfaceError};
 pub use friction::*;
-pub use kernel::{Execution, Kernel, simd_width};
+pub use kernel::{Execution, Kernel, SimdWidthError, limit_simd_width, simd_width};
 pub use lattice::{Edge, Edges, Lattice};
 pub use model::{Model, ONSET_PATH};
 pub use options::ModelOptions;

@@ -3,7 +3,7 @@
 use crate::checkpoint::BlockColumn;
 use crate::clock::Clock;
 use crate::communicator::Communicator;
-use crate::fixed_point::sum_over;
+use crate::fixed_point::RunningSum;
 use crate::friction::ContactTotals;
 use crate::kernel::block::{Block, Field};
 use crate::kernel::engine::Engine;
@@ -118,18 +118,31 @@ impl Snapshot<'_> {
         let Some(law) = self.model.friction.strength_over_slip() else {
             return 0.0;
         };
+        /// Blocks at once: few enough for the stack, since memory for all of them would be asked for at every row of a series.
+        const CHUNK: usize = 1024;
         let surface = &self.model.surface;
-        let column = |column: usize| {
-            let mut values = vec![0.0; surface.n_blocks()];
-            self.engine.read_memory(self.time_star, column, 0, &mut values);
-            values
-        };
-        let slip = column(0);
-        let lost_before = law.healing_time.map(|_| column(2));
-        sum_over(self.communicator, surface.n_blocks(), |b| {
-            let drop = (surface.static_limit(b) - surface.kinetic_force(b)).max(0.0);
-            law.energy(drop, slip[b], lost_before.as_ref().map_or(0.0, |lost| lost[b]))
-        })
+        let (mut energies, mut lost_before) = ([0.0; CHUNK], [0.0; CHUNK]);
+        let mut sum = [RunningSum::default()];
+        loop {
+            for first in (0..surface.n_blocks()).step_by(CHUNK) {
+                let energies = &mut energies[..CHUNK.min(surface.n_blocks() - first)];
+                self.engine.read_memory(self.time_star, 0, first, energies);
+                if law.healing_time.is_some() {
+                    let lost_before = &mut lost_before[..energies.len()];
+                    self.engine.read_memory(self.time_star, 2, first, lost_before);
+                }
+                // Slips become energies.
+                for (k, energy) in energies.iter_mut().enumerate() {
+                    let block = first + k;
+                    let drop = (surface.static_limit(block) - surface.kinetic_force(block)).max(0.0);
+                    *energy = law.energy(drop, *energy, lost_before[k]);
+                }
+                sum[0].add(energies);
+            }
+            if let Some([energy]) = RunningSum::finish(self.communicator, &mut sum) {
+                return energy;
+            }
+        }
     }
 
     /// First-slip times t* of the blocks of this rank while in contact; NaN for blocks that have not slipped.

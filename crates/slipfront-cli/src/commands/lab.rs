@@ -7,6 +7,7 @@ use clap::Args;
 use slipfront_case::text::display_path;
 use slipfront_lab::{Laboratory, Patience, ServerOptions, Start, export_folder, export_single, find_module};
 
+use super::licences::NOTICES;
 use crate::browser;
 use crate::failure::Failure;
 use crate::print::print_message;
@@ -59,7 +60,7 @@ pub(crate) struct LabCommand {
 const LINK: &str = "#case=";
 
 impl LabCommand {
-    pub(crate) fn execute(self) -> Result<(), Failure> {
+    pub(crate) fn execute(self, module_folder: Option<&Path>) -> Result<(), Failure> {
         // First, since a large case is made on these threads.
         let cores = std::thread::available_parallelism().map_or(1, usize::from);
         let threads = set_worker_threads(Some(self.threads.unwrap_or((cores as u16 - 1).max(1))), 1)?;
@@ -75,7 +76,7 @@ impl LabCommand {
             _ => Start::default(),
         };
         if self.export.is_some() || self.single.is_some() {
-            return self.export(&start);
+            return self.export(&start, module_folder);
         }
         refuse_readable_output()?;
         let signals = Signals::catch().map_err(Failure::running)?;
@@ -108,17 +109,18 @@ impl LabCommand {
 
 impl LabCommand {
     /// Writes the laboratory as a folder or as one file.
-    fn export(&self, start: &Start) -> Result<(), Failure> {
-        let module = find_module(&places_of_module()).map_err(Failure::input)?;
+    fn export(&self, start: &Start, module_folder: Option<&Path>) -> Result<(), Failure> {
+        let folders = module_folder.map_or_else(places_of_module, |folder| vec![folder.to_owned()]);
+        let module = find_module(&folders).map_err(Failure::input)?;
         if let Some(out) = &self.export {
-            export_folder(start, &module, out).map_err(Failure::input)?;
+            export_folder(start, &module, NOTICES, out).map_err(Failure::input)?;
             print_message(&format!(
                 "The laboratory is written to {}: give the folder to a web server, such as `python3 -m http.server`.\n",
                 display_path(out)
             ));
         }
         if let Some(out) = &self.single {
-            export_single(start, &module, out).map_err(Failure::input)?;
+            export_single(start, &module, NOTICES, out).map_err(Failure::input)?;
             print_message(&format!(
                 "The laboratory is written to {}: open it in a browser.\n",
                 display_path(out)

@@ -6,7 +6,7 @@ use crate::failure::Failure;
 use crate::print::print;
 
 /// Text written by `tests/licences/notices.py`; `.ci/run` compares it with the locked crates.
-const NOTICES: &str = include_str!("../../THIRD-PARTY-NOTICES.txt");
+pub(crate) const NOTICES: &str = include_str!("../../THIRD-PARTY-NOTICES.txt");
 
 /// Print the licences of slipfront and of the work of others in it
 #[derive(Args)]

@@ -23,10 +23,19 @@ fn help_names_every_subcommand_and_says_what_it_does() {
             "{own}"
         );
     }
-    assert_eq!(
-        workspace.succeed("--version"),
-        format!("slipfront {}\n", env!("CARGO_PKG_VERSION"))
-    );
+    let version = format!("slipfront {}\n", env!("CARGO_PKG_VERSION"));
+    assert_eq!(workspace.succeed("-V"), version);
+    let told = workspace.succeed("--version");
+    assert!(told.starts_with(&version), "{told}");
+    workspace.succeed("run small.toml -o a");
+    let manifest: serde_json::Value = serde_json::from_slice(&workspace.read("a/manifest.json")).unwrap();
+    for key in ["build", "revision", "simd_width"] {
+        // Built outside of git there is no revision.
+        let said = manifest[key].as_str().unwrap_or("not known");
+        assert!(told.contains(said), "{key}: {said}: {told}");
+    }
+    let architecture = std::env::consts::ARCH;
+    assert!(told.contains(&format!("platform  {architecture}-")), "{told}");
 }
 
 #[test]

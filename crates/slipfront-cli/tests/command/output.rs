@@ -97,6 +97,31 @@ fn the_manifest_lists_every_other_file_and_its_length() {
 }
 
 #[test]
+fn vectors_can_be_limited_without_effect_on_results() {
+    let workspace = Workspace::small();
+    let limited = |line: &str, widest: &str| {
+        let mut process = workspace.process(line);
+        process.env("SLIPFRONT_SIMD", widest).output().unwrap()
+    };
+    workspace.succeed("run small.toml -o widest");
+    assert!(limited("run small.toml -o baseline", "baseline").status.success());
+    let manifest: serde_json::Value =
+        serde_json::from_slice(&workspace.read("baseline/manifest.json")).unwrap();
+    assert_eq!(manifest["simd_width"], "baseline");
+    for file in ["series.csv", "fields.nc", "summary.json"] {
+        let [widest, baseline] = ["widest", "baseline"].map(|run| workspace.read(&format!("{run}/{file}")));
+        assert!(widest == baseline, "{file}");
+    }
+    let refused = limited("--version", "MMX");
+    let said = String::from_utf8_lossy(&refused.stderr).into_owned();
+    assert_eq!(refused.status.code(), Some(2), "{said}");
+    assert!(
+        said.contains("`MMX` names no vector instructions of slipfront"),
+        "{said}"
+    );
+}
+
+#[test]
 fn the_manifest_says_how_the_run_came_about() {
     let workspace = Workspace::small();
     workspace.succeed("run small.toml -o a --threads 1 --seed 7");

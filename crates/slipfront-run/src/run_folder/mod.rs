@@ -373,6 +373,8 @@ impl RunFolder {
 
     /// Ends a run that is complete: removes the hidden subfolder.
     fn close(self) {
+        // Windows removes no folder that holds an open file.
+        drop(self.journal);
         // The run is complete whether it can be removed or not.
         let _ = self.unfinished.remove();
     }

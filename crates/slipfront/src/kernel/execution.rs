@@ -2,8 +2,6 @@
 
 use std::sync::Arc;
 
-use fearless_simd::Level;
-
 use super::engine::Engine;
 use super::fused::{self, Fused};
 use super::general::{self, General};
@@ -143,16 +141,5 @@ impl Execution {
 impl Default for Execution {
     fn default() -> Self {
         Self::on_threads(1)
-    }
-}
-
-/// The widest vector instructions of this processor that the kernels use; results do not depend on them.
-pub fn simd_width() -> &'static str {
-    match Level::new() {
-        #[cfg(target_arch = "x86_64")]
-        Level::Avx512(_) => "AVX-512",
-        #[cfg(target_arch = "x86_64")]
-        Level::Avx2(_) => "AVX2",
-        _ => "baseline",
     }
 }

@@ -10,6 +10,8 @@ pub(crate) mod engine;
 pub(crate) mod execution;
 pub(crate) mod fused;
 mod general;
+mod vectors;
 
 pub use block::Block;
-pub use execution::{Execution, Kernel, simd_width};
+pub use execution::{Execution, Kernel};
+pub use vectors::{SimdWidthError, limit_simd_width, simd_width};

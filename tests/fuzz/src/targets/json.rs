@@ -135,6 +135,7 @@ fn manifests() -> Vec<Vec<u8>> {
             seed: 1,
             streams: [("mu_static".to_owned(), 0)].into(),
         },
+        without_pictures: None,
         files: vec![
             file("case.toml", CASE),
             file("inputs/mask.png", b"mask"),

@@ -1,7 +1,7 @@
 //! Pictures from the files of a run folder.
 
 use slipfront_run::pictures::draw;
-use slipfront_run::pictures::friction::{Against, AxisUnits, overlay};
+use slipfront_run::pictures::friction::{Against, AxisUnits, FrictionLook, overlay};
 use slipfront_run::summary::summary_json;
 
 use super::json::summary;
@@ -96,11 +96,11 @@ fn plot(input: &[u8]) {
             }
             if input.len() % 2 == 1 {
                 let (one, two) = ([folder.to_owned()], [folder.to_owned(), folder.to_owned()]);
-                overlay(&two, AxisUnits::Star, None).unwrap();
+                overlay(&two, AxisUnits::Star, None, &FrictionLook::default()).unwrap();
                 for against in [Against::Time, Against::Displacement] {
                     for units in [AxisUnits::Star, AxisUnits::Si] {
                         // A summary of an older version has no units.
-                        if let Err(error) = overlay(&one, units, Some(against)) {
+                        if let Err(error) = overlay(&one, units, Some(against), &FrictionLook::default()) {
                             readable(&error);
                         }
                     }

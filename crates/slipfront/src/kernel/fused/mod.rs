@@ -58,6 +58,7 @@ use crate::friction::Integrator;
 use crate::kernel::bands::for_each_band;
 use crate::kernel::block::{Block, Field};
 use crate::kernel::engine::Engine;
+use crate::kernel::vectors;
 use crate::lattice::K_STRAIGHT;
 use crate::model::Model;
 use crate::moduli::Moduli;
@@ -156,7 +157,7 @@ impl Fused {
             bands,
             inner,
             threads,
-            level: Level::new(),
+            level: vectors::level(),
             skips,
             touched: (0..layout.n_tiles()).map(|_| AtomicU32::new(0)).collect(),
             active_from_step: 0,

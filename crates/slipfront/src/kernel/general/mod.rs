@@ -17,7 +17,7 @@ mod weighted;
 use std::ops::Range;
 use std::sync::Arc;
 
-use fearless_simd::{Level, dispatch};
+use fearless_simd::dispatch;
 
 use self::band::{Band, BandSums, Summed};
 use self::rows::Rows;
@@ -25,6 +25,7 @@ use self::weighted::WeightedScratch;
 use super::bands::for_each_band;
 use super::block::{Block, Field};
 use super::engine::Engine;
+use super::vectors;
 use crate::checkpoint::{BlockColumn, Checkpoint, MotionBounds};
 use crate::clock::Clock;
 use crate::communicator::Communicator;
@@ -246,7 +247,7 @@ impl General {
             let sums = self.energy_sums;
             for_each_band(self.threads, &mut self.bands, &|one| {
                 let (model, band) = one.with_model(model);
-                dispatch!(Level::new(), _ => band.add_energies(model, drive_time_star, sums));
+                dispatch!(vectors::level(), _ => band.add_energies(model, drive_time_star, sums));
             });
             for one in &self.bands {
                 RunningSum::join(&mut self.energy_sums, &one.band.energy_sums);
@@ -280,7 +281,7 @@ impl General {
 
 impl Engine for General {
     fn step(&mut self, model: &Model, clock: &Clock, energies: bool) -> Totals {
-        let (threads, level) = (self.threads, Level::new());
+        let (threads, level) = (self.threads, vectors::level());
         let moves = std::mem::replace(&mut self.started, true);
         for_each_band(threads, &mut self.bands, &|one| {
             let (model, band) = one.with_model(model);
