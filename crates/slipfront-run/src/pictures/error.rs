@@ -33,6 +33,31 @@ pub enum RunPictureError {
         "forces and torques have no axis in common: {0} is a rotation or not, other than the runs beside it"
     )]
     NotComparable(PathBuf),
+    #[error(transparent)]
+    Record(#[from] Box<RecordError>),
+    #[error(
+        "a movie has at most {0} pictures, and the run has kept more snapshots: raise `every` of `output.snapshots`"
+    )]
+    TooManySnapshots(usize),
+    #[error(
+        "programs show a picture for at least a fiftieth of a second, so that these {pictures} pictures take at least {seconds} s"
+    )]
+    TooFast { pictures: usize, seconds: f64 },
+    #[error(
+        "{path} has no maps of {field}: name it in `output.fields`, leave `output.snapshots` at its default or list instants, and run the case again"
+    )]
+    NoMaps { path: PathBuf, field: &'static str },
+    #[error("cannot draw {name}: {source}")]
+    Picture {
+        name: &'static str,
+        source: PictureError,
+    },
+}
+
+/// A measured record that has no clear place on the curves of runs.
+#[derive(Debug, Error)]
+#[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
+pub enum RecordError {
     #[error(
         "no point of {record} lies within the curve of a run: shifted, the record goes from {from} to {to}, and {} from {start} to {end}; look at \
         its units, and give the shift with --shift",
@@ -65,22 +90,5 @@ pub enum RunPictureError {
         record: String,
         one: String,
         other: String,
-    },
-    #[error(
-        "a movie has at most {0} pictures, and the run has kept more snapshots: raise `every` of `output.snapshots`"
-    )]
-    TooManySnapshots(usize),
-    #[error(
-        "programs show a picture for at least a fiftieth of a second, so that these {pictures} pictures take at least {seconds} s"
-    )]
-    TooFast { pictures: usize, seconds: f64 },
-    #[error(
-        "{path} has no maps of {field}: name it in `output.fields`, leave `output.snapshots` at its default or list instants, and run the case again"
-    )]
-    NoMaps { path: PathBuf, field: &'static str },
-    #[error("cannot draw {name}: {source}")]
-    Picture {
-        name: &'static str,
-        source: PictureError,
     },
 }

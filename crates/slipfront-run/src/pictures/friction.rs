@@ -6,7 +6,7 @@ use slipfront_case::case_file::Motion;
 use slipfront_case::number_format::{in_print, si_prefix, with_si_prefix};
 use slipfront_plot::{self as plot, FrictionAxes, FrictionCurve, Instant, KineticLine, Picture, PictureSize};
 
-use super::error::RunPictureError;
+use super::error::{RecordError, RunPictureError};
 use super::record_fit::{Points, ends, fitting_shifts, misfit, rival};
 use crate::measured::{Measure, MeasuredRecord};
 use crate::names::SERIES;
@@ -176,19 +176,21 @@ pub fn overlay_measured(
     let in_units = |along_x: f64| with_si_prefix(along * along_x, measured.record.along.unit());
     let shift = match measured.shift {
         Some(shift) => shift / along,
-        None => own_shift(record, &curves).map_err(|rival| match rival {
-            Rival::Other { run, own, of_run } => RunPictureError::ShiftsOfRuns {
-                record: measured.label.clone(),
-                first: folders[0].clone(),
-                own: in_units(own),
-                other: folders[run].clone(),
-                of_other: in_units(of_run),
-            },
-            Rival::Same { own, rival } => RunPictureError::UnclearShift {
-                record: measured.label.clone(),
-                one: in_units(own),
-                other: in_units(rival),
-            },
+        None => own_shift(record, &curves).map_err(|rival| {
+            Box::new(match rival {
+                Rival::Other { run, own, of_run } => RecordError::ShiftsOfRuns {
+                    record: measured.label.clone(),
+                    first: folders[0].clone(),
+                    own: in_units(own),
+                    other: folders[run].clone(),
+                    of_other: in_units(of_run),
+                },
+                Rival::Same { own, rival } => RecordError::UnclearShift {
+                    record: measured.label.clone(),
+                    one: in_units(own),
+                    other: in_units(rival),
+                },
+            })
         })?,
     };
     let misfits: Vec<Option<f64>> = curves
@@ -198,14 +200,15 @@ pub fn overlay_measured(
     if misfits.iter().all(Option::is_none) {
         let [from, to] = ends(record.0).map(|x| in_units(x + shift));
         let [start, end] = ends(&curves[0].x).map(in_units);
-        return Err(RunPictureError::NothingInCommon {
+        return Err(Box::new(RecordError::NothingInCommon {
             record: measured.label.clone(),
             from,
             to,
             run: folders[0].clone(),
             start,
             end,
-        });
+        })
+        .into());
     }
     let fit = Fit {
         measures: [measured.record.along, measured.record.of],
