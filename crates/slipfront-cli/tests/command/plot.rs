@@ -256,8 +256,7 @@ fn pictures_have_the_size_and_the_names_that_are_asked_for() {
     }
     assert!(
         sized.contains("width=\"119.97mm\" height=\"90.00mm\""),
-        "{:.300}",
-        sized
+        "{sized:.300}"
     );
     assert_eq!(pixels("sized"), [1417, 1063]);
     // Letters half as large again on the same width.
@@ -265,8 +264,7 @@ fn pictures_have_the_size_and_the_names_that_are_asked_for() {
     let large = svg(&workspace, "large");
     assert!(
         large.contains("width=\"84.96mm\"") && large.contains("viewBox=\"0 0 669 "),
-        "{:.300}",
-        large
+        "{large:.300}"
     );
     assert!((1003..=1005).contains(&pixels("large")[0]));
     // One run: friction alone, and not in its folder.

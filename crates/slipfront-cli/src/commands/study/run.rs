@@ -162,6 +162,7 @@ fn print_notes(plan: &Plan, folder: &StudyFolder) {
 }
 
 /// Form in which the answer of a study is printed.
+#[derive(Clone, Copy)]
 pub(super) enum Shown {
     /// Tables for a reader.
     Tables,
