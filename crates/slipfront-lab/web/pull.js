@@ -5,7 +5,7 @@ import { find } from './element.js';
 import { on, state } from './store.js';
 import { say } from './text.js';
 
-/** @import { CaseReply, CurveReply } from '../types/protocol' */
+/** @import { CaseReply, CurveReply, NumbersReply } from '../types/protocol' */
 
 /** Pixels of the drawing by which the spring is longer for each 1 of mu*, its length without force, and the end of the slider in the drawing. */
 const PER_MU = 60;
@@ -16,15 +16,10 @@ const HEIGHT = 17;
 const COIL = 6;
 const COILS = 8;
 const MARKS = 20;
-/** Share of sliding blocks, %, above that at rest from which on blocks are said to slip. */
-const SLIPS = 1e-9;
 
 /** By how much the far end has moved, in units of mu*, and the time up to which it is known. */
 let pulled = 0;
 let time = 0;
-/** Share of blocks that nothing holds, %; none before the first point. @type {number|null} */
-let free = null;
-let slipped = false;
 
 /** The line of a spring between two places. @param {number} from @param {number} to */
 function spring(from, to) {
@@ -42,22 +37,24 @@ function draw(mu) {
   find('pull-end').setAttribute('transform', `translate(${end.toFixed(1)} ${HEIGHT})`);
   // The slider stays where it is in the drawing: the ground passes below it.
   find('pull-ground').setAttribute('transform', `translate(${(-((PER_MU * (pulled - mu)) % MARKS)).toFixed(1)} 0)`);
-  find('pull-state').textContent = say(slipped ? 'pull_slips' : 'pull_loads');
 }
 
 /** @param {CurveReply} curve */
-function take({ from_rest: fromRest, t, mu, sliding }) {
+function take({ from_rest: fromRest, t, mu }) {
   if (fromRest) {
-    [pulled, time, free, slipped] = [0, 0, null, false];
+    [pulled, time] = [0, 0];
     draw(0);
   }
   if (t.length === 0) return;
   const last = t.length - 1;
-  free ??= sliding[0];
-  slipped ||= sliding.some((share) => share > /** @type {number} */ (free) + SLIPS);
   pulled += (state.case?.loading_rate ?? 0) * (t[last] - time);
   time = t[last];
   draw(mu[last]);
+}
+
+/** Says whether a block in contact has slipped, which is the instant B. @param {NumbersReply} numbers */
+function showState({ instants }) {
+  find('pull-state').textContent = say('B' in instants ? 'pull_slips' : 'pull_loads');
 }
 
 /** @param {CaseReply} shown */
@@ -74,4 +71,5 @@ function showCase({ drive_degrees: degrees }) {
 export function startPull() {
   on('case', showCase);
   on('curve', take);
+  on('numbers', showState);
 }
