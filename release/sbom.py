@@ -28,7 +28,7 @@ def checksums():
 
 
 def component(package, checksum):
-    """What the list says of a crate: name, version, licences, and the checksum of its package if it is one of others."""
+    """Entry of a crate: name, version, licences, and the checksum of its package if it is one of others."""
     address = f"pkg:cargo/{package['name']}@{package['version']}"
     hashes = {"hashes": [{"alg": "SHA-256", "content": checksum}]} if checksum else {}
     return {

@@ -3,7 +3,6 @@
 use jiff::Timestamp;
 use serde_json::json;
 
-use super::ro_crate::identifier;
 use super::{ExportError, Told, WholeRun};
 
 /// Description of slipfront.
@@ -136,7 +135,7 @@ pub fn cff(runs: &[WholeRun], told: &Told) -> Result<String, ExportError> {
     for run in runs {
         text += &format!(
             "  - type: other\n    value: {}\n    description: {}\n",
-            quoted(&identifier(&run.manifest)),
+            quoted(&run.identifier()),
             quoted(&format!("Seal of manifest.json of the run {}", run.name))
         );
     }

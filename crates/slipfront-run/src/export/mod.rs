@@ -115,6 +115,11 @@ impl WholeRun {
         })
     }
 
+    /// The identifier of the run: the checksum of its manifest.
+    fn identifier(&self) -> String {
+        format!("blake3:{}", self.manifest.checksum)
+    }
+
     /// Every file of the run, the manifest last.
     fn files(&self) -> impl Iterator<Item = &ManifestFile> {
         self.manifest.files.iter().chain([&self.manifest_file])

@@ -20,11 +20,6 @@ const CONTEXT: &str = "https://w3id.org/ro/crate/1.1/context";
 const SPECIFICATION: &str = "https://w3id.org/ro/crate/1.1";
 const PROFILE: &str = "https://w3id.org/ro/wfrun/process/0.5";
 
-/// The identifier of a run: the checksum of its manifest.
-pub(super) fn identifier(manifest: &Manifest) -> String {
-    format!("blake3:{}", manifest.checksum)
-}
-
 /// The file `ro-crate-metadata.json` of runs, each with the path of its folder in the crate: empty, or ending with a slash.
 pub(super) fn metadata(runs: &[(&WholeRun, String)], told: &Told, published: Timestamp) -> Vec<u8> {
     let mut graph = Graph::default();
@@ -179,7 +174,7 @@ fn add_run(graph: &mut Graph, run: &WholeRun, at: &str, agent: Option<Value>) {
             count(manifest.threads, "thread"),
             manifest.case_blake3
         ),
-        "identifier": identifier(manifest),
+        "identifier": run.identifier(),
         "instrument": link(&program),
         "object": one_or_all(objects),
         "result": one_or_all(results),
