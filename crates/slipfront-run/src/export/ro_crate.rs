@@ -11,7 +11,7 @@ use slipfront_case::number_format::count;
 use super::citation::{ARTICLE_TITLE, ARTICLE_URL, ARTICLE_YEAR, DEVELOPERS, MODEL};
 use super::parameters::{Parameter, parameters};
 use super::{Told, WholeRun};
-use crate::manifest::{Manifest, ManifestFile};
+use crate::manifest::ManifestFile;
 use crate::names::{
     CASE, FIELDS, KYMOGRAPH, MANIFEST, MOVIE, PRECURSORS, RO_CRATE, RunPicture, SERIES, SUMMARY,
 };
