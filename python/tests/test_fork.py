@@ -14,6 +14,7 @@ pytestmark = pytest.mark.skipif(not hasattr(os, "fork"), reason="this system doe
 PREAMBLE = '''
 import copy, multiprocessing, os, pickle, signal, sys, threading, warnings
 from concurrent.futures import ProcessPoolExecutor
+from pathlib import Path
 
 # From 3.12 on, Python warns of a fork beside threads.
 warnings.simplefilter("ignore", DeprecationWarning)
@@ -101,7 +102,7 @@ refused = {
     "converge": lambda: sf.converge(case, progress=False),
     "case of a study": lambda: study.case(0),
     "run of a study": lambda: study.run("study", progress=False),
-    "command": lambda: _slipfront.command(["slipfront", "check", "run/case.toml"]),
+    "command": lambda: _slipfront.command(["slipfront", "check", "run/case.toml"], Path()),
     "unpickled case": lambda: friction(pickle.loads(pickled)),
     "in a thread": lambda: (lambda found: (t := threading.Thread(target=lambda: found.append(in_child(small)))).start() or t.join() or found)([]),
 }

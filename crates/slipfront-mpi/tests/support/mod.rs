@@ -66,7 +66,7 @@ pub(crate) fn run_plain(folder: &Path, line: &str) {
 pub(crate) fn run_plain_command() {
     let line = std::env::var(ARGUMENTS).unwrap();
     let line = std::iter::once("slipfront").chain(line.split_whitespace());
-    assert_eq!(slipfront_cli::main(line.map(Into::into)), 0);
+    assert_eq!(slipfront_cli::main(line.map(Into::into), None), 0);
 }
 
 fn only(test: &str) -> [&str; 5] {
