@@ -141,15 +141,20 @@ macro_rules! columns_of {
 }
 pub(crate) use columns_of;
 
+/// A column of a series: its name, and its value in a row, which has none where the column belongs to another option.
+type Column = (&'static str, fn(&SeriesRow) -> Option<f64>);
+
+/// Every column that a series may have, but the number of the step.
+const COLUMNS: &[Column] = &columns_of! { SeriesRow:
+    time_star time_s drive_time_star drive_displacement_m mu_star friction_coefficient mu_lateral_star friction_force_n lateral_force_n
+    torque_n_m sliding_percent work_j kinetic_energy_j lattice_energy_j drive_spring_energy_j friction_loss_j damping_loss_j
+    viscous_loss_j contact_spring_energy_j broken_spring_loss_j weakening_loss_j mean_state_star
+};
+
 /// The columns of a series: names and values, without columns that it lacks, and without the numbers of the steps.
 pub fn columns(rows: &[SeriesRow]) -> Vec<(&'static str, Vec<f64>)> {
-    let all = columns_of! { SeriesRow:
-        time_star time_s drive_time_star drive_displacement_m mu_star friction_coefficient mu_lateral_star friction_force_n lateral_force_n
-        torque_n_m sliding_percent work_j kinetic_energy_j lattice_energy_j drive_spring_energy_j friction_loss_j damping_loss_j
-        viscous_loss_j contact_spring_energy_j broken_spring_loss_j weakening_loss_j mean_state_star
-    };
-    let all = all.into_iter();
-    all.filter_map(|(name, value)| Some((name, rows.iter().map(value).collect::<Option<_>>()?)))
+    let all = COLUMNS.iter();
+    all.filter_map(|(name, value)| Some((*name, rows.iter().map(value).collect::<Option<_>>()?)))
         .collect()
 }
 
@@ -160,7 +165,7 @@ pub const COLUMN_BYTES: usize = 25;
 pub fn n_columns(scales: &Scales, model: &Model) -> usize {
     let row = SeriesRow::new(&CurveRow::default(), scales, model);
     // With the number of the step.
-    1 + columns(&[row]).len()
+    1 + COLUMNS.iter().filter(|(_, value)| value(&row).is_some()).count()
 }
 
 /// The rows as CSV. Numbers are the shortest that read back as the same bits.

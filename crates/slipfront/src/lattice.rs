@@ -42,9 +42,10 @@ pub fn dt_star_limit() -> f64 {
 /// D_xx = 2 k_1 (1 - cos q_x) + 2 k_2 (1 - cos q_x cos q_y)     D_xy = 2 k_2 sin q_x sin q_y
 /// ```
 pub fn springs_on_a_lone_block(k_drive: f64) -> f64 {
-    /// Number of waves along each axis, enough for four digits down to a tenth of [`K_DRIVE`].
-    const WAVES: usize = 64;
-    let wave = |n: usize| (n as f64 + 0.5) / WAVES as f64 * std::f64::consts::TAU;
+    /// Number of waves along each axis with q between 0 and pi, enough for four digits down to a tenth of [`K_DRIVE`]: waves
+    /// of -q give the same.
+    const WAVES: usize = 32;
+    let wave = |n: usize| (n as f64 + 0.5) / WAVES as f64 * std::f64::consts::PI;
     // Every one stands in many terms of the sum.
     let cosines: [f64; WAVES] = std::array::from_fn(|n| libm::cos(wave(n)));
     let sines: [f64; WAVES] = std::array::from_fn(|n| libm::sin(wave(n)));
