@@ -1,9 +1,8 @@
 //! Cost of a step of either kernel, in block-steps per second, and of reading a field of all blocks, on the baseline of Fig. 3
 //! once it slides; cost of drawing its coefficients, beside that of all steps of a run.
 
-#![allow(missing_docs)] // Criterion's macros make public functions without a word.
-
-use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
+use divan::Bencher;
+use divan::counter::ItemsCount;
 use slipfront::exact_solutions::first_slip_time_star;
 use slipfront::observe::Field;
 use slipfront::surface::{Coefficients, CorrelatedField, Distribution, Load};
@@ -48,83 +47,88 @@ fn sliding(n: usize, kernel: Kernel) -> Simulation {
     simulation
 }
 
-fn step(criterion: &mut Criterion, group: &str, kernel: Kernel) {
-    let mut group = criterion.benchmark_group(group);
-    for n in [25, 50, 200, 512] {
-        let mut simulation = sliding(n, kernel);
-        group.throughput(Throughput::Elements((n * n) as u64));
-        group.bench_function(BenchmarkId::from_parameter(format!("{n}x{n}")), |bencher| {
-            bencher.iter(|| simulation.step());
-        });
-    }
-    group.finish();
+/// Lattices of `n` x `n` blocks whose steps are timed.
+const SIZES: [usize; 4] = [25, 50, 200, 512];
+
+/// Lattices and kernels from which fields are read.
+const READ: [(usize, Kernel); 3] = [(256, Kernel::Fused), (512, Kernel::Fused), (256, Kernel::General)];
+
+/// Lattices of `n` x `n` blocks whose coefficients are drawn.
+const DRAWN: [usize; 3] = [25, 50, 200];
+
+fn main() {
+    divan::main();
 }
 
-fn read_field(criterion: &mut Criterion) {
-    let mut group = criterion.benchmark_group("read_field");
-    for (n, kernel) in [(256, Kernel::Fused), (512, Kernel::Fused), (256, Kernel::General)] {
-        group.throughput(Throughput::Elements((n * n) as u64));
-        let simulation = sliding(n, kernel);
-        let mut values = vec![0.0; n * n];
-        for field in [
-            Field::ContactStress,
-            Field::Traction,
-            Field::DisplacementX,
-            Field::VelocityX,
-            Field::Sliding,
-        ] {
-            let name = format!("{} {n}x{n} {field:?}", kernel.name());
-            group.bench_function(BenchmarkId::from_parameter(name), |bencher| {
-                bencher.iter(|| simulation.snapshot().read_field(field, &mut values));
-            });
-        }
-        let mut times = vec![0.0; n * n];
-        let name = format!("{} {n}x{n} first slips", kernel.name());
-        group.bench_function(BenchmarkId::from_parameter(name), |bencher| {
-            bencher.iter(|| simulation.snapshot().read_first_slips(&mut times));
-        });
-    }
-    group.finish();
+fn step(bencher: Bencher, n: usize, kernel: Kernel) {
+    let mut simulation = sliding(n, kernel);
+    let bencher = bencher.counter(ItemsCount::new(n * n));
+    bencher.bench_local(|| simulation.step());
 }
 
-fn draw(criterion: &mut Criterion) {
-    let mut group = criterion.benchmark_group("draw");
-    group.sample_size(10);
-    for n in [25, 50, 200] {
-        let lattice = Lattice::free(n, n);
-        for length in [0.25, 1.0, 5.0] {
-            // Each time of another seed, as the runs of a study do.
-            let mut seed = 0;
-            let name = format!("{n}x{n} alike over {length} blocks");
-            group.bench_function(BenchmarkId::from_parameter(name), |bencher| {
-                bencher.iter(|| {
-                    seed += 1;
-                    let field = CorrelatedField::new(&lattice, length);
-                    Coefficients::draw_correlated(&field, &(0..n), gauss(1.0), gauss(0.5), seed)
-                });
-            });
-        }
-        let model = baseline(n);
-        group.bench_function(
-            BenchmarkId::from_parameter(format!("{n}x{n} all steps")),
-            |bencher| {
-                bencher.iter(|| {
-                    let mut simulation = Simulation::new(model.clone(), 0.1, None, Execution::default());
-                    (0..2667).for_each(|_| simulation.step());
-                });
-            },
-        );
-    }
-    group.finish();
+#[divan::bench(args = SIZES)]
+fn general_step(bencher: Bencher, n: usize) {
+    step(bencher, n, Kernel::General);
 }
 
-fn general(criterion: &mut Criterion) {
-    step(criterion, "general_step", Kernel::General);
+#[divan::bench(args = SIZES)]
+fn fused_step(bencher: Bencher, n: usize) {
+    step(bencher, n, Kernel::Fused);
 }
 
-fn fused(criterion: &mut Criterion) {
-    step(criterion, "fused_step", Kernel::Fused);
+fn read_field_cases() -> impl Iterator<Item = (usize, Kernel, Field)> {
+    let fields = [
+        Field::ContactStress,
+        Field::Traction,
+        Field::DisplacementX,
+        Field::VelocityX,
+        Field::Sliding,
+    ];
+    READ.into_iter()
+        .flat_map(move |(n, kernel)| fields.map(|field| (n, kernel, field)))
 }
 
-criterion_group!(benches, general, fused, read_field, draw);
-criterion_main!(benches);
+#[divan::bench(args = read_field_cases())]
+fn read_field(bencher: Bencher, (n, kernel, field): (usize, Kernel, Field)) {
+    let simulation = sliding(n, kernel);
+    let mut values = vec![0.0; n * n];
+    let bencher = bencher.counter(ItemsCount::new(n * n));
+    bencher.bench_local(|| simulation.snapshot().read_field(field, &mut values));
+}
+
+#[divan::bench(args = READ)]
+fn read_first_slips(bencher: Bencher, (n, kernel): (usize, Kernel)) {
+    let simulation = sliding(n, kernel);
+    let mut times = vec![0.0; n * n];
+    let bencher = bencher.counter(ItemsCount::new(n * n));
+    bencher.bench_local(|| simulation.snapshot().read_first_slips(&mut times));
+}
+
+fn draw_cases() -> impl Iterator<Item = (usize, f64)> {
+    DRAWN
+        .into_iter()
+        .flat_map(|n| [0.25, 1.0, 5.0].map(|length| (n, length)))
+}
+
+/// Coefficients that are alike over `length` blocks.
+#[divan::bench(args = draw_cases(), sample_count = 10)]
+fn draw(bencher: Bencher, (n, length): (usize, f64)) {
+    let lattice = Lattice::free(n, n);
+    // Each time of another seed, as the runs of a study do.
+    let mut seed = 0;
+    bencher.bench_local(|| {
+        seed += 1;
+        let field = CorrelatedField::new(&lattice, length);
+        Coefficients::draw_correlated(&field, &(0..n), gauss(1.0), gauss(0.5), seed)
+    });
+}
+
+/// All steps of a run, to which the cost of its coefficients adds.
+#[divan::bench(args = DRAWN, sample_count = 10)]
+fn all_steps(bencher: Bencher, n: usize) {
+    let model = baseline(n);
+    bencher.bench_local(|| {
+        let mut simulation = Simulation::new(model.clone(), 0.1, None, Execution::default());
+        (0..2667).for_each(|_| simulation.step());
+    });
+}

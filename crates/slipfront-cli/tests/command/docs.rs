@@ -2,8 +2,8 @@
 //! listed.
 
 use std::path::{Path, PathBuf};
+use std::process::Command;
 
-use assert_cmd::Command;
 use slipfront_case::case_file::CaseFile;
 use slipfront_session::Document;
 

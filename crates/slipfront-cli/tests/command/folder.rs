@@ -1,6 +1,7 @@
 //! Replacement of files in the run folder: slipfront's own, and never others.
 
 use crate::fixtures::{MASKED, SMALL};
+use crate::support::process::ended_with;
 use crate::support::workspace::Workspace;
 
 #[test]
@@ -165,17 +166,12 @@ fn odd_names_are_names() {
     let workspace = Workspace::small();
     let odd = "fünf µm [2] & #1.toml";
     workspace.write(odd, SMALL);
-    let mut command = workspace.command("run --quiet");
-    command.arg(odd).assert().success();
+    ended_with(workspace.process("run --quiet").arg(odd), 0);
     assert!(workspace.exists("results/fünf µm [2] & #1/manifest.json"));
-    let mut command = workspace.command("plot small/../results/../results");
-    command
-        .arg(workspace.path("results/fünf µm [2] & #1"))
-        .assert()
-        .code(2);
-    let mut command = workspace.command("plot -o over");
+    let mut plot = workspace.process("plot small/../results/../results");
+    ended_with(plot.arg(workspace.path("results/fünf µm [2] & #1")), 2);
     let run = "results/fünf µm [2] & #1";
-    command.args([run, run]).assert().success();
+    ended_with(workspace.process("plot -o over").args([run, run]), 0);
 }
 
 /// A kill leaves a case, copies of what it reads, and files that were being written, but no manifest that lists them.

@@ -3,6 +3,7 @@
 use slipfront_run::fields::{FieldFrame, FieldsData, read_fields, read_kymograph};
 
 use crate::fixtures::RUN_FILES;
+use crate::support::process::ended_with;
 use crate::support::workspace::Workspace;
 
 /// Keys that `summary.json` holds at least (design, section 3).
@@ -171,14 +172,11 @@ fn json_is_the_summary_and_nothing_else() {
 #[test]
 fn quiet_says_nothing() {
     let workspace = Workspace::small();
-    let assert = workspace.command("run small.toml --quiet").assert().success();
-    assert!(assert.get_output().stdout.is_empty() && assert.get_output().stderr.is_empty());
+    let quiet = ended_with(&mut workspace.process("run small.toml --quiet"), 0);
+    assert!(quiet.stdout.is_empty() && quiet.stderr.is_empty());
     assert!(workspace.exists("results/small/manifest.json"));
-    let json = workspace
-        .command("run small.toml -q --json -o b")
-        .assert()
-        .success();
-    assert_eq!(json.get_output().stdout, workspace.read("b/summary.json"));
+    let json = ended_with(&mut workspace.process("run small.toml -q --json -o b"), 0);
+    assert_eq!(json.stdout, workspace.read("b/summary.json"));
 }
 
 #[test]

@@ -9,7 +9,7 @@ use crate::support::workspace::Workspace;
 
 /// Verifies; returns the status, stdout and stderr.
 pub(crate) fn verified(workspace: &Workspace, line: &str) -> (i32, String, String) {
-    let output = workspace.command(&format!("verify {line}")).output().unwrap();
+    let output = workspace.process(&format!("verify {line}")).output().unwrap();
     let [out, err] = [output.stdout, output.stderr].map(|said| String::from_utf8(said).unwrap());
     assert!(!err.contains("panicked"), "{err}");
     (output.status.code().unwrap(), unwrapped(&out), err)
@@ -353,7 +353,7 @@ fn a_case_that_is_none_any_more_is_told() {
 fn rerun(workspace: &Workspace, folder: &str) -> (i32, String) {
     let temporary = workspace.path("temporary");
     std::fs::create_dir_all(&temporary).unwrap();
-    let mut command = workspace.command(&format!("verify --rerun {folder}"));
+    let mut command = workspace.process(&format!("verify --rerun {folder}"));
     let output = command.env("TMPDIR", &temporary).output().unwrap();
     let left = std::fs::read_dir(&temporary).unwrap().count();
     assert_eq!(left, 0, "something is left behind");

@@ -19,6 +19,14 @@ pub(crate) fn stdout(output: &Output) -> String {
     String::from_utf8_lossy(&output.stdout).into_owned()
 }
 
+/// Runs a command, which must end with this status.
+pub(crate) fn ended_with(command: &mut Command, status: i32) -> Output {
+    let output = command.output().unwrap();
+    let said = format!("{command:?}\n{}{}", stdout(&output), stderr(&output));
+    assert_eq!(output.status.code(), Some(status), "{said}");
+    output
+}
+
 /// Sends a signal such as `-INT` to a process that has not been waited for.
 pub(crate) fn send(child: &Child, signal: &str) {
     assert!(try_send(child, signal), "{signal} cannot be sent");

@@ -3,12 +3,11 @@
 use std::collections::BTreeMap;
 use std::io::Read;
 use std::path::{Path, PathBuf};
-use std::process::{Child, Output, Stdio};
+use std::process::{Child, Command, Output, Stdio};
 
-use assert_cmd::Command;
 use tempfile::TempDir;
 
-use super::process::{program, stderr, stdout, wait_for};
+use super::process::{ended_with, program, stderr, stdout, wait_for};
 
 /// Files by their names, with their bytes.
 pub(crate) type Files = BTreeMap<String, Vec<u8>>;
@@ -84,8 +83,8 @@ impl Workspace {
     }
 
     /// The command with its arguments in one line.
-    pub(crate) fn process(&self, line: &str) -> std::process::Command {
-        let mut process = std::process::Command::new(program());
+    pub(crate) fn process(&self, line: &str) -> Command {
+        let mut process = Command::new(program());
         process
             .args(line.split_whitespace())
             .current_dir(self.folder.path());
@@ -96,11 +95,6 @@ impl Workspace {
         process
     }
 
-    /// The command, to be run and asserted on.
-    pub(crate) fn command(&self, line: &str) -> Command {
-        Command::from_std(self.process(line))
-    }
-
     /// Runs the command.
     pub(crate) fn output(&self, line: &str) -> Output {
         self.process(line).output().unwrap()
@@ -108,7 +102,7 @@ impl Workspace {
 
     /// Runs the command, which must succeed; returns its stdout.
     pub(crate) fn succeed(&self, line: &str) -> String {
-        let output = self.command(line).assert().success().get_output().clone();
+        let output = ended_with(&mut self.process(line), 0);
         String::from_utf8(output.stdout).unwrap()
     }
 
@@ -143,7 +137,7 @@ impl Workspace {
 
     /// Runs a script of the shell.
     pub(crate) fn shell(&self, script: &str) -> Output {
-        let mut shell = std::process::Command::new("sh");
+        let mut shell = Command::new("sh");
         shell.args(["-c", script]).current_dir(self.folder.path());
         shell.output().unwrap()
     }

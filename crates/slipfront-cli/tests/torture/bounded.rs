@@ -1,9 +1,8 @@
 //! The command with bounds on its time and memory, and the checks of its end.
 
-use std::process::{Child, Output, Stdio};
+use std::process::{Child, Command, Output, Stdio};
+use std::sync::mpsc;
 use std::time::Duration;
-
-use assert_cmd::Command;
 
 use crate::support::process::{program, stderr, stdout};
 use crate::support::workspace::{Files, Workspace};
@@ -26,12 +25,12 @@ impl Workspace {
     /// Runs a line. A hang, a crash, a panic, too much memory, an unknown status and a failure without a sentence are
     /// findings.
     pub(crate) fn run_bounded(&self, line: &str) -> Result<Ended, String> {
-        inspect(line, &self.bounded(&[], line).output().unwrap())
+        inspect(line, &self.bounded(&[], line))
     }
 
     /// Runs a line under a watcher, which may let it be killed: then there is no end.
     pub(crate) fn run_watched(&self, watcher: &[&str], line: &str) -> Result<Option<Ended>, String> {
-        let output = self.bounded(watcher, line).output().unwrap();
+        let output = self.bounded(watcher, line);
         match output.status.code() {
             None if output.stderr.is_empty() => Ok(None),
             _ => inspect(line, &output).map(Some),
@@ -64,10 +63,9 @@ impl Workspace {
         }
     }
 
-    /// A line of slipfront under `watcher`, with bounds on memory and time.
-    fn bounded(&self, watcher: &[&str], line: &str) -> Command {
-        let mut command = Command::new("sh");
-        command
+    /// Runs a line of slipfront under `watcher`, with bounds on memory and time.
+    fn bounded(&self, watcher: &[&str], line: &str) -> Output {
+        let child = Command::new("sh")
             .args(["-c", &format!("ulimit -v {MAX_MEMORY_KIB} && exec \"$@\""), "sh"])
             .args(watcher)
             .arg(program())
@@ -76,8 +74,22 @@ impl Workspace {
             .env("TMPDIR", self.path("temporary"))
             .env_remove("SLURM_ARRAY_TASK_ID")
             .env("RUST_BACKTRACE", "0")
-            .timeout(Duration::from_secs(MAX_SECONDS));
-        command
+            .stdin(Stdio::null())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        let id = child.id().to_string();
+        let (ended, end) = mpsc::channel::<()>();
+        let guard = std::thread::spawn(move || {
+            if end.recv_timeout(Duration::from_secs(MAX_SECONDS)) == Err(mpsc::RecvTimeoutError::Timeout) {
+                Command::new("kill").args(["-KILL", &id]).status().unwrap();
+            }
+        });
+        let output = child.wait_with_output().unwrap();
+        drop(ended);
+        guard.join().unwrap();
+        output
     }
 }
 

@@ -1,7 +1,7 @@
 //! Parts of a study on several machines.
 
 use super::results::{SMALL, SMALL_RUNS};
-use crate::support::process::{stderr, stdout};
+use crate::support::process::{ended_with, stderr, stdout};
 use crate::support::workspace::Workspace;
 
 #[test]
@@ -125,23 +125,19 @@ fn a_shard_of_slurm_is_read_from_its_environment() {
     let workspace = Workspace::with_study(SMALL);
     workspace.succeed("study study.toml --shard 2/3 -o given");
     let task = |out: &str, id: &str| {
-        let mut command = workspace.command(&format!("study study.toml --shard slurm -o {out}"));
+        let mut command = workspace.process(&format!("study study.toml --shard slurm -o {out}"));
         command
             .env("SLURM_ARRAY_TASK_ID", id)
             .env("SLURM_ARRAY_TASK_COUNT", "3");
         command
     };
     // An array may begin at any number; without one it is taken to begin at 1.
-    task("one", "2").assert().success();
-    task("zero", "1")
-        .env("SLURM_ARRAY_TASK_MIN", "0")
-        .assert()
-        .success();
+    ended_with(&mut task("one", "2"), 0);
+    ended_with(task("zero", "1").env("SLURM_ARRAY_TASK_MIN", "0"), 0);
     for out in ["one", "zero"] {
         workspace.results(out).assert_same(&workspace.results("given"));
     }
-    let outside = task("outside", "4").assert().code(2);
-    let said = stderr(outside.get_output());
+    let said = stderr(&ended_with(&mut task("outside", "4"), 2));
     assert!(said.contains("there is no part 4 of 3"), "{said}");
     let nowhere = workspace.output("study study.toml --shard slurm -o nowhere");
     assert_eq!(nowhere.status.code(), Some(2));
