@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import io
 import itertools
 import json
@@ -17,6 +18,7 @@ from . import _slipfront
 from ._temporary import TemporaryFolder
 
 _BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")
+_NOT_IN_NAMES = re.compile(r"[^A-Za-z0-9_.-]")
 _IN_QUOTES = json.JSONEncoder(ensure_ascii=False).encode
 
 
@@ -45,15 +47,15 @@ class Arrays:
 
     def add(self, array: np.ndarray[Any, Any], of: str) -> str:
         """Add the array that a key is given and return the name of its file, which errors replace by the key."""
-        if np.ma.is_masked(array):
+        if isinstance(array, np.ma.MaskedArray) and np.ma.is_masked(array):
             # What is masked is not known: NaN, which the case refuses where it cannot do without.
             array = np.ma.filled(array.astype(np.float64), np.nan)
-        stem = self._folder + re.sub(r"[^A-Za-z0-9_.-]", "_", of or "array")
-        names = itertools.chain([f"{stem}.npy"], (f"{stem}-{number}.npy" for number in itertools.count(2)))
-        name = next(name for name in names if name not in self.contents)
-        file = io.BytesIO()
-        np.save(file, np.ascontiguousarray(array))
-        self.contents[name] = file.getvalue()
+        stem = self._folder + _NOT_IN_NAMES.sub("_", of or "array")
+        name = f"{stem}.npy"
+        numbers = itertools.count(2)
+        while name in self.contents:
+            name = f"{stem}-{next(numbers)}.npy"
+        self.contents[name] = npy(array)
         return name
 
     def on_disk(self, text: str) -> tuple[str, TemporaryFolder | None]:
@@ -67,6 +69,26 @@ class Arrays:
             path.write_bytes(contents)
             text = text.replace(word(name), word(str(path)))
         return text, folder
+
+
+def npy(array: np.ndarray[Any, Any]) -> bytes:
+    """The file in which `numpy.save` writes an array row by row.
+
+    >>> file = io.BytesIO()
+    >>> np.save(file, np.eye(3))
+    >>> npy(np.eye(3)) == file.getvalue()
+    True
+    """
+    return _npy_header(array.dtype, array.shape) + array.tobytes()
+
+
+# Searches make thousands of cases with arrays of one kind, and numpy writes a header in the time in which a small lattice is set up.
+@functools.lru_cache(maxsize=64)
+def _npy_header(dtype: np.dtype[Any], shape: tuple[int, ...]) -> bytes:
+    file = io.BytesIO()
+    header = {"descr": np.lib.format.dtype_to_descr(dtype), "fortran_order": False, "shape": shape}
+    np.lib.format.write_array_header_1_0(file, header)
+    return file.getvalue()
 
 
 def names_file(key: str) -> bool:
@@ -145,6 +167,7 @@ def word(text: str) -> str:
     return _IN_QUOTES(text)
 
 
+@functools.lru_cache(maxsize=1024)
 def key(name: str) -> str:
     """A key as TOML writes it."""
     return name if _BARE_KEY.fullmatch(name) else word(name)
@@ -173,11 +196,13 @@ def document(tables: Mapping[str, Any], arrays: Arrays) -> str:
 
 
 def _lines(table: Mapping[str, Any], arrays: Arrays, of: str) -> list[str]:
-    # A key with dots is a key within tables, as in the command's --set.
-    def path(name: str) -> str:
-        return ".".join(key(part) for part in name.split("."))
+    return [f"{_path(name)} = {value(given, arrays, _below(of, name))}" for name, given in table.items()]
 
-    return [f"{path(name)} = {value(given, arrays, _below(of, name))}" for name, given in table.items()]
+
+@functools.lru_cache(maxsize=1024)
+def _path(name: str) -> str:
+    """A key with dots is a key within tables, as in the command's --set."""
+    return ".".join(key(part) for part in name.split("."))
 
 
 def _number(number: float) -> str:

@@ -1,7 +1,7 @@
 //! Springs between blocks and substrate, which break at the static threshold and form again.
 
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::{Rng, SeedableRng};
+use chacha20::ChaCha8Rng;
+use chacha20::rand_core::{Rng, SeedableRng};
 use slipfront::{ContactSprings, Surface};
 
 use super::step::{Motion, Update};
