@@ -457,6 +457,13 @@ fn a_run_is_repeated_twice_at_once() {
     workspace.succeed("run masked.toml -o a --set time.duration_star=20000 --set output.series=1000");
     std::fs::create_dir(workspace.path("temporary")).unwrap();
     let in_temporary = || std::fs::read_dir(workspace.path("temporary")).unwrap().count();
+    let has_begun = || {
+        let mut folders = std::fs::read_dir(workspace.path("temporary")).unwrap();
+        folders.any(|folder| {
+            let files = std::fs::read_dir(folder.unwrap().path());
+            files.is_ok_and(|mut files| files.next().is_some())
+        })
+    };
     let repetition = || {
         let mut process = workspace.process("verify --rerun --quiet a");
         process.env("TMPDIR", workspace.path("temporary"));
@@ -466,7 +473,8 @@ fn a_run_is_repeated_twice_at_once() {
     // On a busy machine it may have ended before the signal comes to it.
     let stopped_on_the_way = |_| {
         let mut first = repetition().spawn().unwrap();
-        wait_for("folder to work in", || in_temporary() == 1);
+        // What has not even a file in it may not be locked yet, and is taken for a leftover and made anew.
+        wait_for("file in the folder to work in", has_begun);
         send(&first, "-STOP");
         if in_temporary() == 1 {
             return Some(first);
