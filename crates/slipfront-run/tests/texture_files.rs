@@ -6,6 +6,7 @@ use std::f64::consts::{PI, TAU};
 use std::fs;
 use std::path::Path;
 
+use rstest::rstest;
 use slipfront_case::case::Case;
 use slipfront_run::pictures::texture_file::{smallest, textured_blocks, write};
 
@@ -314,25 +315,19 @@ const SHAPES: &[&str] = &[
     "[[texture]]\nshape = 'mask'\nfile = 'mask.png'\narray = [3, 2]\nlattice = 'staggered'\ninvert = true",
 ];
 
-#[test]
-fn outlines_fill_the_blocks_of_the_mask() {
+#[rstest]
+#[case("", &[""])]
+#[case("[slider]\nblocks = [40, 30]\n", SHAPES)]
+#[case("[slider]\nblocks = [40, 30]\nedges = 'periodic'\n", SHAPES)]
+#[case("[slider]\nblocks = [40, 30]\nblock_size = '1.7 nm'\n", &["[[texture]]\nshape = 'cavity'\ncoverage = 10\nw = 0.3"])]
+#[case("[slider]\nblocks = [31, 31]\noutline = 'disc'\n", &SHAPES[..2])]
+fn outlines_fill_the_blocks_of_the_mask(#[case] slider: &str, #[case] shapes: &[&str]) {
     let folder = tempfile::tempdir().unwrap();
     let mask: Vec<bool> = (0..30).map(|b| b % 7 < 2 || b == 12).collect();
     slipfront_case::arrays::write_mask_png(&folder.path().join("mask.png"), 6, 5, &mask).unwrap();
-    let mut sliders = vec![String::new()];
-    for (slider, shapes) in [
-        ("blocks = [40, 30]", SHAPES),
-        ("blocks = [40, 30]\nedges = 'periodic'", SHAPES),
-        (
-            "blocks = [40, 30]\nblock_size = '1.7 nm'",
-            &["[[texture]]\nshape = 'cavity'\ncoverage = 10\nw = 0.3"],
-        ),
-        ("blocks = [31, 31]\noutline = 'disc'", &SHAPES[..2]),
-    ] {
-        sliders.extend(shapes.iter().map(|shape| format!("[slider]\n{slider}\n{shape}")));
-    }
-    for text in &sliders {
-        let case = Case::parse(text, "case", folder.path(), &[]).unwrap();
+    for shape in shapes {
+        let text = format!("{slider}{shape}");
+        let case = Case::parse(&text, "case", folder.path(), &[]).unwrap();
         let (nx, ny) = (case.model.lattice.nx, case.model.lattice.ny);
         let textured = textured_blocks(&case);
         assert_eq!(textured.contains(&true), !text.is_empty());

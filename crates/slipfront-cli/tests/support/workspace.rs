@@ -5,6 +5,7 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 
+use slipfront_case::machine::free_disk;
 use tempfile::TempDir;
 
 use super::process::{ended_with, program, stderr, stdout, wait_for};
@@ -15,6 +16,13 @@ pub(crate) type Files = BTreeMap<String, Vec<u8>>;
 /// Largest number of bytes of a file that is read: a larger file is one of the empty files of a TiB that tests make.
 const MAX_READ_BYTES: u64 = 1 << 30;
 
+/// The folder of Linux for files in memory. What commands write there is not forced to a disk, for which half of the time of these tests
+/// would be spent.
+const IN_MEMORY: &str = "/dev/shm";
+
+/// The least number of bytes that must be free in memory: all tests together take less than a tenth of it.
+const ROOM: f64 = 4e9;
+
 /// A temporary folder. Names of files are relative to it, and commands run in it.
 pub(crate) struct Workspace {
     folder: TempDir,
@@ -22,8 +30,14 @@ pub(crate) struct Workspace {
 
 impl Workspace {
     pub(crate) fn new() -> Self {
+        let has_room = free_disk(Path::new(IN_MEMORY)).is_some_and(|free| free > ROOM);
+        let folder = if has_room && std::env::var_os("TMPDIR").is_none() {
+            TempDir::new_in(IN_MEMORY)
+        } else {
+            TempDir::new()
+        };
         Self {
-            folder: TempDir::new().unwrap(),
+            folder: folder.unwrap(),
         }
     }
 
