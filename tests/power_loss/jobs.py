@@ -3,6 +3,7 @@
 import glob
 import os
 import re
+import shutil
 import signal
 import subprocess
 import time
@@ -133,6 +134,8 @@ def without_time(files):
             continue
         if os.path.basename(name) == "manifest.json":
             kept[name] = b"a manifest"
+        elif name == "ro-crate-metadata.json":
+            kept[name] = re.sub(rb'"datePublished": "20[0-9-]+"', b"", content)
         elif name == "records.jsonl":
             kept[name] = sorted(re.findall(rb'"id":"(\w+)"', content))
         else:
@@ -336,6 +339,31 @@ class Drawn(Design):
     lines = (line,)
 
 
+class Exported(Design):
+    """A run that is copied and described as a crate."""
+
+    name = "export"
+    before = ("run case.toml -o measured --threads 1 --no-pictures",)
+    line = "export measured --ro-crate -o out"
+    lines = (line,)
+
+    def recover(self, program, folder, expected, ended):
+        out = os.path.join(folder, self.out)
+        # What has its description looks like a crate.
+        if ended is not None or os.path.exists(os.path.join(out, "ro-crate-metadata.json")):
+            return f"{self.right(program, folder, expected)}: complete"
+        status, said = slipfront(program, self.line, folder)
+        if status == 0:
+            return f"{self.right(program, folder, expected)}: done"
+        if "choose another with --out" not in said:
+            raise Defect(f"a sentence without a remedy: {said}")
+        shutil.rmtree(out)
+        status, said = slipfront(program, self.line, folder)
+        if status:
+            raise Defect(f"a new folder does not help: {said}")
+        return f"refused, in a new folder: {self.right(program, folder, expected)}"
+
+
 class Saved(Pictures):
     """A run that the laboratory saves."""
 
@@ -351,4 +379,4 @@ class Saved(Pictures):
         return saves
 
 
-JOBS = (Run, Stopped, Replaced, Repeated, Pictures, Saved, Study, Merge, Design, Converge, Calibrate, Paper, Drawn)
+JOBS = (Run, Stopped, Replaced, Repeated, Pictures, Saved, Study, Merge, Design, Converge, Calibrate, Paper, Drawn, Exported)
