@@ -1,12 +1,16 @@
 //! Processes of the command: started, signalled and waited for.
 
 use std::process::{Child, Command, Output};
+use std::sync::LazyLock;
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-/// The path of the command under test.
+/// The path of the command under test: the one of this build, or the one that `SLIPFRONT` names, such as a program for another platform.
 pub(crate) fn program() -> &'static str {
-    env!("CARGO_BIN_EXE_slipfront")
+    static PROGRAM: LazyLock<String> = LazyLock::new(|| {
+        std::env::var("SLIPFRONT").unwrap_or_else(|_| env!("CARGO_BIN_EXE_slipfront").to_owned())
+    });
+    &PROGRAM
 }
 
 /// Text that a process has printed to stderr.
