@@ -73,7 +73,11 @@ def platform_of(name):
 
 
 def problems(path):
-    """What is wrong with an archive, in sentences."""
+    """What is wrong with an archive, or with a page that contains all of the laboratory, in sentences."""
+    if path.suffix == ".html":
+        text = path.read_text(encoding="utf-8")
+        yield from (f"{part} is not in it" for part in [NOTICES, "slipfront.wasm"] if part not in text)
+        return
     found = members(path)
     end = next(end for end in CONTENTS if path.name.endswith(end))
     is_command = any(kind in end for kind in ["linux", "windows"])
@@ -101,9 +105,9 @@ def problems(path):
 def main():
     bad = 0
     for path in sorted(Path(sys.argv[1]).iterdir()):
-        if path.suffix not in [".gz", ".zip", ".whl"]:
+        if path.suffix not in [".gz", ".zip", ".whl", ".html"]:
             continue
-        print(f"{path.name}: {len(members(path))} files, {path.stat().st_size / 1e6:.1f} MB")
+        print(f"{path.name}: {path.stat().st_size / 1e6:.1f} MB")
         for problem in problems(path):
             bad += 1
             print(f"  WRONG: {problem}")
