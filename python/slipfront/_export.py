@@ -86,8 +86,8 @@ def export(
     ...     sf.export(run, "bibtex").count("@")
     3
     """
-    one = isinstance(runs, (Run, str, os.PathLike))
-    folders = [_folder_of(run) for run in ([runs] if one else runs)]
+    several: Iterable[RunLike] = [runs] if isinstance(runs, (Run, str, os.PathLike)) else runs
+    folders = [_folder_of(run) for run in several]
     if form == "ro-crate":
         if folder is not None and force:
             raise ValueError("`force` replaces a description in the folder of a run, and `folder` names a new one: give one of them")
