@@ -19,7 +19,6 @@ import hashlib
 import json
 import os
 import re
-import shlex
 import shutil
 import subprocess
 import sys
@@ -106,11 +105,6 @@ class Windows:
         self.how = version_of([wine, "--version"], r"wine-([\d.]+)", "wine", self.environment)
         self.title = version_of([*self.line, "--version"], r"vectors: (\S+)", "Windows, x86-64,", self.environment)
         self.is_emulated = True
-        # One program, as tests take it by the variable SLIPFRONT.
-        told = " ".join(f"{name}={shlex.quote(value)}" for name, value in self.environment.items())
-        script = folder / "slipfront"
-        script.write_text(f'#!/bin/sh\nexec env {told} {wine} {shlex.quote(str(folder / "slipfront.exe"))} "$@"\n')
-        script.chmod(0o755)
 
 
 class Wasm:

@@ -1,16 +1,12 @@
 //! Processes of the command: started, signalled and waited for.
 
 use std::process::{Child, Command, Output};
-use std::sync::LazyLock;
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-/// The path of the command under test: the one of this build, or the one that `SLIPFRONT` names, such as a program for another platform.
+/// The path of the command under test.
 pub(crate) fn program() -> &'static str {
-    static PROGRAM: LazyLock<String> = LazyLock::new(|| {
-        std::env::var("SLIPFRONT").unwrap_or_else(|_| env!("CARGO_BIN_EXE_slipfront").to_owned())
-    });
-    &PROGRAM
+    env!("CARGO_BIN_EXE_slipfront")
 }
 
 /// Text that a process has printed to stderr.
