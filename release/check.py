@@ -51,7 +51,7 @@ def members(path):
 
 
 def said(*line):
-    """What a program prints."""
+    """Standard output of a program."""
     return subprocess.run(line, capture_output=True, text=True, check=True).stdout
 
 
@@ -73,7 +73,7 @@ def platform_of(name):
 
 
 def problems(path):
-    """What is wrong with an archive, or with a page that contains all of the laboratory, in sentences."""
+    """Sentences about faults of an archive, or of a page that contains all of the laboratory."""
     if path.suffix == ".html":
         text = path.read_text(encoding="utf-8")
         yield from (f"{part} is not in it" for part in [NOTICES, "slipfront.wasm"] if part not in text)
