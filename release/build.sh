@@ -9,9 +9,10 @@
 # lab                            the laboratory without a server, as a folder and as one file
 # source                         the sources of this commit, and the source distribution for pip
 # wheel-linux-x86_64, wheel-linux-aarch64, wheel-musl-x86_64, wheel-musl-aarch64, wheel-windows-x86_64
+# check                          fails if a file in target/dist/ lacks a part, or a program in it asks for a library that not every machine has
 # reproducible                   linux-x86_64 again, in a clone elsewhere: fails if a byte differs
 #
-# Needs Linux on x86-64, git, rustup, and python3 with venv. Installs Rust's targets, maturin, zig and a checker of SBOMs in target/, and
+# Needs Linux on x86-64, git, rustup, binutils, and python3 with venv. Installs Rust's targets, maturin, zig and a checker of SBOMs in target/, and
 # mingw-w64 by apt-get for Windows. Each build of the command takes 4 minutes of processor time.
 set -euo pipefail
 exec < /dev/null
@@ -124,6 +125,8 @@ step() {
         wheel aarch64-unknown-linux-musl --zig --compatibility musllinux_1_2
     elif [ "$1" = wheel-windows-x86_64 ]; then
         (mingw && wheel x86_64-pc-windows-gnu)
+    elif [ "$1" = check ]; then
+        python3 -B release/check.py "$out"
     elif [ "$1" = reproducible ]; then
         reproducible
     else
@@ -151,9 +154,10 @@ source_distributions() {
 
 # Builds this commit in a clone with another path, and compares the archive.
 reproducible() {
-    local archive=slipfront-$version-linux-x86_64.tar.gz elsewhere
+    local archive=slipfront-$version-linux-x86_64.tar.gz
     [ -e "$out/$archive" ] || step linux-x86_64
     elsewhere=$(mktemp -d)
+    # Of the whole script, since the function has ended by then.
     trap 'rm -rf "$elsewhere"' EXIT
     git clone --quiet . "$elsewhere/a folder of another name"
     (
@@ -168,7 +172,7 @@ reproducible() {
 steps=("$@")
 if [ $# -eq 0 ]; then
     steps=(linux-x86_64 linux-aarch64 windows-x86_64 lab source wheel-linux-x86_64 wheel-linux-aarch64 wheel-musl-x86_64
-        wheel-musl-aarch64 wheel-windows-x86_64 reproducible)
+        wheel-musl-aarch64 wheel-windows-x86_64 check reproducible)
 fi
 if [ -n "$(git status --porcelain)" ]; then
     printf 'warning: files have changed since the last commit, so that this is no release\n' >&2

@@ -13,8 +13,9 @@ if ! rustup target list --installed | grep --quiet --line-regexp "$target"; then
 fi
 # Vectors of two doubles: every browser has had them since 2023. A folder of its own, since the program is built with other flags. Paths are replaced,
 # so that the module has the same bytes wherever it is built.
-paths="--remap-path-prefix=$PWD=/slipfront --remap-path-prefix=${CARGO_HOME:-$HOME/.cargo}=/cargo"
-RUSTFLAGS="-C target-feature=+simd128 $paths" cargo build --profile wasm --quiet --locked -p slipfront-wasm --lib --target "$target" --target-dir target/wasm
+# \x1f stands between flags, since a path may contain a blank.
+printf -v flags '%s\x1f' -C target-feature=+simd128 "--remap-path-prefix=$PWD=/slipfront" "--remap-path-prefix=${CARGO_HOME:-$HOME/.cargo}=/cargo"
+CARGO_ENCODED_RUSTFLAGS=${flags%$'\x1f'} cargo build --profile wasm --quiet --locked -p slipfront-wasm --lib --target "$target" --target-dir target/wasm
 built=target/wasm/$target/wasm/slipfront_wasm.wasm
 if command -v wasm-opt > /dev/null; then
     # What rustc takes for granted of every browser, and SIMD.

@@ -11,6 +11,7 @@ from ._case import Case, CaseError
 from ._cite import cite
 from ._converge import Convergence, QuantityOnMeshes, converge
 from ._design import Design, DesignResults, Largest, Least, Value
+from ._export import export
 from ._map import map
 from ._open import InterruptedRun, PaperResults, open, open_run, open_study
 from ._run import FolderError, Run
@@ -43,6 +44,7 @@ __all__ = [
     "__version__",
     "cite",
     "converge",
+    "export",
     "map",
     "open",
     "open_run",

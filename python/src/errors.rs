@@ -30,7 +30,7 @@ create_exception!(
 );
 
 /// Options of the command, and their counterparts in Python.
-const OPTIONS: [(&str, &str); 9] = [
+const OPTIONS: [(&str, &str); 11] = [
     ("another --set", "another override"),
     ("--set ", ""),
     ("with --out", "by `folder`"),
@@ -40,13 +40,18 @@ const OPTIONS: [(&str, &str); 9] = [
     ("--levels", "`levels`"),
     ("--replicates", "`replicates`"),
     ("--threads", "`threads`"),
+    ("--author \"NAME\"", "`author`"),
+    (
+        "--licence, such as --licence CC-BY-4.0",
+        "`licence`, such as \"CC-BY-4.0\"",
+    ),
 ];
 
 /// Beginning of the names of files that are arrays in memory; a number and the key that was given the array follow.
 pub(crate) const IN_MEMORY: &str = "memory:/";
 
 /// The sentence of an error in the words of Python: arguments in place of options, keys in place of files in memory.
-fn in_words_of_python(error: impl Display) -> String {
+pub(crate) fn in_words_of_python(error: impl Display) -> String {
     let mut sentence = error.to_string();
     for (option, argument) in OPTIONS {
         sentence = sentence.replace(option, argument);

@@ -13,6 +13,7 @@ mod calibrate;
 mod case;
 mod design;
 mod errors;
+mod export;
 mod folder;
 mod map;
 mod pickle;
@@ -59,6 +60,8 @@ fn _slipfront(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(folder::interrupted, module)?)?;
     module.add_function(wrap_pyfunction!(folder::verify, module)?)?;
     module.add_function(wrap_pyfunction!(folder::make_ready, module)?)?;
+    module.add_function(wrap_pyfunction!(export::ro_crate, module)?)?;
+    module.add_function(wrap_pyfunction!(export::citation, module)?)?;
     module.add_function(wrap_pyfunction!(pickle::with_checksum, module)?)?;
     module.add_function(wrap_pyfunction!(pickle::verified, module)?)?;
     module.add_function(wrap_pyfunction!(process::check_process, module)?)?;

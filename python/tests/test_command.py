@@ -2,6 +2,7 @@
 
 import importlib.metadata
 import os
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -72,3 +73,49 @@ def test_an_interrupted_run_of_the_command_goes_on(tmp_path: Path) -> None:
     whole.step(opened.simulation.steps + 500)
     opened.simulation.step(500)
     assert (whole.displacement == opened.simulation.displacement).all()
+
+
+def test_runs_are_exported_with_the_bytes_of_the_command(small: sf.Case, tmp_path: Path) -> None:
+    run = sf.run(small, progress=False)
+    with pytest.raises(sf.FolderError, match="save it before"):
+        sf.export(run, "bibtex")
+    folder, twin = run.save(tmp_path / "run"), tmp_path / "twin" / "run"
+    shutil.copytree(folder, twin)
+    told = ("--author", "NAME", "--licence", "CC-BY-4.0")
+    assert sf.export(run, "bibtex") == command("export", folder, "--bibtex").stdout
+    assert sf.export([folder, str(twin)], "cff", author="NAME", licence="CC-BY-4.0") == command("export", folder, twin, "--cff", *told).stdout
+    # The description has the date, which may change between both.
+    for _ in range(2):
+        path = sf.export(run, "ro-crate", author="NAME", licence="CC-BY-4.0", force=True)
+        assert command("export", twin, "--ro-crate", *told, "--force").returncode == 0
+        if path.read_bytes() == (twin / "ro-crate-metadata.json").read_bytes():
+            break
+    else:
+        pytest.fail("the descriptions differ")
+    copies = sf.export(run, "ro-crate", author="NAME", licence="CC-BY-4.0", folder=tmp_path / "crate")
+    assert copies == tmp_path / "crate" / "ro-crate-metadata.json" and (tmp_path / "crate/run/summary.json").exists()
+
+
+def test_an_export_that_cannot_be_is_refused_in_the_words_of_python(small: sf.Case, tmp_path: Path) -> None:
+    run = sf.run(small, progress=False)
+    folder = run.save(tmp_path / "run")
+    with pytest.warns(UserWarning, match="add `(author|licence)`") as warned:
+        sf.export(run, "ro-crate")
+    assert len(warned) == 2 and all(warning.filename == __file__ for warning in warned)
+    with pytest.raises(sf.FolderError, match="replace it by `force=True`, or write the crate to a new folder by `folder`"):
+        sf.export(run, "ro-crate")
+    with pytest.raises(ValueError, match="name it by `folder`"):
+        sf.export([run, run], "ro-crate")
+    with pytest.raises(ValueError, match="add `author`"):
+        sf.export(run, "cff")
+    with pytest.raises(ValueError, match='licence = "CC BY": write an identifier'):
+        sf.export(run, "bibtex", licence="CC BY")
+    with pytest.raises(ValueError, match="give one of them"):
+        sf.export(run, "ro-crate", folder=tmp_path / "crate", force=True)
+    with pytest.raises(ValueError, match='"ro-crate", "bibtex" or "cff"'):
+        sf.export(run, "apa")  # type: ignore[call-overload]
+    with pytest.raises(ValueError, match="gives a text"):
+        sf.export(run, "bibtex", force=True)  # type: ignore[call-overload]
+    (folder / "series.csv").write_text("step\n")
+    with pytest.raises(sf.FolderError, match="series.csv differs"):
+        sf.export(run, "bibtex")

@@ -3,6 +3,7 @@
 import glob
 import os
 import re
+import shutil
 import signal
 import subprocess
 import time
@@ -57,6 +58,30 @@ coverage = [0, 20]
 runs = 8
 """
 
+MESHES = """
+[slider]
+blocks = [4, 4]
+[drive]
+v_star = 0.2
+[time]
+duration_star = 60
+[output]
+snapshots = []
+series = 1
+"""
+
+FIT = """
+base = "meshes.toml"
+[calibrate]
+x = "time_s"
+y = "friction_force_n"
+noise = 0.01
+runs = 100
+finer_runs = 0
+[calibrate.unknowns]
+"friction.mu_static" = [0.3, 0.9]
+"""
+
 
 def table(columns, rows):
     return "\n".join(",".join(f"{1 + (7 * row + 3 * column) % 11 / 100}" for column in range(columns)) for row in range(rows)) + "\n"
@@ -67,6 +92,8 @@ FILES = {
     "slow.toml": SLOW,
     "study.toml": STUDY,
     "design.toml": DESIGN,
+    "meshes.toml": MESHES,
+    "fit.toml": FIT,
     "mu.csv": table(12, 10),
     "few.csv": table(4, 4),
     "square.csv": table(6, 6),
@@ -107,6 +134,8 @@ def without_time(files):
             continue
         if os.path.basename(name) == "manifest.json":
             kept[name] = b"a manifest"
+        elif name == "ro-crate-metadata.json":
+            kept[name] = re.sub(rb'"datePublished": "20[0-9-]+"', b"", content)
         elif name == "records.jsonl":
             kept[name] = sorted(re.findall(rb'"id":"(\w+)"', content))
         else:
@@ -278,6 +307,63 @@ class Design(Study):
         return "the results"
 
 
+class Converge(Study):
+    """A study over meshes, with what they found."""
+
+    name = "converge"
+    line = "converge meshes.toml -o out --replicates 2 --threads 1 --quiet"
+    lines = (line,)
+
+
+class Calibrate(Study):
+    name = "calibrate"
+    before = ("run meshes.toml -o measured --threads 1 --no-pictures",)
+    line = "calibrate fit.toml measured/series.csv -o out --threads 1 --quiet"
+    lines = (line,)
+
+
+class Paper(Design):
+    """The figure of the paper that takes the least time."""
+
+    name = "paper"
+    line = "paper fig13 -o out --threads 1 --quiet"
+    lines = (line,)
+
+
+class Drawn(Design):
+    """Pictures of a run that are drawn by themselves."""
+
+    name = "plot"
+    before = ("run case.toml -o measured --threads 1 --no-pictures",)
+    line = "plot measured -o out"
+    lines = (line,)
+
+
+class Exported(Design):
+    """A run that is copied and described as a crate."""
+
+    name = "export"
+    before = ("run case.toml -o measured --threads 1 --no-pictures",)
+    line = "export measured --ro-crate -o out"
+    lines = (line,)
+
+    def recover(self, program, folder, expected, ended):
+        out = os.path.join(folder, self.out)
+        # What has its description looks like a crate.
+        if ended is not None or os.path.exists(os.path.join(out, "ro-crate-metadata.json")):
+            return f"{self.right(program, folder, expected)}: complete"
+        status, said = slipfront(program, self.line, folder)
+        if status == 0:
+            return f"{self.right(program, folder, expected)}: done"
+        if "choose another with --out" not in said:
+            raise Defect(f"a sentence without a remedy: {said}")
+        shutil.rmtree(out)
+        status, said = slipfront(program, self.line, folder)
+        if status:
+            raise Defect(f"a new folder does not help: {said}")
+        return f"refused, in a new folder: {self.right(program, folder, expected)}"
+
+
 class Saved(Pictures):
     """A run that the laboratory saves."""
 
@@ -293,4 +379,4 @@ class Saved(Pictures):
         return saves
 
 
-JOBS = (Run, Stopped, Replaced, Repeated, Pictures, Saved, Study, Merge, Design)
+JOBS = (Run, Stopped, Replaced, Repeated, Pictures, Saved, Study, Merge, Design, Converge, Calibrate, Paper, Drawn, Exported)

@@ -3,9 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use slipfront_run::export::{
-    Author, ExportError, Licence, Told, WholeRun, bibtex, cff, crate_of_copies, describe_in_place,
-};
+use slipfront_run::export::{Author, ExportError, Licence, Told, WholeRun, bibtex, cff, write_crate};
 
 use crate::failure::Failure;
 use crate::print::{print, print_message};
@@ -69,26 +67,10 @@ impl ExportCommand {
         if self.form.cff {
             return print(&cff(&runs, &told).map_err(failure)?);
         }
-        let written = match (self.out, runs.as_slice()) {
-            (Some(out), runs) => crate_of_copies(runs, &out, &told),
-            (None, [run]) => describe_in_place(run, &told, self.force),
-            (None, _) => Err(ExportError::NeedsFolder),
-        };
-        let path = written.map_err(failure)?;
+        let path = write_crate(&runs, self.out.as_deref(), &told, self.force).map_err(failure)?;
         print_message(&format!("{}\n", path.display()));
-        for (is_told, missing) in [
-            (
-                told.author.is_some(),
-                "the crate names no author: add --author \"NAME\"",
-            ),
-            (
-                told.licence.is_some(),
-                "the crate has no licence, without which others may not use the results: add --licence, such as --licence CC-BY-4.0",
-            ),
-        ] {
-            if !is_told {
-                print_message(&wrap::note(missing));
-            }
+        for note in told.notes() {
+            print_message(&wrap::note(note));
         }
         Ok(())
     }

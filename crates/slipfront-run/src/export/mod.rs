@@ -43,6 +43,22 @@ pub struct Told {
     pub licence: Option<Licence>,
 }
 
+impl Told {
+    /// Sentences about what a crate lacks, since the user did not tell it.
+    pub fn notes(&self) -> Vec<&'static str> {
+        let mut notes = Vec::new();
+        if self.author.is_none() {
+            notes.push("the crate names no author: add --author \"NAME\"");
+        }
+        if self.licence.is_none() {
+            notes.push(
+                "the crate has no licence, without which others may not use the results: add --licence, such as --licence CC-BY-4.0",
+            );
+        }
+        notes
+    }
+}
+
 /// Name of an author, with the address of an ORCID record.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Author {
@@ -201,11 +217,27 @@ impl FromStr for Licence {
     }
 }
 
-/// Describes a run in its own folder, in `ro-crate-metadata.json`, and returns the path of this file. It is not one of the run's files.
+/// Describes runs as a Process Run Crate and returns the path of `ro-crate-metadata.json`: copies of them in the new folder `out`, or without
+/// `out` one run in its own folder, where `force` replaces an earlier description.
 ///
 /// # Errors
-/// When the file exists, without `force`, and when the system refuses to write.
-pub fn describe_in_place(run: &WholeRun, told: &Told, force: bool) -> Result<PathBuf, ExportError> {
+/// [`ExportError::NeedsFolder`] for several runs without `out`; when a file or folder stands where one is to be made, when two runs have one
+/// name, and when the system refuses to read or write.
+pub fn write_crate(
+    runs: &[WholeRun],
+    out: Option<&Path>,
+    told: &Told,
+    force: bool,
+) -> Result<PathBuf, ExportError> {
+    match (out, runs) {
+        (Some(out), runs) => crate_of_copies(runs, out, told),
+        (None, [run]) => describe_in_place(run, told, force),
+        (None, _) => Err(ExportError::NeedsFolder),
+    }
+}
+
+/// Describes a run in its own folder, in `ro-crate-metadata.json`, and returns the path of this file. It is not one of the run's files.
+fn describe_in_place(run: &WholeRun, told: &Told, force: bool) -> Result<PathBuf, ExportError> {
     let path = run.folder.join(RO_CRATE);
     // A broken link is a file of the user as well.
     if path.symlink_metadata().is_ok() && !force {
@@ -218,10 +250,7 @@ pub fn describe_in_place(run: &WholeRun, told: &Told, force: bool) -> Result<Pat
 
 /// Copies runs to a new folder, each to a folder of its name, describes them there in `ro-crate-metadata.json`, which is written last, and
 /// returns the path of this file.
-///
-/// # Errors
-/// When the folder exists and is not empty, when two runs have one name, and when the system refuses to read or write.
-pub fn crate_of_copies(runs: &[WholeRun], out: &Path, told: &Told) -> Result<PathBuf, ExportError> {
+fn crate_of_copies(runs: &[WholeRun], out: &Path, told: &Told) -> Result<PathBuf, ExportError> {
     let mut names: Vec<&String> = runs.iter().map(|run| &run.name).collect();
     names.sort_unstable();
     if let Some(pair) = names.windows(2).find(|pair| pair[0] == pair[1]) {
