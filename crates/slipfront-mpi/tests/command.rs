@@ -14,7 +14,7 @@ use rstest::rstest;
 use tempfile::TempDir;
 
 use crate::support::results::{Files, assert_same, results};
-use crate::support::{mpirun, output, printed, run_plain, run_plain_command};
+use crate::support::{SECONDS_TO_END, mpirun, output, printed, run_plain, run_plain_command};
 
 /// Long enough to be stopped: `mpirun` waits a second before it passes a signal on to the ranks, and a
 /// fast machine needs less than half of the nine seconds measured here.
@@ -206,6 +206,8 @@ fn a_run_that_is_stopped_by_a_signal_goes_on_in_either_command(
     let folder = TempDir::new().unwrap();
     std::fs::write(folder.path().join("slow.toml"), SLOW).unwrap();
     let mut command = on_ranks(ranks, &folder, "run slow.toml --checkpoint 0s -o stopped");
+    // As users have it: what mpirun stops has time to save its state.
+    command.env_remove(SECONDS_TO_END);
     command.stdout(Stdio::piped()).stderr(Stdio::piped());
     let child = command.spawn().unwrap();
     wait_for_checkpoint(&folder.path().join("stopped"));

@@ -10,6 +10,9 @@ use std::io::ErrorKind;
 use std::path::Path;
 use std::process::{Command, Output};
 
+/// Open MPI's parameter for the seconds between the signal on which ranks are to end and the one that kills them.
+pub(crate) const SECONDS_TO_END: &str = "OMPI_MCA_odls_base_sigkill_timeout";
+
 /// The environment in which a test program finds the arguments of the command that it is to run.
 const ARGUMENTS: &str = "SLIPFRONT_TEST_ARGUMENTS";
 
@@ -28,6 +31,8 @@ pub(crate) fn launcher() -> Command {
     // A rank that waits for ever is a failure of the test, not of the machine on which it runs. Four ranks on two cores give way to
     // whatever else works there at each of their steps, so that seconds become minutes.
     command.args(["--timeout", "600", "--mca", "mpi_yield_when_idle", "1"]);
+    // Of ranks that end with another status than 0 mpirun kills at once what is left, and not after a second or two.
+    command.env(SECONDS_TO_END, "0");
     command
 }
 
