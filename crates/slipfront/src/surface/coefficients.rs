@@ -5,7 +5,8 @@ use std::ops::Range;
 
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
-use rayon::prelude::*;
+
+use crate::parallel::*;
 
 /// Mean and standard deviation of a Gaussian.
 #[derive(Clone, Copy, Debug, PartialEq)]
