@@ -131,8 +131,8 @@ mod tests {
     fn pictures_of_files_in_memory_are_those_of_a_folder() {
         let out = tempfile::tempdir().unwrap();
         let out = out.path().join("out");
-        // Driven at an edge it has events of slip, and with them every picture.
-        let text = "slider.blocks = [6, 4]\ndrive.edge = 'left'\ndrive.v_star = 0.1\ntime.duration_star = 60\noutput.movie = true\n";
+        // Driven at an edge it has events of slip, and it slides as a whole: every picture is drawn.
+        let text = "slider.blocks = [6, 4]\ndrive.attach = 'left'\ndrive.v_star = 3\ntime.duration_star = 60\noutput.movie = true\n";
         let case = Arc::new(Case::parse(text, "case", "", &[]).unwrap());
         let run = || running::run(&case, 1).unwrap();
         let mut folder = RunFolder::prepare(&out, false, &case.inputs).unwrap();
