@@ -9,7 +9,7 @@ use serde::de::{
     Visitor,
 };
 use toml::Spanned;
-use toml::de::{DeArray, DeInteger, DeString, DeTable, DeValue};
+use toml::de::{DeArray, DeInteger, DeTable, DeValue};
 
 /// Why a value cannot be read, and its place, where that is known.
 #[derive(Debug)]
@@ -97,11 +97,6 @@ fn unexpected(value: &DeValue<'_>, expected: &dyn Expected) -> ReadError {
     ReadError::invalid_type(found, expected)
 }
 
-fn text<'i, V: Visitor<'i>>(text: DeString<'i>, visitor: V) -> Result<V::Value, ReadError> {
-    // Not as borrowed text, for which every type would need code of its own: cases keep no borrowed text.
-    visitor.visit_str(&text)
-}
-
 fn whole<'i, V: Visitor<'i>>(number: DeInteger<'i>, visitor: V) -> Result<V::Value, ReadError> {
     match Whole::of(&number) {
         Some(Whole::Signed(number)) => visitor.visit_i64(number),
@@ -130,7 +125,8 @@ impl<'de> Reader<'de> {
 
     fn text<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, ReadError> {
         self.visit(|value| match value {
-            DeValue::String(found) => text(found, visitor),
+            // Not as borrowed text, for which every type would need code of its own: cases keep no borrowed text.
+            DeValue::String(text) => visitor.visit_str(&text),
             other => Err(unexpected(&other, &visitor)),
         })
     }
