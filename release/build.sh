@@ -50,7 +50,7 @@ venv() {
     cp release/requirements.txt "$tools/made"
 }
 
-# The session of the laboratory as WebAssembly, which every command and wheel carries.
+# The laboratory as WebAssembly, two modules, which every command and wheel carries.
 module() {
     [ -n "${module_made:-}" ] || env --unset=CARGO_ENCODED_RUSTFLAGS --unset=CARGO_TARGET_DIR crates/slipfront-wasm/build.sh
     module_made=yes
@@ -66,7 +66,7 @@ command_for() {
         cargo build --profile dist --locked --package slipfront-cli --target "$target"
     rm -rf "${stage:?}/$name"
     mkdir -p "$stage/$name"
-    cp "$CARGO_TARGET_DIR/$target/dist/$program" target/slipfront.wasm LICENSE-APACHE LICENSE-MIT "$stage/$name"
+    cp "$CARGO_TARGET_DIR/$target/dist/$program" target/slipfront.wasm target/slipfront-pictures.wasm LICENSE-APACHE LICENSE-MIT "$stage/$name"
     cp -r cases "$stage/$name"
     python3 -B tests/licences/notices.py --package crates/slipfront-cli --target "$target" --output "$stage/$name/THIRD-PARTY-NOTICES.txt"
     sbom crates/slipfront-cli "$target" "$stage/$name/slipfront.cdx.json"
@@ -92,7 +92,7 @@ wheel() {
     add_target "$target"
     venv
     module
-    cp target/slipfront.wasm python/slipfront/
+    cp target/slipfront{,-pictures}.wasm python/slipfront/
     PATH=$tools/bin:$PATH "$tools/bin/maturin" build --profile dist --locked --target "$target" "$@" --manifest-path python/Cargo.toml --out "$out"
 }
 

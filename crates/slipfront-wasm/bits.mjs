@@ -7,14 +7,10 @@
 import { execFileSync } from 'node:child_process';
 import { readdirSync, readFileSync } from 'node:fs';
 import path from 'node:path';
-import { fileURLToPath } from 'node:url';
+import { answer, BITS, ROOT } from './node.mjs';
 
-const ROOT = fileURLToPath(new URL('../..', import.meta.url));
 const MOST_STEPS = 3000;
-/** What the module says, by its number in `imports.rs`. */
-const [BITS, REFUSAL, DEFECT] = [10, 11, 12];
 
-const module = await WebAssembly.compile(readFileSync(path.join(ROOT, 'target/slipfront.wasm')));
 const folder = path.join(ROOT, 'cases');
 const names = readdirSync(folder).filter((name) => name.endsWith('.toml'));
 const here = execFileSync(path.join(ROOT, 'target/debug/examples/bits'), [String(MOST_STEPS), ...names.map((name) => path.join(folder, name))], { encoding: 'utf8' });
@@ -27,21 +23,7 @@ function filesOf(toml) {
 }
 
 /** The bits of a case in WebAssembly. @param {string} toml */
-async function bitsOf(toml) {
-  let said = '';
-  const say = (what, _number, at, length) => {
-    const text = Buffer.from(exports.memory.buffer, at, length).toString();
-    if (what === BITS) said = text;
-    else if (what === REFUSAL || what === DEFECT) throw new Error(text);
-  };
-  const { exports } = await WebAssembly.instantiate(module, { env: { say, now: () => performance.now(), date: () => {} } });
-  exports.begin();
-  const given = Buffer.from(JSON.stringify({ toml, files: filesOf(toml) }));
-  const at = exports.room(given.length);
-  new Uint8Array(exports.memory.buffer, at, given.length).set(given);
-  exports.bits(MOST_STEPS);
-  return said;
-}
+const bitsOf = async (toml) => (await answer('bits', [MOST_STEPS], { toml, files: filesOf(toml) }, BITS)).toString();
 
 let differ = 0;
 for (const name of names) {

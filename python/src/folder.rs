@@ -112,9 +112,9 @@ pub(crate) fn read_run<'py>(py: Python<'py>, folder: PathBuf) -> PyResult<(Case,
     let read = PyDict::new(py);
     let numbers = summary::read_summary(&folder).map_err(folder_error)?;
     read.set_item("summary", summary::summary_json(&numbers))?;
-    let rows = series::read_csv(&folder.join(SERIES)).map_err(folder_error)?;
+    let rows = series::read_csv(folder.join(SERIES)).map_err(folder_error)?;
     read.set_item("series", record::series(py, &rows)?)?;
-    let data = fields::read_fields(&folder.join(FIELDS)).map_err(folder_error)?;
+    let data = fields::read_fields(folder.join(FIELDS)).map_err(folder_error)?;
     read.set_item("fields", record::fields(py, data)?)?;
     let kymograph = folder.join(KYMOGRAPH);
     if kymograph.exists() {

@@ -33,6 +33,17 @@ async function saved(lab, name) {
   return unzip(contents);
 }
 
+/** Whether a file of a run is a picture. */
+const isPicture = (name) => /\.(svg|png)$/.test(name);
+
+/** Writes files into a folder of this name. */
+function unpack(files, name) {
+  const folder = path.join(WORK, 'unpacked', name);
+  mkdirSync(folder, { recursive: true });
+  for (const [file, contents] of files) writeFileSync(path.join(folder, file), contents);
+  return folder;
+}
+
 /** Displacements and velocities at the instants and at the end too. */
 const ALL_FIELDS = '\n[output]\nfields = ["displacement_x", "displacement_y", "velocity_x", "velocity_y", "contact_stress_star"]\n';
 const CASES = {
@@ -50,21 +61,30 @@ for (const [kept, toml] of Object.entries(CASES)) {
     const folder = path.join(WORK, 'of the command', kept);
     await slipfront('run', `${kept}.toml`, '--quiet', '--out', folder);
     const names = ['case.toml', 'fields.nc', 'kymograph.nc', 'series.csv', 'summary.json'];
-    assert.deepEqual([...files.keys()].sort(), [...names, 'manifest.json'].sort());
-    for (const name of names) assert.ok(files.get(name).equals(readFileSync(path.join(folder, name))), `${name} differs`);
-    // The manifest is accepted by the command, and says why there are no pictures; the command draws them.
-    const unpacked = path.join(WORK, 'unpacked', kept);
-    mkdirSync(unpacked, { recursive: true });
-    for (const [name, contents] of files) writeFileSync(path.join(unpacked, name), contents);
-    assert.match(await slipfront('verify', unpacked), /5 files as slipfront/);
-    assert.match(JSON.parse(files.get('manifest.json')).without_pictures, /slipfront plot/);
-    await slipfront('plot', unpacked);
-    assert.ok(readdirSync(unpacked).includes('friction.png'));
-    // What the command has beside them are pictures and who made them.
-    const others = readdirSync(folder).filter((name) => !names.includes(name) && !name.startsWith('.'));
-    assert.ok(others.every((name) => /\.(svg|png)$|^manifest\.json$/.test(name)), others.join(' '));
+    assert.deepEqual([...files.keys()].filter((name) => !isPicture(name)).sort(), [...names, 'manifest.json'].sort());
+    // Every file of the command is there, pictures too, and has its bytes; the manifest tells when and where it was run.
+    const others = readdirSync(folder).filter((name) => !name.startsWith('.'));
+    assert.deepEqual([...files.keys()].sort(), others.sort());
+    for (const name of others) assert.ok(name === 'manifest.json' || files.get(name).equals(readFileSync(path.join(folder, name))), `${name} differs`);
+    assert.ok(others.filter(isPicture).length >= 4, others.join(' '));
+    const unpacked = unpack(files, kept);
+    assert.match(await slipfront('verify', unpacked), new RegExp(`${others.length - 1} files as slipfront`));
+    assert.equal(JSON.parse(files.get('manifest.json')).without_pictures, undefined);
   });
 }
+
+test('a run that is saved without the part that draws says so, and the command draws its pictures', withoutServer, async (t) => {
+  // Files that a service worker gives would not pass here.
+  const lab = await open(t, { toml: SMALL, serviceWorkers: 'block' });
+  await lab.page.route('**/slipfront-pictures.wasm', (route) => route.fulfill({ body: Buffer.from('\0asm damaged', 'latin1'), contentType: 'application/wasm' }));
+  const files = await saved(lab, 'plain');
+  assert.ok(![...files.keys()].some(isPicture));
+  assert.match(JSON.parse(files.get('manifest.json')).without_pictures, /slipfront plot/);
+  const unpacked = unpack(files, 'plain');
+  assert.match(await slipfront('verify', unpacked), /5 files as slipfront/);
+  await slipfront('plot', unpacked);
+  assert.ok(readdirSync(unpacked).includes('friction.png'));
+});
 
 test('a run that is being saved without a server can be stopped', withoutServer, async (t) => {
   const lab = await open(t, { toml: SMALL.replace('[20, 20]', '[150, 150]').replace('= 120', '= 1e5') });

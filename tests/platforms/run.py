@@ -230,7 +230,7 @@ def run_in_node(on, folder, out, only):
         files = {other.name: base64.b64encode(other.read_bytes()).decode() for other in beside}
         documents.append({"name": path.stem, "toml": toml, "files": files})
     (out / "cases.json").write_text(json.dumps(documents))
-    subprocess.run([on.node, HERE / "wasm.mjs", out / "cases.json", out], check=True)
+    subprocess.run([on.node, HERE / "wasm.mjs", out / "cases.json", out, DRAWN], check=True)
     found = {}
     for document in documents:
         with zipfile.ZipFile(out / f"{document['name']}.zip") as archive:

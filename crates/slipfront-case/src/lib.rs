@@ -13,6 +13,7 @@ pub mod disk;
 pub mod field_info;
 pub mod machine;
 pub mod number_format;
+pub mod ordered;
 pub mod quantity;
 pub mod same;
 pub mod text;

@@ -259,13 +259,21 @@ impl<K: Kind> Quantity<K> {
         }
     }
 
-    fn no_unit(value: String) -> QuantityError {
-        QuantityError::NoUnit {
-            value,
-            wanted: K::NAME,
-            example: K::EXAMPLE,
-        }
-    }
+    const DESCRIPTION: Description = Description {
+        dimension: K::DIMENSION,
+        name: K::NAME,
+        example: K::EXAMPLE,
+        si_unit: K::SI_UNIT,
+    };
+}
+
+/// Constants of a [`Kind`] as values, so that one function reads the texts of all kinds.
+#[derive(Clone, Copy)]
+struct Description {
+    dimension: Dimension,
+    name: &'static str,
+    example: &'static str,
+    si_unit: &'static str,
 }
 
 impl<K: Kind> From<f64> for Quantity<K> {
@@ -284,29 +292,48 @@ impl<K: Kind> FromStr for Quantity<K> {
     type Err = QuantityError;
 
     fn from_str(text: &str) -> Result<Self, QuantityError> {
+        Ok(Self {
+            si: Self::DESCRIPTION.read(text)?,
+            text: text.to_owned(),
+            kind: PhantomData,
+        })
+    }
+}
+
+impl Description {
+    fn no_unit(self, value: String) -> QuantityError {
+        QuantityError::NoUnit {
+            value,
+            wanted: self.name,
+            example: self.example,
+        }
+    }
+
+    /// Reads a text. Gives the value in SI units.
+    fn read(self, text: &str) -> Result<f64, QuantityError> {
         if text.len() > MAX_TEXT {
             return Err(QuantityError::TooLong {
                 bytes: text.len(),
-                example: K::EXAMPLE,
+                example: self.example,
             });
         }
         let number = DecimalText::split(text.trim()).ok_or_else(|| QuantityError::NoNumber {
             text: text.to_owned(),
-            wanted: K::NAME,
-            example: K::EXAMPLE,
+            wanted: self.name,
+            example: self.example,
         })?;
         if number.rest.trim().is_empty() {
-            return Err(Self::no_unit(text.trim().to_owned()));
+            return Err(self.no_unit(text.trim().to_owned()));
         }
-        let unit = Unit::read(text, number.rest, K::DIMENSION, K::EXAMPLE)?;
+        let unit = Unit::read(text, number.rest, self.dimension, self.example)?;
         let dimension = unit.dimension;
-        if dimension != K::DIMENSION {
+        if dimension != self.dimension {
             return Err(QuantityError::Dimension {
                 text: text.to_owned(),
                 given: dimension.name(),
                 dimension,
-                wanted: K::NAME,
-                example: K::EXAMPLE,
+                wanted: self.name,
+                example: self.example,
             });
         }
         let si = number.shifted(unit.power_of_ten).map(|si| si * unit.factor);
@@ -320,14 +347,10 @@ impl<K: Kind> FromStr for Quantity<K> {
             return Err(QuantityError::UnknownUnit {
                 text: text.to_owned(),
                 unit: foreign,
-                advice: format!("write \"{} {}\"", six_digits(si), K::SI_UNIT),
+                advice: format!("write \"{} {}\"", six_digits(si), self.si_unit),
             });
         }
-        Ok(Self {
-            text: text.to_owned(),
-            si,
-            kind: PhantomData,
-        })
+        Ok(si)
     }
 }
 
@@ -339,34 +362,41 @@ impl<K: Kind> Serialize for Quantity<K> {
 
 impl<'de, K: Kind> Deserialize<'de> for Quantity<K> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        deserializer.deserialize_any(QuantityVisitor(PhantomData))
+        let (text, si) = deserializer.deserialize_any(QuantityVisitor(Self::DESCRIPTION))?;
+        Ok(Self {
+            text,
+            si,
+            kind: PhantomData,
+        })
     }
 }
 
-struct QuantityVisitor<K>(PhantomData<K>);
+struct QuantityVisitor(Description);
 
-impl<K: Kind> Visitor<'_> for QuantityVisitor<K> {
-    type Value = Quantity<K>;
+impl Visitor<'_> for QuantityVisitor {
+    /// Text of the quantity, and its value in SI units.
+    type Value = (String, f64);
 
     fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let (name, example) = (K::NAME, K::EXAMPLE);
+        let Description { name, example, .. } = self.0;
         write!(f, "{name} as a string with its unit, such as {example:?}")
     }
 
     fn visit_str<E: serde::de::Error>(self, text: &str) -> Result<Self::Value, E> {
-        text.parse().map_err(E::custom)
+        let si = self.0.read(text).map_err(E::custom)?;
+        Ok((text.to_owned(), si))
     }
 
     fn visit_i64<E: serde::de::Error>(self, value: i64) -> Result<Self::Value, E> {
-        Err(E::custom(Quantity::<K>::no_unit(value.to_string())))
+        Err(E::custom(self.0.no_unit(value.to_string())))
     }
 
     fn visit_u64<E: serde::de::Error>(self, value: u64) -> Result<Self::Value, E> {
-        Err(E::custom(Quantity::<K>::no_unit(value.to_string())))
+        Err(E::custom(self.0.no_unit(value.to_string())))
     }
 
     fn visit_f64<E: serde::de::Error>(self, value: f64) -> Result<Self::Value, E> {
-        Err(E::custom(Quantity::<K>::no_unit(format!("{value:?}"))))
+        Err(E::custom(self.0.no_unit(format!("{value:?}"))))
     }
 }
 

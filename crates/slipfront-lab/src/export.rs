@@ -19,6 +19,9 @@ use crate::{assets, presets};
 /// The name of the session as WebAssembly, beside the program and in an exported folder.
 pub const MODULE: &str = "slipfront.wasm";
 
+/// The name of the module beside it that draws the pictures of runs.
+const PICTURES: &str = "slipfront-pictures.wasm";
+
 /// The file with the presets and the case with which the session begins.
 const BEGINNING: &str = "start.json";
 
@@ -114,10 +117,11 @@ struct Beginning<'a> {
 struct Parts {
     /// Files of the page by their names.
     files: BTreeMap<String, Vec<u8>>,
-    module: Vec<u8>,
+    /// Modules of WebAssembly by their names.
+    modules: BTreeMap<&'static str, Vec<u8>>,
 }
 
-/// Finds the module, in the first of some folders that has it.
+/// Finds the module of the session, in the first of some folders that has it. The one that draws pictures stands beside it.
 ///
 /// # Errors
 /// When none of the folders has the module.
@@ -125,6 +129,19 @@ pub fn find_module(folders: &[PathBuf]) -> Result<PathBuf, ExportError> {
     let paths = folders.iter().map(|folder| folder.join(MODULE));
     let found = paths.into_iter().find(|path| path.is_file());
     found.ok_or_else(|| ExportError::NoModule(folders.to_vec()))
+}
+
+/// Reads a module of WebAssembly.
+///
+/// # Errors
+/// When the file cannot be read, or is none.
+fn read_module(path: PathBuf) -> Result<Vec<u8>, ExportError> {
+    let contents = fs::read(&path);
+    match contents {
+        Ok(contents) if contents.starts_with(b"\0asm") => Ok(contents),
+        Ok(_) => Err(ExportError::NotModule(path)),
+        Err(source) => Err(ExportError::Read { path, source }),
+    }
 }
 
 impl Parts {
@@ -135,13 +152,10 @@ impl Parts {
             StartSource::Case(document) => Document::clone(document),
             StartSource::Folder(_) => return Err(ExportError::Folder),
         };
-        let contents = fs::read(module).map_err(|source| ExportError::Read {
-            path: module.to_owned(),
-            source,
-        })?;
-        if !contents.starts_with(b"\0asm") {
-            return Err(ExportError::NotModule(module.to_owned()));
-        }
+        let modules = BTreeMap::from([
+            (MODULE, read_module(module.to_owned())?),
+            (PICTURES, read_module(module.with_file_name(PICTURES))?),
+        ]);
         let mut files: BTreeMap<String, Vec<u8>> = assets::all()
             .map(|(name, contents)| (name, contents.to_vec()))
             .collect();
@@ -153,10 +167,7 @@ impl Parts {
             serde_json::to_vec(&beginning).map_err(|error| ExportError::Case(error.to_string()))?;
         files.insert(BEGINNING.to_owned(), beginning);
         files.insert(NOTICES.to_owned(), notices.as_bytes().to_vec());
-        Ok(Self {
-            files,
-            module: contents,
-        })
+        Ok(Self { files, modules })
     }
 
     /// A file of the page as a text.
@@ -201,7 +212,10 @@ pub fn export_folder(start: &Start, module: &Path, notices: &str, out: &Path) ->
         "<link rel=\"manifest\" href=\"manifest.webmanifest\">\n",
     );
     parts.files.insert("index.html".to_owned(), page.into_bytes());
-    parts.files.insert(MODULE.to_owned(), parts.module.clone());
+    let modules = std::mem::take(&mut parts.modules).into_iter();
+    parts
+        .files
+        .extend(modules.map(|(name, contents)| (name.to_owned(), contents)));
     parts
         .files
         .insert("manifest.webmanifest".to_owned(), MANIFEST.as_bytes().to_vec());
@@ -284,7 +298,7 @@ fn is_exported(path: &Path) -> bool {
     read.is_ok() && String::from_utf8_lossy(&beginning).contains(BEGINNING_OF_PAGE)
 }
 
-/// The files that a page of one file asks for, as JSON within a script: texts, and the module in Base64.
+/// The files that a page of one file asks for, as JSON within a script: texts, and modules in Base64.
 fn files_within(parts: &Parts) -> String {
     let is_asked_for =
         |name: &str| name != "index.html" && !name.ends_with(".css") && !name.ends_with(".LICENSE");
@@ -294,7 +308,9 @@ fn files_within(parts: &Parts) -> String {
         .filter(|name| is_asked_for(name))
         .map(|name| (name.as_str(), parts.text(name)))
         .collect();
-    files.insert(MODULE, BASE64_STANDARD.encode(&parts.module));
+    for (name, contents) in &parts.modules {
+        files.insert(name, BASE64_STANDARD.encode(contents));
+    }
     // Texts: serialisation cannot fail. What would end the script is written otherwise.
     serde_json::to_string(&files)
         .unwrap_or_default()
@@ -310,17 +326,19 @@ mod tests {
 
     use super::*;
 
-    /// A folder with what begins like a module.
-    fn with_module() -> (TempDir, PathBuf) {
+    /// A folder with what begins like modules.
+    fn with_modules() -> (TempDir, PathBuf) {
         let folder = tempfile::tempdir().unwrap();
+        for name in [MODULE, PICTURES] {
+            fs::write(folder.path().join(name), b"\0asm\x01\0\0\0").unwrap();
+        }
         let module = folder.path().join(MODULE);
-        fs::write(&module, b"\0asm\x01\0\0\0").unwrap();
         (folder, module)
     }
 
     #[test]
     fn a_folder_has_all_files_of_the_page_and_asks_for_no_other() {
-        let (folder, module) = with_module();
+        let (folder, module) = with_modules();
         let out = folder.path().join("lab");
         export_folder(&Start::default(), &module, "notices", &out).unwrap();
         let page = fs::read_to_string(out.join("index.html")).unwrap();
@@ -339,6 +357,12 @@ mod tests {
         assert_eq!(beginning["opening"]["name"], "circle");
         assert!(beginning["presets"].as_array().unwrap().len() > 30);
         assert_eq!(fs::read_to_string(out.join(NOTICES)).unwrap(), "notices");
+        for name in [MODULE, PICTURES] {
+            assert!(
+                out.join(name).is_file() && kept.contains(&format!("'{name}'")),
+                "{name}"
+            );
+        }
         // The same files have the same bytes and the same name in the browser; others have another.
         let again = folder.path().join("again");
         export_folder(&Start::default(), &module, "notices", &again).unwrap();
@@ -350,7 +374,7 @@ mod tests {
 
     #[test]
     fn one_file_holds_the_files_that_its_page_asks_for() {
-        let (folder, module) = with_module();
+        let (folder, module) = with_modules();
         let out = folder.path().join("lab.html");
         export_single(&Start::default(), &module, "notices", &out).unwrap();
         let page = fs::read_to_string(&out).unwrap();
@@ -358,7 +382,9 @@ mod tests {
         let (_, within) = page.split_once("id=\"files\">").unwrap();
         let (within, loader) = within.split_once("</script>").unwrap();
         let files: BTreeMap<String, String> = serde_json::from_str(within).unwrap();
-        assert_eq!(files[MODULE], BASE64_STANDARD.encode(b"\0asm\x01\0\0\0"));
+        for name in [MODULE, PICTURES] {
+            assert_eq!(files[name], BASE64_STANDARD.encode(b"\0asm\x01\0\0\0"), "{name}");
+        }
         assert_eq!(files[NOTICES], "notices");
         let asked: BTreeSet<&str> = files.keys().map(String::as_str).collect();
         for name in [
@@ -384,7 +410,7 @@ mod tests {
 
     #[test]
     fn what_cannot_be_exported_is_refused_with_the_remedy() {
-        let (folder, module) = with_module();
+        let (folder, module) = with_modules();
         let said = |result: Result<(), ExportError>| result.unwrap_err().to_string();
         let start = Start::default();
         let other = folder.path().join("other");
@@ -419,5 +445,12 @@ mod tests {
             "{missing}"
         );
         assert_eq!(find_module(&[other, folder.path().to_owned()]).unwrap(), module);
+        // Both modules are needed.
+        fs::remove_file(folder.path().join(PICTURES)).unwrap();
+        let missing = said(export_single(&start, &module, "notices", &page));
+        assert!(
+            missing.contains("slipfront-pictures.wasm cannot be read"),
+            "{missing}"
+        );
     }
 }

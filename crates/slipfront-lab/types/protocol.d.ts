@@ -107,6 +107,8 @@ export interface ViewChange {
   paused?: boolean;
   /** t* in a second; 0 for as fast as possible. */
   pace?: number;
+  /** t* in a second until a block in contact slips, where that is faster than the pace; 0 for no such time. */
+  loading_pace?: number;
   twin?: boolean;
   kymograph?: boolean;
   frames_per_second?: number;

@@ -1,11 +1,20 @@
 // The Workers of a page without a server: the functions of the WebAssembly module, and the messages between page and Worker.
 
-/** The functions that slipfront-wasm exports (`exports.rs`). */
-export interface SessionModule {
+/** The functions that every module of slipfront-wasm exports (`exports.rs`). */
+export interface Module {
   memory: WebAssembly.Memory;
-  /** Makes room for a text of so many bytes, and returns its address. */
+  /** Makes room for so many bytes, and returns its address. */
   room(length: number): number;
   begin(): void;
+}
+
+/** The functions of the module that draws the pictures of a run. */
+export interface PicturesModule extends Module {
+  draw(): void;
+}
+
+/** The functions of the module with the session. */
+export interface SessionModule extends Module {
   open(): void;
   handle(): void;
   /** Works for some time, and returns the time at which it is to be called again; below 0 for never. */
@@ -18,7 +27,8 @@ export interface SessionModule {
 
 /** A message of the page to a Worker whose module has begun. */
 export type Asked =
-  | { do: 'open' | 'handle' | 'run' | 'save'; text: string }
+  | { do: 'open' | 'handle' | 'run'; text: string }
+  | { do: 'save'; text: string; pictures: WebAssembly.Module | null }
   | { do: 'hear'; number: number; text: string }
   | { do: 'lost'; number: number }
   | { do: 'read'; pictures: number; messages: number };

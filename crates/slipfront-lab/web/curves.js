@@ -74,15 +74,23 @@ function take(message) {
 function marks(plot, scale) {
   const { ctx: context, bbox: { top, height, left, width } } = plot;
   const ratio = devicePixelRatio * scale;
-  const line = (/** @type {number} */ t, /** @type {number[]} */ dashes, name = '', row = 0) => {
-    const x = Math.round(plot.valToPos(t, 'x', true));
-    if (x < left || x > left + width) return;
+  const place = (/** @type {number} */ t) => Math.round(plot.valToPos(t, 'x', true));
+  const isSeen = (/** @type {number} */ x) => x >= left && x <= left + width;
+  const line = (/** @type {number} */ t, /** @type {number[]} */ dashes) => {
+    const x = place(t);
+    if (!isSeen(x)) return;
     context.setLineDash(dashes.map((dash) => dash * ratio));
     context.beginPath();
     context.moveTo(x, top);
     context.lineTo(x, top + height);
     context.stroke();
-    context.fillText(name, x + 2 * ratio, top + (2 + row * (SMALL + 1)) * ratio);
+  };
+  // Above all lines, of which none shall cross it.
+  const write = (/** @type {number} */ t, /** @type {string} */ letter, /** @type {number} */ row) => {
+    if (!isSeen(place(t))) return;
+    const [x, y] = [place(t) + 2 * ratio, top + (2 + row * (SMALL + 1)) * ratio];
+    context.strokeText(letter, x, y);
+    context.fillText(letter, x, y);
   };
   context.save();
   context.strokeStyle = colour('muted');
@@ -93,7 +101,11 @@ function marks(plot, scale) {
   legs.forEach((t) => line(t, [6, 4]));
   const instants = Object.entries(state.numbers?.instants ?? {}).sort(([, one], [, other]) => one - other);
   const rows = rowsOf(instants.map(([, t]) => plot.valToPos(t, 'x', true)), LETTER * ratio);
-  instants.forEach(([letter, t], k) => line(t, [2, 3], letter, rows[k]));
+  instants.forEach(([, t]) => line(t, [2, 3]));
+  context.setLineDash([]);
+  context.lineWidth = 3 * ratio;
+  context.strokeStyle = colour('page');
+  instants.forEach(([letter, t], k) => write(t, letter, rows[k]));
   context.restore();
 }
 

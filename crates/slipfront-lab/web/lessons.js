@@ -12,6 +12,9 @@ import { setView, startsPaused } from './view.js';
 
 /** @import { Lesson, LessonPlace, LessonStep, LessonWords } from '../types/page' */
 
+/** t* in a second until a block in contact slips: before, maps of a lesson have one colour. */
+const LOADING_PACE = 60;
+
 /** @type {Lesson[]} */
 let lessons = [];
 /** @type {Record<string, LessonWords>} */
@@ -53,7 +56,7 @@ function buttons(step, labels) {
 async function prepare(step) {
   const toml = await textOf(step.case);
   if (toml === null) return notice(say('lesson_missing', { file: step.case }));
-  setView({ twin: false, after_change: 'rest', paused: startsPaused, ...step.view });
+  setView({ twin: false, after_change: 'rest', paused: startsPaused, loading_pace: LOADING_PACE, ...step.view });
   open({ name: step.case.replace(/^.*\/|\.toml$/g, ''), toml, files: {} });
 }
 
@@ -62,7 +65,7 @@ function show(place) {
   const left = !find('lesson').hidden && place === null;
   find('lesson').hidden = place === null;
   document.body.classList.toggle('lesson', place !== null);
-  if (left) setView({ twin: true });
+  if (left) setView({ twin: true, loading_pace: 0 });
   if (!place) return;
   const lesson = lessonOf(place.lesson);
   handout(lesson);

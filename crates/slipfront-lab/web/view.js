@@ -12,6 +12,7 @@ put('view', {
   visible: !document.hidden,
   paused: calm,
   pace: 25,
+  loading_pace: 0,
   twin: true,
   kymograph: true,
   frames_per_second: 60,

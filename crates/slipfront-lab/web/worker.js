@@ -3,7 +3,7 @@
 // Workers of their own.
 import { isSingle, textOf } from './assets.js';
 import { download } from './element.js';
-import { loading } from './module.js';
+import { loading, loadPictures } from './module.js';
 import { receive } from './receive.js';
 import { put } from './store.js';
 import { say } from './text.js';
@@ -84,7 +84,7 @@ function beginSave(text) {
     } else put('refused', { of: 'save', sentence: say('save_failed', { name, sentence: is === 'refusal' ? data : say('worker_ended') }) });
   });
   saves.set(name, { worker, share: 0 });
-  worker.postMessage({ do: 'save', text: JSON.stringify(document) });
+  loadPictures().then((pictures) => worker.postMessage({ do: 'save', text: JSON.stringify(document), pictures }));
   tellSaving();
 }
 

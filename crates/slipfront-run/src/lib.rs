@@ -31,6 +31,7 @@ pub mod program;
 pub mod results;
 pub mod resume_command;
 pub mod run_curve;
+pub mod run_files;
 pub mod run_folder;
 pub mod run_summary;
 pub mod running;

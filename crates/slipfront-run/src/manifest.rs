@@ -16,6 +16,7 @@ use crate::{clock, program};
 use slipfront_case::case::{Case, Input};
 use slipfront_case::disk::{TEXT_MAX_BYTES, json, open_regular, read_limited};
 use slipfront_case::machine::host_name;
+use slipfront_case::ordered::map_of;
 use slipfront_case::text::{single_line, truncated};
 
 /// The last key of a manifest in its file. The checksum, its value, is the hash of all bytes before it.
@@ -142,18 +143,19 @@ impl Manifest {
         Self::at(files, case, times, threads)
     }
 
-    /// The bytes of the manifest of a run on one thread, whose files are in memory, and which has no pictures for this reason.
+    /// The bytes of the manifest of a run on one thread, whose files are in memory, and of the reason for which it has no pictures,
+    /// if it has none.
     pub fn of_run_in_memory(
         files: &[(String, Vec<u8>)],
         case: &Case,
         times: RunTimes,
-        without_pictures: &str,
+        without_pictures: Option<String>,
     ) -> Vec<u8> {
         let files = files
             .iter()
             .map(|(name, contents)| ManifestFile::of_bytes(name, contents));
         let manifest = Self {
-            without_pictures: Some(without_pictures.to_owned()),
+            without_pictures,
             ..Self::at(files.collect(), case, times, 1)
         };
         manifest.with_checksum().1
@@ -178,7 +180,7 @@ impl Manifest {
             random: Random {
                 generator: "ChaCha8".to_owned(),
                 seed: case.file.friction.seed,
-                streams: STREAMS.map(|(name, number)| (name.to_owned(), number)).into(),
+                streams: map_of(STREAMS.map(|(name, number)| (name.to_owned(), number))),
             },
             without_pictures: None,
             files,

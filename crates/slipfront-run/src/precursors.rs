@@ -1,13 +1,12 @@
 //! The file `precursors.csv`: the events of slip of a slider that is driven at an edge, one row each.
 
-use std::path::Path;
-
 use serde::{Deserialize, Serialize};
 use slipfront::Scales;
 use slipfront::observe::SlipEvent;
 use slipfront_case::case_file::names_of;
 
 use crate::names::PRECURSORS;
+use crate::run_files::RunFile;
 use crate::series::{SeriesError, columns_of, finish, read_rows};
 
 /// One row of `precursors.csv`. The last columns are empty for an event that went on when the run ended.
@@ -84,6 +83,6 @@ pub fn to_csv(events: &[SlipEvent], scales: &Scales) -> Result<Vec<u8>, csv::Err
 }
 
 /// Reads the events back.
-pub fn read_csv(path: &Path) -> Result<Vec<PrecursorRow>, SeriesError> {
-    read_rows(path, PRECURSORS, |row| row)
+pub fn read_csv<'f>(file: impl Into<RunFile<'f>>) -> Result<Vec<PrecursorRow>, SeriesError> {
+    read_rows(&file.into(), PRECURSORS, |row| row)
 }

@@ -212,7 +212,7 @@ mod tests {
         let mut run = RunFolder::prepare(&out, false, &case.inputs).unwrap();
         write_case(&case, &mut run).unwrap();
         write(&case, &mut record, &mut run).unwrap();
-        let fields = fields::read_fields(&out.join(FIELDS)).unwrap();
+        let fields = fields::read_fields(out.join(FIELDS)).unwrap();
         // NaN are equal as they are printed.
         assert_eq!(format!("{in_memory:?}"), format!("{fields:?}"));
         let slider = case.model.slider();

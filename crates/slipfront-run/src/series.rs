@@ -11,6 +11,7 @@ use thiserror::Error;
 
 use crate::friction_unit::FrictionUnit;
 use crate::names::SERIES;
+use crate::run_files::RunFile;
 use slipfront_case::disk::open_limited;
 use slipfront_case::text;
 
@@ -208,28 +209,19 @@ pub fn estimate_rows(path: &Path) -> Result<f64, SeriesError> {
 }
 
 /// Reads a series back.
-pub fn read_csv(path: &Path) -> Result<Vec<SeriesRow>, SeriesError> {
-    read_rows(path, SERIES, |row| row)
-}
-
-/// Reads the rows of a series whose bytes these are; errors call it by the path.
-pub fn from_csv(path: &Path, bytes: &[u8]) -> Result<Vec<SeriesRow>, SeriesError> {
-    rows_of(bytes, |row| row).map_err(|source| SeriesError {
-        path: path.to_owned(),
-        name: SERIES,
-        source,
-    })
+pub fn read_csv<'f>(file: impl Into<RunFile<'f>>) -> Result<Vec<SeriesRow>, SeriesError> {
+    read_rows(&file.into(), SERIES, |row| row)
 }
 
 /// Reads the rows of a table of a run, called `name` in its folder, and keeps `part` of each.
 pub(crate) fn read_rows<T: DeserializeOwned, U>(
-    path: &Path,
+    file: &RunFile<'_>,
     name: &'static str,
     part: impl Fn(T) -> U,
 ) -> Result<Vec<U>, SeriesError> {
-    let read = || rows_of(open_limited(path, u64::MAX)?, part);
+    let read = || rows_of(file.open()?.0, part);
     read().map_err(|source| SeriesError {
-        path: path.to_owned(),
+        path: file.path().to_owned(),
         name,
         source,
     })

@@ -3,6 +3,7 @@
 use std::ops::RangeInclusive;
 use std::path::Path;
 
+use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use slipfront::lattice::shear_wave_speed;
 use slipfront::observe::{
@@ -17,9 +18,10 @@ use crate::friction_unit::FrictionUnit;
 use crate::front::LatticeFront;
 use crate::names::SUMMARY;
 use crate::program::VERSION;
+use crate::run_files::RunFile;
 use slipfront_case::case::{Case, Topography};
 use slipfront_case::case_file::Motion;
-use slipfront_case::disk::{TEXT_MAX_BYTES, json, read_limited};
+use slipfront_case::disk::{TEXT_MAX_BYTES, json};
 
 /// The numbers of a run. Starred quantities are dimensionless (Eq. 11); times without a star are in s. A drive that is held
 /// has its own time, which counts only while it moves.
@@ -606,14 +608,33 @@ impl Summary {
 
 /// Reads `summary.json` of a run folder.
 pub fn read_summary(run: &Path) -> Result<Summary, ResultsError> {
-    let path = run.join(SUMMARY);
-    let bytes = read_limited(&path, TEXT_MAX_BYTES).map_err(FolderError::read(&path))?;
-    summary_of_bytes(&path, &bytes)
+    summary_of(&run.join(SUMMARY).into())
 }
 
-/// The summary of a `summary.json` whose bytes these are; errors call it by the path.
-pub fn summary_of_bytes(path: &Path, bytes: &[u8]) -> Result<Summary, ResultsError> {
-    serde_json::from_slice(bytes).map_err(|source| ResultsError::Summary {
+/// Reads the largest contact stress of a run, Pa, from its `summary.json`, and nothing else of it; none if the run was written without units.
+pub fn contact_stress_max_of(file: &RunFile<'_>) -> Result<Option<f64>, ResultsError> {
+    #[derive(Deserialize)]
+    struct Stress {
+        contact_stress_max_pa: f64,
+    }
+    #[derive(Deserialize)]
+    struct WithStress {
+        si: Option<Stress>,
+    }
+    let summary: WithStress = read_json(file)?;
+    Ok(summary.si.map(|si| si.contact_stress_max_pa))
+}
+
+/// Reads the summary of a run from its `summary.json`.
+pub fn summary_of(file: &RunFile<'_>) -> Result<Summary, ResultsError> {
+    read_json(file)
+}
+
+/// Reads a `summary.json`, or a part of it.
+fn read_json<T: DeserializeOwned>(file: &RunFile<'_>) -> Result<T, ResultsError> {
+    let path = file.path();
+    let bytes = file.read(TEXT_MAX_BYTES).map_err(FolderError::read(path))?;
+    serde_json::from_slice(&bytes).map_err(|source| ResultsError::Summary {
         path: path.to_owned(),
         source,
     })

@@ -12,15 +12,19 @@ use slipfront_run::running::Running;
 use crate::document::Document;
 use crate::zip;
 
-/// Why an archive has no pictures.
-const WITHOUT_PICTURES: &str = "a page without a server cannot draw them: slipfront plot FOLDER does";
-
 /// Share of a run after which its progress is told again.
 const SHARE: f64 = 0.01;
 
-/// Runs a case from rest to its end, and gives an archive of its files: the case and the files that it reads, summary, series, fields and
-/// kymograph, each with the bytes that `slipfront run` writes, and the manifest of these files. `now` tells the time of day, UTC as in RFC 3339, and
-/// that of a monotonic clock; `report_progress` is told the share of the run that is done.
+/// Files, each as its name and its contents.
+pub type NamedFiles = Vec<(String, Vec<u8>)>;
+
+/// Draws the pictures of a run of these files, with its movie or without. Gives the files of the pictures, or a sentence that says why it cannot.
+pub type Draw<'a> = dyn Fn(&[(String, Vec<u8>)], bool) -> Result<NamedFiles, String> + 'a;
+
+/// Runs a case from rest to its end, and gives an archive of its files: the case and the files that it reads, summary, series, fields,
+/// kymograph and pictures, each with the bytes that `slipfront run` writes, and the manifest of these files. `now` tells the time of day, UTC as in
+/// RFC 3339, and that of a monotonic clock; `report_progress` is told the share of the run that is done. `draw` gives the pictures of a run of
+/// these files, with its movie or without; why it cannot, the manifest says.
 ///
 /// # Errors
 /// A sentence, if the case cannot be run, or the run diverges.
@@ -28,6 +32,7 @@ pub fn run_archive(
     document: &Document,
     now: &dyn Fn() -> (String, Duration),
     report_progress: &dyn Fn(f64),
+    draw: &Draw<'_>,
 ) -> Result<Vec<u8>, String> {
     /// Any error as its sentence.
     fn sentence(error: impl std::fmt::Display) -> String {
@@ -49,13 +54,20 @@ pub fn run_archive(
     };
     let mut record = running.record(reason);
     let mut files = results::in_memory(&case, &mut record).map_err(sentence)?;
+    let without_pictures = match draw(&files, case.output.movie) {
+        Ok(pictures) => {
+            files.extend(pictures);
+            None
+        }
+        Err(sentence) => Some(sentence),
+    };
     let (finished, ended) = now();
     let times = RunTimes {
         started,
         finished,
         wall_time_s: ended.saturating_sub(began).as_secs_f64(),
     };
-    let manifest = Manifest::of_run_in_memory(&files, &case, times, WITHOUT_PICTURES);
+    let manifest = Manifest::of_run_in_memory(&files, &case, times, without_pictures);
     files.push((MANIFEST.to_owned(), manifest));
     let files = files
         .iter()

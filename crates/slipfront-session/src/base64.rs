@@ -22,27 +22,24 @@ pub(crate) mod files {
     use std::collections::BTreeMap;
 
     use serde::de::Error as _;
-    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+    use serde::{Deserialize, Deserializer, Serializer};
 
     pub(crate) fn serialize<S: Serializer>(
         files: &BTreeMap<String, Vec<u8>>,
         to: S,
     ) -> Result<S::Ok, S::Error> {
-        let files: BTreeMap<&String, String> = files
-            .iter()
-            .map(|(name, contents)| (name, super::encode(contents)))
-            .collect();
-        files.serialize(to)
+        let files = files.iter();
+        to.collect_map(files.map(|(name, contents)| (name, super::encode(contents))))
     }
 
     pub(crate) fn deserialize<'de, D: Deserializer<'de>>(
         from: D,
     ) -> Result<BTreeMap<String, Vec<u8>>, D::Error> {
         let files: BTreeMap<String, String> = Deserialize::deserialize(from)?;
-        let contents = files.into_iter().map(|(name, text)| {
-            let contents = super::decode(&text).map_err(D::Error::custom)?;
-            Ok((name, contents))
-        });
-        contents.collect()
+        let mut contents = BTreeMap::new();
+        for (name, text) in files {
+            contents.insert(name, super::decode(&text).map_err(D::Error::custom)?);
+        }
+        Ok(contents)
     }
 }

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 use slipfront_case::case::Case;
+use slipfront_case::ordered::map_of;
 
 /// A quantity with a slider.
 #[derive(Debug, Serialize)]
@@ -78,7 +79,7 @@ pub(crate) static CONTROLS: [Control; 8] = [
 pub(crate) fn values(case: &Case) -> BTreeMap<&'static str, ControlValue> {
     let (groups, scales, file) = (&case.groups, &case.scales, &case.file);
     let value = |star, si| ControlValue { star, si };
-    BTreeMap::from([
+    map_of([
         (
             "speed",
             value(groups.v_star, Some(groups.v_star * scales.speed())),

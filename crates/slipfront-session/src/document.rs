@@ -8,6 +8,7 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 use slipfront_case::case::{Case, Files, FilesInMemory, Ranks};
 use slipfront_case::case_file::{CaseError, CaseFile, partners_of, parts_of};
+use slipfront_case::ordered::map_of;
 use slipfront_case::text::truncated;
 use toml::{Table, Value};
 
@@ -42,9 +43,7 @@ impl From<Document> for Source {
         let files = document.files.iter();
         Self {
             toml: Some(document.toml()),
-            files: files
-                .map(|(name, contents)| (name.clone(), base64::encode(contents)))
-                .collect(),
+            files: map_of(files.map(|(name, contents)| (name.clone(), base64::encode(contents)))),
             name: Some(document.name),
             ..Self::default()
         }
@@ -109,10 +108,11 @@ impl Document {
         Ok(Self {
             name: name.to_owned(),
             keys,
-            files: contents
-                .into_iter()
-                .map(|(name, contents)| (name, contents.into()))
-                .collect(),
+            files: map_of(
+                contents
+                    .into_iter()
+                    .map(|(name, contents)| (name, contents.into())),
+            ),
         })
     }
 

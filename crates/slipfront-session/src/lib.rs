@@ -35,7 +35,7 @@ mod view;
 mod work;
 mod zip;
 
-pub use archive::run_archive;
+pub use archive::{Draw, NamedFiles, run_archive};
 pub use document::{Document, MAX_BLOCKS};
 pub use event::{Event, Worker};
 pub use host::{Host, Opened, Task};

@@ -102,6 +102,11 @@ impl LiveRun {
         self.case().model.friction.n_columns() > 0
     }
 
+    /// Whether a block in contact has slipped in this leg or one before: the instant B of a run from rest.
+    pub(crate) fn has_slipped(&self) -> bool {
+        self.leg > 0 || self.running.instants().any(|(letter, _)| letter == 'B')
+    }
+
     /// Takes at most so many steps.
     ///
     /// # Errors

@@ -3,11 +3,12 @@
 use std::path::Path;
 
 use slipfront_case::text::display_path;
-use slipfront_run::fields::fields_of_bytes;
+use slipfront_run::fields::read_fields;
 use slipfront_run::manifest::{Manifest, ManifestFile};
 use slipfront_run::names::{CASE, FIELDS, MANIFEST, SERIES, SUMMARY};
+use slipfront_run::run_files::RunFile;
 use slipfront_run::series;
-use slipfront_run::summary::summary_of_bytes;
+use slipfront_run::summary::contact_stress_max_of;
 
 use crate::document::Document;
 use crate::host::Opened;
@@ -55,22 +56,24 @@ pub fn recorded_run(
     };
     let text = String::from_utf8(needed(CASE)?)
         .map_err(|_| format!("{} is no text", display_path(&place.join(CASE))))?;
-    let rows = series::from_csv(&place.join(SERIES), &needed(SERIES)?).map_err(sentence)?;
+    let rows = series::read_csv(RunFile::of_bytes(place.join(SERIES), &needed(SERIES)?)).map_err(sentence)?;
     if rows.is_empty() {
         return Err(format!(
             "{} has no rows: it is no curve of a run",
             display_path(&place.join(SERIES))
         ));
     }
-    let summary = summary_of_bytes(&place.join(SUMMARY), &needed(SUMMARY)?).map_err(sentence)?;
+    let summary = needed(SUMMARY)?;
+    let stress_max =
+        contact_stress_max_of(&RunFile::of_bytes(place.join(SUMMARY), &summary)).map_err(sentence)?;
     let input = |file: &str| written(file)?.ok_or_else(|| "there is no such file".to_owned());
     let document = Document::new(name, &text, input).map_err(sentence)?;
     let fields = written(FIELDS)?
-        .map(|bytes| fields_of_bytes(&place.join(FIELDS), bytes))
+        .map(|bytes| read_fields(RunFile::of_bytes(place.join(FIELDS), &bytes)))
         .transpose()
         .map_err(sentence)?;
     let recorded = RecordedRun {
-        contact_stress_max_pa: summary.si.map_or(f64::NAN, |si| si.contact_stress_max_pa) as f32,
+        contact_stress_max_pa: stress_max.unwrap_or(f64::NAN) as f32,
         time_star: rows
             .iter()
             .map(|row| row.drive_time_star.unwrap_or(row.time_star))

@@ -12,6 +12,7 @@ pub(crate) struct ViewChange {
     visible: Option<bool>,
     paused: Option<bool>,
     pace: Option<f64>,
+    loading_pace: Option<f64>,
     twin: Option<bool>,
     kymograph: Option<bool>,
     frames_per_second: Option<f64>,
@@ -48,6 +49,8 @@ pub(crate) struct View {
     pub(crate) paused: bool,
     /// t* in a second; 0 for as fast as possible.
     pub(crate) pace: f64,
+    /// t* in a second until a block in contact slips, where that is faster than the pace.
+    pub(crate) loading_pace: f64,
     /// Whether the slider without texture runs beside the run.
     pub(crate) twin: bool,
     pub(crate) kymograph: bool,
@@ -63,6 +66,7 @@ impl Default for View {
             visible: true,
             paused: false,
             pace: 25.0,
+            loading_pace: 0.0,
             twin: true,
             kymograph: false,
             frames_per_second: 60.0,
@@ -73,16 +77,28 @@ impl Default for View {
 }
 
 impl View {
+    /// t* in a second, 0 for as fast as possible, of a run in which a block in contact has slipped, or none yet.
+    pub(crate) fn pace_when(&self, has_slipped: bool) -> f64 {
+        if has_slipped || self.pace == 0.0 {
+            self.pace
+        } else {
+            self.pace.max(self.loading_pace)
+        }
+    }
+
     /// Changes the parts of the view that are given.
     ///
     /// # Errors
     /// A sentence with the bound that a number is beyond; then nothing changes.
     pub(crate) fn change(&mut self, change: &ViewChange) -> Result<(), String> {
         let pace = change.pace.unwrap_or(self.pace);
-        if !(0.0..=1e6).contains(&pace) {
-            return Err(format!(
-                "the pace is {pace} t* per second, where it may be from 0, as fast as possible, to 1e6"
-            ));
+        let loading_pace = change.loading_pace.unwrap_or(self.loading_pace);
+        for pace in [pace, loading_pace] {
+            if !(0.0..=1e6).contains(&pace) {
+                return Err(format!(
+                    "the pace is {pace} t* per second, where it may be from 0, as fast as possible, to 1e6"
+                ));
+            }
         }
         let rate = change.frames_per_second.unwrap_or(self.frames_per_second);
         if !(1.0..=60.0).contains(&rate) {
@@ -90,7 +106,7 @@ impl View {
                 "{rate} pictures per second were asked for, where there may be 1 to 60"
             ));
         }
-        (self.pace, self.frames_per_second) = (pace, rate);
+        (self.pace, self.loading_pace, self.frames_per_second) = (pace, loading_pace, rate);
         self.field = change.field.unwrap_or(self.field);
         self.visible = change.visible.unwrap_or(self.visible);
         self.paused = change.paused.unwrap_or(self.paused);

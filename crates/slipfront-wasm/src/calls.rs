@@ -8,23 +8,22 @@ use std::time::Duration;
 
 use serde::Deserialize;
 use slipfront_session::{
-    Document, Event, Host, Message, Presets, Session, Work, Worker, failed, hello, run_archive,
+    Document, Event, Host, Message, NamedFiles, Presets, Session, Work, Worker, failed, hello, run_archive,
 };
 
 use crate::bits::bits_of_run;
+use crate::given;
 use crate::host::WorkerHost;
-use crate::imports::{Saying, ask_date, clock, duration, tell};
+use crate::imports::{Saying, tell};
+use crate::questions::{clock, drawn_of, duration, time_of_day};
 
 thread_local! {
-    /// Bytes that the Worker has given.
-    static GIVEN: RefCell<Vec<u8>> = const { RefCell::new(Vec::new()) };
     static PAGE: RefCell<Option<(Session, Rc<WorkerHost>)>> = const { RefCell::new(None) };
 }
 
 /// Reads the bytes that the Worker has given as JSON.
-fn given<T: for<'de> Deserialize<'de>>() -> Result<T, String> {
-    let bytes = GIVEN.take();
-    serde_json::from_slice(&bytes).map_err(|error| error.to_string())
+fn read<T: for<'de> Deserialize<'de>>() -> Result<T, String> {
+    serde_json::from_slice(&given::take()).map_err(|error| error.to_string())
 }
 
 /// Passes on why something cannot be done.
@@ -32,22 +31,6 @@ fn refuse(done: Result<(), String>) {
     if let Err(sentence) = done {
         tell(Saying::Refusal, 0, sentence.as_bytes());
     }
-}
-
-/// Makes room for so many bytes, which the Worker then fills; gives their place.
-pub(crate) fn room(length: usize) -> *mut u8 {
-    GIVEN.with_borrow_mut(|given| {
-        given.clear();
-        given.resize(length, 0);
-        given.as_mut_ptr()
-    })
-}
-
-/// Lets defects be told. To be called first.
-pub(crate) fn begin() {
-    std::panic::set_hook(Box::new(|defect| {
-        tell(Saying::Defect, 0, defect.to_string().as_bytes());
-    }));
 }
 
 /// Presets and the case with which the page opens.
@@ -59,7 +42,7 @@ struct Beginning {
 
 /// Begins a session, given presets and the case with which the page opens.
 pub(crate) fn open() {
-    refuse(given().map(|Beginning { presets, opening }| {
+    refuse(read().map(|Beginning { presets, opening }| {
         let host = Rc::new(WorkerHost::new(presets, opening));
         host.reply(hello(host.presets(), &[], None));
         let session = Session::new(Rc::clone(&host) as Rc<dyn Host>);
@@ -69,7 +52,7 @@ pub(crate) fn open() {
 
 /// Handles a message of the page.
 pub(crate) fn handle() {
-    let text = String::from_utf8(GIVEN.take()).unwrap_or_default();
+    let text = String::from_utf8(given::take()).unwrap_or_default();
     PAGE.with_borrow_mut(|page| {
         let Some((session, host)) = page else { return };
         let message = Message::parse(&text);
@@ -95,7 +78,7 @@ pub(crate) fn work(now: f64, unread: u32) -> f64 {
 
 /// Hears what work of this number tells.
 pub(crate) fn hear(task: u32) {
-    refuse(given().map(|event: Event| {
+    refuse(read().map(|event: Event| {
         PAGE.with_borrow(|page| {
             if let Some((_, host)) = page {
                 host.hear(task, event);
@@ -134,17 +117,27 @@ impl Worker for OtherWorker {
 
 /// Does work beside a session, and tells what it finds.
 pub(crate) fn run() {
-    refuse(given().map(|work: Work| work.run(&OtherWorker(AtomicBool::new(false)))));
+    refuse(read().map(|work: Work| work.run(&OtherWorker(AtomicBool::new(false)))));
 }
+
+/// Draws the pictures of a run of these files by the other module.
+///
+/// # Errors
+/// A sentence, if there is no other module, or it cannot draw them.
+fn draw(files: &[(String, Vec<u8>)], with_movie: bool) -> Result<NamedFiles, String> {
+    let asked = postcard::to_stdvec(&(files, with_movie)).map_err(|error| error.to_string())?;
+    postcard::from_bytes(&drawn_of(&asked)).unwrap_or_else(|_| Err(WITHOUT_PICTURES.to_owned()))
+}
+
+/// Why an archive has no pictures where the other module is missing or fails.
+const WITHOUT_PICTURES: &str =
+    "the part of the page that draws them is missing or has failed: slipfront plot FOLDER draws them";
 
 /// Runs a case from rest, and gives the archive of its files.
 pub(crate) fn save() {
-    let now = || {
-        ask_date();
-        (String::from_utf8(GIVEN.take()).unwrap_or_default(), clock())
-    };
+    let now = || (time_of_day(), clock());
     let told = |share: f64| tell(Saying::Share, (1e6 * share) as u32, &[]);
-    let archive = given().and_then(|document: Document| run_archive(&document, &now, &told));
+    let archive = read().and_then(|document: Document| run_archive(&document, &now, &told, &draw));
     refuse(archive.map(|archive| tell(Saying::Archive, 0, &archive)));
 }
 
@@ -158,6 +151,6 @@ struct CaseOfFiles {
 /// Gives the bits of a run after so many steps.
 pub(crate) fn bits(most_steps: u32) {
     let bits =
-        given().and_then(|case: CaseOfFiles| bits_of_run(&case.toml, &case.files, u64::from(most_steps)));
+        read().and_then(|case: CaseOfFiles| bits_of_run(&case.toml, &case.files, u64::from(most_steps)));
     refuse(bits.map(|bits| tell(Saying::Bits, 0, bits.as_bytes())));
 }

@@ -28,6 +28,7 @@ pub mod exact_solutions;
 pub mod kernel;
 pub mod lattice;
 pub mod observe;
+pub mod parallel;
 pub mod scales;
 pub mod stability;
 pub mod surface;

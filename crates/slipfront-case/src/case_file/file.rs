@@ -146,7 +146,8 @@ impl CaseFile {
     /// # Errors Errors of [`check`](Self::check) for a case that was changed in code, so that the written text can be read.
     pub fn to_toml(&self) -> Result<String, CaseError> {
         self.check()?;
-        Ok(toml::to_string(self)?)
+        // By way of a table, so that the keys of every struct need only one writer.
+        Ok(toml::to_string(&toml::Value::try_from(self)?)?)
     }
 
     /// Every key, in backticks, with its value, defaults filled in.

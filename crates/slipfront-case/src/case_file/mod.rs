@@ -21,6 +21,7 @@ mod output;
 mod overrides;
 mod pattern;
 mod probe;
+mod reader;
 mod shapes;
 mod slider;
 mod source;

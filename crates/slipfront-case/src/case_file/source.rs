@@ -8,6 +8,7 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::error::{CaseError, Place};
+use crate::ordered::map_of;
 use crate::text::truncated;
 
 /// The longest key whose place is noted, in bytes: all known keys are shorter. Each key below one of many megabytes would
@@ -100,7 +101,7 @@ impl Source {
         let table = |key: &str| key.split('.').next().is_some_and(|table| tables.contains(&table));
         let kept = self.places.iter().filter(|(key, _)| !table(key));
         Self {
-            places: kept.map(|(key, place)| (key.clone(), place.clone())).collect(),
+            places: map_of(kept.map(|(key, place)| (key.clone(), place.clone()))),
             name: Arc::clone(&self.name),
             file: Arc::clone(&self.file),
             overrides: self.overrides.clone(),

@@ -9,6 +9,7 @@ use super::error::CaseError;
 use super::key_table::{SECTIONS, Section};
 use super::keys;
 use super::probe::names_of;
+use super::reader::Reader;
 use super::source::Source;
 
 /// The tables of a parsed file that are still to be read.
@@ -45,13 +46,17 @@ impl<'i> Tables<'_, 'i> {
         self.read_keys(table, header, section)
     }
 
-    /// A table that stands under `header`.
+    /// A table that stands under `header`, of any type that toml can read.
     pub fn read_table<T: DeserializeOwned>(
         &self,
         table: Spanned<DeValue<'i>>,
         header: &str,
     ) -> Result<T, CaseError> {
-        self.read_keys(table, header, None)
+        let span = table.span();
+        T::deserialize(ValueDeserializer::from(table)).map_err(|error| {
+            let span = error.span().unwrap_or(span);
+            value_error(self.source, span, error.message(), header, names_of::<T>(), None)
+        })
     }
 
     /// Reads a table that stands under `header`, and has the keys of `section` if it is one of a case.
@@ -62,14 +67,13 @@ impl<'i> Tables<'_, 'i> {
         section: Option<&Section>,
     ) -> Result<T, CaseError> {
         let span = table.span();
-        let read = T::deserialize(ValueDeserializer::from(table));
-        read.map_err(|error| {
+        T::deserialize(Reader::from(table)).map_err(|error| {
             // An error about the table as a whole, such as a size that is missing, comes without a span.
-            let span = error.span().unwrap_or(span);
+            let span = error.span.unwrap_or(span);
             value_error(
                 self.source,
                 span,
-                error.message(),
+                &error.message,
                 header,
                 names_of::<T>(),
                 section,

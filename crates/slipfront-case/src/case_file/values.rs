@@ -3,6 +3,7 @@
 use std::fmt;
 use std::marker::PhantomData;
 
+use serde::de::value::Error as ValueError;
 use serde::de::{Error as _, IntoDeserializer, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize};
 
@@ -58,22 +59,29 @@ struct Word<T>(T);
 
 impl<'de, T: Deserialize<'de>> Deserialize<'de> for Word<T> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        deserializer.deserialize_str(WordVisitor(PhantomData))
+        let mut found = None;
+        deserializer.deserialize_str(WordVisitor(&mut |word| {
+            found = Some(T::deserialize(word.to_owned().into_deserializer())?);
+            Ok(())
+        }))?;
+        found
+            .map(Word)
+            .ok_or_else(|| D::Error::custom("expected a word in quotes"))
     }
 }
 
-/// Visitor that looks the word up inside the visit, where an error still gets the place of the word.
-struct WordVisitor<T>(PhantomData<T>);
+/// Visitor that lets a word be looked up inside the visit, where an error still gets the place of the word. It is one for all words.
+struct WordVisitor<'a>(&'a mut dyn FnMut(&str) -> Result<(), ValueError>);
 
-impl<'de, T: Deserialize<'de>> Visitor<'de> for WordVisitor<T> {
-    type Value = Word<T>;
+impl Visitor<'_> for WordVisitor<'_> {
+    type Value = ();
 
     fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str("a word in quotes")
     }
 
-    fn visit_str<E: serde::de::Error>(self, word: &str) -> Result<Word<T>, E> {
-        T::deserialize(word.to_owned().into_deserializer()).map(Word)
+    fn visit_str<E: serde::de::Error>(self, word: &str) -> Result<(), E> {
+        (self.0)(word).map_err(E::custom)
     }
 }
 

@@ -17,6 +17,7 @@ use slipfront_plot::{MoviePictures, MovieSize};
 use slipfront_run::names::MOVIE;
 use slipfront_run::pictures::movie::MoviePace;
 use slipfront_run::pictures::{self, movie};
+use slipfront_run::run_files::RunFiles;
 use slipfront_run::verify::{expect_as_written, inspect};
 
 use super::plot::{expect_memory, expect_results, in_the_way, refuse_other_run, within};
@@ -119,7 +120,7 @@ impl MovieCommand {
             return Err(refused(sentence));
         }
         expect_memory(movie::memory(folder, self.size()).map_err(Failure::input)?)?;
-        let movie = movie::of_run(folder, self.field).map_err(Failure::input)?;
+        let movie = movie::of_run(RunFiles::Folder(folder), self.field).map_err(Failure::input)?;
         let movie = movie.ok_or_else(|| refused(self.no_snapshots(run.case.as_ref().ok())))?;
         let delays = movie::delays(&movie, self.pace()).map_err(Failure::input)?;
         let bytes = if is_mp4 {

@@ -17,6 +17,7 @@ use slipfront_run::pictures;
 use slipfront_run::pictures::friction::{
     Against, AxisUnits, Fit, FrictionLook, OverlaidRecord, Overlay, overlay, overlay_measured,
 };
+use slipfront_run::run_files::RunFiles;
 use slipfront_run::run_folder::inspection::Inspection;
 use slipfront_run::verify::{expect_as_written, inspect};
 use slipfront_study::verify::has_records;
@@ -147,9 +148,10 @@ impl PlotCommand {
         expect_memory(memory + drawn)?;
         let (out, drawn) = match (self.field.as_deref(), self.folders.as_slice()) {
             (Some(name), [folder]) => {
+                let run = RunFiles::Folder(folder);
                 let (name, picture) = match field_named(name) {
-                    Some(field) => (field_info(field).name, pictures::draw_field(folder, field)),
-                    None => (KYMOGRAPH, pictures::draw_kymograph(folder)),
+                    Some(field) => (field_info(field).name, pictures::draw_field(run, field)),
+                    None => (KYMOGRAPH, pictures::draw_kymograph(run)),
                 };
                 let picture = picture.map_err(Failure::input)?;
                 (PathBuf::from("results/overlay"), vec![(name, picture)])
@@ -159,7 +161,8 @@ impl PlotCommand {
                 return Err(Failure::input(anyhow::anyhow!(sentence)));
             }
             (None, [folder]) if !self.draws_friction_alone() => {
-                (folder.clone(), pictures::draw(folder).map_err(Failure::input)?)
+                let drawn = pictures::draw(RunFiles::Folder(folder));
+                (folder.clone(), drawn.map_err(Failure::input)?)
             }
             (None, folders) => {
                 let Overlay { picture, note, fit } = self.overlay(folders)?;

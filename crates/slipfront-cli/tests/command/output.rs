@@ -39,7 +39,7 @@ const KEYS: [&str; 28] = [
 ];
 
 fn fields(workspace: &Workspace, folder: &str) -> FieldsData {
-    read_fields(&workspace.path(&format!("{folder}/fields.nc"))).unwrap()
+    read_fields(workspace.path(&format!("{folder}/fields.nc"))).unwrap()
 }
 
 fn times(fields: &FieldsData) -> Vec<f64> {
@@ -305,13 +305,13 @@ fn a_run_without_a_transition_has_no_front() {
     assert!((m_s / c_s / (0.375 * 1e7_f64).sqrt() - 1.0).abs() < 1e-9);
     assert!(workspace.exists("whole/front.png") && !workspace.exists("short/front.svg"));
 
-    let recorded = read_kymograph(&workspace.path("short/kymograph.nc")).unwrap();
+    let recorded = read_kymograph(workspace.path("short/kymograph.nc")).unwrap();
     assert_eq!(
         recorded.time_star,
         [0.0, 0.8, 1.6].map(|t| (t * 10.0_f64).round() * 0.1)
     );
     assert_eq!(recorded.sliding_share, [0.0; 18]);
-    let recorded = read_kymograph(&workspace.path("whole/kymograph.nc")).unwrap();
+    let recorded = read_kymograph(workspace.path("whole/kymograph.nc")).unwrap();
     assert_eq!(recorded.columns(), 20);
     // Blocks of 1e-6 m, up to rounding.
     assert!((recorded.places[1] - 20e-6).abs() < 1e-18 && recorded.places[0].abs() < 1e-18);

@@ -1,8 +1,6 @@
 //! The file `kymograph.nc`: the share of the blocks that slide, against place along the drive and time, in the format of
 //! `fields.nc`.
 
-use std::path::Path;
-
 use slipfront::PositionBins;
 use slipfront::observe::Kymograph;
 use slipfront_case::case::Case;
@@ -12,6 +10,7 @@ use super::netcdf3::{ExternalType, StoredNumber};
 use super::netcdf3_header::{Attribute, Definition, Variable};
 use super::netcdf3_reader::{NetCdf3Reader, NetCdfError, broken};
 use super::read::in_words;
+use crate::run_files::RunFile;
 
 const PLACE: &str = "place";
 const IN_CONTACT: &str = "blocks_in_contact";
@@ -133,13 +132,14 @@ impl KymographData {
 }
 
 /// Reads the file of a run.
-pub fn read_kymograph(path: &Path) -> Result<KymographData, FieldsError> {
-    read(path).map_err(|error| in_words(error, path))
+pub fn read_kymograph<'f>(file: impl Into<RunFile<'f>>) -> Result<KymographData, FieldsError> {
+    let file = file.into();
+    read(&file).map_err(|error| in_words(error, file.path()))
 }
 
-fn read(path: &Path) -> Result<KymographData, NetCdfError> {
+fn read(file: &RunFile<'_>) -> Result<KymographData, NetCdfError> {
     const WHOLE: std::ops::Range<u64> = 0..u64::MAX;
-    let mut file = NetCdf3Reader::open(path)?;
+    let mut file = NetCdf3Reader::open(file)?;
     for (name, most) in [(TIME, Kymograph::MAX_ROWS), (PLACE, PositionBins::MAX)] {
         let length = file.dimension(name)?;
         if !(1..=most).contains(&length) {

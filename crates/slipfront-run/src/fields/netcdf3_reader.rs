@@ -2,13 +2,11 @@
 //! reserved for its elements.
 
 use std::collections::HashSet;
-use std::io::{self, Cursor, Read, Seek, SeekFrom};
+use std::io::{self, Read, SeekFrom};
 use std::ops::Range;
-use std::path::Path;
-
-use slipfront_case::disk::open_regular;
 
 use super::netcdf3::{ATTRIBUTES, CdfVersion, DIMENSIONS, ExternalType, VARIABLES};
+use crate::run_files::{RunFile, Source};
 
 /// Number of values that are read at once.
 const PIECE: usize = 1 << 14;
@@ -29,14 +27,9 @@ pub(super) fn broken<T>(detail: impl Into<String>) -> Result<T, NetCdfError> {
     Err(NetCdfError::Broken(detail.into()))
 }
 
-/// Bytes that are read from any place: a file of the disk, or one in memory.
-trait Source: Read + Seek {}
-
-impl<T: Read + Seek> Source for T {}
-
 /// An open file and the content of its header.
-pub(super) struct NetCdf3Reader {
-    file: Box<dyn Source>,
+pub(super) struct NetCdf3Reader<'f> {
+    file: Box<dyn Source + 'f>,
     file_bytes: u64,
     /// Number of records, that is of instants.
     pub(super) records: usize,
@@ -61,21 +54,10 @@ struct StoredVariable {
     offset: u64,
 }
 
-impl NetCdf3Reader {
+impl<'f> NetCdf3Reader<'f> {
     /// Opens a file and reads its header.
-    pub(super) fn open(path: &Path) -> Result<NetCdf3Reader, NetCdfError> {
-        let file = open_regular(path)?;
-        let file_bytes = file.metadata()?.len();
-        Self::begin(Box::new(file), file_bytes)
-    }
-
-    /// Reads the header of a file whose bytes these are.
-    pub(super) fn of_bytes(bytes: Vec<u8>) -> Result<NetCdf3Reader, NetCdfError> {
-        let file_bytes = bytes.len() as u64;
-        Self::begin(Box::new(Cursor::new(bytes)), file_bytes)
-    }
-
-    fn begin(mut file: Box<dyn Source>, file_bytes: u64) -> Result<NetCdf3Reader, NetCdfError> {
+    pub(super) fn open(file: &RunFile<'f>) -> Result<Self, NetCdfError> {
+        let (mut file, file_bytes) = file.open()?;
         let mut bytes = Vec::new();
         file.by_ref().take(HEADER_MAX_BYTES).read_to_end(&mut bytes)?;
         let mut header = HeaderReader::begin(&bytes)?;
@@ -90,7 +72,7 @@ impl NetCdf3Reader {
         let variables = header.list(VARIABLES, 28, |header| header.variable(dimensions.len()))?;
         each_once(dimensions.iter().map(|dimension| &dimension.name))?;
         each_once(variables.iter().map(|variable| &variable.name))?;
-        let mut reader = NetCdf3Reader {
+        let mut reader = Self {
             file,
             file_bytes,
             records,

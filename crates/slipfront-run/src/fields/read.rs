@@ -10,31 +10,27 @@ use slipfront_case::text;
 
 use super::frame::*;
 use super::netcdf3_reader::{NetCdf3Reader, NetCdfError, broken};
+use crate::run_files::RunFile;
 
 /// Range of all values of a variable.
 const WHOLE: Range<u64> = 0..u64::MAX;
 
 /// Reads a `fields.nc` that [`write_fields`](super::write_fields) has written. Variables that slipfront does not know are
 /// skipped.
-pub fn read_fields(path: &Path) -> Result<FieldsData, FieldsError> {
-    read_rows(path, 0..usize::MAX)
-}
-
-/// Reads a fields file whose bytes these are; errors call it by the path.
-pub fn fields_of_bytes(path: &Path, bytes: Vec<u8>) -> Result<FieldsData, FieldsError> {
-    let read = || all_of(&mut NetCdf3Reader::of_bytes(bytes)?, &(0..usize::MAX));
-    read().map_err(|error| in_words(error, path))
+pub fn read_fields<'f>(file: impl Into<RunFile<'f>>) -> Result<FieldsData, FieldsError> {
+    read_rows(file, 0..usize::MAX)
 }
 
 /// Reads these rows of a fields file alone, as far as it has them, counted from y = 0, for a file that is larger than the
 /// memory.
-pub fn read_rows(path: &Path, rows: Range<usize>) -> Result<FieldsData, FieldsError> {
-    let read = || all_of(&mut NetCdf3Reader::open(path)?, &rows);
-    read().map_err(|error| in_words(error, path))
+pub fn read_rows<'f>(file: impl Into<RunFile<'f>>, rows: Range<usize>) -> Result<FieldsData, FieldsError> {
+    let file = file.into();
+    let read = || all_of(&mut NetCdf3Reader::open(&file)?, &rows);
+    read().map_err(|error| in_words(error, file.path()))
 }
 
 /// All content of these rows of a file.
-fn all_of(file: &mut NetCdf3Reader, rows: &Range<usize>) -> Result<FieldsData, NetCdfError> {
+fn all_of(file: &mut NetCdf3Reader<'_>, rows: &Range<usize>) -> Result<FieldsData, NetCdfError> {
     let all: Vec<usize> = (0..file.records).collect();
     let data = read_chosen::<Vec<f32>>(file, |_| true, &all, rows)?;
     let part = values_of(rows, data.columns());
@@ -81,23 +77,24 @@ impl Reduction for Vec<f32> {
 /// Reads the data of a picture of one field, however long the file is: this field alone, at the snapshots that `choose`
 /// numbers from the letters of each, and of the constant arrays the texture alone, all [reduced](Reduction) while they are
 /// read. A reduced value counts as texture if more than half of its blocks do.
-pub fn read_maps<R: Reduction>(
-    path: &Path,
+pub fn read_maps<'f, R: Reduction>(
+    file: impl Into<RunFile<'f>>,
     field: Field,
     choose: impl Fn(&[String]) -> Vec<usize>,
 ) -> Result<FieldsData, FieldsError> {
+    let from = file.into();
     let read = || {
-        let mut file = NetCdf3Reader::open(path)?;
+        let mut file = NetCdf3Reader::open(&from)?;
         let labels = (0..file.records).map(|record| read_label(&mut file, record));
         let chosen = choose(&labels.collect::<Result<Vec<_>, _>>()?);
         read_chosen::<R>(&mut file, |name| name == field, &chosen, &(0..usize::MAX))
     };
-    read().map_err(|error| in_words(error, path))
+    read().map_err(|error| in_words(error, from.path()))
 }
 
 /// The number of snapshots in a file.
 pub fn count_snapshots(path: &Path) -> Result<usize, FieldsError> {
-    let file = NetCdf3Reader::open(path).map_err(|error| in_words(error, path))?;
+    let file = NetCdf3Reader::open(&path.into()).map_err(|error| in_words(error, path))?;
     Ok(file.records)
 }
 
@@ -114,9 +111,9 @@ pub fn few_of(labels: &[String], most: usize) -> Vec<usize> {
 
 /// Reads the times of the first slips in place of fields, [reduced](Reduction) while they are read, and the texture in the
 /// same way. The times are the one array of the one frame.
-pub fn read_first_slips<R: Reduction>(path: &Path) -> Result<FieldsData, FieldsError> {
+pub fn read_first_slips<R: Reduction>(from: &RunFile<'_>) -> Result<FieldsData, FieldsError> {
     let read = || {
-        let mut file = NetCdf3Reader::open(path)?;
+        let mut file = NetCdf3Reader::open(from)?;
         let all = 0..usize::MAX;
         let mut data = read_chosen::<R>(&mut file, |_| false, &[], &all)?;
         let times = read_reduced::<R>(&mut file, FIRST_SLIP, &[Y, X], 0, &all, |value| value as f32)?;
@@ -128,7 +125,7 @@ pub fn read_first_slips<R: Reduction>(path: &Path) -> Result<FieldsData, FieldsE
         }];
         Ok(data)
     };
-    read().map_err(|error| in_words(error, path))
+    read().map_err(|error| in_words(error, from.path()))
 }
 
 pub(super) fn in_words(error: NetCdfError, path: &Path) -> FieldsError {
@@ -144,7 +141,7 @@ pub(super) fn in_words(error: NetCdfError, path: &Path) -> FieldsError {
 
 /// Some fields at some instants, and the texture; the other arrays are left empty.
 fn read_chosen<R: Reduction>(
-    file: &mut NetCdf3Reader,
+    file: &mut NetCdf3Reader<'_>,
     chosen: impl Fn(Field) -> bool,
     records: &[usize],
     rows: &Range<usize>,
@@ -191,7 +188,7 @@ fn read_chosen<R: Reduction>(
 }
 
 fn read_frame<R: Reduction>(
-    file: &mut NetCdf3Reader,
+    file: &mut NetCdf3Reader<'_>,
     names: &[Field],
     record: usize,
     rows: &Range<usize>,
@@ -220,7 +217,7 @@ fn read_frame<R: Reduction>(
 }
 
 /// The letters of the instants A-F that a snapshot shows.
-fn read_label(file: &mut NetCdf3Reader, record: usize) -> Result<String, NetCdfError> {
+fn read_label(file: &mut NetCdf3Reader<'_>, record: usize) -> Result<String, NetCdfError> {
     let label = file.values(LABEL, &[TIME, LABEL_LENGTH], record, WHOLE)?;
     let label = label.iter().map(|byte| *byte as u8);
     let label: Vec<u8> = label.take_while(|byte| *byte != 0).collect();
@@ -229,7 +226,7 @@ fn read_label(file: &mut NetCdf3Reader, record: usize) -> Result<String, NetCdfE
 
 /// The reduction of some rows of a variable of one value per block.
 fn read_reduced<R: Reduction>(
-    file: &mut NetCdf3Reader,
+    file: &mut NetCdf3Reader<'_>,
     name: &str,
     dimensions: &[&str],
     record: usize,
@@ -245,7 +242,7 @@ fn read_reduced<R: Reduction>(
 }
 
 /// Reads a global attribute of N positive numbers.
-fn numbers<const N: usize>(file: &NetCdf3Reader, name: &str) -> Result<[f64; N], NetCdfError> {
+fn numbers<const N: usize>(file: &NetCdf3Reader<'_>, name: &str) -> Result<[f64; N], NetCdfError> {
     match <[f64; N]>::try_from(file.attribute(name)?) {
         Ok(values) if values.iter().all(|value| value.is_finite() && *value > 0.0) => Ok(values),
         _ => broken(format!(
@@ -255,7 +252,7 @@ fn numbers<const N: usize>(file: &NetCdf3Reader, name: &str) -> Result<[f64; N],
 }
 
 /// Reads a global attribute of N positive whole numbers; they fit, because the file stores them with 32 bits.
-fn counts<const N: usize>(file: &NetCdf3Reader, name: &str) -> Result<[usize; N], NetCdfError> {
+fn counts<const N: usize>(file: &NetCdf3Reader<'_>, name: &str) -> Result<[usize; N], NetCdfError> {
     let values = numbers::<N>(file, name)?.map(|value| value as usize);
     if values.contains(&0) {
         return broken(format!("the attribute `{name}` is below 1"));

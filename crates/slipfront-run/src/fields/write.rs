@@ -187,7 +187,8 @@ fn check(path: &Path, file: &FieldsFile) -> Result<(), FieldsError> {
         // The header stores them with 32 bits.
         expect(what, size, size.clamp(1, i32::MAX as usize))?;
     }
-    let different: BTreeSet<&Field> = file.names.iter().collect();
+    let mut different: BTreeSet<&Field> = BTreeSet::new();
+    different.extend(file.names);
     expect("the list of fields", file.names.len(), different.len())?;
     let rows = &file.rows;
     expect(

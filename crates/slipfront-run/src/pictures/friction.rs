@@ -1,6 +1,6 @@
 //! The picture of friction curves, on the axes that a user asks for or on which runs of different materials can be compared.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use slipfront_case::case_file::Motion;
 use slipfront_case::number_format::{in_print, si_prefix, with_si_prefix};
@@ -9,9 +9,10 @@ use slipfront_plot::{self as plot, FrictionAxes, FrictionCurve, Instant, Kinetic
 use super::error::{RecordError, RunPictureError};
 use super::record_fit::{Points, ends, fitting_shifts, misfit, rival};
 use crate::measured::{Measure, MeasuredRecord};
-use crate::names::SERIES;
+use crate::names::{SERIES, SUMMARY};
+use crate::run_files::RunFiles;
 use crate::series::{self, SeriesRow};
-use crate::summary::{SiSummary, Summary, read_summary};
+use crate::summary::{SiSummary, Summary, summary_of};
 
 /// Bytes of a row of the series while pictures are drawn from it: three numbers that are read, and the points of its curves.
 pub(super) const ROW_BYTES: f64 = (3 + 2 + 3) as f64 * size_of::<f64>() as f64;
@@ -266,11 +267,12 @@ fn own_shift(record: Points, curves: &[FrictionCurve]) -> Result<f64, Rival> {
     }
 }
 
-/// Draws the friction curve of a run folder against t*.
-pub(super) fn of_run(folder: &Path) -> Result<Picture, RunPictureError> {
-    let look = FrictionLook::default();
-    let overlay = overlay(&[folder.to_owned()], AxisUnits::Star, Some(Against::Time), &look)?;
-    Ok(overlay.picture)
+/// Draws the friction curve of a run against t*.
+pub(super) fn of_run(run: RunFiles) -> Result<Picture, RunPictureError> {
+    let runs = [DrawnRun::read(run)?];
+    let (scale, _) = dimensionless(&runs, Some(Against::Time))?;
+    let curves = scale.curves(&runs);
+    FrictionLook::default().draw(scale, curves)
 }
 
 /// The curve of mu* against t* with all marks that a summary has, without its points.
@@ -299,11 +301,14 @@ pub fn marked_curve(label: String, summary: &Summary) -> FrictionCurve {
 
 impl DrawnRun {
     fn read_all(folders: &[PathBuf]) -> Result<Vec<Self>, RunPictureError> {
-        folders.iter().map(|folder| Self::read(folder)).collect()
+        folders
+            .iter()
+            .map(|folder| Self::read(RunFiles::Folder(folder)))
+            .collect()
     }
 
-    fn read(folder: &Path) -> Result<Self, RunPictureError> {
-        let summary = read_summary(folder)?;
+    fn read(run: RunFiles) -> Result<Self, RunPictureError> {
+        let summary = summary_of(&run.file(SUMMARY)?)?;
         let unit = summary.si.as_ref().map_or(f64::NAN, |si| si.displacement_unit_m);
         let row = |row: SeriesRow| {
             let path = row.drive_displacement_m.map_or(f64::NAN, |path| path / unit);
@@ -311,8 +316,8 @@ impl DrawnRun {
             [time_star, path, row.mu_star, row.sliding_percent]
         };
         Ok(Self {
-            rows: series::read_rows(&folder.join(SERIES), SERIES, row)?,
-            folder: folder.to_owned(),
+            rows: series::read_rows(&run.file(SERIES)?, SERIES, row)?,
+            folder: run.path().to_owned(),
             summary,
         })
     }

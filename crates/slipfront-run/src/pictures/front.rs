@@ -2,28 +2,28 @@
 //! place and time.
 
 use std::ops::Range;
-use std::path::Path;
 
 use slipfront_case::case_file::Motion;
 use slipfront_plot::{self as plot, CellMeans, FrontMap, Picture, SpaceTime};
 
 use super::error::RunPictureError;
-use super::files::found;
 use crate::fields::{self, KymographData};
-use crate::names::{FIELDS, KYMOGRAPH};
-use crate::summary::{Summary, read_summary};
+use crate::names::{FIELDS, KYMOGRAPH, SUMMARY};
+use crate::run_files::RunFiles;
+use crate::summary::{Summary, summary_of};
 
 /// Least number of rows of the kymograph that are shown, where the run has as many.
 const MIN_INSTANTS: usize = 32;
 
 /// Draws the spread of slip in a run with a transition.
-pub(super) fn of_run(folder: &Path) -> Result<Option<Picture>, RunPictureError> {
-    let (summary, path) = (read_summary(folder)?, folder.join(KYMOGRAPH));
-    if !summary.transition || found(&path)?.is_none() {
+pub(super) fn of_run(run: RunFiles) -> Result<Option<Picture>, RunPictureError> {
+    let summary = summary_of(&run.file(SUMMARY)?)?;
+    let kymograph = run.found(KYMOGRAPH)?.filter(|_| summary.transition);
+    let Some(kymograph) = kymograph else {
         return Ok(None);
-    }
-    let kymograph = fields::read_kymograph(&path)?;
-    let mut fields = fields::read_first_slips::<CellMeans>(&folder.join(FIELDS))?;
+    };
+    let kymograph = fields::read_kymograph(kymograph)?;
+    let mut fields = fields::read_first_slips::<CellMeans>(&run.file(FIELDS)?)?;
     let first_slips = fields.frames.pop().and_then(|mut frame| frame.values.pop());
     let map = FrontMap {
         nx: fields.columns(),
@@ -46,12 +46,12 @@ pub(super) fn of_run(folder: &Path) -> Result<Option<Picture>, RunPictureError> 
     })
 }
 
-/// Draws the kymograph of a run folder from its first instant to its last.
+/// Draws the kymograph of a run from its first instant to its last.
 ///
-/// # Errors When the folder cannot be read, or holds no kymograph.
-pub fn draw_kymograph(folder: &Path) -> Result<Picture, RunPictureError> {
-    let (summary, path) = (read_summary(folder)?, folder.join(KYMOGRAPH));
-    let kymograph = fields::read_kymograph(&path)?;
+/// # Errors When the files cannot be read, or none is a kymograph.
+pub fn draw_kymograph(run: RunFiles) -> Result<Picture, RunPictureError> {
+    let summary = summary_of(&run.file(SUMMARY)?)?;
+    let kymograph = fields::read_kymograph(run.file(KYMOGRAPH)?)?;
     let rows = 0..kymograph.time_star.len();
     let drawn = plot::kymograph(&space_time(&kymograph, rows, &summary));
     drawn.map_err(|source| RunPictureError::Picture {

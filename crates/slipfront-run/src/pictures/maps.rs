@@ -1,7 +1,6 @@
 //! Maps of a field of a run at its snapshots.
 
 use std::collections::HashMap;
-use std::path::Path;
 
 use slipfront::observe::Field;
 use slipfront_case::case::{MAX_MAPS, mapped_field, scales};
@@ -13,9 +12,10 @@ use slipfront_plot::{self as plot, CellMeans, Picture, StressMap, StressMaps};
 use super::error::RunPictureError;
 use super::files::case_of;
 use crate::fields::{self, FieldFrame, Reduction};
-use crate::names::{FIELDS, SERIES};
+use crate::names::{FIELDS, SERIES, SUMMARY};
+use crate::run_files::RunFiles;
 use crate::series::{self, SeriesRow};
-use crate::summary::{InstantSummary, Summary, read_summary};
+use crate::summary::{InstantSummary, Summary, summary_of};
 
 /// Bytes of a cell of a lattice while maps of it are read: whether it is textured, and its mean.
 pub(super) const CELL_BYTES: f64 = (size_of::<bool>() + CellMeans::BYTES_PER_CELL) as f64;
@@ -66,17 +66,17 @@ impl<'a> MuStar<'a> {
 }
 
 /// Draws the maps of the stress of a run; none if it kept no such field.
-pub(super) fn of_run(folder: &Path) -> Result<Option<Picture>, RunPictureError> {
-    let case = case_of(folder)?;
-    draw_maps(folder, case.as_ref(), field_of_maps(case.as_ref()))
+pub(super) fn of_run(run: RunFiles) -> Result<Option<Picture>, RunPictureError> {
+    let case = case_of(run)?;
+    draw_maps(run, case.as_ref(), field_of_maps(case.as_ref()))
 }
 
-/// Draws the maps of a field of a run folder from its files, which must be there and undamaged.
+/// Draws the maps of a field of a run from its files, which must be there and undamaged.
 ///
-/// # Errors When the folder cannot be read, or holds no such maps.
-pub fn draw_field(folder: &Path, field: Field) -> Result<Picture, RunPictureError> {
-    draw_maps(folder, case_of(folder)?.as_ref(), field)?.ok_or_else(|| RunPictureError::NoMaps {
-        path: folder.join(FIELDS),
+/// # Errors When the files cannot be read, or hold no such maps.
+pub fn draw_field(run: RunFiles, field: Field) -> Result<Picture, RunPictureError> {
+    draw_maps(run, case_of(run)?.as_ref(), field)?.ok_or_else(|| RunPictureError::NoMaps {
+        path: run.path().join(FIELDS),
         field: field_info(field).name,
     })
 }
@@ -166,11 +166,11 @@ fn extent(values: impl Iterator<Item = f32>) -> [f64; 2] {
 
 /// Draws the maps of a field of a run; none if it has not kept the field.
 fn draw_maps(
-    folder: &Path,
+    run: RunFiles,
     case: Option<&CaseFile>,
     field: Field,
 ) -> Result<Option<Picture>, RunPictureError> {
-    let fields = fields::read_maps::<CellMeans>(&folder.join(FIELDS), field, |labels| {
+    let fields = fields::read_maps::<CellMeans>(run.file(FIELDS)?, field, |labels| {
         fields::few_of(labels, MAX_MAPS)
     })?;
     if fields.names.is_empty() || fields.frames.is_empty() {
@@ -179,8 +179,8 @@ fn draw_maps(
     let values = fields.frames.iter().flat_map(|frame| &frame.values).flatten();
     let scale = MapScale::of(field, case, values.copied());
     let point = |row: SeriesRow| (row.step, row.mu_star);
-    let rows = series::read_rows(&folder.join(SERIES), SERIES, point)?;
-    let Summary { instants, motion, .. } = read_summary(folder)?;
+    let rows = series::read_rows(&run.file(SERIES)?, SERIES, point)?;
+    let Summary { instants, motion, .. } = summary_of(&run.file(SUMMARY)?)?;
     let mu_star = MuStar::of(&instants, rows.into_iter());
     let (nx, ny) = (fields.columns(), fields.rows());
     let frames = fields.frames.into_iter();

@@ -1,4 +1,4 @@
-//! The pictures of a run, drawn from its files, so that those of a run and those of `slipfront plot` are equal.
+//! The pictures of a run, drawn from its files, so that those of a run, of `slipfront plot` and of a page without a disk are equal.
 //!
 //! No other module of this crate draws pictures: a program that writes a run calls [`write_run`] here, or [`complete`] after
 //! the results of several ranks.
@@ -14,9 +14,7 @@ mod precursors;
 mod record_fit;
 pub mod texture_file;
 
-use std::path::Path;
-
-use rayon::prelude::*;
+use slipfront::parallel::*;
 use slipfront_case::case::Case;
 use slipfront_plot::{MovieSize, Picture};
 
@@ -29,6 +27,7 @@ use self::movie::MoviePace;
 use crate::manifest::Manifest;
 use crate::names::{MOVIE, RunPicture};
 use crate::results;
+use crate::run_files::RunFiles;
 use crate::run_folder::RunFolder;
 use crate::running::Record;
 
@@ -54,25 +53,53 @@ pub fn complete(
     started: jiff::Timestamp,
     threads: usize,
 ) -> Result<Manifest, RunPictureError> {
-    for (name, picture) in draw(folder.path())? {
-        folder.write(&format!("{name}.svg"), picture.svg.as_bytes())?;
-        folder.write(&format!("{name}.png"), &picture.png)?;
-    }
-    if case.output.movie
-        && let Some(movie) = movie::of_run(folder.path(), None)?
-    {
-        let delays = movie::delays(&movie, MoviePace::Usual)?;
-        folder.write(MOVIE, &movie::gif(&movie, MovieSize::Usual, &delays)?)?;
-    }
+    let place = folder.path().to_owned();
+    each_file(RunFiles::Folder(&place), case.output.movie, |name, contents| {
+        Ok(folder.write(name, contents)?)
+    })?;
     Ok(folder.complete(case, started, threads)?)
 }
 
-/// Draws the pictures of a run folder from its files, which must be there and undamaged.
-pub fn draw(folder: &Path) -> Result<Vec<(&'static str, Picture)>, RunPictureError> {
+/// Draws the pictures of a run whose files are in memory, with its movie if that is asked for. Gives the files of the pictures, with the
+/// bytes that they have in the folder of a run.
+///
+/// # Errors
+/// If a file of the run is missing or damaged, or cannot be drawn.
+pub fn in_memory(
+    files: &[(String, Vec<u8>)],
+    with_movie: bool,
+) -> Result<Vec<(String, Vec<u8>)>, RunPictureError> {
+    let mut drawn = Vec::new();
+    each_file(RunFiles::InMemory(files), with_movie, |name, contents| {
+        drawn.push((name.to_owned(), contents.to_vec()));
+        Ok(())
+    })?;
+    Ok(drawn)
+}
+
+/// Draws the pictures of a run, with its movie if that is asked for, and hands over their files, each with its name.
+fn each_file(
+    run: RunFiles,
+    with_movie: bool,
+    mut take: impl FnMut(&str, &[u8]) -> Result<(), RunPictureError>,
+) -> Result<(), RunPictureError> {
+    for (name, picture) in draw(run)? {
+        take(&format!("{name}.svg"), picture.svg.as_bytes())?;
+        take(&format!("{name}.png"), &picture.png)?;
+    }
+    if with_movie && let Some(movie) = movie::of_run(run, None)? {
+        let delays = movie::delays(&movie, MoviePace::Usual)?;
+        take(MOVIE, &movie::gif(&movie, MovieSize::Usual, &delays)?)?;
+    }
+    Ok(())
+}
+
+/// Draws the pictures of a run from its files, which must be there and undamaged.
+pub fn draw(run: RunFiles) -> Result<Vec<(&'static str, Picture)>, RunPictureError> {
     let mut pictures = Vec::new();
     // The budget of a run has room for two at once.
     for two in RunPicture::ALL.chunks(2) {
-        let drawn: Vec<_> = two.par_iter().map(|picture| draw_one(*picture, folder)).collect();
+        let drawn: Vec<_> = two.par_iter().map(|picture| draw_one(*picture, run)).collect();
         for (picture, drawn) in two.iter().zip(drawn) {
             pictures.extend(drawn?.map(|drawn| (picture.name(), drawn)));
         }
@@ -80,12 +107,56 @@ pub fn draw(folder: &Path) -> Result<Vec<(&'static str, Picture)>, RunPictureErr
     Ok(pictures)
 }
 
-/// Draws a picture from the files of a run folder; none if the run has kept no data for it.
-fn draw_one(picture: RunPicture, folder: &Path) -> Result<Option<Picture>, RunPictureError> {
+/// Draws a picture from the files of a run; none if the run has kept no data for it.
+fn draw_one(picture: RunPicture, run: RunFiles) -> Result<Option<Picture>, RunPictureError> {
     match picture {
-        RunPicture::Friction => friction::of_run(folder).map(Some),
-        RunPicture::Stress => maps::of_run(folder),
-        RunPicture::Front => front::of_run(folder),
-        RunPicture::Precursors => precursors::of_run(folder),
+        RunPicture::Friction => friction::of_run(run).map(Some),
+        RunPicture::Stress => maps::of_run(run),
+        RunPicture::Front => front::of_run(run),
+        RunPicture::Precursors => precursors::of_run(run),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+    use std::sync::Arc;
+
+    use super::*;
+    use crate::names::MANIFEST;
+    use crate::running;
+
+    /// A run whose files stay in memory has the pictures of the same run in a folder, byte by byte.
+    #[test]
+    fn pictures_of_files_in_memory_are_those_of_a_folder() {
+        let out = tempfile::tempdir().unwrap();
+        let out = out.path().join("out");
+        // Driven at an edge it has events of slip, and it slides as a whole: every picture is drawn.
+        let text = "slider.blocks = [6, 4]\ndrive.attach = 'left'\ndrive.v_star = 3\ntime.duration_star = 60\noutput.movie = true\n";
+        let case = Arc::new(Case::parse(text, "case", "", &[]).unwrap());
+        let run = || running::run(&case, 1).unwrap();
+        let mut folder = RunFolder::prepare(&out, false, &case.inputs).unwrap();
+        results::write_case(&case, &mut folder).unwrap();
+        write_run(&case, &mut run(), folder, jiff::Timestamp::now(), 1).unwrap();
+        let mut files = results::in_memory(&case, &mut run()).unwrap();
+        files.extend(in_memory(&files, true).unwrap());
+        let written: BTreeMap<String, Vec<u8>> = std::fs::read_dir(&out)
+            .unwrap()
+            .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+            .filter(|name| name != MANIFEST && !name.starts_with('.'))
+            .map(|name| (name.clone(), std::fs::read(out.join(name)).unwrap()))
+            .collect();
+        let n_pictures = 2 * RunPicture::ALL.len() + 1;
+        assert_eq!(
+            files
+                .iter()
+                .filter(|(name, _)| [".svg", ".png", ".gif"].iter().any(|end| name.ends_with(end)))
+                .count(),
+            n_pictures
+        );
+        assert!(BTreeMap::from_iter(files) == written);
+        // What a picture needs is asked for by its name.
+        let missing = in_memory(&[], false).unwrap_err().to_string();
+        assert!(missing.contains("summary.json"), "{missing}");
     }
 }

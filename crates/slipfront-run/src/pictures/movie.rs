@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use rayon::prelude::*;
 use slipfront::observe::Field;
+use slipfront::parallel::*;
 use slipfront_case::case::{Budget, MAX_PICTURES};
 use slipfront_case::case_file::Motion;
 use slipfront_plot::{
@@ -15,9 +15,10 @@ use super::files::case_of;
 use super::friction::{ROW_BYTES, marked_curve};
 use super::maps::{CELL_BYTES, MapScale, MuStar, field_of_maps, separated};
 use crate::fields;
-use crate::names::{FIELDS, SERIES};
+use crate::names::{FIELDS, SERIES, SUMMARY};
+use crate::run_files::RunFiles;
 use crate::series::{self, SeriesRow};
-use crate::summary::read_summary;
+use crate::summary::summary_of;
 
 /// Duration of a movie in hundredths of a second, as far as the limits on the duration of its pictures allow.
 const DURATION: usize = 1600;
@@ -67,15 +68,15 @@ pub fn memory(folder: &Path, size: MovieSize) -> Result<f64, RunPictureError> {
     ))
 }
 
-/// The movie of a run folder, of the given field or of the field whose maps are drawn; none if the run has kept no snapshot
+/// The movie of a run, of the given field or of the field whose maps are drawn; none if the run has kept no snapshot
 /// of it.
 ///
 /// # Errors
 /// When a file cannot be read, or there are more than 1000 snapshots.
-pub fn of_run(folder: &Path, field: Option<Field>) -> Result<Option<Movie>, RunPictureError> {
-    let case = case_of(folder)?;
+pub fn of_run(run: RunFiles, field: Option<Field>) -> Result<Option<Movie>, RunPictureError> {
+    let case = case_of(run)?;
     let field = field.unwrap_or_else(|| field_of_maps(case.as_ref()));
-    let fields = fields::read_maps::<CellMeans>(&folder.join(FIELDS), field, |labels| {
+    let fields = fields::read_maps::<CellMeans>(run.file(FIELDS)?, field, |labels| {
         (0..labels.len().min(MAX_PICTURES + 1)).collect()
     })?;
     if fields.names.is_empty() || fields.frames.is_empty() {
@@ -84,9 +85,9 @@ pub fn of_run(folder: &Path, field: Option<Field>) -> Result<Option<Movie>, RunP
     if fields.frames.len() > MAX_PICTURES {
         return Err(RunPictureError::TooManySnapshots(MAX_PICTURES));
     }
-    let summary = read_summary(folder)?;
+    let summary = summary_of(&run.file(SUMMARY)?)?;
     let point = |row: SeriesRow| (row.step, row.time_star, row.mu_star);
-    let rows = series::read_rows(&folder.join(SERIES), SERIES, point)?;
+    let rows = series::read_rows(&run.file(SERIES)?, SERIES, point)?;
     let mut curve = marked_curve(String::new(), &summary);
     curve.x = rows.iter().map(|(_, time_star, _)| *time_star).collect();
     curve.friction = rows.iter().map(|(.., mu_star)| *mu_star).collect();

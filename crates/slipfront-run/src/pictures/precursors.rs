@@ -1,31 +1,29 @@
 //! The picture of the events of slip that precede the sliding of a slider driven at an edge.
 
-use std::path::Path;
-
 use slipfront::exact_solutions::precursor_load;
 use slipfront::{Edge, Edges};
 use slipfront_case::case_file::{CaseFile, KineticFriction};
 use slipfront_plot::{self as plot, Picture, Response, Responses};
 
 use super::error::RunPictureError;
-use super::files::found;
-use crate::names::{CASE, PRECURSORS};
+use super::files::case_of;
+use crate::names::PRECURSORS;
 use crate::precursors::{self, PrecursorRow};
+use crate::run_files::RunFiles;
 
 /// Draws the reach of the events of slip of a slider driven at an edge, against the load after them; none for another run.
 /// An event counts if it is longer than all before: a shorter one slips over the part that these have left behind.
-pub(super) fn of_run(folder: &Path) -> Result<Option<Picture>, RunPictureError> {
-    let path = folder.join(PRECURSORS);
-    if found(&path)?.is_none() {
+pub(super) fn of_run(run: RunFiles) -> Result<Option<Picture>, RunPictureError> {
+    let Some(file) = run.found(PRECURSORS)? else {
         return Ok(None);
-    }
+    };
     let mut longest = 0.0;
     let mut is_longer = |row: &PrecursorRow| {
         let is_longer = row.length > longest;
         longest = row.length.max(longest);
         is_longer
     };
-    let rows = precursors::read_csv(&path)?;
+    let rows = precursors::read_csv(file)?;
     let longer = rows.into_iter().filter(|row| is_longer(row));
     let points = longer.filter_map(|row| Some((row.friction_coefficient_after?, row.length)));
     let curve = |label: &str, points: Vec<(f64, f64)>, line: bool| {
@@ -41,8 +39,8 @@ pub(super) fn of_run(folder: &Path) -> Result<Option<Picture>, RunPictureError> 
         }
     };
     let mut curves = vec![curve("events", points.collect(), false)];
-    let case = CaseFile::load(&folder.join(CASE), &[])?;
-    if let Some((mu_kinetic, slope)) = equal_chain(&case) {
+    let case = case_of(run)?;
+    if let Some((mu_kinetic, slope)) = case.as_ref().and_then(equal_chain) {
         let lengths = (0..=100).map(|percent| f64::from(percent) / 100.0);
         let points = lengths.map(|length| (precursor_load(length, mu_kinetic, slope), length));
         curves.push(curve("exact", points.collect(), true));

@@ -1,5 +1,7 @@
 //! Requests of a page, and how a session meets them.
 
+use slipfront_case::ordered::map_of;
+
 use super::state::Session;
 use crate::history::History;
 use crate::protocol::{Message, Reply, Request};
@@ -94,7 +96,7 @@ impl Session {
         let archive = zip::archive(all).map_err(|error| format!("the archive cannot be made: {error}"))?;
         let exported = Reply::Exported {
             toml: &toml,
-            files: files.map(|(name, bytes)| (name, base64::encode(bytes))).collect(),
+            files: map_of(files.map(|(name, bytes)| (name, base64::encode(bytes)))),
             zip: base64::encode(&archive),
         };
         self.host.reply(exported.json());

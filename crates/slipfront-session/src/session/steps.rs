@@ -45,7 +45,7 @@ impl Session {
             return Ok(());
         }
         if !self.is_stepping {
-            let steps_per_second = self.view.pace / live.case().time_plan.dt_star;
+            let steps_per_second = self.view.pace_when(live.has_slipped()) / live.case().time_plan.dt_star;
             self.clock.due = if steps_per_second > 0.0 {
                 // What cannot be taken until the next picture is left out: the run is slower than asked for then.
                 let since = self.clock.seconds_since_last_count(now);

@@ -113,6 +113,34 @@ fn steps_keep_the_pace_and_pictures_their_rate() {
     assert!((55..=60).contains(&pictures), "{pictures}");
 }
 
+/// A run goes at 40 t* in a second until a block in contact slips, and then at 2.
+#[test]
+fn a_run_is_loaded_at_a_pace_of_its_own() {
+    let mut tried = Tried::new();
+    tried.ask(json!({ "do": "view", "pace": 2, "loading_pace": 40 }));
+    tried.ask(json!({ "do": "open", "source": { "toml": PLAIN } }));
+    let now = |tried: &Tried| {
+        let live = tried.session.live.as_ref().unwrap();
+        (live.has_slipped(), live.time_star())
+    };
+    let after = |tried: &mut Tried, milliseconds| {
+        tried.work_until(
+            tried.now + Duration::from_millis(milliseconds),
+            Duration::from_millis(1),
+        );
+        now(tried)
+    };
+    // 10 t*, less one picture's worth at either end.
+    let (has_slipped, loaded) = after(&mut tried, 250);
+    assert!(!has_slipped && loaded > 8.5, "{has_slipped} {loaded}");
+    while !after(&mut tried, 20).0 {
+        assert!(tried.now < Duration::from_secs(2), "no block slips");
+    }
+    let (_, slipped) = now(&tried);
+    let (_, later) = after(&mut tried, 1000);
+    assert!((later - slipped - 2.0).abs() < 0.2, "{slipped} {later}");
+}
+
 /// A page that asks for the case at every movement of the pointer has it made once for each picture.
 #[test]
 fn changes_between_two_pictures_are_run_once() {

@@ -5,6 +5,7 @@ use std::time::Duration;
 use slipfront::PositionBins;
 use slipfront::lattice::K_DRIVE;
 use slipfront_case::case_file::Motion;
+use slipfront_case::ordered::map_of;
 use slipfront_run::summary::summary_json;
 
 use super::clock::is_due;
@@ -189,7 +190,7 @@ impl Session {
             twin_peak,
             change_percent,
             kinetic: live.running().kinetic().map(|kinetic| kinetic.mu_star),
-            instants: instants.collect(),
+            instants: map_of(instants),
             steps_per_second: self.clock.steps_per_second(at),
             ended: live.ended.is_some(),
             summary,

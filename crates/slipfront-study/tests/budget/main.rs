@@ -14,6 +14,7 @@ use slipfront::testing::Threads;
 use slipfront_case::case::{Case, Ranks};
 use slipfront_case::case_file::CaseFile;
 use slipfront_run::checkpoint::Checkpoints;
+use slipfront_run::run_files::RunFiles;
 use slipfront_run::run_folder::RunFolder;
 use slipfront_run::run_folder::unfinished::Unfinished;
 use slipfront_run::running::Running;
@@ -318,7 +319,7 @@ fn pictures_of_a_large_lattice(folder: &Path) {
     drop((case, record));
     assert_honest_drawing("pictures of a large lattice", || {
         let before = LIVE.load(Ordering::Relaxed) as f64;
-        let (taken, drawn) = peak(|| pictures::draw(&out).unwrap());
+        let (taken, drawn) = peak(|| pictures::draw(RunFiles::Folder(&out)).unwrap());
         assert_eq!(drawn.len(), 2);
         (
             pictures::memory(std::slice::from_ref(&out)).unwrap(),

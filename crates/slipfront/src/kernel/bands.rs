@@ -1,5 +1,7 @@
 //! Bands of rows that threads share out.
 
+use crate::parallel::join;
+
 /// Runs `work` on every band: on the threads of the pool, or one after the other on this thread.
 pub(super) fn for_each_band<B: Send>(threads: usize, bands: &mut [B], work: &(impl Fn(&mut B) + Sync)) {
     if threads == 1 {
@@ -11,7 +13,7 @@ pub(super) fn for_each_band<B: Send>(threads: usize, bands: &mut [B], work: &(im
         [band] => work(band),
         _ => {
             let (one, other) = bands.split_at_mut(bands.len() / 2);
-            rayon::join(
+            join(
                 || for_each_band(threads, one, work),
                 || for_each_band(threads, other, work),
             );

@@ -5,7 +5,8 @@ use std::ops::Range;
 
 use chacha20::ChaCha8Rng;
 use chacha20::rand_core::{Rng, SeedableRng};
-use rayon::prelude::*;
+
+use crate::parallel::*;
 
 /// Mean and standard deviation of a Gaussian.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -13,10 +13,9 @@
 use std::f64::consts::{FRAC_2_SQRT_PI, PI, SQRT_2};
 use std::ops::{Range, RangeInclusive};
 
-use rayon::prelude::*;
-
 use super::coefficients::{Coefficients, Distribution, Stream, standard_normals};
 use crate::lattice::{Edges, Lattice};
+use crate::parallel::*;
 
 /// Fewest nodes in a correlation length: the variance of the field then differs by 1e-9 of itself from place to place, with two by 2e-4.
 const NODES_PER_LENGTH: f64 = 3.0;
@@ -118,7 +117,7 @@ impl Coefficients {
             field.axes[0].means(0..nx, 1),
             field.axes[1].means(rows.clone(), 1),
         ];
-        let rows_at_once = rows.count().div_ceil(rayon::current_num_threads()).max(1);
+        let rows_at_once = rows.count().div_ceil(current_num_threads()).max(1);
         let draw = |distribution: Distribution, stream: Stream| {
             let mut coefficients = vec![0.0; nx * rows.count()];
             let bands = coefficients.par_chunks_mut(nx * rows_at_once).enumerate();

@@ -27,13 +27,12 @@ pub use texture::{Cavity, Groove, Orientation, Shape, Texture, Tile, cavity_lamb
 
 use std::ops::Range;
 
-use rayon::prelude::*;
-
 use self::coefficients::PART;
 use self::whole::Whole;
 use crate::communicator::{Alone, Communicator};
 use crate::error::SurfaceError;
 use crate::lattice::Lattice;
+use crate::parallel::*;
 use crate::slider::Slider;
 
 /// Friction of every block; arrays have one value per block that this process holds.
@@ -121,7 +120,7 @@ impl Surface {
         let in_contact = blocks.filter(|&b| !surface.textured[b]);
         let thresholds = in_contact
             .map(|b| surface.static_limit(b).max(surface.kinetic_force(b)) / slider.drive_spring(b));
-        let mut largest_negative = [-thresholds.reduce(|| f64::INFINITY, f64::min)];
+        let mut largest_negative = [-reduce(thresholds, || f64::INFINITY, f64::min)];
         ranks.largest(&mut largest_negative);
         surface.min_slip_threshold = -largest_negative[0];
         Ok(surface)

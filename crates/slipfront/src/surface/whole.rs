@@ -3,11 +3,10 @@
 use std::array;
 use std::ops::Range;
 
-use rayon::prelude::*;
-
 use super::coefficients::Coefficients;
 use crate::communicator::Communicator;
 use crate::fixed_point::{FixedPoint, join, split};
+use crate::parallel::*;
 use crate::slider::Outline;
 
 /// Numbers of the whole surface, equal to the last bit on every rank and for any number of ranks.
@@ -73,7 +72,7 @@ impl Whole {
         let none = || [0.0; SUMS];
         let larger = |one: [f64; SUMS], other: [f64; SUMS]| array::from_fn(|k| f64::max(one[k], other[k]));
         let largest = |blocks: Range<usize>| blocks.map(terms).fold(none(), larger);
-        let mut largest: [f64; SUMS] = parts().map(largest).reduce(none, larger);
+        let mut largest: [f64; SUMS] = reduce(parts().map(largest), none, larger);
         ranks.largest(&mut largest);
 
         let fixed = largest.map(FixedPoint::new);
@@ -87,7 +86,7 @@ impl Whole {
             sums
         };
         let added = |one: [i128; SUMS], other: [i128; SUMS]| array::from_fn(|k| one[k] + other[k]);
-        let sums: [i128; SUMS] = parts().map(sum).reduce(|| [0; SUMS], added);
+        let sums: [i128; SUMS] = reduce(parts().map(sum), || [0; SUMS], added);
         let n_contact = parts().map(|blocks| textured[blocks].iter().filter(|&&textured| !textured).count());
         let counts = [textured.len(), n_contact.sum(), negative_draws];
         let mut words = [[0; 2]; SUMS + 2];

@@ -42,7 +42,7 @@ fn file(case: &str) -> Vec<u8> {
 }
 
 fn kymograph(input: &[u8]) {
-    match read_kymograph(&scratch::file("run/kymograph.nc", input)) {
+    match read_kymograph(scratch::file("run/kymograph.nc", input)) {
         Err(error) => readable(&error),
         Ok(data) => {
             assert_eq!(data.columns() * data.time_star.len(), data.sliding_share.len());

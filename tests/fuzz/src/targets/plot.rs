@@ -2,6 +2,7 @@
 
 use slipfront_run::pictures::draw;
 use slipfront_run::pictures::friction::{Against, AxisUnits, FrictionLook, overlay};
+use slipfront_run::run_files::RunFiles;
 use slipfront_run::summary::summary_json;
 
 use super::json::summary;
@@ -80,7 +81,7 @@ fn plot(input: &[u8]) {
     let folder = fields.parent().unwrap();
     let case = CASES[input.len() / 2 % 2];
     scratch::file("plot/case.toml", case.as_bytes());
-    match draw(folder) {
+    match draw(RunFiles::Folder(folder)) {
         Err(error) => readable(&error),
         Ok(pictures) => {
             for (name, picture) in pictures {

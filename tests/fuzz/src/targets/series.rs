@@ -54,7 +54,7 @@ pub(crate) fn events_csv(count: u32) -> Vec<u8> {
 
 /// Events that are read have the numbers that stand there: written as a row of the same columns they are read again as equal.
 fn events(input: &[u8]) {
-    let rows = match precursors::read_csv(&scratch::file("run/precursors.csv", input)) {
+    let rows = match precursors::read_csv(scratch::file("run/precursors.csv", input)) {
         Ok(rows) => rows,
         Err(error) => return readable(&error),
     };
@@ -73,7 +73,7 @@ fn events(input: &[u8]) {
         let cells: Vec<String> = numbers.into_iter().chain(after).map(number).collect();
         printed += &(cells.join(",") + "\n");
     }
-    let again = precursors::read_csv(&scratch::file("run/precursors.csv", printed.as_bytes())).unwrap();
+    let again = precursors::read_csv(scratch::file("run/precursors.csv", printed.as_bytes())).unwrap();
     // Debug shows every bit but those of a NaN.
     assert_eq!(format!("{again:?}"), format!("{rows:?}"));
 }
@@ -113,12 +113,12 @@ pub(crate) fn csv(rows: u64) -> Vec<u8> {
 
 /// A series that is written and read again has the same bits.
 fn series(input: &[u8]) {
-    let rows = match read_csv(&scratch::file("run/series.csv", input)) {
+    let rows = match read_csv(scratch::file("run/series.csv", input)) {
         Ok(rows) => rows,
         Err(error) => return readable(&error),
     };
     let printed = to_csv(rows.iter().copied()).unwrap();
-    let again = read_csv(&scratch::file("run/series.csv", &printed)).unwrap();
+    let again = read_csv(scratch::file("run/series.csv", &printed)).unwrap();
     assert_eq!(again.len(), rows.len());
     assert_eq!(to_csv(again.into_iter()).unwrap(), printed);
 }

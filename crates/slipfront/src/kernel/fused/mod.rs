@@ -37,7 +37,6 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicU32;
 
 use fearless_simd::{Level, dispatch};
-use rayon::prelude::*;
 
 use self::aligned::Vectors;
 use self::band::{Band, NEVER};
@@ -63,6 +62,7 @@ use crate::lattice::K_STRAIGHT;
 use crate::model::Model;
 use crate::moduli::Moduli;
 use crate::options::ModelOptions;
+use crate::parallel::*;
 use crate::position_bins::PositionBins;
 use crate::state::State;
 use crate::totals::{StoredEnergy, Totals};

@@ -1,0 +1,13 @@
+//! Loops on the threads of rayon's pool.
+
+pub use rayon::prelude::*;
+pub use rayon::{current_num_threads, join};
+
+/// Combines all elements, in any order; `identity` gives the element that changes no other.
+pub fn reduce<I: ParallelIterator>(
+    elements: I,
+    identity: impl Fn() -> I::Item + Sync + Send,
+    combine: impl Fn(I::Item, I::Item) -> I::Item + Sync + Send,
+) -> I::Item {
+    elements.reduce(identity, combine)
+}
