@@ -72,13 +72,18 @@ impl DesignCommand {
         if !self.quiet {
             print_notes(&folder);
         }
-        let mut progress = DesignProgress::new(self.quiet, folder.n_kept());
+        let mut progress = DesignProgress::new(self.quiet);
         let found = folder.find(&bounds, &mut |now| progress.show(now));
         progress.finish();
         let text = found.map_err(|error| match error {
             StudyError::Interrupted => {
                 let best = folder.path().join("mask.npy");
-                let so_far = if best.exists() {
+                let so_far = if folder.has_verdict() {
+                    format!(
+                        "{} keeps the results of an earlier search; ",
+                        folder.path().display()
+                    )
+                } else if best.exists() {
                     format!(
                         "the best texture so far stands in {}, without a verdict; ",
                         best.display()
