@@ -246,12 +246,16 @@ impl DesignFile {
         self.design_up_to(self.keys.coverage[1])
     }
 
-    /// Refuses a design that is not valid, or that has no memory for `threads` runs at once; `runs` is the number of runs of
-    /// its search.
+    /// Refuses a design that is not valid, that has no memory for `threads` runs at once, or that asks for a front although its search
+    /// `is_timed`; `runs` is the number of runs of its search.
     ///
     /// # Errors
     /// As [`design`](Self::design), and with the number of runs at once that there is memory for.
-    pub fn check_memory(&self, runs: usize, threads: usize) -> Result<(), StudyError> {
+    pub fn check(&self, runs: usize, threads: usize, is_timed: bool) -> Result<(), StudyError> {
+        if is_timed && !self.keys.front.is_empty() {
+            let sentence = "a search that is cut short by a time has no time for a front: give a number of runs, or leave out `front`";
+            return Err(self.error("front", sentence.to_owned()).into());
+        }
         // Every design of a front keeps what it has tried until all are written.
         let drafts = runs.saturating_mul(1 + self.keys.front.len());
         self.design()?.check_memory(drafts, threads)
@@ -422,7 +426,7 @@ impl DesignFile {
                     },
                 };
                 if !(star > 0.0 && star.is_finite()) {
-                    return refuse("`value` must be more than 0");
+                    return refuse("`value` must be a number of more than 0");
                 }
                 Ok(Wish::Value(quantity, star))
             }

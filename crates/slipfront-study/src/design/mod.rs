@@ -119,6 +119,9 @@ impl Design {
     pub(crate) fn notes(&self) -> Vec<String> {
         let (grid, limits) = (&self.evaluator.grid, &self.limits);
         let note = |(name, textured): &(String, Vec<bool>)| {
+            if !textured.contains(&true) {
+                return Some(format!("the {name} covers no block, and was left out"));
+            }
             let illegal = limits.check(grid, textured).err()?;
             let named = Named::drawn(grid, name, textured);
             let made = if limits.texture(grid, &named.draft).is_some() {
@@ -263,8 +266,8 @@ impl Design {
         self.evaluator.grid.size()
     }
 
-    /// Loss of each texture, a distance from the wish, as a mean over the first `surfaces` surfaces of the search; with a
-    /// coarse step, or that of the case.
+    /// Loss of each texture, a distance from the wish, as a mean over the first `surfaces` surfaces of the search, or the
+    /// reason for which a texture has none; with a coarse step, or that of the case.
     ///
     /// # Errors
     /// When runs cannot be made, and after a stop.
@@ -275,7 +278,7 @@ impl Design {
         is_coarse: bool,
         known: &mut Known,
         stop: &AtomicBool,
-    ) -> Result<Vec<f64>, StudyError> {
+    ) -> Result<Vec<Result<f64, String>>, StudyError> {
         let fidelity = if is_coarse {
             Fidelity::Coarse
         } else {
@@ -284,7 +287,11 @@ impl Design {
         let textures: Vec<Arc<Vec<bool>>> = textures.into_iter().map(Arc::new).collect();
         let wanted = self.evaluator.wanted(&textures, 0..surfaces, fidelity);
         self.evaluator.run(&wanted, known, stop, &mut |_| Ok(()))?;
-        let loss = |texture| self.evaluator.loss(texture, 0..surfaces, fidelity, known);
+        let loss = |texture| {
+            let lost = self.evaluator.lost(texture, 0..surfaces, fidelity, known);
+            let loss = self.evaluator.loss(texture, 0..surfaces, fidelity, known);
+            lost.map_or(Ok(loss), Err)
+        };
         Ok(textures.iter().map(loss).collect())
     }
 

@@ -429,7 +429,15 @@ fn on_fresh(wish: &Wish, verdict: &Verdict) -> String {
             } else {
                 format!("{}, case {}", found.name, k + 1)
             };
-            let mean = |mean: Mean| with_half_width(mean.mean, mean.half_width);
+            // A mean over those surfaces alone on which a texture is not lost would flatter it.
+            let is_whole = given.surfaces == verdict.surfaces;
+            let mean = |mean: Mean| {
+                if is_whole {
+                    with_half_width(mean.mean, mean.half_width)
+                } else {
+                    "-".to_owned()
+                }
+            };
             let is_first = k == 0;
             rows.push(vec![
                 name,

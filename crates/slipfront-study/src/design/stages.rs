@@ -97,6 +97,17 @@ pub struct Bounds<'a> {
     pub stop: &'a AtomicBool,
 }
 
+impl Bounds<'_> {
+    /// Share of a time that has passed, in seconds; 1 where the time is no number of more than 0, and 0 without a bound.
+    pub fn share_of(passed: f64, most: Option<f64>) -> f64 {
+        match most {
+            Some(most) if passed < most => passed / most,
+            Some(_) => 1.0,
+            None => 0.0,
+        }
+    }
+}
+
 /// Length of a search.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct Length {

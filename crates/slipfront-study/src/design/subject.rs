@@ -245,6 +245,10 @@ mod tests {
         let case = subject.case(None, 3, Fidelity::Coarse).unwrap();
         assert_eq!((case.time_plan.dt_star, case.file.friction.seed), (0.4, 4));
         assert_eq!(case.time_plan.last_step, (searched / 0.4).ceil() as u64);
+        // A coarse run costs an eighth of one of a verdict, and that an eighth of one on blocks of half the size, but for rounding.
+        let work = [Fidelity::Coarse, Fidelity::Verdict].map(|fidelity| subject.work(fidelity));
+        let finer = subject.on_finer_blocks().unwrap().work(Fidelity::Verdict);
+        assert!((work[1] / work[0] - 8.0).abs() < 1e-9 && (finer / work[1] - 8.0).abs() < 1e-9);
         // Adhesion as large as the load delays the onset to twice the time.
         let adhesive = self::subject(
             "slider.blocks = [4, 4]\ndrive.v_star = 0.1\nfriction.adhesion = '100 kPa'\nload.pressure = '100 kPa'",

@@ -21,6 +21,8 @@ const NAMED_FINALISTS: usize = 4;
 /// Values of a texture on fresh surfaces in one case.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Given {
+    /// Number of surfaces over which the means are taken: all, unless the texture is lost on some.
+    pub surfaces: u64,
     /// The largest mu*.
     pub static_friction_star: Mean,
     /// The first peak of mu*.
@@ -218,6 +220,7 @@ impl Judge<'_> {
             let mean = |of: &dyn Fn(&Measured) -> f64| Mean::of(&found.iter().map(of).collect::<Vec<_>>());
             let kinetic: Option<Vec<f64>> = found.iter().map(|found| found.kinetic_star).collect();
             Given {
+                surfaces: found.len() as u64,
                 static_friction_star: mean(&|found| found.largest_star),
                 first_peak_star: mean(&|found| found.first_peak_star),
                 kinetic_friction_star: kinetic.map(|values| Mean::of(&values)),
