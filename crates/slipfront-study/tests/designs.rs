@@ -553,7 +553,7 @@ fn results_belong_to_one_search() {
     let before = fs::read(out.join("mask.npy")).unwrap();
     let stop = AtomicBool::new(false);
     let stopped = opened.find(&bounds(400, &stop), &mut |now| {
-        stop.store(now.runs > 100, Ordering::Relaxed)
+        stop.store(now.runs > 100, Ordering::Relaxed);
     });
     assert!(matches!(stopped, Err(StudyError::Interrupted)));
     assert_eq!(fs::read(out.join("mask.npy")).unwrap(), before);

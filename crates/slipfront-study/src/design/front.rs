@@ -98,7 +98,7 @@ impl Report<'_> {
                 called(wish),
                 if unit(wish).is_empty() { "" } else { " (%)" }
             ),
-            note: format!("95 % of {} fresh surfaces", surfaces),
+            note: format!("95 % of {surfaces} fresh surfaces"),
             curves: vec![curve],
             ..Responses::default()
         });
