@@ -510,6 +510,10 @@ fn drawings_are_judged() {
         .find(&bounds(1, &AtomicBool::new(false)), &mut |_| {})
         .unwrap();
     let told = text.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(
+        !told.contains("not seen by the search"),
+        "there is one surface: {text}"
+    );
     let found: serde_json::Value =
         serde_json::from_slice(&fs::read(folder.path().join("design.json")).unwrap()).unwrap();
     let others = found["others"].as_array().unwrap();

@@ -205,11 +205,16 @@ impl Report<'_> {
         let (wish, verdict) = (design.evaluator.wish(), &outcome.verdict);
         let mut text = format!("{}\n\n", wrapped(&headline(wish, verdict), COLUMNS));
         text += &on_fresh(wish, verdict);
-        text += &format!(
-            "\nOn {} not seen by the search; intervals of 95 %. {}\n",
-            count(verdict.surfaces as usize, "surface"),
-            optimism(wish, verdict)
-        );
+        text += &if design.evaluator.scatters() {
+            format!(
+                "\nOn {} not seen by the search; intervals of 95 %. {}\n",
+                count(verdict.surfaces as usize, "surface"),
+                optimism(wish, verdict)
+            )
+        } else {
+            "\nCoefficients do not scatter, so that there is one surface, which the search has seen.\n"
+                .to_owned()
+        };
         text += &scatter(wish, verdict).unwrap_or_default();
         let length =
             |length: Option<f64>| length.map_or("none".to_owned(), |length| with_si_prefix(length, "m"));
