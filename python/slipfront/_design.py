@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import json
 import os
+import warnings
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, TypeAlias
@@ -151,7 +152,8 @@ class Design:
     def evaluate(
         self, masks: Iterable[npt.ArrayLike], *, surfaces: int = 1, coarse: bool = True, threads: int | None = None
     ) -> list[float]:
-        """Losses of textures, distances from the wish; infinite for one that breaks a limit.
+        """Losses of textures, distances from the wish; infinite for one that breaks a limit, and with a warning that tells the reason for
+        one whose run diverges or never comes to rest.
 
         Of a wish for the least or the largest it is the ratio to the slider without texture, or that with its sign changed; of a value
         the relative distance from it; of a curve the root of the mean square of the differences of mu*.
@@ -170,7 +172,11 @@ class Design:
         texts = [self._bytes(mask) for mask in masks]
         legal = [text for text in texts if self._native.illegal(text) is None]
         losses = dict(zip(legal, self._native.losses(legal, surfaces, coarse, _threads(threads)), strict=True))
-        return [losses.get(text, float("inf")) for text in texts]
+        for number, text in enumerate(texts):
+            _, why = losses.get(text, (None, None))
+            if why is not None:
+                warnings.warn(f"mask {number} is lost: {why}", RuntimeWarning, stacklevel=2)
+        return [losses[text][0] if text in losses else float("inf") for text in texts]
 
     def run(
         self,
@@ -270,8 +276,9 @@ class DesignResults:
 
     @property
     def loss(self) -> float:
-        """Loss of the design on fresh surfaces, as `Design.evaluate` returns it."""
-        return float(self._found["design"]["loss"])
+        """Loss of the design on fresh surfaces, as `Design.evaluate` returns it; infinite if a run of it diverged or never came to rest."""
+        loss = self._found["design"]["loss"]
+        return float("inf") if loss is None else float(loss)
 
     @property
     def static_friction_star(self) -> tuple[float, float | None]:

@@ -93,7 +93,7 @@ impl Design {
         search.best().map(|(texture, loss)| (bytes(&texture), loss))
     }
 
-    /// Losses of textures, distances from the wish, on some surfaces.
+    /// Losses of textures, distances from the wish, on some surfaces; infinite with the reason for a texture that has none.
     fn losses(
         &self,
         py: Python<'_>,
@@ -101,12 +101,18 @@ impl Design {
         surfaces: u64,
         is_coarse: bool,
         threads: usize,
-    ) -> PyResult<Vec<f64>> {
+    ) -> PyResult<Vec<(f64, Option<String>)>> {
         let textures = sets(&masks);
         let evaluate = |stop: &AtomicBool| {
             let mut known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
-            self.design
-                .losses(textures, surfaces, is_coarse, &mut known, stop)
+            let losses = self
+                .design
+                .losses(textures, surfaces, is_coarse, &mut known, stop)?;
+            let told = losses.into_iter().map(|loss| match loss {
+                Ok(loss) => (loss, None),
+                Err(why) => (f64::INFINITY, Some(why)),
+            });
+            Ok(told.collect())
         };
         on_pool(py, threads, evaluate, &mut |_| Ok(()))
     }
@@ -123,14 +129,14 @@ impl Design {
     ) -> PyResult<String> {
         let runs = runs.unwrap_or(self.file.keys.runs as usize);
         let opened = detached(py, || {
-            self.file.check_memory(runs, threads)?;
+            self.file.check(runs, threads, seconds.is_some())?;
             DesignFolder::open(&folder, &self.file)
         })?;
         let mut opened = opened.map_err(|error| study_error(py, &error))?;
         let progress: Mutex<Option<SearchProgress>> = Mutex::new(None);
         let began = Instant::now();
         let search = |stop: &AtomicBool| {
-            let share_of_time = || seconds.map_or(0.0, |most| began.elapsed().as_secs_f64() / most);
+            let share_of_time = || Bounds::share_of(began.elapsed().as_secs_f64(), seconds);
             let bounds = Bounds {
                 runs,
                 share_of_time: &share_of_time,

@@ -69,7 +69,7 @@ fn design(case: &Case) -> Result<(Design, Option<Vec<bool>>), StudyError> {
         ..Limits::default()
     };
     let wish = Wish::Least(Quantity::StaticFriction);
-    let mut design = Design::new(std::slice::from_ref(case), wish, false, limits, 1)?;
+    let mut design = Design::new(&[(case, wish)], false, limits, 1)?;
     let painted = Some(textured_blocks(case)).filter(|painted| painted.contains(&true));
     if let Some(painted) = &painted {
         design.begin_with("painted".to_owned(), painted.clone());

@@ -61,7 +61,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         ..Limits::default()
     };
     for start in starts {
-        let design = Design::new(&cases, wanted.clone(), is_worst, limits.clone(), start.parse()?)?;
+        let wished: Vec<(&Case, Wish)> = cases.iter().map(|case| (case, wanted.clone())).collect();
+        let design = Design::new(&wished, is_worst, limits.clone(), start.parse()?)?;
         let stop = AtomicBool::new(false);
         let bounds = Bounds {
             runs: runs.parse()?,
@@ -70,7 +71,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         };
         let outcome = design.run(&bounds, &mut HashMap::new(), &mut |_| Ok(()), &mut |_| {})?;
         let of_cavity = design.losses(vec![cavity.clone()], SURFACES, false, &mut HashMap::new(), &stop)?;
-        println!("start {start}: {}", told(&outcome.verdict, &wanted, of_cavity[0]));
+        let of_cavity = of_cavity.into_iter().next().ok_or("nothing was run")??;
+        println!("start {start}: {}", told(&outcome.verdict, &wanted, of_cavity));
     }
     Ok(())
 }

@@ -153,6 +153,8 @@ pub enum StudyError {
         "no texture keeps these limits: widen `design.coverage`, lower `design.feature` or `design.gap`, or allow more features"
     )]
     NoDesign,
+    #[error("nothing can be compared with the slider without texture: {why}")]
+    Reference { why: String },
     #[error("stopped by a signal: finished runs are safe, and the same command goes on from there")]
     Interrupted,
 }

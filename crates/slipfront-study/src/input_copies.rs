@@ -37,6 +37,13 @@ pub(crate) struct Copy {
     hash: blake3::Hash,
 }
 
+impl Copy {
+    /// Whether the results folder has another file of this name.
+    pub(crate) fn differs_in(&self, folder: &Path) -> bool {
+        hash(&folder.join(&self.name)).is_ok_and(|found| found.is_some_and(|found| found != self.hash))
+    }
+}
+
 /// Replaces the names of all files of a study, which stand relative to `folder`, by those of copies.
 pub(crate) fn copy(study: &mut Table, folder: &Path) -> Result<Vec<Copy>, FolderError> {
     let mut copies = Vec::new();

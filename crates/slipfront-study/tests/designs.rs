@@ -9,7 +9,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use slipfront_study::StudyError;
-use slipfront_study::design::{Bounds, Design, DesignFile, DesignFolder, DesignStage, Known, Outcome};
+use slipfront_study::design::{Bounds, Design, DesignFile, DesignFolder, DesignStage, Known, Outcome, Work};
 
 /// A small slider whose named patterns cover less than the limits allow.
 const BASE: &str = "[base]\nslider.blocks = [16, 16]\ndrive.v_star = 0.1\n[design]\n";
@@ -353,6 +353,224 @@ fn a_program_of_speeds_has_no_other_speed() {
     assert_eq!(sensitivity.changed.len(), 5);
 }
 
+/// A texture that leaves only blocks of next to no friction in contact never comes to rest under a held drive: it is lost, and told with
+/// the reason in the table, the verdict and its text, before and after a stop. A slider all of whose blocks are such has nothing to compare with.
+#[test]
+fn what_never_comes_to_rest_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let base = "[base]\nslider = { blocks = [2, 1], omega_star = 0 }\ndrive = { v_star = 0.1, loading = 'held' }\n\
+                friction = { mu_kinetic_field = 'mu_k.csv', sigma_static_star = 0, sigma_kinetic_star = 0, \
+                slip_weakening = { length_star = 0.1 } }\n[design]\n\
+                wish = { least = 'static_friction' }\ncoverage = [0, 50]\n\
+                starts = [[{ shape = 'groove', width = '1 um', offset = '-0.5 um' }]]";
+    let of = |row: &str| {
+        fs::write(folder.path().join("mu_k.csv"), row).unwrap();
+        DesignFile::parse(base, "design.toml", "design", folder.path()).unwrap()
+    };
+    // Alone, the second block, once weakened, swings longer than a held drive waits for it; the first takes its energy where it touches.
+    let file = of("0.5,1e-4");
+    let out = folder.path().join("out");
+    let find = || {
+        let mut opened = DesignFolder::open(&out, &file).unwrap();
+        let text = opened
+            .find(&bounds(40, &AtomicBool::new(false)), &mut |_| {})
+            .unwrap();
+        assert_eq!(opened.damaged, 0);
+        text.split_whitespace().collect::<Vec<_>>().join(" ")
+    };
+    let text = find();
+    let remedy = "raise its kinetic friction or damping, or take constant loading";
+    let told = "note: on fresh surfaces the start 1 of the file is lost: ";
+    let after = text.split(told).nth(1).unwrap_or_else(|| panic!("{text}"));
+    assert!(after.contains(remedy), "{text}");
+    assert!(
+        text.contains("count as lost, as evaluations.csv says of each"),
+        "{text}"
+    );
+    assert!(!text.contains("inf") && !text.contains("NaN"), "{text}");
+    let mut table = csv::Reader::from_path(out.join("evaluations.csv")).unwrap();
+    let rows: Vec<csv::StringRecord> = table.records().map(Result::unwrap).collect();
+    let lost: Vec<&csv::StringRecord> = rows.iter().filter(|row| &row[4] == "inf").collect();
+    assert!(!lost.is_empty() && lost.len() < rows.len());
+    assert!(
+        text.contains("note: the design is lost at one block towards -x: "),
+        "{text}"
+    );
+    assert!(lost.iter().all(|row| row[6].contains(remedy)));
+    assert!(rows.iter().all(|row| (&row[4] == "inf") != row[6].is_empty()));
+    assert_eq!(find(), text, "what is lost is kept in the journal");
+
+    let smooth = of("1e-9,1e-9");
+    let error = smooth.design().unwrap().run(
+        &bounds(40, &AtomicBool::new(false)),
+        &mut Known::new(),
+        &mut |_| Ok(()),
+        &mut |_| {},
+    );
+    let said = error.unwrap_err().to_string();
+    assert!(
+        said.starts_with("nothing can be compared with the slider without texture") && said.contains(remedy),
+        "{said}"
+    );
+}
+
+/// Each case has the wish in its own units: a force is another share of mu_s under another load, and a share of mu_s another force.
+#[test]
+fn every_case_has_the_wish_in_its_own_units() {
+    let least = |of: &str| {
+        let keys = format!(
+            "wish = {{ value = {of} }}\ncoverage = [0, 15]\njudge_by = 'worst'\n\
+             cases = [{{ load.pressure = '1 MPa' }}, {{ load.pressure = '2 MPa' }}]"
+        );
+        let outcome = found(&keys, 1);
+        let stars = outcome.verdict.design.cases.iter();
+        let stars: Vec<f64> = stars.map(|given| given.static_friction_star.mean).collect();
+        (outcome.verdict.design.loss, stars)
+    };
+    // Dimensionless, the two loads are one case. 256 um^2 under 1 MPa with mu_s = 1 hold 256 uN.
+    let newtons = 256.0 * 0.8;
+    let (loss, stars) = least(&format!("'{newtons} uN', of = 'static_friction'"));
+    let distance = |star: f64, wanted: f64| (star / wanted - 1.0).abs();
+    let expected = distance(stars[0], 0.8).max(distance(stars[1], 0.4));
+    assert!((loss - expected).abs() < 1e-9, "{loss} {expected} {stars:?}");
+    let (loss, stars) = least("0.8, of = 'static_friction_star'");
+    let expected = distance(stars[0], 0.8).max(distance(stars[1], 0.8));
+    assert!((loss - expected).abs() < 1e-9, "{loss} {expected} {stars:?}");
+}
+
+/// The files of cases are those of the verdict, not the base; a front that is stopped leaves the design alone.
+#[test]
+fn the_folder_has_the_cases_of_the_verdict() {
+    let file = file_of(
+        SMOOTH,
+        "wish = { least = 'static_friction' }\ncoverage = [0, 15]\nfront = [0.1, 10]\n\
+         cases = [{ drive.v_star = 0.2 }, { drive.v_star = 0.3, load.pressure = '2 MPa' }]",
+    );
+    let folder = tempfile::tempdir().unwrap();
+    let mut opened = DesignFolder::open(folder.path(), &file).unwrap();
+    let stop = AtomicBool::new(false);
+    let (mut is_judged, mut work) = (false, Vec::new());
+    let stopped = opened.find(&bounds(60, &stop), &mut |now| {
+        work.push((now.stage, now.work));
+        is_judged |= now.stage == DesignStage::Judging;
+        // Nothing covers a thousandth of 256 blocks: what follows is the search up to 10 %.
+        stop.store(is_judged && now.best_texture.is_some(), Ordering::Relaxed);
+    });
+    assert!(matches!(stopped, Err(StudyError::Interrupted)), "{stopped:?}");
+    for (name, v_star) in [("case.toml", 0.2), ("case_2.toml", 0.3)] {
+        let case = slipfront_case::case::Case::load(
+            &folder.path().join(name),
+            &[],
+            &mut |_| true,
+            slipfront_case::case::Ranks::ALONE,
+        )
+        .unwrap();
+        assert_eq!(case.groups.v_star, v_star);
+        assert!(
+            case.model.surface.texture_percent() > 10.0,
+            "the design of the largest coverage"
+        );
+    }
+    assert!(!folder.path().join("case_3.toml").exists());
+    let text = fs::read_to_string(folder.path().join("design.txt")).unwrap();
+    let line = text.lines().find(|line| line.contains("case_2.toml")).unwrap();
+    assert!(line.contains("drive.v_star=0.3, load.pressure="), "{text}");
+    let judged = work.iter().filter(|(stage, _)| *stage == DesignStage::Judging);
+    let judged: Vec<Work> = judged.map(|(_, work)| *work).collect();
+    let falls = |pair: &[Work]| pair[0].here <= pair[1].here && pair[0].left >= pair[1].left;
+    assert!(judged.len() > 5 && judged.windows(2).all(falls), "{judged:?}");
+    // The runs of the second design of the front remain, too.
+    assert!(judged.iter().all(|work| work.left > 0.0));
+    let text = opened
+        .find(&bounds(60, &AtomicBool::new(false)), &mut |_| {})
+        .unwrap();
+    assert!(text.contains("no texture keeps the limits"), "{text}");
+}
+
+/// Textures from which the search begins are judged, and told where they break a limit.
+#[test]
+fn drawings_are_judged() {
+    let groove = |percent: f64, offset: i32| {
+        format!(
+            "[{{ shape = 'groove', orientation = 'along', coverage = {percent}, offset = '{offset} um' }}]"
+        )
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let file = file_of(
+        SMOOTH,
+        &format!(
+            "wish = {{ least = 'static_friction' }}\ncoverage = [0, 15]\nfeature_blocks = 2\nstarts = [{}, {}, {}]",
+            groove(12.5, -4),
+            groove(25.0, 4),
+            groove(6.25, 4)
+        ),
+    );
+    let mut opened = DesignFolder::open(folder.path(), &file).unwrap();
+    let text = opened
+        .find(&bounds(1, &AtomicBool::new(false)), &mut |_| {})
+        .unwrap();
+    let told = text.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(
+        !told.contains("not seen by the search"),
+        "there is one surface: {text}"
+    );
+    let found: serde_json::Value =
+        serde_json::from_slice(&fs::read(folder.path().join("design.json")).unwrap()).unwrap();
+    let others = found["others"].as_array().unwrap();
+    for (name, percent) in [("start 1 of the file", 12.5), ("start 2 of the file", 12.5)] {
+        let other = others.iter().find(|other| other["name"] == name).unwrap();
+        assert_eq!(other["coverage_percent"], percent, "{text}");
+        assert!(
+            other["design_is_better_by"]["mean"].as_f64().unwrap() > 0.0,
+            "{text}"
+        );
+    }
+    assert!(
+        told.contains("note: the start 2 of the file breaks a limit: the texture covers 25.00 % of the slider, where 0 to 15 % are allowed"),
+        "{text}"
+    );
+    assert!(
+        told.contains("note: the start 3 of the file breaks a limit: a feature is 1 block wide, where 2 are the least; nothing legal"),
+        "{text}"
+    );
+}
+
+/// A folder whose files have changed belongs to another design, and a longer search that is stopped leaves the results of the shorter one.
+#[test]
+fn results_belong_to_one_search() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    let forbid = |column: usize| {
+        let clamped: Vec<bool> = (0..64).map(|block| block % 8 == column).collect();
+        let mask = slipfront_case::arrays::npy_of_mask(8, &clamped);
+        fs::write(folder.path().join("clamp.npy"), mask).unwrap();
+    };
+    forbid(0);
+    let text = "[base]\nslider.blocks = [8, 8]\ndrive.v_star = 0.1\nfriction = { sigma_static_star = 0, sigma_kinetic_star = 0 }\n\
+                [design]\nwish = { least = 'static_friction' }\ncoverage = [0, 25]\n\
+                forbidden = [{ shape = 'mask', file = 'clamp.npy' }]";
+    let file = DesignFile::parse(text, "design.toml", "design", folder.path()).unwrap();
+    let mut opened = DesignFolder::open(&out, &file).unwrap();
+    opened
+        .find(&bounds(20, &AtomicBool::new(false)), &mut |_| {})
+        .unwrap();
+    let before = fs::read(out.join("mask.npy")).unwrap();
+    let stop = AtomicBool::new(false);
+    let stopped = opened.find(&bounds(400, &stop), &mut |now| {
+        stop.store(now.runs > 100, Ordering::Relaxed);
+    });
+    assert!(matches!(stopped, Err(StudyError::Interrupted)));
+    assert_eq!(fs::read(out.join("mask.npy")).unwrap(), before);
+    assert!(slipfront_study::verify::verify(&out).is_ok_and(|verdict| verdict.differences.is_empty()));
+    drop(opened);
+    forbid(7);
+    let file = DesignFile::parse(text, "design.toml", "design", folder.path()).unwrap();
+    assert!(matches!(
+        DesignFolder::open(&out, &file),
+        Err(StudyError::Changed { .. })
+    ));
+}
+
 #[test]
 fn limits_are_kept_and_cases_are_all_looked_at() {
     let keys = "wish = { largest = 'static_friction' }\ncoverage = [5, 12]\nfeature = '2 um'\ngap = '2 um'\nmirror = 'both'\n\
@@ -398,7 +616,7 @@ fn what_cannot_be_is_told_with_its_place() {
         ),
         (
             "wish = { value = -1, of = 'static_friction' }\ncoverage = [0, 10]",
-            "more than 0",
+            "a number of more than 0",
         ),
         (
             "wish = { value = 1, of = 'work' }\ncoverage = [0, 10]",
@@ -442,6 +660,14 @@ fn what_cannot_be_is_told_with_its_place() {
         (
             &format!("{wish}\ncoverage = [0, 10]\ncases = [{{ slider.blocks = [8, 8] }}]"),
             "the blocks of the base",
+        ),
+        (
+            &format!("{wish}\ncoverage = [0, 10]\ncases = [{{ texture = [] }}]"),
+            "belongs to `starts`",
+        ),
+        (
+            "wish = { value = '1 mN', of = 'static_friction_star' }\ncoverage = [0, 10]",
+            "leave out _star",
         ),
         (
             &format!("{wish}\ncoverage = [0, 10]\n[study]\nreplicates = 3"),

@@ -291,6 +291,7 @@ impl Simulation {
                 time_star: self.time_star(),
                 standing,
                 n_slipping: self.totals.n_slipping,
+                speed: self.totals.velocity_square.sqrt(),
             });
         }
         if standing > 0 && step >= MAX_HELD_STEPS {

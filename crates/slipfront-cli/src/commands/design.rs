@@ -53,17 +53,14 @@ impl DesignCommand {
         let file = DesignFile::load(&self.design).map_err(Failure::input)?;
         let runs = self.runs.unwrap_or(file.keys.runs) as usize;
         // A design that is invalid, or has no memory, leaves no folder.
-        file.check_memory(runs, threads).map_err(Failure::input)?;
-        if self.time.is_some() && !file.keys.front.is_empty() {
-            let sentence = "a search that is cut short by --time has no time for a front: give --runs, or leave out `design.front`";
-            return Err(Failure::input(anyhow::anyhow!(sentence)));
-        }
+        file.check(runs, threads, self.time.is_some())
+            .map_err(Failure::input)?;
         let out = self.out.unwrap_or_else(|| Path::new("results").join(&file.name));
         let mut folder = DesignFolder::open(&out, &file).map_err(Failure::input)?;
         let signals = Signals::catch().map_err(Failure::running)?;
         let began = Instant::now();
         let most = self.time.map(|time| time.as_secs_f64());
-        let share_of_time = || most.map_or(0.0, |most| began.elapsed().as_secs_f64() / most);
+        let share_of_time = || Bounds::share_of(began.elapsed().as_secs_f64(), most);
         let bounds = Bounds {
             runs,
             share_of_time: &share_of_time,
@@ -72,13 +69,18 @@ impl DesignCommand {
         if !self.quiet {
             print_notes(&folder);
         }
-        let mut progress = DesignProgress::new(self.quiet, folder.n_kept());
+        let mut progress = DesignProgress::new(self.quiet);
         let found = folder.find(&bounds, &mut |now| progress.show(now));
         progress.finish();
         let text = found.map_err(|error| match error {
             StudyError::Interrupted => {
                 let best = folder.path().join("mask.npy");
-                let so_far = if best.exists() {
+                let so_far = if folder.has_verdict() {
+                    format!(
+                        "{} keeps the results of an earlier search; ",
+                        folder.path().display()
+                    )
+                } else if best.exists() {
                     format!(
                         "the best texture so far stands in {}, without a verdict; ",
                         best.display()

@@ -2,32 +2,28 @@
 
 use std::time::Duration;
 
+use indicatif::HumanDuration;
 use slipfront_case::number_format::four_digits;
 use slipfront_study::design::{DesignStage, SearchProgress};
 
-use super::display::{ProgressDisplay, time_left};
+use super::display::ProgressDisplay;
 
 /// Display of the progress of a design.
 pub(crate) struct DesignProgress {
     display: ProgressDisplay,
-    /// Runs of earlier calls.
-    before: usize,
 }
 
 impl DesignProgress {
-    /// The display for a design of which `before` runs were made by earlier calls.
-    pub(crate) fn new(quiet: bool, before: usize) -> Self {
+    pub(crate) fn new(quiet: bool) -> Self {
         Self {
             display: ProgressDisplay::new("{wide_bar} {msg}", quiet),
-            before,
         }
     }
 
     pub(crate) fn show(&mut self, now: &SearchProgress) {
-        let (done, total) = (now.runs as u64, now.of as u64);
-        let here = now.known.saturating_sub(self.before);
+        let share = now.work.here / (now.work.here + now.work.left);
         self.display
-            .show(done.min(total), total, |passed| text(now, here, passed));
+            .show((1000.0 * share) as u64, 1000, |passed| text(now, passed));
     }
 
     pub(crate) fn finish(&self) {
@@ -35,9 +31,9 @@ impl DesignProgress {
     }
 }
 
-/// Text of the progress: runs done, the time left from the runs made `here`, the stage, and the best value so far.
-fn text(now: &SearchProgress, here: usize, passed: Duration) -> String {
-    let left = time_left(now.of.saturating_sub(now.runs) as u64, here as u64, passed);
+/// Text of the progress: runs done of this stage, the time left for search and verdict, the stage, and the best value so far.
+fn text(now: &SearchProgress, passed: Duration) -> String {
+    let left = time_left(now, passed);
     let stage = match now.stage {
         DesignStage::Exploring => "one surface",
         DesignStage::Refining => "several surfaces",
@@ -51,28 +47,40 @@ fn text(now: &SearchProgress, here: usize, passed: Duration) -> String {
     format!("{} of {} runs{left}  {stage}{best}", now.runs.min(now.of), now.of)
 }
 
+/// The time left at most, from the cost of the runs that were made in the time that has `passed`; empty where none was made.
+fn time_left(now: &SearchProgress, passed: Duration) -> String {
+    let seconds = passed.as_secs_f64() * now.work.left / now.work.here;
+    Duration::try_from_secs_f64(seconds).map_or_else(
+        |_| String::new(),
+        |left| format!("  at most {} left", HumanDuration(left)),
+    )
+}
+
 #[cfg(test)]
 mod tests {
+    use slipfront_study::design::Work;
+
     use super::*;
 
+    /// The time left is that of runs as they cost, not as they are many.
     #[test]
     fn the_best_so_far_and_the_time_left_are_shown() {
-        let now = SearchProgress {
+        let now = |here: f64| SearchProgress {
             runs: 50,
             of: 100,
-            known: 45,
             textures: 20,
             stage: DesignStage::Exploring,
             best: 31.25,
             best_texture: None,
+            work: Work { here, left: 1e9 },
         };
-        // Five of the runs were made in these four seconds, the others by an earlier call.
         assert_eq!(
-            text(&now, 5, Duration::from_secs(4)),
-            "50 of 100 runs  40 seconds left  one surface  best 31.25"
+            text(&now(1e8), Duration::from_secs(4)),
+            "50 of 100 runs  at most 40 seconds left  one surface  best 31.25"
         );
+        // All runs are those of an earlier call.
         assert_eq!(
-            text(&now, 0, Duration::from_secs(4)),
+            text(&now(0.0), Duration::from_secs(4)),
             "50 of 100 runs  one surface  best 31.25"
         );
     }

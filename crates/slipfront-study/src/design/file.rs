@@ -192,6 +192,33 @@ impl DesignFile {
         self.case_with(&[])
     }
 
+    /// The cases for which the texture is designed, with the texture of the base: one for every table of `cases`, or the base alone.
+    ///
+    /// # Errors When one of them is not valid.
+    pub(super) fn cases(&self) -> Result<Vec<Case>, CaseError> {
+        if self.keys.cases.is_empty() {
+            return Ok(vec![self.case()?]);
+        }
+        let case = |set: &Table| {
+            let case = self.case_with(&overrides(set));
+            case.map_err(|error| self.found_in("cases", error))
+        };
+        self.keys.cases.iter().map(case).collect()
+    }
+
+    /// Keys of each of several cases, as a text; nothing for the base alone.
+    pub(super) fn case_keys(&self) -> Vec<String> {
+        let keys = |set: &Table| {
+            let set: Vec<String> = overrides(set).iter().map(ToString::to_string).collect();
+            if set.is_empty() {
+                "the base".to_owned()
+            } else {
+                set.join(", ")
+            }
+        };
+        self.keys.cases.iter().map(keys).collect()
+    }
+
     fn case_with(&self, set: &[Override]) -> Result<Case, CaseError> {
         let set: Vec<&Override> = set.iter().collect();
         let file: CaseFile = self.base.parse()?.with(&set)?;
@@ -219,12 +246,16 @@ impl DesignFile {
         self.design_up_to(self.keys.coverage[1])
     }
 
-    /// Refuses a design that is not valid, or that has no memory for `threads` runs at once; `runs` is the number of runs of
-    /// its search.
+    /// Refuses a design that is not valid, that has no memory for `threads` runs at once, or that asks for a front although its search
+    /// `is_timed`; `runs` is the number of runs of its search.
     ///
     /// # Errors
     /// As [`design`](Self::design), and with the number of runs at once that there is memory for.
-    pub fn check_memory(&self, runs: usize, threads: usize) -> Result<(), StudyError> {
+    pub fn check(&self, runs: usize, threads: usize, is_timed: bool) -> Result<(), StudyError> {
+        if is_timed && !self.keys.front.is_empty() {
+            let sentence = "a search that is cut short by a time has no time for a front: give a number of runs, or leave out `front`";
+            return Err(self.error("front", sentence.to_owned()).into());
+        }
         // Every design of a front keeps what it has tried until all are written.
         let drafts = runs.saturating_mul(1 + self.keys.front.len());
         self.design()?.check_memory(drafts, threads)
@@ -244,14 +275,14 @@ impl DesignFile {
     fn design_up_to(&self, percent: f64) -> Result<Design, StudyError> {
         let base = self.case()?;
         let keys = &self.keys;
-        let case = |set: &Table| {
-            let case = self.case_with(&overrides(set));
-            case.map_err(|error| self.found_in("cases", error))
-        };
-        let mut cases: Vec<Case> = keys.cases.iter().map(case).collect::<Result<_, _>>()?;
-        if cases.is_empty() {
-            cases.push(self.case()?);
+        let is_texture = |name: &String| name.split('.').next() == Some("texture");
+        if keys.cases.iter().any(|set| set.keys().any(is_texture)) {
+            let sentence = "`cases` differ in keys other than `texture`: the texture is what is designed; a drawing from which to begin \
+                            belongs to `starts`"
+                .to_owned();
+            return Err(self.error("cases", sentence).into());
         }
+        let cases = self.cases()?;
         let grid = Grid::of(&base);
         if cases
             .iter()
@@ -261,12 +292,13 @@ impl DesignFile {
             return Err(self.error("cases", sentence).into());
         }
         let limits = self.limits(&base, &grid, percent)?;
-        let wish = self.wish(&base, &grid)?;
-        if matches!(wish, Wish::Curve(_)) && cases.len() > 1 {
-            let sentence = "a curve is that of one case: leave out `cases`".to_owned();
+        if keys.wish.curve.is_some() && cases.len() > 1 {
+            let sentence = "a curve is that of one case: give `cases` one table, or leave it out".to_owned();
             return Err(self.error("cases", sentence).into());
         }
-        let mut design = Design::new(&cases, wish, keys.judge_by == JudgeBy::Worst, limits, keys.start)?;
+        let wished = cases.iter().map(|case| Ok((case, self.wish(case, &grid)?)));
+        let wished: Vec<(&Case, Wish)> = wished.collect::<Result<_, StudyError>>()?;
+        let mut design = Design::new(&wished, keys.judge_by == JudgeBy::Worst, limits, keys.start)?;
         for (k, textures) in keys.starts.iter().enumerate() {
             let textured = self.textured("starts", textures)?;
             design.begin_with(format!("start {} of the file", k + 1), textured);
@@ -357,11 +389,11 @@ impl DesignFile {
             .map(|writing| writing.line_spacing.si())
     }
 
-    /// The wish in units of mu_s and of t*.
-    fn wish(&self, base: &Case, grid: &Grid) -> Result<Wish, StudyError> {
+    /// The wish in units of mu_s and of t* of a case.
+    fn wish(&self, case: &Case, grid: &Grid) -> Result<Wish, StudyError> {
         let refuse = |sentence: &str| Err(self.error("wish", sentence.to_owned()).into());
-        let mu_s = base.scales.mu_static_mean;
-        let load = base.scales.pressure * base.scales.block_size.powi(2) * grid.n_blocks() as f64;
+        let mu_s = case.scales.mu_static_mean;
+        let load = case.scales.pressure * case.scales.block_size.powi(2) * grid.n_blocks() as f64;
         let keys = &self.keys.wish;
         match (keys.least, keys.largest, &keys.value, &keys.of, &keys.curve) {
             (Some(quantity), None, None, None, None) => Ok(Wish::Least(quantity)),
@@ -383,17 +415,22 @@ impl DesignFile {
                 let star = match value {
                     Number::Coefficient(value) if is_star => *value,
                     Number::Coefficient(value) => value / mu_s,
+                    Number::Force(_) if is_star => {
+                        return refuse(
+                            "`value` is a force, and `of` with _star asks for a share of mu_s: leave out _star",
+                        );
+                    }
                     Number::Force(text) => match text.parse::<Force>() {
                         Ok(force) => force.si() / (load * mu_s),
                         Err(error) => return refuse(&format!("`value`: {error}")),
                     },
                 };
                 if !(star > 0.0 && star.is_finite()) {
-                    return refuse("`value` must be more than 0");
+                    return refuse("`value` must be a number of more than 0");
                 }
                 Ok(Wish::Value(quantity, star))
             }
-            (None, None, None, None, Some(curve)) => self.curve(curve, base, load),
+            (None, None, None, None, Some(curve)) => self.curve(curve, case, load),
             _ => refuse(
                 "`wish` is one of { least = \"static_friction\" }, { largest = \"static_friction\" }, { value = 0.3, of = \
                  \"static_friction\" } and { curve = { file = \"wanted.csv\", x = \"X (um)\", y = \"mu (1)\" } }",
@@ -401,20 +438,31 @@ impl DesignFile {
         }
     }
 
-    /// The curve of a table as mu* at times t* of the drive.
-    fn curve(&self, keys: &CurveKeys, base: &Case, load: f64) -> Result<Wish, StudyError> {
+    /// The curve of a table as mu* at times t* of the drive of a case.
+    fn curve(&self, keys: &CurveKeys, case: &Case, load: f64) -> Result<Wish, StudyError> {
+        if case.model.drive.program.is_some() {
+            let sentence =
+                "a curve over the path of the drive asks for a drive of one speed: leave out `drive.program`"
+                    .to_owned();
+            return Err(self.error("wish.curve", sentence).into());
+        }
         let path = self.base.folder.join(&keys.file);
         let columns = MeasuredColumns::new([&keys.x, &keys.y], [&keys.x_unit, &keys.y_unit]);
         let record = columns.read(&path, Measure::Displacement);
         let record = record.map_err(|sentence| self.error("wish.curve", sentence))?;
-        let mu_s = base.scales.mu_static_mean;
+        if record.x.last().is_none_or(|&last| last <= 0.0) {
+            let sentence =
+                "the curve ends before the drive has moved: its last path must be more than 0".to_owned();
+            return Err(self.error("wish.curve", sentence).into());
+        }
+        let mu_s = case.scales.mu_static_mean;
         let unit = if record.of == Measure::Force {
             load * mu_s
         } else {
             mu_s
         };
         // The drive has gone X at t* = X/(V* l_x), with one unit l_x of displacement.
-        let path_of_time = base.groups.v_star * base.scales.displacement();
+        let path_of_time = case.groups.v_star * case.scales.displacement();
         let points = record.x.iter().zip(&record.y);
         Ok(Wish::Curve(
             points.map(|(x, y)| [x / path_of_time, y / unit]).collect(),

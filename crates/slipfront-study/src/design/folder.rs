@@ -7,10 +7,10 @@ use serde::{Deserialize, Serialize};
 use slipfront_case::disk::{TEXT_MAX_BYTES, is_empty, make_folders, read_limited};
 use slipfront_run::folder_error::FolderError;
 
-use super::evaluate::{Known, RunId};
+use super::evaluate::{Ended, Known, MadeRun, RunId};
 use super::file::DesignFile;
 use super::report::{Report, VERDICT};
-use super::stages::{Bounds, Length, SearchProgress};
+use super::stages::{Bounds, Length, SearchProgress, Work};
 use super::wish::Measured;
 use super::{Design, Outcome};
 use crate::error::StudyError;
@@ -24,11 +24,28 @@ const DESIGN: &str = "design.toml";
 /// The journal of a design: a line for every run.
 pub(crate) const JOURNAL: &str = "design.jsonl";
 
-/// A line of the journal.
+/// A line of the journal: the numbers of a run, or the reason for which it has none.
 #[derive(Serialize, Deserialize)]
 struct KeptRun {
     id: RunId,
+    #[serde(skip_serializing_if = "Option::is_none")]
     found: Option<Measured>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    failed: Option<String>,
+}
+
+impl KeptRun {
+    fn of(run: &MadeRun) -> Self {
+        Self {
+            id: run.id.clone(),
+            found: run.ended.clone().ok(),
+            failed: run.ended.clone().err(),
+        }
+    }
+
+    fn into_entry(self) -> (RunId, Ended) {
+        (self.id, self.found.ok_or(self.failed.unwrap_or_default()))
+    }
 }
 
 /// A results folder, with the runs that were kept in it.
@@ -69,13 +86,19 @@ impl DesignFolder {
                 StudyError::NotRecords { path } => FolderError::Foreign { path }.into(),
                 error => error,
             })?;
+        if copies.iter().any(|copy| copy.differs_in(path)) {
+            return Err(StudyError::Changed {
+                what: "design",
+                path: path.to_owned(),
+            });
+        }
         copy_in(path, &copies)?;
         write_in(path, DESIGN, |to| to.write_all(text.as_bytes()))?;
         let name = path.join(DESIGN).display().to_string();
         Ok(Self {
             path: path.to_owned(),
             journal,
-            known: kept.into_iter().map(|run| (run.id, run.found)).collect(),
+            known: kept.into_iter().map(KeptRun::into_entry).collect(),
             damaged,
             file: DesignFile::parse(&text, &name, &file.name, path)?,
         })
@@ -117,12 +140,18 @@ impl DesignFolder {
         watch: &mut dyn FnMut(&SearchProgress),
     ) -> Result<String, StudyError> {
         let design = self.file.design()?;
-        let outcome = self.run(&design, bounds, watch)?;
+        let mut of_front = WorkOfFront::of(self.file.keys.front.len());
+        let outcome = self.run(&design, bounds, &mut |now| watch(&of_front.with(now)))?;
         let text = self.write(&design, &outcome)?;
         let mut front = Vec::new();
         for (percent, design) in self.file.designs_of_front()? {
-            let outcome = self.run(&design, bounds, watch)?;
-            front.push((percent, design, outcome));
+            of_front.go_on();
+            // The results of the design stand, whatever becomes of its front.
+            match self.judged(&design, bounds, &mut |now| watch(&of_front.with(now))) {
+                Ok(outcome) => front.push((percent, Some((design, outcome)))),
+                Err(StudyError::NoDesign) => front.push((percent, None)),
+                Err(error) => return Err(error),
+            }
         }
         Ok(text + &self.report().write_front(&front)?)
     }
@@ -131,7 +160,8 @@ impl DesignFolder {
     /// have ended.
     ///
     /// # Errors
-    /// As [`Design::run`]. After a stop, the best texture so far stands in the folder without a verdict.
+    /// As [`Design::run`]. After a stop, the best texture so far stands in the folder without a verdict, unless the folder
+    /// has the verdict of an earlier search.
     pub fn run(
         &mut self,
         design: &Design,
@@ -143,26 +173,79 @@ impl DesignFolder {
             best = now.best_texture.clone().or(best.take());
             watch(now);
         };
+        let found = self.judged(design, bounds, &mut watch);
+        if let (Err(StudyError::Interrupted), Some(best)) = (&found, best)
+            && !self.has_verdict()
+        {
+            self.report().write_mask(design, &best)?;
+        }
+        found
+    }
+
+    /// Whether a search in the folder was finished: its results stand there.
+    pub fn has_verdict(&self) -> bool {
+        self.path.join(VERDICT[0]).exists()
+    }
+
+    /// Searches and judges with the runs of the journal, which new runs join.
+    fn judged(
+        &mut self,
+        design: &Design,
+        bounds: &Bounds,
+        watch: &mut dyn FnMut(&SearchProgress),
+    ) -> Result<Outcome, StudyError> {
         let Self { journal, known, .. } = self;
-        let mut keep = |runs: &[(RunId, Option<Measured>)]| {
-            let lines = runs.iter().flat_map(|(id, found)| {
-                to_line(&KeptRun {
-                    id: id.clone(),
-                    found: found.clone(),
-                })
-            });
-            let lines: Vec<u8> = lines.collect();
+        let mut keep = |runs: &[MadeRun]| {
+            let lines: Vec<u8> = runs.iter().flat_map(|run| to_line(&KeptRun::of(run))).collect();
             if lines.is_empty() {
                 Ok(())
             } else {
                 journal.append(&lines)
             }
         };
-        let found = design.run(bounds, known, &mut keep, &mut watch);
-        if let (Err(StudyError::Interrupted), Some(best)) = (&found, best) {
-            self.report().write_mask(design, &best)?;
+        design.run(bounds, known, &mut keep, watch)
+    }
+}
+
+/// Cost of the designs of a front beside that which is searched for, each of which costs about as much as the first.
+#[derive(Default)]
+struct WorkOfFront {
+    /// Cost of the first design, once it is known.
+    of_each: Option<f64>,
+    /// Number of designs that follow.
+    to_come: usize,
+    /// Cost of the runs that were made for earlier designs.
+    before: f64,
+    /// Cost of the runs that were made for this design.
+    here: f64,
+}
+
+impl WorkOfFront {
+    fn of(to_come: usize) -> Self {
+        Self {
+            to_come,
+            ..Self::default()
         }
-        found
+    }
+
+    /// Goes on to the next design.
+    fn go_on(&mut self) {
+        self.to_come -= 1;
+        self.before += std::mem::take(&mut self.here);
+    }
+
+    /// Progress of a design, with the cost of the others.
+    fn with(&mut self, now: &SearchProgress) -> SearchProgress {
+        let Work { here, left } = now.work;
+        let of_each = *self.of_each.get_or_insert(here + left);
+        self.here = here;
+        SearchProgress {
+            work: Work {
+                here: self.before + here,
+                left: left + self.to_come as f64 * of_each,
+            },
+            ..now.clone()
+        }
     }
 }
 

@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 use slipfront_case::number_format::four_digits;
+use slipfront_case::text::{COLUMNS, note};
 use slipfront_plot::{Response, Responses};
 
 use super::report::{Report, called, unit};
@@ -26,22 +27,37 @@ struct Row<'a> {
 }
 
 impl Report<'_> {
-    /// Writes a front as a table and a picture, and returns it as a text.
+    /// Writes a front as a table and a picture, and returns it as a text; of a coverage that no texture keeps there is no design.
     ///
     /// # Errors
     /// When the system refuses to write, or the picture cannot be drawn.
-    pub(super) fn write_front(&self, front: &[(f64, Design, Outcome)]) -> Result<String, StudyError> {
-        let Some((_, first, _)) = front.first() else {
-            return Ok(String::new());
+    pub(super) fn write_front(
+        &self,
+        front: &[(f64, Option<(Design, Outcome)>)],
+    ) -> Result<String, StudyError> {
+        let designs: Vec<_> = front
+            .iter()
+            .filter_map(|(limit, found)| Some((limit, found.as_ref()?)))
+            .collect();
+        let Some((_, (first, outcome))) = designs.first() else {
+            return Ok(if front.is_empty() {
+                String::new()
+            } else {
+                note(
+                    "no texture keeps the limits at any coverage of `design.front`",
+                    COLUMNS,
+                )
+            });
         };
-        let wish = &first.evaluator.wish;
+        let wish = first.evaluator.wish();
+        let surfaces = outcome.verdict.surfaces;
         write_in(self.path, &format!("{FRONT}.csv"), |to| {
             let mut table = csv::Writer::from_writer(to);
-            for (limit, _, Outcome { verdict, .. }) in front {
+            for (limit, (_, Outcome { verdict, .. })) in &designs {
                 let friction = verdict.design.cases[0].static_friction_star;
                 table
                     .serialize(Row {
-                        coverage_limit_percent: *limit,
+                        coverage_limit_percent: **limit,
                         coverage_percent: verdict.design.coverage_percent,
                         loss: verdict.design.loss,
                         loss_half_width: verdict.design.loss_half_width,
@@ -55,7 +71,12 @@ impl Report<'_> {
         })?;
         let mut curve = Response::default();
         let mut rows = Vec::new();
-        for (limit, _, Outcome { verdict, .. }) in front {
+        for (limit, found) in front {
+            let Some((_, Outcome { verdict, .. })) = found else {
+                let none = ["-", "-", "no texture keeps the limits"].map(str::to_owned);
+                rows.push([vec![format!("{} %", four_digits(*limit))], none.to_vec()].concat());
+                continue;
+            };
             let design = &verdict.design;
             let half = design.loss_half_width.unwrap_or(f64::NAN);
             let ends = [design.loss - half, design.loss + half].map(|loss| wish.told(loss));
@@ -77,7 +98,7 @@ impl Report<'_> {
                 called(wish),
                 if unit(wish).is_empty() { "" } else { " (%)" }
             ),
-            note: format!("95 % of {} fresh surfaces", front[0].2.verdict.surfaces),
+            note: format!("95 % of {surfaces} fresh surfaces"),
             curves: vec![curve],
             ..Responses::default()
         });

@@ -6,8 +6,9 @@ use std::sync::atomic::AtomicBool;
 
 use serde::Serialize;
 
-use super::evaluate::{Evaluator, Fidelity, Keep, Known};
+use super::evaluate::{Evaluator, Keep, Known};
 use super::stages::Stages;
+use super::subject::Fidelity;
 use crate::error::StudyError;
 use crate::statistics::Sample;
 use crate::study_file::CONFIDENCE;
@@ -27,13 +28,15 @@ pub(crate) struct Contender {
     pub(crate) texture: Arc<Vec<bool>>,
 }
 
-/// A mean over surfaces, and half the width of its 95 % interval; none where surfaces do not differ.
+/// A mean over surfaces with its uncertainty.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Mean {
     /// The mean.
     pub mean: f64,
-    /// Half the width of the interval.
+    /// Half the width of the 95 % interval of the mean; none where surfaces do not differ.
     pub half_width: Option<f64>,
+    /// Standard deviation from surface to surface; none where surfaces do not differ.
+    pub deviation: Option<f64>,
 }
 
 impl Mean {
@@ -42,11 +45,17 @@ impl Mean {
         let sample = Sample::of(values, CONFIDENCE);
         let mean = sample.map_or(f64::NAN, |sample| sample.mean);
         // What differs by its rounding alone does not scatter.
-        let scatters = |half: &f64| *half > 1e-12 * mean.abs();
+        let scatters = |width: &f64| *width > 1e-12 * mean.abs();
         Self {
             mean,
             half_width: sample.and_then(|sample| sample.half_width).filter(scatters),
+            deviation: sample.and_then(|sample| sample.deviation).filter(scatters),
         }
+    }
+
+    /// Lower end of the interval.
+    pub(crate) fn low(&self) -> f64 {
+        self.mean - self.half_width.unwrap_or(0.0)
     }
 }
 
@@ -110,6 +119,11 @@ impl Judge<'_> {
             .loss(&contender.texture, surfaces, Fidelity::Verdict, known)
     }
 
+    /// The loss of a texture with the interval that follows from its scatter over surfaces.
+    pub(crate) fn mean_loss(&self, contender: &Contender, surfaces: Range<u64>, known: &Known) -> Mean {
+        Mean::of(&self.loss_by_surface(contender, surfaces, known))
+    }
+
     /// The loss of one texture less that of another, surface by surface.
     pub(crate) fn difference(
         &self,
@@ -118,8 +132,19 @@ impl Judge<'_> {
         surfaces: Range<u64>,
         known: &Known,
     ) -> Mean {
-        let loss = |contender, surface| self.loss(contender, surface..surface + 1, known);
-        let differences = surfaces.map(|surface| loss(one, surface) - loss(other, surface));
-        Mean::of(&differences.collect::<Vec<_>>())
+        let [one, other] = [one, other].map(|found| self.loss_by_surface(found, surfaces.clone(), known));
+        let pairs = one.iter().zip(&other);
+        Mean::of(&pairs.map(|(one, other)| one - other).collect::<Vec<_>>())
+    }
+
+    /// Reason for which a texture has no loss on some surfaces, if it has none.
+    pub(crate) fn lost(&self, contender: &Contender, surfaces: Range<u64>, known: &Known) -> Option<String> {
+        self.evaluator
+            .lost(&contender.texture, surfaces, Fidelity::Verdict, known)
+    }
+
+    fn loss_by_surface(&self, contender: &Contender, surfaces: Range<u64>, known: &Known) -> Vec<f64> {
+        self.evaluator
+            .loss_by_surface(&contender.texture, surfaces, Fidelity::Verdict, known)
     }
 }

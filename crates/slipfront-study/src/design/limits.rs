@@ -157,13 +157,33 @@ impl Limits {
                 .map(|block| growth[block].min(growth[mirrored(grid, block, axis)]))
                 .collect();
         }
-        let is_barred = |block: usize| {
-            !grid.exists[block] || self.forbidden.as_ref().is_some_and(|forbidden| forbidden[block])
-        };
-        for block in (0..growth.len()).filter(|&block| is_barred(block)) {
+        let barred = self.barred(grid);
+        for block in (0..growth.len()).filter(|&block| barred[block]) {
             growth[block] = f64::INFINITY;
         }
         growth
+    }
+
+    /// Blocks that no legal texture has: those that do not exist, those that must touch, and all that cells and mirrors make equal to
+    /// one of these.
+    fn barred(&self, grid: &Grid) -> Vec<bool> {
+        let n = grid.exists.len();
+        let is_own = |block: usize| {
+            !grid.exists[block] || self.forbidden.as_ref().is_some_and(|forbidden| forbidden[block])
+        };
+        let mut in_cell = vec![false; n];
+        for block in (0..n).filter(|&block| is_own(block)) {
+            in_cell[self.in_first_cell(grid, block)] = true;
+        }
+        let mut barred: Vec<bool> = (0..n)
+            .map(|block| in_cell[self.in_first_cell(grid, block)])
+            .collect();
+        for axis in (0..2).filter(|&axis| self.mirror[axis]) {
+            barred = (0..n)
+                .map(|block| barred[block] || barred[mirrored(grid, block, axis)])
+                .collect();
+        }
+        barred
     }
 
     /// A set without parts that are too narrow, and without gaps that are.
@@ -258,12 +278,16 @@ mod tests {
         let [nx, ny] = [24, 18];
         let mut corner = vec![false; nx * ny];
         corner[..6 * nx].fill(true);
+        let side: Vec<bool> = (0..nx * ny).map(|block| block % nx < 4).collect();
         for (k, change) in [
             &(|_: &mut Limits| {}) as &dyn Fn(&mut Limits),
             &|limits| limits.feature = 4,
             &|limits| limits.mirror = [true, true],
             &|limits| limits.copies = [2, 3],
             &|limits| limits.forbidden = Some(corner.clone()),
+            // The mirror image of what is forbidden, and its place in every cell, are forbidden too.
+            &|limits| (limits.forbidden, limits.mirror) = (Some(corner.clone()), [false, true]),
+            &|limits| (limits.forbidden, limits.copies) = (Some(side.clone()), [2, 1]),
             &|limits| limits.max_features = Some(1),
             &|limits| limits.coverage = [12.0, 30.0],
         ]

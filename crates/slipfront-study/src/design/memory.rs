@@ -7,7 +7,8 @@ use slipfront_case::number_format::byte_size;
 use slipfront_run::pictures;
 
 use super::Design;
-use super::evaluate::{Evaluator, Fidelity};
+use super::evaluate::Evaluator;
+use super::subject::Fidelity;
 use crate::error::StudyError;
 
 /// Bytes that a draft that was tried keeps beside its blocks: its patches, and its line of the table.

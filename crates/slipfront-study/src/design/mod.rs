@@ -21,23 +21,26 @@ mod report;
 mod search;
 mod sensitivity;
 mod stages;
+mod subject;
 mod verdict;
 mod wish;
 
+use std::cell::Cell;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use slipfront_case::case::Case;
 use slipfront_case::case_file::CaseError;
 
-use self::evaluate::{Evaluator, Fidelity, Subject};
+use self::evaluate::Evaluator;
 use self::judge::{Contender, Judge};
 use self::named::{GROOVE, Named, named};
 use self::search::Search;
 use self::stages::{Length, Stages, Tried};
+use self::subject::{Fidelity, Subject};
 use crate::error::StudyError;
 
-pub use self::evaluate::{Keep, Known, RunId};
+pub use self::evaluate::{Ended, Keep, Known, MadeRun, RunId};
 pub use self::file::{DesignFile, DesignKeys};
 pub use self::folder::{DesignFolder, is_design};
 pub(crate) use self::folder::{JOURNAL, search_of};
@@ -46,7 +49,7 @@ pub use self::judge::Mean;
 pub use self::limits::{Illegal, Limits};
 pub use self::open_search::OpenSearch;
 pub use self::sensitivity::{Changed, LeftOut, Sensitivity};
-pub use self::stages::{Bounds, DesignStage, SearchProgress};
+pub use self::stages::{Bounds, DesignStage, SearchProgress, Work};
 pub use self::verdict::{Given, OnFresh, Verdict};
 pub use self::wish::{Measured, Quantity, Wish};
 
@@ -77,7 +80,8 @@ pub struct Outcome {
 }
 
 impl Design {
-    /// A design for some cases, at least one, all on the same blocks; `is_worst` asks for the worst case, in place of the mean over them.
+    /// A design for some cases, at least one, all on the same blocks, each with the wish in its own units; `is_worst` asks for the
+    /// worst case, in place of the mean over them.
     ///
     /// # Errors When a case cannot be run for as long as the search needs, or one of its files has changed since the case
     /// was made.
@@ -85,20 +89,18 @@ impl Design {
     /// # Panics
     /// Without a case.
     pub fn new(
-        cases: &[Case],
-        wish: Wish,
+        cases: &[(&Case, Wish)],
         is_worst: bool,
         limits: Limits,
         start: u64,
     ) -> Result<Self, StudyError> {
-        let subject = |case| Subject::new(case, &wish, limits.coverage[1]);
+        let subject = |(case, wish): &(&Case, Wish)| Subject::new(case, wish.clone(), limits.coverage[1]);
         let subjects = cases.iter().map(subject).collect::<Result<Vec<_>, _>>()?;
-        let grid = Grid::of(&cases[0]);
+        let grid = Grid::of(cases[0].0);
         Ok(Self {
             evaluator: Evaluator {
                 subjects,
                 grid,
-                wish,
                 is_worst,
             },
             limits,
@@ -107,15 +109,36 @@ impl Design {
         })
     }
 
-    /// Lets the search begin with a mask too, which counts as a named pattern if it is legal.
+    /// Lets the search begin with a mask too, or with what is legal of it; it counts as a named pattern, and is judged whether it is
+    /// good or not.
     pub fn begin_with(&mut self, name: String, textured: Vec<bool>) {
         self.drawn.push((name, textured));
+    }
+
+    /// Sentences about the masks with which the search begins that break a limit.
+    pub(crate) fn notes(&self) -> Vec<String> {
+        let (grid, limits) = (&self.evaluator.grid, &self.limits);
+        let note = |(name, textured): &(String, Vec<bool>)| {
+            if !textured.contains(&true) {
+                return Some(format!("the {name} covers no block, and was left out"));
+            }
+            let illegal = limits.check(grid, textured).err()?;
+            let named = Named::drawn(grid, name, textured);
+            let made = if limits.texture(grid, &named.draft).is_some() {
+                "the search begins with what is legal of it, which has its name here"
+            } else {
+                "nothing legal is left of it, and it was left out"
+            };
+            Some(format!("the {name} breaks a limit: {illegal}; {made}"))
+        };
+        self.drawn.iter().filter_map(note).collect()
     }
 
     /// Searches, and judges the result on fresh surfaces.
     ///
     /// # Errors
-    /// When the limits leave no texture, when runs cannot be made or kept, and after a stop.
+    /// When the limits leave no texture, when the slider without texture has nothing to compare with, when runs cannot be
+    /// made or kept, and after a stop.
     pub fn run(
         &self,
         bounds: &Bounds,
@@ -131,9 +154,27 @@ impl Design {
                 texture: texture.into(),
             })
             .collect();
-        let groove = legal.iter().find(|named| named.name == GROOVE);
+        let is_drawn = |named: &Contender| self.drawn.iter().any(|(name, _)| *name == named.name);
+        let groove = legal.iter().filter(|named| named.name == GROOVE);
+        let drawn = legal.iter().filter(|named| is_drawn(named));
+        let beside: Vec<Contender> = groove.chain(drawn).cloned().collect();
         let mut stages = Stages::new(&self.evaluator, self.limits.clone(), self.start, starts);
-        let best = stages.run(bounds, known, keep, watch)?;
+        let (of, of_work) = Judge::most_runs(&self.evaluator, beside.len());
+        let (made, here) = (Cell::new(0), Cell::new(0.0));
+        let mut kept = |runs: &[MadeRun]| {
+            made.set(made.get() + runs.len());
+            here.set(here.get() + runs.iter().map(|run| run.work).sum::<f64>());
+            keep(runs)
+        };
+        let best = stages.run(bounds, known, &mut kept, &mut |now| {
+            watch(&SearchProgress {
+                work: Work {
+                    here: here.get(),
+                    left: now.work.left_within((bounds.share_of_time)(), here.get()) + of_work,
+                },
+                ..now.clone()
+            });
+        })?;
         let textures = stages.n_textures();
         let searched: Vec<Contender> = best
             .into_iter()
@@ -142,18 +183,21 @@ impl Design {
                 texture,
             })
             .collect();
-        let (searched_runs, mut judged_runs) = (known.len(), 0);
-        let mut keep = |runs: &[(RunId, Option<Measured>)]| {
-            keep(runs)?;
-            judged_runs += runs.len();
+        let (searched_runs, searched_work) = (made.get(), here.get());
+        let mut kept = |runs: &[MadeRun]| {
+            kept(runs)?;
+            let runs = made.get() - searched_runs;
             watch(&SearchProgress {
-                runs: judged_runs,
-                of: Judge::most_runs(&self.evaluator),
-                known: searched_runs + judged_runs,
+                runs,
+                of,
                 textures,
                 stage: DesignStage::Judging,
                 best: f64::NAN,
                 best_texture: None,
+                work: Work {
+                    here: here.get(),
+                    left: (of_work - (here.get() - searched_work)).max(0.0),
+                },
             });
             Ok(())
         };
@@ -162,7 +206,7 @@ impl Design {
             stop: bounds.stop,
         };
         let judged = judge
-            .verdict(&searched, &legal, groove, known, &mut keep)?
+            .verdict(&searched, &legal, &beside, known, &mut kept)?
             .ok_or(StudyError::NoDesign)?;
         Ok(Outcome {
             texture: judged.texture,
@@ -222,8 +266,8 @@ impl Design {
         self.evaluator.grid.size()
     }
 
-    /// Loss of each texture, a distance from the wish, as a mean over the first `surfaces` surfaces of the search; with a
-    /// coarse step, or that of the case.
+    /// Loss of each texture, a distance from the wish, as a mean over the first `surfaces` surfaces of the search, or the
+    /// reason for which a texture has none; with a coarse step, or that of the case.
     ///
     /// # Errors
     /// When runs cannot be made, and after a stop.
@@ -234,7 +278,7 @@ impl Design {
         is_coarse: bool,
         known: &mut Known,
         stop: &AtomicBool,
-    ) -> Result<Vec<f64>, StudyError> {
+    ) -> Result<Vec<Result<f64, String>>, StudyError> {
         let fidelity = if is_coarse {
             Fidelity::Coarse
         } else {
@@ -243,7 +287,11 @@ impl Design {
         let textures: Vec<Arc<Vec<bool>>> = textures.into_iter().map(Arc::new).collect();
         let wanted = self.evaluator.wanted(&textures, 0..surfaces, fidelity);
         self.evaluator.run(&wanted, known, stop, &mut |_| Ok(()))?;
-        let loss = |texture| self.evaluator.loss(texture, 0..surfaces, fidelity, known);
+        let loss = |texture| {
+            let lost = self.evaluator.lost(texture, 0..surfaces, fidelity, known);
+            let loss = self.evaluator.loss(texture, 0..surfaces, fidelity, known);
+            lost.map_or(Ok(loss), Err)
+        };
         Ok(textures.iter().map(loss).collect())
     }
 

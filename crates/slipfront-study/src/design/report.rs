@@ -15,10 +15,10 @@ use slipfront_run::names::CASE;
 use slipfront_run::pictures::texture_file::{self, TextureFileError};
 use slipfront_run::running;
 
-use super::evaluate::{Fidelity, MASK, masked};
 use super::file::DesignFile;
 use super::judge::Mean;
-use super::stages::Length;
+use super::stages::{Length, Tried};
+use super::subject::{Fidelity, MASK, masked};
 use super::verdict::{Given, OnFresh, Verdict};
 use super::wish::{Quantity, Wish};
 use super::{Design, Outcome};
@@ -72,6 +72,7 @@ struct Row<'a> {
     coverage_percent: f64,
     loss: f64,
     texture: String,
+    lost: &'a str,
 }
 
 /// Writer of the results of a design.
@@ -108,22 +109,24 @@ impl Report<'_> {
         write_in(folder, numbers, |to| {
             Ok(serde_json::to_writer_pretty(to, &written)?)
         })?;
-        let text = in_words(design, &outcome.verdict, &as_meshed, &case);
+        let text = self.in_words(design, outcome, &as_meshed, &case);
         write_in(folder, words, |to| to.write_all(text.as_bytes()))?;
         Ok(text)
     }
 
-    /// Writes a mask, and the case that reads it.
+    /// Writes a mask, and the cases that read it.
     pub(super) fn write_mask(&self, design: &Design, texture: &[bool]) -> Result<(), StudyError> {
         let [nx, ny] = design.evaluator.grid.size();
         write_in(self.path, MASK, |to| to.write_all(&npy_of_mask(nx, texture)))?;
         let picture = self.path.join(PICTURE);
         write_mask_png(&picture, nx, ny, texture).map_err(TextureFileError::from)?;
-        let mut file = self.file.case()?.file;
-        // A picture is laid over every mesh; an array belongs to its blocks.
-        file.texture = vec![masked(PICTURE)];
-        let text = file.to_toml()?;
-        write_in(self.path, CASE, |to| to.write_all(text.as_bytes()))
+        for (k, Case { mut file, .. }) in self.file.cases()?.into_iter().enumerate() {
+            // A picture is laid over every mesh; an array belongs to its blocks.
+            file.texture = vec![masked(PICTURE)];
+            let text = file.to_toml()?;
+            write_in(self.path, &case_name(k), |to| to.write_all(text.as_bytes()))?;
+        }
+        Ok(())
     }
 
     fn as_meshed(&self, design: &Design, texture: &[bool], case: &Case) -> AsMeshed {
@@ -196,6 +199,78 @@ impl Report<'_> {
     }
 }
 
+impl Report<'_> {
+    /// The verdict as a text for a person.
+    fn in_words(&self, design: &Design, outcome: &Outcome, as_meshed: &AsMeshed, case: &Case) -> String {
+        let (wish, verdict) = (design.evaluator.wish(), &outcome.verdict);
+        let mut text = format!("{}\n\n", wrapped(&headline(wish, verdict), COLUMNS));
+        text += &on_fresh(wish, verdict);
+        text += &if design.evaluator.scatters() {
+            format!(
+                "\nOn {} not seen by the search; intervals of 95 %. {}\n",
+                count(verdict.surfaces as usize, "surface"),
+                optimism(wish, verdict)
+            )
+        } else {
+            "\nCoefficients do not scatter, so that there is one surface, which the search has seen.\n"
+                .to_owned()
+        };
+        text += &scatter(wish, verdict).unwrap_or_default();
+        let length =
+            |length: Option<f64>| length.map_or("none".to_owned(), |length| with_si_prefix(length, "m"));
+        text += &format!(
+            "Texture as meshed: {} % in {}, features at least {} wide, gaps at least {}",
+            four_digits(as_meshed.coverage_percent),
+            count(as_meshed.features, "piece"),
+            length(as_meshed.feature_m),
+            length(as_meshed.gap_m)
+        );
+        if let Some(length) = as_meshed.writing_length_m {
+            text += &format!(", {} of laser lines", with_si_prefix(length, "m"));
+        }
+        text += ".\n";
+        let cases = self.file.case_keys();
+        if !cases.is_empty() {
+            let rows = cases.into_iter().enumerate();
+            let rows: Vec<Vec<String>> = rows
+                .map(|(k, keys)| vec![(k + 1).to_string(), keys, case_name(k)])
+                .collect();
+            text += "\nThe cases, each with this texture:\n";
+            text += &table(&["case", "the base with", "file"], &rows);
+        }
+        text += "\nUnder changes:\n";
+        text += &under_changes(wish, verdict);
+        for left_out in &verdict.sensitivity.left_out {
+            text += &note(
+                &format!("nothing is known of {}: {}", left_out.change, left_out.why),
+                COLUMNS,
+            );
+        }
+        let sentences = losses(&outcome.tried, verdict).into_iter().chain(design.notes());
+        text.extend(sentences.map(|sentence| note(&sentence, COLUMNS)));
+        let lengths = case.file.lengths_of_a_block();
+        if !lengths.is_empty() {
+            let names: Vec<String> = lengths.iter().map(ToString::to_string).collect();
+            let sentence = format!(
+                "the gain belongs to blocks of this size, since a block gives the material {}: give them as lengths of the material, and look \
+                 with `slipfront converge` at what is left",
+                names.join(", ")
+            );
+            text += &note(&sentence, COLUMNS);
+        }
+        text
+    }
+}
+
+/// Name of the file of a case with the texture.
+fn case_name(k: usize) -> String {
+    if k == 0 {
+        CASE.to_owned()
+    } else {
+        format!("case_{}.toml", k + 1)
+    }
+}
+
 /// Writes a row for every draft that was tried.
 fn evaluations(design: &Design, outcome: &Outcome, to: &mut impl Write) -> Result<(), csv::Error> {
     let mut table = csv::Writer::from_writer(to);
@@ -212,51 +287,36 @@ fn evaluations(design: &Design, outcome: &Outcome, to: &mut impl Write) -> Resul
             coverage_percent: design.evaluator.grid.percent(&tried.texture),
             loss: tried.loss,
             texture: hash.to_hex()[..16].to_owned(),
+            lost: tried.lost.as_deref().unwrap_or_default(),
         })?;
     }
     Ok(table.flush()?)
 }
 
-/// The verdict as a text for a person.
-fn in_words(design: &Design, verdict: &Verdict, as_meshed: &AsMeshed, case: &Case) -> String {
-    let wish = &design.evaluator.wish;
-    let mut text = format!("{}\n\n", wrapped(&headline(wish, verdict), COLUMNS));
-    text += &on_fresh(wish, verdict);
-    text += &format!(
-        "\nOn {} not seen by the search; intervals of 95 %. {}\n",
-        count(verdict.surfaces as usize, "surface"),
-        optimism(wish, verdict)
-    );
-    let length = |length: Option<f64>| length.map_or("none".to_owned(), |length| with_si_prefix(length, "m"));
-    text += &format!(
-        "Texture as meshed: {} % in {}, features at least {} wide, gaps at least {}",
-        four_digits(as_meshed.coverage_percent),
-        count(as_meshed.features, "piece"),
-        length(as_meshed.feature_m),
-        length(as_meshed.gap_m)
-    );
-    if let Some(length) = as_meshed.writing_length_m {
-        text += &format!(", {} of laser lines", with_si_prefix(length, "m"));
-    }
-    text += ".\n\nUnder changes:\n";
-    text += &under_changes(wish, verdict);
-    for left_out in &verdict.sensitivity.left_out {
-        text += &note(
-            &format!("nothing is known of {}: {}", left_out.change, left_out.why),
-            COLUMNS,
-        );
-    }
-    let lengths = case.file.lengths_of_a_block();
-    if !lengths.is_empty() {
-        let names: Vec<String> = lengths.iter().map(ToString::to_string).collect();
-        let sentence = format!(
-            "the gain belongs to blocks of this size, since a block gives the material {}: give them as lengths of the material, and look \
-             with `slipfront converge` at what is left",
-            names.join(", ")
-        );
-        text += &note(&sentence, COLUMNS);
-    }
-    text
+/// Sentences about everything that counts as lost: drafts of the search, textures on fresh surfaces, and the design under changes.
+fn losses(tried: &[Tried], verdict: &Verdict) -> Vec<String> {
+    let drafts = tried
+        .iter()
+        .enumerate()
+        .filter_map(|(k, tried)| Some((k + 1, tried.lost.as_ref()?)));
+    let n_drafts = drafts.clone().count();
+    let of_search = drafts.take(1).map(|(number, why)| {
+        format!(
+            "{} of the {} that the search tried count as lost, as {EVALUATIONS} says of each; the first, number {number}: {why}",
+            n_drafts,
+            count(tried.len(), "draft")
+        )
+    });
+    let judged = std::iter::once(&verdict.design).chain(&verdict.others);
+    let on_fresh = judged.filter_map(|found| {
+        let why = found.lost.as_ref()?;
+        Some(format!("on fresh surfaces the {} is lost: {why}", found.name))
+    });
+    let changed = verdict.sensitivity.changed.iter().filter_map(|changed| {
+        let why = changed.lost.as_ref()?;
+        Some(format!("the design is lost at {}: {why}", changed.change))
+    });
+    of_search.into_iter().chain(on_fresh).chain(changed).collect()
 }
 
 pub(super) fn unit(wish: &Wish) -> &'static str {
@@ -276,17 +336,12 @@ pub(super) fn called(wish: &Wish) -> &'static str {
     }
 }
 
-fn quantity(quantity: Quantity) -> &'static str {
-    match quantity {
-        Quantity::StaticFriction => "static friction",
-        Quantity::KineticFriction => "kinetic friction",
-        Quantity::FrictionDrop => "drop of friction",
-    }
-}
-
 fn headline(wish: &Wish, verdict: &Verdict) -> String {
+    if verdict.design.lost.is_some() {
+        return "no verdict: every texture that was judged is lost on fresh surfaces".to_owned();
+    }
     let loss = wish.told(verdict.design.loss);
-    let of = quantity(wish.quantity());
+    let of = wish.quantity().name();
     let mut text = match wish {
         Wish::Least(_) | Wish::Largest(_) => format!(
             "{} of {of}: {}{} against the slider without texture",
@@ -300,6 +355,12 @@ fn headline(wish: &Wish, verdict: &Verdict) -> String {
             ),
             unit(wish)
         ),
+        Wish::Value(..) if verdict.design.cases.len() > 1 => {
+            format!(
+                "value of {of} wished for: {} % from it over the cases",
+                four_digits(loss)
+            )
+        }
         Wish::Value(_, wanted) => format!(
             "{of} of {} mu_s wished for: {} mu_s found, {} % from it",
             four_digits(*wanted),
@@ -338,8 +399,20 @@ fn given(quantity: Quantity, given: &Given) -> Option<Mean> {
         Quantity::FrictionDrop => given.kinetic_friction_star.map(|kinetic| Mean {
             mean: given.static_friction_star.mean - kinetic.mean,
             half_width: None,
+            deviation: None,
         }),
     }
+}
+
+/// A line on how much one surface differs from another.
+fn scatter(wish: &Wish, verdict: &Verdict) -> Option<String> {
+    let mean = given(wish.quantity(), &verdict.design.cases[0])?;
+    let percent = 100.0 * mean.deviation? / mean.mean;
+    Some(format!(
+        "From surface to surface, {} has a standard deviation of {} %.\n",
+        wish.quantity().name(),
+        four_digits(percent)
+    ))
 }
 
 /// Rows of the table: one for every texture that was judged, and every case.
@@ -361,7 +434,15 @@ fn on_fresh(wish: &Wish, verdict: &Verdict) -> String {
             } else {
                 format!("{}, case {}", found.name, k + 1)
             };
-            let mean = |mean: Mean| with_half_width(mean.mean, mean.half_width);
+            // A mean over those surfaces alone on which a texture is not lost would flatter it.
+            let is_whole = given.surfaces == verdict.surfaces;
+            let mean = |mean: Mean| {
+                if is_whole {
+                    with_half_width(mean.mean, mean.half_width)
+                } else {
+                    "-".to_owned()
+                }
+            };
             let is_first = k == 0;
             rows.push(vec![
                 name,
@@ -378,7 +459,9 @@ fn on_fresh(wish: &Wish, verdict: &Verdict) -> String {
 }
 
 fn loss_cell(wish: &Wish, found: &OnFresh, is_first: bool) -> String {
-    if is_first && found.loss.is_finite() {
+    if is_first && found.lost.is_some() {
+        "lost".to_owned()
+    } else if is_first && found.loss.is_finite() {
         format!("{}{}", four_digits(wish.told(found.loss)), unit(wish))
     } else {
         "-".to_owned()
@@ -387,7 +470,8 @@ fn loss_cell(wish: &Wish, found: &OnFresh, is_first: bool) -> String {
 
 /// Cell of a difference of losses as reported.
 fn better_cell(wish: &Wish, better: Option<Mean>) -> String {
-    better.map_or("-".to_owned(), |better| {
+    let finite = better.filter(|better| better.mean.is_finite());
+    finite.map_or("-".to_owned(), |better| {
         let half_width = better.half_width.map(|half| wish.difference_told(half));
         with_half_width(wish.difference_told(better.mean), half_width)
     })
@@ -409,7 +493,11 @@ fn under_changes(wish: &Wish, verdict: &Verdict) -> String {
         .map(|changed| {
             vec![
                 changed.change.clone(),
-                format!("{}{}", four_digits(wish.told(changed.loss.mean)), unit(wish)),
+                if changed.lost.is_some() {
+                    "lost".to_owned()
+                } else {
+                    format!("{}{}", four_digits(wish.told(changed.loss.mean)), unit(wish))
+                },
                 better_cell(wish, changed.better_by),
             ]
         })

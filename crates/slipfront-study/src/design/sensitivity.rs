@@ -8,21 +8,21 @@ use slipfront_case::quantity::Speed;
 use super::evaluate::{Evaluator, Keep, Known};
 use super::grid::Grid;
 use super::judge::{Contender, Judge, Mean, Surfaces};
+use super::subject::{Fidelity, Subject};
 use crate::error::StudyError;
 
 /// Number of surfaces for each change.
-pub(crate) const SURFACES: u64 = 8;
-
-/// Number of changes: of place, of speed, and of the mesh.
-pub(crate) const N_CHANGES: u64 = SHIFTS.len() as u64 + SPEEDS.len() as u64 + 1;
+const SURFACES: u64 = 8;
 
 /// A design under a change.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Changed {
     /// Description of the change.
     pub change: String,
-    /// Loss of the design under the change, the mean over surfaces.
+    /// Loss of the design under the change, the mean over surfaces; infinite if the design is lost.
     pub loss: Mean,
+    /// Reason for which the design is lost, if it is: a run of it has not the numbers of the wish.
+    pub lost: Option<String>,
     /// The loss of the other texture under this change less that of the design, surface by surface: above 0 where the design is better.
     pub better_by: Option<Mean>,
 }
@@ -132,19 +132,40 @@ impl Judge<'_> {
         known: &mut Known,
         keep: &mut Keep,
     ) -> Result<Changed, StudyError> {
-        let first = Surfaces::of(self.evaluator).judged.start;
-        let surfaces = first..first + if self.evaluator.scatters() { SURFACES } else { 1 };
+        let surfaces = surfaces(self.evaluator);
         let both: Vec<&Contender> = std::iter::once(design).chain(other).collect();
         self.run(&both, surfaces.clone(), known, keep)?;
-        let losses = surfaces
-            .clone()
-            .map(|surface| self.loss(design, surface..surface + 1, known));
         Ok(Changed {
             change: change.to_owned(),
-            loss: Mean::of(&losses.collect::<Vec<_>>()),
+            loss: self.mean_loss(design, surfaces.clone(), known),
+            lost: self.lost(design, surfaces.clone(), known),
             better_by: other.map(|other| self.difference(other, design, surfaces, known)),
         })
     }
+}
+
+/// Numbers of the surfaces of a change.
+fn surfaces(evaluator: &Evaluator) -> std::ops::Range<u64> {
+    let first = Surfaces::of(evaluator).judged.start;
+    first..first + if evaluator.scatters() { SURFACES } else { 1 }
+}
+
+/// Largest number of runs of all changes, and their cost in steps times blocks.
+pub(super) fn most_runs(evaluator: &Evaluator) -> (usize, f64) {
+    let surfaces = surfaces(evaluator);
+    let at_once = evaluator.subjects.len() * (surfaces.end - surfaces.start) as usize;
+    // Of a design that is moved, the slider without texture and the other texture have been judged.
+    let moved = SHIFTS.len() * at_once;
+    let changed = SPEEDS.iter().map(|(_, factor)| evaluator.at_speed(*factor));
+    let changed = changed.chain([evaluator.on_finer_blocks()]);
+    let changed = changed.flatten().map(|changed| changed.work(Fidelity::Verdict));
+    let (mut runs, mut work) = (moved, moved as f64 * evaluator.work(Fidelity::Verdict));
+    for work_of_run in changed {
+        // The slider without texture, the design, and the other texture.
+        runs += 3 * at_once;
+        work += (3 * at_once) as f64 * work_of_run;
+    }
+    (runs, work)
 }
 
 impl Evaluator {
@@ -159,7 +180,7 @@ impl Evaluator {
         };
         let subjects = self.subjects.iter().map(|subject| {
             let speed = faster(&subject.file().drive.speed)?;
-            subject.with(|file| file.drive.speed = speed, &self.wish)
+            subject.with(|file| file.drive.speed = speed)
         });
         Ok(self.with_subjects(subjects.collect::<Result<_, _>>()?, self.grid.clone()))
     }
@@ -168,10 +189,7 @@ impl Evaluator {
     ///
     /// # Errors When a case cannot be put there.
     pub(super) fn on_finer_blocks(&self) -> Result<Self, CaseError> {
-        let subjects = self
-            .subjects
-            .iter()
-            .map(|subject| subject.on_finer_blocks(&self.wish));
+        let subjects = self.subjects.iter().map(Subject::on_finer_blocks);
         let subjects = subjects.collect::<Result<_, _>>()?;
         let [nx, ny] = self.grid.size();
         let grid = Grid {

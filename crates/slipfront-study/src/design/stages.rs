@@ -6,10 +6,11 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use serde::{Deserialize, Serialize};
 
-use super::evaluate::{Evaluator, Fidelity, Keep, Known};
+use super::evaluate::{Evaluator, Keep, Known};
 use super::limits::Limits;
 use super::named::Named;
 use super::search::{Found, Proposal, Search};
+use super::subject::Fidelity;
 use crate::error::StudyError;
 
 /// Number of drafts that are asked for at once. The drafts depend on it, and not on the number of threads.
@@ -32,6 +33,8 @@ pub(crate) struct Tried {
     pub(crate) texture: Arc<Vec<bool>>,
     /// Loss of the draft, a mean over surfaces.
     pub(crate) loss: f64,
+    /// Reason for which the loss is infinite, if it is.
+    pub(crate) lost: Option<String>,
 }
 
 /// Stage of a design.
@@ -52,8 +55,6 @@ pub struct SearchProgress {
     pub runs: usize,
     /// Number of runs of the search, or largest number of runs of the verdict.
     pub of: usize,
-    /// Number of runs that are known, including those of earlier calls.
-    pub known: usize,
     /// Number of textures that the search has tried.
     pub textures: usize,
     /// Present stage.
@@ -62,6 +63,28 @@ pub struct SearchProgress {
     pub best: f64,
     /// Blocks of the best draft.
     pub best_texture: Option<Arc<Vec<bool>>>,
+    /// Cost of the runs of this call, search and verdict.
+    pub work: Work,
+}
+
+/// Cost of runs, in steps times blocks.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Work {
+    /// Cost of the runs that this call has made.
+    pub here: f64,
+    /// Largest cost of the runs that remain.
+    pub left: f64,
+}
+
+impl Work {
+    /// Cost of what remains of a search that has cost `here` in this share of its time, as far as the time allows.
+    pub(super) fn left_within(self, share_of_time: f64, here: f64) -> f64 {
+        if share_of_time > 0.0 {
+            self.left.min(here * (1.0 / share_of_time - 1.0).max(0.0))
+        } else {
+            self.left
+        }
+    }
 }
 
 /// Bounds on the length of a search.
@@ -72,6 +95,17 @@ pub struct Bounds<'a> {
     pub share_of_time: &'a dyn Fn() -> f64,
     /// Flag that ends all runs.
     pub stop: &'a AtomicBool,
+}
+
+impl Bounds<'_> {
+    /// Share of a time that has passed, in seconds; 1 where the time is no number of more than 0, and 0 without a bound.
+    pub fn share_of(passed: f64, most: Option<f64>) -> f64 {
+        match most {
+            Some(most) if passed < most => passed / most,
+            Some(_) => 1.0,
+            None => 0.0,
+        }
+    }
 }
 
 /// Length of a search.
@@ -119,7 +153,8 @@ impl<'a> Stages<'a> {
         keep: &mut Keep,
         watch: &mut dyn FnMut(&SearchProgress),
     ) -> Result<Vec<Arc<Vec<bool>>>, StudyError> {
-        let explored = (EXPLORED * bounds.runs as f64) as usize;
+        self.evaluator.check_reference(known, bounds.stop, keep)?;
+        let explored = explored(bounds);
         while self.runs < explored && self.is_within(bounds, EXPLORED) {
             let proposals = self.ask(BATCH, bounds)?;
             if !self.try_out(proposals, false, bounds, known, keep, watch)? {
@@ -197,33 +232,54 @@ impl<'a> Stages<'a> {
                 Found { proposal, loss }
             })
             .collect();
-        self.tried.extend(found.iter().map(|found| Tried {
-            is_refined,
-            origin: found.proposal.origin.clone(),
-            texture: Arc::clone(&found.proposal.texture),
-            loss: found.loss,
-        }));
+        for Found { proposal, loss } in &found {
+            let lost = if loss.is_finite() {
+                None
+            } else {
+                self.evaluator
+                    .lost(&proposal.texture, surfaces.clone(), fidelity, known)
+            };
+            self.tried.push(Tried {
+                is_refined,
+                origin: proposal.origin.clone(),
+                texture: Arc::clone(&proposal.texture),
+                loss: *loss,
+                lost,
+            });
+        }
         let has_any = !found.is_empty();
         self.search.tell(&found);
-        watch(&self.progress(bounds, known, is_refined));
+        watch(&self.progress(bounds, is_refined));
         Ok(has_any)
     }
 
-    fn progress(&self, bounds: &Bounds, known: &Known, is_refined: bool) -> SearchProgress {
+    fn progress(&self, bounds: &Bounds, is_refined: bool) -> SearchProgress {
         let best = self.search.best().first();
         SearchProgress {
             runs: self.runs,
             of: bounds.runs,
-            known: known.len(),
             textures: self.n_textures(),
             stage: if is_refined {
                 DesignStage::Refining
             } else {
                 DesignStage::Exploring
             },
-            best: best.map_or(f64::NAN, |found| self.evaluator.wish.told(found.loss)),
+            best: best.map_or(f64::NAN, |found| self.evaluator.wish().told(found.loss)),
             best_texture: best.map(|found| Arc::clone(&found.proposal.texture)),
+            work: Work {
+                here: 0.0,
+                left: self.work_left(bounds),
+            },
         }
+    }
+
+    /// Largest cost of the runs of the search that remain.
+    fn work_left(&self, bounds: &Bounds) -> f64 {
+        let explored = explored(bounds);
+        let coarse = explored.saturating_sub(self.runs);
+        let fine = bounds.runs.saturating_sub(explored.max(self.runs));
+        coarse as f64 * self.evaluator.work(Fidelity::Coarse)
+            + fine as f64 * self.evaluator.work(Fidelity::Fine)
     }
 
     /// Surfaces and step of a stage.
@@ -240,4 +296,9 @@ impl<'a> Stages<'a> {
 
     /// The first surface that the search has not seen.
     pub(crate) const UNSEEN: u64 = REFINED_SURFACES;
+}
+
+/// Number of runs after which drafts are tried on several surfaces.
+fn explored(bounds: &Bounds) -> usize {
+    (EXPLORED * bounds.runs as f64) as usize
 }

@@ -5,9 +5,10 @@ use std::sync::Arc;
 
 use serde::Serialize;
 
-use super::evaluate::{Evaluator, Fidelity, Keep, Known, Wanted};
-use super::judge::{COMPARED, Contender, JUDGED, Judge, Mean, Surfaces};
+use super::evaluate::{Evaluator, Keep, Known, Wanted};
+use super::judge::{Contender, Judge, Mean, Surfaces};
 use super::sensitivity::{self, Sensitivity};
+use super::subject::Fidelity;
 use super::wish::Measured;
 use crate::error::StudyError;
 
@@ -20,6 +21,8 @@ const NAMED_FINALISTS: usize = 4;
 /// Values of a texture on fresh surfaces in one case.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Given {
+    /// Number of surfaces over which the means are taken: all, unless the texture is lost on some.
+    pub surfaces: u64,
     /// The largest mu*.
     pub static_friction_star: Mean,
     /// The first peak of mu*.
@@ -37,10 +40,14 @@ pub struct OnFresh {
     pub coverage_percent: f64,
     /// Values in each case.
     pub cases: Vec<Given>,
-    /// Loss over all cases.
+    /// Loss over all cases; infinite if the texture is lost.
     pub loss: f64,
     /// Half the width of the interval of the loss, due to the scatter over surfaces.
     pub loss_half_width: Option<f64>,
+    /// Standard deviation of the loss from surface to surface.
+    pub loss_deviation: Option<f64>,
+    /// Reason for which the texture is lost, if it is: a run of it has not the numbers of the wish.
+    pub lost: Option<String>,
     /// The loss of this texture less that of the design, surface by surface: above 0 where the design is better; none for
     /// the design itself.
     pub design_is_better_by: Option<Mean>,
@@ -77,26 +84,27 @@ pub(crate) struct Judged {
 }
 
 impl Judge<'_> {
-    /// Largest number of runs of a verdict.
-    pub(crate) fn most_runs(evaluator: &Evaluator) -> usize {
-        let [compared, judged, changed] = if evaluator.scatters() {
-            [COMPARED, JUDGED, sensitivity::SURFACES]
-        } else {
-            [1; 3]
-        };
-        // With the slider without texture, the groove, the best named pattern, and the design.
-        let finalists = (MOST_FINALISTS + NAMED_FINALISTS + 1) as u64;
-        let runs = finalists * compared + 4 * judged + 3 * sensitivity::N_CHANGES * changed;
-        evaluator.subjects.len() * runs as usize
+    /// Largest number of runs of a verdict, and their cost in steps times blocks; `beside` textures are judged whether they are good
+    /// or not.
+    pub(crate) fn most_runs(evaluator: &Evaluator, beside: usize) -> (usize, f64) {
+        let Surfaces { compared, judged } = Surfaces::of(evaluator);
+        let n = |surfaces: Range<u64>| (surfaces.end - surfaces.start) as usize;
+        let [cases, compared, judged] = [evaluator.subjects.len(), n(compared), n(judged)];
+        // With the slider without texture, the best named pattern, and the design.
+        let finalists = MOST_FINALISTS + NAMED_FINALISTS + 1;
+        let runs = cases * (finalists * compared + (3 + beside) * judged);
+        let work = runs as f64 * evaluator.work(Fidelity::Verdict);
+        let (changed_runs, changed_work) = sensitivity::most_runs(evaluator);
+        (runs + changed_runs, work + changed_work)
     }
 
     /// Compares the finalists of a search with the best of the named patterns, and returns the winner with the verdict on
-    /// it; none if there is no texture.
+    /// it; none if there is no texture. Textures `beside` them are judged whether they are good or not, the groove first if it is legal.
     pub(crate) fn verdict(
         &self,
         searched: &[Contender],
         named: &[Contender],
-        groove: Option<&Contender>,
+        beside: &[Contender],
         known: &mut Known,
         keep: &mut Keep,
     ) -> Result<Option<Judged>, StudyError> {
@@ -114,28 +122,32 @@ impl Judge<'_> {
         let Some(first) = winner.clone().or_else(|| best_named.clone()) else {
             return Ok(None);
         };
-        let to_judge: Vec<&Contender> = winner.iter().chain(&best_named).chain(groove).collect();
+        let to_judge: Vec<&Contender> = winner.iter().chain(&best_named).chain(beside).collect();
         self.run(&to_judge, judged.clone(), known, keep)?;
-        let is_beaten = |named: &Contender| {
-            let better = self.difference(named, &first, judged.clone(), known);
-            better.mean - better.half_width.unwrap_or(0.0) <= 0.0
-        };
-        let is_named = winner.is_none() || best_named.as_ref().is_some_and(is_beaten);
+        // Where both are lost, neither is better.
+        let is_better = |named: &Contender| self.difference(named, &first, judged.clone(), known).low() > 0.0;
+        let is_named = winner.is_none() || !best_named.as_ref().is_none_or(is_better);
         let design = match &best_named {
             Some(named) if is_named => named.clone(),
             _ => first.clone(),
         };
         let mut others: Vec<&Contender> = Vec::new();
-        for other in groove.into_iter().chain(&best_named).chain(&winner) {
+        for other in beside
+            .iter()
+            .take(1)
+            .chain(&best_named)
+            .chain(&winner)
+            .chain(beside)
+        {
             if other.texture != design.texture && others.iter().all(|known| known.texture != other.texture) {
                 others.push(other);
             }
         }
-        let beside = best_named
+        let other = best_named
             .as_ref()
             .filter(|named| named.texture != design.texture)
-            .or(groove);
-        let sensitivity = self.sensitivity(&design, beside, known, keep)?;
+            .or(beside.first().filter(|other| other.texture != design.texture));
+        let sensitivity = self.sensitivity(&design, other, known, keep)?;
         let on_fresh = |contender: Option<&Contender>, known: &Known| {
             self.on_fresh(contender, &design, judged.clone(), known)
         };
@@ -203,29 +215,28 @@ impl Judge<'_> {
             };
             let found: Vec<Measured> = surfaces
                 .clone()
-                .filter_map(|surface| self.evaluator.found(&run(surface), known))
+                .filter_map(|surface| self.evaluator.ended(&run(surface), known).ok())
                 .collect();
             let mean = |of: &dyn Fn(&Measured) -> f64| Mean::of(&found.iter().map(of).collect::<Vec<_>>());
             let kinetic: Option<Vec<f64>> = found.iter().map(|found| found.kinetic_star).collect();
             Given {
+                surfaces: found.len() as u64,
                 static_friction_star: mean(&|found| found.largest_star),
                 first_peak_star: mean(&|found| found.first_peak_star),
                 kinetic_friction_star: kinetic.map(|values| Mean::of(&values)),
             }
         };
+        let loss = contender.map(|contender| self.mean_loss(contender, surfaces.clone(), known));
         OnFresh {
             name: contender
                 .map_or("no texture", |contender| &contender.name)
                 .to_owned(),
             coverage_percent: contender.map_or(0.0, |found| self.evaluator.grid.percent(&found.texture)),
             cases: (0..self.evaluator.subjects.len()).map(given).collect(),
-            loss: contender.map_or(f64::NAN, |contender| {
-                self.loss(contender, surfaces.clone(), known)
-            }),
-            loss_half_width: contender.and_then(|contender| {
-                let loss = |surface| self.loss(contender, surface..surface + 1, known);
-                Mean::of(&surfaces.clone().map(loss).collect::<Vec<_>>()).half_width
-            }),
+            loss: loss.map_or(f64::NAN, |loss| loss.mean),
+            loss_half_width: loss.and_then(|loss| loss.half_width),
+            loss_deviation: loss.and_then(|loss| loss.deviation),
+            lost: contender.and_then(|contender| self.lost(contender, surfaces.clone(), known)),
             design_is_better_by: contender
                 .filter(|contender| contender.texture != design.texture)
                 .map(|contender| self.difference(contender, design, surfaces.clone(), known)),

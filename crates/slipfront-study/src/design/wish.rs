@@ -63,6 +63,17 @@ impl Measured {
     }
 }
 
+impl Quantity {
+    /// Name of the quantity in a sentence.
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::StaticFriction => "static friction",
+            Self::KineticFriction => "kinetic friction",
+            Self::FrictionDrop => "drop of friction",
+        }
+    }
+}
+
 impl Wish {
     /// The quantity of the wish; for a curve its largest value.
     pub fn quantity(&self) -> Quantity {
@@ -77,19 +88,51 @@ impl Wish {
         self.quantity() != Quantity::StaticFriction
     }
 
-    /// Deviation of a run with a texture from the wish, given the run of the same surface without it:
+    /// The wish for a drive that goes as far in one unit of time as the drive of this wish in `times` units.
+    pub(crate) fn with_times(&self, times: f64) -> Self {
+        match self {
+            Self::Curve(points) => Self::Curve(points.iter().map(|[time, mu]| [time * times, *mu]).collect()),
+            other => other.clone(),
+        }
+    }
+
+    /// Whether textures are compared with the slider without texture.
+    pub(crate) fn is_relative(&self) -> bool {
+        matches!(self, Self::Least(_) | Self::Largest(_))
+    }
+
+    /// Deviation of a run with a texture from the wish, given the run of the same surface without it if the wish
+    /// [is relative](Self::is_relative):
     ///
     /// ```text
     /// least  q/q_0;   largest  -q/q_0;   value  q/q_wanted - 1;   curve  root of the mean square of the differences of mu*
     /// ```
-    pub(crate) fn deviation(&self, with: &Measured, without: &Measured) -> f64 {
-        let ratio = |quantity| with.get(quantity) / without.get(quantity);
-        match self {
-            Self::Least(quantity) => ratio(*quantity),
-            Self::Largest(quantity) => -ratio(*quantity),
-            Self::Value(quantity, wanted) => with.get(*quantity) / wanted - 1.0,
+    ///
+    /// # Errors
+    /// A sentence, when a run does not have the quantity, or has none of it to compare with.
+    pub(crate) fn deviation(&self, with: &Measured, without: Option<&Measured>) -> Result<f64, String> {
+        let quantity = self.quantity();
+        let reference = without.map_or(f64::NAN, |without| without.get(quantity));
+        let deviation = match self {
+            Self::Least(_) => with.get(quantity) / reference,
+            Self::Largest(_) => -with.get(quantity) / reference,
+            Self::Value(_, wanted) => with.get(quantity) / wanted - 1.0,
             Self::Curve(_) => with.misfit.unwrap_or(f64::NAN),
+        };
+        if deviation.is_finite() {
+            return Ok(deviation);
         }
+        let is_told = |found: &Measured| found.get(quantity).is_finite();
+        Err(if is_told(with) && without.is_none_or(is_told) {
+            format!(
+                "the {} of the slider without texture is 0, so that nothing can be compared with it: wish for a value, or for another quantity",
+                quantity.name()
+            )
+        } else {
+            "the run has no kinetic friction: no block slips, or the run ends before the window of kinetic friction begins; raise \
+             `time.duration_star` or lower `time.kinetic_from_star`"
+                .to_owned()
+        })
     }
 
     /// The loss of a mean deviation, the less the better: its size, where the wish is a value.
@@ -131,7 +174,7 @@ mod tests {
             misfit: Some(0.25),
         };
         let (with, without) = (run(0.75, 0.5), run(1.0, 0.25));
-        let told = |wish: Wish| wish.told(wish.loss(wish.deviation(&with, &without)));
+        let told = |wish: Wish| wish.told(wish.loss(wish.deviation(&with, Some(&without)).unwrap()));
         assert_eq!(told(Wish::Least(Quantity::StaticFriction)), 25.0);
         assert_eq!(told(Wish::Largest(Quantity::StaticFriction)), -25.0);
         assert_eq!(told(Wish::Largest(Quantity::KineticFriction)), 100.0);
@@ -146,10 +189,19 @@ mod tests {
             kinetic_star: None,
             ..with.clone()
         };
+        let least = Wish::Least(Quantity::KineticFriction);
+        for (with, without) in [(&short, &with), (&with, &short)] {
+            let said = least.deviation(with, Some(without)).unwrap_err();
+            assert!(said.contains("raise `time.duration_star`"), "{said}");
+        }
+        let slipless = run(1.0, 0.0);
+        let said = least.deviation(&with, Some(&slipless)).unwrap_err();
         assert!(
-            Wish::Least(Quantity::KineticFriction)
-                .deviation(&short, &without)
-                .is_nan()
+            said.contains("kinetic friction of the slider without texture is 0"),
+            "{said}"
         );
+        // A curve at half the speed takes twice the time.
+        let slower = Wish::Curve(vec![[1.0, 0.5]]).with_times(2.0);
+        assert_eq!(slower, Wish::Curve(vec![[2.0, 0.5]]));
     }
 }

@@ -205,6 +205,19 @@ fn what_does_not_come_to_rest_is_an_error() {
             .to_string()
             .contains("raise its kinetic friction or damping, or take constant loading")
     );
+    let rounded = RunError::NoRest {
+        step: 1,
+        time_star: 0.2,
+        standing: 1,
+        n_slipping: 1,
+        speed: 1e-14,
+    };
+    assert!(
+        rounded
+            .to_string()
+            .contains("these speeds are errors of rounding"),
+        "{rounded}"
+    );
 }
 
 /// Steady sliding at the speed of the drive, and its drag, have no part in a held run.
