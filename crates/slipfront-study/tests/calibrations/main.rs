@@ -3,6 +3,8 @@
 // Helpers of tests are not tests by themselves to clippy.
 #![allow(clippy::unwrap_used)]
 
+mod rate_and_state;
+
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
