@@ -88,7 +88,27 @@ impl Prediction {
     }
 }
 
+/// Numbers that a regression keeps of every run beside its summaries: coefficient, prediction, scale and square.
+const NUMBERS_OF_A_RUN: usize = 4;
+
+/// Matrices of as many rows and columns as there are runs: while lengths are looked for, distances, and the kernels of the best trial, of
+/// the present one, and of its factor; in the end the kernel and its factor.
+const MATRICES_OF_SEARCH: usize = 4;
+const MATRICES: usize = 2;
+
 impl Regression {
+    /// Memory of a regression of `runs` runs with `summaries` summaries each, in bytes.
+    pub fn bytes(runs: usize, summaries: usize) -> f64 {
+        (size_of::<f64>() * runs * (summaries + NUMBERS_OF_A_RUN)) as f64
+    }
+
+    /// Memory of [`learn`](Self::learn) beside its result, in bytes.
+    pub fn bytes_to_learn(runs: usize) -> f64 {
+        let searched = runs.min(MAX_SEARCHED);
+        let matrices = (MATRICES_OF_SEARCH * searched * searched).max(MATRICES * runs * runs);
+        (size_of::<f64>() * matrices) as f64
+    }
+
     /// Prediction of a training run by all others.
     pub fn left_out(&self, run: usize) -> Prediction {
         Prediction {

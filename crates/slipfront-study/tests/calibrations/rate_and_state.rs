@@ -97,8 +97,7 @@ fn most_likely(record: &[f64], noise: f64) -> [[f64; 2]; 3] {
         // A step that leaves the range or fits worse is halved.
         let mut share = 1.0;
         let (next, there) = loop {
-            let next: [f64; 3] =
-                std::array::from_fn(|j| (shares[j] + share * step[j]).clamp(-0.15, 1.3));
+            let next: [f64; 3] = std::array::from_fn(|j| (shares[j] + share * step[j]).clamp(-0.15, 1.3));
             let there = curve(next);
             if squares(&there) <= squares(&found) || share < 1e-3 {
                 break (next, there);
