@@ -210,7 +210,6 @@ fn rate_and_state_agrees_with_maximum_likelihood() {
     for j in 0..3 {
         ratios[j].sort_by(f64::total_cmp);
         let ratio = ratios[j][RECORDS / 2];
-        println!("{} {} {ratio}", truth_held[j], likely_held[j]);
         assert!(truth_held[j] as f64 >= 0.74 * RECORDS as f64, "{j}: {told}");
         assert!(likely_held[j] as f64 >= 0.74 * RECORDS as f64, "{j}: {told}");
         assert!((0.9..=2.0).contains(&ratio), "{j}: {told}");
