@@ -52,6 +52,7 @@ impl Calibration {
         watch: Option<Py<PyAny>>,
     ) -> PyResult<String> {
         let opened = detached(py, || {
+            self.file.check_memory(&records, threads)?;
             CalibrationFolder::open(&folder, training.as_deref(), &self.file, &records)
         })?;
         let mut opened = opened.map_err(|error| study_error(py, &error))?;

@@ -32,6 +32,8 @@ TARGETS = [
 # What is no crate, with the file of its licence.
 PARTS = {
     "DejaVu Sans, of which the letters in pictures are a part": "crates/slipfront-plot/src/font/LICENSE",
+    "friction of basalt, a record beside the cases of the laboratory": "crates/slipfront-lab/cases/calibrations/basalt.LICENSE",
+    "friction of paper, a record beside the cases of the laboratory": "crates/slipfront-lab/cases/calibrations/paper.LICENSE",
     "uPlot, which draws the curves of the laboratory": "crates/slipfront-lab/web/vendor/uPlot.LICENSE",
     "the standard library of Rust": "tests/licences/rust-standard-library.txt",
 }

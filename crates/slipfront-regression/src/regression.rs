@@ -8,6 +8,8 @@
 //! k(x, x') = exp(-sum_f w_f (x_f - x'_f)^2/(2 h^2)),   w_f ~ mean_i (df/dx_f(x_i))^2
 //! ```
 //!
+//! The logarithm of the size of the residuals is a function of the summaries too, found likewise.
+//!
 //! The prediction of a run by all others, from which intervals are made, needs no regression of its own: `u_i -
 //! f_without_i(x_i) = a_i/[(K + lambda)^-1]_ii`.
 
@@ -24,6 +26,9 @@ const MAX_RESIDUAL: f64 = 3.0;
 
 /// Least share of the variance of an unknown that a regression must explain; otherwise it has learnt nothing.
 const LEAST_EXPLAINED: f64 = 0.02;
+
+/// Size that is added to residuals before their logarithm is taken, over their median: a residual near 0 is chance.
+const LEAST_SIZE: f64 = 0.1;
 
 /// Multiples of a trial: `h^2 = 2^spread` medians of the squared distances, `lambda = 10^(ridge/2)`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -48,24 +53,28 @@ const STEPS: [(i32, i32); 8] = [
 const SPREADS: std::ops::RangeInclusive<i32> = -2..=7;
 const RIDGES: std::ops::RangeInclusive<i32> = -14..=0;
 
-/// Regression of an unknown on the summaries of training runs.
+/// Regression of an unknown on the summaries of training runs, and of the size of its residuals.
 #[derive(Clone, Debug)]
 pub struct Regression {
-    /// Mean of the unknown over the training runs.
+    value: Function,
+    /// Logarithm of the size of the residuals.
+    log_scale: Function,
+    /// Predictions of every run by all others.
+    pub predictions: Vec<f64>,
+    /// Size of the residual of every run as all others predict it.
+    scales: Vec<f64>,
+}
+
+/// A function of summaries that was found from values at training runs.
+#[derive(Clone, Debug)]
+struct Function {
+    /// Mean of the values.
     mean: f64,
     /// Factors of the summaries; empty if the summaries tell nothing.
     lengths: Vec<f64>,
     /// The summaries of the training runs, times their factors.
     points: Vec<f64>,
     coefficients: Vec<f64>,
-    /// Power to which the kernel is raised where residuals are averaged over runs nearby.
-    power: i32,
-    /// Predictions of every run by all others.
-    pub predictions: Vec<f64>,
-    /// Root mean square of the residuals near every run, without its own.
-    scales: Vec<f64>,
-    /// Squares of the residuals.
-    squares: Vec<f64>,
 }
 
 /// Prediction from a record.
@@ -73,7 +82,7 @@ pub struct Regression {
 pub struct Prediction {
     /// The unknown.
     pub value: f64,
-    /// Root mean square of the residuals of training runs nearby.
+    /// Size of the residuals of runs with such summaries: the exponential of the mean of their logarithms.
     pub scale: f64,
 }
 
@@ -88,7 +97,27 @@ impl Prediction {
     }
 }
 
+/// Numbers that a regression keeps of every run beside its summaries, which both functions keep: two coefficients, prediction and scale.
+const NUMBERS_OF_A_RUN: usize = 4;
+
+/// Matrices of as many rows and columns as there are runs: while lengths are looked for, distances, and the kernels of the best trial, of
+/// the present one, and of its factor; in the end the kernel, which becomes its factor.
+const MATRICES_OF_SEARCH: usize = 4;
+const MATRICES: usize = 1;
+
 impl Regression {
+    /// Memory of a regression of `runs` runs with `summaries` summaries each, in bytes.
+    pub fn bytes(runs: usize, summaries: usize) -> f64 {
+        (size_of::<f64>() * runs * (2 * summaries + NUMBERS_OF_A_RUN)) as f64
+    }
+
+    /// Memory of [`learn`](Self::learn) beside its result, in bytes.
+    pub fn bytes_to_learn(runs: usize) -> f64 {
+        let searched = runs.min(MAX_SEARCHED);
+        let matrices = (MATRICES_OF_SEARCH * searched * searched).max(MATRICES * runs * runs);
+        (size_of::<f64>() * matrices) as f64
+    }
+
     /// Prediction of a training run by all others.
     pub fn left_out(&self, run: usize) -> Prediction {
         Prediction {
@@ -117,75 +146,88 @@ impl Regression {
 impl Regression {
     /// Learns an unknown from `unknown.len()` rows of summaries.
     pub fn learn(summaries: &[f64], unknown: &[f64]) -> Self {
-        let (n, d) = (unknown.len(), summaries.len() / unknown.len());
-        let mean = unknown.iter().sum::<f64>() / n as f64;
-        let targets: Vec<f64> = unknown.iter().map(|u| u - mean).collect();
-        let searched = n.min(MAX_SEARCHED);
-        let Some(lengths) = lengths(&summaries[..searched * d], &targets[..searched], d) else {
-            return Self::nothing(mean, &targets);
-        };
-        let points = multiplied(summaries, &lengths.multipliers);
-        let kernel = kernel_of_all(&points, d);
-        let Some(fit) = Fit::of(kernel.clone(), &targets, lengths.ridge) else {
-            return Self::nothing(mean, &targets);
-        };
-        let squares: Vec<f64> = fit.residuals.iter().map(|e| e * e).collect();
-        let (power, scales) = scales(&kernel, &squares);
-        let predictions = unknown.iter().zip(&fit.residuals).map(|(u, e)| u - e).collect();
+        let (value, residuals) = Function::learn(summaries, unknown);
+        let sizes: Vec<f64> = residuals.iter().map(|e| e.abs()).collect();
+        let least = LEAST_SIZE * median(&sizes);
+        let logs: Vec<f64> = sizes
+            .iter()
+            .map(|size| libm::log(size + least + f64::MIN_POSITIVE))
+            .collect();
+        let (log_scale, of_logs) = Function::learn(summaries, &logs);
         Self {
-            mean,
-            lengths: lengths.multipliers,
-            points,
-            coefficients: fit.coefficients,
-            power,
-            predictions,
-            scales,
-            squares,
-        }
-    }
-
-    /// A regression for summaries that tell nothing: it predicts the mean.
-    fn nothing(mean: f64, targets: &[f64]) -> Self {
-        let squares: Vec<f64> = targets.iter().map(|target| target * target).collect();
-        let scale = (squares.iter().sum::<f64>() / squares.len() as f64).sqrt();
-        Self {
-            mean,
-            lengths: Vec::new(),
-            points: Vec::new(),
-            coefficients: Vec::new(),
-            power: 1,
-            predictions: vec![mean; targets.len()],
-            scales: vec![scale; targets.len()],
-            squares,
+            value,
+            log_scale,
+            predictions: unknown.iter().zip(&residuals).map(|(u, e)| u - e).collect(),
+            scales: logs
+                .iter()
+                .zip(&of_logs)
+                .map(|(log, e)| libm::exp(log - e))
+                .collect(),
         }
     }
 
     /// Likeness of every training run to a record in this regression and in another: the product of their kernels.
     pub fn likeness(&self, summaries: &[f64], other: &Self) -> Vec<f64> {
         let own = |of: &Self| {
-            if of.lengths.is_empty() {
-                return vec![1.0; of.predictions.len()];
-            }
-            kernel(&multiplied(summaries, &of.lengths), &of.points, of.lengths.len())
+            let kernel = of.value.kernel(summaries);
+            kernel.unwrap_or_else(|| vec![1.0; of.predictions.len()])
         };
         own(self).iter().zip(own(other)).map(|(a, b)| a * b).collect()
     }
 
     /// The prediction for these summaries of a record.
     pub fn predict(&self, summaries: &[f64]) -> Prediction {
-        if self.lengths.is_empty() {
-            return Prediction {
-                value: self.mean,
-                scale: self.scales[0],
-            };
-        }
-        let point = multiplied(summaries, &self.lengths);
-        let kernel = kernel(&point, &self.points, self.lengths.len());
-        let sum: f64 = kernel.iter().zip(&self.coefficients).map(|(k, a)| k * a).sum();
         Prediction {
-            value: self.mean + sum,
-            scale: scale(&kernel, &self.squares, self.power, mean(&self.squares), None),
+            value: self.value.at(summaries),
+            scale: libm::exp(self.log_scale.at(summaries)),
         }
+    }
+}
+
+impl Function {
+    /// Learns a function from its values at `values.len()` rows of summaries; returns it with the residual of every run by all others.
+    fn learn(summaries: &[f64], values: &[f64]) -> (Self, Vec<f64>) {
+        let (n, d) = (values.len(), summaries.len() / values.len());
+        let mean = mean(values);
+        let targets: Vec<f64> = values.iter().map(|value| value - mean).collect();
+        let nothing = Self {
+            mean,
+            lengths: Vec::new(),
+            points: Vec::new(),
+            coefficients: Vec::new(),
+        };
+        let searched = n.min(MAX_SEARCHED);
+        let Some(lengths) = lengths(&summaries[..searched * d], &targets[..searched], d) else {
+            return (nothing, targets);
+        };
+        let points = multiplied(summaries, &lengths.multipliers);
+        let Some(fit) = Fit::of(kernel_of_all(&points, d), &targets, lengths.ridge) else {
+            return (nothing, targets);
+        };
+        let found = Self {
+            mean,
+            lengths: lengths.multipliers,
+            points,
+            coefficients: fit.coefficients,
+        };
+        (found, fit.residuals)
+    }
+
+    /// Kernels between summaries and those of the training runs; none if the summaries tell nothing.
+    fn kernel(&self, summaries: &[f64]) -> Option<Vec<f64>> {
+        let d = self.lengths.len();
+        (d > 0).then(|| kernel(&multiplied(summaries, &self.lengths), &self.points, d))
+    }
+
+    /// The value at these summaries.
+    fn at(&self, summaries: &[f64]) -> f64 {
+        let kernel = self.kernel(summaries).unwrap_or_default();
+        self.mean
+            + kernel
+                .iter()
+                .zip(&self.coefficients)
+                .map(|(k, a)| k * a)
+                .sum::<f64>()
     }
 }
 
@@ -388,58 +430,6 @@ fn median(values: &[f64]) -> f64 {
     *values.select_nth_unstable_by(middle, f64::total_cmp).1
 }
 
-/// Powers of the kernel among which the scale of residuals is looked for.
-const POWERS: [i32; 4] = [1, 4, 16, 64];
-
-/// Number of runs for which the mean of all residuals counts where few runs are near.
-const PRIOR_RUNS: f64 = 5.0;
-
-/// A power of a kernel that is a power of two or of four.
-fn raised(value: f64, power: i32) -> f64 {
-    let mut raised = value;
-    let mut done = 1;
-    while done < power {
-        raised *= raised;
-        done *= 2;
-    }
-    raised
-}
-
-/// Root mean square of residuals, weighted by the kernel, without that of run `left_out`.
-fn scale(kernel: &[f64], squares: &[f64], power: i32, mean: f64, left_out: Option<usize>) -> f64 {
-    let (mut sum, mut total) = (PRIOR_RUNS * mean, PRIOR_RUNS);
-    for (j, (&k, square)) in kernel.iter().zip(squares).enumerate() {
-        if Some(j) == left_out {
-            continue;
-        }
-        let weight = raised(k, power);
-        sum += weight * square;
-        total += weight;
-    }
-    (sum / total).sqrt()
-}
-
-/// The power under which residuals are most likely as normal deviates, and the scale near every run.
-fn scales(kernel: &[f64], squares: &[f64]) -> (i32, Vec<f64>) {
-    let n = squares.len();
-    let all = mean(squares);
-    let mut best: Option<(f64, i32, Vec<f64>)> = None;
-    for power in POWERS {
-        let scales: Vec<f64> = (0..n)
-            .map(|i| scale(&kernel[i * n..(i + 1) * n], squares, power, all, Some(i)))
-            .collect();
-        let costs = scales.iter().zip(squares).map(|(scale, square)| {
-            let variance = scale * scale;
-            libm::log(variance) + square / variance
-        });
-        let cost = costs.sum::<f64>();
-        if best.as_ref().is_none_or(|(least, ..)| cost < *least) {
-            best = Some((cost, power, scales));
-        }
-    }
-    best.map_or((1, Vec::new()), |(_, power, scales)| (power, scales))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -511,7 +501,7 @@ mod tests {
         let n = 150;
         let truths = chance(n);
         let found = Regression::learn(&cube(n, 3), &truths);
-        assert!(found.lengths.is_empty());
+        assert!(found.value.lengths.is_empty());
         assert_eq!(found.predict(&[0.1, 0.2, 0.3]).value, mean(&truths));
     }
 

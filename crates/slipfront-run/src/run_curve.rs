@@ -24,6 +24,12 @@ pub struct RunCurve {
 }
 
 impl RunCurve {
+    /// Memory of the curve of a run of `steps` steps, in bytes.
+    pub fn bytes(steps: u64) -> f64 {
+        const COLUMNS: usize = 3;
+        (COLUMNS * size_of::<f64>()) as f64 * (steps as f64 + 1.0)
+    }
+
     /// Times or displacements, according to the abscissa of a record.
     pub fn along(&self, x: Measure) -> &[f64] {
         if x == Measure::Displacement {
@@ -35,11 +41,22 @@ impl RunCurve {
 }
 
 /// Notes friction, time and path of every step.
-#[derive(Default)]
 struct Tracing {
     time_star: Vec<f64>,
     path: Vec<f64>,
     mu_star: Vec<f64>,
+}
+
+impl Tracing {
+    /// Room for `steps` steps and the start.
+    fn of_steps(steps: u64) -> Self {
+        let room = || Vec::with_capacity(steps as usize + 1);
+        Self {
+            time_star: room(),
+            path: room(),
+            mu_star: room(),
+        }
+    }
 }
 
 impl Observer for Tracing {
@@ -78,10 +95,11 @@ pub fn run_curve_unless(
     end: f64,
     ends: &dyn Fn() -> bool,
 ) -> Option<Result<RunCurve, RunError>> {
-    let stop = Stop::at_step(steps_to(case, along, end));
+    let steps = steps_to(case, along, end);
+    let stop = Stop::at_step(steps);
     let dt_star = case.time_plan.dt_star;
     let mut simulation = Simulation::new(Arc::clone(&case.model), dt_star, None, Execution::default());
-    let mut tracing = Tracing::default();
+    let mut tracing = Tracing::of_steps(steps);
     while !ends() {
         let mut observers = [Scheduled::always(&mut tracing)];
         match simulation.advance(stop, case.steps_per_poll(), &mut observers) {

@@ -54,6 +54,11 @@ pub enum StudyError {
     )]
     DesignMemory { needed: String, available: String },
     #[error(
+        "the calibration takes about {needed} of memory where {available} are available to this process, one run at a time: \
+        lower `slider.blocks` of the case, or `calibrate.runs`"
+    )]
+    CalibrationMemory { needed: String, available: String },
+    #[error(
         "the tables and pictures of the study take about {needed} of memory where {available} are available to this \
         process: give it more, in a queue for example with `--mem`"
     )]

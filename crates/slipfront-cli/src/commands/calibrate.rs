@@ -46,8 +46,11 @@ pub(crate) struct CalibrateCommand {
 
 impl CalibrateCommand {
     pub(crate) fn execute(self) -> Result<(), Failure> {
-        set_threads(self.threads)?;
+        let threads = set_threads(self.threads)?;
         let file = CalibrationFile::load(&self.calibration).map_err(Failure::input)?;
+        // A calibration that is invalid, or has no memory, leaves no folder.
+        file.check_memory(&self.records, threads)
+            .map_err(Failure::input)?;
         let out = self.out.unwrap_or_else(|| Path::new("results").join(&file.name));
         let folder = CalibrationFolder::open(&out, self.training.as_deref(), &file, &self.records);
         let mut folder = folder.map_err(Failure::input)?;

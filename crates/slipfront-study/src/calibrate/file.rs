@@ -320,6 +320,31 @@ impl CalibrationFile {
         Ok(set_up)
     }
 
+    /// The set-ups of the experiments that may be made next, over the path of the first record of `set_up`, and their names.
+    pub(crate) fn further(&self, set_up: &SetUp) -> Result<Vec<(String, SetUp)>, StudyError> {
+        let middle = set_up.middle();
+        let first = &set_up.conditions[0];
+        let speed = |conditions: &Conditions| {
+            let case = set_up.case(&middle, 0, conditions);
+            let case = case.map_err(|error| self.found_in("next", error))?;
+            Ok::<f64, StudyError>(case.model.drive.v_star * case.scales.displacement() / case.scales.time())
+        };
+        let further = |set: &Table| {
+            let mut conditions = Conditions {
+                overrides: overrides(set),
+                grid: first.grid.clone(),
+            };
+            conditions.grid = first.grid.slower(speed(first)? / speed(&conditions)?);
+            let names: Vec<String> = conditions.overrides.iter().map(ToString::to_string).collect();
+            let further = SetUp {
+                conditions: vec![conditions],
+                ..set_up.clone()
+            };
+            Ok((names.join(", "), further))
+        };
+        self.keys.next.iter().map(further).collect()
+    }
+
     /// The error of a record that takes too many steps.
     fn too_long(&self, case: &Case, steps: u64) -> CaseError {
         let sentence = format!(

@@ -15,9 +15,8 @@ use super::findings::{Findings, Further, OnFinerBlocks, Told, ToldTogether};
 use super::grid::Grid;
 use super::predicted::{PREDICTED, bands};
 use super::report::{FOUND, Report};
-use super::set_up::{Conditions, Curves, SetUp};
+use super::set_up::{Curves, SetUp};
 use super::training::{Training, TrainingRun};
-use crate::axis::overrides;
 use crate::error::StudyError;
 use crate::files_in_folder::{copy_in, write_in};
 use crate::journal::Journal;
@@ -224,6 +223,7 @@ impl CalibrationFolder {
             }
         }
         let records: Vec<PathBuf> = records.into_values().collect();
+        file.check_memory(&records, rayon::current_num_threads())?;
         Self::open(other, None, &file, &records)
     }
 
@@ -249,7 +249,7 @@ impl CalibrationFolder {
     ) -> Result<String, StudyError> {
         let keys = self.file.keys.clone();
         let set_up = self.set_up.clone();
-        let (finer, further) = (self.finer(), self.further(&keys.next)?);
+        let (finer, further) = (self.finer(), self.file.further(&set_up)?);
         let mut work = Work {
             stop,
             watch,
@@ -335,42 +335,7 @@ impl CalibrationFolder {
         if self.file.keys.finer_runs == 0 {
             return Ok(None);
         }
-        let finer = SetUp {
-            is_finer: true,
-            ..self.set_up.clone()
-        };
-        let middle = finer.middle();
-        for conditions in &finer.conditions {
-            finer
-                .case(&middle, 0, conditions)
-                .map_err(|error| error.to_string())?;
-        }
-        Ok(Some(finer))
-    }
-
-    /// The set-ups of further experiments, over the path of the first record, and their names.
-    fn further(&self, next: &[toml::Table]) -> Result<Vec<(String, SetUp)>, StudyError> {
-        let middle = self.set_up.middle();
-        let first = &self.set_up.conditions[0];
-        let found_in_next = |error| self.file.found_in("next", error);
-        let speed = |conditions: &Conditions| {
-            let case = self.set_up.case(&middle, 0, conditions).map_err(found_in_next)?;
-            Ok::<f64, StudyError>(case.model.drive.v_star * case.scales.displacement() / case.scales.time())
-        };
-        let set_up = |set: &toml::Table| {
-            let mut conditions = Conditions {
-                overrides: overrides(set),
-                grid: first.grid.clone(),
-            };
-            conditions.grid = first.grid.slower(speed(first)? / speed(&conditions)?);
-            let names: Vec<String> = conditions.overrides.iter().map(ToString::to_string).collect();
-            let further = SetUp {
-                conditions: vec![conditions],
-                ..self.set_up.clone()
-            };
-            Ok((names.join(", "), further))
-        };
-        next.iter().map(set_up).collect()
+        self.set_up.finer().map(Some)
     }
 
     /// Trains, or goes on from an earlier call.

@@ -66,6 +66,11 @@ impl Grid {
         self.count.div_ceil(MAX_VALUES)
     }
 
+    /// Number of averages, which are the values of a curve.
+    pub(crate) fn n_values(&self) -> usize {
+        self.count / self.merged()
+    }
+
     /// Standard deviation of the noise of an average over that of a value.
     pub(crate) fn noise_share(&self) -> f64 {
         1.0 / (self.merged() as f64).sqrt()
@@ -75,7 +80,7 @@ impl Grid {
     pub fn places(&self) -> Vec<f64> {
         let merged = self.merged();
         let middle = 0.5 * (merged - 1) as f64;
-        (0..self.count / merged)
+        (0..self.n_values())
             .map(|k| self.start + ((k * merged) as f64 + middle) * self.step)
             .collect()
     }

@@ -14,6 +14,7 @@ mod findings;
 mod folder;
 mod grid;
 mod intervals;
+mod memory;
 mod misfit;
 mod normals;
 mod predicted;

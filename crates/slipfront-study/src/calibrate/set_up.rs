@@ -70,6 +70,24 @@ impl SetUp {
         vec![0.5; self.unknowns.len()]
     }
 
+    /// The set-up on blocks of half the size.
+    ///
+    /// # Errors
+    /// With the reason why there is none.
+    pub(crate) fn finer(&self) -> Result<Self, String> {
+        let finer = Self {
+            is_finer: true,
+            ..self.clone()
+        };
+        let middle = finer.middle();
+        for conditions in &finer.conditions {
+            finer
+                .case(&middle, 0, conditions)
+                .map_err(|error| error.to_string())?;
+        }
+        Ok(finer)
+    }
+
     /// Values of the unknowns at these shares, for a sentence.
     fn point(&self, shares: &[f64]) -> String {
         let set = self.set_to(shares);

@@ -80,6 +80,11 @@ pub(crate) fn summaries(y: &[f64]) -> Vec<f64> {
     found
 }
 
+/// Number of the summaries of a curve.
+pub(super) fn n_summaries() -> usize {
+    summaries(&[0.0; MIN_VALUES]).len()
+}
+
 /// Position of the first peak: of the largest value up to the first fall by `fall` below the largest so far, or of all
 /// values.
 fn first_peak(s: &[f64], fall: f64) -> usize {

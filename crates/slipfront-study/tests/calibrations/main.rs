@@ -3,6 +3,8 @@
 // Helpers of tests are not tests by themselves to clippy.
 #![allow(clippy::unwrap_used)]
 
+mod rate_and_state;
+
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -84,7 +86,6 @@ fn told(found: &Value, number: usize) -> [f64; 3] {
 /// The examples of the book and the files of `cases/calibrations` can be used, and every key is explained.
 #[test]
 fn calibration_files_are_true() {
-    let record = root().join("cases/calibrations/sliding.csv");
     let mut seen = 0;
     for page in ["docs/reference/calibration-file.md", "docs/guide/calibrate.md"] {
         let text = fs::read_to_string(root().join(page)).unwrap();
@@ -116,10 +117,15 @@ fn calibration_files_are_true() {
     let design = DesignFile::parse(block, "texture.toml", "texture", folder.path())
         .unwrap_or_else(|error| panic!("{error}"));
     design.design().unwrap_or_else(|error| panic!("{error}"));
-    let folder = tempfile::tempdir().unwrap();
-    let example = CalibrationFile::load(&root().join("cases/calibrations/sliding.toml")).unwrap();
-    CalibrationFolder::open(folder.path(), None, &example, &[record])
-        .unwrap_or_else(|error| panic!("{error}"));
+    for name in ["sliding", "basalt", "paper"] {
+        let folder = tempfile::tempdir().unwrap();
+        let example = root().join("cases/calibrations").join(name);
+        let record = example.with_extension("csv");
+        let file =
+            CalibrationFile::load(&example.with_extension("toml")).unwrap_or_else(|error| panic!("{error}"));
+        CalibrationFolder::open(folder.path(), None, &file, &[record])
+            .unwrap_or_else(|error| panic!("{error}"));
+    }
     let text = fs::read_to_string(root().join("docs/reference/calibration-file.md")).unwrap();
     for key in [
         "base",
