@@ -312,6 +312,7 @@ fn every_unsafe_has_its_reason_and_stands_in_the_book() {
         "two places",
         "three places",
         "four places",
+        "five places",
     ];
     assert!(
         number.starts_with(words[found.len()]),
