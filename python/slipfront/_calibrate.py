@@ -239,8 +239,8 @@ class CalibrationResults:
 
     @property
     def misfit(self) -> dict[str, Any]:
-        """Tests of the records: an interval of their drift as a share of friction, their distance from the training runs, and how far one of
-        their numbers lies outside of those of all training runs, over the width of the range of these."""
+        """Tests of the records: an interval of their drift as a share of friction, their distance from the training runs, and mean friction
+        in the second half of the record that has it farthest outside of the training, with the least and the largest of the training runs."""
         return dict(self._found["misfit"])
 
     @property

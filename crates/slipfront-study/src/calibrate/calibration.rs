@@ -120,9 +120,7 @@ impl Calibration {
 
     /// Estimate from records, each made by [`Grid::record`].
     pub fn estimate(&self, records: &[Vec<f64>]) -> Estimate {
-        let summaries = summaries_of(records);
-        let outside = self.scaling.outside(&summaries);
-        let summaries = self.scaling.scaled(&summaries);
+        let summaries = self.scaling.scaled(&summaries_of(records));
         let predictions: Vec<_> = self
             .regressions
             .iter()
@@ -144,7 +142,7 @@ impl Calibration {
             pairs: self.pairs(&summaries, &widths),
             distributions,
             undetermined,
-            misfit: self.check.misfit(&summaries, outside),
+            misfit: self.check.misfit(records, &summaries),
             likeness: self.likeness(&predictions),
             predictions,
         }

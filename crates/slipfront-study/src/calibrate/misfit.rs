@@ -7,6 +7,7 @@ use slipfront_regression::{Regression, squared_distances};
 use super::intervals::Distribution;
 use super::normals::{Stream, draws, noisy, normals};
 use super::scaling::{Scaling, summaries_of};
+use super::summaries::level;
 use super::training::Training;
 
 /// Largest drift in training: friction that rises or falls by this share of itself over the record.
@@ -29,6 +30,8 @@ pub(super) struct Check {
     table: Vec<f64>,
     /// Distance of a run to the others that few exceed.
     far: f64,
+    /// The least and the largest mean of the second half in the training, for each record.
+    levels: Vec<[f64; 2]>,
 }
 
 /// Tests of whether the model can have made a record.
@@ -41,14 +44,20 @@ pub struct Misfit {
     /// Distance of the summaries from those of the nearest training runs, over the distance that 10 training runs in 1000
     /// exceed.
     pub distance: f64,
-    /// How far the summary that lies farthest outside of those of all training runs does so, over the width of their range; 0 if
-    /// none does.
-    pub outside: f64,
+    /// Mean of the second half of the record whose mean lies farthest outside of the means of the training runs, and the least and
+    /// the largest of these. Scaled summaries do not tell it, since what is far away is drawn nearer there.
+    pub level: [f64; 3],
 }
 
-/// Part of the width of its range by which a summary may lie outside of it: one more run may well exceed all others, but hardly by a quarter
-/// of what these differ.
+/// Part of the width of their range by which a mean may lie outside of the means of the training runs: one more run may well exceed all
+/// others, but hardly by a quarter of what these differ.
 const MAX_OUTSIDE: f64 = 0.25;
+
+/// How far a mean lies outside of a range, over its width; 0 within.
+fn outside([level, low, high]: [f64; 3]) -> f64 {
+    let beyond = (low - level).max(level - high);
+    if beyond > 0.0 { beyond / (high - low) } else { 0.0 }
+}
 
 impl Misfit {
     /// Whether the records are refused as none of the model; 3.5 % of the model's own are.
@@ -56,9 +65,9 @@ impl Misfit {
         self.has_drift || self.distance > 1.0 || self.is_outside()
     }
 
-    /// Whether the records have a summary that no training run comes near.
+    /// Whether friction of a record is of a size that no training run comes near.
     pub fn is_outside(&self) -> bool {
-        self.outside > MAX_OUTSIDE
+        outside(self.level) > MAX_OUTSIDE
     }
 }
 
@@ -109,19 +118,31 @@ impl Check {
             drifts,
             table: table.to_vec(),
             far: nearest[place.min(runs - 1)],
+            levels: (0..noise.len())
+                .map(|record| {
+                    let levels = training.curves.iter().map(|curves| level(&curves[record]));
+                    levels.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], level| {
+                        [low.min(level), high.max(level)]
+                    })
+                })
+                .collect(),
         }
     }
 
-    /// Tests of a record with these scaled summaries, which lie so far [outside](Scaling::outside) of the training.
-    pub(super) fn misfit(&self, summaries: &[f64], outside: f64) -> Misfit {
+    /// Tests of records with these scaled summaries.
+    pub(super) fn misfit(&self, records: &[Vec<f64>], summaries: &[f64]) -> Misfit {
         let drift = Distribution::of(&self.drift, &self.drifts, self.drift.predict(summaries));
         let drift = drift.interval(1.0 - REFUSED_BY_DRIFT).map(drift_at);
         let row = squared_distances(summaries, &self.table, summaries.len());
+        let levels = records.iter().zip(&self.levels);
+        let levels = levels.map(|(record, &[low, high])| [level(record), low, high]);
         Misfit {
             has_drift: drift[0] > 0.0 || drift[1] < 0.0,
             drift,
             distance: distance(&row, NEAREST) / self.far,
-            outside,
+            level: levels
+                .max_by(|one, other| outside(*one).total_cmp(&outside(*other)))
+                .unwrap_or_default(),
         }
     }
 }

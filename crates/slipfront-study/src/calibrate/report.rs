@@ -254,9 +254,15 @@ fn refusal(found: &Findings) -> String {
         ));
     }
     if found.misfit.is_outside() {
+        let [level, low, high] = found.misfit.level;
+        let (which, of) = if level > high {
+            ("largest", high)
+        } else {
+            ("least", low)
+        };
         reasons.push(format!(
-            "one of the numbers that are read from them lies outside of those of all training runs, by {} times as much as these differ",
-            four_digits(found.misfit.outside)
+            "mean friction in the second half of a record is {} times the {which} of the training runs",
+            four_digits(level / of)
         ));
     }
     format!(

@@ -33,7 +33,7 @@ pub(crate) struct Curve<'a> {
 impl<'a> Curve<'a> {
     fn new(y: &'a [f64]) -> Self {
         let (s3, s5) = (running_mean(y, window(y, 3)), running_mean(y, window(y, 5)));
-        let level = mean(&y[y.len() / 2..]);
+        let level = level(y);
         let peak = first_peak(&s5, 0.06 * level.abs());
         Self {
             y,
@@ -53,6 +53,11 @@ impl<'a> Curve<'a> {
     fn of_400(&self, count: usize) -> usize {
         window(self.y, count)
     }
+}
+
+/// Mean of the second half of a curve.
+pub(super) fn level(y: &[f64]) -> f64 {
+    mean(&y[y.len() / 2..])
 }
 
 /// Number of values that is a share of `y`, given as `count` of 400; one at least.

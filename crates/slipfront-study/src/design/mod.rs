@@ -159,7 +159,7 @@ impl Design {
         let drawn = legal.iter().filter(|named| is_drawn(named));
         let beside: Vec<Contender> = groove.chain(drawn).cloned().collect();
         let mut stages = Stages::new(&self.evaluator, self.limits.clone(), self.start, starts);
-        let (of, of_work) = Judge::most_runs(&self.evaluator, beside.len());
+        let (of, of_work) = Judge::most_runs(&self.evaluator, legal.len(), beside.len());
         let (made, here) = (Cell::new(0), Cell::new(0.0));
         let mut kept = |runs: &[MadeRun]| {
             made.set(made.get() + runs.len());

@@ -84,15 +84,16 @@ pub(crate) struct Judged {
 }
 
 impl Judge<'_> {
-    /// Largest number of runs of a verdict, and their cost in steps times blocks; `beside` textures are judged whether they are good
-    /// or not.
-    pub(crate) fn most_runs(evaluator: &Evaluator, beside: usize) -> (usize, f64) {
+    /// Largest number of runs of a verdict on so many `named` patterns, and their cost in steps times blocks; `beside` textures are
+    /// judged whether they are good or not.
+    pub(crate) fn most_runs(evaluator: &Evaluator, named: usize, beside: usize) -> (usize, f64) {
         let Surfaces { compared, judged } = Surfaces::of(evaluator);
         let n = |surfaces: Range<u64>| (surfaces.end - surfaces.start) as usize;
         let [cases, compared, judged] = [evaluator.subjects.len(), n(compared), n(judged)];
         // With the slider without texture, the best named pattern, and the design.
         let finalists = MOST_FINALISTS + NAMED_FINALISTS + 1;
-        let runs = cases * (finalists * compared + (3 + beside) * judged);
+        // The shortlist of named patterns is made on one surface, with the slider without texture.
+        let runs = cases * (named + 1 + finalists * compared + (3 + beside) * judged);
         let work = runs as f64 * evaluator.work(Fidelity::Verdict);
         let (changed_runs, changed_work) = sensitivity::most_runs(evaluator);
         (runs + changed_runs, work + changed_work)
