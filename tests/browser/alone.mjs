@@ -5,7 +5,7 @@ import path from 'node:path';
 import test from 'node:test';
 import { pathToFileURL } from 'node:url';
 import { inflateRawSync } from 'node:zlib';
-import { ROOT, slipfront, WORK } from './command.mjs';
+import { link, ROOT, slipfront, WORK } from './command.mjs';
 import { browser, colours, laboratory, open, say, SMALL, until, withoutServer } from './page.mjs';
 
 /** The files of a ZIP archive by their names: stored or deflated, as its central directory lists them. */
@@ -124,7 +124,7 @@ test('a simulation that fails begins anew with the case that is shown, and is gi
   await lab.after(() => lab.page.reload(), 'case');
 });
 
-/** Lets the page hear its first Worker beside the session only after another one has done its part. */
+/** Lets the page hear its first Worker beside the session only after another one has told what it has found. */
 function holdFirstWorker() {
   let first = null;
   let isHeld = true;
@@ -139,7 +139,7 @@ function holdFirstWorker() {
       super.onmessage = (event) => {
         if (isHeld && this === first) return held.push(() => handle.call(this, event));
         handle.call(this, event);
-        if (event.data.is !== 'done') return;
+        if (event.data.is !== 'event') return;
         isHeld = false;
         held.splice(0).forEach((hear) => hear());
       };
@@ -178,6 +178,9 @@ test('static friction over seeds is the same whichever of several Workers ends f
   assert.deepEqual(inOrder.map(({ done }) => done), [1, 2, 3]);
   await lab.page.addInitScript(holdFirstWorker);
   assert.deepEqual(await onCores(3), inOrder);
+  // Many seeds of a larger slider are not done before they are ended.
+  const large = link(SMALL.replace('[20, 20]', '[60, 60]'));
+  await lab.after(() => lab.page.evaluate((hash) => (location.hash = hash), `#case=${large}`), 'case', ({ blocks }) => blocks[0] === 60);
   const ends = {
     stop: () => lab.press('repeat'),
     edit: () => lab.find('#control-r_star').fill('0.4').then(() => lab.find('#control-r_star').press('Enter')),
