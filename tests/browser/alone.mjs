@@ -5,7 +5,7 @@ import path from 'node:path';
 import test from 'node:test';
 import { pathToFileURL } from 'node:url';
 import { inflateRawSync } from 'node:zlib';
-import { ROOT, slipfront, WORK } from './command.mjs';
+import { link, ROOT, slipfront, WORK } from './command.mjs';
 import { browser, colours, laboratory, open, say, SMALL, until, withoutServer } from './page.mjs';
 
 /** The files of a ZIP archive by their names: stored or deflated, as its central directory lists them. */
@@ -122,6 +122,78 @@ test('a simulation that fails begins anew with the case that is shown, and is gi
   await breakIt();
   await lab.notice(say('worker_lost'));
   await lab.after(() => lab.page.reload(), 'case');
+});
+
+/** Lets the page hear its first Worker beside the session only after another one has told what it has found. */
+function holdFirstWorker() {
+  let first = null;
+  let isHeld = true;
+  const held = [];
+  window.Worker = class extends Worker {
+    postMessage(message, ...rest) {
+      if (message.do === 'run') first ??= this;
+      super.postMessage(message, ...rest);
+    }
+
+    set onmessage(handle) {
+      super.onmessage = (event) => {
+        if (isHeld && this === first) return held.push(() => handle.call(this, event));
+        handle.call(this, event);
+        if (event.data.is !== 'event') return;
+        isHeld = false;
+        held.splice(0).forEach((hear) => hear());
+      };
+    }
+  };
+}
+
+test('static friction over seeds is the same whichever of several Workers ends first, and no Worker stays', withoutServer, async (t) => {
+  const lab = await open(t, { toml: SMALL });
+  const reports = [];
+  const hear = lab.hear.bind(lab);
+  lab.hear = (payload) => {
+    hear(payload);
+    if (lab.last.repeated !== reports.at(-1)) reports.push(lab.last.repeated);
+  };
+  /** Begins over so many seeds, and waits until a report holds. */
+  const repeat = async (seeds, holds) => {
+    reports.length = 0;
+    delete lab.last.repeated;
+    await lab.find('#repeat-seeds').fill(String(seeds));
+    await lab.press('repeat');
+    await until(() => reports.length > 0 && holds(reports.at(-1)), `a report on ${seeds} seeds`);
+  };
+  const sessionAlone = (after) => until(() => lab.page.workers().length === 1, () => `${lab.page.workers().length} Workers after ${after}`);
+  /** Reports on three seeds in a page on a machine with so many cores. */
+  const onCores = async (cores) => {
+    const init = (value) => Object.defineProperty(navigator, 'hardwareConcurrency', { value, configurable: true });
+    await lab.page.addInitScript(init, cores);
+    await lab.after(() => lab.page.reload(), 'case');
+    await repeat(3, ({ finished }) => finished);
+    await sessionAlone('the last seed');
+    assert.equal(await lab.page.evaluate(() => window.workers.length), cores, 'the session and a Worker for each further core');
+    return [...reports];
+  };
+  const inOrder = await onCores(2);
+  assert.deepEqual(inOrder.map(({ done }) => done), [1, 2, 3]);
+  await lab.page.addInitScript(holdFirstWorker);
+  assert.deepEqual(await onCores(3), inOrder);
+  // Many seeds of a larger slider are not done before they are ended.
+  const large = link(SMALL.replace('[20, 20]', '[60, 60]'));
+  await lab.after(() => lab.page.evaluate((hash) => (location.hash = hash), `#case=${large}`), 'case', ({ blocks }) => blocks[0] === 60);
+  const ends = {
+    stop: () => lab.press('repeat'),
+    edit: () => lab.find('#control-r_star').fill('0.4').then(() => lab.find('#control-r_star').press('Enter')),
+    open: () => lab.page.evaluate(() => (location.hash = '#preset=circle')),
+  };
+  for (const [name, end] of Object.entries(ends)) {
+    await repeat(32, ({ done }) => done > 0);
+    await lab.reads('repeat', say('repeat_stop'));
+    await end();
+    await sessionAlone(name);
+    await lab.reads('repeat', say('repeat'));
+    assert.ok(reports.at(-1).finished && reports.at(-1).done < 32, `${name}: ${JSON.stringify(reports.at(-1))}`);
+  }
 });
 
 test('one file opens from the disk, draws, and asks for nothing', withoutServer, async (t) => {

@@ -53,6 +53,11 @@ impl Host for PageHost {
         self.setting.threads
     }
 
+    /// One, which has all threads.
+    fn workers(&self) -> usize {
+        1
+    }
+
     fn opening(&self) -> Result<Opened, String> {
         match &self.setting.start.0 {
             StartSource::Preset => presets::opening(&self.setting.presets).map(Opened::from),

@@ -85,6 +85,10 @@ mod tests {
             self.0.threads()
         }
 
+        fn workers(&self) -> usize {
+            self.0.workers()
+        }
+
         fn opening(&self) -> Result<Opened, String> {
             self.0.opening()
         }

@@ -15,7 +15,7 @@ export interface PicturesModule extends Module {
 
 /** The functions of the module with the session. */
 export interface SessionModule extends Module {
-  open(): void;
+  open(workers: number): void;
   handle(): void;
   /** Works for some time, and returns the time at which it is to be called again; below 0 for never. */
   work(now: number, unread: number): number;
@@ -27,7 +27,8 @@ export interface SessionModule extends Module {
 
 /** A message of the page to a Worker whose module has begun. */
 export type Asked =
-  | { do: 'open' | 'handle' | 'run'; text: string }
+  | { do: 'open'; text: string; workers: number }
+  | { do: 'handle' | 'run'; text: string }
   | { do: 'save'; text: string; pictures: WebAssembly.Module | null }
   | { do: 'hear'; number: number; text: string }
   | { do: 'lost'; number: number }

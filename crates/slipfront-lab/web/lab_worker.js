@@ -104,7 +104,8 @@ later.onmessage = () => work();
 function carryOut(asked) {
   if ('text' in asked) giveText(asked.text);
   if (asked.do === 'save' && asked.pictures) beginPictures(asked.pictures);
-  if (asked.do === 'hear') module.hear(asked.number);
+  if (asked.do === 'open') module.open(asked.workers);
+  else if (asked.do === 'hear') module.hear(asked.number);
   else if (asked.do === 'lost') module.hear_lost(asked.number);
   else if (asked.do === 'read') {
     unread -= asked.messages;

@@ -94,13 +94,18 @@ function show(numbers) {
   tell(numbers);
 }
 
+/** Shows whether static friction is being computed over seeds. @param {boolean} is */
+function showRepeating(is) {
+  find('repeat-progress').hidden = !is;
+  find('repeat').textContent = say(is ? 'repeat_stop' : 'repeat');
+  find('repeat').dataset.busy = is ? 'yes' : '';
+}
+
 /** @param {RepeatedReply} repeated */
 function showRepeated({ done, of, finished, change_percent: change, with: textured, without, without_transition: creeping }) {
-  find('repeat-progress').hidden = finished;
+  showRepeating(!finished);
   find('repeat-progress').max = of;
   find('repeat-progress').value = done;
-  find('repeat').textContent = say(finished ? 'repeat' : 'repeat_stop');
-  find('repeat').dataset.busy = finished ? '' : 'yes';
   const text = change
     ? say('repeated_change', { change: estimate(change, 1), with: estimate(textured), without: estimate(without), done })
     : textured ? say('repeated_plain', { with: estimate(textured), done }) : say('repeated_none', { done, of });
@@ -112,6 +117,8 @@ function showRepeated({ done, of, finished, change_percent: change, with: textur
 export function startNumbers() {
   on('numbers', show);
   on('repeated', showRepeated);
+  // A session that begins anew computes nothing yet.
+  on('hello', () => showRepeating(false));
   onPress('repeat', () => send({ do: 'repeat', seeds: find('repeat').dataset.busy ? 0 : find('repeat-seeds').valueAsNumber }));
   on('case', ({ why, mesh }) => {
     // One line, with the reason behind it.

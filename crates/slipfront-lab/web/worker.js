@@ -12,6 +12,9 @@ import { say } from './text.js';
 const MOST_FAILURES = 3;
 const FAILURES_MS = 60_000;
 
+/** Workers beside the session that share the parts of one computation, at most: each has the memory of a run of its own. */
+const MOST_WORKERS = 4;
+
 /** @type {WebAssembly.Module|null} */
 let module = null;
 /** Where the script of Workers stands. */
@@ -122,7 +125,9 @@ function fail(why) {
 
 function open() {
   session = begin(hear);
-  session.postMessage({ do: 'open', text: beginning });
+  // One core is left for the session.
+  const workers = Math.max(1, Math.min(MOST_WORKERS, navigator.hardwareConcurrency - 1));
+  session.postMessage({ do: 'open', text: beginning, workers });
 }
 
 /** Begins the session once it is loaded. */

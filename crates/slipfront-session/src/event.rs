@@ -7,7 +7,8 @@ use std::time::Duration;
 
 use serde::{Deserialize, Serialize};
 
-use crate::protocol::{Estimate, RepeatedReply};
+use crate::protocol::Estimate;
+use crate::repeat::Frictions;
 
 /// Whoever does work beside a session: it passes on what the work tells, and tells it the time and whether it shall stop.
 pub trait Worker {
@@ -34,10 +35,8 @@ impl Event {
 
 #[derive(Debug, Serialize, Deserialize)]
 pub(crate) enum EventKind {
-    /// Static friction over the seeds up to now.
-    Repeated(RepeatedReply),
-    /// Why static friction over seeds cannot be found.
-    NotRepeated(String),
+    /// Static friction with the next of the seeds, or why it cannot be found.
+    Repeated(Result<Frictions, String>),
     /// How far a search is.
     Tried(Tried),
     /// The best texture of a search, or why there is none.

@@ -22,6 +22,9 @@ pub trait Host {
     /// Threads of a run and of work beside the session.
     fn threads(&self) -> usize;
 
+    /// How many parts of one computation beside the session go on at a time.
+    fn workers(&self) -> usize;
+
     /// Gives the case with which the page opens unless another one is named.
     ///
     /// # Errors

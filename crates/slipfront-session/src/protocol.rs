@@ -307,9 +307,9 @@ pub(crate) struct ProbeReply {
 }
 
 /// Static friction over several seeds.
-#[derive(Debug, Serialize, Deserialize)]
+#[derive(Debug, PartialEq, Serialize)]
 pub(crate) struct RepeatedReply {
-    pub(crate) done: u64,
+    pub(crate) done: usize,
     pub(crate) of: u64,
     pub(crate) finished: bool,
     pub(crate) change_percent: Option<Estimate>,
@@ -366,7 +366,7 @@ pub(crate) enum FoundOutcome {
 const CONFIDENCE: f64 = 0.95;
 
 /// A mean and the half width of its interval.
-#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Estimate {
     pub(crate) mean: f64,
     pub(crate) half_width: Option<f64>,

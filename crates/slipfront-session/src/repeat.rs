@@ -1,5 +1,6 @@
 //! Static friction with and without texture over several seeds.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -12,40 +13,26 @@ use crate::document::Document;
 use crate::event::{Event, EventKind, Worker};
 use crate::protocol::{Estimate, RepeatedReply};
 
-/// Runs the case, and if it has texture the same without, with the seeds from 1 on, each to the end of its first peak. Runs without a
-/// transition have no static friction: they are counted, and neither a mean nor a change has them.
-pub(crate) fn repeat(document: &Document, seeds: u64, worker: &dyn Worker) {
+/// Static friction mu_s* with one seed: of the case and, if it has texture, of the case without; none of a run without a transition.
+pub(crate) type Frictions = Vec<Option<f64>>;
+
+/// Runs the case, and if it has texture the same without, with each of the seeds to the end of its first peak.
+pub(crate) fn repeat(document: &Document, seeds: &[u64], worker: &dyn Worker) {
     let twin = document.has_texture().then(|| document.without_texture());
     let documents: Vec<&Document> = [document].into_iter().chain(&twin).collect();
-    let mut found: Vec<Vec<Option<f64>>> = vec![Vec::new(); documents.len()];
-    for seed in 1..=seeds {
-        for (document, found) in documents.iter().zip(&mut found) {
-            match static_friction(document, seed, worker.stop()) {
-                Ok(Some(friction)) => found.push(friction),
-                Ok(None) => return,
-                Err(sentence) => return worker.tell(Event(EventKind::NotRepeated(sentence))),
-            }
+    for &seed in seeds {
+        let runs = documents
+            .iter()
+            .map(|document| static_friction(document, seed, worker.stop()).transpose());
+        let Some(found) = runs.collect::<Option<Result<Frictions, String>>>() else {
+            return;
+        };
+        let goes_on = found.is_ok();
+        worker.tell(Event(EventKind::Repeated(found)));
+        if !goes_on {
+            return;
         }
-        let without = found.get(1).map_or(&[][..], Vec::as_slice);
-        let pairs = found[0].iter().zip(without);
-        let changes = pairs.map(|(one, other)| Some(100.0 * ((*one)? / (*other)? - 1.0)));
-        let changes: Vec<Option<f64>> = changes.collect();
-        worker.tell(Event(EventKind::Repeated(RepeatedReply {
-            done: seed,
-            of: seeds,
-            finished: seed == seeds,
-            change_percent: estimate(&changes),
-            with: estimate(&found[0]),
-            without: estimate(without),
-            without_transition: found.iter().flatten().filter(|found| found.is_none()).count(),
-        })));
     }
-}
-
-/// The estimate of the values that there are.
-fn estimate(values: &[Option<f64>]) -> Option<Estimate> {
-    let values: Vec<f64> = values.iter().copied().flatten().collect();
-    Estimate::of(&values)
 }
 
 /// mu_s* of a case with this seed, which is none of a run without a transition; none if it was stopped.
@@ -60,4 +47,105 @@ fn static_friction(document: &Document, seed: u64, stop: &AtomicBool) -> Result<
     let record = record.transpose().map_err(|error| error.to_string())?;
     let found = |summary: &Summary| summary.transition.then_some(summary.static_friction_star);
     Ok(record.map(|record| found(&record.summary)))
+}
+
+/// What is found over the seeds from 1 on. It is counted in the order of the seeds, whichever ends first: seeds whose runs are short would
+/// come first otherwise, and a mean over them depends on the machine.
+#[derive(Debug)]
+pub(crate) struct SeedsFound {
+    of: u64,
+    /// What was found with the seeds from 1 on, as far as all before are done.
+    counted: Vec<Frictions>,
+    /// What was found with seeds of which one before is still to be done.
+    waiting: BTreeMap<u64, Result<Frictions, String>>,
+}
+
+impl SeedsFound {
+    /// Nothing found yet over this number of seeds.
+    pub(crate) fn none_of(of: u64) -> Self {
+        Self {
+            of,
+            counted: Vec::new(),
+            waiting: BTreeMap::new(),
+        }
+    }
+
+    /// Notes what was found with a seed.
+    pub(crate) fn note(&mut self, seed: u64, found: Result<Frictions, String>) {
+        self.waiting.insert(seed, found);
+    }
+
+    /// Counts the next seed; none as long as it is not done.
+    ///
+    /// # Errors
+    /// Why nothing was found with it.
+    pub(crate) fn count_next(&mut self) -> Option<Result<RepeatedReply, String>> {
+        let found = self.waiting.remove(&(self.counted.len() as u64 + 1))?;
+        Some(found.map(|frictions| {
+            self.counted.push(frictions);
+            self.report(self.counted.len() as u64 == self.of)
+        }))
+    }
+
+    /// Means over the seeds counted up to now. Runs without a transition have no static friction: they are counted, and neither a mean nor a
+    /// change has them.
+    pub(crate) fn report(&self, finished: bool) -> RepeatedReply {
+        let column = |k: usize| self.counted.iter().filter_map(move |found| *found.get(k)?);
+        let changes = self.counted.iter().filter_map(|found| match found[..] {
+            [Some(with), Some(without)] => Some(100.0 * (with / without - 1.0)),
+            _ => None,
+        });
+        let runs = self.counted.iter().flatten();
+        RepeatedReply {
+            done: self.counted.len(),
+            of: self.of,
+            finished,
+            change_percent: estimate(changes),
+            with: estimate(column(0)),
+            without: estimate(column(1)),
+            without_transition: runs.filter(|found| found.is_none()).count(),
+        }
+    }
+}
+
+/// Mean and interval of values; none without values.
+fn estimate(values: impl Iterator<Item = f64>) -> Option<Estimate> {
+    let values: Vec<f64> = values.collect();
+    Estimate::of(&values)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Reports on three seeds that end in this order, the last of which cannot be run.
+    fn reports(order: [u64; 3]) -> Vec<Result<RepeatedReply, String>> {
+        let mut found = SeedsFound::none_of(4);
+        let mut reports = Vec::new();
+        for seed in order {
+            let frictions = match seed {
+                1 => Ok(vec![Some(0.7), Some(0.9)]),
+                2 => Ok(vec![None, Some(0.8)]),
+                _ => Err("the run diverges".to_owned()),
+            };
+            found.note(seed, frictions);
+            while let Some(report) = found.count_next() {
+                reports.push(report);
+            }
+        }
+        reports
+    }
+
+    #[test]
+    fn seeds_are_counted_in_their_order_whichever_ends_first() {
+        let in_order = reports([1, 2, 3]);
+        let [Ok(_), Ok(second), Err(_)] = &in_order[..] else {
+            panic!("{in_order:?}")
+        };
+        assert_eq!((second.done, second.without_transition), (2, 1));
+        assert_eq!(second.with.map(|with| with.mean), Some(0.7));
+        for order in [[1, 3, 2], [2, 1, 3], [2, 3, 1], [3, 1, 2], [3, 2, 1]] {
+            assert_eq!(reports(order), in_order, "{order:?}");
+        }
+    }
 }

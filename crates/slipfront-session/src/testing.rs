@@ -53,6 +53,10 @@ impl Host for TestHost {
         1
     }
 
+    fn workers(&self) -> usize {
+        2
+    }
+
     fn opening(&self) -> Result<Opened, String> {
         let document = Document::new("opening", "", |_| Err("there is none".to_owned()));
         document.map(Opened::from).map_err(|error| error.to_string())

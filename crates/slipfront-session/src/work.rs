@@ -16,8 +16,8 @@ pub struct Work {
 
 #[derive(Debug, Serialize, Deserialize)]
 enum WorkKind {
-    /// A computation of static friction over this number of seeds.
-    Repeat(u64),
+    /// A computation of static friction with each of these seeds.
+    Repeat(Vec<u64>),
     /// A search for a texture with less static friction than the painted one.
     Search,
     /// A comparison of the best texture of a search with the painted one.
@@ -25,8 +25,8 @@ enum WorkKind {
 }
 
 impl Work {
-    /// Finds static friction of a case over this number of seeds.
-    pub(crate) fn repeat(document: Document, seeds: u64) -> Self {
+    /// Finds static friction of a case with each of these seeds, in their order.
+    pub(crate) fn repeat(document: Document, seeds: Vec<u64>) -> Self {
         let kind = WorkKind::Repeat(seeds);
         Self { document, kind }
     }
@@ -47,7 +47,7 @@ impl Work {
     pub fn run(&self, worker: &dyn Worker) {
         let document = &self.document;
         match &self.kind {
-            WorkKind::Repeat(seeds) => repeat(document, *seeds, worker),
+            WorkKind::Repeat(seeds) => repeat(document, seeds, worker),
             WorkKind::Search => {
                 let searched = search::search(document, worker);
                 worker.tell(Event(EventKind::Searched(searched)));

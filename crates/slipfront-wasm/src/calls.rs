@@ -40,10 +40,10 @@ struct Beginning {
     opening: Document,
 }
 
-/// Begins a session, given presets and the case with which the page opens.
-pub(crate) fn open() {
+/// Begins a session, given presets and the case with which the page opens, and how many Workers may go on beside it.
+pub(crate) fn open(workers: u32) {
     refuse(read().map(|Beginning { presets, opening }| {
-        let host = Rc::new(WorkerHost::new(presets, opening));
+        let host = Rc::new(WorkerHost::new(presets, opening, workers));
         host.reply(hello(host.presets(), &[], None));
         let session = Session::new(Rc::clone(&host) as Rc<dyn Host>);
         PAGE.set(Some((session, host)));

@@ -29,7 +29,7 @@ mod of_every_module {
 )]
 mod of_session {
     exported! {
-        calls::open();
+        calls::open(workers: u32);
         calls::handle();
         calls::work(now: f64, unread: u32) -> f64;
         calls::hear(task: u32);

@@ -20,6 +20,8 @@ pub(crate) struct WorkerHost {
     presets: Presets,
     opening: Document,
     told: Told,
+    /// How many Workers beside the session share the parts of one computation.
+    workers: u32,
     n_tasks: Cell<u32>,
     /// Messages that the page has not read yet.
     pub(crate) unread: Cell<u32>,
@@ -33,11 +35,12 @@ struct Saved<'a> {
 }
 
 impl WorkerHost {
-    pub(crate) fn new(presets: Presets, opening: Document) -> Self {
+    pub(crate) fn new(presets: Presets, opening: Document, workers: u32) -> Self {
         Self {
             presets,
             opening,
             told: Told::default(),
+            workers,
             n_tasks: Cell::new(0),
             unread: Cell::new(0),
         }
@@ -80,6 +83,10 @@ impl Host for WorkerHost {
 
     fn threads(&self) -> usize {
         1
+    }
+
+    fn workers(&self) -> usize {
+        self.workers as usize
     }
 
     fn opening(&self) -> Result<Opened, String> {

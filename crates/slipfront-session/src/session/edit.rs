@@ -22,9 +22,9 @@ impl Session {
         let Opened { document, recorded } = self.opened(source)?;
         // Whether it can be run is known before anything is given up.
         let case = Arc::new(document.case_to_show().map_err(|error| error.to_string())?);
-        self.give_up_search();
+        self.give_up_work();
         (self.edited, self.painting) = (None, None);
-        (self.repeating, self.shown_recording) = (None, None);
+        self.shown_recording = None;
         self.history = Some(History::new(document));
         self.recorded = recorded;
         self.pending.recorded = self.recorded.is_some();
@@ -128,7 +128,7 @@ impl Session {
     ) -> Result<(), String> {
         self.apply_edits();
         if self.history.as_mut().is_some_and(go) {
-            self.give_up_search();
+            self.give_up_work();
             self.run_present_case(why, self.view.after_change == AfterChange::Rest)
         } else {
             Ok(())
@@ -190,7 +190,7 @@ impl Session {
         let from_rest = self.view.after_change == AfterChange::Rest;
         let case = document.case_to_show().map_err(|error| error.to_string())?;
         document.drop_unnamed_files().map_err(|error| error.to_string())?;
-        self.give_up_search();
+        self.give_up_work();
         if let Some(history) = &mut self.history {
             history.change(document, gesture);
         }

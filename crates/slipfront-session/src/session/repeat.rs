@@ -1,17 +1,55 @@
 //! Static friction over several seeds: begun, followed, told.
 
+use std::vec;
+
 use super::state::Session;
 use crate::event::EventKind;
+use crate::host::Task;
 use crate::protocol::Reply;
+use crate::repeat::SeedsFound;
 use crate::work::Work;
 
 /// Most seeds of a repetition.
 const MAX_SEEDS: u64 = 32;
 
+/// A computation of static friction over several seeds. Dropping it ends its work.
+pub(super) struct Repetition {
+    parts: Vec<Part>,
+    found: SeedsFound,
+}
+
+/// The part of the seeds that one task goes through.
+struct Part {
+    task: Box<dyn Task>,
+    /// Seeds of which the task has told nothing yet, in its order.
+    seeds: vec::IntoIter<u64>,
+}
+
+impl Part {
+    /// Passes on what the task has told since the last look; gives whether there is more to come.
+    fn follow(&mut self, found: &mut SeedsFound) -> bool {
+        while let Some(seed) = self.seeds.as_slice().first().copied()
+            && let Some(event) = self.task.next_event()
+        {
+            let told = match event.0 {
+                EventKind::Repeated(told) => told,
+                _ => Err("the runs over seeds failed by a defect of their own".to_owned()),
+            };
+            let goes_on = told.is_ok();
+            found.note(seed, told);
+            self.seeds.next();
+            if !goes_on {
+                return false;
+            }
+        }
+        self.seeds.len() > 0
+    }
+}
+
 impl Session {
     /// Begins to compute static friction of the case over so many seeds; 0 ends a computation under way.
     pub(super) fn repeat(&mut self, seeds: u64) -> Result<(), String> {
-        self.repeating = None;
+        self.end_repetition();
         if seeds == 0 {
             return Ok(());
         }
@@ -21,28 +59,49 @@ impl Session {
             ));
         }
         self.apply_edits();
-        let work = Work::repeat(self.document()?.clone(), seeds);
-        self.repeating = Some(self.host.begin(work)?);
+        let document = self.document()?;
+        let n_parts = self.host.workers().clamp(1, seeds as usize);
+        let mut parts = Vec::new();
+        for first in 1..=n_parts as u64 {
+            let seeds: Vec<u64> = (first..=seeds).step_by(n_parts).collect();
+            let task = self.host.begin(Work::repeat(document.clone(), seeds.clone()))?;
+            let seeds = seeds.into_iter();
+            parts.push(Part { task, seeds });
+        }
+        let found = SeedsFound::none_of(seeds);
+        self.repeating = Some(Repetition { parts, found });
         Ok(())
+    }
+
+    /// Ends a computation over seeds under way; what it has found stays the last that the page is told.
+    pub(super) fn end_repetition(&mut self) {
+        if let Some(ended) = self.repeating.take() {
+            self.host.reply(Reply::Repeated(ended.found.report(true)).json());
+        }
     }
 
     /// Tells the page what was found over seeds since the last look.
     pub(super) fn follow_repetition(&mut self) {
-        while let Some(event) = self.repeating.as_mut().and_then(|task| task.next_event()) {
-            let sentence = match event.0 {
-                EventKind::Repeated(repeated) => {
-                    if repeated.finished {
+        let Some(Repetition { parts, found }) = &mut self.repeating else {
+            return;
+        };
+        parts.retain_mut(|part| part.follow(found));
+        while let Some(counted) = found.count_next() {
+            match counted {
+                Ok(report) => {
+                    let finished = report.finished;
+                    self.host.reply(Reply::Repeated(report).json());
+                    if finished {
                         self.repeating = None;
+                        return;
                     }
-                    self.host.reply(Reply::Repeated(repeated).json());
-                    continue;
                 }
-                EventKind::NotRepeated(sentence) => sentence,
-                _ => "the runs over seeds failed by a defect of their own".to_owned(),
-            };
-            self.repeating = None;
-            let of = "repeat";
-            self.host.reply(Reply::Refused { of, sentence }.json());
+                Err(sentence) => {
+                    self.end_repetition();
+                    let of = "repeat";
+                    return self.host.reply(Reply::Refused { of, sentence }.json());
+                }
+            }
         }
     }
 }

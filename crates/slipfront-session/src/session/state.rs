@@ -5,6 +5,7 @@ use std::time::Duration;
 
 use super::clock::Clock;
 use super::painting::Painting;
+use super::repeat::Repetition;
 use crate::document::Document;
 use crate::event::{Mask, Tried};
 use crate::history::History;
@@ -62,8 +63,8 @@ pub struct Session {
     pub(super) is_stepping: bool,
     /// Steps that requests to step a paused run have asked for, and that are still to be taken.
     pub(super) single_steps: u64,
-    /// The work that computes static friction over several seeds, while it is under way.
-    pub(super) repeating: Option<Box<dyn Task>>,
+    /// The computation of static friction over several seeds, while it is under way.
+    pub(super) repeating: Option<Repetition>,
     pub(super) search: Option<TextureSearch>,
     /// Updates to send with the next points of the curves.
     pub(super) pending: PendingUpdates,

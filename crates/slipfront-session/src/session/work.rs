@@ -33,6 +33,12 @@ impl Session {
         self.next_picture(now).into_iter().chain(followed).min()
     }
 
+    /// Gives up all work beside the session, since its case is no longer the present one.
+    pub(super) fn give_up_work(&mut self) {
+        self.give_up_search();
+        self.end_repetition();
+    }
+
     /// When there is something to do for the next picture; none if nothing moves.
     fn next_picture(&self, now: Duration) -> Option<Duration> {
         if self.is_idle() {
