@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import functools
 import io
 import itertools
 import json
@@ -79,16 +78,22 @@ def npy(array: np.ndarray[Any, Any]) -> bytes:
     >>> npy(np.eye(3)) == file.getvalue()
     True
     """
-    return _npy_header(array.dtype, array.shape) + array.tobytes()
+    kind = (array.dtype, array.shape)
+    header = _HEADERS.get(kind)
+    if header is None:
+        file = io.BytesIO()
+        told = {"descr": np.lib.format.dtype_to_descr(array.dtype), "fortran_order": False, "shape": array.shape}
+        np.lib.format.write_array_header_1_0(file, told)
+        header = file.getvalue()
+        if len(_HEADERS) == _MOST_HEADERS:
+            _HEADERS.clear()
+        _HEADERS[kind] = header
+    return header + array.tobytes()
 
 
 # Searches make thousands of cases with arrays of one kind, and numpy writes a header in the time in which a small lattice is set up.
-@functools.lru_cache(maxsize=64)
-def _npy_header(dtype: np.dtype[Any], shape: tuple[int, ...]) -> bytes:
-    file = io.BytesIO()
-    header = {"descr": np.lib.format.dtype_to_descr(dtype), "fortran_order": False, "shape": shape}
-    np.lib.format.write_array_header_1_0(file, header)
-    return file.getvalue()
+_HEADERS: dict[tuple[np.dtype[Any], tuple[int, ...]], bytes] = {}
+_MOST_HEADERS = 64
 
 
 def names_file(key: str) -> bool:
@@ -167,7 +172,6 @@ def word(text: str) -> str:
     return _IN_QUOTES(text)
 
 
-@functools.lru_cache(maxsize=1024)
 def key(name: str) -> str:
     """A key as TOML writes it."""
     return name if _BARE_KEY.fullmatch(name) else word(name)
@@ -199,7 +203,6 @@ def _lines(table: Mapping[str, Any], arrays: Arrays, of: str) -> list[str]:
     return [f"{_path(name)} = {value(given, arrays, _below(of, name))}" for name, given in table.items()]
 
 
-@functools.lru_cache(maxsize=1024)
 def _path(name: str) -> str:
     """A key with dots is a key within tables, as in the command's --set."""
     return ".".join(key(part) for part in name.split("."))
