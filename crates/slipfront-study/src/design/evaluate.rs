@@ -251,7 +251,7 @@ impl Evaluator {
         }
     }
 
-    /// Parts of the [loss](Self::loss) of a texture, surface by surface: their mean is the loss. Of a wish for a value they have the
+    /// Parts of the [loss](Self::loss) of a texture, surface by surface: their mean is the loss. Where a value is wished for, parts have the
     /// sign of the mean deviation, and if the worst case counts they are those of this case, so that the scatter of the
     /// parts is that of the loss.
     pub(crate) fn loss_by_surface(
