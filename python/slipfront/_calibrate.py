@@ -239,7 +239,8 @@ class CalibrationResults:
 
     @property
     def misfit(self) -> dict[str, Any]:
-        """Tests of the records: an interval of their drift as a share of friction, and their distance from the training runs."""
+        """Tests of the records: an interval of their drift as a share of friction, their distance from the training runs, and how far one of
+        their numbers lies outside of those of all training runs, over the width of the range of these."""
         return dict(self._found["misfit"])
 
     @property

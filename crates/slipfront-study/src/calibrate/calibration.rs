@@ -120,7 +120,9 @@ impl Calibration {
 
     /// Estimate from records, each made by [`Grid::record`].
     pub fn estimate(&self, records: &[Vec<f64>]) -> Estimate {
-        let summaries = self.scaling.scaled(&summaries_of(records));
+        let summaries = summaries_of(records);
+        let outside = self.scaling.outside(&summaries);
+        let summaries = self.scaling.scaled(&summaries);
         let predictions: Vec<_> = self
             .regressions
             .iter()
@@ -142,7 +144,7 @@ impl Calibration {
             pairs: self.pairs(&summaries, &widths),
             distributions,
             undetermined,
-            misfit: self.check.misfit(&summaries),
+            misfit: self.check.misfit(&summaries, outside),
             likeness: self.likeness(&predictions),
             predictions,
         }
@@ -326,6 +328,24 @@ mod tests {
             .collect();
         let foreign = calibration.estimate(&[noisy(&swings, 0.01, noise())]).misfit;
         assert!(foreign.distance > 1.0, "{foreign:?}");
+    }
+
+    /// A record in other units or of another slider has a friction that no training run has.
+    #[test]
+    fn records_of_another_friction_are_refused() {
+        let calibration = calibration();
+        for factor in [0.1, 5.0] {
+            let plain = curve(&[0.3, 0.6, 0.5]);
+            let other: Vec<f64> = plain.iter().map(|y| factor * y).collect();
+            let found = calibration.estimate(&[noisy(&other, 0.01, normals(Stream::Noise, 1000, 0))]);
+            assert!(found.misfit.is_outside(), "{factor}: {:?}", found.misfit);
+        }
+        let own = calibration.estimate(&[noisy(
+            &curve(&[0.0, 1.0, 0.0]),
+            0.01,
+            normals(Stream::Noise, 1000, 0),
+        )]);
+        assert!(!own.misfit.is_outside(), "{:?}", own.misfit);
     }
 
     #[test]

@@ -41,12 +41,24 @@ pub struct Misfit {
     /// Distance of the summaries from those of the nearest training runs, over the distance that 10 training runs in 1000
     /// exceed.
     pub distance: f64,
+    /// How far the summary that lies farthest outside of those of all training runs does so, over the width of their range; 0 if
+    /// none does.
+    pub outside: f64,
 }
+
+/// Part of the width of its range by which a summary may lie outside of it: one more run may well exceed all others, but hardly by a quarter
+/// of what these differ.
+const MAX_OUTSIDE: f64 = 0.25;
 
 impl Misfit {
     /// Whether the records are refused as none of the model; 3.5 % of the model's own are.
     pub fn is_refused(&self) -> bool {
-        self.has_drift || self.distance > 1.0
+        self.has_drift || self.distance > 1.0 || self.is_outside()
+    }
+
+    /// Whether the records have a summary that no training run comes near.
+    pub fn is_outside(&self) -> bool {
+        self.outside > MAX_OUTSIDE
     }
 }
 
@@ -100,8 +112,8 @@ impl Check {
         }
     }
 
-    /// Tests of a record with these scaled summaries.
-    pub(super) fn misfit(&self, summaries: &[f64]) -> Misfit {
+    /// Tests of a record with these scaled summaries, which lie so far [outside](Scaling::outside) of the training.
+    pub(super) fn misfit(&self, summaries: &[f64], outside: f64) -> Misfit {
         let drift = Distribution::of(&self.drift, &self.drifts, self.drift.predict(summaries));
         let drift = drift.interval(1.0 - REFUSED_BY_DRIFT).map(drift_at);
         let row = squared_distances(summaries, &self.table, summaries.len());
@@ -109,6 +121,7 @@ impl Check {
             has_drift: drift[0] > 0.0 || drift[1] < 0.0,
             drift,
             distance: distance(&row, NEAREST) / self.far,
+            outside,
         }
     }
 }

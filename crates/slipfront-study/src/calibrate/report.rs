@@ -253,9 +253,15 @@ fn refusal(found: &Findings) -> String {
             four_digits(found.misfit.distance)
         ));
     }
+    if found.misfit.is_outside() {
+        reasons.push(format!(
+            "one of the numbers that are read from them lies outside of those of all training runs, by {} times as much as these differ",
+            four_digits(found.misfit.outside)
+        ));
+    }
     format!(
         "The model does not make such records: {}. Of its own records it refuses some 3.5 %. Correct a drift of the sensor, look whether law, \
-         mount and noise are those of the experiment, and widen the ranges; the intervals below promise nothing.",
+         units, mount and noise are those of the experiment, and widen the ranges; the intervals below promise nothing.",
         reasons.join(", and ")
     )
 }

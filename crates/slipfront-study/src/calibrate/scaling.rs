@@ -7,11 +7,12 @@ pub(super) fn summaries_of(curves: &[Vec<f64>]) -> Vec<f64> {
     curves.iter().flat_map(|curve| summaries(curve)).collect()
 }
 
-/// Means and standard deviations by which summaries are scaled.
+/// Means and standard deviations by which summaries are scaled, and the least and the largest of each in the training.
 #[derive(Clone, Debug)]
 pub(super) struct Scaling {
     means: Vec<f64>,
     deviations: Vec<f64>,
+    ranges: Vec<[f64; 2]>,
 }
 
 /// Largest distance of a summary from its mean that counts, in standard deviations: there is no extrapolation to a record
@@ -32,7 +33,32 @@ impl Scaling {
             (squares / n).sqrt()
         };
         let deviations = (0..d).map(deviation).collect();
-        Self { means, deviations }
+        let range = |f: usize| {
+            let values = rows.iter().map(|row| row[f]);
+            values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| {
+                [low.min(value), high.max(value)]
+            })
+        };
+        Self {
+            means,
+            deviations,
+            ranges: (0..d).map(range).collect(),
+        }
+    }
+
+    /// How far the summary lies outside of the training that lies farthest outside, over the width of its range there; 0 if all lie
+    /// within. Scaled summaries do not tell it, since what is far away is drawn nearer there.
+    pub(super) fn outside(&self, row: &[f64]) -> f64 {
+        let columns = row.iter().zip(&self.ranges);
+        let outside = columns.map(|(value, [low, high])| {
+            let beyond = (low - value).max(value - high);
+            if high > low && beyond > 0.0 {
+                beyond / (high - low)
+            } else {
+                0.0
+            }
+        });
+        outside.fold(0.0, f64::max)
     }
 
     /// Summaries in standard deviations from their mean; 0 for those that never differ.
