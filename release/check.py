@@ -16,17 +16,22 @@ import zipfile
 from pathlib import Path
 
 NOTICES = "THIRD-PARTY-NOTICES.txt"
+MODULES = ["slipfront.wasm", "slipfront-pictures.wasm"]
 # What an archive contains, by the end of its name, as ends of the paths in it.
 CONTENTS = {
     "-linux-x86_64.tar.gz": ["/slipfront"],
     "-linux-aarch64.tar.gz": ["/slipfront"],
     "-windows-x86_64.zip": ["/slipfront.exe"],
-    "-lab.zip": ["/index.html", f"/{NOTICES}"],
+    "-lab.zip": ["/index.html", *(f"/{module}" for module in MODULES), f"/{NOTICES}"],
     "-source.tar.gz": ["/Cargo.lock", "/release/build.sh", "/LICENSE-MIT", "/LICENSE-APACHE", f"/{NOTICES}"],
-    ".whl": ["slipfront/__init__.py", "slipfront/_slipfront.pyi", "slipfront/slipfront.wasm", f"/licenses/{NOTICES}", ".cyclonedx.json"],
+    ".whl": [
+        *(f"slipfront/{file}" for file in ["__init__.py", "_slipfront.pyi", *MODULES]),
+        f"/licenses/{NOTICES}",
+        ".cyclonedx.json",
+    ],
     ".tar.gz": ["/PKG-INFO", "/Cargo.lock", f"/{NOTICES}"],
 }
-COMMAND = ["/slipfront.wasm", "/cases/baseline.toml", "/LICENSE-MIT", "/LICENSE-APACHE", f"/{NOTICES}", "/slipfront.cdx.json"]
+COMMAND = [f"/{file}" for file in [*MODULES, "cases/baseline.toml", "LICENSE-MIT", "LICENSE-APACHE", NOTICES, "slipfront.cdx.json"]]
 # Libraries that are parts of Windows since Windows 10.
 WINDOWS = r"kernel32|ntdll|msvcrt|ws2_32|advapi32|userenv|bcrypt|bcryptprimitives|api-ms-win-[\w-]+"
 # Libraries that a program may ask for: of Linux those of PEP 600 and PEP 656.
@@ -76,7 +81,7 @@ def problems(path):
     """Sentences about faults of an archive, or of a page that contains all of the laboratory."""
     if path.suffix == ".html":
         text = path.read_text(encoding="utf-8")
-        yield from (f"{part} is not in it" for part in [NOTICES, "slipfront.wasm"] if part not in text)
+        yield from (f"{part} is not in it" for part in [NOTICES, *MODULES] if part not in text)
         return
     found = members(path)
     end = next(end for end in CONTENTS if path.name.endswith(end))
