@@ -200,9 +200,9 @@ export class Lab {
     await this.page.goto(address);
   }
 
-  /** Software graphics are slow to read back, which Chromium tells as a warning; a lost connection is told only where a test makes it so. */
+  /** Software graphics are slow to read back, which Chromium tells as a warning; lost connections and blocked workers are told only where a test makes them so. */
   mayFail(text) {
-    return /GPU stall due to ReadPixels|GL Driver Message/.test(text) || (this.alone && /WebSocket connection|net::ERR_CONNECTION_REFUSED/.test(text))
+    return /GPU stall due to ReadPixels|GL Driver Message|Service Worker registration blocked by Playwright/.test(text) || (this.alone && /WebSocket connection|net::ERR_CONNECTION_REFUSED/.test(text))
       || (this.breaks && /TypeError: module\[asked\.do\] is not a function/.test(text));
   }
 
