@@ -8,7 +8,9 @@ use std::time::Duration;
 use serde::{Deserialize, Serialize};
 
 use crate::protocol::Estimate;
-use crate::repeat::Frictions;
+
+/// Static friction mu_s* with one seed: of the case and, if it has texture, of the case without; none of a run without a transition.
+pub(crate) type Frictions = Vec<Option<f64>>;
 
 /// Whoever does work beside a session: it passes on what the work tells, and tells it the time and whether it shall stop.
 pub trait Worker {

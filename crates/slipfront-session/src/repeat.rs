@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::vec;
 
 use slipfront_case::case::Case;
 use slipfront_run::running::run_unless;
@@ -10,11 +11,9 @@ use slipfront_run::summary::Summary;
 use toml::Value;
 
 use crate::document::Document;
-use crate::event::{Event, EventKind, Worker};
+use crate::event::{Event, EventKind, Frictions, Worker};
+use crate::host::Task;
 use crate::protocol::{Estimate, RepeatedReply};
-
-/// Static friction mu_s* with one seed: of the case and, if it has texture, of the case without; none of a run without a transition.
-pub(crate) type Frictions = Vec<Option<f64>>;
 
 /// Runs the case, and if it has texture the same without, with each of the seeds to the end of its first peak.
 pub(crate) fn repeat(document: &Document, seeds: &[u64], worker: &dyn Worker) {
@@ -49,14 +48,14 @@ fn static_friction(document: &Document, seed: u64, stop: &AtomicBool) -> Result<
     Ok(record.map(|record| found(&record.summary)))
 }
 
-/// What is found over the seeds from 1 on. It is counted in the order of the seeds, whichever ends first: seeds whose runs are short would
+/// Results over the seeds from 1 on. They are counted in the order of the seeds, whichever ends first: seeds whose runs are short would
 /// come first otherwise, and a mean over them depends on the machine.
 #[derive(Debug)]
 pub(crate) struct SeedsFound {
     of: u64,
-    /// What was found with the seeds from 1 on, as far as all before are done.
+    /// Results of the seeds from 1 on, as far as all before are done.
     counted: Vec<Frictions>,
-    /// What was found with seeds of which one before is still to be done.
+    /// Results of seeds of which one before is still to be done.
     waiting: BTreeMap<u64, Result<Frictions, String>>,
 }
 
@@ -112,6 +111,40 @@ impl SeedsFound {
 fn estimate(values: impl Iterator<Item = f64>) -> Option<Estimate> {
     let values: Vec<f64> = values.collect();
     Estimate::of(&values)
+}
+
+/// A computation of static friction over several seeds. Dropping it ends its work.
+pub(crate) struct Repetition {
+    pub(crate) parts: Vec<Part>,
+    pub(crate) found: SeedsFound,
+}
+
+/// The part of the seeds that one task goes through.
+pub(crate) struct Part {
+    pub(crate) task: Box<dyn Task>,
+    /// Seeds of which the task has told nothing yet, in its order.
+    pub(crate) seeds: vec::IntoIter<u64>,
+}
+
+impl Part {
+    /// Passes on what the task has told since the last look; gives whether there is more to come.
+    pub(crate) fn follow(&mut self, found: &mut SeedsFound) -> bool {
+        while let Some(seed) = self.seeds.as_slice().first().copied()
+            && let Some(event) = self.task.next_event()
+        {
+            let told = match event.0 {
+                EventKind::Repeated(told) => told,
+                _ => Err("the runs over seeds failed by a defect of their own".to_owned()),
+            };
+            let goes_on = told.is_ok();
+            found.note(seed, told);
+            self.seeds.next();
+            if !goes_on {
+                return false;
+            }
+        }
+        self.seeds.len() > 0
+    }
 }
 
 #[cfg(test)]

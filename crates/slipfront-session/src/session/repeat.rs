@@ -1,50 +1,12 @@
 //! Static friction over several seeds: begun, followed, told.
 
-use std::vec;
-
 use super::state::Session;
-use crate::event::EventKind;
-use crate::host::Task;
 use crate::protocol::Reply;
-use crate::repeat::SeedsFound;
+use crate::repeat::{Part, Repetition, SeedsFound};
 use crate::work::Work;
 
 /// Most seeds of a repetition.
 const MAX_SEEDS: u64 = 32;
-
-/// A computation of static friction over several seeds. Dropping it ends its work.
-pub(super) struct Repetition {
-    parts: Vec<Part>,
-    found: SeedsFound,
-}
-
-/// The part of the seeds that one task goes through.
-struct Part {
-    task: Box<dyn Task>,
-    /// Seeds of which the task has told nothing yet, in its order.
-    seeds: vec::IntoIter<u64>,
-}
-
-impl Part {
-    /// Passes on what the task has told since the last look; gives whether there is more to come.
-    fn follow(&mut self, found: &mut SeedsFound) -> bool {
-        while let Some(seed) = self.seeds.as_slice().first().copied()
-            && let Some(event) = self.task.next_event()
-        {
-            let told = match event.0 {
-                EventKind::Repeated(told) => told,
-                _ => Err("the runs over seeds failed by a defect of their own".to_owned()),
-            };
-            let goes_on = told.is_ok();
-            found.note(seed, told);
-            self.seeds.next();
-            if !goes_on {
-                return false;
-            }
-        }
-        self.seeds.len() > 0
-    }
-}
 
 impl Session {
     /// Begins to compute static friction of the case over so many seeds; 0 ends a computation under way.
