@@ -3,7 +3,6 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::vec;
 
 use slipfront_case::case::Case;
 use slipfront_run::running::run_unless;
@@ -12,7 +11,6 @@ use toml::Value;
 
 use crate::document::Document;
 use crate::event::{Event, EventKind, Frictions, Worker};
-use crate::host::Task;
 use crate::protocol::{Estimate, RepeatedReply};
 
 /// Runs the case, and if it has texture the same without, with each of the seeds to the end of its first peak.
@@ -111,40 +109,6 @@ impl SeedsFound {
 fn estimate(values: impl Iterator<Item = f64>) -> Option<Estimate> {
     let values: Vec<f64> = values.collect();
     Estimate::of(&values)
-}
-
-/// A computation of static friction over several seeds. Dropping it ends its work.
-pub(crate) struct Repetition {
-    pub(crate) parts: Vec<Part>,
-    pub(crate) found: SeedsFound,
-}
-
-/// The part of the seeds that one task goes through.
-pub(crate) struct Part {
-    pub(crate) task: Box<dyn Task>,
-    /// Seeds of which the task has told nothing yet, in its order.
-    pub(crate) seeds: vec::IntoIter<u64>,
-}
-
-impl Part {
-    /// Passes on what the task has told since the last look; gives whether there is more to come.
-    pub(crate) fn follow(&mut self, found: &mut SeedsFound) -> bool {
-        while let Some(seed) = self.seeds.as_slice().first().copied()
-            && let Some(event) = self.task.next_event()
-        {
-            let told = match event.0 {
-                EventKind::Repeated(told) => told,
-                _ => Err("the runs over seeds failed by a defect of their own".to_owned()),
-            };
-            let goes_on = told.is_ok();
-            found.note(seed, told);
-            self.seeds.next();
-            if !goes_on {
-                return false;
-            }
-        }
-        self.seeds.len() > 0
-    }
 }
 
 #[cfg(test)]

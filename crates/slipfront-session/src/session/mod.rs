@@ -6,6 +6,7 @@ mod edit;
 mod find;
 mod painting;
 mod repeat;
+mod repetition;
 mod requests;
 mod start;
 mod state;

@@ -1,8 +1,9 @@
 //! Static friction over several seeds: begun, followed, told.
 
+use super::repetition::{Part, Repetition};
 use super::state::Session;
 use crate::protocol::Reply;
-use crate::repeat::{Part, Repetition, SeedsFound};
+use crate::repeat::SeedsFound;
 use crate::work::Work;
 
 /// Most seeds of a repetition.

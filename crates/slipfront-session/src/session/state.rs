@@ -5,6 +5,7 @@ use std::time::Duration;
 
 use super::clock::Clock;
 use super::painting::Painting;
+use super::repetition::Repetition;
 use crate::document::Document;
 use crate::event::{Mask, Tried};
 use crate::history::History;
@@ -12,7 +13,6 @@ use crate::host::{Host, Task};
 use crate::live::LiveRun;
 use crate::picture::Painter;
 use crate::recorded::RecordedRun;
-use crate::repeat::Repetition;
 use crate::view::View;
 
 /// The run of the slider without texture, and the text of its case.
