@@ -119,12 +119,19 @@ pub fn begins_with(path: &Path, beginning: &[u8]) -> bool {
 /// fills the memory.
 pub fn open_limited(path: &Path, most: u64) -> std::io::Result<Take<File>> {
     let file = open_regular(path)?;
-    let length = file.metadata()?.len();
+    expect_at_most(file.metadata()?.len(), most)?;
+    Ok(file.take(most))
+}
+
+/// Refuses a file of more than `most` bytes.
+///
+/// # Errors With both numbers.
+pub fn expect_at_most(length: u64, most: u64) -> std::io::Result<()> {
     if length > most {
         let sentence = format!("it has {length} bytes where at most {most} can be meant");
         return Err(std::io::Error::new(ErrorKind::FileTooLarge, sentence));
     }
-    Ok(file.take(most))
+    Ok(())
 }
 
 /// Reads a regular file of at most `most` bytes.

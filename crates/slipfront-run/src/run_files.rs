@@ -3,7 +3,7 @@
 use std::io::{Cursor, ErrorKind, Read, Seek};
 use std::path::{Path, PathBuf};
 
-use slipfront_case::disk::{found_behind, open_regular};
+use slipfront_case::disk::{expect_at_most, found_behind, open_regular};
 
 use crate::folder_error::FolderError;
 
@@ -119,10 +119,7 @@ impl<'a> RunFile<'a> {
     /// If it is longer, or cannot be read.
     pub(crate) fn read(&self, most: u64) -> std::io::Result<Vec<u8>> {
         let (file, length) = self.open()?;
-        if length > most {
-            let sentence = format!("it has {length} bytes where at most {most} can be meant");
-            return Err(std::io::Error::new(ErrorKind::FileTooLarge, sentence));
-        }
+        expect_at_most(length, most)?;
         let mut bytes = Vec::new();
         file.take(most).read_to_end(&mut bytes)?;
         Ok(bytes)

@@ -33,6 +33,7 @@ mod pictures;
 mod plan;
 mod plan_warnings;
 mod record;
+mod room;
 mod scheduler;
 mod shard;
 pub mod slurm;

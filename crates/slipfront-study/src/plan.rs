@@ -8,6 +8,7 @@ use crate::axis::{self, Axis};
 use crate::error::StudyError;
 use crate::identity::{Prepared, physics};
 use crate::plan_warnings::{Warning, Warnings, note_on_replicates};
+use crate::room::check_room;
 use crate::shard::Shard;
 use crate::study_file::{Base, RetainRuns, Settings, StudyFile};
 use crate::summary_values::REDUCTION;
@@ -458,32 +459,27 @@ impl Plan {
         let Some((run, largest)) = self.largest_run() else {
             return Ok(());
         };
-        let needed = self.memory(threads);
-        if needed <= available {
-            return Ok(());
-        }
-        let beside = PROGRAM + self.planning() + self.results();
-        let fit = ((available - beside) / largest).max(0.0) as usize;
         let results = self.memory(0);
-        let too_large = results > available;
-        let available = byte_size(available);
-        Err(match fit {
-            _ if too_large => StudyError::ResultsMemory {
-                needed: byte_size(results),
-                available,
+        let has_results = results <= available;
+        check_room(
+            |threads| self.memory(threads),
+            threads,
+            available,
+            |available| {
+                if has_results {
+                    StudyError::PointMemory {
+                        point: self.describe(&self.points[run.point]),
+                        needed: byte_size(largest),
+                        available,
+                    }
+                } else {
+                    StudyError::ResultsMemory {
+                        needed: byte_size(results),
+                        available,
+                    }
+                }
             },
-            0 => StudyError::PointMemory {
-                point: self.describe(&self.points[run.point]),
-                needed: byte_size(largest),
-                available,
-            },
-            _ => StudyError::Memory {
-                threads,
-                needed: byte_size(needed),
-                available,
-                fit,
-            },
-        })
+        )
     }
 
     /// Disk space for these runs, in bytes.

@@ -2,11 +2,10 @@
 
 use std::time::Duration;
 
-use indicatif::HumanDuration;
 use slipfront_case::number_format::four_digits;
 use slipfront_study::design::{DesignStage, SearchProgress};
 
-use super::display::ProgressDisplay;
+use super::display::{ProgressDisplay, duration_left};
 
 /// Display of the progress of a design.
 pub(crate) struct DesignProgress {
@@ -33,7 +32,8 @@ impl DesignProgress {
 
 /// Text of the progress: runs done of this stage, the time left for search and verdict, the stage, and the best value so far.
 fn text(now: &SearchProgress, passed: Duration) -> String {
-    let left = time_left(now, passed);
+    let left = duration_left(now.work.left, now.work.here, passed);
+    let left = left.map_or_else(String::new, |left| format!("  at most {left} left"));
     let stage = match now.stage {
         DesignStage::Exploring => "one surface",
         DesignStage::Refining => "several surfaces",
@@ -45,15 +45,6 @@ fn text(now: &SearchProgress, passed: Duration) -> String {
         String::new()
     };
     format!("{} of {} runs{left}  {stage}{best}", now.runs.min(now.of), now.of)
-}
-
-/// The time left at most, from the cost of the runs that were made in the time that has `passed`; empty where none was made.
-fn time_left(now: &SearchProgress, passed: Duration) -> String {
-    let seconds = passed.as_secs_f64() * now.work.left / now.work.here;
-    Duration::try_from_secs_f64(seconds).map_or_else(
-        |_| String::new(),
-        |left| format!("  at most {} left", HumanDuration(left)),
-    )
 }
 
 #[cfg(test)]

@@ -1,6 +1,5 @@
 //! Writing: the header, the entries of a record about its instant, and the rows of blocks, each at its place.
 
-use std::collections::BTreeSet;
 use std::fs::File;
 use std::io::{self, BufWriter, Seek, SeekFrom, Write};
 use std::path::Path;
@@ -9,6 +8,7 @@ use slipfront::communicator::{Communicator, text_of};
 use slipfront::observe::Field;
 use slipfront_case::disk::write_temp;
 use slipfront_case::field_info::field_info;
+use slipfront_case::ordered::map_of;
 use tempfile::TempPath;
 
 use super::definition::define;
@@ -187,8 +187,7 @@ fn check(path: &Path, file: &FieldsFile) -> Result<(), FieldsError> {
         // The header stores them with 32 bits.
         expect(what, size, size.clamp(1, i32::MAX as usize))?;
     }
-    let mut different: BTreeSet<&Field> = BTreeSet::new();
-    different.extend(file.names);
+    let different = map_of(file.names.iter().map(|field| (field, ())));
     expect("the list of fields", file.names.len(), different.len())?;
     let rows = &file.rows;
     expect(

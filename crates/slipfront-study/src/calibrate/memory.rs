@@ -13,6 +13,7 @@ use super::file::CalibrationFile;
 use super::set_up::SetUp;
 use super::summaries::n_summaries;
 use crate::error::StudyError;
+use crate::room::check_room;
 
 /// Memory of a calibration, in bytes.
 #[derive(Clone, Copy, Debug)]
@@ -105,23 +106,15 @@ impl CalibrationMemory {
     }
 
     fn compare(&self, threads: usize, available: f64) -> Result<(), StudyError> {
-        if self.of(threads) <= available {
-            return Ok(());
-        }
-        let fit = (1..threads).rev().find(|&fewer| self.of(fewer) <= available);
-        let available = byte_size(available);
-        Err(match fit {
-            None => StudyError::CalibrationMemory {
+        check_room(
+            |threads| self.of(threads),
+            threads,
+            available,
+            |available| StudyError::CalibrationMemory {
                 needed: byte_size(self.of(1)),
                 available,
             },
-            Some(fit) => StudyError::Memory {
-                threads,
-                needed: byte_size(self.of(threads)),
-                available,
-                fit,
-            },
-        })
+        )
     }
 }
 

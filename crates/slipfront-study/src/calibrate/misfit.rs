@@ -30,7 +30,8 @@ pub(super) struct Check {
     table: Vec<f64>,
     /// Distance of a run to the others that few exceed.
     far: f64,
-    /// The least and the largest mean of the second half in the training, for each record.
+    /// The least and the largest mean of the second half in the training, for each record, with noise: where no unknown moves the mean,
+    /// noise alone makes records differ.
     levels: Vec<[f64; 2]>,
 }
 
@@ -91,19 +92,24 @@ impl Check {
         let drifts: Vec<f64> = (0..runs)
             .map(|run| draws(Stream::Drift, run, 0).uniform())
             .collect();
-        let rows: Vec<Vec<f64>> = training
+        let (rows, levels): (Vec<Vec<f64>>, Vec<Vec<f64>>) = training
             .curves
             .par_iter()
             .enumerate()
             .map(|(run, curves)| {
                 let records = curves.iter().zip(noise).enumerate();
-                let drifting = records.map(|(record, (curve, &noise))| {
-                    let generated = normals(Stream::DriftNoise, run, record);
-                    noisy(&drifting(curve, drift_at(drifts[run])), noise, generated)
+                let records = records.map(|(record, (curve, &noise))| {
+                    let record_of = |curve: &[f64]| {
+                        let generated = normals(Stream::DriftNoise, run, record);
+                        noisy(curve, noise, generated)
+                    };
+                    let drifting = record_of(&drifting(curve, drift_at(drifts[run])));
+                    (drifting, level(&record_of(curve)))
                 });
-                scaling.scaled(&summaries_of(&drifting.collect::<Vec<_>>()))
+                let (drifting, levels): (Vec<_>, Vec<_>) = records.unzip();
+                (scaling.scaled(&summaries_of(&drifting)), levels)
             })
-            .collect();
+            .unzip();
         let drift = Regression::learn(&rows.concat(), &drifts);
         let d = table.len() / runs;
         let distances = squared_distances(table, table, d);
@@ -120,7 +126,7 @@ impl Check {
             far: nearest[place.min(runs - 1)],
             levels: (0..noise.len())
                 .map(|record| {
-                    let levels = training.curves.iter().map(|curves| level(&curves[record]));
+                    let levels = levels.iter().map(|levels| levels[record]);
                     levels.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], level| {
                         [low.min(level), high.max(level)]
                     })

@@ -10,6 +10,7 @@ use super::Design;
 use super::evaluate::Evaluator;
 use super::subject::Fidelity;
 use crate::error::StudyError;
+use crate::room::check_room;
 
 /// Bytes that a draft that was tried keeps beside its blocks: its patches, and its line of the table.
 const DRAFT_BYTES: f64 = 2048.0;
@@ -56,24 +57,15 @@ impl DesignMemory {
     }
 
     fn compare(&self, threads: usize, available: f64) -> Result<(), StudyError> {
-        if self.of(threads) <= available {
-            return Ok(());
-        }
-        let fit = ((available - self.beside) / self.run).max(0.0) as usize;
-        let available = byte_size(available);
-        Err(if fit == 0 {
-            StudyError::DesignMemory {
+        check_room(
+            |threads| self.of(threads),
+            threads,
+            available,
+            |available| StudyError::DesignMemory {
                 needed: byte_size(self.of(1)),
                 available,
-            }
-        } else {
-            StudyError::Memory {
-                threads,
-                needed: byte_size(self.of(threads)),
-                available,
-                fit,
-            }
-        })
+            },
+        )
     }
 }
 
