@@ -33,7 +33,10 @@ CONTENTS = {
 }
 COMMAND = [f"/{file}" for file in [*MODULES, "cases/baseline.toml", "LICENSE-MIT", "LICENSE-APACHE", NOTICES, "slipfront.cdx.json"]]
 # Libraries that are parts of Windows since Windows 10.
-WINDOWS = r"kernel32|ntdll|msvcrt|ws2_32|advapi32|userenv|bcrypt|bcryptprimitives|api-ms-win-[\w-]+"
+WINDOWS = (
+    r"kernel32|ntdll|msvcrt|ws2_32|advapi32|userenv|bcrypt|bcryptprimitives|api-ms-win-[\w-]+|"
+    r"combase|oleaut32|pdh|powrprof|psapi|rpcrt4|shell32"
+)
 # Libraries that a program may ask for: of Linux those of PEP 600 and PEP 656.
 LIBRARIES = {
     "linux": r"",

@@ -1,4 +1,4 @@
-"""Reads the fields files of crates/slipfront-run/tests/fields.rs with netCDF-C, by way of xarray, and with the reader of
+"""Reads the fields files of crates/slipfront-run/tests/run/fields.rs with netCDF-C, by way of xarray, and with the reader of
 ParaView, vtkNetCDFCFReader, and compares them with the values that were written; run.sh calls it.
 
     check.py FOLDER [COPY]

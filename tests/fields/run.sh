@@ -15,5 +15,5 @@ mkdir -p "$work"
 tests/venv.sh || exit 2
 files=$(mktemp -d "$work/files.XXXXXX")
 trap 'rm -rf "$files"' EXIT
-SLIPFRONT_FIELDS=$files cargo test --quiet --locked --workspace --test fields
+SLIPFRONT_FIELDS=$files cargo test --quiet --locked --workspace --test run fields
 target/venv/bin/python tests/fields/check.py "$files"

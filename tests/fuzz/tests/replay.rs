@@ -3,15 +3,24 @@
 // A helper that cannot do its work fails its test.
 #![allow(clippy::unwrap_used)]
 
-use std::sync::{Mutex, PoisonError};
+use std::process::Command;
 
 use slipfront_fuzz::{Mutator, TARGETS, Target};
 
-/// Runs a target on all of its inputs.
+/// Runs a target on all of its inputs, in a process of its own since memory is measured for a whole process: there the test of this
+/// name is run once more.
 fn replay(name: &str) {
-    // Memory is measured for the whole process.
-    static MEASURING: Mutex<()> = Mutex::new(());
-    let _measuring = MEASURING.lock().unwrap_or_else(PoisonError::into_inner);
+    const IS_ALONE: &str = "SLIPFRONT_TEST_IS_ALONE";
+    if std::env::var_os(IS_ALONE).is_some() {
+        return replay_here(name);
+    }
+    let mut again = Command::new(std::env::current_exe().unwrap());
+    let done = again.args([name, "--exact"]).env(IS_ALONE, "").output().unwrap();
+    let printed = String::from_utf8_lossy(&done.stdout);
+    assert!(done.status.success() && printed.contains("1 passed"), "{printed}");
+}
+
+fn replay_here(name: &str) {
     let target = Target::named(name).unwrap();
     let inputs = [target.findings(), target.seeds()].concat();
     assert!(!inputs.is_empty(), "{name} has no seeds");

@@ -1,4 +1,4 @@
-//! Case files that are read, and case files that are refused with the sentence that they contain.
+//! Case files that are read, and case files that are refused with the sentence that they contain; height maps; and cases that ranks make together.
 
 // Helpers of tests are not tests by themselves to clippy.
 #![allow(clippy::unwrap_used)]
@@ -6,10 +6,12 @@
 mod bad;
 mod coarse;
 mod good;
+mod heights;
 mod hostile;
 mod keys;
 mod laws;
 mod lengths;
+mod ranks;
 mod reference;
 mod round_trip;
 

@@ -22,6 +22,9 @@ mod damage;
 mod faults;
 mod jobs;
 mod kills;
+// Where /proc tells how much memory a process has had.
+#[cfg(target_os = "linux")]
+mod soak;
 mod tally;
 #[cfg(target_os = "linux")]
 mod watcher;

@@ -1,5 +1,7 @@
 //! The paper on two random surfaces in place of five: every figure is drawn and every verdict is the expected one.
 
+mod family;
+
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};

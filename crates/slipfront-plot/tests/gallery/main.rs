@@ -6,6 +6,7 @@
 // Helpers of tests are not tests by themselves to clippy.
 #![allow(clippy::unwrap_used)]
 
+mod bytes;
 mod page;
 mod runs;
 

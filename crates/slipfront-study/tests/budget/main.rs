@@ -1,9 +1,11 @@
-//! The memory and disk space of a run are those that were stated before it began.
+//! The memory and disk space of a run are those that were stated before it began. The allocator counts for a whole process: every
+//! test has its own.
 
 #![allow(clippy::unwrap_used)] // A helper that cannot do its work fails its test.
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::path::Path;
+use std::process::Command;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
@@ -128,11 +130,68 @@ fn write_inputs(folder: &Path) {
     writer.finish().unwrap();
 }
 
-/// The stated memory is the taken one. The allocator counts for the whole process: one test, one step after the other.
+/// Does this work in a process of its own, in a folder with the files that are read: there the test `name`, which calls this, is run
+/// once more.
+fn alone(name: &str, work: impl FnOnce(&Path)) {
+    const IS_ALONE: &str = "SLIPFRONT_TEST_IS_ALONE";
+    if std::env::var_os(IS_ALONE).is_some() {
+        let folder = tempfile::tempdir().unwrap();
+        write_inputs(folder.path());
+        return work(folder.path());
+    }
+    let mut again = Command::new(std::env::current_exe().unwrap());
+    let done = again.args([name, "--exact"]).env(IS_ALONE, "").output().unwrap();
+    let printed = String::from_utf8_lossy(&done.stdout);
+    assert!(done.status.success() && printed.contains("1 passed"), "{printed}");
+}
+
 #[test]
-fn what_is_said_is_what_is_taken() {
-    let folder = tempfile::tempdir().unwrap();
-    write_inputs(folder.path());
+fn runs_take_what_is_said() {
+    alone("runs_take_what_is_said", runs);
+}
+
+#[test]
+fn bands_take_what_is_said() {
+    alone("bands_take_what_is_said", bands);
+}
+
+#[test]
+fn checkpoints_take_what_is_said() {
+    alone("checkpoints_take_what_is_said", checkpoints);
+}
+
+#[test]
+fn runs_at_once_take_what_is_said() {
+    alone("runs_at_once_take_what_is_said", |folder| {
+        for base in [
+            "",
+            "base.slider = { outline = 'disc', viscosity_time_star = 0.1 }\n",
+        ] {
+            study(base, folder);
+        }
+    });
+}
+
+#[test]
+fn masks_of_one_image_take_one_mask() {
+    alone("masks_of_one_image_take_one_mask", masks);
+}
+
+#[test]
+fn ranks_take_no_more_than_one_process() {
+    alone("ranks_take_no_more_than_one_process", ranks);
+}
+
+#[test]
+fn pictures_of_a_large_lattice_take_what_is_said() {
+    alone(
+        "pictures_of_a_large_lattice_take_what_is_said",
+        pictures_of_a_large_lattice,
+    );
+}
+
+/// Whole runs of many kinds.
+fn runs(folder: &Path) {
     for sets in [
         // Pictures, and the rows of a long series.
         "slider.blocks=[1,1]",
@@ -170,10 +229,10 @@ fn what_is_said_is_what_is_taken() {
         "slider.blocks=[64,64];time.duration_star=1;output.snapshots=[];texture=[{shape='cavity',s=3,w=0.2,coverage=20,array=[40,25]}]",
     ] {
         let overrides: Vec<String> = sets.split(';').map(str::to_owned).collect();
-        let out = folder.path().join("out");
+        let out = folder.join("out");
         let run = || {
             let file = CaseFile::parse("", "case", &overrides).unwrap();
-            let case = Arc::new(Case::new(file, "case", folder.path(), &mut |_| true, Ranks::ALONE).unwrap());
+            let case = Arc::new(Case::new(file, "case", folder, &mut |_| true, Ranks::ALONE).unwrap());
             let mut record = running::run(&case, 2).unwrap();
             let mut out = RunFolder::prepare(&out, false, &case.inputs).unwrap();
             results::write_case(&case, &mut out).unwrap();
@@ -188,17 +247,6 @@ fn what_is_said_is_what_is_taken() {
             (memory, taken)
         });
     }
-    bands(folder.path());
-    checkpoints(folder.path());
-    for base in [
-        "",
-        "base.slider = { outline = 'disc', viscosity_time_star = 0.1 }\n",
-    ] {
-        study(base, folder.path());
-    }
-    masks(folder.path());
-    ranks(folder.path());
-    pictures_of_a_large_lattice(folder.path());
 }
 
 /// Bands of the general kernel, as many as possible: each holds the rows beside its own once more.

@@ -1,5 +1,5 @@
-//! Exact answers: every law of the model that has a closed solution, on the fused kernel. `physics_on_general` runs
-//! these tests on the general kernel.
+//! Exact answers: every law of the model that has a closed solution, orders of convergence, and claims of the paper, on the fused kernel.
+//! `physics_on_general` runs tests of both kernels on the general one.
 
 #![allow(clippy::unwrap_used)] // A helper that cannot do its work fails its test.
 
@@ -14,6 +14,7 @@ const KERNEL: Kernel = Kernel::Fused;
 mod ageing;
 mod composite;
 mod contact_springs;
+mod convergence;
 mod correlated;
 mod driven_fronts;
 mod edge_drive;
@@ -30,6 +31,7 @@ mod oracle_drive;
 mod oracle_friction;
 mod oracle_sliders;
 mod outline;
+mod paper;
 mod program;
 mod rate_and_state;
 mod scale_invariance;

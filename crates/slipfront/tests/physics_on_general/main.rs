@@ -1,4 +1,4 @@
-//! The exact answers of `physics`, on the general kernel.
+//! Exact answers and orders of convergence of `physics`, on the general kernel.
 
 #![allow(clippy::unwrap_used)] // A helper that cannot do its work fails its test.
 
@@ -12,6 +12,8 @@ const KERNEL: Kernel = Kernel::General;
 
 #[path = "../physics/composite.rs"]
 mod composite;
+#[path = "../physics/convergence.rs"]
+mod convergence;
 #[path = "../physics/energy.rs"]
 mod energy;
 #[path = "../physics/first_slip.rs"]

@@ -326,11 +326,15 @@ impl Band {
         let first_slip = &mut self.first_slip[blocks.clone()][..n];
         let (mut n_sliding, mut n_slipping) = (0_u32, 0_u32);
         for k in 0..n {
-            let slips = slides[k] & !textured[k];
             n_sliding += u32::from(slides[k]);
-            n_slipping += u32::from(slips);
-            let is_first = slips & first_slip[k].is_nan();
-            first_slip[k] = if is_first { time_star } else { first_slip[k] };
+            n_slipping += u32::from(slides[k] & !textured[k]);
+        }
+        // Mostly no block slips, or all of them have before.
+        if n_slipping > 0 {
+            for k in 0..n {
+                let is_first = slides[k] & !textured[k] & first_slip[k].is_nan();
+                first_slip[k] = if is_first { time_star } else { first_slip[k] };
+            }
         }
         self.counts[0] += i64::from(n_sliding);
         self.counts[1] += i64::from(n_slipping);

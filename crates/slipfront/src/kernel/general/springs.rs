@@ -169,7 +169,7 @@ fn between(blocks: &Range<usize>, first: usize, end: usize) -> Range<usize> {
     first.max(blocks.start).min(end)..end
 }
 
-/// Force on some blocks along `bond`; zero where a free edge leaves its neighbour out.
+/// Force on some blocks along `bond`; zero where a free edge leaves its neighbour out, as `force` is at the beginning.
 #[inline(always)]
 fn along_bond(
     lattice: &Lattice,
@@ -194,7 +194,8 @@ fn along_bond(
     if let Some(i) = column {
         replace(lattice, 0, in_column(lattice, blocks, i), bond, connection, force);
     }
-    if bond.offset[1] == 1 {
+    // Beyond a free edge there is no neighbour: the forces there are zero from the beginning, and no loop writes them.
+    if bond.offset[1] == 1 && lattice.edges[1] == Edges::Periodic {
         let top = between(blocks, lattice.block(0, lattice.ny - 1), n);
         replace(lattice, 1, top, bond, connection, force);
     }

@@ -2,10 +2,10 @@
 
 use slipfront_case::case::Case;
 
-use crate::content::{Button, Keys, Lesson, Number, Quantity, case, lessons, numbers, words};
-use crate::measured::Runs;
-use crate::said::Said;
-use crate::words::ids;
+use super::content::{Button, Keys, Lesson, Number, Quantity, case, lessons, numbers, words};
+use super::measured::Runs;
+use super::said::Said;
+use super::words::ids;
 
 /// Value of a key of a case in which every default is filled in.
 fn value_of_key(case: &Case, key: &str) -> toml::Value {

@@ -1,7 +1,5 @@
 //! Height maps that public tools have written (`heights/make.py`), against what numpy computes of them.
 
-#![allow(clippy::unwrap_used)] // A helper that cannot do its work fails its test.
-
 use std::fs::File;
 use std::io::{BufReader, Write};
 use std::path::{Path, PathBuf};

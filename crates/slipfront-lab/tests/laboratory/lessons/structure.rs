@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::fs;
 
-use crate::content::{Keys, Lesson, LessonWords, Step, case, lessons, web, words};
+use super::content::{Keys, Lesson, LessonWords, Step, case, lessons, web, words};
 
 /// Largest side of a slider, blocks: each case runs within some seconds.
 const MAX_SIDE: u32 = 100;

@@ -1,8 +1,5 @@
 //! Calibrations: their results for records whose truth is known, and that results are equal however the runs are made.
 
-// Helpers of tests are not tests by themselves to clippy.
-#![allow(clippy::unwrap_used)]
-
 mod rate_and_state;
 
 use std::fs;

@@ -4,20 +4,12 @@
 //! program. Tolerances are three standard deviations of the same quantity over ten surfaces of this one,
 //! unless a comment says otherwise.
 
-#![allow(clippy::unwrap_used)] // A helper that cannot do its work fails its test.
-
-#[path = "../common/mod.rs"]
-mod common;
-
 use rstest::rstest;
 use slipfront::communicator::Alone;
 use slipfront::surface::{Coefficients, Distribution, Load, Orientation, Texture};
-use slipfront::{Drive, Edges, FrictionLaw, Kernel, Lattice, Model, Scales, Surface, scales};
+use slipfront::{Drive, Edges, FrictionLaw, Lattice, Model, Scales, Surface, scales};
 
-use common::{Slider, at_rest, cavity, groove};
-
-/// The kernel of the simulations of this binary.
-const KERNEL: Kernel = Kernel::Fused;
+use crate::common::{Slider, at_rest, cavity, groove};
 
 /// The slider of the texture figures: 50 x 50 blocks, sigma_s* = 0.
 fn textured(textures: Vec<Texture>, seed: u64) -> Slider {

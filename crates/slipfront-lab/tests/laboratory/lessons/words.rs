@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use crate::content::{LessonWords, numbers, words};
+use super::content::{LessonWords, numbers, words};
 
 /// Words behind which a number is a name.
 const NAMES: [&str; 3] = ["Fig. ", "Table ", "Eq. "];

@@ -1,7 +1,5 @@
 //! A case that several ranks make equals the case that one process makes.
 
-#![allow(clippy::unwrap_used)] // A helper that cannot do its work fails its test.
-
 use std::fs::File;
 use std::io::{Read, Write};
 use std::path::Path;

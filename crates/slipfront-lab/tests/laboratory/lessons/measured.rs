@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use slipfront_run::running;
 use slipfront_run::summary::Summary;
 
-use crate::content::{Keys, Number, Quantity, case};
+use super::content::{Keys, Number, Quantity, case};
 
 /// Runs of which numbers are taken, each made once.
 pub(crate) struct Runs(BTreeMap<String, Run>);

@@ -1,8 +1,5 @@
 //! Friction across the drive in the summary equals that of the curve.
 
-// Helpers of tests are not tests by themselves to clippy.
-#![allow(clippy::unwrap_used)]
-
 use std::sync::Arc;
 
 use slipfront_case::case::Case;

@@ -1,8 +1,5 @@
 //! Designs: the results of the search, and that they are equal however it is run.
 
-// Helpers of tests are not tests by themselves to clippy.
-#![allow(clippy::unwrap_used)]
-
 use std::fs;
 use std::path::Path;
 use std::sync::Arc;

@@ -1,7 +1,5 @@
 //! Every exact answer of the models around the paper's, and the page of the documentation that shows them.
 
-#![allow(clippy::unwrap_used)]
-
 use std::path::Path;
 
 use slipfront_paper::family;

@@ -1,8 +1,6 @@
 //! Fields files of known values: one of an ordinary lattice, one of a lattice so large that its arrays have more than 2
 //! and 4 GiB, and one that netCDF-C has written; and a kymograph. `tests/fields/run.sh` lets other programs read all but the third.
 
-#![allow(clippy::unwrap_used)] // A helper that cannot do its work fails its test.
-
 use std::fs::{self, File};
 #[cfg(unix)]
 use std::io::Read;

@@ -1,7 +1,5 @@
 //! Files of textures for other programs: their outlines fill the textured blocks of the case.
 
-#![allow(clippy::unwrap_used)]
-
 use std::f64::consts::{PI, TAU};
 use std::fs;
 use std::path::Path;

@@ -3,20 +3,14 @@
 //! `cargo test` goes to a million steps. Up to 10^8, with the figures:
 //!
 //! ```console
-//! $ SLIPFRONT_SOAK=long cargo test --release -p slipfront-cli --test soak -- --nocapture
+//! $ SLIPFRONT_SOAK=long cargo test --release -p slipfront-cli --test torture soak -- --nocapture
 //! ```
-
-#![cfg(target_os = "linux")] // Where /proc tells how much memory a process has had.
-#![allow(clippy::unwrap_used)] // A helper that cannot do its work fails its test.
-
-#[path = "support/mod.rs"]
-mod support;
 
 use std::collections::BTreeMap;
 use std::thread::sleep;
 use std::time::Duration;
 
-use support::workspace::Workspace;
+use crate::support::workspace::Workspace;
 
 /// Time, memory and disk space of a run, and its error of energy.
 struct Soaked {

@@ -2,9 +2,6 @@
 //!
 //! A new case fails until its pin is added: the failure prints the lines to add.
 
-// Helpers of tests are not tests by themselves to clippy.
-#![allow(clippy::unwrap_used)]
-
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;

@@ -1,8 +1,5 @@
 //! Study files: those of the documentation and of `cases/studies`, and one that is nested too deeply.
 
-// Helpers of tests are not tests by themselves to clippy.
-#![allow(clippy::unwrap_used)]
-
 use std::fs;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;

@@ -1,0 +1,8 @@
+//! What one run computes and writes.
+
+#![allow(clippy::unwrap_used)] // A helper that cannot do its work fails its test.
+
+mod fields;
+mod lateral_friction;
+mod regression;
+mod texture_files;
