@@ -1,4 +1,4 @@
-//! What one run computes and writes.
+//! Tests of what one run computes and writes.
 
 #![allow(clippy::unwrap_used)] // A helper that cannot do its work fails its test.
 
