@@ -96,8 +96,11 @@ class Windows:
         subprocess.run([compiler, "-shared", "-O1", "-o", library, HERE / "bcryptprimitives.c", "-ladvapi32"], check=True)
         self.line = [wine, folder / "slipfront.exe"]
         self.environment = {"WINEPREFIX": str(WORK / "wine"), "WINEDEBUG": "-all", "WINEDLLOVERRIDES": "mscoree,mshtml="}
+        # Services of wine last as long as any process of it, and inherit the pipes of the command that starts them, which would be waited for.
+        quiet = {"env": {**os.environ, **self.environment}, "stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+        self.lasting = subprocess.Popen([wine, "cmd"], stdin=subprocess.PIPE, **quiet)
+        subprocess.run([wine, "cmd", "/c", "ver"], check=True, **quiet)
         # Windows has no /proc: of this machine, the program sees the checkout alone.
-        subprocess.run([wine, "cmd", "/c", "ver"], env={**os.environ, **self.environment}, capture_output=True, check=True)
         drives = WORK / "wine/dosdevices"
         (drives / "z:").unlink(missing_ok=True)
         if not (drives / "w:").is_symlink():

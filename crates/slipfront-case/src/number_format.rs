@@ -15,7 +15,7 @@ pub fn four_digits(value: f64) -> String {
     if value != 0.0 && !(1e-3..1e6).contains(&value.abs()) {
         return format!("{value:.3e}");
     }
-    let digits = (3 - value.abs().max(1e-9).log10().floor() as i32).clamp(0, 6) as usize;
+    let digits = (3 - libm::log10(value.abs().max(1e-9)).floor() as i32).clamp(0, 6) as usize;
     let text = format!("{value:.digits$}");
     if text.contains('.') {
         text.trim_end_matches('0').trim_end_matches('.').to_owned()
@@ -37,7 +37,7 @@ pub fn four_places(value: f64) -> String {
 pub fn with_uncertainty(value: f64, uncertainty: Option<f64>) -> String {
     match uncertainty {
         Some(error) if error > 0.0 => {
-            let places = (1 - error.log10().floor() as i32).clamp(0, 12) as usize;
+            let places = (1 - libm::log10(error).floor() as i32).clamp(0, 12) as usize;
             format!("{value:.places$} \u{b1} {error:.places$}")
         }
         Some(_) => format!("{} \u{b1} 0", four_places(value)),
@@ -52,10 +52,10 @@ pub fn with_half_width(value: f64, half: Option<f64>) -> String {
     let Some(half) = half else {
         return four_places(value);
     };
-    let decade = |number: f64| number.abs().log10().floor();
+    let decade = |number: f64| libm::log10(number.abs()).floor();
     let size = value.abs().max(half);
     if size != 0.0 && !(-3.0..6.0).contains(&decade(size)) {
-        let scale = 10_f64.powf(decade(size));
+        let scale = libm::pow(10.0, decade(size));
         let scaled = with_half_width(value / scale, Some(half / scale));
         return format!("({scaled})e{}", decade(size));
     }
@@ -110,8 +110,8 @@ pub fn si_prefix(value: f64) -> (f64, &'static str) {
     if !value.is_normal() {
         return (1.0, "");
     }
-    let step = (value.abs().log10() / 3.0 + 1e-9).floor().clamp(-6.0, 6.0);
-    (1000f64.powf(step), PREFIXES[(step + 6.0) as usize])
+    let step = (libm::log10(value.abs()) / 3.0 + 1e-9).floor().clamp(-6.0, 6.0);
+    (libm::pow(1000.0, step), PREFIXES[(step + 6.0) as usize])
 }
 
 /// A prefix of a unit as pictures print it.
@@ -134,7 +134,7 @@ pub fn are(number: usize, thing: &str) -> String {
 /// A number of bytes: 22.9 GiB.
 pub fn byte_size(bytes: f64) -> String {
     const UNITS: [&str; 7] = ["B", "KiB", "MiB", "GiB", "TiB", "PiB", "EiB"];
-    let power = ((bytes.max(1.0).log2() / 10.0) as usize).min(UNITS.len() - 1);
+    let power = ((libm::log2(bytes.max(1.0)) / 10.0) as usize).min(UNITS.len() - 1);
     let digits = usize::from(power > 0);
     format!("{:.digits$} {}", bytes / 1024f64.powi(power as i32), UNITS[power])
 }

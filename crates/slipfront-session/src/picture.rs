@@ -217,7 +217,7 @@ fn round_up(value: f32) -> f32 {
     if value <= 0.0 || !value.is_finite() {
         return 1e-30;
     }
-    let power = 10f32.powf(value.log10().floor());
+    let power = libm::powf(10.0, libm::log10f(value).floor());
     let steps = [1.0, 1.5, 2.0, 3.0, 5.0, 7.0, 10.0];
     let step = steps.into_iter().find(|step| step * power >= value);
     step.unwrap_or(10.0) * power

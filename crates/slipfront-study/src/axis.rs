@@ -222,7 +222,7 @@ impl Axis {
             return false;
         };
         let median = 0.5 * (numbers[(numbers.len() - 1) / 2] + numbers[numbers.len() / 2]);
-        let ratio = |mean: f64| (median / mean).ln().abs();
+        let ratio = |mean: f64| libm::log(median / mean).abs();
         least > 0.0 && most >= 10.0 * least && ratio((least * most).sqrt()) < ratio(0.5 * (least + most))
     }
 

@@ -113,7 +113,7 @@ impl Budget {
 
     /// Elements for which a vector has room that grew to `length` by doubling.
     pub fn grown(length: f64) -> f64 {
-        length.max(4.0).log2().ceil().exp2()
+        libm::exp2(libm::log2(length.max(4.0)).ceil())
     }
 
     /// Bytes while the case is made.

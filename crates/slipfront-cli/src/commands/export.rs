@@ -24,7 +24,7 @@ pub(crate) struct ExportCommand {
     folders: Vec<PathBuf>,
     #[command(flatten)]
     form: Form,
-    /// Who made the runs: a name, or \"NAME <https://orcid.org/0000-0000-0000-0000>\"
+    /// Who made the runs: a name, or "NAME <https://orcid.org/0000-0000-0000-0000>"
     #[arg(long, value_name = "NAME")]
     author: Option<Author>,
     /// Licence of the results: an identifier of SPDX such as CC-BY-4.0, or an address

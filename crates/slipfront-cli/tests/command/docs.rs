@@ -1,5 +1,5 @@
-//! Every case in the book can be read, every command line is understood by the command, every link leads somewhere, and every `unsafe` is
-//! listed.
+//! Every case in the book can be read, every command line is understood by the command, every link leads somewhere, every `unsafe` is
+//! listed, and no number is left to the mathematical library of the system.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -319,6 +319,56 @@ fn every_unsafe_has_its_reason_and_stands_in_the_book() {
         "{} are {number:?}",
         found.len()
     );
+}
+
+/// Functions of the standard library that the mathematical library of the system computes: their last digits depend on the machine.
+const OF_THE_SYSTEM: [&str; 25] = [
+    "acos", "acosh", "asin", "asinh", "atan", "atan2", "atanh", "cbrt", "cos", "cosh", "exp", "exp2",
+    "exp_m1", "hypot", "ln", "ln_1p", "log", "log10", "log2", "powf", "sin", "sin_cos", "sinh", "tan",
+    "tanh",
+];
+
+/// The numbers of the lines, from 0 on, that call one of these functions, in the code before its tests.
+fn lines_of_the_system(code: &str) -> Vec<usize> {
+    let calls = |line: &str| {
+        let code = line.split("//").next().unwrap_or_default();
+        OF_THE_SYSTEM.iter().any(|function| {
+            let method = code.contains(&format!(".{function}("));
+            method
+                || ["f32", "f64"]
+                    .iter()
+                    .any(|float| code.contains(&format!("{float}::{function}")))
+        })
+    };
+    let lines: Vec<&str> = code.lines().collect();
+    let begins_tests =
+        |k: &usize| lines[*k] == "#[cfg(test)]" && lines.get(k + 1).is_some_and(|line| line.ends_with('{'));
+    let end = (0..lines.len()).find(begins_tests).unwrap_or(lines.len());
+    (0..end).filter(|&k| calls(lines[k])).collect()
+}
+
+/// Sines, logarithms and the like of all that slipfront computes and writes come from libm, which is the same everywhere.
+#[test]
+fn no_number_is_left_to_the_system() {
+    let repository = repository();
+    let mut files = Vec::new();
+    for folder in ["crates", "python/src"] {
+        rust_files(&repository.join(folder), &mut files);
+    }
+    let mut found = String::new();
+    for file in files.iter().filter(|file| !file.ends_with("tests.rs")) {
+        for k in lines_of_the_system(&std::fs::read_to_string(file).unwrap()) {
+            found += &format!("\n{}:{}", file.display(), k + 1);
+        }
+    }
+    assert!(found.is_empty(), "take the function from libm:{found}");
+}
+
+#[test]
+fn functions_of_the_system_are_found_in_code_and_not_in_tests() {
+    let code = "use f64::consts::PI;\nx.sin()\n// x.sin()\nlibm::sin(x)\nxs.map(f64::ln)\n#[cfg(test)]\nmod tests;\nx.hypot(y)\n\
+                #[cfg(test)]\nmod tests {\nx.exp()\n}\n";
+    assert_eq!(lines_of_the_system(code), [1, 4, 7]);
 }
 
 #[test]

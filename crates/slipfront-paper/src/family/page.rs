@@ -71,7 +71,7 @@ fn digits(value: f64) -> String {
     let places = if value == 0.0 {
         0
     } else {
-        5 - value.abs().log10().floor() as i32
+        5 - libm::log10(value.abs()).floor() as i32
     };
     format!("{value:.*}", places.clamp(0, 12) as usize)
 }

@@ -22,7 +22,7 @@ fn radii(model: &Model) -> Vec<f64> {
     let blocks = (0..model.lattice.n_blocks()).filter(|&b| model.slider().exists(b));
     let radius = |b: usize| {
         let (i, j) = model.lattice.column_row(b);
-        f64::hypot(i as f64 + 0.5 - half[0], j as f64 + 0.5 - half[1])
+        libm::hypot(i as f64 + 0.5 - half[0], j as f64 + 0.5 - half[1])
     };
     blocks.map(radius).collect()
 }
@@ -51,7 +51,7 @@ fn excess(radii: &[f64], stuck: f64, r_star: f64) -> f64 {
     let pull = K_DRIVE * V_STAR;
     let of_block = |r: &f64| {
         let since = (1.0 / stuck - largest / r) / pull - DT_STAR;
-        let left = fast / (fast - slow) * (-slow * since).exp();
+        let left = fast / (fast - slow) * libm::exp(-slow * since);
         r * ((1.0 - r_star) * left.min(1.0) + damping * V_STAR * r / largest)
     };
     let sliding = radii.iter().filter(|r| **r > stuck * largest);

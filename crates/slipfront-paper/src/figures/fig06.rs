@@ -52,7 +52,11 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
 
 /// Exponent of a power law through the means, by least squares of logarithms.
 fn slope(x: &[f64], y: &[MeasuredNumber]) -> f64 {
-    let (x, y): (Vec<f64>, Vec<f64>) = x.iter().zip(y).map(|(x, y)| (x.ln(), y.value.ln())).unzip();
+    let (x, y): (Vec<f64>, Vec<f64>) = x
+        .iter()
+        .zip(y)
+        .map(|(x, y)| (libm::log(*x), libm::log(y.value)))
+        .unzip();
     let (center_x, center_y) = (mean(&x), mean(&y));
     let products = x.iter().zip(&y).map(|(x, y)| (x - center_x) * (y - center_y));
     products.sum::<f64>() / x.iter().map(|x| (x - center_x).powi(2)).sum::<f64>()

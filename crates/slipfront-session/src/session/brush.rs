@@ -53,7 +53,7 @@ fn distance([x, y]: [f64; 2], from: [f64; 2], to: [f64; 2]) -> f64 {
     } else {
         0.0
     };
-    (x - from[0] - along * dx).hypot(y - from[1] - along * dy)
+    libm::hypot(x - from[0] - along * dx, y - from[1] - along * dy)
 }
 
 #[cfg(test)]

@@ -229,8 +229,8 @@ impl Session {
             } else {
                 block.traction() * case.scales.stress()
             },
-            displacement_m: (x + from_x).hypot(y + from_y),
-            speed_m_s: block.velocity[0].hypot(block.velocity[1]) * case.scales.speed(),
+            displacement_m: libm::hypot(x + from_x, y + from_y),
+            speed_m_s: libm::hypot(block.velocity[0], block.velocity[1]) * case.scales.speed(),
             first_slip_star: (!first_slip.is_nan()).then_some(first_slip),
         });
         self.host.reply(probe.json());

@@ -109,5 +109,5 @@ fn places_of(number: f64) -> usize {
     if number == 0.0 {
         return 0;
     }
-    (1.0 - number.abs().log10().floor()).clamp(0.0, 12.0) as usize
+    (1.0 - libm::log10(number.abs()).floor()).clamp(0.0, 12.0) as usize
 }

@@ -46,7 +46,7 @@ pub fn ageing_slip_time(law: &Ageing, pull: f64, hold: f64, k: f64, v: f64) -> f
 }
 
 fn slip_time(law: &Ageing, stopped_at: f64, pull: f64, hold: f64, k: f64, v: f64) -> f64 {
-    let aged = |t: f64| 1.0 + law.beta * ((t - stopped_at) / law.time).ln_1p();
+    let aged = |t: f64| 1.0 + law.beta * libm::log1p((t - stopped_at) / law.time);
     let excess = |t: f64| pull + k * v * (t - hold) - aged(t);
     // The pull rises linearly, what it must reach more slowly from some time on: a bracket, then bisection to the last bit.
     let (mut low, mut high) = (hold, hold + 1.0);
@@ -93,10 +93,10 @@ impl StopOfSteadySliding {
     /// The stop of a block with kinetic friction `kinetic` = `mu_k F_n` on a drive spring of stiffness `k`; the mass is 1.
     pub fn new(kinetic: f64, v: f64, k: f64, damping: f64) -> Self {
         let w = (k - 0.25 * damping * damping).sqrt();
-        let time = (std::f64::consts::PI - (2.0 * w).atan2(damping)) / w;
+        let time = (std::f64::consts::PI - libm::atan2(2.0 * w, damping)) / w;
         Self {
             time,
-            pull: kinetic - k.sqrt() * v * (-0.5 * damping * time).exp(),
+            pull: kinetic - k.sqrt() * v * libm::exp(-0.5 * damping * time),
         }
     }
 
@@ -121,7 +121,7 @@ impl StopOfSteadySliding {
 /// assert!((friction_after_speed_step(&law, 1.0, 10.0, 0.0) - 0.02 * 10_f64.ln()).abs() < 1e-16);
 /// ```
 pub fn friction_after_speed_step(law: &RateAndState, v_1: f64, v_2: f64, x: f64) -> f64 {
-    law.b * ((v_2 / v_1 - 1.0) * (-x / law.d_c).exp()).ln_1p()
+    law.b * libm::log1p((v_2 / v_1 - 1.0) * libm::exp(-x / law.d_c))
 }
 
 /// Rate at which a small disturbance of steady sliding at `v` grows, of a block of mass 1 under the normal force `sigma` on a spring of
@@ -199,7 +199,7 @@ pub fn static_over_kinetic_of_springs(w: f64, redrawn: bool) -> f64 {
 /// assert!((chain_slip_force(2, 0.75, 0.25) - 1.75).abs() < 1e-12);
 /// ```
 pub fn chain_slip_force(n: usize, k: f64, k_t: f64) -> f64 {
-    let q = (1.0 + 0.5 * k_t / k).acosh();
+    let q = libm::acosh(1.0 + 0.5 * k_t / k);
     let n = n as f64;
-    (q * n).sinh() / (2.0 * (0.5 * q).sinh() * (q * (n - 0.5)).cosh())
+    libm::sinh(q * n) / (2.0 * libm::sinh(0.5 * q) * libm::cosh(q * (n - 0.5)))
 }

@@ -95,8 +95,8 @@ struct DampedOscillation {
 
 impl DampedOscillation {
     fn at(&self, t: f64) -> f64 {
-        let (s, c) = (self.frequency * t).sin_cos();
-        (-self.decay * t).exp() * (self.cosine * c + self.sine * s)
+        let (s, c) = libm::sincos(self.frequency * t);
+        libm::exp(-self.decay * t) * (self.cosine * c + self.sine * s)
     }
 
     fn derivative(&self) -> Self {
@@ -109,7 +109,7 @@ impl DampedOscillation {
 
     /// First zero after t = 0.
     fn first_zero(&self) -> f64 {
-        let phase = f64::atan2(self.cosine, -self.sine);
+        let phase = libm::atan2(self.cosine, -self.sine);
         phase.rem_euclid(std::f64::consts::PI) / self.frequency
     }
 }
@@ -250,14 +250,15 @@ pub struct LatticeWave {
 /// assert!((fast.omega_squared - 4.875).abs() < 1e-14);
 /// ```
 pub fn lattice_waves(a: f64, b: f64, k_drive: f64) -> [LatticeWave; 2] {
-    let both = 2.0 * K_DIAGONAL * (1.0 - a.cos() * b.cos()) + k_drive;
-    let d11 = 2.0 * K_STRAIGHT * (1.0 - a.cos()) + both;
-    let d22 = 2.0 * K_STRAIGHT * (1.0 - b.cos()) + both;
-    let d12 = 2.0 * K_DIAGONAL * a.sin() * b.sin();
+    let [(sin_a, cos_a), (sin_b, cos_b)] = [libm::sincos(a), libm::sincos(b)];
+    let both = 2.0 * K_DIAGONAL * (1.0 - cos_a * cos_b) + k_drive;
+    let d11 = 2.0 * K_STRAIGHT * (1.0 - cos_a) + both;
+    let d22 = 2.0 * K_STRAIGHT * (1.0 - cos_b) + both;
+    let d12 = 2.0 * K_DIAGONAL * sin_a * sin_b;
     let (middle, half) = (0.5 * (d11 + d22), 0.5 * (d11 - d22));
-    let radius = half.hypot(d12);
+    let radius = libm::hypot(half, d12);
     // Half the angle of (half, d12) is the direction of the faster wave.
-    let (s, c) = (0.5 * d12.atan2(half)).sin_cos();
+    let (s, c) = libm::sincos(0.5 * libm::atan2(d12, half));
     [
         LatticeWave {
             omega_squared: middle - radius,
@@ -282,7 +283,7 @@ pub fn lattice_waves(a: f64, b: f64, k_drive: f64) -> [LatticeWave; 2] {
 /// assert!((number - std::f64::consts::PI).abs() < 1e-12);
 /// ```
 pub fn leapfrog_frequency(omega: f64, dt: f64) -> f64 {
-    2.0 / dt * (0.5 * omega * dt).asin()
+    2.0 / dt * libm::asin(0.5 * omega * dt)
 }
 
 /// Which way a groove or a front faces the sliding direction.
@@ -319,9 +320,9 @@ impl Facing {
 /// ```
 pub fn groove_edge_factor(facing: Facing, n: usize) -> f64 {
     let k = facing.row_stiffness();
-    let q = (1.0 + K_DRIVE / (2.0 * k)).acosh();
+    let q = libm::acosh(1.0 + K_DRIVE / (2.0 * k));
     let n = n as f64;
-    let r = (0.5 * q * (n - 1.0)).cosh() / (0.5 * q * (n + 1.0)).cosh();
+    let r = libm::cosh(0.5 * q * (n - 1.0)) / libm::cosh(0.5 * q * (n + 1.0));
     1.0 + k / K_DRIVE * (1.0 - r)
 }
 

@@ -94,7 +94,7 @@ pub fn viscous_decay_rate(omega_squared: f64, damping: f64, viscosity_time: f64)
 /// ```
 pub fn lagged_decay_rate(omega_squared: f64, viscosity_time: f64, dt: f64) -> f64 {
     let gamma = viscosity_time * (omega_squared - K_DRIVE);
-    -(-gamma * dt).ln_1p() / (2.0 * dt)
+    -libm::log1p(-gamma * dt) / (2.0 * dt)
 }
 
 /// Largest mu* of a surface of two zones whose blocks do not pull at each other: a fraction `f` of the blocks has the static

@@ -224,7 +224,7 @@ fn uncertainty(x: &[f64], window_star: [f64; 2], v_star: f64) -> Result<f64, NoU
     for first in [x.len() / 2, x.len() / 4] {
         let difference = (mean(&x[..first]) - mean(&x[first..])).abs();
         let [one, other] = [&level[..first], &level[first..]].map(standard_error);
-        if difference > NEGLIGIBLE_DRIFT && difference > MOST_DRIFT * one.hypot(other) {
+        if difference > NEGLIGIBLE_DRIFT && difference > MOST_DRIFT * libm::hypot(one, other) {
             return Err(NoUncertainty::Drift {
                 needed_time_star: until + (until - from),
             });
