@@ -36,7 +36,7 @@ fn end(mut lab: Served) -> Duration {
     told.recv_timeout(2 * TIMEOUT).expect("the server has not ended")
 }
 
-/// Asks for answers of 60 times a megabyte, of which the system keeps a few for whoever reads them later.
+/// Asks for answers of 25 times a megabyte, of which the system keeps a few for whoever reads them later.
 fn ask_for_much(page: &mut Page) {
     let number = format!("0.5{}", "0".repeat(253));
     let row = vec![number; 64].join(",") + "\n";
@@ -44,7 +44,7 @@ fn ask_for_much(page: &mut Page) {
     let toml = "slider.blocks = [64, 64]\nfriction.mu_static_field = 'mu.csv'\n";
     page.send(&json!({ "do": "open", "source": { "toml": toml, "files": files } }));
     page.reply("case");
-    for _ in 0..60 {
+    for _ in 0..25 {
         page.send(&json!({ "do": "export" }));
     }
 }

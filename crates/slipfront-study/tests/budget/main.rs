@@ -147,7 +147,12 @@ fn alone(name: &str, work: impl FnOnce(&Path)) {
 
 #[test]
 fn runs_take_what_is_said() {
-    alone("runs_take_what_is_said", runs);
+    alone("runs_take_what_is_said", |folder| runs(&RUNS, folder));
+}
+
+#[test]
+fn other_runs_take_what_is_said() {
+    alone("other_runs_take_what_is_said", |folder| runs(&OTHER_RUNS, folder));
 }
 
 #[test]
@@ -190,44 +195,51 @@ fn pictures_of_a_large_lattice_take_what_is_said() {
     );
 }
 
-/// Whole runs of many kinds.
-fn runs(folder: &Path) {
-    for sets in [
-        // Pictures, and the rows of a long series.
-        "slider.blocks=[1,1]",
-        "slider.blocks=[25,25];output.snapshots=[]",
-        "slider.blocks=[3,3];output.series=0.1;time.duration_star=8000",
-        // The lattice.
-        "slider.blocks=[600,600];time.duration_star=1;output.snapshots=[]",
-        "slider.blocks=[256,256];drive.v_star=0.3",
-        // Tall and wide pictures of the front.
-        "slider.blocks=[60,180];drive.v_star=0.1;output.snapshots=[]",
-        "slider.blocks=[300,75];drive.v_star=0.1;output.snapshots=[]",
-        // Laws of friction that remember more.
-        "slider.blocks=[400,400];time.duration_star=1;output.snapshots=[];friction.contact='springs';\
-         friction.contact_stiffness_star=0.1",
-        "slider.blocks=[300,300];time.duration_star=1;output.snapshots=[];friction.law='rate_and_state';friction.a=0.01;\
-         friction.b=0.02;friction.d_c_star=0.5;friction.v_0_star=0.03",
-        "slider.blocks=[3,3];output.series=0.1;time.duration_star=8000;friction.contact='springs';friction.contact_stiffness_star=0.1",
-        "slider.blocks=[400,400];time.duration_star=1;output.snapshots=[];friction.ageing={law='logarithmic',beta=0.1,time_star=1};\
-         friction.velocity={law='weakening',v_c_star=0.1,ratio=0.5}",
-        // Blocks that differ, in another kernel.
-        "slider.blocks=[500,500];slider.outline='disc';slider.viscosity_time_star=0.1;time.duration_star=1;output.snapshots=[]",
-        "slider.blocks=[500,500];slider.stiffness_grade={along='x',from=1,to=2};slider.density_grade={along='y',from=1,to=2};\
-         time.duration_star=1;output.snapshots=[]",
-        // Events of slip.
-        "slider.blocks=[60,1];slider.viscosity_time_star=0.3;slider.omega_star=0;friction.r_star=0.1;drive.attach='left';drive.v_star=1;\
-         drive.total_stiffness_star=0.004;time.step=0.6;time.duration_star=20000;output.snapshots=[];output.series=100",
-        // Snapshots.
-        "slider.blocks=[400,400];time.duration_star=2;output.snapshots={every=0.1}",
-        "slider.blocks=[400,400];time.duration_star=2;output.snapshots={every=0.1};output.stride=3",
-        "slider.blocks=[2,2];time.duration_star=200;output.snapshots={every=0.1};output.fields=[]",
-        // What is read.
-        "slider.blocks=[400,400];time.duration_star=1;output.snapshots=[];friction.mu_static_field='mu.npy';\
-         friction.mu_kinetic_field='mu.npy';texture=[{shape='mask',file='mask.png'},{shape='mask',file='mask.npy'}]",
-        // A thousand outlines of 4096 vertices.
-        "slider.blocks=[64,64];time.duration_star=1;output.snapshots=[];texture=[{shape='cavity',s=3,w=0.2,coverage=20,array=[40,25]}]",
-    ] {
+/// Whole runs: pictures, rows of a series, lattices and fronts.
+const RUNS: [&str; 7] = [
+    // Pictures, and the rows of a long series.
+    "slider.blocks=[1,1]",
+    "slider.blocks=[25,25];output.snapshots=[]",
+    "slider.blocks=[3,3];output.series=0.1;time.duration_star=8000",
+    // The lattice.
+    "slider.blocks=[600,600];time.duration_star=1;output.snapshots=[]",
+    "slider.blocks=[256,256];drive.v_star=0.3",
+    // Tall and wide pictures of the front.
+    "slider.blocks=[60,180];drive.v_star=0.1;output.snapshots=[]",
+    "slider.blocks=[300,75];drive.v_star=0.1;output.snapshots=[]",
+];
+
+/// Whole runs of other laws, in the other kernel, with events and snapshots, and of cases that read files.
+const OTHER_RUNS: [&str; 12] = [
+    // Laws of friction that remember more.
+    "slider.blocks=[400,400];time.duration_star=1;output.snapshots=[];friction.contact='springs';\
+     friction.contact_stiffness_star=0.1",
+    "slider.blocks=[300,300];time.duration_star=1;output.snapshots=[];friction.law='rate_and_state';friction.a=0.01;\
+     friction.b=0.02;friction.d_c_star=0.5;friction.v_0_star=0.03",
+    "slider.blocks=[3,3];output.series=0.1;time.duration_star=8000;friction.contact='springs';friction.contact_stiffness_star=0.1",
+    "slider.blocks=[400,400];time.duration_star=1;output.snapshots=[];friction.ageing={law='logarithmic',beta=0.1,time_star=1};\
+     friction.velocity={law='weakening',v_c_star=0.1,ratio=0.5}",
+    // Blocks that differ, in another kernel.
+    "slider.blocks=[500,500];slider.outline='disc';slider.viscosity_time_star=0.1;time.duration_star=1;output.snapshots=[]",
+    "slider.blocks=[500,500];slider.stiffness_grade={along='x',from=1,to=2};slider.density_grade={along='y',from=1,to=2};\
+     time.duration_star=1;output.snapshots=[]",
+    // Events of slip.
+    "slider.blocks=[60,1];slider.viscosity_time_star=0.3;slider.omega_star=0;friction.r_star=0.1;drive.attach='left';drive.v_star=1;\
+     drive.total_stiffness_star=0.004;time.step=0.6;time.duration_star=20000;output.snapshots=[];output.series=100",
+    // Snapshots.
+    "slider.blocks=[400,400];time.duration_star=2;output.snapshots={every=0.1}",
+    "slider.blocks=[400,400];time.duration_star=2;output.snapshots={every=0.1};output.stride=3",
+    "slider.blocks=[2,2];time.duration_star=200;output.snapshots={every=0.1};output.fields=[]",
+    // What is read.
+    "slider.blocks=[400,400];time.duration_star=1;output.snapshots=[];friction.mu_static_field='mu.npy';\
+     friction.mu_kinetic_field='mu.npy';texture=[{shape='mask',file='mask.png'},{shape='mask',file='mask.npy'}]",
+    // A thousand outlines of 4096 vertices.
+    "slider.blocks=[64,64];time.duration_star=1;output.snapshots=[];texture=[{shape='cavity',s=3,w=0.2,coverage=20,array=[40,25]}]",
+];
+
+/// Whole runs of cases with these keys.
+fn runs(all: &[&str], folder: &Path) {
+    for sets in all.iter().copied() {
         let overrides: Vec<String> = sets.split(';').map(str::to_owned).collect();
         let out = folder.join("out");
         let run = || {
