@@ -18,10 +18,23 @@ pub fn version_lines() -> &'static str {
             "{VERSION}\nbuild     {}\ncommit    {}\nplatform  {PLATFORM}, vectors: {}",
             this_build(),
             REVISION.unwrap_or("not known"),
-            slipfront::simd_width(),
+            vectors(),
         )
     });
     &LINES
+}
+
+/// The vector instructions of the kernels; those that every processor of this kind has with their name there, too.
+fn vectors() -> String {
+    let name = slipfront::simd_width();
+    let here = if cfg!(target_arch = "aarch64") {
+        " (NEON)"
+    } else if cfg!(target_arch = "x86_64") {
+        " (SSE2)"
+    } else {
+        ""
+    };
+    format!("{name}{}", if name == "baseline" { here } else { "" })
 }
 
 /// Name of this program in words.
