@@ -1,12 +1,33 @@
-//! Helpers for tests of slipfront and of crates that use it: ranks that are threads, and parts that are private to the fused
-//! kernel.
+//! Helpers for tests of slipfront and of crates that use it: ranks that are threads, parts that are private to the fused
+//! kernel, and tests that have a process of their own.
 
+use std::process::Command;
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread;
 
 use crate::communicator::Communicator;
 pub use crate::kernel::fused::for_tests::FusedKernel;
+
+/// Does some work in a process of its own, for what is measured of a whole process: the test program is begun once more for the test
+/// `name` alone, which calls this.
+///
+/// # Panics
+/// If the test fails there, or no test has this name.
+pub fn alone(name: &str, work: impl FnOnce()) {
+    const IS_ALONE: &str = "SLIPFRONT_TEST_IS_ALONE";
+    if std::env::var_os(IS_ALONE).is_some() {
+        return work();
+    }
+    let program = std::env::current_exe().expect("the test program has a path");
+    let done = Command::new(program)
+        .args([name, "--exact"])
+        .env(IS_ALONE, "")
+        .output()
+        .expect("the test program begins");
+    let printed = String::from_utf8_lossy(&done.stdout);
+    assert!(done.status.success() && printed.contains("1 passed"), "{printed}");
+}
 
 /// One of several ranks that are threads of this process: a lattice of many machines can be tried on one.
 #[derive(Clone, Debug)]

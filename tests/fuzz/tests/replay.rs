@@ -3,24 +3,11 @@
 // A helper that cannot do its work fails its test.
 #![allow(clippy::unwrap_used)]
 
-use std::process::Command;
-
+use slipfront::testing::alone;
 use slipfront_fuzz::{Mutator, TARGETS, Target};
 
-/// Runs a target on all of its inputs, in a process of its own since memory is measured for a whole process: there the test of this
-/// name is run once more.
+/// Runs a target on all of its inputs.
 fn replay(name: &str) {
-    const IS_ALONE: &str = "SLIPFRONT_TEST_IS_ALONE";
-    if std::env::var_os(IS_ALONE).is_some() {
-        return replay_here(name);
-    }
-    let mut again = Command::new(std::env::current_exe().unwrap());
-    let done = again.args([name, "--exact"]).env(IS_ALONE, "").output().unwrap();
-    let printed = String::from_utf8_lossy(&done.stdout);
-    assert!(done.status.success() && printed.contains("1 passed"), "{printed}");
-}
-
-fn replay_here(name: &str) {
     let target = Target::named(name).unwrap();
     let inputs = [target.findings(), target.seeds()].concat();
     assert!(!inputs.is_empty(), "{name} has no seeds");
@@ -59,7 +46,8 @@ macro_rules! replay {
     ($($name:ident)*) => {
         $(#[test]
         fn $name() {
-            replay(stringify!($name));
+            // Memory is measured for the whole process.
+            alone(stringify!($name), || replay(stringify!($name)));
         })*
 
         #[test]

@@ -5,14 +5,13 @@
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::path::Path;
-use std::process::Command;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use png::{BitDepth, ColorType, Encoder};
 use slipfront::Execution;
 use slipfront::communicator::Alone;
-use slipfront::testing::Threads;
+use slipfront::testing::{Threads, alone};
 use slipfront_case::case::{Case, Ranks};
 use slipfront_case::case_file::CaseFile;
 use slipfront_run::checkpoint::Checkpoints;
@@ -130,44 +129,38 @@ fn write_inputs(folder: &Path) {
     writer.finish().unwrap();
 }
 
-/// Does this work in a process of its own, in a folder with the files that are read: there the test `name`, which calls this, is run
-/// once more.
-fn alone(name: &str, work: impl FnOnce(&Path)) {
-    const IS_ALONE: &str = "SLIPFRONT_TEST_IS_ALONE";
-    if std::env::var_os(IS_ALONE).is_some() {
+/// Does this work of the test `name` in a process of its own, in a folder with the files that are read.
+fn alone_in_folder(name: &str, work: impl FnOnce(&Path)) {
+    alone(name, || {
         let folder = tempfile::tempdir().unwrap();
         write_inputs(folder.path());
-        return work(folder.path());
-    }
-    let mut again = Command::new(std::env::current_exe().unwrap());
-    let done = again.args([name, "--exact"]).env(IS_ALONE, "").output().unwrap();
-    let printed = String::from_utf8_lossy(&done.stdout);
-    assert!(done.status.success() && printed.contains("1 passed"), "{printed}");
+        work(folder.path());
+    });
 }
 
 #[test]
 fn runs_take_what_is_said() {
-    alone("runs_take_what_is_said", |folder| runs(&RUNS, folder));
+    alone_in_folder("runs_take_what_is_said", |folder| runs(&RUNS, folder));
 }
 
 #[test]
 fn other_runs_take_what_is_said() {
-    alone("other_runs_take_what_is_said", |folder| runs(&OTHER_RUNS, folder));
+    alone_in_folder("other_runs_take_what_is_said", |folder| runs(&OTHER_RUNS, folder));
 }
 
 #[test]
 fn bands_take_what_is_said() {
-    alone("bands_take_what_is_said", bands);
+    alone_in_folder("bands_take_what_is_said", bands);
 }
 
 #[test]
 fn checkpoints_take_what_is_said() {
-    alone("checkpoints_take_what_is_said", checkpoints);
+    alone_in_folder("checkpoints_take_what_is_said", checkpoints);
 }
 
 #[test]
 fn runs_at_once_take_what_is_said() {
-    alone("runs_at_once_take_what_is_said", |folder| {
+    alone_in_folder("runs_at_once_take_what_is_said", |folder| {
         for base in [
             "",
             "base.slider = { outline = 'disc', viscosity_time_star = 0.1 }\n",
@@ -179,17 +172,17 @@ fn runs_at_once_take_what_is_said() {
 
 #[test]
 fn masks_of_one_image_take_one_mask() {
-    alone("masks_of_one_image_take_one_mask", masks);
+    alone_in_folder("masks_of_one_image_take_one_mask", masks);
 }
 
 #[test]
 fn ranks_take_no_more_than_one_process() {
-    alone("ranks_take_no_more_than_one_process", ranks);
+    alone_in_folder("ranks_take_no_more_than_one_process", ranks);
 }
 
 #[test]
 fn pictures_of_a_large_lattice_take_what_is_said() {
-    alone(
+    alone_in_folder(
         "pictures_of_a_large_lattice_take_what_is_said",
         pictures_of_a_large_lattice,
     );
