@@ -6,7 +6,7 @@ use slipfront::{Execution, Simulation};
 use slipfront_case::case::Case;
 
 /// Duration of an estimate.
-const ESTIMATE: Duration = Duration::from_millis(100);
+const ESTIMATE: Duration = Duration::from_millis(25);
 
 /// Seconds that a step of this case takes when every block is computed: no run takes longer, and one with blocks at rest is
 /// faster.
