@@ -35,6 +35,11 @@ impl DrawnAxis {
         // A logarithmic axis of less than about half a decade is numbered like a linear one.
         if choices.first().is_none_or(|ticks| ticks.len() < 3) {
             choices = (2..=most).rev().map(|most| self.linear_ticks(most)).collect();
+            // An axis may lie between two numbers that are half of it apart; of those a third apart it has one.
+            choices.retain(|ticks| !ticks.is_empty());
+            if choices.is_empty() {
+                choices.push(self.linear_ticks(3));
+            }
         }
         if let Some(chosen) = choices.iter().find(|ticks| apart(ticks, direction)) {
             return chosen.clone();
@@ -109,12 +114,12 @@ pub(crate) fn apart(ticks: &[Tick], direction: Direction) -> bool {
     })
 }
 
-/// The distance of round values from `lo` to `hi`, and the values.
+/// The distance of round values from `lo` to `hi`, and the values; none if `lo` and `hi` lie between two of them.
 pub(crate) fn round_values(lo: f64, hi: f64, most: usize) -> (f64, Vec<f64>) {
     let step = round_step((hi - lo) / most.max(2) as f64);
     let first = (lo / step - 1e-9).ceil();
-    let count = ((hi / step + 1e-9).floor() - first).clamp(0.0, 100.0) as usize;
-    let values = (0..=count).map(|index| (first + index as f64) * step);
+    let count = ((hi / step + 1e-9).floor() - first + 1.0).clamp(0.0, 101.0) as usize;
+    let values = (0..count).map(|index| (first + index as f64) * step);
     (step, values.collect())
 }
 
@@ -149,6 +154,8 @@ fn written(value: f64, step: f64, power: f64) -> String {
 
 #[cfg(test)]
 mod tests {
+    use proptest::prelude::*;
+
     use super::*;
 
     fn texts(ticks: Vec<Tick>) -> Vec<String> {
@@ -223,5 +230,29 @@ mod tests {
         );
         assert_eq!(around(&[12345.0, 12349.0], false, 800.0)[0], "12345");
         assert_eq!(around(&[0.003, 0.0035], false, 800.0)[0], "0.0030");
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+
+        /// Whatever its range and its length, an axis has numbers: on the axis, none touching the next, and no two alike.
+        #[test]
+        fn numbers_of_any_axis_differ_and_are_apart(
+            middle in -1.0..1.0, power in -12..12, spread in -6.0..0.0, length in 1.0..3000.0, most in 2..=MAX_STEPS,
+        ) {
+            let scale = libm::exp10(f64::from(power));
+            let half = scale * libm::exp10(spread);
+            let axis = DrawnAxis::linear(scale * middle - half, scale * middle + half).placed(0.0, length);
+            let ticks = axis.ticks(Direction::X, most);
+            prop_assert!((1..=most + 1).contains(&ticks.len()));
+            prop_assert!(apart(&ticks, Direction::X));
+            // A billionth of the range is rounding, that of a middle a million times as large as the range.
+            let is_on_axis = |(at, _): &Tick| (-1e-9 * length..=(1.0 + 1e-9) * length).contains(at);
+            prop_assert!(ticks.iter().all(is_on_axis));
+            let mut numbers = texts(ticks);
+            let n = numbers.len();
+            numbers.dedup();
+            prop_assert_eq!(numbers.len(), n);
+        }
     }
 }

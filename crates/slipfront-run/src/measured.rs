@@ -311,7 +311,7 @@ fn factor(
 
 #[cfg(test)]
 mod tests {
-    use rstest::rstest;
+    use test_case::test_case;
 
     use super::*;
 
@@ -326,13 +326,12 @@ mod tests {
         MeasuredRecord::read(&path, [&x, &y], Measure::Time)
     }
 
-    #[rstest]
-    #[case::names("time_ms,force_n\n0,0.5\n2,1\n", ["time_ms", "force"])]
-    #[case::decimal_commas("Zeit [ms];Kraft [N]\n0;0,5\n2;1,0\n", ["zeit", "2"])]
-    #[case::brackets("\u{feff}# a comment\nt (ms),Force (kN),x\n0,0.0005,a\n2,0.001,b\n", ["t", "force"])]
-    #[case::tabs("n\tt / ms\tF / mN\n1\t0\t500\n2\t2\t1000\n", ["t", "F"])]
-    #[case::gaps("time_ms,force_n\n0,0.5\n1,\n\n2,1\n", ["1", "2"])]
-    fn tables_of_many_kinds(#[case] text: &str, #[case] names: [&str; 2]) {
+    #[test_case("time_ms,force_n\n0,0.5\n2,1\n", ["time_ms", "force"]; "names")]
+    #[test_case("Zeit [ms];Kraft [N]\n0;0,5\n2;1,0\n", ["zeit", "2"]; "decimal commas")]
+    #[test_case("\u{feff}# a comment\nt (ms),Force (kN),x\n0,0.0005,a\n2,0.001,b\n", ["t", "force"]; "brackets")]
+    #[test_case("n\tt / ms\tF / mN\n1\t0\t500\n2\t2\t1000\n", ["t", "F"]; "tabs")]
+    #[test_case("time_ms,force_n\n0,0.5\n1,\n\n2,1\n", ["1", "2"]; "gaps")]
+    fn tables_of_many_kinds(text: &str, names: [&str; 2]) {
         let record = read(text, names, [None; 2]).unwrap();
         assert_eq!(record.x, [0.0, 0.002]);
         assert_eq!(record.y, [0.5, 1.0]);
@@ -344,22 +343,27 @@ mod tests {
         assert_eq!((record.x, record.y), (vec![0.0, 0.002], vec![0.5, 1.0]));
     }
 
-    #[rstest]
-    #[case::header("t (s),mu (1)\n0,0.5\n2,1\n", None)]
-    #[case::given("t (s),mu\n0,0.5\n2,1\n", Some("1"))]
-    fn the_unit_1_is_that_of_a_coefficient(#[case] text: &str, #[case] unit: Option<&str>) {
+    #[test_case("t (s),mu (1)\n0,0.5\n2,1\n", None; "header")]
+    #[test_case("t (s),mu\n0,0.5\n2,1\n", Some("1"); "given")]
+    fn the_unit_1_is_that_of_a_coefficient(text: &str, unit: Option<&str>) {
         let record = read(text, ["t", "mu"], [None, unit]).unwrap();
         assert_eq!((record.of, record.y), (Measure::Coefficient, vec![0.5, 1.0]));
     }
 
-    #[rstest]
-    #[case::column("time_s,force_n\n0,1\n1,2\n", ["time", "load"], "has no column `load`: its columns are time_s, force_n, or 1 to 2")]
-    #[case::unit("time_s,force\n0,1\n1,2\n", ["time", "force"], "give it with --y-unit, such as `--y-unit N`")]
-    #[case::ambiguous("time_s,force_mn\n0,1\n1,2\n", ["time", "force"], "nothing tells the unit of column `force_mn`")]
-    #[case::number("time_s,force_n\n0,1\n1,two\n", ["time", "force"], "line 3 of")]
-    #[case::order("time_s,force_n\n1,1\n0,2\n", ["time", "force"], "falls, from 1 to 0")]
-    #[case::short("time_s,force_n\n1,1\n", ["time", "force"], "has 1 lines of numbers")]
-    fn what_is_wrong_is_said(#[case] text: &str, #[case] names: [&str; 2], #[case] sentence: &str) {
+    #[test_case(
+        "time_s,force_n\n0,1\n1,2\n", ["time", "load"],
+        "has no column `load`: its columns are time_s, force_n, or 1 to 2"
+        ; "column"
+    )]
+    #[test_case("time_s,force\n0,1\n1,2\n", ["time", "force"], "give it with --y-unit, such as `--y-unit N`"; "unit")]
+    #[test_case(
+        "time_s,force_mn\n0,1\n1,2\n", ["time", "force"], "nothing tells the unit of column `force_mn`"
+        ; "ambiguous"
+    )]
+    #[test_case("time_s,force_n\n0,1\n1,two\n", ["time", "force"], "line 3 of"; "number")]
+    #[test_case("time_s,force_n\n1,1\n0,2\n", ["time", "force"], "falls, from 1 to 0"; "order")]
+    #[test_case("time_s,force_n\n1,1\n", ["time", "force"], "has 1 lines of numbers"; "short")]
+    fn what_is_wrong_is_said(text: &str, names: [&str; 2], sentence: &str) {
         let error = read(text, names, [None; 2]).unwrap_err().to_string();
         assert!(error.contains(sentence), "{error}");
     }

@@ -1,8 +1,8 @@
 //! Cost of a step of either kernel, in block-steps per second, and of reading a field of all blocks, on the baseline of Fig. 3
 //! once it slides; cost of drawing its coefficients, beside that of all steps of a run.
 
-use divan::Bencher;
-use divan::counter::ItemsCount;
+use std::time::{Duration, Instant};
+
 use slipfront::exact_solutions::first_slip_time_star;
 use slipfront::observe::Field;
 use slipfront::surface::{Coefficients, CorrelatedField, Distribution, Load};
@@ -50,85 +50,89 @@ fn sliding(n: usize, kernel: Kernel) -> Simulation {
 /// Lattices of `n` x `n` blocks whose steps are timed.
 const SIZES: [usize; 4] = [25, 50, 200, 512];
 
+/// Fields that are read.
+const FIELDS: [Field; 5] = [
+    Field::ContactStress,
+    Field::Traction,
+    Field::DisplacementX,
+    Field::VelocityX,
+    Field::Sliding,
+];
+
 /// Lattices and kernels from which fields are read.
 const READ: [(usize, Kernel); 3] = [(256, Kernel::Fused), (512, Kernel::Fused), (256, Kernel::General)];
 
 /// Lattices of `n` x `n` blocks whose coefficients are drawn.
 const DRAWN: [usize; 3] = [25, 50, 200];
 
+/// Duration of a measurement.
+const MEASURED: Duration = Duration::from_millis(500);
+
+/// Prints the least and the median time of what is done again and again, and how many of `items` the median is in a second.
+fn measure(name: &str, items: usize, mut work: impl FnMut()) {
+    let began = Instant::now();
+    let mut times = Vec::new();
+    while times.len() < 3 || began.elapsed() < MEASURED {
+        let begun = Instant::now();
+        work();
+        times.push(begun.elapsed().as_secs_f64());
+    }
+    times.sort_by(f64::total_cmp);
+    let (least, median) = (times[0], times[times.len() / 2]);
+    let rate = items as f64 / median;
+    println!(
+        "{name:<50} {:>12.2} us {:>12.2} us {rate:>12.3e}/s",
+        1e6 * least,
+        1e6 * median
+    );
+}
+
 fn main() {
-    divan::main();
+    println!("{:<50} {:>15} {:>15} {:>14}", "", "least", "median", "blocks");
+    for (name, kernel) in [("fused step", Kernel::Fused), ("general step", Kernel::General)] {
+        for n in SIZES {
+            let mut simulation = sliding(n, kernel);
+            measure(&format!("{name}, {n}"), n * n, || simulation.step());
+        }
+    }
+    for (n, kernel) in READ {
+        let simulation = sliding(n, kernel);
+        let (mut values, mut times) = (vec![0.0; n * n], vec![0.0; n * n]);
+        for field in FIELDS {
+            let name = format!("read {field:?}, {n}, {kernel:?}");
+            measure(&name, n * n, || {
+                simulation.snapshot().read_field(field, &mut values);
+            });
+        }
+        let name = format!("read first slips, {n}, {kernel:?}");
+        measure(&name, n * n, || {
+            simulation.snapshot().read_first_slips(&mut times);
+        });
+    }
+    for n in DRAWN {
+        for length in [0.25, 1.0, 5.0] {
+            draw(n, length);
+        }
+        let model = baseline(n);
+        measure(&format!("all steps of a run, {n}"), n * n, || {
+            let mut simulation = Simulation::new(model.clone(), 0.1, None, Execution::default());
+            (0..2667).for_each(|_| simulation.step());
+        });
+    }
 }
 
-fn step(bencher: Bencher, n: usize, kernel: Kernel) {
-    let mut simulation = sliding(n, kernel);
-    let bencher = bencher.counter(ItemsCount::new(n * n));
-    bencher.bench_local(|| simulation.step());
-}
-
-#[divan::bench(args = SIZES)]
-fn general_step(bencher: Bencher, n: usize) {
-    step(bencher, n, Kernel::General);
-}
-
-#[divan::bench(args = SIZES)]
-fn fused_step(bencher: Bencher, n: usize) {
-    step(bencher, n, Kernel::Fused);
-}
-
-fn read_field_cases() -> impl Iterator<Item = (usize, Kernel, Field)> {
-    let fields = [
-        Field::ContactStress,
-        Field::Traction,
-        Field::DisplacementX,
-        Field::VelocityX,
-        Field::Sliding,
-    ];
-    READ.into_iter()
-        .flat_map(move |(n, kernel)| fields.map(|field| (n, kernel, field)))
-}
-
-#[divan::bench(args = read_field_cases())]
-fn read_field(bencher: Bencher, (n, kernel, field): (usize, Kernel, Field)) {
-    let simulation = sliding(n, kernel);
-    let mut values = vec![0.0; n * n];
-    let bencher = bencher.counter(ItemsCount::new(n * n));
-    bencher.bench_local(|| simulation.snapshot().read_field(field, &mut values));
-}
-
-#[divan::bench(args = READ)]
-fn read_first_slips(bencher: Bencher, (n, kernel): (usize, Kernel)) {
-    let simulation = sliding(n, kernel);
-    let mut times = vec![0.0; n * n];
-    let bencher = bencher.counter(ItemsCount::new(n * n));
-    bencher.bench_local(|| simulation.snapshot().read_first_slips(&mut times));
-}
-
-fn draw_cases() -> impl Iterator<Item = (usize, f64)> {
-    DRAWN
-        .into_iter()
-        .flat_map(|n| [0.25, 1.0, 5.0].map(|length| (n, length)))
-}
-
-/// Coefficients that are alike over `length` blocks.
-#[divan::bench(args = draw_cases(), sample_count = 10)]
-fn draw(bencher: Bencher, (n, length): (usize, f64)) {
+/// Measures coefficients that are alike over `length` blocks, each time of another seed, as the runs of a study have them.
+fn draw(n: usize, length: f64) {
     let lattice = Lattice::free(n, n);
-    // Each time of another seed, as the runs of a study do.
     let mut seed = 0;
-    bencher.bench_local(|| {
-        seed += 1;
-        let field = CorrelatedField::new(&lattice, length);
-        Coefficients::draw_correlated(&field, &(0..n), gauss(1.0), gauss(0.5), seed)
-    });
-}
-
-/// All steps of a run, to which the cost of its coefficients adds.
-#[divan::bench(args = DRAWN, sample_count = 10)]
-fn all_steps(bencher: Bencher, n: usize) {
-    let model = baseline(n);
-    bencher.bench_local(|| {
-        let mut simulation = Simulation::new(model.clone(), 0.1, None, Execution::default());
-        (0..2667).for_each(|_| simulation.step());
-    });
+    measure(
+        &format!("draw coefficients, {n}, alike over {length}"),
+        n * n,
+        || {
+            seed += 1;
+            let field = CorrelatedField::new(&lattice, length);
+            let drawn = Coefficients::draw_correlated(&field, &(0..n), gauss(1.0), gauss(0.5), seed);
+            std::hint::black_box(drawn);
+        },
+    );
 }

@@ -94,20 +94,17 @@ fn sizes(text: &str) -> Option<Vec<u64>> {
 
 #[cfg(test)]
 mod tests {
-    use rstest::rstest;
+    use test_case::test_case;
 
     use super::*;
 
-    #[rstest]
-    #[case("{'descr': '<f8', 'fortran_order': False, 'shape': (3, 4), }   \n", "'<f8'", false, &[3, 4])]
-    #[case("{\"shape\":(),\"fortran_order\":True,\"descr\":\"|b1\"}", "\"|b1\"", true, &[])]
-    #[case("{'descr': [('a, b}', '<f8', (2,))], 'fortran_order': False, 'shape': (7,)}", "[('a, b}', '<f8', (2,))]", false, &[7])]
-    fn headers_of_numpy_are_read(
-        #[case] text: &str,
-        #[case] descr: &str,
-        #[case] fortran_order: bool,
-        #[case] shape: &[u64],
-    ) {
+    #[test_case("{'descr': '<f8', 'fortran_order': False, 'shape': (3, 4), }   \n", "'<f8'", false, &[3, 4])]
+    #[test_case("{\"shape\":(),\"fortran_order\":True,\"descr\":\"|b1\"}", "\"|b1\"", true, &[])]
+    #[test_case(
+        "{'descr': [('a, b}', '<f8', (2,))], 'fortran_order': False, 'shape': (7,)}", "[('a, b}', '<f8', (2,))]",
+        false, &[7]
+    )]
+    fn headers_of_numpy_are_read(text: &str, descr: &str, fortran_order: bool, shape: &[u64]) {
         let shape = shape.to_vec();
         let expected = NpyHeader {
             descr,
@@ -117,20 +114,19 @@ mod tests {
         assert_eq!(NpyHeader::parse(text.as_bytes()), Some(expected));
     }
 
-    #[rstest]
-    #[case::nothing("")]
-    #[case::an_empty_one("{}")]
-    #[case::no_shape("{'descr': '<f8', 'fortran_order': False}")]
-    #[case::a_key_twice("{'descr': '<f8', 'descr': '<f8', 'fortran_order': False, 'shape': (1,)}")]
-    #[case::another_key("{'descr': '<f8', 'fortran_order': False, 'shape': (1,), 'more': 1}")]
-    #[case::an_open_quote("{'descr': '<f8, 'fortran_order': False, 'shape': (1,)}")]
-    #[case::an_open_bracket("{'descr': '<f8', 'fortran_order': False, 'shape': (1, }")]
-    #[case::a_closed_one("{'descr': '<f8'), 'fortran_order': False, 'shape': (1,)}")]
-    #[case::no_number("{'descr': '<f8', 'fortran_order': False, 'shape': (1, two)}")]
-    #[case::a_gap("{'descr': '<f8', 'fortran_order': False, 'shape': (1,, 2)}")]
-    #[case::no_truth("{'descr': '<f8', 'fortran_order': 0, 'shape': (1,)}")]
-    #[case::too_many("{'descr': '<f8', 'fortran_order': False, 'shape': (4294967296, 4294967296)}")]
-    fn other_texts_are_refused(#[case] text: &str) {
+    #[test_case(""; "nothing")]
+    #[test_case("{}"; "an empty one")]
+    #[test_case("{'descr': '<f8', 'fortran_order': False}"; "no shape")]
+    #[test_case("{'descr': '<f8', 'descr': '<f8', 'fortran_order': False, 'shape': (1,)}"; "a key twice")]
+    #[test_case("{'descr': '<f8', 'fortran_order': False, 'shape': (1,), 'more': 1}"; "another key")]
+    #[test_case("{'descr': '<f8, 'fortran_order': False, 'shape': (1,)}"; "an open quote")]
+    #[test_case("{'descr': '<f8', 'fortran_order': False, 'shape': (1, }"; "an open bracket")]
+    #[test_case("{'descr': '<f8'), 'fortran_order': False, 'shape': (1,)}"; "a closed one")]
+    #[test_case("{'descr': '<f8', 'fortran_order': False, 'shape': (1, two)}"; "no number")]
+    #[test_case("{'descr': '<f8', 'fortran_order': False, 'shape': (1,, 2)}"; "a gap")]
+    #[test_case("{'descr': '<f8', 'fortran_order': 0, 'shape': (1,)}"; "no truth")]
+    #[test_case("{'descr': '<f8', 'fortran_order': False, 'shape': (4294967296, 4294967296)}"; "too many")]
+    fn other_texts_are_refused(text: &str) {
         assert_eq!(NpyHeader::parse(text.as_bytes()), None);
     }
 }

@@ -4,8 +4,8 @@ use std::io::BufReader;
 use std::path::PathBuf;
 
 use png::{BitDepth, ColorType, Encoder};
-use rstest::rstest;
 use tempfile::TempDir;
+use test_case::test_case;
 
 use super::*;
 
@@ -95,21 +95,20 @@ fn message(result: Result<impl std::fmt::Debug, ArrayError>) -> String {
     result.unwrap_err().to_string()
 }
 
-#[rstest]
-#[case("'|b1'", |v: f64| vec![u8::from(v != 0.0)])]
-#[case("'|u1'", |v: f64| vec![v as u8])]
-#[case("'|i1'", |v: f64| vec![v as i8 as u8])]
-#[case("'<u2'", |v: f64| (v as u16).to_le_bytes().to_vec())]
-#[case("'>i2'", |v: f64| (v as i16).to_be_bytes().to_vec())]
-#[case("'<i4'", |v: f64| (v as i32).to_le_bytes().to_vec())]
-#[case("'>u4'", |v: f64| (v as u32).to_be_bytes().to_vec())]
-#[case("'>i8'", |v: f64| (v as i64).to_be_bytes().to_vec())]
-#[case("'<u8'", |v: f64| (v as u64).to_le_bytes().to_vec())]
-#[case("'<f4'", |v: f64| (v as f32).to_le_bytes().to_vec())]
-#[case("'>f4'", |v: f64| (v as f32).to_be_bytes().to_vec())]
-#[case("'<f8'", |v: f64| v.to_le_bytes().to_vec())]
-#[case("'>f8'", |v: f64| v.to_be_bytes().to_vec())]
-fn npy_of_any_type(#[case] descr: &str, #[case] store: fn(f64) -> Vec<u8>) {
+#[test_case("'|b1'", |v: f64| vec![u8::from(v != 0.0)])]
+#[test_case("'|u1'", |v: f64| vec![v as u8])]
+#[test_case("'|i1'", |v: f64| vec![v as i8 as u8])]
+#[test_case("'<u2'", |v: f64| (v as u16).to_le_bytes().to_vec())]
+#[test_case("'>i2'", |v: f64| (v as i16).to_be_bytes().to_vec())]
+#[test_case("'<i4'", |v: f64| (v as i32).to_le_bytes().to_vec())]
+#[test_case("'>u4'", |v: f64| (v as u32).to_be_bytes().to_vec())]
+#[test_case("'>i8'", |v: f64| (v as i64).to_be_bytes().to_vec())]
+#[test_case("'<u8'", |v: f64| (v as u64).to_le_bytes().to_vec())]
+#[test_case("'<f4'", |v: f64| (v as f32).to_le_bytes().to_vec())]
+#[test_case("'>f4'", |v: f64| (v as f32).to_be_bytes().to_vec())]
+#[test_case("'<f8'", |v: f64| v.to_le_bytes().to_vec())]
+#[test_case("'>f8'", |v: f64| v.to_be_bytes().to_vec())]
+fn npy_of_any_type(descr: &str, store: fn(f64) -> Vec<u8>) {
     let data: Vec<u8> = FIELD.iter().flat_map(|value| store(*value)).collect();
     let (_folder, path) = file("mu.npy", &npy_bytes(descr, "False", "(2, 3)", &data));
     let wanted = if descr == "'|b1'" {
@@ -167,26 +166,25 @@ fn npy_in_fortran_order_and_later_versions() {
     assert_eq!(read_field(&path, 3, 2).unwrap(), FIELD);
 }
 
-#[rstest]
-#[case(
+#[test_case(
     "'<f8'",
     "(3, 2)",
     "has the shape (3, 2) where (2, 3), that is (ny, nx), is wanted; transpose"
 )]
-#[case("'<f8'", "(6,)", "has the shape (6) where (2, 3)")]
-#[case("'<f8'", "(2, 3, 1)", "has the shape (2, 3, 1)")]
-#[case("'<f8'", "(1000000, 1000000)", "has the shape (1000000, 1000000)")]
-#[case("'<f8'", "(9999999999, 9999999999)", "does not describe a plain array")]
-#[case("'<f8'", "(0xffffffffff, 0xffffffffff)", "does not describe a plain array")]
-#[case("'<f8'", "((((((2, 3))))))", "does not describe a plain array")]
-#[case("'<f8'", "(2, -3)", "its header is corrupt")]
-#[case("'<f8'", "(2, 3", "its header is corrupt")]
-#[case("'<c16'", "(2, 3)", "values of type '<c16'")]
-#[case("'<f16'", "(2, 3)", "values of type '<f16'")]
-#[case("'<U3'", "(2, 3)", "values of type '<U3'")]
-#[case("'|O'", "(2, 3)", "values of type '|O'")]
-#[case("[('a', '<f8')]", "(2, 3)", "values of type [('a', '<f8')]")]
-fn npy_of_another_kind(#[case] descr: &str, #[case] shape: &str, #[case] wanted: &str) {
+#[test_case("'<f8'", "(6,)", "has the shape (6) where (2, 3)")]
+#[test_case("'<f8'", "(2, 3, 1)", "has the shape (2, 3, 1)")]
+#[test_case("'<f8'", "(1000000, 1000000)", "has the shape (1000000, 1000000)")]
+#[test_case("'<f8'", "(9999999999, 9999999999)", "does not describe a plain array")]
+#[test_case("'<f8'", "(0xffffffffff, 0xffffffffff)", "does not describe a plain array")]
+#[test_case("'<f8'", "((((((2, 3))))))", "does not describe a plain array")]
+#[test_case("'<f8'", "(2, -3)", "its header is corrupt")]
+#[test_case("'<f8'", "(2, 3", "its header is corrupt")]
+#[test_case("'<c16'", "(2, 3)", "values of type '<c16'")]
+#[test_case("'<f16'", "(2, 3)", "values of type '<f16'")]
+#[test_case("'<U3'", "(2, 3)", "values of type '<U3'")]
+#[test_case("'|O'", "(2, 3)", "values of type '|O'")]
+#[test_case("[('a', '<f8')]", "(2, 3)", "values of type [('a', '<f8')]")]
+fn npy_of_another_kind(descr: &str, shape: &str, wanted: &str) {
     let (_folder, path) = file("mu.npy", &npy_bytes(descr, "False", shape, &f64_bytes(&FIELD)));
     let text = message(read_field(&path, 3, 2));
     assert!(text.contains(wanted), "{text}");
@@ -271,14 +269,13 @@ fn values_out_of_bounds_are_named() {
     }
 }
 
-#[rstest]
-#[case("0,1,2\n3,4,120\n")]
-#[case("0;1;2\n3;4;120")]
-#[case("0\t1\t2\r\n3\t4\t120\r\n")]
-#[case("0 1   2\n 3   4 120\n")]
-#[case("# mu, one number per block; row j = 0 first\n#\n\n0, 1.0, 2e0\n# half-way\n3,4,1.2E+2\n\n")]
-#[case("\u{feff}0,1,2\n3,4,120\n")]
-fn tables_with_any_separator(#[case] text: &str) {
+#[test_case("0,1,2\n3,4,120\n")]
+#[test_case("0;1;2\n3;4;120")]
+#[test_case("0\t1\t2\r\n3\t4\t120\r\n")]
+#[test_case("0 1   2\n 3   4 120\n")]
+#[test_case("# mu, one number per block; row j = 0 first\n#\n\n0, 1.0, 2e0\n# half-way\n3,4,1.2E+2\n\n")]
+#[test_case("\u{feff}0,1,2\n3,4,120\n")]
+fn tables_with_any_separator(text: &str) {
     let (_folder, path) = file("mu.csv", text.as_bytes());
     assert_eq!(read_field(&path, 3, 2).unwrap(), FIELD);
 }
@@ -291,29 +288,28 @@ fn tables_of_one_column_or_one_row() {
     assert_eq!(read_field(&path, 3, 1).unwrap(), [1.0, 2.0, 3.0]);
 }
 
-#[rstest]
-#[case(
+#[test_case(
     "",
     "has 0 lines of numbers where one line per row of blocks, 2 lines of 3 numbers, is wanted"
 )]
-#[case("# only a comment", "has 0 lines of numbers")]
-#[case("0,1,2\n", "has 1 lines of numbers")]
-#[case("0,1,2\n3,4,5\n6,7,8\n", "has more than 2 lines of numbers")]
-#[case("0,1,2\n3,4\n", "has 2 numbers in line 2")]
-#[case("0,1,2,\n3,4,5,\n", "has 4 numbers in line 1")]
-#[case("x,y,z\n0,1,2\n", "has `x` in row 0, column 0")]
-#[case("0,1,2\n3,,5\n", "has `` in row 1, column 1")]
-#[case(
+#[test_case("# only a comment", "has 0 lines of numbers")]
+#[test_case("0,1,2\n", "has 1 lines of numbers")]
+#[test_case("0,1,2\n3,4,5\n6,7,8\n", "has more than 2 lines of numbers")]
+#[test_case("0,1,2\n3,4\n", "has 2 numbers in line 2")]
+#[test_case("0,1,2,\n3,4,5,\n", "has 4 numbers in line 1")]
+#[test_case("x,y,z\n0,1,2\n", "has `x` in row 0, column 0")]
+#[test_case("0,1,2\n3,,5\n", "has `` in row 1, column 1")]
+#[test_case(
     "0,5;1;2\n3;4;5\n",
     "has `0,5` in row 0, column 0 (both counted from 0), where a number with a decimal"
 )]
-#[case(
+#[test_case(
     "0,1,2\n3,4,nan\n",
     "has NaN in row 1, column 2 (both counted from 0), where a finite number >= 0"
 )]
-#[case("0,1,1e999\n3,4,5\n", "has inf in row 0, column 2")]
-#[case("0,1,2\n3,-4,5\n", "has -4 in row 1, column 1")]
-fn tables_of_another_kind(#[case] text: &str, #[case] wanted: &str) {
+#[test_case("0,1,1e999\n3,4,5\n", "has inf in row 0, column 2")]
+#[test_case("0,1,2\n3,-4,5\n", "has -4 in row 1, column 1")]
+fn tables_of_another_kind(text: &str, wanted: &str) {
     let (_folder, path) = file("mu.csv", text.as_bytes());
     let text = message(read_field(&path, 3, 2));
     assert!(text.contains(wanted), "{text}");
@@ -403,23 +399,17 @@ fn png_bytes(color: ColorType, depth: BitDepth, rows: &[u8], transparency: Optio
 }
 
 /// Each image is white, dark / dark, white in its own way.
-#[rstest]
-#[case(ColorType::Grayscale, BitDepth::One, &[0b1000_0000, 0b0100_0000], None)]
-#[case(ColorType::Grayscale, BitDepth::Two, &[0b1101_0000, 0b0111_0000], None)]
-#[case(ColorType::Grayscale, BitDepth::Eight, &[255, 127, 0, 128], None)]
-#[case(ColorType::Grayscale, BitDepth::Sixteen, &[0x80, 0x00, 0x7f, 0xff, 0x00, 0x00, 0xff, 0xff], None)]
-#[case(ColorType::Grayscale, BitDepth::Eight, &[10, 20, 30, 10], Some(&[0, 10][..]))]
-#[case(ColorType::GrayscaleAlpha, BitDepth::Eight, &[0, 0, 0, 255, 0, 200, 0, 60], None)]
-#[case(ColorType::Rgb, BitDepth::Eight, &[0, 255, 0, 255, 0, 255, 255, 0, 0, 255, 255, 0], None)]
-#[case(ColorType::Rgba, BitDepth::Eight, &[0, 0, 0, 0, 0, 0, 0, 255, 0, 0, 255, 255, 0, 0, 255, 50], None)]
-#[case(ColorType::Indexed, BitDepth::Two, &[0b0001_0000, 0b0110_0000], None)]
-#[case(ColorType::Indexed, BitDepth::Eight, &[2, 1, 1, 0], Some(&[255, 255, 0][..]))]
-fn png_of_any_colour(
-    #[case] color: ColorType,
-    #[case] depth: BitDepth,
-    #[case] rows: &[u8],
-    #[case] transparency: Option<&[u8]>,
-) {
+#[test_case(ColorType::Grayscale, BitDepth::One, &[0b1000_0000, 0b0100_0000], None)]
+#[test_case(ColorType::Grayscale, BitDepth::Two, &[0b1101_0000, 0b0111_0000], None)]
+#[test_case(ColorType::Grayscale, BitDepth::Eight, &[255, 127, 0, 128], None)]
+#[test_case(ColorType::Grayscale, BitDepth::Sixteen, &[0x80, 0x00, 0x7f, 0xff, 0x00, 0x00, 0xff, 0xff], None)]
+#[test_case(ColorType::Grayscale, BitDepth::Eight, &[10, 20, 30, 10], Some(&[0, 10][..]))]
+#[test_case(ColorType::GrayscaleAlpha, BitDepth::Eight, &[0, 0, 0, 255, 0, 200, 0, 60], None)]
+#[test_case(ColorType::Rgb, BitDepth::Eight, &[0, 255, 0, 255, 0, 255, 255, 0, 0, 255, 255, 0], None)]
+#[test_case(ColorType::Rgba, BitDepth::Eight, &[0, 0, 0, 0, 0, 0, 0, 255, 0, 0, 255, 255, 0, 0, 255, 50], None)]
+#[test_case(ColorType::Indexed, BitDepth::Two, &[0b0001_0000, 0b0110_0000], None)]
+#[test_case(ColorType::Indexed, BitDepth::Eight, &[2, 1, 1, 0], Some(&[255, 255, 0][..]))]
+fn png_of_any_colour(color: ColorType, depth: BitDepth, rows: &[u8], transparency: Option<&[u8]>) {
     let (_folder, path) = file("mask.png", &png_bytes(color, depth, rows, transparency));
     assert_eq!(
         read_mask_png(&path, 0.5, [2, 2]).unwrap(),
@@ -497,28 +487,26 @@ fn repair_checksums(png: &mut [u8]) {
     }
 }
 
-#[rstest]
-#[case(
+#[test_case(
     100_000,
     100_000,
     "has 100000 x 100000 pixels where at most 268435456 pixels are read, and at most 1048576 along a side; scale it down"
 )]
-#[case(u32::MAX, 1, "has 4294967295 x 1 pixels")]
-#[case(1, (1 << 20) + 1, "and at most 1048576 along a side")]
-#[case(16_000, 16_000, "where its 16000 x 16000 pixels take at least")]
-#[case(0, 2, "is not a readable .png file")]
-#[case(2, 3, "does not have enough data")]
-fn png_that_claims_too_much(#[case] width: u32, #[case] height: u32, #[case] wanted: &str) {
+#[test_case(u32::MAX, 1, "has 4294967295 x 1 pixels")]
+#[test_case(1, (1 << 20) + 1, "and at most 1048576 along a side")]
+#[test_case(16_000, 16_000, "where its 16000 x 16000 pixels take at least")]
+#[test_case(0, 2, "is not a readable .png file")]
+#[test_case(2, 3, "does not have enough data")]
+fn png_that_claims_too_much(width: u32, height: u32, wanted: &str) {
     let (_folder, path) = file("mask.png", &png_claiming(width, height));
     let text = message(read_mask_png(&path, 0.5, [2, 2]));
     assert!(text.contains(wanted), "{text}");
 }
 
-#[rstest]
-#[case(&[1, 2], "PLTE")]
-#[case(&[0; 4], "its palette has 4 bytes where 3 for each of 1 to 256 colours are wanted")]
-#[case(&[0; 3 * 257], "PLTE")]
-fn png_with_a_bad_palette(#[case] palette: &[u8], #[case] wanted: &str) {
+#[test_case(&[1, 2], "PLTE")]
+#[test_case(&[0; 4], "its palette has 4 bytes where 3 for each of 1 to 256 colours are wanted")]
+#[test_case(&[0; 3 * 257], "PLTE")]
+fn png_with_a_bad_palette(palette: &[u8], wanted: &str) {
     let mut bytes = Vec::new();
     let mut encoder = Encoder::new(&mut bytes, 1, 1);
     encoder.set_color(ColorType::Indexed);
@@ -586,11 +574,10 @@ fn files_longer_than_can_be_meant_are_not_read() {
     assert!(text.contains(&wanted), "{text}");
 }
 
-#[rstest]
-#[case(1, 1)]
-#[case(8, 3)]
-#[case(13, 5)]
-fn masks_come_back_as_written(#[case] nx: usize, #[case] ny: usize) {
+#[test_case(1, 1)]
+#[test_case(8, 3)]
+#[test_case(13, 5)]
+fn masks_come_back_as_written(nx: usize, ny: usize) {
     let textured: Vec<bool> = (0..nx * ny).map(|block| block * block % 7 < 3).collect();
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("mask.png");

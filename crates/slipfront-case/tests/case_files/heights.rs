@@ -4,7 +4,6 @@ use std::fs::File;
 use std::io::{BufReader, Write};
 use std::path::{Path, PathBuf};
 
-use rstest::rstest;
 use serde_json::Value;
 use slipfront::testing::Threads;
 use slipfront_case::arrays::{
@@ -12,6 +11,7 @@ use slipfront_case::arrays::{
 };
 use slipfront_case::case::{Case, Ranks};
 use slipfront_case::case_file::CaseFile;
+use test_case::test_case;
 
 fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/heights")
@@ -43,24 +43,19 @@ const OWN: HeightMapUnits = HeightMapUnits {
 /// The map has no symmetry, and lies on the blocks as SurfaceTopography and Gwyddion show it, for every format. Heights
 /// stored as 32-bit numbers are good to 2^-24 of 6 um, of 64 bits, as grey levels and in decimals to rounding, as integers
 /// to half a step: their range, less than 6 um, over 2^32 or 2^16.
-#[rstest]
-#[case("map.npy", HeightMapUnits { height: Some(1.0), pixel: SIZE }, 1e-15)]
-#[case("map_f4_fortran.npy", HeightMapUnits { height: Some(1e-6), pixel: SIZE }, 4e-13)]
-#[case("map.csv", HeightMapUnits { height: Some(1e-6), pixel: SIZE }, 1e-15)]
-#[case("map.png", HeightMapUnits { height: Some(2e-9), pixel: SIZE }, 1e-15)]
-#[case("map.tif", HeightMapUnits { height: Some(2e-9), pixel: SIZE }, 1e-15)]
-#[case("map_lzw.tif", HeightMapUnits { height: Some(2e-9), pixel: SIZE }, 1e-15)]
-#[case("map_tiles.tif", HeightMapUnits { height: Some(1e-6), pixel: SIZE }, 4e-13)]
-#[case("map.gsf", OWN, 4e-13)]
-#[case("map.x3p", OWN, 1e-15)]
-#[case("map_f4.x3p", OWN, 4e-13)]
-#[case("map_i4.x3p", OWN, 1e-15)]
-#[case("map_i2.x3p", OWN, 5e-11)]
-fn every_format_gives_what_numpy_computes(
-    #[case] name: &str,
-    #[case] units: HeightMapUnits,
-    #[case] error: f64,
-) {
+#[test_case("map.npy", HeightMapUnits { height: Some(1.0), pixel: SIZE }, 1e-15)]
+#[test_case("map_f4_fortran.npy", HeightMapUnits { height: Some(1e-6), pixel: SIZE }, 4e-13)]
+#[test_case("map.csv", HeightMapUnits { height: Some(1e-6), pixel: SIZE }, 1e-15)]
+#[test_case("map.png", HeightMapUnits { height: Some(2e-9), pixel: SIZE }, 1e-15)]
+#[test_case("map.tif", HeightMapUnits { height: Some(2e-9), pixel: SIZE }, 1e-15)]
+#[test_case("map_lzw.tif", HeightMapUnits { height: Some(2e-9), pixel: SIZE }, 1e-15)]
+#[test_case("map_tiles.tif", HeightMapUnits { height: Some(1e-6), pixel: SIZE }, 4e-13)]
+#[test_case("map.gsf", OWN, 4e-13)]
+#[test_case("map.x3p", OWN, 1e-15)]
+#[test_case("map_f4.x3p", OWN, 4e-13)]
+#[test_case("map_i4.x3p", OWN, 1e-15)]
+#[test_case("map_i2.x3p", OWN, 5e-11)]
+fn every_format_gives_what_numpy_computes(name: &str, units: HeightMapUnits, error: f64) {
     let reference = reference();
     for (grid, means) in reference["blocks"].as_object().unwrap() {
         let (nx, ny) = grid.split_once('x').unwrap();
@@ -115,19 +110,20 @@ fn blocks_over_a_plateau_have_its_height() {
 }
 
 /// A height map that is not fully known is refused with the error and the remedy.
-#[rstest]
-#[case("map.npy", OWN, "does not say how large a pixel is: add `pixel_size`")]
-#[case("map.png", HeightMapUnits { pixel: SIZE, ..OWN }, "does not say which height a value of 1 is: add `height_unit`")]
-#[case("map.gsf", HeightMapUnits { pixel: SIZE, ..OWN }, "says itself that a pixel is 500 nm x 500 nm: leave out `pixel_size`")]
-#[case("map.x3p", HeightMapUnits { height: Some(1e-6), ..OWN }, "in units of 1 m: leave out `height_unit`")]
-#[case("grey8.png", OWN, "grey levels of 8 bits, too coarse")]
-#[case("colours.png", OWN, "is a picture in colours, which do not tell heights")]
-#[case("colours.tif", OWN, "is a picture in colours, which do not tell heights")]
-fn what_cannot_be_known_is_refused(
-    #[case] name: &str,
-    #[case] units: HeightMapUnits,
-    #[case] sentence: &str,
-) {
+#[test_case("map.npy", OWN, "does not say how large a pixel is: add `pixel_size`")]
+#[test_case(
+    "map.png", HeightMapUnits { pixel: SIZE, ..OWN },
+    "does not say which height a value of 1 is: add `height_unit`"
+)]
+#[test_case(
+    "map.gsf", HeightMapUnits { pixel: SIZE, ..OWN },
+    "says itself that a pixel is 500 nm x 500 nm: leave out `pixel_size`"
+)]
+#[test_case("map.x3p", HeightMapUnits { height: Some(1e-6), ..OWN }, "in units of 1 m: leave out `height_unit`")]
+#[test_case("grey8.png", OWN, "grey levels of 8 bits, too coarse")]
+#[test_case("colours.png", OWN, "is a picture in colours, which do not tell heights")]
+#[test_case("colours.tif", OWN, "is a picture in colours, which do not tell heights")]
+fn what_cannot_be_known_is_refused(name: &str, units: HeightMapUnits, sentence: &str) {
     let said = read(&folder().join(name), units, [15, 10])
         .unwrap_err()
         .to_string();

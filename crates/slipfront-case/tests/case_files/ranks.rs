@@ -4,12 +4,12 @@ use std::fs::File;
 use std::io::{Read, Write};
 use std::path::Path;
 
-use rstest::rstest;
 use slipfront::communicator::Communicator;
 use slipfront::testing::Threads;
 use slipfront_case::arrays::write_mask_png;
 use slipfront_case::case::{Case, Files, FilesInMemory, Ranks};
 use slipfront_case::case_file::{CaseError, CaseFile};
+use test_case::{test_case, test_matrix};
 
 const NX: usize = 11;
 const NY: usize = 9;
@@ -80,28 +80,23 @@ fn make_on_ranks(size: usize, text: &str, folder: &Path) -> Vec<Result<Case, Cas
     })
 }
 
-#[rstest]
-#[case::drawn("friction = { seed = 7, sigma_static_star = 0.9, sigma_kinetic_star = 0.2 }")]
-#[case::correlated("friction = { seed = 7, sigma_static_star = 0.9, correlation_length = '3 um' }")]
-#[case::correlated_and_periodic(
+#[test_case("friction = { seed = 7, sigma_static_star = 0.9, sigma_kinetic_star = 0.2 }"; "drawn")]
+#[test_case("friction = { seed = 7, sigma_static_star = 0.9, correlation_length = '3 um' }"; "correlated")]
+#[test_case(
     "slider.edges = 'periodic'\nfriction = { correlation_length = '4 um', mu_kinetic_field = 'mu.csv' }"
+    ; "correlated and periodic"
 )]
-#[case::shapes(
-    "slider.edges = 'periodic'\ntexture = [{ shape = 'cavity', coverage = 20, s = 3, w = 0.2, array = [2, 2], rotate = 20 }, \
-     { shape = 'groove', coverage = 10, orientation = 'along' }, { shape = 'cavity', lambda = '0.1 um' }]"
-)]
-#[case::polygon(
-    "texture = [{ shape = 'polygon', points = [['0 um', '0 um'], ['9 um', '3 um'], ['3 um', '8 um']] }]"
-)]
-#[case::masks(
-    "texture = [{ shape = 'mask', file = 'mask.png' }, { shape = 'mask', file = 'mask.npy' }, { shape = 'mask', \
-     file = 'mask.png', threshold = 0.2 }]"
-)]
-#[case::arrays("friction = { mu_static_field = 'c.npy', mu_kinetic_field = 'mu.csv' }")]
-#[case::columns(
+#[test_case("slider.edges = 'periodic'\ntexture = [{ shape = 'cavity', coverage = 20, s = 3, w = 0.2, array = [2, 2], rotate = 20 }, \
+     { shape = 'groove', coverage = 10, orientation = 'along' }, { shape = 'cavity', lambda = '0.1 um' }]"; "shapes")]
+#[test_case("texture = [{ shape = 'polygon', points = [['0 um', '0 um'], ['9 um', '3 um'], ['3 um', '8 um']] }]"; "polygon")]
+#[test_case("texture = [{ shape = 'mask', file = 'mask.png' }, { shape = 'mask', file = 'mask.npy' }, { shape = 'mask', \
+     file = 'mask.png', threshold = 0.2 }]"; "masks")]
+#[test_case("friction = { mu_static_field = 'c.npy', mu_kinetic_field = 'mu.csv' }"; "arrays")]
+#[test_case(
     "friction = { mu_static_field = 'fortran.npy' }\nload.redistribute = false\ntexture = [{ shape = 'mask', file = 'mask.png' }]"
+    ; "columns"
 )]
-fn ranks_make_the_case_that_one_process_makes(#[case] text: &str) {
+fn ranks_make_the_case_that_one_process_makes(text: &str) {
     let folder = tempfile::tempdir().unwrap();
     write_inputs(folder.path());
     let alone = make(text, folder.path(), Ranks::ALONE, &mut |_| true).unwrap();
@@ -154,15 +149,16 @@ fn make_in_memory(size: usize, text: &str, folder: &Path) -> Vec<Result<Case, Ca
     })
 }
 
-#[rstest]
-#[case::masks(
+#[test_case(
     "texture = [{ shape = 'mask', file = 'mask.png' }, { shape = 'mask', file = 'mask.npy' }]\nload.pressure_field = 'mu.csv'"
+    ; "masks"
 )]
-#[case::columns("friction = { mu_static_field = 'fortran.npy', mu_kinetic_field = 'mu.csv' }")]
-#[case::heights(
+#[test_case("friction = { mu_static_field = 'fortran.npy', mu_kinetic_field = 'mu.csv' }"; "columns")]
+#[test_case(
     "texture = [{ shape = 'height_map', file = 'c.npy', height_unit = '1 um', pixel_size = '1 um', bearing_percent = 50 }]"
+    ; "heights"
 )]
-fn files_in_memory_make_the_case_of_those_on_the_disk(#[case] text: &str) {
+fn files_in_memory_make_the_case_of_those_on_the_disk(text: &str) {
     let folder = tempfile::tempdir().unwrap();
     write_inputs(folder.path());
     for size in [1, 3] {
@@ -189,21 +185,14 @@ fn files_in_memory_make_the_case_of_those_on_the_disk(#[case] text: &str) {
     }
 }
 
-#[rstest]
-#[case::value("friction.mu_static_field = 'negative.csv'", "`negative.csv` has -0.8")]
-#[case::image(
-    "texture = [{ shape = 'mask', file = 'cut.png' }]",
-    "`cut.png` is not a readable .png file: it ends before"
-)]
-#[case::missing(
-    "friction.mu_static_field = 'missing.npy'",
-    "cannot read `nowhere/missing.npy`"
-)]
-#[case::long(
-    "load.pressure_field = 'long.npy'",
-    "`long.npy` has 20000 bytes where 9 rows of 11 numbers take"
-)]
-fn files_in_memory_are_refused_in_the_same_sentences(#[case] text: &str, #[case] wanted: &str) {
+#[test_case("friction.mu_static_field = 'negative.csv'", "`negative.csv` has -0.8"; "value")]
+#[test_case("texture = [{ shape = 'mask', file = 'cut.png' }]",
+    "`cut.png` is not a readable .png file: it ends before"; "image")]
+#[test_case("friction.mu_static_field = 'missing.npy'",
+    "cannot read `nowhere/missing.npy`"; "missing")]
+#[test_case("load.pressure_field = 'long.npy'",
+    "`long.npy` has 20000 bytes where 9 rows of 11 numbers take"; "long")]
+fn files_in_memory_are_refused_in_the_same_sentences(text: &str, wanted: &str) {
     let folder = tempfile::tempdir().unwrap();
     write_inputs(folder.path());
     std::fs::write(folder.path().join("long.npy"), [0; 20_000]).unwrap();
@@ -216,24 +205,17 @@ fn files_in_memory_are_refused_in_the_same_sentences(#[case] text: &str, #[case]
 }
 
 /// All ranks report the error that a process alone reports, whichever rank finds it.
-#[rstest]
-#[case::value("friction.mu_static_field = 'negative.csv'", "has -0.8")]
-#[case::lines("friction.mu_static_field = 'short.csv'", "has 7 lines of numbers")]
-#[case::missing("friction.mu_static_field = 'missing.npy'", "cannot read")]
-#[case::image(
-    "texture = [{ shape = 'mask', file = 'cut.png' }]",
-    "ends before the last pixel"
-)]
-#[case::mask(
-    "texture = [{ shape = 'mask', file = 'c.npy' }]",
-    "where 0 or 1, 1 as of a dark pixel, is wanted"
-)]
-#[case::no_contact(
-    "texture = [{ shape = 'groove', width = '100 um' }]",
-    "nothing is left in contact"
-)]
-#[case::far("texture = [{ shape = 'groove', width = '1 m', offset = '1 km' }]", "reaches")]
-fn all_ranks_tell_the_error_of_one(#[case] text: &str, #[case] wanted: &str) {
+#[test_case("friction.mu_static_field = 'negative.csv'", "has -0.8"; "value")]
+#[test_case("friction.mu_static_field = 'short.csv'", "has 7 lines of numbers"; "lines")]
+#[test_case("friction.mu_static_field = 'missing.npy'", "cannot read"; "missing")]
+#[test_case("texture = [{ shape = 'mask', file = 'cut.png' }]",
+    "ends before the last pixel"; "image")]
+#[test_case("texture = [{ shape = 'mask', file = 'c.npy' }]",
+    "where 0 or 1, 1 as of a dark pixel, is wanted"; "mask")]
+#[test_case("texture = [{ shape = 'groove', width = '100 um' }]",
+    "nothing is left in contact"; "no contact")]
+#[test_case("texture = [{ shape = 'groove', width = '1 m', offset = '1 km' }]", "reaches"; "far")]
+fn all_ranks_tell_the_error_of_one(text: &str, wanted: &str) {
     let folder = tempfile::tempdir().unwrap();
     write_inputs(folder.path());
     let alone = make(text, folder.path(), Ranks::ALONE, &mut |_| true)
@@ -297,25 +279,18 @@ fn a_case_file_is_loaded_by_all_ranks() {
 }
 
 /// Ranks of which the last was given another case all report the difference and its place.
-#[rstest]
-#[case::seed(
-    "friction.seed = 1",
+#[test_case("friction.seed = 1",
     "friction.seed = 2",
-    "`friction.seed` is 2 on rank 2 and 1 on rank 0"
-)]
-#[case::rows("", "slider.edges = 'periodic'", "`slider.edges` is")]
-#[case::longer("", "texture = [{ shape = 'groove', width = '1 um' }]", "`texture.0.")]
-#[case::shorter(
-    "texture = [{ shape = 'groove', width = '1 um' }]",
+    "`friction.seed` is 2 on rank 2 and 1 on rank 0"; "seed")]
+#[test_case("", "slider.edges = 'periodic'", "`slider.edges` is"; "rows")]
+#[test_case("", "texture = [{ shape = 'groove', width = '1 um' }]", "`texture.0."; "longer")]
+#[test_case("texture = [{ shape = 'groove', width = '1 um' }]",
     "",
-    "not given on rank 2 and"
-)]
-#[case::point(
-    "texture = [{ shape = 'polygon', points = [['0 um', '0 um'], ['9 um', '3 um'], ['3 um', '8 um']] }]",
+    "not given on rank 2 and"; "shorter")]
+#[test_case("texture = [{ shape = 'polygon', points = [['0 um', '0 um'], ['9 um', '3 um'], ['3 um', '8 um']] }]",
     "texture = [{ shape = 'polygon', points = [['0 um', '0 um'], ['9 um', '3 um'], ['3 um', '7 um']] }]",
-    "`texture.0.points.2` is"
-)]
-fn another_case_is_refused_by_all(#[case] text: &str, #[case] other: &str, #[case] sentence: &str) {
+    "`texture.0.points.2` is"; "point")]
+fn another_case_is_refused_by_all(text: &str, other: &str, sentence: &str) {
     let made = Threads::run(4, |communicator| {
         let text = if communicator.rank() == 2 { other } else { text };
         let ranks = Ranks {
@@ -378,8 +353,8 @@ fn another_file_is_refused_by_all() {
 
 /// A file that changes while the case is made is refused, because its contents may differ from the hashed ones, on whichever
 /// rank it happens.
-#[rstest]
-fn a_file_that_changes_while_the_case_is_made_is_refused(#[values(1, 3)] size: usize) {
+#[test_matrix([1, 3])]
+fn a_file_that_changes_while_the_case_is_made_is_refused(size: usize) {
     let folder = tempfile::tempdir().unwrap();
     write_inputs(folder.path());
     let text = "friction.mu_static_field = 'mu.csv'\ntexture = [{ shape = 'mask', file = 'mask.png' }]";

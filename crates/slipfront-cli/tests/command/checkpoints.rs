@@ -7,7 +7,7 @@ use std::sync::LazyLock;
 use std::thread::sleep;
 use std::time::Duration;
 
-use rstest::rstest;
+use test_case::test_case;
 
 use crate::broken::DIVERGING;
 use crate::support::process::{ignores_hangup, program, send, stderr, try_send, wait_for_signal_handlers};
@@ -74,17 +74,12 @@ fn stopped(workspace: &Workspace, line: &str, folder: &str, times: usize) {
     }
 }
 
-#[rstest]
-#[case("slow.toml", "-INT", 130)]
-#[case("reversal.toml", "-TERM", 143)]
-#[case("springs.toml", "-TERM", 143)]
-#[case("wide.toml", "-INT", 130)]
-#[case("held.toml", "-TERM", 143)]
-fn stopped_any_number_of_times_it_writes_the_same_bytes(
-    #[case] case: &str,
-    #[case] signal: &str,
-    #[case] status: i32,
-) {
+#[test_case("slow.toml", "-INT", 130)]
+#[test_case("reversal.toml", "-TERM", 143)]
+#[test_case("springs.toml", "-TERM", 143)]
+#[test_case("wide.toml", "-INT", 130)]
+#[test_case("held.toml", "-TERM", 143)]
+fn stopped_any_number_of_times_it_writes_the_same_bytes(case: &str, signal: &str, status: i32) {
     let workspace = slow_workspace();
     workspace.succeed(&format!("run {case} -o whole --threads 1"));
     let mut stops = 0;
@@ -114,10 +109,9 @@ fn stopped_any_number_of_times_it_writes_the_same_bytes(
 
 /// Signals with which queues warn before they kill.
 #[cfg(target_os = "linux")]
-#[rstest]
-#[case("-USR2", 140)]
-#[case("-XCPU", 152)]
-fn a_warning_of_the_queue_stops_it(#[case] signal: &str, #[case] status: i32) {
+#[test_case("-USR2", 140)]
+#[test_case("-XCPU", 152)]
+fn a_warning_of_the_queue_stops_it(signal: &str, status: i32) {
     let workspace = slow_workspace();
     let child = workspace.start_run("run slow.toml -o warned");
     send(&child, signal);

@@ -371,6 +371,58 @@ fn functions_of_the_system_are_found_in_code_and_not_in_tests() {
     assert_eq!(lines_of_the_system(code), [1, 4, 7]);
 }
 
+/// Examples in comments that `cargo test` would run, by the number of their first line, from 0 on.
+fn examples(code: &str) -> Vec<usize> {
+    let mut is_inside = false;
+    let mut found = Vec::new();
+    for (k, line) in code.lines().enumerate() {
+        let comment = line.trim_start();
+        let comment = comment
+            .strip_prefix("///")
+            .or_else(|| comment.strip_prefix("//!"));
+        if let Some(language) = comment.and_then(|comment| comment.trim_start().strip_prefix("```")) {
+            if !is_inside && (language.is_empty() || language.starts_with("rust")) {
+                found.push(k);
+            }
+            is_inside = !is_inside;
+        }
+    }
+    found
+}
+
+/// `cargo test` would compile every library once more in order to find that its comments have no example.
+#[test]
+fn libraries_whose_examples_are_not_run_have_none() {
+    let repository = repository();
+    let mut found = String::new();
+    let folders = std::fs::read_dir(repository.join("crates")).unwrap();
+    let folders = folders.map(|entry| entry.unwrap().path());
+    for folder in folders.chain([repository.join("tests/fuzz")]) {
+        let manifest = std::fs::read_to_string(folder.join("Cargo.toml")).unwrap();
+        if !manifest.contains("doctest = false") {
+            continue;
+        }
+        let mut files = Vec::new();
+        rust_files(&folder.join("src"), &mut files);
+        assert!(!files.is_empty());
+        for file in files {
+            for k in examples(&std::fs::read_to_string(&file).unwrap()) {
+                found += &format!("\n{}:{}", file.display(), k + 1);
+            }
+        }
+    }
+    assert!(
+        found.is_empty(),
+        "an example that is not run: take `doctest = false` out of Cargo.toml{found}"
+    );
+}
+
+#[test]
+fn examples_are_found_in_comments() {
+    let code = "//! ```\n//! f();\n//! ```\n/// ```text\n/// a\n/// ```\n    /// ```rust,no_run\n    /// ```\nlet x = \"```\";\n";
+    assert_eq!(examples(code), [0, 6]);
+}
+
 #[test]
 fn unsafe_is_found_in_code_and_not_in_comments() {
     let code = "unsafe fn f() {}\n// unsafe\n#[allow(unsafe_code)]\nlet x = unsafe { g() };\nunsafe{h()} // unsafe\nunsafely();\n";

@@ -2,7 +2,8 @@
 
 use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD as BASE64;
-use maud::{DOCTYPE, Markup, PreEscaped, html};
+use horrorshow::helper::doctype;
+use horrorshow::{Raw, Template, html};
 
 use super::symbols::greek;
 use crate::claims::{ClaimResult, ClaimVerdict, NUMBERING, REVISED};
@@ -18,63 +19,68 @@ const STYLE: &str = include_str!("style.css");
 /// The whole page; `drawn` holds the pictures of each figure.
 pub(super) fn page(paper: &Paper, drawn: &[Vec<Picture>]) -> String {
     let page = html! {
-        (DOCTYPE)
-        html lang="en" {
+        : doctype::HTML;
+        html(lang="en") {
             head {
-                meta charset="utf-8";
-                meta name="viewport" content="width=device-width, initial-scale=1";
-                title { "The paper, run again" }
-                style { (PreEscaped(STYLE)) }
+                meta(charset="utf-8");
+                meta(name="viewport", content="width=device-width, initial-scale=1");
+                title : "The paper, run again";
+                style : Raw(STYLE);
             }
             body {
-                (header(paper))
+                : header(paper);
                 main {
                     section {
-                        h2 { "Claims" }
+                        h2 : "Claims";
                         p {
-                            "Intervals are 95 % confidence intervals of the mean over random surfaces. Numbers D1 to D12 are \
-                             the deviations from the paper's print that the documentation of the model explains. "
-                            (NUMBERING) " " (REVISED)
-                            @if !paper.results_by_paper_step.is_empty() {
-                                " Each claim was measured twice: with " (text(StepRule::Auto.formula()))
-                                ", and with the paper's " (text(StepRule::Paper.formula())) " (Eq. 13)."
+                            : "Intervals are 95 % confidence intervals of the mean over random surfaces. Numbers D1 to D12 are \
+                               the deviations from the paper's print that the documentation of the model explains. ";
+                            : NUMBERING; : " "; : REVISED;
+                            @ if !paper.results_by_paper_step.is_empty() {
+                                : " Each claim was measured twice: with "; : text(StepRule::Auto.formula());
+                                : ", and with the paper's "; : text(StepRule::Paper.formula()); : " (Eq. 13).";
                             }
                         }
-                        (claims_table(paper))
+                        : claims_table(paper);
                     }
-                    nav { h2 { "Figures" } ul { @for (figure, _) in &paper.figures {
-                        li { a href={ "#" (figure.name) } { (figure.title) } }
+                    nav { h2 : "Figures"; ul { @ for (figure, _) in &paper.figures {
+                        li { a(href=format_args!("#{}", figure.name)) : figure.title; }
                     } } }
-                    @for ((figure, data), pictures) in paper.figures.iter().zip(drawn) {
-                        (section(paper, figure, data, pictures))
+                    @ for ((figure, data), pictures) in paper.figures.iter().zip(drawn) {
+                        : section(paper, figure, data, pictures);
                     }
                 }
             }
         }
     };
-    page.into_string()
+    written(page)
+}
+
+/// The text of a template.
+fn written(template: impl Template) -> String {
+    template.into_string().expect("writing to memory does not fail")
 }
 
 /// The title, the paper, and the number of claims that hold.
-fn header(paper: &Paper) -> Markup {
+fn header(paper: &Paper) -> Raw<String> {
     let unexpected = paper.unexpected_verdicts().count();
-    html! {
+    Raw(written(html! {
         header {
-            h1 { "The paper, run again" }
+            h1 : "The paper, run again";
             p {
-                (contents(paper)) " of " cite { "2D Spring-block model to study the transition from static \
-                to kinetic friction of complex-micro-textured contact surfaces" } ", Tribology International 2023, "
-                a href="https://doi.org/10.1016/j.triboint.2023.108866" { "doi 10.1016/j.triboint.2023.108866" }
-                ", measured with slipfront " (env!("CARGO_PKG_VERSION")) "."
+                : contents(paper); : " of "; cite : "2D Spring-block model to study the transition from static \
+                to kinetic friction of complex-micro-textured contact surfaces"; : ", Tribology International 2023, ";
+                a(href="https://doi.org/10.1016/j.triboint.2023.108866") : "doi 10.1016/j.triboint.2023.108866";
+                : ", measured with slipfront "; : env!("CARGO_PKG_VERSION"); : ".";
             }
-            p.count {
-                (paper.tally()) ". "
-                @if unexpected == 0 { "Every verdict is the expected one." }
-                @else { strong { (unexpected) " verdicts are not the expected ones." } }
+            p(class="count") {
+                : paper.tally(); : ". ";
+                @ if unexpected == 0 { : "Every verdict is the expected one." }
+                else { strong { : unexpected; : " verdicts are not the expected ones."; } }
             }
-            @if paper.reduced { p { "Reduced version: two random surfaces, one time step." } }
+            @ if paper.reduced { p : "Reduced version: two random surfaces, one time step."; }
         }
-    }
+    }))
 }
 
 /// The figures and claims of the report, in words.
@@ -94,59 +100,60 @@ fn contents(paper: &Paper) -> String {
     )
 }
 
-fn claims_table(paper: &Paper) -> Markup {
-    html! {
-        table.claims {
+fn claims_table(paper: &Paper) -> Raw<String> {
+    let is_measured_twice = !paper.results_by_paper_step.is_empty();
+    Raw(written(html! {
+        table(class="claims") {
             thead { tr {
-                th { "" } th { "Claim" } th { "Verdict" } th { "Measured" } th { "Holds if" }
-                @if !paper.results_by_paper_step.is_empty() { th { "With the paper's step" } }
+                th; th : "Claim"; th : "Verdict"; th : "Measured"; th : "Holds if";
+                @ if is_measured_twice { th : "With the paper's step"; }
             } }
-            tbody { @for (k, result) in paper.results.iter().enumerate() {
-                (claim_row(result, paper.results_by_paper_step.get(k)))
+            tbody { @ for (k, result) in paper.results.iter().enumerate() {
+                : claim_row(result, paper.results_by_paper_step.get(k));
             } }
         }
-    }
+    }))
 }
 
-fn claim_row(result: &ClaimResult, other: Option<&ClaimResult>) -> Markup {
+fn claim_row(result: &ClaimResult, other: Option<&ClaimResult>) -> Raw<String> {
     let claim = &result.claim;
-    html! {
-        tr id={ "claim-" (claim.number) } {
-            td.number { (claim.number) }
+    Raw(written(html! {
+        tr(id=format_args!("claim-{}", claim.number)) {
+            td(class="number") : claim.number;
             td {
-                (text(&claim.claim)) " "
-                a.place href={ "#" (claim.figure()) } { (claim.place) }
-                @if !claim.remark.is_empty() { p.remark { (text(&claim.remark)) } }
-                @if !claim.revised.is_empty() { p.remark { "Revised: " (text(&claim.revised)) } }
+                : text(&claim.claim); : " ";
+                a(class="place", href=format_args!("#{}", claim.figure())) : &claim.place;
+                @ if !claim.remark.is_empty() { p(class="remark") : text(&claim.remark); }
+                @ if !claim.revised.is_empty() { p(class="remark") { : "Revised: "; : text(&claim.revised); } }
             }
-            td class=(class(result.verdict)) {
-                (text(&result.verdict_in_full()))
-                @if !result.as_expected() { strong { " not as expected" } }
+            td(class=class(result.verdict)) {
+                : text(&result.verdict_in_full());
+                @ if !result.as_expected() { strong : " not as expected"; }
             }
-            td data-label="measured" { span.value { (result.measured()) } " " span.what { (text(&claim.measured)) } }
-            td data-label="holds if" { (claim.criterion()) }
-            @if let Some(other) = other {
-                td data-label="with the paper's step" {
-                    span.value { (other.measured()) }
-                    @if other.verdict == result.verdict { ", same verdict" }
-                    @else { strong { ", " (other.verdict.words()) } }
+            td(data-label="measured") { span(class="value") : result.measured(); : " "; span(class="what") : text(&claim.measured); }
+            td(data-label="holds if") : claim.criterion();
+            @ if let Some(other) = other {
+                td(data-label="with the paper's step") {
+                    span(class="value") : other.measured();
+                    @ if other.verdict == result.verdict { : ", same verdict" }
+                    else { strong { : ", "; : other.verdict.words(); } }
                 }
             }
         }
-    }
+    }))
 }
 
-fn text(text: &str) -> Markup {
+/// Text with Greek letters for their names, and subscripts for what stands behind an underscore.
+fn text(text: &str) -> Raw<String> {
     let text = greek(text);
     let mut parts = text.split('_');
     let first = parts.next().unwrap_or_default();
-    html! {
-        (first)
-        @for part in parts {
-            @let (subscript, rest) = part.split_at(part.find(|c: char| !c.is_ascii_lowercase()).unwrap_or(part.len()));
-            sub { (subscript) } (rest)
-        }
-    }
+    let parts =
+        parts.map(|part| part.split_at(part.find(|c: char| !c.is_ascii_lowercase()).unwrap_or(part.len())));
+    Raw(written(html! {
+        : first;
+        @ for (subscript, rest) in parts { sub : subscript; : rest; }
+    }))
 }
 
 fn class(verdict: ClaimVerdict) -> &'static str {
@@ -159,26 +166,34 @@ fn class(verdict: ClaimVerdict) -> &'static str {
     }
 }
 
-fn section(paper: &Paper, figure: &Figure, data: &FigureData, pictures: &[Picture]) -> Markup {
-    html! {
-        section id=(figure.name) {
-            h2 { (figure.title) }
-            @for (Panel { name, caption, .. }, picture) in data.panels.iter().zip(pictures) {
+fn section(paper: &Paper, figure: &Figure, data: &FigureData, pictures: &[Picture]) -> Raw<String> {
+    let of_figure = |result: &&ClaimResult| result.claim.figure() == figure.name;
+    let claims: Vec<_> = paper.results.iter().filter(of_figure).collect();
+    Raw(written(html! {
+        section(id=figure.name) {
+            h2 : figure.title;
+            @ for (Panel { name, caption, .. }, picture) in data.panels.iter().zip(pictures) {
                 figure {
-                    img src={ "data:image/png;base64," (BASE64.encode(&picture.png)) } alt=(caption) style=(width(&picture.svg));
-                    figcaption { (text(caption)) " Numbers: " (name) ".csv." }
+                    img(
+                        src=format_args!("data:image/png;base64,{}", BASE64.encode(&picture.png)),
+                        alt=caption,
+                        style=width(&picture.svg)
+                    );
+                    figcaption { : text(caption); : " Numbers: "; : name; : ".csv."; }
                 }
             }
-            @for table in &data.tables { (plain_table(table)) }
-            @let claims: Vec<_> = paper.results.iter().filter(|result| result.claim.figure() == figure.name).collect();
-            @if !claims.is_empty() {
-                ul.verdicts { @for result in claims {
-                    li { a href={ "#claim-" (result.claim.number) } { "Claim " (result.claim.number) } ": "
-                        (text(&result.claim.claim)) " " span class=(class(result.verdict)) { (result.verdict.words()) } }
+            @ for table in &data.tables { : plain_table(table); }
+            @ if !claims.is_empty() {
+                ul(class="verdicts") { @ for result in &claims {
+                    li {
+                        a(href=format_args!("#claim-{}", result.claim.number)) { : "Claim "; : result.claim.number; }
+                        : ": "; : text(&result.claim.claim); : " ";
+                        span(class=class(result.verdict)) : result.verdict.words();
+                    }
                 } }
             }
         }
-    }
+    }))
 }
 
 /// The physical width that the picture is made for.
@@ -188,14 +203,14 @@ fn width(svg: &str) -> String {
     width.map_or(String::new(), |(width, _)| format!("width:{width}"))
 }
 
-fn plain_table(table: &Table) -> Markup {
-    html! {
-        div.wide { table {
-            caption { (text(&table.caption)) }
-            thead { tr { @for name in &table.header { th { (text(name)) } } } }
-            tbody { @for row in &table.rows { tr { @for cell in row { td { (text(cell)) } } } } }
+fn plain_table(table: &Table) -> Raw<String> {
+    Raw(written(html! {
+        div(class="wide") { table {
+            caption : text(&table.caption);
+            thead { tr { @ for name in &table.header { th : text(name); } } }
+            tbody { @ for row in &table.rows { tr { @ for cell in row { td : text(cell); } } } }
         } }
-    }
+    }))
 }
 
 #[cfg(test)]
@@ -204,7 +219,7 @@ mod tests {
 
     #[test]
     fn subscripts_are_lowered_and_markup_is_escaped() {
-        let seen = text("mu_s* < 1 at sigma_s* & t_s*").into_string();
+        let seen = text("mu_s* < 1 at sigma_s* & t_s*").0;
         assert_eq!(
             seen,
             "\u{3bc}<sub>s</sub>* &lt; 1 at \u{3c3}<sub>s</sub>* &amp; t<sub>s</sub>*"

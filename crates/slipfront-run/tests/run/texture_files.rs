@@ -4,9 +4,9 @@ use std::f64::consts::{PI, TAU};
 use std::fs;
 use std::path::Path;
 
-use rstest::rstest;
 use slipfront_case::case::Case;
 use slipfront_run::pictures::texture_file::{smallest, textured_blocks, write};
+use test_case::test_case;
 
 /// A piece of a closed line, in blocks.
 #[derive(Clone, Copy, Debug)]
@@ -313,13 +313,15 @@ const SHAPES: &[&str] = &[
     "[[texture]]\nshape = 'mask'\nfile = 'mask.png'\narray = [3, 2]\nlattice = 'staggered'\ninvert = true",
 ];
 
-#[rstest]
-#[case("", &[""])]
-#[case("[slider]\nblocks = [40, 30]\n", SHAPES)]
-#[case("[slider]\nblocks = [40, 30]\nedges = 'periodic'\n", SHAPES)]
-#[case("[slider]\nblocks = [40, 30]\nblock_size = '1.7 nm'\n", &["[[texture]]\nshape = 'cavity'\ncoverage = 10\nw = 0.3"])]
-#[case("[slider]\nblocks = [31, 31]\noutline = 'disc'\n", &SHAPES[..2])]
-fn outlines_fill_the_blocks_of_the_mask(#[case] slider: &str, #[case] shapes: &[&str]) {
+#[test_case("", &[""])]
+#[test_case("[slider]\nblocks = [40, 30]\n", SHAPES)]
+#[test_case("[slider]\nblocks = [40, 30]\nedges = 'periodic'\n", SHAPES)]
+#[test_case(
+    "[slider]\nblocks = [40, 30]\nblock_size = '1.7 nm'\n",
+    &["[[texture]]\nshape = 'cavity'\ncoverage = 10\nw = 0.3"]
+)]
+#[test_case("[slider]\nblocks = [31, 31]\noutline = 'disc'\n", &SHAPES[..2])]
+fn outlines_fill_the_blocks_of_the_mask(slider: &str, shapes: &[&str]) {
     let folder = tempfile::tempdir().unwrap();
     let mask: Vec<bool> = (0..30).map(|b| b % 7 < 2 || b == 12).collect();
     slipfront_case::arrays::write_mask_png(&folder.path().join("mask.png"), 6, 5, &mask).unwrap();

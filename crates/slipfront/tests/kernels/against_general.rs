@@ -1,9 +1,9 @@
 //! The fused kernel agrees with the general kernel to rounding.
 
-use rstest::rstest;
 use slipfront::Totals;
 use slipfront::surface::{Orientation, Texture};
 use slipfront::{Drive, Edges, FrictionLaw, Lattice, Model, Simulation, State, Surface, VectorField};
+use test_case::test_matrix;
 
 use crate::common::{self, Slider, cavity, groove};
 use crate::fields::assert_fields_match_blocks;
@@ -123,20 +123,18 @@ pub(crate) fn assert_same(model: &Model, dt_star: f64, state: Option<&State>, st
 
 /// Sizes equal and close to those of a vector, of the shortest row, and of a tile; and rows of 24 blocks in so many tiles that
 /// these begin at every position of the ring buffer of springs, which is 37 vectors long then.
-#[rstest]
-fn lattices_of_every_shape(
-    #[values(
-        [1, 1], [1, 20], [20, 1], [5, 7], [13, 11], [14, 9], [16, 16], [17, 3], [25, 25], [64, 40], [3, 400], [254, 5], [24, 400],
-        [256, 4], [300, 5], [700, 3]
-    )]
-    blocks: [usize; 2],
-    #[values(
+#[test_matrix(
+    [
+        [1, 1], [1, 20], [20, 1], [5, 7], [13, 11], [14, 9], [16, 16], [17, 3], [25, 25], [64, 40], [3, 400],
+        [254, 5], [24, 400], [256, 4], [300, 5], [700, 3]
+    ],
+    [
         [Edges::Free, Edges::Free], [Edges::Periodic, Edges::Free], [Edges::Free, Edges::Periodic],
         [Edges::Periodic, Edges::Periodic]
-    )]
-    edges: [Edges; 2],
-    #[values(0.0, 20.0, 90.0)] degrees: f64,
-) {
+    ],
+    [0.0, 20.0, 90.0]
+)]
+fn lattices_of_every_shape(blocks: [usize; 2], edges: [Edges; 2], degrees: f64) {
     if !has_room(blocks, edges) {
         return;
     }
@@ -152,14 +150,19 @@ fn lattices_of_every_shape(
 }
 
 /// Strains for which spring forces come from either series or the square root, and all other parameters of a step.
-#[rstest]
+#[test_matrix(
+    [0.0, 1e-6, 1e-4, 1e-3, 1e-2],
+    [0.0, 0.1, 3.0],
+    [0.25, 0.5, 1.0],
+    [None, Some(cavity([25, 25], 10.0, 1, 0.3, true)), Some(groove(Orientation::Along, 3.0))],
+    [[Edges::Free, Edges::Free], [Edges::Periodic, Edges::Periodic]]
+)]
 fn forces_of_every_kind(
-    #[values(0.0, 1e-6, 1e-4, 1e-3, 1e-2)] epsilon: f64,
-    #[values(0.0, 0.1, 3.0)] omega_star: f64,
-    #[values(0.25, 0.5, 1.0)] r_star: f64,
-    #[values(None, Some(cavity([25, 25], 10.0, 1, 0.3, true)), Some(groove(Orientation::Along, 3.0)))]
+    epsilon: f64,
+    omega_star: f64,
+    r_star: f64,
     texture: Option<Texture>,
-    #[values([Edges::Free, Edges::Free], [Edges::Periodic, Edges::Periodic])] edges: [Edges; 2],
+    edges: [Edges; 2],
 ) {
     let slider = Slider {
         epsilon,
@@ -175,11 +178,8 @@ fn forces_of_every_kind(
 }
 
 /// A front that a constant force drives, without drive springs: mu* stays zero and no peak ends.
-#[rstest]
-fn a_constant_force_alone(
-    #[values([80, 1], [80, 3], [300, 5])] blocks: [usize; 2],
-    #[values([1.0, 0.0], [0.0, 1.0], [0.6, 0.8])] direction: [f64; 2],
-) {
+#[test_matrix([[80, 1], [80, 3], [300, 5]], [[1.0, 0.0], [0.0, 1.0], [0.6, 0.8]])]
+fn a_constant_force_alone(blocks: [usize; 2], direction: [f64; 2]) {
     let lattice = Lattice::free(blocks[0], blocks[1]);
     let mut surface = Surface::uniform(&lattice, 1.0, 0.25);
     for j in 0..blocks[1] {
@@ -197,16 +197,15 @@ fn a_constant_force_alone(
 }
 
 /// Blocks that are displaced at the start, some of them with a velocity.
-#[rstest]
-fn a_state_in_motion(
-    #[values([1, 1], [17, 5], [5, 60], [300, 4])] blocks: [usize; 2],
-    #[values(
+#[test_matrix(
+    [[1, 1], [17, 5], [5, 60], [300, 4]],
+    [
         [Edges::Free, Edges::Free], [Edges::Periodic, Edges::Free], [Edges::Free, Edges::Periodic],
         [Edges::Periodic, Edges::Periodic]
-    )]
-    edges: [Edges; 2],
-    #[values(1e-6, 1e-2)] epsilon: f64,
-) {
+    ],
+    [1e-6, 1e-2]
+)]
+fn a_state_in_motion(blocks: [usize; 2], edges: [Edges; 2], epsilon: f64) {
     if !has_room(blocks, edges) {
         return;
     }
@@ -224,16 +223,8 @@ fn a_state_in_motion(
 
 /// The kernels agree far beyond the first peak: friction does not amplify differences, so that the kernels would diverge only
 /// if the force on a block came so close to its threshold that rounding decides whether it slips.
-#[rstest]
-fn whole_runs(
-    #[values([25, 25], [64, 30])] blocks: [usize; 2],
-    #[values((0.03, 0.1, 0.5), (0.2, 0.0, 0.25), (0.3, 0.0, 0.0))] (v_star, omega_star, r_star): (
-        f64,
-        f64,
-        f64,
-    ),
-    #[values(1e-6, 1e-2)] epsilon: f64,
-) {
+#[test_matrix([[25, 25], [64, 30]], [(0.03, 0.1, 0.5), (0.2, 0.0, 0.25), (0.3, 0.0, 0.0)], [1e-6, 1e-2])]
+fn whole_runs(blocks: [usize; 2], (v_star, omega_star, r_star): (f64, f64, f64), epsilon: f64) {
     let slider = Slider {
         blocks,
         v_star,

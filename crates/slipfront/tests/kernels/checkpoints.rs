@@ -3,7 +3,6 @@
 
 use std::sync::Arc;
 
-use rstest::rstest;
 use slipfront::communicator::Alone;
 use slipfront::observe::frames::Selection;
 use slipfront::observe::{
@@ -13,6 +12,7 @@ use slipfront::{
     Ageing, ContactSprings, Coulomb, Edge, Execution, Friction, FrictionLaw, Loading, Program, RateAndState,
     Rotation, Simulation, SlipWeakening, Stop, Weakening,
 };
+use test_case::{test_case, test_matrix};
 
 use crate::common::{Slider, cavity, varied};
 use crate::{bits, columns, fused, general, resumed, stopped_and_resumed};
@@ -50,11 +50,8 @@ fn everything(simulation: &Simulation) -> Vec<u64> {
     bits(&numbers)
 }
 
-#[rstest]
-fn the_general_kernel_under_every_law(
-    #[values(FrictionLaw::Projection, FrictionLaw::Reversal, FrictionLaw::Literal)] law: FrictionLaw,
-    #[values(1, 7)] every: u64,
-) {
+#[test_matrix([FrictionLaw::Projection, FrictionLaw::Reversal, FrictionLaw::Literal], [1, 7])]
+fn the_general_kernel_under_every_law(law: FrictionLaw, every: u64) {
     goes_on_from_checkpoints(&slider(law), every);
 }
 
@@ -67,8 +64,8 @@ fn unequal(has_outline: bool) -> slipfront::Slider {
 }
 
 /// A run that stops while the drive stands goes on standing.
-#[rstest]
-fn held_drives(#[values(1, 7)] every: u64) {
+#[test_matrix([1, 7])]
+fn held_drives(every: u64) {
     let slider = Slider {
         loading: Loading::Held { onset_steps: 300 },
         ..slider(FrictionLaw::Projection)
@@ -76,8 +73,8 @@ fn held_drives(#[values(1, 7)] every: u64) {
     goes_on_from_checkpoints(&slider, every);
 }
 
-#[rstest]
-fn sliders_of_unequal_blocks(#[values(1, 7)] every: u64, #[values(false, true)] has_outline: bool) {
+#[test_matrix([1, 7], [false, true])]
+fn sliders_of_unequal_blocks(every: u64, has_outline: bool) {
     let slider = Slider {
         body: unequal(has_outline),
         ..slider(FrictionLaw::Projection)
@@ -109,21 +106,26 @@ fn goes_on_from_checkpoints(slider: &Slider, every: u64) {
 }
 
 /// The memory of a law is part of a checkpoint: ages, anchors and breaks with their thresholds, states.
-#[rstest]
-#[case(Friction::Coulomb(Coulomb {
+#[test_case(Friction::Coulomb(Coulomb {
     weakening: Some(Weakening { critical_speed: 0.1, ratio: 0.4 }),
     ageing: Some(Ageing { beta: 0.1, time: 1.0 }),
     ..FrictionLaw::Projection.into()
 }))]
-#[case(Friction::Coulomb(Coulomb {
+#[test_case(Friction::Coulomb(Coulomb {
     slip_weakening: Some(SlipWeakening { length: 0.4, healing_time: Some(2.0) }),
     ..FrictionLaw::Projection.into()
 }))]
-#[case(Friction::ContactSprings(ContactSprings { stiffness: 0.5, redraw: Some(3) }))]
-#[case(Friction::RateAndState(RateAndState {
+#[test_case(Friction::ContactSprings(ContactSprings { stiffness: 0.5, redraw: Some(3) }))]
+#[test_case(Friction::RateAndState(RateAndState {
     a: 0.02, b: 0.05, d_c: 0.2, v_0: 0.1, mu_0: 0.6, theta_0: 2.0, slip_speed: 0.05,
 }))]
-fn what_a_law_remembers(#[case] friction: Friction, #[values(1, 7)] every: u64) {
+fn what_a_law_remembers(friction: Friction) {
+    for every in [1, 7] {
+        is_kept(friction, every);
+    }
+}
+
+fn is_kept(friction: Friction, every: u64) {
     let slider = slider(FrictionLaw::Projection);
     let (mut model, dt_star) = (slider.model(), slider.dt_star);
     model.friction = friction;
@@ -152,12 +154,8 @@ fn what_a_law_remembers(#[case] friction: Friction, #[values(1, 7)] every: u64) 
 
 /// A run without stops and one in parts, each of which continues from a checkpoint of the run and of its observers.
 /// Observers have seen every instant exactly once.
-#[rstest]
-fn observers_see_every_instant_once(
-    #[values(general(), fused())] execution: Execution,
-    #[values(1, 13, 250)] piece: u64,
-    #[values(slipfront::Slider::default(), unequal(false))] body: slipfront::Slider,
-) {
+#[test_matrix([general(), fused()], [1, 13, 250], [slipfront::Slider::default(), unequal(false)])]
+fn observers_see_every_instant_once(execution: Execution, piece: u64, body: slipfront::Slider) {
     let slider = Slider {
         body,
         ..slider(FrictionLaw::Projection)
@@ -230,8 +228,8 @@ fn a_checkpoint_of_another_kernel_does_not_fit() {
 }
 
 /// Drives at an edge, by a program and in rotation, and what is observed of them, go on as if they had not been stopped.
-#[rstest]
-fn other_drives_and_their_observers(#[values(false, true)] turns: bool, #[values(1, 7)] every: u64) {
+#[test_matrix([false, true], [1, 7])]
+fn other_drives_and_their_observers(turns: bool, every: u64) {
     let slider = Slider {
         textures: Vec::new(),
         degrees: 0.0,

@@ -1,8 +1,8 @@
 //! The fused kernel gives the same bits on any number of threads, with and without skipping, and across checkpoints.
 
-use rstest::rstest;
 use slipfront::surface::{Orientation, Texture};
 use slipfront::{Drive, Edges, Execution, FrictionLaw, Lattice, Model, Simulation, State, Surface};
+use test_case::test_matrix;
 
 use crate::common::{cavity, groove};
 use crate::{bits, fused, go, has_room, sliders, stopped_and_resumed};
@@ -108,15 +108,14 @@ fn assert_same_bits_in_pool(model: &Model, dt_star: f64, from: Option<&State>, s
     }
 }
 
-#[rstest]
-fn lattices_of_every_shape(
-    #[values([1, 1], [25, 25], [64, 40], [3, 400], [300, 5], [700, 3])] blocks: [usize; 2],
-    #[values(
+#[test_matrix(
+    [[1, 1], [25, 25], [64, 40], [3, 400], [300, 5], [700, 3]],
+    [
         [Edges::Free, Edges::Free], [Edges::Periodic, Edges::Free], [Edges::Free, Edges::Periodic],
         [Edges::Periodic, Edges::Periodic]
-    )]
-    edges: [Edges; 2],
-) {
+    ]
+)]
+fn lattices_of_every_shape(blocks: [usize; 2], edges: [Edges; 2]) {
     if !has_room(blocks, edges) {
         return;
     }
@@ -125,49 +124,44 @@ fn lattices_of_every_shape(
 }
 
 /// The strains need either series and the square root, and change from one to the other.
-#[rstest]
-fn textures_and_strains(
-    #[values(None, Some(cavity([40, 40], 5.0, 1, 0.3, true)), Some(groove(Orientation::Across, 2.0)))]
-    texture: Option<Texture>,
-    #[values(0.0, 2e-5, 1e-3, 5e-3)] epsilon: f64,
-) {
+#[test_matrix(
+    [None, Some(cavity([40, 40], 5.0, 1, 0.3, true)), Some(groove(Orientation::Across, 2.0))],
+    [0.0, 2e-5, 1e-3, 5e-3]
+)]
+fn textures_and_strains(texture: Option<Texture>, epsilon: f64) {
     let slider = sliders::textured(texture, epsilon);
     assert_same_bits(&slider.model(), slider.dt_star, None, slider.steps(4.0));
 }
 
 /// Skipped blocks are predicted to slip by a drive that never stands.
-#[rstest]
-fn held_drives(
-    #[values(([40, 24], Edges::Free), ([300, 3], Edges::Free), ([3, 200], Edges::Periodic))] (blocks, edges): (
-        [usize; 2],
-        Edges,
-    ),
-    #[values(0.0, 65.0)] degrees: f64,
-    #[values(false, true)] has_program: bool,
-) {
+#[test_matrix(
+    [([40, 24], Edges::Free), ([300, 3], Edges::Free), ([3, 200], Edges::Periodic)],
+    [0.0, 65.0],
+    [false, true]
+)]
+fn held_drives((blocks, edges): ([usize; 2], Edges), degrees: f64, has_program: bool) {
     let slider = sliders::held(blocks, edges, degrees, has_program);
     assert_same_bits(&slider.model(), slider.dt_star, None, 2 * slider.steps(4.0));
 }
 
 /// The strains need every formula of springs, and change it while blocks are at rest.
-#[rstest]
-fn slow_drives(
-    #[values(
-        ([40, 24], Edges::Free), ([40, 24], Edges::Periodic), ([300, 3], Edges::Free), ([3, 200], Edges::Periodic)
-    )]
-    (blocks, edges): ([usize; 2], Edges),
-    #[values((0.0, 1e-6), (65.0, 3e-4), (0.0, 1.7e-3), (65.0, 4e-3))] (degrees, epsilon): (f64, f64),
-) {
+#[test_matrix(
+    [
+        ([40, 24], Edges::Free), ([40, 24], Edges::Periodic), ([300, 3], Edges::Free),
+        ([3, 200], Edges::Periodic)
+    ],
+    [(0.0, 1e-6), (65.0, 3e-4), (0.0, 1.7e-3), (65.0, 4e-3)]
+)]
+fn slow_drives((blocks, edges): ([usize; 2], Edges), (degrees, epsilon): (f64, f64)) {
     let slider = sliders::slow(blocks, edges, degrees, epsilon);
     assert_same_bits(&slider.model(), slider.dt_star, None, slider.steps(2.6));
 }
 
-#[rstest]
-fn a_state_in_motion(
-    #[values([Edges::Free, Edges::Free], [Edges::Periodic, Edges::Free], [Edges::Periodic, Edges::Periodic])]
-    edges: [Edges; 2],
-    #[values(1e-6, 1e-2)] epsilon: f64,
-) {
+#[test_matrix(
+    [[Edges::Free, Edges::Free], [Edges::Periodic, Edges::Free], [Edges::Periodic, Edges::Periodic]],
+    [1e-6, 1e-2]
+)]
+fn a_state_in_motion(edges: [Edges; 2], epsilon: f64) {
     let (slider, from) = sliders::in_motion(edges, epsilon);
     assert_same_bits(&slider.model(), slider.dt_star, Some(&from), 300);
 }

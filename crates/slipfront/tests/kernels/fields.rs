@@ -1,10 +1,10 @@
 //! Fields of all blocks, read at once, have the same bits as fields of single blocks.
 
-use rstest::rstest;
 use slipfront::observe::frames::Selection;
 use slipfront::observe::{Field, Frames, Schedule, Scheduled};
 use slipfront::surface::{Orientation, Texture};
 use slipfront::{Edges, Execution, FrictionLaw, Simulation, Stop};
+use test_case::test_matrix;
 
 use crate::common::{Slider, cavity, groove, thrown};
 use crate::{fused, general, has_room, stopped_and_resumed};
@@ -40,22 +40,22 @@ pub(crate) fn assert_fields_match_blocks(simulation: &Simulation) {
 
 /// Rows of one and of several strips, tiles and bands; blocks that stick and slide; every kind of springs. A simulation that
 /// has just been resumed is read before its first step.
-#[rstest]
-fn all_blocks_have_the_same_bits_as_single_ones(
-    #[values([1, 1], [7, 1], [1, 9], [25, 25], [120, 3], [250, 6], [30, 90])] blocks: [usize; 2],
-    #[values(
+#[test_matrix(
+    [[1, 1], [7, 1], [1, 9], [25, 25], [120, 3], [250, 6], [30, 90]],
+    [
         [Edges::Free, Edges::Free], [Edges::Periodic, Edges::Free], [Edges::Free, Edges::Periodic],
         [Edges::Periodic, Edges::Periodic]
-    )]
-    edges: [Edges; 2],
-    #[values(
+    ],
+    [
         (1e-6, None), (1e-2, None), (1e-6, Some(groove(Orientation::Along, 1.0))),
         (1e-2, Some(cavity([25, 25], 5.0, 1, 0.3, true)))
-    )]
+    ],
+    [fused(), Execution { threads: 3, ..fused() }, Execution { skips: true, ..fused() }, general()]
+)]
+fn all_blocks_have_the_same_bits_as_single_ones(
+    blocks: [usize; 2],
+    edges: [Edges; 2],
     (epsilon, texture): (f64, Option<Texture>),
-    #[values(
-        fused(), Execution { threads: 3, ..fused() }, Execution { skips: true, ..fused() }, general()
-    )]
     execution: Execution,
 ) {
     let slider = Slider {
@@ -86,8 +86,8 @@ fn all_blocks_have_the_same_bits_as_single_ones(
 }
 
 /// Laws whose friction does not follow from the velocity: the general kernel keeps it.
-#[rstest]
-fn every_friction_law(#[values(FrictionLaw::Reversal, FrictionLaw::Literal)] law: FrictionLaw) {
+#[test_matrix([FrictionLaw::Reversal, FrictionLaw::Literal])]
+fn every_friction_law(law: FrictionLaw) {
     let slider = Slider {
         law,
         v_star: 0.1,
@@ -101,11 +101,8 @@ fn every_friction_law(#[values(FrictionLaw::Reversal, FrictionLaw::Literal)] law
 }
 
 /// Frames keep every n-th block along each axis, in the order of the lattice.
-#[rstest]
-fn frames_keep_every_nth_block(
-    #[values([1, 1], [25, 25], [130, 7], [250, 6])] blocks: [usize; 2],
-    #[values(1, 2, 3, 7, 64, 121)] stride: usize,
-) {
+#[test_matrix([[1, 1], [25, 25], [130, 7], [250, 6]], [1, 2, 3, 7, 64, 121])]
+fn frames_keep_every_nth_block(blocks: [usize; 2], stride: usize) {
     let slider = Slider {
         blocks,
         v_star: 0.1,

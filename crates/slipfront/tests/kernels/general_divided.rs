@@ -1,12 +1,12 @@
 //! Options that the general kernel alone computes have the same bits on several ranks and threads as on one, and go on from
 //! a checkpoint on any other number of them.
 
-use rstest::rstest;
 use slipfront::communicator::Alone;
 use slipfront::{
     Ageing, Communicator, ContactSprings, Coulomb, Edges, Friction, FrictionLaw, Model, RateAndState,
     Rotation,
 };
+use test_case::test_matrix;
 
 use crate::common::{Slider, cavity, thrown, varied};
 use crate::executions::assert_same_bits;
@@ -89,15 +89,15 @@ fn change(options: &[Variety], model: &mut Model, ranks: &dyn Communicator) {
 
 use Variety::{Ages, Differ, Law, RateAndState as RateState, Springs, Turns, Viscous};
 
-#[rstest]
-fn the_same_bits_over_ranks(
-    #[values(
+#[test_matrix(
+    [
         &[Law(FrictionLaw::Reversal)], &[Law(FrictionLaw::Literal), Differ], &[Viscous], &[Ages], &[RateState],
-        &[Springs], &[Turns], &[Viscous, Differ, Turns], &[Viscous, Differ, RateState], &[Springs, Turns, Differ]
-    )]
-    options: &'static [Variety],
-    #[values(Edges::Free, Edges::Periodic)] edges: Edges,
-) {
+        &[Springs], &[Turns], &[Viscous, Differ, Turns], &[Viscous, Differ, RateState],
+        &[Springs, Turns, Differ]
+    ],
+    [Edges::Free, Edges::Periodic]
+)]
+fn the_same_bits_over_ranks(options: &'static [Variety], edges: Edges) {
     let slider = slider(BLOCKS, edges, options);
     let change = |model: &mut Model, ranks: &dyn Communicator| change(options, model, ranks);
     assert_same_with(&slider, &change, None, slider.steps(6.0));
@@ -105,23 +105,20 @@ fn the_same_bits_over_ranks(
     assert_same_with(&slider, &change, Some(&from), 100);
 }
 
-#[rstest]
-fn checkpoints_go_on_on_any_number_of_ranks(
-    #[values(&[Viscous, Differ, Ages], &[RateState], &[Springs, Turns])] options: &'static [Variety],
-) {
+#[test_matrix([&[Viscous, Differ, Ages], &[RateState], &[Springs, Turns]])]
+fn checkpoints_go_on_on_any_number_of_ranks(options: &'static [Variety]) {
     let change = |model: &mut Model, ranks: &dyn Communicator| change(options, model, ranks);
     assert_goes_on(&slider(BLOCKS, Edges::Free, options), &change);
 }
 
-#[rstest]
-fn the_same_bits_over_threads(
-    #[values(
+#[test_matrix(
+    [
         &[Law(FrictionLaw::Reversal)], &[Ages], &[RateState], &[Springs], &[Viscous, Differ, Turns],
         &[Viscous, Differ, RateState], &[Springs, Turns, Differ]
-    )]
-    options: &'static [Variety],
-    #[values(Edges::Free, Edges::Periodic)] edges: Edges,
-) {
+    ],
+    [Edges::Free, Edges::Periodic]
+)]
+fn the_same_bits_over_threads(options: &'static [Variety], edges: Edges) {
     let slider = slider(MANY, edges, options);
     let mut model = slider.model();
     change(options, &mut model, &Alone);
@@ -129,11 +126,8 @@ fn the_same_bits_over_threads(
     assert_same_bits(&model, slider.dt_star, Some(&from), 30);
 }
 
-#[rstest]
-fn the_same_bits_over_threads_of_ranks(
-    #[values(&[Viscous, Differ, Turns], &[RateState])] options: &'static [Variety],
-    #[values(Edges::Free, Edges::Periodic)] edges: Edges,
-) {
+#[test_matrix([&[Viscous, Differ, Turns], &[RateState]], [Edges::Free, Edges::Periodic])]
+fn the_same_bits_over_threads_of_ranks(options: &'static [Variety], edges: Edges) {
     // Three bands on each of the three ranks that have two threads: one has bands alone beside it.
     let blocks = [40, 240];
     let slider = slider(blocks, edges, options);

@@ -2,13 +2,13 @@
 
 use std::convert::Infallible;
 
-use rstest::rstest;
 use slipfront::checkpoint::BlockColumn;
 use slipfront::surface::{Coefficients, Distribution, Load};
 use slipfront::{
     ContactSprings, Drive, Edges, Execution, Friction, FrictionLaw, Kernel, Lattice, Model, Simulation,
     Surface, scales,
 };
+use test_case::test_matrix;
 
 use crate::bits;
 
@@ -31,18 +31,17 @@ fn model(lattice: Lattice) -> Model {
 }
 
 /// More blocks than are handed over at once, in parts that end within rows and at their ends, and within bands.
-#[rstest]
-#[case(300, 300, Edges::Free)]
-#[case(1, 70_000, Edges::Free)]
-#[case(70_001, 3, Edges::Periodic)]
+#[test_matrix(
+    [(300, 300, Edges::Free), (1, 70_000, Edges::Free), (70_001, 3, Edges::Periodic)],
+    [
+        (Kernel::Fused, 1, false), (Kernel::Fused, 3, false), (Kernel::General, 1, false),
+        (Kernel::General, 1, true)
+    ]
+)]
 fn columns_of_many_blocks_are_handed_over(
-    #[case] nx: usize,
-    #[case] ny: usize,
-    #[case] edges: Edges,
-    #[values((Kernel::Fused, 1, false), (Kernel::Fused, 3, false), (Kernel::General, 1, false), (Kernel::General, 1, true))]
-    by: (Kernel, usize, bool),
+    (nx, ny, edges): (usize, usize, Edges),
+    (kernel, threads, has_springs): (Kernel, usize, bool),
 ) {
-    let (kernel, threads, has_springs) = by;
     let execution = Execution {
         kernel,
         threads,

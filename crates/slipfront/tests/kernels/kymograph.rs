@@ -2,10 +2,10 @@
 
 use std::sync::Arc;
 
-use rstest::rstest;
 use slipfront::observe::{Field, Kymograph, Observer, Schedule, Scheduled};
 use slipfront::testing::Threads;
 use slipfront::{Edges, Execution, PositionBins, RunError, Simulation, Snapshot, Stop};
+use test_case::test_matrix;
 
 use crate::common::{Slider, cavity, varied};
 use crate::{fused, general};
@@ -62,8 +62,8 @@ fn sliders() -> [Slider; 4] {
     ]
 }
 
-#[rstest]
-fn what_slides_is_counted(#[values(0, 1, 2, 3)] which: usize) {
+#[test_matrix([0, 1, 2, 3])]
+fn what_slides_is_counted(which: usize) {
     let slider = &sliders()[which];
     let steps = slider.steps(4.0);
     let mut from_field = FromField::default();

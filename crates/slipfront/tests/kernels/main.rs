@@ -2,6 +2,7 @@
 //! on any number of threads, with and without skipping.
 
 #![allow(clippy::unwrap_used)] // A helper that cannot do its work fails its test.
+#![allow(clippy::needless_pass_by_value)] // Values of a test are passed to it as they are written.
 
 #[path = "../common/mod.rs"]
 mod common;

@@ -5,7 +5,6 @@ use std::convert::Infallible;
 use std::ops::Range;
 use std::sync::Arc;
 
-use rstest::rstest;
 use slipfront::checkpoint::Checkpoint;
 use slipfront::communicator::Alone;
 use slipfront::observe::frames::Selection;
@@ -13,6 +12,7 @@ use slipfront::observe::{Field, Frame};
 use slipfront::surface::{Orientation, Texture};
 use slipfront::testing::Threads;
 use slipfront::{Communicator, Edges, Execution, Model, RunError, Simulation, State, Stop, VectorField};
+use test_case::{test_case, test_matrix};
 
 use crate::common::{Slider, cavity, groove};
 use crate::executions::{shown, state};
@@ -166,15 +166,14 @@ fn floats(bits: &[u64]) -> Vec<f64> {
     bits.iter().copied().map(f64::from_bits).collect()
 }
 
-#[rstest]
-fn lattices_of_every_shape(
-    #[values([1, 5], [25, 25], [64, 40], [3, 400], [300, 5], [700, 3])] blocks: [usize; 2],
-    #[values(
+#[test_matrix(
+    [[1, 5], [25, 25], [64, 40], [3, 400], [300, 5], [700, 3]],
+    [
         [Edges::Free, Edges::Free], [Edges::Periodic, Edges::Free], [Edges::Free, Edges::Periodic],
         [Edges::Periodic, Edges::Periodic]
-    )]
-    edges: [Edges; 2],
-) {
+    ]
+)]
+fn lattices_of_every_shape(blocks: [usize; 2], edges: [Edges; 2]) {
     if !has_room(blocks, edges) {
         return;
     }
@@ -182,49 +181,43 @@ fn lattices_of_every_shape(
     assert_same(&slider, None, slider.steps(4.0));
 }
 
-#[rstest]
-fn textures_and_strains(
-    #[values(None, Some(cavity([40, 40], 5.0, 1, 0.3, true)), Some(groove(Orientation::Across, 2.0)))]
-    texture: Option<Texture>,
-    #[values(0.0, 1e-3, 5e-3)] epsilon: f64,
-) {
+#[test_matrix(
+    [None, Some(cavity([40, 40], 5.0, 1, 0.3, true)), Some(groove(Orientation::Across, 2.0))],
+    [0.0, 1e-3, 5e-3]
+)]
+fn textures_and_strains(texture: Option<Texture>, epsilon: f64) {
     let slider = sliders::textured(texture, epsilon);
     assert_same(&slider, None, slider.steps(4.0));
 }
 
 /// While some blocks slip, others are at rest: on some ranks all of them.
-#[rstest]
-fn slow_drives(
-    #[values(([40, 24], Edges::Free), ([40, 24], Edges::Periodic), ([3, 200], Edges::Periodic))]
-    (blocks, edges): ([usize; 2], Edges),
-    #[values((0.0, 1e-6), (65.0, 4e-3))] (degrees, epsilon): (f64, f64),
-) {
+#[test_matrix(
+    [([40, 24], Edges::Free), ([40, 24], Edges::Periodic), ([3, 200], Edges::Periodic)],
+    [(0.0, 1e-6), (65.0, 4e-3)]
+)]
+fn slow_drives((blocks, edges): ([usize; 2], Edges), (degrees, epsilon): (f64, f64)) {
     let slider = sliders::slow(blocks, edges, degrees, epsilon);
     assert_same(&slider, None, slider.steps(2.6));
 }
 
 /// All ranks know alike whether the drive stands.
-#[rstest]
-fn held_drives(#[values(0.0, 65.0)] degrees: f64, #[values(false, true)] has_program: bool) {
+#[test_matrix([0.0, 65.0], [false, true])]
+fn held_drives(degrees: f64, has_program: bool) {
     let slider = sliders::held([40, 24], Edges::Free, degrees, has_program);
     assert_same(&slider, None, 2 * slider.steps(3.0));
     assert_goes_on(&slider, &|_, _| ());
 }
 
-#[rstest]
-fn a_state_in_motion(
-    #[values([Edges::Free, Edges::Free], [Edges::Periodic, Edges::Periodic])] edges: [Edges; 2],
-    #[values(1e-6, 1e-2)] epsilon: f64,
-) {
+#[test_matrix([[Edges::Free, Edges::Free], [Edges::Periodic, Edges::Periodic]], [1e-6, 1e-2])]
+fn a_state_in_motion(edges: [Edges; 2], epsilon: f64) {
     let (slider, from) = sliders::in_motion(edges, epsilon);
     assert_same(&slider, Some(&from), 200);
 }
 
 /// All ranks name the block that one rank names: in a lattice whose blocks move alike, the first.
-#[rstest]
-#[case::alike(Slider { dt_star: 4.0, ..Slider::default() }.uniform())]
-#[case::apart(Slider { dt_star: 1.0, ..Slider::default() })]
-fn a_run_that_diverges_says_the_same(#[case] slider: Slider) {
+#[test_case(Slider { dt_star: 4.0, ..Slider::default() }.uniform(); "alike")]
+#[test_case(Slider { dt_star: 1.0, ..Slider::default() }; "apart")]
+fn a_run_that_diverges_says_the_same(slider: Slider) {
     let slider = Slider {
         blocks: [12, 9],
         ..slider
@@ -281,8 +274,8 @@ fn save(simulation: &Simulation) -> Saved {
     (simulation.checkpoint(), columns(simulation))
 }
 
-#[rstest]
-fn checkpoints_go_on_on_any_number_of_ranks(#[values(0.1, 0.01)] v_star: f64) {
+#[test_matrix([0.1, 0.01])]
+fn checkpoints_go_on_on_any_number_of_ranks(v_star: f64) {
     let slider = Slider {
         blocks: [33, 21],
         edges: [Edges::Free, Edges::Periodic],

@@ -1,9 +1,9 @@
 //! Velocities so small that their squares would be subnormal numbers are zero, in both kernels and however they are executed.
 
-use rstest::rstest;
 use slipfront::surface::Orientation;
 use slipfront::testing::FusedKernel;
 use slipfront::{Execution, Simulation};
+use test_case::{test_case, test_matrix};
 
 use crate::common::{Slider, groove};
 use crate::{executions, fused, general, ranks};
@@ -27,10 +27,9 @@ fn grooved(degrees: f64) -> Slider {
     }
 }
 
-#[rstest]
-#[case::fused(fused())]
-#[case::general(general())]
-fn no_velocity_is_subnormal(#[case] execution: Execution) {
+#[test_case(fused(); "fused")]
+#[test_case(general(); "general")]
+fn no_velocity_is_subnormal(execution: Execution) {
     let mut simulation = Simulation::new(grooved(0.0).model(), 0.1, None, execution);
     let mut least = f64::INFINITY;
     for _ in 0..STEPS {
@@ -47,8 +46,8 @@ fn no_velocity_is_subnormal(#[case] execution: Execution) {
     assert!((SMALLEST..1e3 * SMALLEST).contains(&least), "{least:e}");
 }
 
-#[rstest]
-fn executions_and_ranks_give_the_same_bits(#[values(0.0, 30.0)] degrees: f64) {
+#[test_matrix([0.0, 30.0])]
+fn executions_and_ranks_give_the_same_bits(degrees: f64) {
     let slider = grooved(degrees);
     executions::assert_same_bits(&slider.model(), 0.1, None, STEPS);
     ranks::assert_same(&slider, None, STEPS);

@@ -3,9 +3,9 @@
 
 use std::sync::Arc;
 
-use rstest::rstest;
 use slipfront::communicator::Alone;
 use slipfront::{DriveSprings, Edges, Outline, Program, SlipWeakening, Weakening};
+use test_case::test_matrix;
 
 use crate::common::{Slider, cavity, varied};
 use crate::{against_general, executions, ranks, sliders};
@@ -90,51 +90,47 @@ use Variety::{EdgeDrive, Grading, Outline as Cut, Program as Changes, Weakening 
 const SLIPS: Variety = Variety::SlipWeakening { heals: false };
 const HEALS: Variety = Variety::SlipWeakening { heals: true };
 
-#[rstest]
-fn the_general_kernel_agrees(
-    #[values(
+#[test_matrix(
+    [
         &[EdgeDrive], &[Grading], &[Cut], &[Weakens], &[Changes], &[Grading, Cut], &[EdgeDrive, Cut, Weakens],
         &[Grading, Cut, Weakens, Changes], &[SLIPS], &[HEALS], &[Grading, Cut, SLIPS]
-    )]
-    options: &[Variety],
-    #[values(0.0, 1e-6, 1e-2)] epsilon: f64,
-    #[values(Edges::Free, Edges::Periodic)] edges: Edges,
-) {
+    ],
+    [0.0, 1e-6, 1e-2],
+    [Edges::Free, Edges::Periodic]
+)]
+fn the_general_kernel_agrees(options: &[Variety], epsilon: f64, edges: Edges) {
     let slider = with(base(epsilon, edges), options);
     against_general::assert_same(&slider.model(), slider.dt_star, None, slider.steps(5.0));
 }
 
-#[rstest]
-fn the_same_bits_however_executed(
-    #[values(
+#[test_matrix(
+    [
         &[EdgeDrive], &[Grading], &[Cut], &[Weakens], &[Changes], &[EdgeDrive, Cut, Weakens],
         &[Grading, Cut, Weakens, Changes], &[SLIPS], &[HEALS], &[Grading, Cut, HEALS]
-    )]
-    options: &[Variety],
-    #[values(1e-6, 2e-3)] epsilon: f64,
-    #[values(Edges::Free, Edges::Periodic)] edges: Edges,
-) {
+    ],
+    [1e-6, 2e-3],
+    [Edges::Free, Edges::Periodic]
+)]
+fn the_same_bits_however_executed(options: &[Variety], epsilon: f64, edges: Edges) {
     let slider = with(base(epsilon, edges), options);
     executions::assert_same_bits(&slider.model(), slider.dt_star, None, slider.steps(5.0));
 }
 
 /// Between slips most of a slow slider is skipped.
-#[rstest]
-fn slow_sliders_have_the_same_bits(
-    #[values(&[EdgeDrive], &[Grading, Cut, Weakens], &[Changes], &[SLIPS], &[HEALS])] options: &[Variety],
-) {
+#[test_matrix([&[EdgeDrive], &[Grading, Cut, Weakens], &[Changes], &[SLIPS], &[HEALS]])]
+fn slow_sliders_have_the_same_bits(options: &[Variety]) {
     let slider = with(sliders::slow(BLOCKS, Edges::Free, 0.0, 1e-6), options);
     executions::assert_same_bits(&slider.model(), slider.dt_star, None, slider.steps(4.0));
 }
 
-#[rstest]
-fn the_same_bits_over_ranks(
-    #[values(
-        &[EdgeDrive], &[Grading], &[Cut], &[Weakens, Changes], &[Grading, Cut, Weakens, Changes], &[SLIPS], &[HEALS]
-    )]
-    options: &[Variety],
-    #[values(Edges::Free, Edges::Periodic)] edges: Edges,
-) {
+#[test_matrix(
+    [
+        &[EdgeDrive], &[Grading], &[Cut], &[Weakens, Changes], &[Grading, Cut, Weakens, Changes], &[SLIPS],
+        &[HEALS]
+    ],
+    [Edges::Free, Edges::Periodic]
+)]
+fn the_same_bits_over_ranks(options: &[Variety], edges: Edges) {
     let slider = with(base(1e-6, edges), options);
     ranks::assert_same(&slider, None, slider.steps(4.0));
 }

@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use rstest::rstest;
 use slipfront::communicator::Alone;
 use slipfront::exact_solutions::{StopOfSteadySliding, ageing_slip_time};
 use slipfront::lattice::K_DRIVE;
@@ -11,6 +10,7 @@ use slipfront::{
     Ageing, Coulomb, Drive, Friction, FrictionLaw, Lattice, Model, Program, Simulation, State, Surface,
     VectorField, scales,
 };
+use test_case::test_matrix;
 
 use crate::common::{at_rest, from_state};
 
@@ -66,11 +66,8 @@ fn advance_to(simulation: &mut Simulation, time_star: f64) {
 }
 
 /// Nothing moves before, so that the time is exact but for being seen up to a step late.
-#[rstest]
-fn a_block_that_was_held_breaks_at_its_age(
-    #[values(0.0, 50.0, 400.0)] hold: f64,
-    #[values(0.0, 0.05, 0.15)] beta: f64,
-) {
+#[test_matrix([0.0, 50.0, 400.0], [0.0, 0.05, 0.15])]
+fn a_block_that_was_held_breaks_at_its_age(hold: f64, beta: f64) {
     let law = Ageing { beta, ..LAW };
     let model = model(law, 0.1, &[(0.0, hold), (V, f64::INFINITY)], Adhesion::default());
     let exact = ageing_slip_time(&law, 0.0, hold, K_DRIVE, V);
@@ -101,11 +98,8 @@ fn adhesion_does_not_age() {
 
 /// The age counts from the stop of the block, which lies after that of the drive. A stop is placed to first order in the step: its
 /// time within a step, the pull there within k V of that, and so the next slip within two steps and the step in which it is seen.
-#[rstest]
-fn after_steady_sliding_age_counts_from_the_stop(
-    #[values(0.3, 0.6, 1.2)] omega_star: f64,
-    #[values(0.05, 0.01)] dt: f64,
-) {
+#[test_matrix([0.3, 0.6, 1.2], [0.05, 0.01])]
+fn after_steady_sliding_age_counts_from_the_stop(omega_star: f64, dt: f64) {
     let damping = scales::damping(omega_star);
     let (stopped, restarted) = (5.0, 400.0);
     let segments = [(V, stopped), (0.0, restarted), (V, f64::INFINITY)];

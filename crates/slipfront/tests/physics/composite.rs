@@ -1,10 +1,10 @@
 //! Surfaces of two zones.
 
-use rstest::rstest;
 use slipfront::communicator::Alone;
 use slipfront::exact_solutions::composite_peak;
 use slipfront::surface::{Coefficients, Contact, Load};
 use slipfront::{Drive, FrictionLaw, Lattice, Model, Outline, Slider, Stop, Surface, scales};
+use test_case::test_matrix;
 
 use crate::common::at_rest;
 
@@ -41,12 +41,8 @@ fn largest(model: &Model) -> f64 {
 }
 
 /// The drag of the zone that slides already adds at most f Omega V*, and a slip is seen at most the pull of one step late.
-#[rstest]
-fn the_largest_friction_of_zones_apart(
-    #[values(2, 5, 8)] weak: usize,
-    #[values([0.5, 1.0], [0.8, 1.0], [0.3, 1.5])] mu: [f64; 2],
-    #[values(0.2, 0.6)] r_star: f64,
-) {
+#[test_matrix([2, 5, 8], [[0.5, 1.0], [0.8, 1.0], [0.3, 1.5]], [0.2, 0.6])]
+fn the_largest_friction_of_zones_apart(weak: usize, mu: [f64; 2], r_star: f64) {
     let f = weak as f64 / 10.0;
     let exact = composite_peak(f, mu, r_star);
     let found = largest(&model(weak, mu, r_star, true));
@@ -58,8 +54,8 @@ fn the_largest_friction_of_zones_apart(
 }
 
 /// The thresholds of both zones at once are a bound that no slider reaches, however its blocks are joined.
-#[rstest]
-fn no_slider_has_both_thresholds_at_once(#[values(false, true)] apart: bool) {
+#[test_matrix([false, true])]
+fn no_slider_has_both_thresholds_at_once(apart: bool) {
     let (mu, r_star) = ([0.5, 1.0], 0.5);
     let found = largest(&model(5, mu, r_star, apart));
     assert!(found < 0.5 * mu[0] + 0.5 * mu[1] - 0.02, "{found}");

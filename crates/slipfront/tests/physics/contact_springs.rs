@@ -1,6 +1,5 @@
 //! Springs between the blocks and the substrate, which break and form again.
 
-use rstest::rstest;
 use slipfront::communicator::Alone;
 use slipfront::exact_solutions::{chain_slip_force, static_over_kinetic_of_springs};
 use slipfront::lattice::{K_DRIVE, K_STRAIGHT};
@@ -8,6 +7,7 @@ use slipfront::observe::Curve;
 use slipfront::surface::Coefficients;
 use slipfront::surface::Load;
 use slipfront::{ContactSprings, Drive, Friction, Lattice, Model, Surface, scales};
+use test_case::test_matrix;
 
 use crate::common::{Slider, at_rest, cavity};
 
@@ -37,11 +37,8 @@ fn spread(w: f64, law: ContactSprings, damping: f64, v_star: f64) -> Model {
 /// goes over 40 cycles, after ten that spread the phases of springs that keep their thresholds over 20 w cycles: the mean of 40 sawteeth,
 /// 1/(4 40) off if all were cut at once, is off by an eighth of that over 20 w. The mean of 16000 thresholds that are drawn anew scatters
 /// by w/sqrt(3 16000), and is given three times that.
-#[rstest]
-fn static_over_kinetic_friction_of_a_rigid_slider(
-    #[values(0.05, 0.1, 0.2)] w: f64,
-    #[values(None, Some(5))] redraw: Option<u64>,
-) {
+#[test_matrix([0.05, 0.1, 0.2], [None, Some(5)])]
+fn static_over_kinetic_friction_of_a_rigid_slider(w: f64, redraw: Option<u64>) {
     let stiffness = 1e-3 * K_DRIVE;
     let (v_star, dt, damping) = (2.5, 0.8, scales::damping(0.5));
     let model = spread(w, ContactSprings { stiffness, redraw }, damping, v_star);
@@ -101,8 +98,8 @@ fn the_weakest_spring_breaks_first() {
 /// A chain that is pulled at its first block alone is in equilibrium until the spring there breaks: displacements decay along the chain.
 /// The drive is slow and damping critical for the chain as a whole. Its viscous force is Omega V times the displacements of all
 /// blocks over that of the first, which is the exact force, and the pull grows by k_s V dt in a step.
-#[rstest]
-fn the_first_block_of_a_chain_that_is_pulled_there_breaks(#[values(1, 2, 5, 20)] n: usize) {
+#[test_matrix([1, 2, 5, 20])]
+fn the_first_block_of_a_chain_that_is_pulled_there_breaks(n: usize) {
     let (stiffness, v_star, dt) = (0.1, 2e-4, 0.2);
     let lattice = Lattice::free(n, 1);
     let law = ContactSprings {

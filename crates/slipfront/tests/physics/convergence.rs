@@ -1,9 +1,9 @@
 //! Orders of convergence in the time step, asserted: 2 where the motion is smooth, 1 where blocks start and
 //! stop.
 
-use rstest::rstest;
 use slipfront::exact_solutions::SlipCycle;
 use slipfront::{Drive, Edges, FrictionLaw, Lattice, Model, Simulation, State, Surface, VectorField, scales};
+use test_case::test_matrix;
 
 use crate::common::{Slider, at_rest, from_state};
 
@@ -85,11 +85,8 @@ fn distance(a: &VectorField, b: &VectorField) -> f64 {
 }
 
 /// Leapfrog with centred damping is of second order, springs bent by a strain of 0.2 included.
-#[rstest]
-fn smooth_motion_is_of_second_order(
-    #[values(0.0, 0.3, 3.0)] omega_star: f64,
-    #[values(0.0, 0.2)] epsilon: f64,
-) {
+#[test_matrix([0.0, 0.3, 3.0], [0.0, 0.2])]
+fn smooth_motion_is_of_second_order(omega_star: f64, epsilon: f64) {
     let lattice = Lattice::with_edges(6, 5, [Edges::Periodic, Edges::Free]);
     let model = Model::new(
         lattice,

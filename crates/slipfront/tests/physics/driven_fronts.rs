@@ -1,8 +1,8 @@
 //! Slip fronts in a chain whose blocks keep their drive springs, under constant far ends.
 
-use rstest::rstest;
 use slipfront::lattice::K_STRAIGHT;
 use slipfront::{Drive, FrictionLaw, Lattice, Model, State, Stop, Surface};
+use test_case::test_matrix;
 
 use crate::common::from_state;
 
@@ -24,15 +24,14 @@ fn chain(kappa: f64, tau: f64) -> Model {
 /// A block that slides `s` far is pulled back by its drive spring by `k_s s`: fronts are slower than without, and under a low
 /// prestress slower than sound. No closed form is known. The speeds are those that an independent integration of the same chain
 /// gave, to the digits that they have; a front takes a whole number of steps from block to block, hence half a step more.
-#[rstest]
-fn drive_springs_slow_fronts_down(
-    #[values(
+#[test_matrix(
+    [
         (1.0 / 3.0, 0.3, 0.9025), (1.0 / 3.0, 0.4, 1.006), (1.0 / 3.0, 0.5, 1.104), (1.0 / 3.0, 0.6, 1.218),
-        (1.0 / 3.0, 0.7, 1.379), (1.0 / 3.0, 0.8, 1.654), (1.0 / 3.0, 0.9, 2.283),
-        (1.0, 0.4, 0.801), (1.0, 0.5, 0.984), (1.0, 0.6, 1.144), (1.0, 0.7, 1.333), (1.0, 0.8, 1.626), (1.0, 0.9, 2.273)
-    )]
-    (kappa, tau, expected): (f64, f64, f64),
-) {
+        (1.0 / 3.0, 0.7, 1.379), (1.0 / 3.0, 0.8, 1.654), (1.0 / 3.0, 0.9, 2.283), (1.0, 0.4, 0.801),
+        (1.0, 0.5, 0.984), (1.0, 0.6, 1.144), (1.0, 0.7, 1.333), (1.0, 0.8, 1.626), (1.0, 0.9, 2.273)
+    ]
+)]
+fn drive_springs_slow_fronts_down((kappa, tau, expected): (f64, f64, f64)) {
     let dt = 2e-3;
     let sound = K_STRAIGHT.sqrt();
     let mut state = State::at_rest(BLOCKS);
@@ -54,8 +53,8 @@ fn drive_springs_slow_fronts_down(
 }
 
 /// Without drive springs the same chain has the closed form `v = c/sqrt(1 - tau^2)`, which it approaches as they soften.
-#[rstest]
-fn soft_drive_springs_change_little(#[values(0.6, 0.8)] tau: f64) {
+#[test_matrix([0.6, 0.8])]
+fn soft_drive_springs_change_little(tau: f64) {
     let speeds = [1e-4, 0.0].map(|kappa| {
         let mut state = State::at_rest(BLOCKS);
         state.velocity.x[..5].fill(0.3);

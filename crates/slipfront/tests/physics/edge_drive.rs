@@ -1,10 +1,10 @@
 //! A slider that is driven at an edge: its drive springs, and its precursors.
 
-use rstest::rstest;
 use slipfront::communicator::Alone;
 use slipfront::exact_solutions::precursor_load;
 use slipfront::observe::{Curve, Precursors, Scheduled, SlipEvent};
 use slipfront::{Edge, Model, Stop};
+use test_case::{test_case, test_matrix};
 
 use crate::common::{Slider, at_rest};
 
@@ -24,11 +24,8 @@ fn driven_at(edge: Edge, slider: &Slider, total: f64) -> Model {
 
 /// Until the first slip only the driven blocks feel the drive: `mu* = K V t/N`, and the first of them slips when its own spring
 /// pulls with its threshold, at most a step late.
-#[rstest]
-fn the_weakest_driven_block_slips_first(
-    #[values(Edge::Left, Edge::Right, Edge::Bottom, Edge::Top)] edge: Edge,
-    #[values(0.5, 30.0)] total: f64,
-) {
+#[test_matrix([Edge::Left, Edge::Right, Edge::Bottom, Edge::Top], [0.5, 30.0])]
+fn the_weakest_driven_block_slips_first(edge: Edge, total: f64) {
     let slider = Slider {
         blocks: [14, 9],
         degrees: 20.0,
@@ -209,12 +206,11 @@ fn precursors(n: usize, edge: Edge, slope: f64, v_star: f64, dt_star: f64) -> (V
 /// The largest load tends to kinetic, not static friction of the whole chain (0.45, not 0.7), off by the first of these at the far end and
 /// what the drive adds while sound goes there and back. None of it depends on the step; `slipfront family` holds 400 blocks and finer steps
 /// to the same.
-#[rstest]
-#[case(Edge::Left, 0.0)]
-#[case(Edge::Left, 0.833)]
-#[case(Edge::Left, -0.833)]
-#[case(Edge::Right, 0.833)]
-fn precursors_leave_kinetic_friction_behind(#[case] edge: Edge, #[case] slope: f64) {
+#[test_case(Edge::Left, 0.0)]
+#[test_case(Edge::Left, 0.833)]
+#[test_case(Edge::Left, -0.833)]
+#[test_case(Edge::Right, 0.833)]
+fn precursors_leave_kinetic_friction_behind(edge: Edge, slope: f64) {
     let (n, v_star) = (100.0, 1.0);
     let (events, peak) = precursors(100, edge, slope, v_star, 0.4);
     let slope = if edge == Edge::Left { slope } else { -slope };

@@ -1,12 +1,12 @@
 //! Energy: the work of the drive is stored in blocks and springs or lost to friction and damping. For one block each loss is
 //! known exactly.
 
-use rstest::rstest;
 use slipfront::communicator::Alone;
 use slipfront::exact_solutions::SlipCycle;
 use slipfront::observe::energy::Energies;
 use slipfront::observe::{Curve, Scheduled};
 use slipfront::{Drive, Edges, FrictionLaw, Lattice, Model, State, Stop, Surface, VectorField};
+use test_case::{test_case, test_matrix};
 
 use crate::common::{Slider, cavity, from_state, thrown};
 
@@ -21,14 +21,19 @@ fn energies(model: &Model, dt: f64, steps: u64, state: State) -> Vec<Energies> {
 /// Through onset and far beyond. The balance misses the kinetic energy that a block loses in the last step of a slip, at most
 /// (mu_k F_n dt)^2/2 = 5e-5, in slips that dissipate R V T = 1 each: a few 1e-5. It is less where strong damping lets few blocks
 /// stop.
-#[rstest]
-#[case::baseline(Slider { dt_star: 0.02, ..Slider::default() }, 5e-5)]
-#[case::undamped(Slider { dt_star: 0.02, omega_star: 0.0, ..Slider::default() }, 5e-5)]
-#[case::steady(Slider { dt_star: 0.02, omega_star: 3.0, ..Slider::default() }, 1e-5)]
-#[case::textured(Slider { dt_star: 0.02, textures: vec![cavity([12, 14], 10.0, 1, 0.0, false)], ..Slider::default() }, 5e-5)]
-#[case::periodic_and_oblique(Slider { dt_star: 0.02, edges: [Edges::Periodic; 2], degrees: 30.0, ..Slider::default() }, 5e-5)]
-#[case::large_strain(Slider { dt_star: 0.02, epsilon: 0.03, ..Slider::default() }, 5e-5)]
-fn the_ledger_closes(#[case] slider: Slider, #[case] bound: f64) {
+#[test_case(Slider { dt_star: 0.02, ..Slider::default() }, 5e-5; "baseline")]
+#[test_case(Slider { dt_star: 0.02, omega_star: 0.0, ..Slider::default() }, 5e-5; "undamped")]
+#[test_case(Slider { dt_star: 0.02, omega_star: 3.0, ..Slider::default() }, 1e-5; "steady")]
+#[test_case(
+    Slider { dt_star: 0.02, textures: vec![cavity([12, 14], 10.0, 1, 0.0, false)], ..Slider::default() }, 5e-5
+    ; "textured"
+)]
+#[test_case(
+    Slider { dt_star: 0.02, edges: [Edges::Periodic; 2], degrees: 30.0, ..Slider::default() }, 5e-5
+    ; "periodic and oblique"
+)]
+#[test_case(Slider { dt_star: 0.02, epsilon: 0.03, ..Slider::default() }, 5e-5; "large strain")]
+fn the_ledger_closes(slider: Slider, bound: f64) {
     let slider = Slider {
         blocks: [12, 14],
         ..slider
@@ -120,8 +125,8 @@ fn before_the_first_slip_all_work_is_in_the_drive_springs() {
 }
 
 /// One slip of one block: friction dissipates R V T, damping the rest of the drive's work (`SlipCycle`).
-#[rstest]
-fn losses_of_one_slip(#[values(0.0, 0.1, 0.3)] omega_star: f64, #[values(0.03, 0.1)] v_star: f64) {
+#[test_matrix([0.0, 0.1, 0.3], [0.03, 0.1])]
+fn losses_of_one_slip(omega_star: f64, v_star: f64) {
     let slider = Slider {
         blocks: [1, 1],
         omega_star,
@@ -150,10 +155,9 @@ fn losses_of_one_slip(#[values(0.0, 0.1, 0.3)] omega_star: f64, #[values(0.03, 0
 
 /// A block with friction alone moves by v^2/(2 mu_k) and loses all of (1/2) v^2 to friction; one with damping alone moves by
 /// v/Omega and loses (1/2) v^2 to damping.
-#[rstest]
-#[case::friction(0.5, 0.0)]
-#[case::damping(0.0, 0.4)]
-fn a_thrown_block_loses_all_its_energy_to_the_one_loss(#[case] kinetic: f64, #[case] omega: f64) {
+#[test_case(0.5, 0.0; "friction")]
+#[test_case(0.0, 0.4; "damping")]
+fn a_thrown_block_loses_all_its_energy_to_the_one_loss(kinetic: f64, omega: f64) {
     let lattice = Lattice::free(1, 1);
     let drive = Drive {
         k_drive: 0.0,

@@ -1,11 +1,11 @@
 //! First slip: t* = (8/3) min_i max(mu_si, mu_ki)/(mu_s V*), in any direction.
 
-use rstest::rstest;
 use slipfront::communicator::Alone;
 use slipfront::exact_solutions::first_slip_time_star;
 use slipfront::lattice::{K_DRIVE, springs_on_a_lone_block};
 use slipfront::surface::{Coefficients, Load};
 use slipfront::{ContactSprings, Drive, Friction, FrictionLaw, Lattice, Model, Simulation, Stop, Surface};
+use test_case::test_case;
 
 use crate::common::{Slider, at_rest};
 
@@ -26,14 +26,16 @@ fn assert_is_first_instant_after(found: f64, exact: f64, dt_star: f64) {
     );
 }
 
-#[rstest]
-#[case::baseline(Slider::default())]
-#[case::any_direction(Slider { degrees: 37.0, ..Slider::default() })]
-#[case::backwards(Slider { degrees: 225.0, sigma_static_star: 0.2, ..Slider::default() })]
-#[case::some_draws_have_mu_k_above_mu_s(Slider { r_star: 0.95, sigma_static_star: 0.1, sigma_kinetic_star: 0.1, ..Slider::default() })]
-#[case::faster(Slider { v_star: 0.2, sigma_static_star: 0.1, dt_star: 0.01, ..Slider::default() })]
-#[case::reversal(Slider { law: FrictionLaw::Reversal, r_star: 0.95, sigma_kinetic_star: 0.1, ..Slider::default() })]
-fn the_weakest_block_slips_when_its_drive_spring_reaches_its_threshold(#[case] slider: Slider) {
+#[test_case(Slider::default(); "baseline")]
+#[test_case(Slider { degrees: 37.0, ..Slider::default() }; "any direction")]
+#[test_case(Slider { degrees: 225.0, sigma_static_star: 0.2, ..Slider::default() }; "backwards")]
+#[test_case(
+    Slider { r_star: 0.95, sigma_static_star: 0.1, sigma_kinetic_star: 0.1, ..Slider::default() }
+    ; "some draws have mu k above mu s"
+)]
+#[test_case(Slider { v_star: 0.2, sigma_static_star: 0.1, dt_star: 0.01, ..Slider::default() }; "faster")]
+#[test_case(Slider { law: FrictionLaw::Reversal, r_star: 0.95, sigma_kinetic_star: 0.1, ..Slider::default() }; "reversal")]
+fn the_weakest_block_slips_when_its_drive_spring_reaches_its_threshold(slider: Slider) {
     let drawn = slider.coefficients();
     let exact = first_slip_time_star(&drawn.mu_static, &drawn.mu_kinetic, 1.0, slider.v_star);
     let model = slider.model();

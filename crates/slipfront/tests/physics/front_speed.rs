@@ -1,10 +1,10 @@
 //! Slip fronts under a uniform prestress run at c/sqrt(1 - tau^2).
 
-use rstest::rstest;
 use slipfront::exact_solutions::{Facing, front_speed};
 use slipfront::lattice::K_STRAIGHT;
 use slipfront::observe::Front;
 use slipfront::{Drive, Edges, FrictionLaw, Lattice, Model, State, Stop, Surface};
+use test_case::{test_case, test_matrix};
 
 use crate::common::{at_rest, from_state};
 
@@ -43,16 +43,14 @@ fn measured_delay(model: &Model, dt: f64, expected: f64) -> f64 {
 
 /// A front that runs steadily takes a whole number of steps from one column to the next, the nearest one to
 /// the exact time: hence half a step, 0.2 to 0.6 % of that time.
-#[rstest]
-fn a_front_runs_at_its_speed(
-    #[values(0.6, 0.8, 0.9)] tau: f64,
-    #[values(
-        (1, [1.0, 0.0], K_STRAIGHT),
-        (3, [1.0, 0.0], Facing::Across.row_stiffness()),
+#[test_matrix(
+    [0.6, 0.8, 0.9],
+    [
+        (1, [1.0, 0.0], K_STRAIGHT), (3, [1.0, 0.0], Facing::Across.row_stiffness()),
         (3, [0.0, 1.0], Facing::Along.row_stiffness())
-    )]
-    (rows, direction, stiffness): (usize, [f64; 2], f64),
-) {
+    ]
+)]
+fn a_front_runs_at_its_speed(tau: f64, (rows, direction, stiffness): (usize, [f64; 2], f64)) {
     let dt = 0.005;
     let exact = 1.0 / front_speed(stiffness.sqrt(), tau);
     let found = measured_delay(&strip(COLUMNS, rows, direction, tau), dt, exact);
@@ -65,16 +63,14 @@ fn a_front_runs_at_its_speed(
 /// The speed of a run, which is found from planes over its first slips. Under a low prestress the front must be started, by five
 /// columns that move at the start, and gathers speed over columns that are the more, the lower it is; the median leaves them out where
 /// the strip is several times as long. The rest is half a step as above.
-#[rstest]
-fn planes_find_the_speed_of_a_front(
-    #[values(0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9)] tau: f64,
-    #[values(
-        (1, [1.0, 0.0], K_STRAIGHT),
-        (3, [1.0, 0.0], Facing::Across.row_stiffness()),
+#[test_matrix(
+    [0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9],
+    [
+        (1, [1.0, 0.0], K_STRAIGHT), (3, [1.0, 0.0], Facing::Across.row_stiffness()),
         (3, [0.0, 1.0], Facing::Along.row_stiffness())
-    )]
-    (rows, direction, stiffness): (usize, [f64; 2], f64),
-) {
+    ]
+)]
+fn planes_find_the_speed_of_a_front(tau: f64, (rows, direction, stiffness): (usize, [f64; 2], f64)) {
     let columns = match tau {
         ..0.25 => 240,
         ..0.35 => 160,
@@ -99,10 +95,9 @@ fn planes_find_the_speed_of_a_front(
 }
 
 /// The factors over the speed of long waves that model.md gives.
-#[rstest]
-#[case(0.6, 1.25)]
-#[case(0.8, 1.6667)]
-#[case(0.9, 2.2942)]
-fn the_closed_form_has_the_tabulated_values(#[case] tau: f64, #[case] factor: f64) {
+#[test_case(0.6, 1.25)]
+#[test_case(0.8, 1.6667)]
+#[test_case(0.9, 2.2942)]
+fn the_closed_form_has_the_tabulated_values(tau: f64, factor: f64) {
     assert!((front_speed(1.0, tau) - factor).abs() < 5e-5);
 }

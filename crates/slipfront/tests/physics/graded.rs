@@ -1,11 +1,11 @@
 //! Blocks of different stiffness and density.
 
-use rstest::rstest;
 use slipfront::communicator::Alone;
 use slipfront::exact_solutions::{graded_first_slip_time_star, leapfrog_frequency, pair_modes, steady_level};
 use slipfront::observe::{Curve, Scheduled};
 use slipfront::surface::{Coefficients, Contact, Load};
 use slipfront::{Drive, Edges, FrictionLaw, Lattice, Model, Slider, State, Stop, Surface, VectorField};
+use test_case::test_matrix;
 
 use crate::common::{self, at_rest, cavity, from_state, varied};
 
@@ -15,11 +15,11 @@ fn graded(stiffness: &[f64], density: &[f64]) -> Slider {
 }
 
 /// Arrays of ones change no bit, energies, mu* and N* included.
-#[rstest]
-fn fields_of_ones_change_no_bit(
-    #[values([Edges::Free; 2], [Edges::Periodic, Edges::Free])] edges: [Edges; 2],
-    #[values(FrictionLaw::Projection, FrictionLaw::Reversal)] law: FrictionLaw,
-) {
+#[test_matrix(
+    [[Edges::Free; 2], [Edges::Periodic, Edges::Free]],
+    [FrictionLaw::Projection, FrictionLaw::Reversal]
+)]
+fn fields_of_ones_change_no_bit(edges: [Edges; 2], law: FrictionLaw) {
     let plain = common::Slider {
         blocks: [13, 9],
         edges,
@@ -83,8 +83,8 @@ fn a_heavier_stiffer_and_rougher_slider_moves_the_same() {
 
 /// Nothing moves before the first slip, which is seen at most a step late, and the first block to slip is the one whose
 /// spring is first stretched far enough.
-#[rstest]
-fn the_block_with_the_least_threshold_for_its_spring_slips_first(#[values(0.0, 0.05, 0.3)] sigma: f64) {
+#[test_matrix([0.0, 0.05, 0.3])]
+fn the_block_with_the_least_threshold_for_its_spring_slips_first(sigma: f64) {
     let slider = common::Slider {
         blocks: [9, 9],
         body: varied(81, false),
@@ -111,11 +111,11 @@ fn the_block_with_the_least_threshold_for_its_spring_slips_first(#[values(0.0, 0
 }
 
 /// Each mode swings at leapfrog's own frequency; rounding accumulates to less than 1e-10 in 2000 steps.
-#[rstest]
+#[test_matrix([[1.0, 0.1], [3.0, 0.5], [0.2, 0.2]], [[1.0, 1.0], [0.5, 4.0]], [0, 1])]
 fn two_blocks_have_the_modes_of_their_moduli_and_masses(
-    #[values([1.0, 0.1], [3.0, 0.5], [0.2, 0.2])] stiffness: [f64; 2],
-    #[values([1.0, 1.0], [0.5, 4.0])] masses: [f64; 2],
-    #[values(0, 1)] number: usize,
+    stiffness: [f64; 2],
+    masses: [f64; 2],
+    number: usize,
 ) {
     let lattice = Lattice::free(2, 1);
     let body = graded(&stiffness, &masses);
@@ -151,8 +151,8 @@ fn two_blocks_have_the_modes_of_their_moduli_and_masses(
 
 /// Steady sliding has mu* = mean(mu_k F_n) + Omega V* mean(m), whatever the stiffness. The slowest motion left decays at
 /// k_s min(E)/(Omega max(m)) = 0.027 at least, so that it is gone to rounding at t* = 1200.
-#[rstest]
-fn heavier_blocks_raise_the_drag(#[values(0.05, 0.1)] v_star: f64) {
+#[test_matrix([0.05, 0.1])]
+fn heavier_blocks_raise_the_drag(v_star: f64) {
     let slider = common::Slider {
         blocks: [12, 10],
         body: graded(

@@ -1,11 +1,11 @@
 //! A drive that stands while a block in contact slides, compared with results found by hand.
 
-use rstest::rstest;
 use slipfront::lattice::K_DRIVE;
 use slipfront::observe::{Curve, Scheduled};
 use slipfront::{
     Drive, FrictionLaw, Lattice, Loading, Model, RunError, Simulation, Stop, StopReason, Surface, scales,
 };
+use test_case::test_matrix;
 
 use crate::common::{Slider, at_rest, cavity};
 
@@ -40,11 +40,8 @@ fn step_until(simulation: &mut Simulation, slides: bool) {
 
 /// One block jumps where the force of its spring first exceeds the threshold, `k_s X > S`, and slides where the drive stands
 /// to `s = 2 (k_s X - K)/k_s`.
-#[rstest]
-fn one_block_jumps_while_the_drive_stands(
-    #[values(0.001, 0.03, 1.0)] v_star: f64,
-    #[values(0.01, 0.1)] dt: f64,
-) {
+#[test_matrix([0.001, 0.03, 1.0], [0.01, 0.1])]
+fn one_block_jumps_while_the_drive_stands(v_star: f64, dt: f64) {
     let model = one_block(v_star, KINETIC);
     let mut simulation = at_rest(&model, dt);
     step_until(&mut simulation, true);
@@ -152,8 +149,8 @@ fn a_drive_that_stands_does_no_work() {
 }
 
 /// The peak is the largest mu* until the stated step of the drive, whatever falls before it, and the run that stops at the onset ends there.
-#[rstest]
-fn the_largest_counts(#[values(400, 900)] onset_steps: u64) {
+#[test_matrix([400, 900])]
+fn the_largest_counts(onset_steps: u64) {
     let slider = Slider {
         blocks: [30, 30],
         textures: vec![cavity([30, 30], 10.0, 1, 0.0, false)],

@@ -2,10 +2,10 @@
 
 use std::f64::consts::{PI, TAU};
 
-use rstest::rstest;
 use slipfront::exact_solutions::{LatticeWave, lattice_waves, leapfrog_frequency};
 use slipfront::lattice::{K_DRIVE, POISSON_RATIO, dt_star_limit};
 use slipfront::{Drive, Edges, FrictionLaw, Lattice, Model, State, Surface, VectorField, scales};
+use test_case::test_matrix;
 
 use crate::common::from_state;
 
@@ -78,13 +78,13 @@ fn amplitudes(model: &Model, shape: &VectorField, dt: f64, steps: usize, frequen
 
 /// Rounding accumulates like the number of steps times 1e-16 times the phase per step: 1e-10 is ample for
 /// 2000.
-#[rstest]
-fn a_wave_swings_at_leapfrogs_own_frequency(
-    #[values((1, 0), (0, 1), (2, 1), (3, 5), (6, 0), (6, 4), (5, 4))] mode: (u32, u32),
-    #[values(0, 1)] branch: usize,
-    #[values(0.02, 0.4, 0.88)] dt: f64,
-    #[values(0.0, K_DRIVE)] k_drive: f64,
-) {
+#[test_matrix(
+    [(1, 0), (0, 1), (2, 1), (3, 5), (6, 0), (6, 4), (5, 4)],
+    [0, 1],
+    [0.02, 0.4, 0.88],
+    [0.0, K_DRIVE]
+)]
+fn a_wave_swings_at_leapfrogs_own_frequency(mode: (u32, u32), branch: usize, dt: f64, k_drive: f64) {
     let model = floating(12, 8, 0.0, k_drive);
     let (a, b) = (TAU * f64::from(mode.0) / 12.0, TAU * f64::from(mode.1) / 8.0);
     let wave = lattice_waves(a, b, k_drive)[branch];
@@ -103,8 +103,8 @@ fn a_wave_swings_at_leapfrogs_own_frequency(
 }
 
 /// With damping the scheme's amplitude obeys (1 + g) u+ - (2 - w^2 dt^2) u + (1 - g) u- = 0, g = Omega dt/2.
-#[rstest]
-fn a_damped_wave_obeys_the_scheme(#[values(0.1, 1.0, 10.0)] omega_star: f64) {
+#[test_matrix([0.1, 1.0, 10.0])]
+fn a_damped_wave_obeys_the_scheme(omega_star: f64) {
     let (dt, k) = (0.3, K_DRIVE);
     let model = floating(12, 8, omega_star, k);
     let (a, b) = (TAU * 2.0 / 12.0, TAU / 8.0);
@@ -122,11 +122,8 @@ fn a_damped_wave_obeys_the_scheme(#[values(0.1, 1.0, 10.0)] omega_star: f64) {
 
 /// Long waves: c_P^2 = 9/8 and c_S^2 = 3/8 in every direction, the speeds of plane stress at nu = 1/3. Checked on the
 /// simulation's own frequency, whose deviation is O(a^2 + b^2), below 1e-4 here.
-#[rstest]
-fn long_waves_are_those_of_an_isotropic_sheet(
-    #[values((1, 0), (1, 1), (2, 1), (0, 1), (1, 3))] mode: (u32, u32),
-    #[values((0, 3.0 / 8.0), (1, 9.0 / 8.0))] (branch, c_squared): (usize, f64),
-) {
+#[test_matrix([(1, 0), (1, 1), (2, 1), (0, 1), (1, 3)], [(0, 3.0 / 8.0), (1, 9.0 / 8.0)])]
+fn long_waves_are_those_of_an_isotropic_sheet(mode: (u32, u32), (branch, c_squared): (usize, f64)) {
     let n = 512.0;
     let (a, b) = (TAU * f64::from(mode.0) / n, TAU * f64::from(mode.1) / n);
     let wave = lattice_waves(a, b, 0.0)[branch];
@@ -142,10 +139,8 @@ fn long_waves_are_those_of_an_isotropic_sheet(
 }
 
 /// Long P and S waves simulated with small steps return after their period.
-#[rstest]
-fn long_waves_run_through_the_lattice(
-    #[values((0, 3.0 / 8.0), (1, 9.0 / 8.0))] (branch, c_squared): (usize, f64),
-) {
+#[test_matrix([(0, 3.0 / 8.0), (1, 9.0 / 8.0)])]
+fn long_waves_run_through_the_lattice((branch, c_squared): (usize, f64)) {
     let n = 96;
     let model = floating(n, 3, 0.0, 0.0);
     let a = TAU / n as f64;
@@ -178,8 +173,8 @@ fn growth(dt: f64, omega_star: f64, steps: usize) -> f64 {
 
 /// dt* < 2/sqrt(6.5 k_1) = 0.9058 is stable and dt* above it is not, at any damping. At large damping the
 /// unstable wave gains only (w^2 dt^2 - 4)/(2 Omega dt) per step, hence the 1 % and the many steps.
-#[rstest]
-fn stability_does_not_depend_on_damping(#[values(0.0, 0.1, 1.0, 3.0, 30.0)] omega_star: f64) {
+#[test_matrix([0.0, 0.1, 1.0, 3.0, 30.0])]
+fn stability_does_not_depend_on_damping(omega_star: f64) {
     assert!((dt_star_limit() - 0.9058).abs() < 5e-5);
     // Undamped, the oscillation just below the limit beats with an amplitude of 1/sqrt(1 - (dt/limit)^2) = 22.
     assert!(growth(0.999 * dt_star_limit(), omega_star, 6000) < 30.0);

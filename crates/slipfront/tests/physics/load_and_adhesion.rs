@@ -1,11 +1,11 @@
 //! Pressure that is not the same everywhere, and friction that does not need any.
 
-use rstest::rstest;
 use slipfront::Edges;
 use slipfront::Stop;
 use slipfront::communicator::Alone;
 use slipfront::exact_solutions::{Facing, groove_edge_factor};
 use slipfront::surface::{Adhesion, Orientation};
+use test_case::test_matrix;
 
 use crate::common::{Slider, at_rest, groove};
 
@@ -18,11 +18,8 @@ fn adhesive(of_static: f64) -> Adhesion {
 
 /// Nothing moves before the first slip, so that its force is `k_s V t` on every block and the block with the least threshold
 /// slips first: `k_s V t = min_i (mu_si p_i/P + tau_a/(P mu_s))`. The slip is seen at most a step late.
-#[rstest]
-fn the_weakest_block_slips_first(
-    #[values(None, Some((0, 0.8)), Some((1, -0.5)))] pressure: Option<(usize, f64)>,
-    #[values(0.0, 0.4)] adhesion: f64,
-) {
+#[test_matrix([None, Some((0, 0.8)), Some((1, -0.5))], [0.0, 0.4])]
+fn the_weakest_block_slips_first(pressure: Option<(usize, f64)>, adhesion: f64) {
     let slider = Slider {
         pressure,
         adhesion: adhesive(adhesion),
@@ -56,8 +53,8 @@ fn the_weakest_block_slips_first(
 }
 
 /// Equal blocks slip in the same step: `mu_s* = 1 + tau_a/(P mu_s)`, less than one step of the pull below it.
-#[rstest]
-fn adhesion_adds_to_static_friction_without_texture(#[values(0.0, 0.1, 1.5)] adhesion: f64) {
+#[test_matrix([0.0, 0.1, 1.5])]
+fn adhesion_adds_to_static_friction_without_texture(adhesion: f64) {
     let slider = Slider {
         adhesion: adhesive(adhesion),
         ..Slider::default().uniform()
@@ -71,12 +68,8 @@ fn adhesion_adds_to_static_friction_without_texture(#[values(0.0, 0.1, 1.5)] adh
 /// Only the adhesive part feels how much of the surface a groove leaves: the load is redistributed, the area is not. The first
 /// slip comes at `k_s V t f = N/N_c + tau_a/(P mu_s)`, f the factor of the edge; later by a step at most, and by the drag of
 /// the five free rows, Omega V* each at most, half of which each edge bears.
-#[rstest]
-fn adhesion_is_not_redistributed(
-    #[values((Facing::Across, Orientation::Across), (Facing::Along, Orientation::Along))]
-    (facing, orientation): (Facing, Orientation),
-    #[values(0.25, 1.0)] adhesion: f64,
-) {
+#[test_matrix([(Facing::Across, Orientation::Across), (Facing::Along, Orientation::Along)], [0.25, 1.0])]
+fn adhesion_is_not_redistributed((facing, orientation): (Facing, Orientation), adhesion: f64) {
     let slider = Slider {
         blocks: [20, 20],
         edges: [Edges::Periodic; 2],

@@ -2,6 +2,7 @@
 //! `physics_on_general` runs tests of both kernels on the general one.
 
 #![allow(clippy::unwrap_used)] // A helper that cannot do its work fails its test.
+#![allow(clippy::needless_pass_by_value)] // Values of a test are passed to it as they are written.
 
 #[path = "../common/mod.rs"]
 mod common;

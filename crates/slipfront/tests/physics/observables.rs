@@ -1,6 +1,5 @@
 //! Measures of a run: the instants A-F, the end of the first peak, divergence, runs without an end.
 
-use rstest::rstest;
 use slipfront::communicator::Alone;
 use slipfront::observe::frames::Selection;
 use slipfront::observe::{
@@ -8,6 +7,7 @@ use slipfront::observe::{
 };
 use slipfront::surface::{Coefficients, Load};
 use slipfront::{Drive, FrictionLaw, Lattice, Model, RunError, State, Stop, StopReason, Surface};
+use test_case::{test_case, test_matrix};
 
 use crate::common::{Slider, at_rest, cavity, from_state};
 
@@ -19,13 +19,15 @@ fn textured() -> Slider {
 }
 
 /// A-F of Fig. 4 against their definitions, on the recorded curve.
-#[rstest]
-#[case::baseline(Slider::default(), KineticStart::Auto)]
-#[case::textured(textured(), KineticStart::Auto)]
-#[case::fast(Slider { v_star: 0.2, dt_star: 0.02, ..Slider::default() }, KineticStart::Auto)]
-#[case::given_start(Slider::default(), KineticStart::At(200.0))]
-#[case::a_falls_on_a_step(Slider { v_star: 0.125, dt_star: 2.0 / 3.0 * 0.125, ..Slider::default() }, KineticStart::Auto)]
-fn instants_are_those_of_their_definitions(#[case] slider: Slider, #[case] kinetic: KineticStart) {
+#[test_case(Slider::default(), KineticStart::Auto; "baseline")]
+#[test_case(textured(), KineticStart::Auto; "textured")]
+#[test_case(Slider { v_star: 0.2, dt_star: 0.02, ..Slider::default() }, KineticStart::Auto; "fast")]
+#[test_case(Slider::default(), KineticStart::At(200.0); "given start")]
+#[test_case(
+    Slider { v_star: 0.125, dt_star: 2.0 / 3.0 * 0.125, ..Slider::default() }, KineticStart::Auto
+    ; "a falls on a step"
+)]
+fn instants_are_those_of_their_definitions(slider: Slider, kinetic: KineticStart) {
     let model = slider.model();
     let steps = slider.steps(8.0);
     let end = steps as f64 * slider.dt_star;
@@ -155,10 +157,8 @@ fn time_is_a_product() {
 
 /// Beyond the limit of stability a run diverges, and names the block that has gone farthest: by then speeds have squares that are
 /// infinite, and displacements are still finite. Strains as large as the last two stiffen springs beyond the step's limit.
-#[rstest]
-fn a_diverging_run_is_reported(
-    #[values((1.0, 0.0), (1.0, 1e-6), (0.9, 1.0), (0.9, 1e3))] (dt_star, epsilon): (f64, f64),
-) {
+#[test_matrix([(1.0, 0.0), (1.0, 1e-6), (0.9, 1.0), (0.9, 1e3)])]
+fn a_diverging_run_is_reported((dt_star, epsilon): (f64, f64)) {
     let slider = Slider {
         dt_star,
         epsilon,
@@ -197,8 +197,8 @@ fn a_diverging_run_is_reported(
 }
 
 /// Forces that are no numbers hold blocks that do not move: the run ends before its first step all the same.
-#[rstest]
-fn a_state_too_large_to_compute_with_is_reported(#[values(0.0, 1e-6, 1e3)] epsilon: f64) {
+#[test_matrix([0.0, 1e-6, 1e3])]
+fn a_state_too_large_to_compute_with_is_reported(epsilon: f64) {
     let slider = Slider {
         blocks: [5, 5],
         epsilon,
@@ -220,12 +220,9 @@ fn a_state_too_large_to_compute_with_is_reported(#[values(0.0, 1e-6, 1e3)] epsil
 }
 
 /// A state with which a run begins must consist of numbers.
-#[rstest]
+#[test_matrix([f64::NAN, f64::INFINITY, f64::NEG_INFINITY], [0, 1, 2, 3])]
 #[should_panic(expected = "of the state to begin with is not finite")]
-fn a_state_that_is_not_finite_is_refused(
-    #[values(f64::NAN, f64::INFINITY, f64::NEG_INFINITY)] bad: f64,
-    #[values(0, 1, 2, 3)] place: usize,
-) {
+fn a_state_that_is_not_finite_is_refused(bad: f64, place: usize) {
     let slider = Slider {
         blocks: [5, 5],
         ..Slider::default()

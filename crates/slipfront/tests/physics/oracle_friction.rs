@@ -1,11 +1,11 @@
 //! Laws of friction against a second implementation, written down block by block from their equations, over random small lattices.
 
-use rstest::rstest;
 use slipfront::surface::{Coefficients, Load};
 use slipfront::{
     Ageing, ContactSprings, Coulomb, Drive, Friction, FrictionLaw, Lattice, Model, RateAndState, Surface,
     Weakening,
 };
+use test_case::test_matrix;
 
 use crate::common::at_rest;
 
@@ -168,17 +168,31 @@ const WEAKENING: Weakening = Weakening {
 
 const AGEING: Ageing = Ageing { beta: 0.1, time: 2.0 };
 
+const SPRINGS: Friction = Friction::ContactSprings(ContactSprings {
+    stiffness: 0.4,
+    redraw: None,
+});
+
+const RATE_AND_STATE: Friction = Friction::RateAndState(RateAndState {
+    a: 0.03,
+    b: 0.05,
+    d_c: 0.3,
+    v_0: 0.05,
+    mu_0: 0.7,
+    theta_0: 4.0,
+    slip_speed: 0.02,
+});
+
 /// The extension of a spring is found as the difference of nearly equal lengths over epsilon, 1e-3: to 1e-13 of the unit. Over some
 /// hundred steps of motion that is sensitive to what begins it, the difference stays below 1e-8.
-#[rstest]
-#[case::weakening(coulomb(Some(WEAKENING), None))]
-#[case::ageing(coulomb(None, Some(AGEING)))]
-#[case::both(coulomb(Some(WEAKENING), Some(AGEING)))]
-#[case::springs(Friction::ContactSprings(ContactSprings { stiffness: 0.4, redraw: None }))]
-#[case::rate_and_state(Friction::RateAndState(RateAndState {
-    a: 0.03, b: 0.05, d_c: 0.3, v_0: 0.05, mu_0: 0.7, theta_0: 4.0, slip_speed: 0.02,
-}))]
-fn a_second_implementation_agrees(#[case] friction: Friction, #[values(1, 2, 3, 4, 5, 6)] seed: u64) {
+#[test_matrix(
+    [
+        coulomb(Some(WEAKENING), None), coulomb(None, Some(AGEING)), coulomb(Some(WEAKENING), Some(AGEING)),
+        SPRINGS, RATE_AND_STATE
+    ],
+    [1, 2, 3, 4, 5, 6]
+)]
+fn a_second_implementation_agrees(friction: Friction, seed: u64) {
     let mut numbers = Numbers(seed);
     let [nx, ny] = [0; 2].map(|_| 1 + (numbers.next() * 5.0) as usize);
     let lattice = Lattice::free(nx, ny);

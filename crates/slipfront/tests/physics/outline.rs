@@ -1,10 +1,10 @@
 //! Sliders that are not rectangles.
 
-use rstest::rstest;
 use slipfront::communicator::Alone;
 use slipfront::observe::{Field, Frames, Scheduled, frames::Selection};
 use slipfront::surface::{Coefficients, Contact, Load};
 use slipfront::{Lattice, Model, Outline, Slider, Stop, Surface};
+use test_case::{test_case, test_matrix};
 
 use crate::common::{self, at_rest, cavity};
 
@@ -13,11 +13,8 @@ fn within(exists: Vec<bool>) -> Slider {
 }
 
 /// A rectangle that is cut out of a larger lattice moves as a lattice of its own, to the last bit, in all that is measured.
-#[rstest]
-fn a_rectangle_cut_out_is_a_smaller_lattice(
-    #[values(0.0, 0.2)] viscosity_time: f64,
-    #[values(0.0, 2.0)] omega_star: f64,
-) {
+#[test_matrix([0.0, 0.2], [0.0, 2.0])]
+fn a_rectangle_cut_out_is_a_smaller_lattice(viscosity_time: f64, omega_star: f64) {
     let viscous = |slider| Slider {
         viscosity_time,
         ..slider
@@ -93,8 +90,8 @@ fn a_rectangle_cut_out_is_a_smaller_lattice(
 }
 
 /// A disc of equal blocks slips as one block: mu_s* is 1 and at most the pull of one step.
-#[rstest]
-fn a_uniform_disc_slips_as_one(#[values(1, 2, 7, 20)] across: usize) {
+#[test_matrix([1, 2, 7, 20])]
+fn a_uniform_disc_slips_as_one(across: usize) {
     let lattice = Lattice::free(across, across);
     let slider = common::Slider {
         blocks: [across; 2],
@@ -136,14 +133,18 @@ fn discs_are_round() {
 }
 
 /// Sliders that are made by hand, not by `Slider::new`, are refused where they cannot be those of the model.
-#[rstest]
-#[case::another_lattice(Slider { stiffness: Some(vec![1.0; 5]), ..Slider::default() }, "the slider has 5 moduli for 4 blocks")]
-#[case::no_springs(Slider { drive_springs: None, ..within(vec![true, true, false, true]) }, "block 2 does not exist, but has a drive")]
-#[case::springs_outside(
-    Slider { outline: Some(Outline::new(vec![true, false, true, true], &Alone)), ..within(vec![true; 4]) },
-    "block 1 does not exist, but has a drive spring"
+#[test_case(
+    Slider { stiffness: Some(vec![1.0; 5]), ..Slider::default() }, "the slider has 5 moduli for 4 blocks"
+    ; "another lattice"
 )]
-fn impossible_sliders_are_refused(#[case] slider: Slider, #[case] words: &str) {
+#[test_case(
+    Slider { drive_springs: None, ..within(vec![true, true, false, true]) },
+    "block 2 does not exist, but has a drive"
+    ; "no springs"
+)]
+#[test_case(Slider { outline: Some(Outline::new(vec![true, false, true, true], &Alone)), ..within(vec![true; 4]) },
+    "block 1 does not exist, but has a drive spring"; "springs outside")]
+fn impossible_sliders_are_refused(slider: Slider, words: &str) {
     let model = common::Slider {
         blocks: [2, 2],
         ..common::Slider::default()

@@ -4,10 +4,10 @@
 //! program. Tolerances are three standard deviations of the same quantity over ten surfaces of this one,
 //! unless a comment says otherwise.
 
-use rstest::rstest;
 use slipfront::communicator::Alone;
 use slipfront::surface::{Coefficients, Distribution, Load, Orientation, Texture};
 use slipfront::{Drive, Edges, FrictionLaw, Lattice, Model, Scales, Surface, scales};
+use test_case::{test_case, test_matrix};
 
 use crate::common::{Slider, at_rest, cavity, groove};
 
@@ -49,15 +49,14 @@ fn scatter(x: &[f64]) -> f64 {
 
 /// Sections 3.2 and 3.3. With sigma_s* = 0 only kinetic coefficients scatter, and reductions by 0.04 to 0.13;
 /// 0.33 for the smallest cavity. The step, 0.1 here and 0.02 there, moves them by as much again.
-#[rstest]
-#[case::circle(middle(10.0, 1, 0.0, false), 31.1, 0.5)]
-#[case::small_circle_is_already_remarkable(middle(1.0, 1, 0.0, false), 22.7, 1.2)]
-#[case::large_circle_takes_more_than_35(middle(30.0, 1, 0.0, false), 37.0, 0.7)]
-#[case::groove_across(groove(Orientation::Across, 5.0), 37.6, 0.5)]
-#[case::groove_along_is_like_the_circle(groove(Orientation::Along, 5.0), 31.0, 0.5)]
-#[case::elongated_across(middle(10.0, 1, 0.6, true), 34.5, 0.5)]
-#[case::elongated_along(middle(10.0, 1, 0.6, false), 30.3, 0.5)]
-fn textures_reduce_static_friction(#[case] texture: Texture, #[case] claimed: f64, #[case] tolerance: f64) {
+#[test_case(middle(10.0, 1, 0.0, false), 31.1, 0.5; "circle")]
+#[test_case(middle(1.0, 1, 0.0, false), 22.7, 1.2; "small circle is already remarkable")]
+#[test_case(middle(30.0, 1, 0.0, false), 37.0, 0.7; "large circle takes more than 35")]
+#[test_case(groove(Orientation::Across, 5.0), 37.6, 0.5; "groove across")]
+#[test_case(groove(Orientation::Along, 5.0), 31.0, 0.5; "groove along is like the circle")]
+#[test_case(middle(10.0, 1, 0.6, true), 34.5, 0.5; "elongated across")]
+#[test_case(middle(10.0, 1, 0.6, false), 30.3, 0.5; "elongated along")]
+fn textures_reduce_static_friction(texture: Texture, claimed: f64, tolerance: f64) {
     for seed in [1, 2] {
         let found = reduction(&textured(vec![texture.clone()], seed));
         assert!(
@@ -83,8 +82,8 @@ fn elongation_across_improves_and_along_worsens() {
 
 /// Fig. 18: neither the number nor the sharpness of vertices matters much: 30.7 to 33.7 in model.md, scatter
 /// 0.13.
-#[rstest]
-fn shapes_make_no_notable_difference(#[values(2, 3, 4)] s: u32, #[values(1.0, 0.2)] sharpness: f64) {
+#[test_matrix([2, 3, 4], [1.0, 0.2])]
+fn shapes_make_no_notable_difference(s: u32, sharpness: f64) {
     let found = reduction(&textured(
         vec![middle(10.0, s, sharpness / f64::from(s), false)],
         1,
@@ -123,13 +122,12 @@ fn a_groove_on_periodic_edges_climbs_higher_later() {
 }
 
 /// D9: the 31 % hold at V* = 0.03 and 50 blocks only. Scatter 0.1, and as much for the step.
-#[rstest]
-#[case(25, 0.03, 32.5)]
-#[case(100, 0.03, 26.1)]
-#[case(50, 0.01, 34.9)]
-#[case(50, 0.05, 27.4)]
-#[case(50, 0.1, 19.9)]
-fn a_cavity_acts_less_on_large_and_fast_sliders(#[case] n: usize, #[case] v_star: f64, #[case] claimed: f64) {
+#[test_case(25, 0.03, 32.5)]
+#[test_case(100, 0.03, 26.1)]
+#[test_case(50, 0.01, 34.9)]
+#[test_case(50, 0.05, 27.4)]
+#[test_case(50, 0.1, 19.9)]
+fn a_cavity_acts_less_on_large_and_fast_sliders(n: usize, v_star: f64, claimed: f64) {
     let slider = Slider {
         blocks: [n, n],
         v_star,
@@ -176,19 +174,13 @@ fn over_seeds(slider: &Slider, quantity: impl Fn(&Slider) -> f64) -> Vec<f64> {
 
 /// Fig. 5 and 6: mu_s* rises with V* towards 1, and t_s* = (5/2)/V* nearly. `scatter`: of mu_s* over ten
 /// seeds; the mean of six differs from a single one by 1.08 of it.
-#[rstest]
-#[case(0.01, 0.859, 0.0164, 2.28)]
-#[case(0.02, 0.872, 0.0142, 2.33)]
-#[case(0.03, 0.883, 0.0114, 2.37)]
-#[case(0.05, 0.901, 0.0079, 2.43)]
-#[case(0.1, 0.932, 0.0043, 2.53)]
-#[case(0.2, 0.971, 0.0026, 2.67)]
-fn static_friction_and_its_time_depend_on_speed(
-    #[case] v_star: f64,
-    #[case] claimed: f64,
-    #[case] scatter: f64,
-    #[case] turns: f64,
-) {
+#[test_case(0.01, 0.859, 0.0164, 2.28)]
+#[test_case(0.02, 0.872, 0.0142, 2.33)]
+#[test_case(0.03, 0.883, 0.0114, 2.37)]
+#[test_case(0.05, 0.901, 0.0079, 2.43)]
+#[test_case(0.1, 0.932, 0.0043, 2.53)]
+#[test_case(0.2, 0.971, 0.0026, 2.67)]
+fn static_friction_and_its_time_depend_on_speed(v_star: f64, claimed: f64, scatter: f64, turns: f64) {
     let slider = Slider {
         v_star,
         ..Slider::default()
@@ -239,18 +231,13 @@ fn static_friction_rises_with_speed_on_every_surface() {
 
 /// Fig. 10: mu_s* falls with sigma_s*. At sigma_s* = 0 all slip at once, and the slip's own k_s V^2/(2 (1 -
 /// R)) and a step's k_s V dt are all there is beyond 1.
-#[rstest]
-#[case(0.0, 1.000, 0.0004)]
-#[case(0.01, 0.980, 0.0020)]
-#[case(0.025, 0.941, 0.0063)]
-#[case(0.05, 0.878, 0.0114)]
-#[case(0.1, 0.806, 0.0083)]
-#[case(0.2, 0.752, 0.0065)]
-fn static_friction_falls_with_scatter(
-    #[case] sigma_static_star: f64,
-    #[case] claimed: f64,
-    #[case] scatter: f64,
-) {
+#[test_case(0.0, 1.000, 0.0004)]
+#[test_case(0.01, 0.980, 0.0020)]
+#[test_case(0.025, 0.941, 0.0063)]
+#[test_case(0.05, 0.878, 0.0114)]
+#[test_case(0.1, 0.806, 0.0083)]
+#[test_case(0.2, 0.752, 0.0065)]
+fn static_friction_falls_with_scatter(sigma_static_star: f64, claimed: f64, scatter: f64) {
     let slider = Slider {
         sigma_static_star,
         ..Slider::default()
@@ -284,11 +271,10 @@ fn five_surfaces_deviate_by_less_than_0_015() {
 }
 
 /// Fig. 7: mu_k* is about R*; a little more, and more at R* = 0.25 (D8). Scatter over seeds 0.0013 to 0.0053.
-#[rstest]
-#[case(0.25, 0.305, 0.016)]
-#[case(0.5, 0.529, 0.006)]
-#[case(0.75, 0.765, 0.006)]
-fn kinetic_friction_is_about_r_star(#[case] r_star: f64, #[case] claimed: f64, #[case] tolerance: f64) {
+#[test_case(0.25, 0.305, 0.016)]
+#[test_case(0.5, 0.529, 0.006)]
+#[test_case(0.75, 0.765, 0.006)]
+fn kinetic_friction_is_about_r_star(r_star: f64, claimed: f64, tolerance: f64) {
     for seed in [1, 2] {
         let slider = Slider {
             r_star,
@@ -303,12 +289,11 @@ fn kinetic_friction_is_about_r_star(#[case] r_star: f64, #[case] claimed: f64, #
 
 /// Fig. 8: at Omega* >= 1 stick-slip ends and all slide. At Omega* = 1 exactly, one block in 600 still sticks
 /// on some surfaces; at 2 and 3 none does. Below, a tenth slides at a time.
-#[rstest]
-#[case(0.1, 10.0, 20.0)]
-#[case(1.0, 99.0, 100.0)]
-#[case(2.0, 100.0, 100.0)]
-#[case(3.0, 100.0, 100.0)]
-fn strong_damping_ends_stick_slip(#[case] omega_star: f64, #[case] least: f64, #[case] most: f64) {
+#[test_case(0.1, 10.0, 20.0)]
+#[test_case(1.0, 99.0, 100.0)]
+#[test_case(2.0, 100.0, 100.0)]
+#[test_case(3.0, 100.0, 100.0)]
+fn strong_damping_ends_stick_slip(omega_star: f64, least: f64, most: f64) {
     for seed in [1, 2] {
         let slider = Slider {
             omega_star,
@@ -331,8 +316,8 @@ fn strong_damping_ends_stick_slip(#[case] omega_star: f64, #[case] least: f64, #
 
 /// Eq. 14: steps before slip with the paper's step (2/3) V*, within the few % by which t_s* V* differs from
 /// 5/2.
-#[rstest]
-fn steps_before_slip(#[values(0.05, 0.1, 0.2)] v_star: f64) {
+#[test_matrix([0.05, 0.1, 0.2])]
+fn steps_before_slip(v_star: f64) {
     let slider = Slider {
         v_star,
         dt_star: 2.0 / 3.0 * v_star,
@@ -347,11 +332,10 @@ fn steps_before_slip(#[values(0.05, 0.1, 0.2)] v_star: f64) {
 
 /// mu_s* of the same surface at steps from 0.002 to 0.05 agrees within 3e-4, and so does 0.1 on two surfaces
 /// of three (on the first by 4e-4): there a step is k_s V dt = 1.1e-3 of mu*, on which events fall.
-#[rstest]
-#[case(1, 4.5e-4)]
-#[case(2, 3e-4)]
-#[case(3, 3e-4)]
-fn static_friction_does_not_depend_on_the_step(#[case] seed: u64, #[case] at_a_tenth: f64) {
+#[test_case(1, 4.5e-4)]
+#[test_case(2, 3e-4)]
+#[test_case(3, 3e-4)]
+fn static_friction_does_not_depend_on_the_step(seed: u64, at_a_tenth: f64) {
     let at = |dt_star| {
         Slider {
             dt_star,
@@ -415,8 +399,8 @@ fn implicit_and_explicit_friction_agree() {
 }
 
 /// D7: at V* = 0.2 the slider oscillates as a whole, sticking and slipping, at any stable time step.
-#[rstest]
-fn fast_drives_swing_the_slider_at_any_step(#[values(0.02, 0.1, 0.2, 0.4)] dt_star: f64) {
+#[test_matrix([0.02, 0.1, 0.2, 0.4])]
+fn fast_drives_swing_the_slider_at_any_step(dt_star: f64) {
     let slider = Slider {
         v_star: 0.2,
         dt_star,
@@ -506,8 +490,8 @@ fn difference_from_case_8(case: usize, corrected: bool) -> f64 {
 
 /// Fig. 3: the eight cases coincide before and through the transition. All have V* = 0.03001 to every digit,
 /// so that only the strain differs: eps = 1e-6 to 2e-4 moves mu* by 1e-4 eps, the 0.04 of case 3 by 0.01 eps.
-#[rstest]
-fn the_cases_of_table_1_coincide(#[values(0, 1, 2, 3, 4, 5, 6)] case: usize) {
+#[test_matrix([0, 1, 2, 3, 4, 5, 6])]
+fn the_cases_of_table_1_coincide(case: usize) {
     let model = table_1(case, true);
     assert!(
         (model.drive.v_star - 0.03).abs() < 3e-5,
@@ -520,11 +504,10 @@ fn the_cases_of_table_1_coincide(#[values(0, 1, 2, 3, 4, 5, 6)] case: usize) {
 }
 
 /// D3: cases 3, 6 and 7 as printed have V* = 0.015, 0.010, 0.015, and their curves are others.
-#[rstest]
-#[case(2, 0.015)]
-#[case(5, 0.010)]
-#[case(6, 0.015)]
-fn three_cases_of_table_1_do_not_coincide_as_printed(#[case] case: usize, #[case] v_star: f64) {
+#[test_case(2, 0.015)]
+#[test_case(5, 0.010)]
+#[test_case(6, 0.015)]
+fn three_cases_of_table_1_do_not_coincide_as_printed(case: usize, v_star: f64) {
     let found = table_1(case, false).drive.v_star;
     assert!((found - v_star).abs() < 1e-5, "{found}");
     assert!(difference_from_case_8(case, false) > 0.3);

@@ -2,10 +2,10 @@
 
 use std::sync::Arc;
 
-use rstest::rstest;
 use slipfront::communicator::Alone;
 use slipfront::observe::{Curve, Cycles, Scheduled};
 use slipfront::{Model, Program, Stop};
+use test_case::test_matrix;
 
 use crate::common::{Slider, at_rest};
 
@@ -54,8 +54,8 @@ fn velocity_steps_move_the_level_by_damping() {
 
 /// After a hold from the start the drive takes as long to the first slip as without it: `k_s V (t - t_h) = min_i threshold_i`, seen at
 /// most a step late.
-#[rstest]
-fn a_hold_before_the_first_slip_delays_it(#[values(0.0, 12.5, 400.0)] hold: f64) {
+#[test_matrix([0.0, 12.5, 400.0])]
+fn a_hold_before_the_first_slip_delays_it(hold: f64) {
     let slider = Slider::default();
     let exact = hold + slider.model().first_slip_estimate(&Alone);
     let segments = [(0.0, hold), (slider.v_star, END)];

@@ -1,11 +1,11 @@
 //! Friction that follows speed and state.
 
-use rstest::rstest;
 use slipfront::communicator::Alone;
 use slipfront::exact_solutions::{friction_after_speed_step, rate_and_state_growth};
 use slipfront::observe::Curve;
 use slipfront::surface::Load;
 use slipfront::{Drive, Friction, Lattice, Model, RateAndState, State, Surface, VectorField, scales};
+use test_case::{test_case, test_matrix};
 
 use crate::common::{Slider, at_rest, cavity, from_state};
 use crate::growth::growth_rate;
@@ -21,8 +21,8 @@ const LAW: RateAndState = RateAndState {
 };
 
 /// At a prescribed speed the state is exact over any step. Friction is a hundred times finer than its logarithm: rounding is 1e-15.
-#[rstest]
-fn friction_after_a_step_of_speed(#[values(0.1, 3.0, 100.0)] ratio: f64, #[values(0.01, 0.7)] dt: f64) {
+#[test_matrix([0.1, 3.0, 100.0], [0.01, 0.7])]
+fn friction_after_a_step_of_speed(ratio: f64, dt: f64) {
     let (v_1, v_2) = (0.01, 0.01 * ratio);
     let mut theta = LAW.d_c / v_1;
     let jump = LAW.coefficient(v_2, theta) - LAW.coefficient(v_1, theta);
@@ -70,18 +70,12 @@ fn measured_growth(v: f64, k: f64, damping: f64, dt: f64, apart: f64) -> f64 {
 /// Disturbances grow below and decay above the critical stiffness. Friction is taken at the speed half a step after the
 /// instant of its state, mu(v + dt v'/2), as if the mass were larger by sigma a dt/(2 v). The cubic with that mass tells the
 /// error, and half the step leaves half of it, to terms of the next order (a fifth of the error, 10 % of the ratio).
-#[rstest]
-#[case(0.03, 0.1, 0.9, 36.0)]
-#[case(0.03, 0.1, 1.1, 36.0)]
-#[case(0.03, 0.1, 2.0, 24.0)]
-#[case(0.1, 0.0, 0.8, 9.0)]
-#[case(0.1, 0.0, 1.25, 9.0)]
-fn disturbances_grow_below_the_critical_stiffness(
-    #[case] v: f64,
-    #[case] omega_star: f64,
-    #[case] ratio: f64,
-    #[case] apart: f64,
-) {
+#[test_case(0.03, 0.1, 0.9, 36.0)]
+#[test_case(0.03, 0.1, 1.1, 36.0)]
+#[test_case(0.03, 0.1, 2.0, 24.0)]
+#[test_case(0.1, 0.0, 0.8, 9.0)]
+#[test_case(0.1, 0.0, 1.25, 9.0)]
+fn disturbances_grow_below_the_critical_stiffness(v: f64, omega_star: f64, ratio: f64, apart: f64) {
     let damping = scales::damping(omega_star);
     let k = ratio * LAW.critical_stiffness(1.0, damping, v);
     let exact = rate_and_state_growth(&LAW, 1.0, v, k, damping);
@@ -99,8 +93,8 @@ fn disturbances_grow_below_the_critical_stiffness(
 }
 
 /// A stiff drive and strong damping end in steady sliding at the level of the law, textured or not; the state of the contacts is D_c/V*.
-#[rstest]
-fn steady_sliding_has_the_level_of_the_law(#[values(Load::Redistributed, Load::Kept)] load: Load) {
+#[test_matrix([Load::Redistributed, Load::Kept])]
+fn steady_sliding_has_the_level_of_the_law(load: Load) {
     let slider = Slider {
         blocks: [10, 8],
         textures: vec![cavity([10, 8], 12.0, 1, 0.2, false)],

@@ -1,9 +1,9 @@
 //! Scale invariance: at equal groups V*, R*, Omega*, sigma* the dimensional quantities do not matter (Eqs.
 //! 11, 12), but for the load's strain eps = P mu_s/E, which makes the springs slightly nonlinear.
 
-use rstest::rstest;
 use slipfront::surface::{Coefficients, Distribution, Load};
 use slipfront::{Drive, FrictionLaw, Lattice, Model, Scales, Surface, scales};
+use test_case::test_matrix;
 
 use crate::common::at_rest;
 
@@ -104,8 +104,8 @@ fn difference(one: &Model, other: &Model) -> f64 {
 
 /// With linear springs (eps = 0) only the rounding of the conversions differs, 1e-16 each, and no event comes
 /// a step earlier or later for that.
-#[rstest]
-fn without_strain_the_groups_alone_decide(#[values(1, 2, 3)] slider: usize) {
+#[test_matrix([1, 2, 3])]
+fn without_strain_the_groups_alone_decide(slider: usize) {
     let found = difference(&model(&SLIDERS[0], 0.0), &model(&SLIDERS[slider], 0.0));
     assert!(found < 1e-12, "{found}");
 }
@@ -113,8 +113,8 @@ fn without_strain_the_groups_alone_decide(#[values(1, 2, 3)] slider: usize) {
 /// Sliders with strains of their own, from 1e-6 to 9e-6, agree to first order in the strain. The stretch between neighbours,
 /// e = 0.1 to 1, changes the force of a spring by eps e^2, and mu* by the mean of that over slipping and stuck blocks: 1e-4
 /// eps here, bounded by 1e-3 of the strain.
-#[rstest]
-fn a_small_strain_changes_little(#[values(1, 2, 3)] slider: usize) {
+#[test_matrix([1, 2, 3])]
+fn a_small_strain_changes_little(slider: usize) {
     let (one, other) = (&SLIDERS[0], &SLIDERS[slider]);
     let found = difference(&model(one, one.epsilon()), &model(other, other.epsilon()));
     let strain = one.epsilon().max(other.epsilon());

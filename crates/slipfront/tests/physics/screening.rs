@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
-use rstest::rstest;
 use slipfront::lattice::{K_DIAGONAL, K_STRAIGHT};
 use slipfront::{Edges, Program, Surface};
+use test_case::test_matrix;
 
 use crate::common::{Slider, at_rest};
 
@@ -16,14 +16,10 @@ use crate::common::{Slider, at_rest};
 /// ```
 ///
 /// for a chain and for a strip that is periodic across the drive.
-#[rstest]
-#[case::chain(1, Edges::Free, K_STRAIGHT)]
-#[case::strip(4, Edges::Periodic, K_STRAIGHT + K_DIAGONAL)]
+#[test_matrix([(1, Edges::Free, K_STRAIGHT), (4, Edges::Periodic, K_STRAIGHT + K_DIAGONAL)], [0.375, 0.02])]
 fn what_is_held_is_felt_over_the_screening_length(
-    #[case] ny: usize,
-    #[case] across: Edges,
-    #[case] stiffness: f64,
-    #[values(0.375, 0.02)] k_drive: f64,
+    (ny, across, stiffness): (usize, Edges, f64),
+    k_drive: f64,
 ) {
     let (nx, held) = (41, 15);
     let (speed, until) = (1e-3, 100.0);

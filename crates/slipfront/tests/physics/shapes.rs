@@ -1,8 +1,8 @@
 //! Every shape of lattice: single blocks, chains, the smallest squares, rectangles.
 
-use rstest::rstest;
 use slipfront::exact_solutions::lattice_waves;
 use slipfront::{Drive, Edges, FrictionLaw, Lattice, Model, State, Surface, VectorField};
+use test_case::test_matrix;
 
 use crate::common::{Slider, at_rest, from_state};
 
@@ -81,14 +81,15 @@ fn wavy(lattice: &Lattice) -> VectorField {
     }
 }
 
-#[rstest]
-fn lattice_forces_are_eq_3_to_the_letter(
-    #[values([1, 1], [2, 1], [1, 2], [2, 2], [1, 7], [7, 1], [2, 5], [5, 2], [3, 3], [6, 4])] blocks: [usize;
-        2],
-    #[values([Edges::Free, Edges::Free], [Edges::Periodic, Edges::Free], [Edges::Free, Edges::Periodic], [Edges::Periodic, Edges::Periodic])]
-    edges: [Edges; 2],
-    #[values(0.2, 1e-3)] epsilon: f64,
-) {
+#[test_matrix(
+    [[1, 1], [2, 1], [1, 2], [2, 2], [1, 7], [7, 1], [2, 5], [5, 2], [3, 3], [6, 4]],
+    [
+        [Edges::Free, Edges::Free], [Edges::Periodic, Edges::Free], [Edges::Free, Edges::Periodic],
+        [Edges::Periodic, Edges::Periodic]
+    ],
+    [0.2, 1e-3]
+)]
+fn lattice_forces_are_eq_3_to_the_letter(blocks: [usize; 2], edges: [Edges; 2], epsilon: f64) {
     if (0..2).any(|axis| edges[axis] == Edges::Periodic && blocks[axis] < Lattice::MIN_PERIODIC) {
         return;
     }
@@ -214,11 +215,8 @@ fn two_blocks_pull_on_each_other() {
     }
 }
 
-#[rstest]
-fn small_and_odd_lattices_go_through_their_transition(
-    #[values([1, 1], [2, 2], [1, 2], [3, 1], [2, 9], [9, 2])] blocks: [usize; 2],
-    #[values(0.0, 45.0)] degrees: f64,
-) {
+#[test_matrix([[1, 1], [2, 2], [1, 2], [3, 1], [2, 9], [9, 2]], [0.0, 45.0])]
+fn small_and_odd_lattices_go_through_their_transition(blocks: [usize; 2], degrees: f64) {
     let slider = Slider {
         blocks,
         degrees,

@@ -1,7 +1,7 @@
 //! One block, and a uniform lattice, which moves as one: slip, stop, stick, and slip again.
 
-use rstest::rstest;
 use slipfront::exact_solutions::SlipCycle;
+use test_case::{test_case, test_matrix};
 
 use crate::common::{Slider, at_rest};
 
@@ -16,17 +16,11 @@ fn one_block(omega_star: f64, v_star: f64, dt_star: f64) -> Slider {
 }
 
 /// Values of model.md, section 6, problem 2, at R* = 0.5, to the digits given there.
-#[rstest]
-#[case(0.0, 0.03, 5.25015, 0.0)]
-#[case(0.1, 0.03, 5.27878, 0.104656)]
-#[case(0.1, 0.1, 5.60003, 0.117239)]
-#[case(0.3, 0.03, 5.43262, 0.259443)]
-fn the_closed_form_has_the_tabulated_values(
-    #[case] omega_star: f64,
-    #[case] v_star: f64,
-    #[case] duration: f64,
-    #[case] at_stop: f64,
-) {
+#[test_case(0.0, 0.03, 5.25015, 0.0)]
+#[test_case(0.1, 0.03, 5.27878, 0.104656)]
+#[test_case(0.1, 0.1, 5.60003, 0.117239)]
+#[test_case(0.3, 0.03, 5.43262, 0.259443)]
+fn the_closed_form_has_the_tabulated_values(omega_star: f64, v_star: f64, duration: f64, at_stop: f64) {
     let cycle = SlipCycle::new(omega_star, 0.5, v_star);
     assert!(
         (cycle.slip_duration() - duration).abs() < 6e-6,
@@ -47,8 +41,8 @@ fn the_closed_form_has_the_tabulated_values(
     assert!((acceleration - balance).abs() < 1e-8, "{acceleration} {balance}");
 }
 
-#[rstest]
-fn undamped_answers_are_elementary(#[values(0.01, 0.03, 0.2)] v_star: f64, #[values(0.25, 0.5, 0.9)] r: f64) {
+#[test_matrix([0.01, 0.03, 0.2], [0.25, 0.5, 0.9])]
+fn undamped_answers_are_elementary(v_star: f64, r: f64) {
     let cycle = SlipCycle::new(0.0, r, v_star);
     let (k, w) = (0.375_f64, 0.375_f64.sqrt());
     let duration = 2.0 / w * (std::f64::consts::PI - ((1.0 - r) * w / (k * v_star)).atan());
@@ -99,11 +93,11 @@ fn first_slip(slider: &Slider) -> Slip {
 /// The slip starts at the first instant past the threshold and stops at the first instant past the stop, so
 /// that its duration in steps may err by two of them; the force at the stop is flat to k_s V dt per step; the
 /// start, late by up to a step, increases all forces of the slip by up to k_s V dt.
-#[rstest]
+#[test_matrix([[1, 1], [2, 2], [7, 5]], [(0.0, 0.03), (0.1, 0.03), (0.1, 0.1), (0.3, 0.03)], [0.0, 77.0])]
 fn one_block_and_a_uniform_lattice_slip_as_the_closed_form(
-    #[values([1, 1], [2, 2], [7, 5])] blocks: [usize; 2],
-    #[values((0.0, 0.03), (0.1, 0.03), (0.1, 0.1), (0.3, 0.03))] (omega_star, v_star): (f64, f64),
-    #[values(0.0, 77.0)] degrees: f64,
+    blocks: [usize; 2],
+    (omega_star, v_star): (f64, f64),
+    degrees: f64,
 ) {
     let dt = 1e-3;
     let slider = Slider {
@@ -137,11 +131,8 @@ fn one_block_and_a_uniform_lattice_slip_as_the_closed_form(
 }
 
 /// Over a whole period the mean force is R* plus what damping adds; a step counts 1/period of it.
-#[rstest]
-fn the_mean_force_over_a_cycle(
-    #[values(0.0, 0.1, 0.3)] omega_star: f64,
-    #[values([1, 1], [6, 6])] blocks: [usize; 2],
-) {
+#[test_matrix([0.0, 0.1, 0.3], [[1, 1], [6, 6]])]
+fn the_mean_force_over_a_cycle(omega_star: f64, blocks: [usize; 2]) {
     let slider = Slider {
         blocks,
         ..one_block(omega_star, 0.1, 2e-3)

@@ -3,13 +3,13 @@
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-use rstest::rstest;
 use slipfront::lattice::{K_DIAGONAL, K_STRAIGHT};
 use slipfront::observe::{Curve, Scheduled};
 use slipfront::surface::{Coefficients, Load};
 use slipfront::{
     Coulomb, Drive, Friction, FrictionLaw, Lattice, Model, Program, Simulation, SlipWeakening, Stop, Surface,
 };
+use test_case::{test_case, test_matrix};
 
 use crate::common::{Slider, at_rest, cavity};
 
@@ -84,10 +84,9 @@ fn a_block_on_a_stiff_spring_does_not_jump() {
 
 /// A block that weakens faster jumps where the drive stands still at its threshold, and slides without damping to
 /// `s = [D + sqrt(D^2 - k_s D D_c)]/k_s`, `D = S - K`, which lies beyond D_c.
-#[rstest]
-#[case(0.6)]
-#[case(2.0)]
-fn a_block_on_a_soft_spring_jumps(#[case] weakening: f64) {
+#[test_case(0.6)]
+#[test_case(2.0)]
+fn a_block_on_a_soft_spring_jumps(weakening: f64) {
     let k = K_DIAGONAL;
     // A trifle beyond the threshold, from which it runs away.
     let until = (WHOLE / k * (1.0 + 1e-7) / 1e-3 / 0.05).ceil() * 0.05;
@@ -160,11 +159,10 @@ fn assert_jumps_above(blocks: [usize; 2], can_slip: &dyn Fn(usize, usize) -> boo
 }
 
 /// Critical size of a chain of n blocks: it jumps if `W - k_s` is above `4 k_1 sin^2(pi/(2(n + 1)))`.
-#[rstest]
-#[case(1)]
-#[case(3)]
-#[case(8)]
-fn chains_jump_from_a_critical_size_on(#[case] n: usize) {
+#[test_case(1)]
+#[test_case(3)]
+#[test_case(8)]
+fn chains_jump_from_a_critical_size_on(n: usize) {
     let sine = (PI / (2.0 * (n as f64 + 1.0))).sin();
     let eigenvalue = 4.0 * K_STRAIGHT * sine * sine;
     assert_jumps_above([n + 2, 1], &|i, _| (1..=n).contains(&i), eigenvalue);
@@ -218,11 +216,8 @@ fn a_patch_jumps_by_the_springs_along_the_drive() {
 
 /// The balance of energy closes, and the energy of weakening is a part of the loss to friction: at the end, where all blocks
 /// have slipped far, `(S - K) D_c/2` of each, whatever the step.
-#[rstest]
-fn the_balance_of_energy_closes(
-    #[values(0.2, 0.05)] dt_star: f64,
-    #[values(None, Some(20.0))] healing_time: Option<f64>,
-) {
+#[test_matrix([0.2, 0.05], [None, Some(20.0)])]
+fn the_balance_of_energy_closes(dt_star: f64, healing_time: Option<f64>) {
     let blocks = [20, 16];
     let slider = Slider {
         blocks,

@@ -1,7 +1,7 @@
 //! The spring law (Eq. 3): exact at any strain, without loss of digits at the smallest.
 
-use rstest::rstest;
 use slipfront::lattice::{Bond, K_DIAGONAL, K_STRAIGHT};
+use test_case::test_matrix;
 
 /// sqrt(1 + x) - 1 by its series; the difference of lengths would have no correct digit at eps = 1e-12.
 fn extension_by_series(bond: &Bond, e: [f64; 2], epsilon: f64) -> f64 {
@@ -12,11 +12,8 @@ fn extension_by_series(bond: &Bond, e: [f64; 2], epsilon: f64) -> f64 {
     d * x_over_eps * (0.5 - x / 8.0 + x * x / 16.0)
 }
 
-#[rstest]
-fn tiny_strains_lose_nothing(
-    #[values(0.0, 1e-15, 1e-12, 1e-9, 1e-6)] epsilon: f64,
-    #[values([0.3, -0.7], [1e-6, 2e-6], [0.0, 1.0], [5.0, 5.0])] e: [f64; 2],
-) {
+#[test_matrix([0.0, 1e-15, 1e-12, 1e-9, 1e-6], [[0.3, -0.7], [1e-6, 2e-6], [0.0, 1.0], [5.0, 5.0]])]
+fn tiny_strains_lose_nothing(epsilon: f64, e: [f64; 2]) {
     for bond in &Bond::ALL {
         let extension = extension_by_series(bond, e, epsilon);
         let [fx, fy] = bond.force(e, epsilon);
@@ -34,8 +31,8 @@ fn tiny_strains_lose_nothing(
 }
 
 /// The force is the slope of the energy, at any strain.
-#[rstest]
-fn forces_derive_from_the_energy(#[values(0.0, 1e-6, 0.1, 0.4)] epsilon: f64) {
+#[test_matrix([0.0, 1e-6, 0.1, 0.4])]
+fn forces_derive_from_the_energy(epsilon: f64) {
     let (e, h) = ([0.4, -0.9], 1e-5);
     for bond in &Bond::ALL {
         let slope = |dx: f64, dy: f64| {
@@ -48,8 +45,8 @@ fn forces_derive_from_the_energy(#[values(0.0, 1e-6, 0.1, 0.4)] epsilon: f64) {
 }
 
 /// A turned spring is as long as before, whatever the angle: no force.
-#[rstest]
-fn a_rotation_stretches_no_spring(#[values(0.1, 1.0, 3.0)] angle: f64) {
+#[test_matrix([0.1, 1.0, 3.0])]
+fn a_rotation_stretches_no_spring(angle: f64) {
     let (s, c) = f64::sin_cos(angle);
     for bond in &Bond::ALL {
         let [x, y] = bond.rest;

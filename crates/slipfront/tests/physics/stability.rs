@@ -1,9 +1,9 @@
 //! The largest stable time step.
 
-use rstest::rstest;
 use slipfront::communicator::Alone;
 use slipfront::lattice::{K_DRIVE, dt_star_limit};
 use slipfront::{Drive, Edges, FrictionLaw, Lattice, Model, Slider, State, Surface};
+use test_case::{test_case, test_matrix};
 
 use crate::common::{from_state, thrown, varied};
 
@@ -33,11 +33,10 @@ fn growth(model: &Model, dt: f64, steps: usize) -> f64 {
 
 /// Equal blocks with periodic edges have a wave that reaches the bound: it is strict. Just below the limit the undamped oscillation
 /// beats with an amplitude of 1/sqrt(1 - (dt/limit)^2) = 22 at 0.999 of it, of each of the waves that make up the start.
-#[rstest]
-#[case(0.0, 0.9058)]
-#[case(0.365, 0.6295)]
-#[case(2.0, 0.21025)]
-fn the_bound_of_equal_blocks_is_strict(#[case] viscosity_time: f64, #[case] limit: f64) {
+#[test_case(0.0, 0.9058)]
+#[test_case(0.365, 0.6295)]
+#[test_case(2.0, 0.21025)]
+fn the_bound_of_equal_blocks_is_strict(viscosity_time: f64, limit: f64) {
     let slider = Slider {
         viscosity_time,
         ..Slider::default()
@@ -51,11 +50,10 @@ fn the_bound_of_equal_blocks_is_strict(#[case] viscosity_time: f64, #[case] limi
 }
 
 /// Heavy, soft blocks do not raise the limit; light, stiff ones lower it: lambda_max = 4.5 E/rho + k_s E/rho.
-#[rstest]
-#[case(0.1, 1.0, 0.9058)]
-#[case(4.0, 1.0, 0.4529)]
-#[case(2.0, 0.125, 0.22645)]
-fn stiffness_over_density_decides(#[case] stiffness: f64, #[case] density: f64, #[case] limit: f64) {
+#[test_case(0.1, 1.0, 0.9058)]
+#[test_case(4.0, 1.0, 0.4529)]
+#[test_case(2.0, 0.125, 0.22645)]
+fn stiffness_over_density_decides(stiffness: f64, density: f64, limit: f64) {
     let slider = Slider::new(
         Some(vec![stiffness; 24]),
         Some(vec![density; 24]),
@@ -68,11 +66,8 @@ fn stiffness_over_density_decides(#[case] stiffness: f64, #[case] density: f64, 
 
 /// The bound is safe for heterogeneous blocks. A light block among heavy ones swings alone, at half of what the bound takes
 /// of its neighbours: the bound is too strict by the square root of 2, or by 2 where the dampers decide.
-#[rstest]
-fn the_bound_of_unequal_blocks_is_safe(
-    #[values(0.0, 0.2)] viscosity_time: f64,
-    #[values(0.02, 0.5)] lightest: f64,
-) {
+#[test_matrix([0.0, 0.2], [0.02, 0.5])]
+fn the_bound_of_unequal_blocks_is_safe(viscosity_time: f64, lightest: f64) {
     let mut slider = varied(24, false);
     let density = (0..24).map(|b| lightest + f64::from(b * b % 7)).collect();
     slider.density = Some(density);

@@ -1,28 +1,30 @@
 //! A straight groove before anything slips: how the pull on the missing rows loads the rows at its edge.
 
-use rstest::rstest;
 use slipfront::exact_solutions::{Facing, groove_edge_factor};
 use slipfront::surface::Orientation;
 use slipfront::{Edges, Stop};
+use test_case::{test_case, test_matrix};
 
 use crate::common::{Slider, at_rest, groove};
 
-#[rstest]
-#[case(Facing::Across, 2.188312)]
-#[case(Facing::Along, 1.611111)]
-fn the_closed_form_has_the_tabulated_values(#[case] facing: Facing, #[case] factor: f64) {
+#[test_case(Facing::Across, 2.188312)]
+#[test_case(Facing::Along, 1.611111)]
+fn the_closed_form_has_the_tabulated_values(facing: Facing, factor: f64) {
     assert!((groove_edge_factor(facing, 5) - factor).abs() < 5e-7);
 }
 
 /// The blocks of the groove follow the drive with a constant lag and an oscillation that damping removes, so that
 /// the *rate* at which the load of an edge row grows is exact: 1e-9 is rounding over the time between two
 /// instants.
-#[rstest]
+#[test_matrix(
+    [(Facing::Across, Orientation::Across), (Facing::Along, Orientation::Along)],
+    [1, 2, 5, 8],
+    [0.0, 180.0]
+)]
 fn rows_beside_a_groove_bear_their_factor(
-    #[values((Facing::Across, Orientation::Across), (Facing::Along, Orientation::Along))]
     (facing, orientation): (Facing, Orientation),
-    #[values(1, 2, 5, 8)] n: usize,
-    #[values(0.0, 180.0)] degrees: f64,
+    n: usize,
+    degrees: f64,
 ) {
     let blocks = match orientation {
         Orientation::Across => [20, 4],
@@ -68,13 +70,9 @@ fn rows_beside_a_groove_bear_their_factor(
 
 /// The edge rows slip when the force on them reaches N/N_contact; the lag and the oscillation of the
 /// groove that the quasi-static answer leaves out are of the order of V*.
-#[rstest]
-#[case(Facing::Across, Orientation::Across)]
-#[case(Facing::Along, Orientation::Along)]
-fn the_first_slip_beside_a_groove_comes_as_much_earlier(
-    #[case] facing: Facing,
-    #[case] orientation: Orientation,
-) {
+#[test_case(Facing::Across, Orientation::Across)]
+#[test_case(Facing::Along, Orientation::Along)]
+fn the_first_slip_beside_a_groove_comes_as_much_earlier(facing: Facing, orientation: Orientation) {
     let slider = Slider {
         blocks: [20, 20],
         edges: [Edges::Periodic; 2],

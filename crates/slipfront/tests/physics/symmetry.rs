@@ -1,10 +1,10 @@
 //! Quarter turns and mirrors of lattice, drive, surface and texture together turn the motion, to the last
 //! bit, through onset and far beyond.
 
-use rstest::rstest;
 use slipfront::communicator::Alone;
 use slipfront::surface::{Coefficients, Contact, Load, Shape, Texture, mesh};
 use slipfront::{Drive, Edges, FrictionLaw, Lattice, Model, Outline, Surface, scales};
+use test_case::{test_case, test_matrix};
 
 use crate::common::{Slider, at_rest, cavity, varied};
 
@@ -161,14 +161,17 @@ fn off_centre(blocks: [usize; 2]) -> Texture {
     Shape::Cavity(found).into()
 }
 
-#[rstest]
+#[test_matrix(
+    [(false, 1), (false, 2), (false, 3), (true, 0), (true, 1), (true, 2), (true, 3)],
+    [[12, 12], [8, 13]],
+    [[Edges::Free, Edges::Free], [Edges::Periodic, Edges::Free], [Edges::Periodic, Edges::Periodic]],
+    [0.0, 30.0]
+)]
 fn every_symmetry_of_the_square_is_exact(
-    #[values((false, 1), (false, 2), (false, 3), (true, 0), (true, 1), (true, 2), (true, 3))]
     (mirror, quarters): (bool, usize),
-    #[values([12, 12], [8, 13])] blocks: [usize; 2],
-    #[values([Edges::Free, Edges::Free], [Edges::Periodic, Edges::Free], [Edges::Periodic, Edges::Periodic])]
+    blocks: [usize; 2],
     edges: [Edges; 2],
-    #[values(0.0, 30.0)] degrees: f64,
+    degrees: f64,
 ) {
     let slider = Slider {
         blocks,
@@ -185,12 +188,8 @@ fn every_symmetry_of_the_square_is_exact(
 }
 
 /// Symmetry holds for heterogeneous sliders, some of whose blocks do not exist, with dampers beside their springs.
-#[rstest]
-fn sliders_of_unequal_blocks_too(
-    #[values((false, 1), (false, 2), (true, 0), (true, 1))] (mirror, quarters): (bool, usize),
-    #[values(0.0, 0.3)] viscosity_time: f64,
-    #[values(true, false)] has_outline: bool,
-) {
+#[test_matrix([(false, 1), (false, 2), (true, 0), (true, 1)], [0.0, 0.3], [true, false])]
+fn sliders_of_unequal_blocks_too((mirror, quarters): (bool, usize), viscosity_time: f64, has_outline: bool) {
     let blocks = [8, 13];
     let edges = if has_outline {
         [Edges::Free; 2]
@@ -215,14 +214,13 @@ fn sliders_of_unequal_blocks_too(
     );
 }
 
-#[rstest]
-#[case::reversal(Slider { law: FrictionLaw::Reversal, ..Slider::default() })]
-#[case::literal(Slider { law: FrictionLaw::Literal, r_star: 0.9, omega_star: 0.3, ..Slider::default() })]
-#[case::strained(Slider { epsilon: 0.05, ..Slider::default() })]
-#[case::linear(Slider { epsilon: 0.0, ..Slider::default() })]
-#[case::chain(Slider { blocks: [30, 1], textures: vec![], ..Slider::default() })]
-#[case::two_by_two(Slider { blocks: [2, 2], textures: vec![], ..Slider::default() })]
-fn other_laws_strains_and_shapes_too(#[case] slider: Slider) {
+#[test_case(Slider { law: FrictionLaw::Reversal, ..Slider::default() }; "reversal")]
+#[test_case(Slider { law: FrictionLaw::Literal, r_star: 0.9, omega_star: 0.3, ..Slider::default() }; "literal")]
+#[test_case(Slider { epsilon: 0.05, ..Slider::default() }; "strained")]
+#[test_case(Slider { epsilon: 0.0, ..Slider::default() }; "linear")]
+#[test_case(Slider { blocks: [30, 1], textures: vec![], ..Slider::default() }; "chain")]
+#[test_case(Slider { blocks: [2, 2], textures: vec![], ..Slider::default() }; "two by two")]
+fn other_laws_strains_and_shapes_too(slider: Slider) {
     let slider = Slider {
         degrees: 15.0,
         ..slider

@@ -1,11 +1,11 @@
 //! Effects of a texture on load, friction, counts and times; and the three readings of the friction law.
 
-use rstest::rstest;
 use slipfront::communicator::Alone;
 use slipfront::observe::Field;
 use slipfront::observe::frames::Selection;
 use slipfront::surface::{Load, Orientation};
 use slipfront::{FrictionLaw, State, Stop, Surface, VectorField};
+use test_case::test_matrix;
 
 use crate::common::{Slider, at_rest, cavity, from_state, groove};
 
@@ -54,8 +54,8 @@ fn blocks_in_contact_carry_the_whole_load() {
 
 /// A textured block has no friction, so that it moves as soon as any force acts: in the first step after t = 0.
 /// N* counts it, first-slip times do not.
-#[rstest]
-fn textured_blocks_move_at_once(#[values(FrictionLaw::Projection, FrictionLaw::Reversal)] law: FrictionLaw) {
+#[test_matrix([FrictionLaw::Projection, FrictionLaw::Reversal])]
+fn textured_blocks_move_at_once(law: FrictionLaw) {
     let slider = Slider { law, ..textured() };
     let model = slider.model();
     let n_textured = 625 - model.surface.n_contact();

@@ -1,11 +1,11 @@
 //! A drive that rotates: the torsion of a disc.
 
-use rstest::rstest;
 use slipfront::communicator::Alone;
 use slipfront::exact_solutions::{torsion_first_slip, torsion_of_decoupled_blocks};
 use slipfront::observe::{Curve, Scheduled};
 use slipfront::surface::{Coefficients, Contact, Load};
 use slipfront::{Lattice, Model, Outline, Rotation, Stop, Surface};
+use test_case::{test_case, test_matrix};
 
 use crate::common::{Slider, at_rest};
 
@@ -36,10 +36,9 @@ fn radii(model: &Model) -> Vec<f64> {
 
 /// A uniform slider slips at its largest radius first, at `sum r^2/(r_max sum r)` of the torque that it can bear: for a disc of 20
 /// blocks across 0.7577, near the 3/4 of a continuous one. The torque is seen within the rise of one step.
-#[rstest]
-#[case([20, 20], disc(20))]
-#[case([12, 7], slipfront::Slider::default())]
-fn the_rim_slips_first(#[case] blocks: [usize; 2], #[case] body: slipfront::Slider) {
+#[test_case([20, 20], disc(20))]
+#[test_case([12, 7], slipfront::Slider::default())]
+fn the_rim_slips_first(blocks: [usize; 2], body: slipfront::Slider) {
     let slider = Slider {
         blocks,
         body,
@@ -123,8 +122,8 @@ fn a_disc_of_thresholds_in_proportion_to_the_radius_slips_at_once() {
 /// the end. Overdamped, so that a block that has slipped slides on. Its drag is `Omega V r/r_max`, at most `Omega V` in all; and a block that
 /// slips comes down to kinetic friction in some Omega/k_s = 4.6, in which the edge of the stuck part moves by `rho^2 V Omega` of the radius:
 /// the blocks there, `3 rho^2` of the torque for each of the radius, and at least the eight of one radius, may still bear 1 - R* more.
-#[rstest]
-fn a_disc_of_blocks_on_their_own_slips_from_the_rim(#[values(0.3, 0.9)] r_star: f64) {
+#[test_matrix([0.3, 0.9])]
+fn a_disc_of_blocks_on_their_own_slips_from_the_rim(r_star: f64) {
     let mut body = disc(40);
     body.stiffness = Some(vec![1e-6; 1600]);
     let slider = Slider {

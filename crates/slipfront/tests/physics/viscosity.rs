@@ -2,13 +2,13 @@
 
 use std::f64::consts::TAU;
 
-use rstest::rstest;
 use slipfront::exact_solutions::{lagged_decay_rate, lattice_waves, viscous_decay_rate};
 use slipfront::lattice::K_DRIVE;
 use slipfront::observe::{Curve, Scheduled};
 use slipfront::{
     Drive, Edges, FrictionLaw, Lattice, Model, Slider, State, Stop, Surface, VectorField, scales,
 };
+use test_case::test_matrix;
 
 use crate::common::{self, at_rest, from_state, thrown, varied};
 
@@ -68,13 +68,8 @@ fn amplitudes(
 
 /// The amplitude obeys (1 + g) u+ - (2 - w^2 dt^2 - c) u + (1 - g - c) u- = 0 with g = Omega dt/2 and
 /// c = tau_v (w^2 - k_s) dt: rounding alone is left, 1e-12 in 500 steps.
-#[rstest]
-fn a_mode_obeys_the_scheme(
-    #[values((1, 0), (2, 1), (6, 4))] mode: (u32, u32),
-    #[values(0, 1)] branch: usize,
-    #[values(0.0, 0.1, 1.0)] omega_star: f64,
-    #[values(0.05, 0.365)] time: f64,
-) {
+#[test_matrix([(1, 0), (2, 1), (6, 4)], [0, 1], [0.0, 0.1, 1.0], [0.05, 0.365])]
+fn a_mode_obeys_the_scheme(mode: (u32, u32), branch: usize, omega_star: f64, time: f64) {
     let dt = 0.2;
     let (omega_squared, found) = amplitudes(mode, branch, omega_star, time, dt, 500);
     let g = 0.5 * scales::damping(omega_star) * dt;
@@ -97,11 +92,8 @@ fn decay_rate([u0, u1, u2, u3]: [f64; 4], apart: f64) -> f64 {
 
 /// Exactly the rate of the lagged force, which is of first order in the step. It is read off amplitudes about a radian apart, so
 /// that it is as exact as they are: 1e-12.
-#[rstest]
-fn modes_decay_at_their_rate(
-    #[values((1, 0), (2, 1), (6, 4))] mode: (u32, u32),
-    #[values(0, 1)] branch: usize,
-) {
+#[test_matrix([(1, 0), (2, 1), (6, 4)], [0, 1])]
+fn modes_decay_at_their_rate(mode: (u32, u32), branch: usize) {
     let time = 0.1;
     let error = |dt: f64| {
         let apart = (0.5 / dt) as usize;
@@ -129,8 +121,8 @@ fn both_dampings_add() {
 
 /// Dampers act in pairs: the momentum of a slider that nothing holds is conserved. Its change is the rounding of sums over 120
 /// blocks and 400 steps.
-#[rstest]
-fn momentum_is_conserved(#[values(0.0, 0.02)] epsilon: f64, #[values(false, true)] has_outline: bool) {
+#[test_matrix([0.0, 0.02], [false, true])]
+fn momentum_is_conserved(epsilon: f64, has_outline: bool) {
     let slider = Slider {
         viscosity_time: 0.2,
         ..varied(120, has_outline)

@@ -1,12 +1,12 @@
 //! Kinetic friction that falls with speed.
 
-use rstest::rstest;
 use slipfront::communicator::Alone;
 use slipfront::exact_solutions::weakening_growth;
 use slipfront::lattice::K_DRIVE;
 use slipfront::{
     Coulomb, Drive, Friction, FrictionLaw, Lattice, Model, State, Surface, VectorField, Weakening, scales,
 };
+use test_case::{test_case, test_matrix};
 
 use crate::common::{Slider, from_state};
 use crate::growth::growth_rate;
@@ -50,13 +50,12 @@ fn measured_growth(v: f64, damping: f64, dt: f64) -> f64 {
 /// Friction is taken at the speed half a step before, F(v - dt v'/2), as if the mass were m - (dF/dv) dt/2: the rate is
 /// smaller by that share, and half the step leaves half the error, to terms of the next order (a fifth of the share, 10 % of
 /// the ratio). The test covers both sides of dF/dv + Omega = 0.
-#[rstest]
-#[case(0.2, 0.0)]
-#[case(0.2, 0.2)]
-#[case(0.2, 0.4)]
-#[case(0.05, 1.3)]
-#[case(0.05, 1.5)]
-fn disturbances_of_steady_sliding_grow_as_the_eigenvalue_says(#[case] v: f64, #[case] damping: f64) {
+#[test_case(0.2, 0.0)]
+#[test_case(0.2, 0.2)]
+#[test_case(0.2, 0.4)]
+#[test_case(0.05, 1.3)]
+#[test_case(0.05, 1.5)]
+fn disturbances_of_steady_sliding_grow_as_the_eigenvalue_says(v: f64, damping: f64) {
     let exact = weakening_growth(&LAW, 0.5, v, K_DRIVE, damping);
     let [coarse, fine] = [0.04, 0.02].map(|dt| measured_growth(v, damping, dt) - exact);
     let slope = -0.5 * 0.6 * 0.1 / (0.1 + v).powi(2);
@@ -69,8 +68,8 @@ fn disturbances_of_steady_sliding_grow_as_the_eigenvalue_says(#[case] v: f64, #[
 }
 
 /// With strong damping all blocks slide for good at the level of the law at V*; adhesion does not weaken.
-#[rstest]
-fn strong_damping_ends_at_the_level_of_the_law(#[values(0.0, 0.3)] adhesion: f64) {
+#[test_matrix([0.0, 0.3])]
+fn strong_damping_ends_at_the_level_of_the_law(adhesion: f64) {
     let mut slider = Slider {
         blocks: [12, 9],
         omega_star: 6.0,
