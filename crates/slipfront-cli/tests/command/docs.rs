@@ -371,23 +371,15 @@ fn functions_of_the_system_are_found_in_code_and_not_in_tests() {
     assert_eq!(lines_of_the_system(code), [1, 4, 7]);
 }
 
-/// Examples in comments that `cargo test` would run, by the number of their first line, from 0 on.
-fn examples(code: &str) -> Vec<usize> {
-    let mut is_inside = false;
-    let mut found = Vec::new();
-    for (k, line) in code.lines().enumerate() {
-        let comment = line.trim_start();
-        let comment = comment
-            .strip_prefix("///")
-            .or_else(|| comment.strip_prefix("//!"));
-        if let Some(language) = comment.and_then(|comment| comment.trim_start().strip_prefix("```")) {
-            if !is_inside && (language.is_empty() || language.starts_with("rust")) {
-                found.push(k);
-            }
-            is_inside = !is_inside;
-        }
-    }
-    found
+/// Blocks in comments for documentation that `cargo test` may take for examples: all but texts.
+fn examples(code: &str) -> Vec<String> {
+    let comments = code.lines().map(str::trim_start);
+    let comments = comments.filter_map(|line| line.strip_prefix("///").or_else(|| line.strip_prefix("//!")));
+    let text: Vec<&str> = comments.collect();
+    let examples = blocks(&text.join("\n"))
+        .into_iter()
+        .filter(|(language, _)| language != "text");
+    examples.map(|(_, lines)| lines.join("\n")).collect()
 }
 
 /// `cargo test` would compile every library once more in order to find that its comments have no example.
@@ -406,8 +398,8 @@ fn libraries_whose_examples_are_not_run_have_none() {
         rust_files(&folder.join("src"), &mut files);
         assert!(!files.is_empty());
         for file in files {
-            for k in examples(&std::fs::read_to_string(&file).unwrap()) {
-                found += &format!("\n{}:{}", file.display(), k + 1);
+            for example in examples(&std::fs::read_to_string(&file).unwrap()) {
+                found += &format!("\n{}:\n{example}", file.display());
             }
         }
     }
@@ -419,8 +411,8 @@ fn libraries_whose_examples_are_not_run_have_none() {
 
 #[test]
 fn examples_are_found_in_comments() {
-    let code = "//! ```\n//! f();\n//! ```\n/// ```text\n/// a\n/// ```\n    /// ```rust,no_run\n    /// ```\nlet x = \"```\";\n";
-    assert_eq!(examples(code), [0, 6]);
+    let code = "//! ```\n//! f();\n//! ```\n/// ```text\n/// a\n/// ```\n    /// ```no_run\n    /// g();\n    /// ```\nlet x = \"```\";\n";
+    assert_eq!(examples(code), [" f();", " g();"]);
 }
 
 #[test]
