@@ -87,7 +87,7 @@ def texture(design: sf.Design, parameters: npt.NDArray[np.float64]) -> Mask | No
 def own(design: sf.Design, runs: Runs, _: int) -> None:
     """Asks the search of the design."""
     while runs.left > 0:
-        masks = design.ask(min(32, runs.left))
+        masks = design.ask(min(8, runs.left))
         design.tell(masks, runs.losses(masks))
 
 

@@ -6,6 +6,7 @@
 //!
 //! A search sees some surfaces, and its result is good on these. The values in a verdict are measured on fresh surfaces.
 
+mod adaptation;
 mod evaluate;
 mod file;
 mod folder;
@@ -21,6 +22,7 @@ mod report;
 mod search;
 mod sensitivity;
 mod stages;
+mod start;
 mod subject;
 mod verdict;
 mod wish;

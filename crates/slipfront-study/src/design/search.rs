@@ -1,46 +1,45 @@
-//! The search for a texture: drafts are changed at random, and the best are kept.
+//! The search for a texture: starts, one after another or some beside each other.
 //!
 //! ```text
-//! ask: new drafts of the population, of named patterns or of nothing -> their textures, legal and none asked for before
-//! tell: their losses -> the population of the best that differ
+//! ask: named patterns first, then drafts of the starts -> their textures, legal and none asked for before
+//! tell: their losses -> the drafts of each start move towards its better ones; what has ended makes room for another start
 //! ```
 //!
-//! A population that has not become better for a while makes room for another start; its best stay among the finalists. The
-//! textures asked for depend only on the start number and on the losses so far.
+//! Starts begin by turns with patches anywhere and with one of the best textures so far. The textures asked for depend only on
+//! the start number and on the losses so far.
 
 use std::collections::HashSet;
-use std::f64::consts::{FRAC_PI_2, PI};
 use std::sync::Arc;
 
 use super::grid::Grid;
 use super::limits::Limits;
 use super::named::Named;
-use super::patch::{Draft, Form, Patch};
+use super::patch::{Draft, Form};
+use super::start::{GENERATION, Ranges, Start};
 use crate::draws::Draws;
-
-/// Drafts in a population.
-const POPULATION: usize = 24;
-
-/// Times that a population is asked without becoming better by [`PROGRESS`] before another start.
-const PATIENCE: usize = 25;
-
-/// Loss by which a population must become better.
-const PROGRESS: f64 = 1e-4;
 
 /// Number of drafts that are tried for every texture asked for.
 const TRIES: usize = 50;
 
-/// Largest number of patches of a draft.
-const MAX_PATCHES: usize = 12;
+/// Numbers of patches of starts anywhere, in turn.
+const PATCHES: [usize; 4] = [2, 3, 1, 4];
+
+/// Deviation of drafts of a start anywhere, as a share of the range of every number.
+const WIDE: f64 = 0.2;
+
+/// Deviation of drafts of a start with a good texture.
+const NEAR: f64 = 0.05;
 
 /// A texture that was asked for.
 #[derive(Clone, Debug)]
 pub(crate) struct Proposal {
-    /// Origin of the texture, in a word or by its name.
+    /// Origin of the texture: the name of a pattern, or the number of a start.
     pub(crate) origin: String,
     /// Blocks of the texture.
     pub(crate) texture: Arc<Vec<bool>>,
     draft: Draft,
+    /// Number of the start that drew the draft, with the standard normal numbers that made it.
+    drawn: Option<(usize, Vec<f64>)>,
 }
 
 /// A texture with its loss.
@@ -57,56 +56,69 @@ pub(crate) struct Found {
 pub(crate) struct Search {
     grid: Grid,
     limits: Limits,
+    ranges: Ranges,
     draws: Draws,
     /// Patterns that were not proposed yet, the next one last.
-    starts: Vec<Named>,
+    named: Vec<Named>,
     /// Every texture that was asked for, as hashes.
     seen: HashSet<[u8; 32]>,
-    /// The best textures of this start, the best first.
-    population: Vec<Found>,
     /// The best textures of all starts, the best first.
     best: Vec<Found>,
-    /// Times asked since the population has become better.
-    idle: usize,
-    /// Best loss of the population when it last became better.
-    reached: f64,
+    /// Starts that have not ended.
+    starts: Vec<Start>,
+    /// Number of starts so far.
+    n_starts: usize,
+    /// Number of starts anywhere so far.
+    n_anywhere: usize,
+    /// Whether every start begins with one of the best textures.
+    is_refining: bool,
 }
 
 impl Search {
     /// A search that begins with named patterns.
-    pub(crate) fn new(grid: Grid, limits: Limits, start: u64, mut starts: Vec<Named>) -> Self {
-        starts.reverse();
+    pub(crate) fn new(grid: Grid, limits: Limits, start: u64, mut named: Vec<Named>) -> Self {
+        named.reverse();
         Self {
+            ranges: Ranges::new(&grid, &limits),
             grid,
             limits,
             draws: Draws::new(start),
-            starts,
+            named,
             seen: HashSet::new(),
-            population: Vec::new(),
             best: Vec::new(),
-            idle: 0,
-            reached: f64::INFINITY,
+            starts: Vec::new(),
+            n_starts: 0,
+            n_anywhere: 0,
+            is_refining: false,
         }
     }
 
-    /// Up to `n` textures that were not asked for before; fewer where the limits leave few or once `ends` returns true, and
-    /// none where the limits leave none.
+    /// Up to `n` textures that were not asked for before, a generation of every start; fewer where the limits leave few or once
+    /// `ends` returns true, and none where the limits leave none.
     pub(crate) fn ask(&mut self, n: usize, ends: &dyn Fn() -> bool) -> Vec<Proposal> {
         let mut asked = Vec::new();
+        let mut in_vain = 0;
         for _ in 0..n * TRIES {
             if asked.len() == n || ends() {
                 break;
             }
-            let (origin, draft) = self.draft();
-            let Some(texture) = self.limits.texture(&self.grid, &draft) else {
-                continue;
-            };
-            if self.seen.insert(hash(&texture)) {
+            let place = asked.len() / GENERATION;
+            let (origin, draft, drawn) = self.draft(place);
+            let texture = self.limits.texture(&self.grid, &draft);
+            if let Some(texture) = texture.filter(|texture| self.seen.insert(hash(texture))) {
+                in_vain = 0;
                 asked.push(Proposal {
                     origin,
                     texture: texture.into(),
                     draft,
+                    drawn,
                 });
+            } else {
+                in_vain += 1;
+                if in_vain == TRIES && place < self.starts.len() {
+                    self.starts[place] = self.new_start();
+                    in_vain = 0;
+                }
             }
         }
         asked
@@ -114,23 +126,21 @@ impl Search {
 
     /// Takes the losses of textures that were asked for, in their order.
     pub(crate) fn tell(&mut self, found: &[Found]) {
-        let found: Vec<Found> = found
+        let finite: Vec<Found> = found
             .iter()
             .filter(|found| found.loss.is_finite())
             .cloned()
             .collect();
-        merge(&mut self.best, &found, FINALISTS, self.limits.feature);
-        merge(&mut self.population, &found, POPULATION, self.limits.feature);
-        let best = self.population.first().map_or(f64::INFINITY, |found| found.loss);
-        if best < self.reached - PROGRESS {
-            (self.reached, self.idle) = (best, 0);
-        } else {
-            self.idle += 1;
+        merge(&mut self.best, &finite, self.limits.feature);
+        for Found { proposal, loss } in found {
+            let Some((number, normal)) = &proposal.drawn else {
+                continue;
+            };
+            if let Some(start) = self.starts.iter_mut().find(|start| start.number == *number) {
+                start.tell(*loss, normal);
+            }
         }
-        if self.idle > PATIENCE {
-            self.population.clear();
-            (self.reached, self.idle) = (f64::INFINITY, 0);
-        }
+        self.starts.retain(|start| !start.has_ended());
     }
 
     /// A proposal for a texture of the caller, whose loss may be told as if it had been asked for.
@@ -139,6 +149,7 @@ impl Search {
             origin: "another search".to_owned(),
             draft: Draft::drawn(&self.grid, &texture),
             texture: texture.into(),
+            drawn: None,
         }
     }
 
@@ -152,179 +163,94 @@ impl Search {
         self.seen.len()
     }
 
-    /// Forgets all losses, because later ones are measured otherwise; textures that were asked for are not asked for again.
-    pub(crate) fn begin_again(&mut self) {
-        self.best.clear();
-        self.population.clear();
-        self.starts.clear();
-        (self.reached, self.idle) = (f64::INFINITY, 0);
-    }
-
-    /// A new draft, and its origin.
-    fn draft(&mut self) -> (String, Draft) {
-        if let Some(Named { name, draft }) = self.starts.pop() {
-            return (name, draft);
-        }
-        let few = self.population.len() < POPULATION / 2;
-        if few && (self.population.is_empty() || self.draws.uniform() < 0.5) {
-            return ("random".to_owned(), self.random_draft());
-        }
-        let mut draft = self.parent().clone();
-        let mut origin = "changed";
-        if self.draws.uniform() < 0.15 {
-            let other = self.parent().clone();
-            self.mix(&mut draft, other);
-            origin = "mixed";
-        }
-        let changes = 1 + self.draws.below(3);
-        for _ in 0..changes {
-            self.change(&mut draft);
-        }
-        (origin.to_owned(), draft)
-    }
-
-    /// A draft of the population: the better of two that are drawn.
-    fn parent(&mut self) -> &Draft {
-        let n = self.population.len();
-        let index = self.draws.below(n).min(self.draws.below(n));
-        &self.population[index].proposal.draft
-    }
-
-    /// One to five random patches.
-    fn random_draft(&mut self) -> Draft {
-        let n = 1 + self.draws.below(5);
-        let [least, most] = self.limits.coverage;
-        Draft {
-            patches: (0..n).map(|_| self.random_patch()).collect(),
+    /// Returns the best textures, the best first, and forgets all losses, because later ones are measured otherwise. The start of the
+    /// best texture goes on if it has not ended; others begin with the best textures. What was asked for is not asked for again.
+    pub(crate) fn refine(&mut self) -> Vec<Proposal> {
+        let best = std::mem::take(&mut self.best);
+        let drawn = best.first().and_then(|found| found.proposal.drawn.as_ref());
+        let of_best = drawn.map(|(number, _)| *number);
+        self.named.clear();
+        self.starts.retain(|start| Some(start.number) == of_best);
+        self.starts.iter_mut().for_each(Start::forget_losses);
+        self.is_refining = true;
+        let proposals = best.into_iter().map(|found| Proposal {
+            // The start draws around another mean by now.
             drawn: None,
-            percent: if self.draws.uniform() < 0.5 {
-                most
-            } else {
-                self.draws.between(least, most)
-            },
-        }
+            ..found.proposal
+        });
+        proposals.collect()
     }
 
-    /// A strip or cavity anywhere, mostly along an axis.
-    fn random_patch(&mut self) -> Patch {
-        let draws = &mut self.draws;
-        let size = self.grid.size().map(|n| n as f64);
-        let angle = match draws.below(4) {
-            0 => 0.0,
-            1 => FRAC_PI_2,
-            2 => draws.between(0.0, PI),
-            _ => FRAC_PI_2 + 0.2 * draws.normal(),
-        };
-        let form = if draws.uniform() < 0.8 {
-            Form::Rectangle
+    /// A new draft, the next named one or of the start in this place, its origin, and how the start has drawn it.
+    fn draft(&mut self, place: usize) -> (String, Draft, Option<(usize, Vec<f64>)>) {
+        if let Some(Named { name, draft }) = self.named.pop() {
+            return (name, draft, None);
+        }
+        while self.starts.len() <= place {
+            let start = self.new_start();
+            self.starts.push(start);
+        }
+        let start = &self.starts[place];
+        let (draft, normal) = start.draw(&mut self.draws);
+        (
+            format!("start {}", start.number),
+            draft,
+            Some((start.number, normal)),
+        )
+    }
+
+    fn new_start(&mut self) -> Start {
+        self.n_starts += 1;
+        let n = self.best.len();
+        let (from, spread) = if n > 0 && (self.is_refining || self.n_starts.is_multiple_of(2)) {
+            let draws = &mut self.draws;
+            let index = draws.below(n).min(draws.below(n)).min(draws.below(n));
+            let mut from = self.best[index].proposal.draft.clone();
+            if from.patches.is_empty() {
+                from.patches
+                    .push(self.ranges.random_patch(Form::Rectangle, draws));
+            }
+            (from, NEAR)
         } else {
-            Form::Ellipse
+            (self.random_draft(), WIDE)
         };
-        let longest = 0.7 * (size[0] + size[1]);
-        let length = longest * draws.uniform() * draws.uniform();
-        Patch {
-            center: size.map(|n| draws.between(0.0, n)),
-            half: [0.5 * length, draws.between(0.0, 0.5 * self.limits.feature as f64)],
-            angle,
-            form,
-        }
+        Start::new(self.n_starts, from, spread, self.ranges)
     }
 
-    /// Takes some of the patches of another draft in place of its own.
-    fn mix(&mut self, draft: &mut Draft, other: Draft) {
+    /// Patches anywhere: strips that cover the most the first time, cavities among them and less coverage at times later.
+    fn random_draft(&mut self) -> Draft {
+        let is_first = self.n_anywhere == 0;
+        let n = PATCHES[self.n_anywhere % PATCHES.len()].min(self.limits.max_features.unwrap_or(usize::MAX));
+        self.n_anywhere += 1;
         let draws = &mut self.draws;
-        draft.patches.retain(|_| draws.uniform() < 0.6);
-        let taken = other.patches.into_iter().filter(|_| draws.uniform() < 0.6);
-        draft.patches.extend(taken);
-        draft.patches.truncate(MAX_PATCHES);
-        if draft.drawn.is_none() {
-            draft.drawn = other.drawn;
-        }
-    }
-
-    /// One random change.
-    fn change(&mut self, draft: &mut Draft) {
-        let n = draft.patches.len();
-        if n == 0 {
-            let patch = self.random_patch();
-            draft.patches.push(patch);
-            return;
-        }
-        let which = self.draws.below(n);
-        // Steps of a block up to a quarter of the slider, small ones as often as large ones.
-        let side = self.grid.size()[0].max(self.grid.size()[1]) as f64;
-        let step = 0.5 * libm::pow(0.5 * side, self.draws.uniform());
-        match self.draws.below(20) {
-            0..=5 => {
-                for axis in 0..2 {
-                    let moved = draft.patches[which].center[axis] + step * self.draws.normal();
-                    draft.patches[which].center[axis] = moved.clamp(0.0, self.grid.size()[axis] as f64);
-                }
-            }
-            6..=8 => {
-                let half = &mut draft.patches[which].half;
-                half[0] = (half[0] + step * self.draws.normal()).clamp(0.0, 2.0 * side);
-            }
-            9 | 10 => {
-                let half = &mut draft.patches[which].half;
-                half[1] = (half[1] + 0.5 * self.draws.normal()).clamp(0.0, 0.5 * side);
-            }
-            11..=13 => {
-                let angle = &mut draft.patches[which].angle;
-                // A whole step turns the end of a strip across the slider by that much.
-                *angle = match self.draws.below(8) {
-                    0 => FRAC_PI_2,
-                    1 => 0.0,
-                    _ => *angle + 2.0 * step / side * self.draws.normal(),
-                };
-            }
-            14 if n < MAX_PATCHES => {
-                let patch = self.random_patch();
-                draft.patches.push(patch);
-            }
-            15 if n > 1 => drop(draft.patches.swap_remove(which)),
-            16 => draft.patches[which] = self.random_patch(),
-            17 if n < MAX_PATCHES => {
-                let mut patch = draft.patches[which].clone();
-                let axis = self.draws.below(2);
-                patch.center[axis] = self.grid.size()[axis] as f64 - patch.center[axis];
-                if self.draws.uniform() < 0.5 {
-                    patch.angle = -patch.angle;
-                }
-                draft.patches.push(patch);
-            }
-            18 => {
-                let [least, most] = self.limits.coverage;
-                let changed = draft.percent + 0.2 * (most - least) * self.draws.normal();
-                draft.percent = if self.draws.uniform() < 0.3 {
-                    most
-                } else {
-                    changed.clamp(least, most)
-                };
-            }
-            _ => {
-                for patch in &mut draft.patches {
-                    for axis in 0..2 {
-                        patch.center[axis] += 0.5 * step * self.draws.normal();
-                    }
-                }
-            }
+        let patches = (0..n).map(|_| {
+            let is_strip = is_first || draws.uniform() < 0.8;
+            let form = if is_strip { Form::Rectangle } else { Form::Ellipse };
+            self.ranges.random_patch(form, draws)
+        });
+        let patches = patches.collect();
+        let [least, most] = self.limits.coverage;
+        let is_full = is_first || draws.uniform() < 0.5;
+        Draft {
+            patches,
+            drawn: None,
+            percent: if is_full { most } else { draws.between(least, most) },
         }
     }
 }
 
 /// Number of textures that a search hands on.
-pub(crate) const FINALISTS: usize = 24;
+const FINALISTS: usize = 24;
 
-/// Adds to a list that is sorted by loss, and keeps the best that differ from every better one by more than a square of
+/// Adds to the finalists, sorted by loss, and keeps the best that differ from every better one by more than a square of
 /// `feature` blocks.
-fn merge(list: &mut Vec<Found>, found: &[Found], most: usize, feature: usize) {
+fn merge(list: &mut Vec<Found>, found: &[Found], feature: usize) {
     let mut all = std::mem::take(list);
     all.extend_from_slice(found);
     all.sort_by(|a, b| a.loss.total_cmp(&b.loss));
     let least = (feature * feature).min(9);
     for candidate in all {
-        if list.len() == most {
+        if list.len() == FINALISTS {
             break;
         }
         let differs = |kept: &Found| {

@@ -10,11 +10,16 @@ use super::evaluate::{Evaluator, Keep, Known};
 use super::limits::Limits;
 use super::named::Named;
 use super::search::{Found, Proposal, Search};
+use super::start::GENERATION;
 use super::subject::Fidelity;
 use crate::error::StudyError;
 
-/// Number of drafts that are asked for at once. The drafts depend on it, and not on the number of threads.
-const BATCH: usize = 32;
+/// Number of runs of a search for each of the starts that go on beside each other, so that many threads have something to do. The drafts depend
+/// on the number of starts, and not on that of threads.
+const RUNS_OF_START: usize = 2500;
+
+/// Largest number of starts that go on beside each other.
+const MAX_STARTS: usize = 4;
 
 /// Share of the runs that go to drafts on one surface.
 const EXPLORED: f64 = 0.7;
@@ -156,21 +161,17 @@ impl<'a> Stages<'a> {
         self.evaluator.check_reference(known, bounds.stop, keep)?;
         let explored = explored(bounds);
         while self.runs < explored && self.is_within(bounds, EXPLORED) {
-            let proposals = self.ask(BATCH, bounds)?;
+            let proposals = self.ask(batch(bounds), bounds)?;
             if !self.try_out(proposals, false, bounds, known, keep, watch)? {
                 break;
             }
         }
-        let best: Vec<Proposal> = self
-            .search
-            .best()
-            .iter()
-            .map(|found| found.proposal.clone())
-            .collect();
-        self.search.begin_again();
+        let best = self.search.refine();
+        let surfaces = self.stage(true).0.count();
+        let refined_batch = (batch(bounds) / surfaces).max(GENERATION);
         let mut goes_on = self.try_out(best, true, bounds, known, keep, watch)?;
         while goes_on && self.runs < bounds.runs && self.is_within(bounds, 1.0) {
-            let proposals = self.ask(BATCH / 2, bounds)?;
+            let proposals = self.ask(refined_batch, bounds)?;
             goes_on = self.try_out(proposals, true, bounds, known, keep, watch)?;
         }
         let best = self.search.best().iter();
@@ -296,6 +297,11 @@ impl<'a> Stages<'a> {
 
     /// The first surface that the search has not seen.
     pub(crate) const UNSEEN: u64 = REFINED_SURFACES;
+}
+
+/// Number of drafts that are asked for at once: a generation of every start.
+fn batch(bounds: &Bounds) -> usize {
+    GENERATION * (bounds.runs / RUNS_OF_START).clamp(1, MAX_STARTS)
 }
 
 /// Number of runs after which drafts are tried on several surfaces.
