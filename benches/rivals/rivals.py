@@ -26,6 +26,8 @@ REFINED_SURFACES = 4
 FRESH_SURFACES = 64
 # The seed of fresh surfaces, far from those of the searches.
 FRESH_SEED = 1001
+# Textures that the own search is asked for at a time: it learns from the losses of as many.
+ASKED = 8
 # Points of reduction by which another search may be better.
 ALLOWED = 0.1
 # What a search that takes no infinite loss is told of a draft without a legal texture.
@@ -87,7 +89,7 @@ def texture(design: sf.Design, parameters: npt.NDArray[np.float64]) -> Mask | No
 def own(design: sf.Design, runs: Runs, _: int) -> None:
     """Asks the search of the design."""
     while runs.left > 0:
-        masks = design.ask(min(8, runs.left))
+        masks = design.ask(min(ASKED, runs.left))
         design.tell(masks, runs.losses(masks))
 
 

@@ -7,7 +7,7 @@
 use crate::draws::Draws;
 
 /// A normal distribution of vectors x = m + s M z, where z are standard normal numbers.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub(crate) struct Adaptation {
     /// The mean m.
     mean: Vec<f64>,

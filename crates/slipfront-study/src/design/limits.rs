@@ -271,6 +271,16 @@ mod tests {
         assert_eq!(features, Illegal::Features { found: 2, most: 1 });
     }
 
+    #[test]
+    fn without_a_feature_nothing_is_asked_for() {
+        let limits = Limits {
+            max_features: Some(0),
+            ..Limits::default()
+        };
+        let mut search = Search::new(whole([8, 8], [false; 2]), limits, 1, Vec::new());
+        assert!(search.ask(8, &|| false).is_empty());
+    }
+
     /// Textures that a search asks for are legal and new, whatever the limits, and it asks for the same after the same
     /// losses.
     #[test]

@@ -220,7 +220,9 @@ impl Search {
     /// Patches anywhere: strips that cover the most the first time, cavities among them and less coverage at times later.
     fn random_draft(&mut self) -> Draft {
         let is_first = self.n_anywhere == 0;
-        let n = PATCHES[self.n_anywhere % PATCHES.len()].min(self.limits.max_features.unwrap_or(usize::MAX));
+        let most = self.limits.max_features.unwrap_or(usize::MAX);
+        // Limits that allow no feature allow no texture; a draft has numbers all the same.
+        let n = PATCHES[self.n_anywhere % PATCHES.len()].min(most).max(1);
         self.n_anywhere += 1;
         let draws = &mut self.draws;
         let patches = (0..n).map(|_| {
