@@ -77,7 +77,7 @@ class Calibration:
     >>> slider = {"slider": {"blocks": [6, 6]}, "drive": {"v_star": 0.1}, "time": {"step": 0.4}}
     >>> measured = slipfront.run({**slider, "output": {"series": 1}}, progress=False).series
     >>> unknowns = {"friction.mu_static": (0.3, 0.9), "drive.stiffness_star": (0.3, 0.9)}
-    >>> calibration = Calibration(slider, unknowns, noise=0.01, runs=100, finer_runs=0)
+    >>> calibration = Calibration(slider, unknowns, noise=0.01, runs=200, finer_runs=0)
     >>> record = {"time_s": measured["time_s"], "force_n": measured["friction_force_n"]}
     >>> fit = calibration.fit(record, progress=False)
     >>> fit.intervals["drive.stiffness_star"].is_determined

@@ -76,7 +76,7 @@ base = "meshes.toml"
 x = "time_s"
 y = "friction_force_n"
 noise = 0.01
-runs = 100
+runs = 200
 finer_runs = 0
 [calibrate.unknowns]
 "friction.mu_static" = [0.3, 0.9]

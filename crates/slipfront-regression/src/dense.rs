@@ -42,14 +42,31 @@ fn rows_from(matrix: &[f64], n: usize, first: usize, from: usize) -> [&[f64]; RO
     })
 }
 
+/// The transposed inverse of the first `width` rows and columns of a lower triangular matrix.
+fn inverse_of_triangle(triangle: &[[f64; PANEL]; PANEL], width: usize) -> [[f64; PANEL]; PANEL] {
+    let mut inverse = [[0.0; PANEL]; PANEL];
+    for (column, solved) in inverse.iter_mut().enumerate().take(width) {
+        for row in column..width {
+            let right = if row == column { 1.0 } else { 0.0 };
+            let sum: f64 = (column..row).map(|k| triangle[row][k] * solved[k]).sum();
+            solved[row] = (right - sum) / triangle[row][row];
+        }
+    }
+    inverse
+}
+
 impl Factor {
-    /// Factorizes the symmetric matrix of `n` rows, of which the lower half is read; none if the matrix is not positive.
+    /// Factorizes a symmetric matrix, of which the lower half is read, with numbers added to its diagonal; none if the sum is not positive.
     ///
     /// ```text
-    /// L_ij = (A_ij - sum_k<j L_ik L_jk)/L_jj,   L_jj = sqrt(A_jj - sum_k<j L_jk^2)
+    /// L_ij = (A_ij - sum_k<j L_ik L_jk)/L_jj,   L_jj = sqrt(A_jj + added_j - sum_k<j L_jk^2)
     /// ```
-    pub(crate) fn of(matrix: Vec<f64>, n: usize) -> Option<Self> {
+    pub(crate) fn of(mut matrix: Vec<f64>, added: impl ExactSizeIterator<Item = f64>) -> Option<Self> {
+        let n = added.len();
         assert_eq!(matrix.len(), n * n);
+        for (i, added) in added.enumerate() {
+            matrix[i * n + i] += added;
+        }
         let mut factor = Self { n, rows: matrix };
         let is_positive = dispatch!(Level::new(), simd => simd.vectorize(
             #[inline(always)]
@@ -76,14 +93,14 @@ impl Factor {
             }));
             // The factor of the panel's own rows, column after column.
             let mut own = [[0.0; PANEL]; PANEL];
-            for group in (first..n).step_by(ROWS) {
+            let below = first + width;
+            for group in (first..below).step_by(ROWS) {
                 let sums = tile(simd, rows_from(&self.rows, n, group, 0), &panel);
-                for (row, sums) in (group..n).zip(sums) {
+                for (row, sums) in (group..below).zip(sums) {
                     let place = row * n + first;
-                    let values = &mut self.rows[place..place + width];
-                    let last = (row - first).min(width - 1);
-                    for column in 0..=last {
-                        let is_diagonal = row == first + column;
+                    let values = &mut self.rows[place..=place + row - first];
+                    for column in 0..values.len() {
+                        let is_diagonal = column == row - first;
                         let mut rest = values[column] - sums[column];
                         for k in 0..column {
                             let other = if is_diagonal { values[k] } else { own[column][k] };
@@ -97,9 +114,19 @@ impl Factor {
                             return false;
                         };
                     }
-                    if row < first + width {
-                        own[row - first][..=last].copy_from_slice(&values[..=last]);
+                    own[row - first][..values.len()].copy_from_slice(values);
+                }
+            }
+            let inverse = inverse_of_triangle(&own, width).map(|row| f64x8::load_array(simd, row));
+            for group in (below..n).step_by(ROWS) {
+                let sums = tile(simd, rows_from(&self.rows, n, group, 0), &panel);
+                for (row, sums) in (group..n).zip(sums) {
+                    let values = &mut self.rows[row * n + first..row * n + first + PANEL];
+                    let mut solved = f64x8::splat(simd, 0.0);
+                    for ((value, sum), line) in values.iter().zip(sums).zip(inverse) {
+                        solved += f64x8::splat(simd, value - sum) * line;
                     }
+                    solved.store_slice(values);
                 }
             }
         }
@@ -123,6 +150,12 @@ impl Factor {
         }
     }
 
+    /// The logarithm of the determinant.
+    pub(crate) fn log_determinant(&self) -> f64 {
+        let diagonal = self.rows.iter().step_by(self.n + 1);
+        2.0 * diagonal.map(|l| libm::log(*l)).sum::<f64>()
+    }
+
     /// The diagonal of the inverse: the sums of squares of the columns of `L^-1`.
     pub(crate) fn inverse_diagonal(&self) -> Vec<f64> {
         dispatch!(Level::new(), simd => simd.vectorize(
@@ -135,33 +168,109 @@ impl Factor {
     fn squares_of_columns<S: Simd>(&self, simd: S) -> Vec<f64> {
         let n = self.n;
         let mut diagonal = Vec::with_capacity(n);
-        let mut columns: Vec<[f64; PANEL]> = Vec::with_capacity(n);
+        let mut columns = Vec::with_capacity(n);
         for first in (0..n).step_by(PANEL) {
-            columns.clear();
+            self.inverse_columns(simd, first, &mut columns);
             let mut squares = [0.0; PANEL];
-            for group in (first..n).step_by(ROWS) {
-                let sums = tile(simd, rows_from(&self.rows, n, group, first), &columns);
-                for (row, mut sums) in (group..n).zip(sums) {
-                    let line = &self.rows[row * n..row * n + row + 1];
-                    for k in group..row {
-                        for (sum, value) in sums.iter_mut().zip(columns[k - first]) {
-                            *sum += line[k] * value;
-                        }
-                    }
-                    let solved: [f64; PANEL] = std::array::from_fn(|column| {
-                        let right = if row == first + column { 1.0 } else { 0.0 };
-                        (right - sums[column]) / line[row]
-                    });
-                    for (square, value) in squares.iter_mut().zip(solved) {
-                        *square += value * value;
-                    }
-                    columns.push(solved);
+            for row in &columns {
+                for (square, value) in squares.iter_mut().zip(row) {
+                    *square += value * value;
                 }
             }
             diagonal.extend(squares.iter().take(PANEL.min(n - first)));
         }
         diagonal
     }
+
+    /// The inverse `L^-T L^-1`.
+    pub(crate) fn inverse(&self) -> Vec<f64> {
+        dispatch!(Level::new(), simd => simd.vectorize(
+            #[inline(always)]
+            || self.products_of_columns(simd)
+        ))
+    }
+
+    #[inline(always)]
+    fn products_of_columns<S: Simd>(&self, simd: S) -> Vec<f64> {
+        let n = self.n;
+        let mut inverse = vec![0.0; n * n];
+        // The columns of L^-1 so far, each as a row.
+        let mut all = vec![0.0; n * n];
+        let mut columns = Vec::with_capacity(n);
+        for first in (0..n).step_by(PANEL) {
+            let width = PANEL.min(n - first);
+            self.inverse_columns(simd, first, &mut columns);
+            for (k, row) in (first..n).zip(&columns) {
+                for (column, value) in (first..first + width).zip(row) {
+                    all[column * n + k] = *value;
+                }
+            }
+            let last = first + width;
+            for group in (0..last).step_by(ROWS) {
+                let sums = tile(simd, rows_from(&all, n, group, first), &columns);
+                for (row, sums) in (group..last).zip(sums) {
+                    for (column, sum) in (first..last).zip(sums) {
+                        inverse[row * n + column] = sum;
+                        inverse[column * n + row] = sum;
+                    }
+                }
+            }
+        }
+        inverse
+    }
+
+    /// Replaces `columns` by the columns of `L^-1` from `first` on, as many as a panel has, from row `first` on.
+    #[inline(always)]
+    fn inverse_columns<S: Simd>(&self, simd: S, first: usize, columns: &mut Vec<[f64; PANEL]>) {
+        let n = self.n;
+        columns.clear();
+        for group in (first..n).step_by(ROWS) {
+            let sums = tile(simd, rows_from(&self.rows, n, group, first), columns);
+            for (row, mut sums) in (group..n).zip(sums) {
+                let line = &self.rows[row * n..row * n + row + 1];
+                for k in group..row {
+                    for (sum, value) in sums.iter_mut().zip(columns[k - first]) {
+                        *sum += line[k] * value;
+                    }
+                }
+                columns.push(std::array::from_fn(|column| {
+                    let right = if row == first + column { 1.0 } else { 0.0 };
+                    (right - sums[column]) / line[row]
+                }));
+            }
+        }
+    }
+}
+
+/// Sums `sum_j m_ij (x_j - x_i)` over points of `d` numbers each, with a matrix of as many rows and columns as there are points.
+pub(crate) fn differences(matrix: &[f64], points: &[f64], d: usize) -> Vec<f64> {
+    dispatch!(Level::new(), simd => simd.vectorize(
+        #[inline(always)]
+        || sums_of_differences(simd, matrix, points, d)
+    ))
+}
+
+#[inline(always)]
+fn sums_of_differences<S: Simd>(simd: S, matrix: &[f64], points: &[f64], d: usize) -> Vec<f64> {
+    let n = points.len() / d;
+    let rows: Vec<f64> = matrix.chunks_exact(n).map(|row| row.iter().sum()).collect();
+    let mut found = vec![0.0; n * d];
+    for first in (0..d).step_by(PANEL) {
+        let width = PANEL.min(d - first);
+        let panel: Vec<[f64; PANEL]> = points
+            .chunks_exact(d)
+            .map(|point| std::array::from_fn(|column| point[first + column.min(width - 1)]))
+            .collect();
+        for group in (0..n).step_by(ROWS) {
+            let sums = tile(simd, rows_from(matrix, n, group, 0), &panel);
+            for (row, sums) in (group..n).zip(sums) {
+                for (place, sum) in (row * d + first..).zip(sums.into_iter().take(width)) {
+                    found[place] = sum - rows[row] * points[place];
+                }
+            }
+        }
+    }
+    found
 }
 
 /// Squared distances between points of `d` numbers each, row after row of `points` and column after column of `others`.
@@ -176,7 +285,8 @@ pub fn squared_distances(points: &[f64], others: &[f64], d: usize) -> Vec<f64> {
 fn distances<S: Simd>(simd: S, points: &[f64], others: &[f64], d: usize) -> Vec<f64> {
     let (n, m) = (points.len() / d, others.len() / d);
     let square = |point: &[f64]| point.iter().map(|x| x * x).sum::<f64>();
-    let squares: Vec<f64> = others.chunks_exact(d).map(square).collect();
+    let [own, squares]: [Vec<f64>; 2] =
+        [points, others].map(|points| points.chunks_exact(d).map(square).collect());
     let mut distances = vec![0.0; n * m];
     for first in (0..m).step_by(PANEL) {
         let width = PANEL.min(m - first);
@@ -190,10 +300,9 @@ fn distances<S: Simd>(simd: S, points: &[f64], others: &[f64], d: usize) -> Vec<
             });
             let products = tile(simd, rows, &panel);
             for (k, row) in (group..n.min(group + ROWS)).enumerate() {
-                let own = square(&points[row * d..row * d + d]);
-                for column in 0..width {
-                    let distance = own + squares[first + column] - 2.0 * products[k][column];
-                    distances[row * m + first + column] = distance.max(0.0);
+                let found = &mut distances[row * m + first..row * m + first + width];
+                for ((found, product), square) in found.iter_mut().zip(products[k]).zip(&squares[first..]) {
+                    *found = (own[row] + square - 2.0 * product).max(0.0);
                 }
             }
         }
@@ -211,12 +320,12 @@ mod tests {
         for n in [1, 7, 8, 9, 21, 40] {
             let mut matrix = vec![0.0; n * n];
             for i in 0..n {
-                matrix[i * n + i] = 2.0;
+                matrix[i * n + i] = 0.5;
                 if i > 0 {
                     matrix[i * n + i - 1] = -1.0;
                 }
             }
-            let factor = Factor::of(matrix, n).unwrap();
+            let factor = Factor::of(matrix, vec![1.5; n].into_iter()).unwrap();
             let size = n as f64 + 1.0;
             for (i, found) in factor.inverse_diagonal().into_iter().enumerate() {
                 let place = i as f64 + 1.0;
@@ -227,6 +336,17 @@ mod tests {
                     "{n} {i}"
                 );
             }
+            // A_ij^-1 = i (n + 1 - j)/(n + 1) for i <= j, and det A = n + 1.
+            let inverse = factor.inverse();
+            for (place, found) in inverse.into_iter().enumerate() {
+                let (i, j) = (place / n + 1, place % n + 1);
+                let exact = i.min(j) as f64 * (size - i.max(j) as f64) / size;
+                assert!(
+                    (found / exact - 1.0).abs() < 4.0 * size * size * f64::EPSILON,
+                    "{n} {i} {j}"
+                );
+            }
+            assert!((factor.log_determinant() - size.ln()).abs() < 4.0 * size * size * f64::EPSILON);
             // A x = y for x = i has y = 0 but for the last row.
             let mut y = vec![0.0; n];
             y[n - 1] = size;
@@ -242,8 +362,8 @@ mod tests {
 
     #[test]
     fn a_matrix_that_is_not_positive_has_no_factor() {
-        assert!(Factor::of(vec![1.0, 0.0, 2.0, 1.0], 2).is_none());
-        assert!(Factor::of(vec![f64::NAN], 1).is_none());
+        assert!(Factor::of(vec![1.0, 0.0, 2.0, 1.0], [0.0; 2].into_iter()).is_none());
+        assert!(Factor::of(vec![f64::NAN], [0.0].into_iter()).is_none());
     }
 
     #[test]
@@ -254,6 +374,23 @@ mod tests {
             // Neighbours differ by 2 in both numbers, and all of it are integers.
             let apart = (k / 5) as f64 - (k % 5) as f64;
             assert_eq!(distance, 8.0 * apart * apart);
+        }
+    }
+
+    #[test]
+    fn differences_of_points_of_a_grid() {
+        // Eleven points i, i^2 and so on; the matrix has the elements i + 2 j.
+        let (n, d) = (11, 9);
+        let power = |i: usize, f: usize| (i as f64).powi(f as i32 % 3 + 1);
+        let points: Vec<f64> = (0..n).flat_map(|i| (0..d).map(move |f| power(i, f))).collect();
+        let matrix: Vec<f64> = (0..n * n).map(|k| (k / n + 2 * (k % n)) as f64).collect();
+        for (k, found) in differences(&matrix, &points, d).into_iter().enumerate() {
+            let (i, f) = (k / d, k % d);
+            // All of it are integers.
+            let exact: f64 = (0..n)
+                .map(|j| (i + 2 * j) as f64 * (power(j, f) - power(i, f)))
+                .sum();
+            assert_eq!(found, exact, "{i} {f}");
         }
     }
 }

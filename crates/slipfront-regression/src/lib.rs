@@ -4,6 +4,10 @@
 //! not.
 
 mod dense;
+mod fit;
+mod lengths;
+#[cfg(test)]
+mod points;
 mod regression;
 
 pub use dense::squared_distances;

@@ -4,7 +4,7 @@ use crate::support::process::{send, stderr, stdout, wait_for};
 use crate::support::workspace::Workspace;
 
 const FIT: &str = "[base]\nslider.blocks = [6, 6]\ndrive.v_star = 0.1\ntime.step = 0.4\n\
-    [calibrate]\nx = 'time_s'\ny = 'friction_force_n'\nnoise = 0.01\nruns = 100\nfiner_runs = 0\n\
+    [calibrate]\nx = 'time_s'\ny = 'friction_force_n'\nnoise = 0.01\nruns = 200\nfiner_runs = 0\n\
     unknowns = { 'friction.mu_static' = [0.3, 0.9], 'drive.stiffness_star' = [0.3, 0.9] }\n";
 
 /// A folder with a calibration file, and the series of a run as a record.
@@ -41,7 +41,7 @@ fn a_calibration_is_told_and_found_again() {
     assert!(others("found") == others("twice"));
     let said = workspace.succeed("verify twice");
     assert!(
-        said.contains("a calibration as its 100 recorded runs give it"),
+        said.contains("a calibration as its 200 recorded runs give it"),
         "{said}"
     );
     workspace.write(
@@ -68,7 +68,7 @@ fn another_record_needs_no_runs() {
     );
     let output = workspace.output("calibrate fit.toml other.csv -o two --training runs");
     assert!(
-        output.status.success() && stderr(&output).contains("holds 100 runs"),
+        output.status.success() && stderr(&output).contains("holds 200 runs"),
         "{}",
         stderr(&output)
     );
@@ -97,7 +97,7 @@ fn folders_of_others_are_left_alone() {
 #[test]
 fn a_signal_keeps_what_was_run() {
     let workspace = workspace();
-    workspace.write("long.toml", FIT.replace("runs = 100\n", "runs = 5000\n"));
+    workspace.write("long.toml", FIT.replace("runs = 200\n", "runs = 5000\n"));
     let child = workspace.start("calibrate long.toml record.csv -o found");
     let has_runs =
         || workspace.exists("found/training.jsonl") && !workspace.read("found/training.jsonl").is_empty();

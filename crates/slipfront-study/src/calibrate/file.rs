@@ -23,9 +23,9 @@ use crate::study_file::{Base, found_at, parse_noting_places, portable, read_base
 /// The tables of a calibration file.
 const TABLES: [&str; 2] = ["base", "calibrate"];
 
-/// Smallest and largest number of runs of a training: fewer leave intervals of 90 % to chance, more are a system of
+/// Smallest and largest number of runs of a training: intervals of 90 % from 100 runs hold three values of four, more are a system of
 /// equations that memory is too small for.
-const RUNS: [u32; 2] = [100, 5000];
+const RUNS: [u32; 2] = [200, 5000];
 
 /// Largest number of steps of a run for a record: a thousand such runs take days.
 const MAX_STEPS: u64 = 10_000_000;

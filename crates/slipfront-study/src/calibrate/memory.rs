@@ -164,11 +164,11 @@ mod tests {
     #[test]
     fn all_trainings_count() {
         let plain = memory("runs = 200\nfiner_runs = 0");
-        let finer = memory("runs = 200\nfiner_runs = 100");
+        let finer = memory("runs = 200\nfiner_runs = 200");
         let further = memory("runs = 200\nfiner_runs = 0\nnext = [{ drive.v_star = 0.01 }]");
         let curve = Budget::resident(8.0 * 50.0);
         assert!(finer.run > 1.9 * plain.run);
-        assert!((finer.beside - plain.beside - 2.0 * 100.0 * curve).abs() < 1.0);
+        assert!((finer.beside - plain.beside - 2.0 * 200.0 * curve).abs() < 1.0);
         assert!(further.beside - plain.beside > 4.0 * 200.0 * curve);
     }
 }

@@ -99,10 +99,10 @@ impl Check {
             .map(|(run, curves)| {
                 let records = curves.iter().zip(noise).enumerate();
                 let records = records.map(|(record, (curve, &noise))| {
-                    let record_of = |curve: &[f64]| {
-                        let generated = normals(Stream::DriftNoise, run, record);
-                        noisy(curve, noise, generated)
-                    };
+                    let generated: Vec<f64> = normals(Stream::DriftNoise, run, record)
+                        .take(curve.len())
+                        .collect();
+                    let record_of = |curve: &[f64]| noisy(curve, noise, generated.iter().copied());
                     let drifting = record_of(&drifting(curve, drift_at(drifts[run])));
                     (drifting, level(&record_of(curve)))
                 });

@@ -1,6 +1,7 @@
 //! The unknowns of a calibration: numeric keys of the case, each with a range.
 
 use slipfront_case::case_file::Override;
+use sobol_burley::{NUM_DIMENSIONS, sample};
 
 /// A key of the case with a range of values, which are all equally likely before there is a record.
 #[derive(Clone, Debug, PartialEq)]
@@ -104,22 +105,15 @@ impl Unknown {
     }
 }
 
-/// Shares of the ranges of `count` unknowns in training run `run`: points that fill the ranges evenly, for any number of runs.
+/// Shares of the ranges of `count` unknowns in training run `run`, of at most 65536: points that fill the ranges evenly, for any number of runs.
 ///
-/// ```text
-/// share_j = frac(1/2 + (run + 1) g^-(j + 1)),   g^(count + 1) = g + 1
-/// ```
-///
-/// The sequence is Roberts' R_d, a Kronecker sequence of the generalized golden ratio g.
+/// They are Sobol's sequence with the directions of Joe and Kuo (SIAM Journal on Scientific Computing 30 (2008) 2635), its digits scrambled as
+/// Owen proposed: every unknown alone, and every two together, take values as even as those of a grid. Multiples of powers of one number do
+/// not, since such a power may lie near a fraction of small numbers.
 pub fn design_point(run: usize, count: usize) -> Vec<f64> {
-    let mut golden = 2.0;
-    for _ in 0..64 {
-        golden = libm::pow(1.0 + golden, 1.0 / (count as f64 + 1.0));
-    }
-    let step = |j: usize| libm::pow(golden, -(j as f64 + 1.0));
-    (0..count)
-        .map(|j| (0.5 + (run as f64 + 1.0) * step(j)).fract())
-        .collect()
+    // Beyond the last dimension the sequence begins again, with other digits.
+    let share = |j: u32| sample(run as u32, j % NUM_DIMENSIONS, j / NUM_DIMENSIONS);
+    (0..count as u32).map(|j| f64::from(share(j))).collect()
 }
 
 #[cfg(test)]
@@ -150,16 +144,45 @@ mod tests {
         );
     }
 
-    /// Design points fill the ranges: one dimension is the golden ratio's sequence, and every one has a mean of 1/2, to the
-    /// discrepancy log(n)/n.
+    /// The largest distance of the share of values below a number from that number.
+    fn unevenness(mut values: Vec<f64>) -> f64 {
+        values.sort_by(f64::total_cmp);
+        let n = values.len() as f64;
+        let distances = values.iter().enumerate();
+        distances.fold(0.0, |largest: f64, (i, value)| {
+            largest
+                .max((value - i as f64 / n).abs())
+                .max((value - (i as f64 + 1.0) / n).abs())
+        })
+    }
+
+    /// Numbers of runs that are no powers of two are as even to a few values: a sequence of n values is even to log(n)/n.
     #[test]
-    fn design_points_fill_the_ranges() {
-        let ratio = (5.0_f64.sqrt() - 1.0) / 2.0;
-        assert!((design_point(0, 1)[0] - (0.5 + ratio).fract()).abs() < 1e-14);
-        let n = 1000;
-        for j in 0..6 {
-            let mean = (0..n).map(|run| design_point(run, 6)[j]).sum::<f64>() / f64::from(n as u32);
-            assert!((mean - 0.5).abs() < 0.007, "{j} {mean}");
+    fn design_points_fill_the_range_of_every_unknown() {
+        for (runs, count) in [(100, 3), (300, 8), (400, 4), (2500, 6), (2500, 12), (100, 300)] {
+            let points: Vec<Vec<f64>> = (0..runs).map(|run| design_point(run, count)).collect();
+            for j in 0..count {
+                let found = unevenness(points.iter().map(|point| point[j]).collect());
+                let n = runs as f64;
+                assert!(found < n.log2() / n, "{runs} {count} {j}: {found}");
+            }
+        }
+    }
+
+    /// A square of a grid of 16 x 16 has as many of 1024 values of two unknowns as any other, four, or nearly: random ones would leave five
+    /// squares empty.
+    #[test]
+    fn design_points_fill_the_ranges_of_two_unknowns() {
+        let points: Vec<Vec<f64>> = (0..1024).map(|run| design_point(run, 8)).collect();
+        for first in 0..8 {
+            for second in 0..first {
+                let mut counts = [0; 256];
+                for point in &points {
+                    let [row, column] = [first, second].map(|j| (16.0 * point[j]) as usize);
+                    counts[16 * row + column] += 1;
+                }
+                assert!(counts.iter().all(|&count| count > 0), "{first} {second}");
+            }
         }
     }
 }

@@ -16,7 +16,7 @@ use slipfront_study::design::DesignFile;
 
 /// A small slider with two unknown keys.
 const BASE: &str = "[base]\nslider.blocks = [6, 6]\ndrive.v_star = 0.1\ntime.step = 0.4\n";
-const KEYS: &str = "[calibrate]\nx = 'time_s'\ny = 'force_n'\nnoise = 0.01\nruns = 100\nfiner_runs = 0\n\
+const KEYS: &str = "[calibrate]\nx = 'time_s'\ny = 'force_n'\nnoise = 0.01\nruns = 200\nfiner_runs = 0\n\
     unknowns = { 'friction.mu_static' = [0.3, 0.9], 'drive.stiffness_star' = [0.3, 0.9] }\n";
 
 /// True values of the unknowns.
@@ -185,7 +185,8 @@ fn the_truth_lies_within_the_intervals() {
     let record = folder.path().join("record.csv");
     write_record(&record);
     let out = folder.path().join("found");
-    let mut found = CalibrationFolder::open(&out, None, &file(&format!("{BASE}{KEYS}")), &[record]).unwrap();
+    let keys = KEYS.replace("runs = 200", "runs = 400");
+    let mut found = CalibrationFolder::open(&out, None, &file(&format!("{BASE}{keys}")), &[record]).unwrap();
     let text = find(&mut found, 2).unwrap();
     let found = numbers(&out);
     for (number, truth) in TRUTH.into_iter().enumerate() {
@@ -219,7 +220,7 @@ fn a_calibration_goes_on_to_the_same_bytes() {
     write_record(&record);
     let file = file(
         &format!("{BASE}{KEYS}next = [{{ drive.v_star = 0.2 }}]\n")
-            .replace("finer_runs = 0", "finer_runs = 100"),
+            .replace("finer_runs = 0", "finer_runs = 200"),
     );
     let open = |out: &str, training: Option<&Path>| {
         CalibrationFolder::open(
@@ -244,7 +245,7 @@ fn a_calibration_goes_on_to_the_same_bytes() {
     let lines = fs::read(&journal).unwrap();
     fs::write(&journal, &lines[..lines.len() - 1000]).unwrap();
     let mut again = open("stopped", None);
-    assert!(again.n_kept() > 90, "{}", again.n_kept());
+    assert!(again.n_kept() > 190, "{}", again.n_kept());
     find(&mut again, 3).unwrap();
     // Runs that another folder keeps are the same ones.
     let shared = folder.path().join("shared");
@@ -257,7 +258,7 @@ fn a_calibration_goes_on_to_the_same_bytes() {
     let mut sharing = open("sharing", Some(&shared));
     let known = sharing.n_kept();
     find(&mut sharing, 2).unwrap();
-    assert_eq!((known, sharing.n_kept()), (300, 300));
+    assert_eq!((known, sharing.n_kept()), (600, 600));
     let mut names: Vec<_> = fs::read_dir(folder.path().join("whole"))
         .unwrap()
         .map(|entry| entry.unwrap().file_name())
@@ -317,7 +318,11 @@ fn what_cannot_be_calibrated_is_refused() {
             "`noise` = 1 must lie between 0 and 1",
         ),
         ("noise = 0.01", "noisy = 0.01", "unknown key `noisy`"),
-        ("runs = 100\n", "runs = 10\n", "`runs` = 10 must lie between 100"),
+        (
+            "runs = 200\n",
+            "runs = 100\n",
+            "`runs` = 100 must lie between 200",
+        ),
         (
             "finer_runs = 0",
             "finer_runs = 200",

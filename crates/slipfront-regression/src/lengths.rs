@@ -1,0 +1,397 @@
+//! Weights of summaries in the kernel of an unknown, and the ridge, by their likelihood.
+//!
+//! The values `u` at the training runs count as normal numbers with the covariance `v (K + lambda)`, v their likeliest scale. What is
+//! least is the negative logarithm of their likelihood, without constants (Rasmussen and Williams, Gaussian Processes for Machine Learning,
+//! 2006, section 5.4.1):
+//!
+//! ```text
+//! l = n/2 log(u^T a/n) + 1/2 log det A,   A = K + lambda,   a = A^-1 u
+//! dl = sum_ij g_ij dA_ij,   g = (A^-1 - n a a^T/(u^T a))/2
+//! dl/dlog w_f = w_f sum_i x_if sum_j g_ij k_ij (x_jf - x_if),   dl/dlog lambda = lambda sum_i g_ii
+//! ```
+//!
+//! First all summaries share one weight, then each gets its own. These start from the mean squared slopes of the first regression
+//! (Radhakrishnan et al., Science 383 (2024) 1461, with a diagonal matrix) and are held near them: a hundred free weights would follow the
+//! noise of some hundred runs.
+
+use crate::dense::{Factor, differences, squared_distances};
+use crate::fit::{Fit, Noise, kernel_of_all, median, multiplied};
+
+/// Largest number of runs from which weights and ridge are found.
+pub(crate) const MAX_SEARCHED: usize = 900;
+
+/// Numbers of a pair of runs that are kept meanwhile: its elements of the kernel, of the factor, and of the inverses of both.
+pub(crate) const NUMBERS_OF_A_PAIR: usize = 4;
+
+/// Largest number of runs from which the common weight and the first slopes are found.
+const MAX_OF_COMMON_WEIGHT: usize = 450;
+
+/// Number of steps towards the likeliest parameters: later ones change the regression by less than another sample of runs does.
+const STEPS: usize = 10;
+
+/// Standard deviation of the logarithm of a weight around its start, before a run is known.
+const PRIOR_DEVIATION: f64 = 1.0;
+
+/// Ridge, and inverse of the common weight over the median of the squared distances, from which the search of the common weight starts.
+const COMMON_RIDGE: f64 = 1e-3;
+const COMMON_SPREAD: f64 = 4.0;
+
+/// Ridge, and median of the weighted squared distances, from which the search of the weights of all summaries starts.
+const RIDGE: f64 = 3e-3;
+const SPREAD: f64 = 0.5;
+
+/// Least weight from which a summary starts, over the largest.
+const LEAST_WEIGHT: f64 = 1e-6;
+
+/// Least ridge: with less, rounding is as large as what the kernels of neighbours differ by.
+const LEAST_RIDGE: f64 = 1e-8;
+
+/// Largest residual that counts where the residuals are compared with the values, in standard deviations of these: few runs far off decide
+/// nothing.
+const MAX_RESIDUAL: f64 = 3.0;
+
+/// Least share of the variance of an unknown that a regression must explain; otherwise it has learnt nothing.
+const LEAST_EXPLAINED: f64 = 0.02;
+
+/// Parameters of the kernel of an unknown.
+pub(crate) struct Lengths {
+    /// Multipliers of the summaries, the roots of their weights.
+    pub(crate) multipliers: Vec<f64>,
+    /// Noise of a run, which is added to the diagonal of the kernel.
+    pub(crate) ridge: f64,
+}
+
+impl Lengths {
+    /// The likeliest parameters for values, whose mean is 0, at rows of summaries; none if no summary depends on the unknown.
+    pub(crate) fn likeliest(summaries: &[f64], values: &[f64], noise: Noise) -> Option<Self> {
+        let (n, d) = (values.len(), summaries.len() / values.len());
+        let some = n.min(MAX_OF_COMMON_WEIGHT);
+        let mut first = Sample::of(&summaries[..some * d], &values[..some]);
+        let spread = median(&squared_distances(first.summaries, first.summaries, d));
+        if spread <= 0.0 {
+            return None;
+        }
+        let start = [1.0 / (COMMON_SPREAD * spread), COMMON_RIDGE].map(libm::log);
+        let mut common = first.common_weight(start.to_vec());
+        let residuals = first.fit_with_common_weight(&common)?.residuals;
+        if let Some(variances) = noise.variances(&residuals) {
+            first.variances = variances;
+            common = first.common_weight(common);
+        }
+        let weights = first.weights_of_slopes(&common)?;
+        let mut all = Sample::of(summaries, values);
+        let residuals = all.fit(&weights, RIDGE)?.residuals;
+        if let Some(variances) = noise.variances(&residuals) {
+            all.variances = variances;
+        }
+        Some(all.weights_near(&weights))
+    }
+}
+
+/// Values at rows of summaries.
+struct Sample<'a> {
+    summaries: &'a [f64],
+    values: &'a [f64],
+    /// Variances of the noise of the runs, in units of the ridge.
+    variances: Vec<f64>,
+}
+
+/// The negative logarithm of a likelihood, and its slopes along the logarithms of weights and ridge.
+struct Likelihood {
+    value: f64,
+    of_weights: Vec<f64>,
+    of_ridge: f64,
+}
+
+impl<'a> Sample<'a> {
+    fn of(summaries: &'a [f64], values: &'a [f64]) -> Self {
+        Self {
+            summaries,
+            values,
+            variances: vec![1.0; values.len()],
+        }
+    }
+
+    /// Number of the summaries.
+    fn d(&self) -> usize {
+        self.summaries.len() / self.values.len()
+    }
+
+    /// The kernel with these weights.
+    fn kernel(&self, weights: &[f64]) -> Vec<f64> {
+        let roots: Vec<f64> = weights.iter().map(|weight| weight.sqrt()).collect();
+        kernel_of_all(&multiplied(self.summaries, &roots), self.d())
+    }
+
+    /// The noise of the runs.
+    fn noise(&self, ridge: f64) -> impl ExactSizeIterator<Item = f64> {
+        self.variances.iter().map(move |variance| ridge * variance)
+    }
+
+    fn fit(&self, weights: &[f64], ridge: f64) -> Option<Fit> {
+        Fit::of(self.kernel(weights), self.values, self.noise(ridge))
+    }
+
+    /// The regression with the logarithms of one weight for all summaries and of the ridge.
+    fn fit_with_common_weight(&self, logs: &[f64]) -> Option<Fit> {
+        self.fit(&vec![libm::exp(logs[0]); self.d()], libm::exp(logs[1]))
+    }
+
+    /// The likeliest logarithms of one weight for all summaries and of the ridge, from `start` on.
+    fn common_weight(&self, start: Vec<f64>) -> Vec<f64> {
+        descend(start, &|logs| {
+            let found = self.likelihood(&vec![libm::exp(logs[0]); self.d()], libm::exp(logs[1]))?;
+            Some(Slope {
+                value: found.value,
+                slopes: vec![found.of_weights.iter().sum(), found.of_ridge],
+            })
+        })
+    }
+
+    /// The likeliest weight of every summary, where weights are log-normal around some before a run is known.
+    fn weights_near(&self, weights: &[f64]) -> Lengths {
+        let d = weights.len();
+        let mut start: Vec<f64> = weights.iter().map(|&weight| libm::log(weight)).collect();
+        start.push(libm::log(RIDGE));
+        let found = descend(start.clone(), &|logs| {
+            let weights: Vec<f64> = logs[..d].iter().map(|&log| libm::exp(log)).collect();
+            let found = self.likelihood(&weights, libm::exp(logs[d]))?;
+            let (mut value, mut slopes) = (found.value, found.of_weights);
+            for ((slope, log), first) in slopes.iter_mut().zip(logs).zip(&start) {
+                let away = (log - first) / PRIOR_DEVIATION;
+                value += 0.5 * away * away;
+                *slope += away / PRIOR_DEVIATION;
+            }
+            slopes.push(found.of_ridge);
+            Some(Slope { value, slopes })
+        });
+        Lengths {
+            multipliers: found[..d].iter().map(|log| libm::exp(0.5 * log)).collect(),
+            ridge: libm::exp(found[d]),
+        }
+    }
+
+    fn likelihood(&self, weights: &[f64], ridge: f64) -> Option<Likelihood> {
+        let (n, d) = (self.values.len(), self.d());
+        let kernel = self.kernel(weights);
+        let factor = Factor::of(kernel.clone(), self.noise(ridge))?;
+        let mut coefficients = self.values.to_vec();
+        factor.solve(&mut coefficients);
+        let product: f64 = self.values.iter().zip(&coefficients).map(|(u, a)| u * a).sum();
+        let scale = product / n as f64;
+        let value = 0.5 * n as f64 * libm::log(scale) + 0.5 * factor.log_determinant();
+        let mut g = factor.inverse();
+        let mut of_ridge = 0.0;
+        for (i, row) in g.chunks_exact_mut(n).enumerate() {
+            for ((g, k), a) in row.iter_mut().zip(&kernel[i * n..]).zip(&coefficients) {
+                *g = 0.5 * (*g - coefficients[i] * a / scale) * k;
+            }
+            // The kernel of a run and itself is 1.
+            of_ridge += ridge * self.variances[i] * row[i];
+        }
+        let pulls = differences(&g, self.summaries, d);
+        let mut of_weights = vec![0.0; d];
+        for (pulls, row) in pulls.chunks_exact(d).zip(self.summaries.chunks_exact(d)) {
+            for ((sum, pull), x) in of_weights.iter_mut().zip(pulls).zip(row) {
+                *sum += pull * x;
+            }
+        }
+        for (sum, weight) in of_weights.iter_mut().zip(weights) {
+            *sum *= weight;
+        }
+        Some(Likelihood {
+            value,
+            of_weights,
+            of_ridge,
+        })
+    }
+
+    /// Weights like the mean squared slopes of a regression with one weight for all summaries, given by its logarithm and that of the ridge;
+    /// none if it has learnt nothing. A run with more noise counts for less.
+    ///
+    /// ```text
+    /// df/dx_f(x_i) = w sum_j a_j k_ij (x_jf - x_if)
+    /// ```
+    fn weights_of_slopes(&self, common: &[f64]) -> Option<Vec<f64>> {
+        let (n, d) = (self.values.len(), self.d());
+        let fit = self.fit_with_common_weight(common)?;
+        let variance = self.values.iter().map(|u| u * u).sum::<f64>() / n as f64;
+        let bound = MAX_RESIDUAL * variance.sqrt();
+        let squares = fit.residuals.iter().map(|e| {
+            let e = e.abs().min(bound);
+            e * e
+        });
+        let has_learnt = squares.sum::<f64>() / (n as f64) < (1.0 - LEAST_EXPLAINED) * variance;
+        if !has_learnt {
+            return None;
+        }
+        let mut kernel = self.kernel(&vec![libm::exp(common[0]); d]);
+        for row in kernel.chunks_exact_mut(n) {
+            for (k, a) in row.iter_mut().zip(&fit.coefficients) {
+                *k *= a;
+            }
+        }
+        let mut squares = vec![0.0; d];
+        let slopes = differences(&kernel, self.summaries, d);
+        for (slopes, variance) in slopes.chunks_exact(d).zip(&self.variances) {
+            for (sum, slope) in squares.iter_mut().zip(slopes) {
+                *sum += slope * slope / variance;
+            }
+        }
+        let largest = squares.iter().copied().fold(0.0, f64::max);
+        let weights: Vec<f64> = squares
+            .iter()
+            .map(|square| (square / largest).max(LEAST_WEIGHT))
+            .collect();
+        let roots: Vec<f64> = weights.iter().map(|weight| weight.sqrt()).collect();
+        let points = multiplied(self.summaries, &roots);
+        let median = median(&squared_distances(&points, &points, d));
+        (median > 0.0).then(|| weights.iter().map(|weight| weight * SPREAD / median).collect())
+    }
+}
+
+/// A function and its slopes along its parameters.
+struct Slope {
+    value: f64,
+    slopes: Vec<f64>,
+}
+
+/// Multiples of a step along a parameter whose slope keeps its sign, or changes it, the first step, and the largest.
+const LONGER: f64 = 1.3;
+const SHORTER: f64 = 0.5;
+const FIRST_STEP: f64 = 0.5;
+const LONGEST: f64 = 2.0;
+
+/// The parameters with the least value that [`STEPS`] steps down from `start` find, of which the last is the logarithm of the ridge. Each
+/// parameter has a step of its own, and only the sign of its slope counts (Riedmiller and Braun, IEEE International Conference on Neural
+/// Networks 1993, p. 586): the units of parameters do not matter, and no value has to be sought along a line.
+fn descend(start: Vec<f64>, f: &dyn Fn(&[f64]) -> Option<Slope>) -> Vec<f64> {
+    let mut place = start.clone();
+    let (mut least, mut best) = (f64::INFINITY, start);
+    let mut steps = vec![FIRST_STEP; place.len()];
+    let mut before = vec![0.0; place.len()];
+    for _ in 0..STEPS {
+        let Some(Slope { value, mut slopes }) = f(&place) else {
+            break;
+        };
+        if value < least {
+            least = value;
+            best.clone_from(&place);
+        }
+        for (((x, step), slope), before) in place.iter_mut().zip(&mut steps).zip(&mut slopes).zip(&before) {
+            let signs: f64 = *slope * before;
+            if signs > 0.0 {
+                *step = (LONGER * *step).min(LONGEST);
+            } else if signs < 0.0 {
+                *step *= SHORTER;
+                // A step that went too far is not gone back at once.
+                *slope = 0.0;
+            }
+            if *slope != 0.0 {
+                *x -= *step * slope.signum();
+            }
+        }
+        if let Some(ridge) = place.last_mut() {
+            *ridge = ridge.max(libm::log(LEAST_RIDGE));
+        }
+        before = slopes;
+    }
+    best
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::points::{chance, cube};
+    use super::*;
+
+    /// A value of two of three summaries, with noise.
+    fn sample(n: usize) -> (Vec<f64>, Vec<f64>) {
+        let summaries = cube(n, 3);
+        let rows = summaries.chunks_exact(3).zip(chance(n));
+        let values: Vec<f64> = rows
+            .map(|(row, chance)| libm::sin(3.0 * row[0]) - row[1] + 0.2 * (chance - 0.5))
+            .collect();
+        (summaries, values)
+    }
+
+    #[test]
+    fn slopes_of_the_likelihood_are_its_derivatives() {
+        let (summaries, values) = sample(40);
+        let sample = Sample::of(&summaries, &values);
+        let at = |logs: &[f64]| {
+            let weights: Vec<f64> = logs[..3].iter().map(|&log| libm::exp(log)).collect();
+            sample.likelihood(&weights, libm::exp(logs[3])).unwrap()
+        };
+        let logs = [1.0, 0.5, -2.0, -4.0];
+        let found = at(&logs);
+        for k in 0..4 {
+            let step = 1e-4;
+            let moved = |by: f64| {
+                let mut logs = logs;
+                logs[k] += by;
+                at(&logs).value
+            };
+            let slope = (moved(step) - moved(-step)) / (2.0 * step);
+            let told = found.of_weights.get(k).copied().unwrap_or(found.of_ridge);
+            // A central difference is off by a third derivative times step^2/6, and by rounding over the step.
+            assert!((slope - told).abs() < 1e-5, "{k} {slope} {told}");
+        }
+    }
+
+    #[test]
+    fn what_never_differs_tells_nothing() {
+        let (summaries, values) = sample(40);
+        assert!(Lengths::likeliest(&summaries, &[0.0; 40], Noise::HeavyTailed).is_none());
+        assert!(Lengths::likeliest(&[0.7; 120], &values, Noise::Normal).is_none());
+        // Three runs of four have the same summaries.
+        let some = summaries.chunks_exact(3).enumerate();
+        let some: Vec<f64> = some
+            .flat_map(|(i, row)| if i % 4 == 0 { row } else { &[0.7; 3] }.to_vec())
+            .collect();
+        assert!(Lengths::likeliest(&some, &values, Noise::Normal).is_none());
+    }
+
+    #[test]
+    fn a_summary_without_influence_has_the_least_weight() {
+        let (summaries, values) = sample(150);
+        let found = Lengths::likeliest(&summaries, &values, Noise::Normal).unwrap();
+        let [first, second, third] = found.multipliers[..] else {
+            panic!("{:?}", found.multipliers);
+        };
+        assert!(first > second && second > 3.0 * third, "{:?}", found.multipliers);
+    }
+
+    #[test]
+    fn steps_down_come_near_the_least_value_in_any_unit() {
+        let found = |unit: f64| {
+            descend(vec![0.0, 0.0], &|x| {
+                let away = [x[0] - 1.0, x[1] + 2.0];
+                Some(Slope {
+                    value: unit * (50.0 * away[0] * away[0] + 0.01 * away[1] * away[1]),
+                    slopes: vec![unit * 100.0 * away[0], unit * 0.02 * away[1]],
+                })
+            })
+        };
+        let [first, second] = found(1.0)[..] else {
+            panic!("two parameters")
+        };
+        // A step that goes too far is halved: the first step is, the second parameter's are longer by then.
+        assert!((first - 1.0).abs() < SHORTER * FIRST_STEP, "{first}");
+        assert!((second + 2.0).abs() < SHORTER * LONGEST, "{second}");
+        assert_eq!(found(1e6), [first, second]);
+    }
+
+    #[test]
+    fn slopes_are_those_of_the_unknown() {
+        let summaries = cube(150, 3);
+        let values: Vec<f64> = summaries
+            .chunks_exact(3)
+            .map(|row| 0.2 * row[0] - 0.1 * row[1])
+            .collect();
+        let sample = Sample::of(&summaries, &values);
+        let weights = sample.weights_of_slopes(&[0.25, 1e-6].map(libm::log)).unwrap();
+        // As exact as the regression of a line by a Gaussian kernel.
+        assert!((weights[1] / weights[0] - 0.25).abs() < 0.01, "{weights:?}");
+        assert!(weights[2] / weights[0] < 1e-4, "{weights:?}");
+    }
+}
