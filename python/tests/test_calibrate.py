@@ -16,7 +16,7 @@ UNKNOWNS = {"friction.mu_static": (0.3, 0.9), "drive.stiffness_star": (0.3, 0.9)
 
 
 def calibration(**keys: Any) -> sf.Calibration:
-    return sf.Calibration(SLIDER, UNKNOWNS, noise=0.01, **{"runs": 100, "finer_runs": 0, **keys})
+    return sf.Calibration(SLIDER, UNKNOWNS, noise=0.01, **{"runs": 200, "finer_runs": 0, **keys})
 
 
 def record(seed: int = 3) -> dict[str, np.ndarray[Any, np.dtype[np.float64]]]:
@@ -32,7 +32,7 @@ def test_a_calibration_has_the_bytes_of_the_command(tmp_path: Path) -> None:
     shown: list[tuple[int, int]] = []
     measured = record()
     fit = calibration().fit(measured, folder=tmp_path / "one", progress=lambda *now: shown.append(now), threads=2)
-    assert shown and shown[-1] == (100, 100)
+    assert shown and shown[-1] == (200, 200)
     (tmp_path / "fit.toml").write_bytes((tmp_path / "one/calibration.toml").read_bytes())
     command = [sys.executable, "-m", "slipfront", "calibrate", "fit.toml", "one/record-1.csv", "-o", "two", "--quiet", "--threads", "1"]
     subprocess.run(command, cwd=tmp_path, check=True)
