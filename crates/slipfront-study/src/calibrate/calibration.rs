@@ -302,7 +302,7 @@ mod tests {
             );
         }
         assert!(fit.pairs.is_empty());
-        // Of good records 3.5 % are refused: more than four of twenty would be one time in a thousand.
+        // Of good records some 4 % are refused: more than four of twenty would be one time in a thousand.
         let refused = (0..20).filter(|&number| calibration.estimate(&[record(number)]).misfit.is_refused());
         assert!(refused.count() <= 4);
     }

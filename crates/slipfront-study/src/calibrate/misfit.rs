@@ -14,7 +14,7 @@ use super::training::Training;
 const MAX_DRIFT: f64 = 0.12;
 
 /// Share of good records that each of the two checks refuses.
-const REFUSED_BY_DRIFT: f64 = 0.025;
+const REFUSED_BY_DRIFT: f64 = 0.02;
 const REFUSED_AS_FOREIGN: f64 = 0.01;
 
 /// Number of the nearest runs over which the distance of a record is averaged.
@@ -38,7 +38,7 @@ pub(super) struct Check {
 /// Tests of whether the model can have made a record.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Misfit {
-    /// Drift of friction over the record, as a share of friction: an interval that holds it for all records but 25 in 1000.
+    /// Drift of friction over the record, as a share of friction: an interval that holds it for all records but 20 in 1000.
     pub drift: [f64; 2],
     /// Whether the interval leaves out 0.
     pub has_drift: bool,
@@ -61,7 +61,7 @@ fn outside([level, low, high]: [f64; 3]) -> f64 {
 }
 
 impl Misfit {
-    /// Whether the records are refused as none of the model; 3.5 % of the model's own are.
+    /// Whether the records are refused as none of the model; some 4 % of the model's own are.
     pub fn is_refused(&self) -> bool {
         self.has_drift || self.distance > 1.0 || self.is_outside()
     }

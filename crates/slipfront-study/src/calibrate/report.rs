@@ -266,7 +266,7 @@ fn refusal(found: &Findings) -> String {
         ));
     }
     format!(
-        "The model does not make such records: {}. Of its own records it refuses some 3.5 %. Correct a drift of the sensor, look whether law, \
+        "The model does not make such records: {}. Of its own records it refuses some 4 %. Correct a drift of the sensor, look whether law, \
          units, mount and noise are those of the experiment, and widen the ranges; the intervals below promise nothing.",
         reasons.join(", and ")
     )

@@ -325,8 +325,8 @@ fn what_cannot_be_calibrated_is_refused() {
         ),
         (
             "finer_runs = 0",
-            "finer_runs = 200",
-            "`finer_runs` = 200 must be 0, or lie between 100 and `runs` = 100",
+            "finer_runs = 300",
+            "`finer_runs` = 300 must be 0, or lie between 200 and `runs` = 200",
         ),
         (
             "[0.3, 0.9] }",
