@@ -1,13 +1,13 @@
 //! Weights of summaries in the kernel of an unknown, and the ridge, by their likelihood.
 //!
-//! The values `u` at the training runs count as normal numbers with the covariance `v (K + lambda)`, v their likeliest scale. What is
-//! least is the negative logarithm of their likelihood, without constants (Rasmussen and Williams, Gaussian Processes for Machine Learning,
-//! 2006, section 5.4.1):
+//! The values `u` at the training runs count as normal numbers with the covariance `c A`, c their likeliest scale, and the variances v_i of
+//! the noise as given. What is least is the negative logarithm of their likelihood, without constants (Rasmussen and Williams, Gaussian
+//! Processes for Machine Learning, 2006, section 5.4.1):
 //!
 //! ```text
-//! l = n/2 log(u^T a/n) + 1/2 log det A,   A = K + lambda,   a = A^-1 u
+//! l = n/2 log(u^T a/n) + 1/2 log det A,   A = K + lambda diag(v),   a = A^-1 u
 //! dl = sum_ij g_ij dA_ij,   g = (A^-1 - n a a^T/(u^T a))/2
-//! dl/dlog w_f = w_f sum_i x_if sum_j g_ij k_ij (x_jf - x_if),   dl/dlog lambda = lambda sum_i g_ii
+//! dl/dlog w_f = w_f sum_i x_if sum_j g_ij k_ij (x_jf - x_if),   dl/dlog lambda = lambda sum_i v_i g_ii
 //! ```
 //!
 //! First all summaries share one weight, then each gets its own. These start from the mean squared slopes of the first regression
@@ -317,7 +317,8 @@ mod tests {
     #[test]
     fn slopes_of_the_likelihood_are_its_derivatives() {
         let (summaries, values) = sample(40);
-        let sample = Sample::of(&summaries, &values);
+        let mut sample = Sample::of(&summaries, &values);
+        sample.variances = (0..40).map(|run| 1.0 + f64::from(run % 3)).collect();
         let at = |logs: &[f64]| {
             let weights: Vec<f64> = logs[..3].iter().map(|&log| libm::exp(log)).collect();
             sample.likelihood(&weights, libm::exp(logs[3])).unwrap()

@@ -156,7 +156,7 @@ mod tests {
         })
     }
 
-    /// Numbers of runs that are no powers of two are as even to a few values: a sequence of n values is even to log(n)/n.
+    /// The share of n values below any number differs from it by less than log2(n)/n, for n that are no powers of two as well.
     #[test]
     fn design_points_fill_the_range_of_every_unknown() {
         for (runs, count) in [(100, 3), (300, 8), (400, 4), (2500, 6), (2500, 12), (100, 300)] {
@@ -169,8 +169,7 @@ mod tests {
         }
     }
 
-    /// A square of a grid of 16 x 16 has as many of 1024 values of two unknowns as any other, four, or nearly: random ones would leave five
-    /// squares empty.
+    /// Every square of a grid of 16 x 16 holds at least one of 1024 values of two unknowns: random ones would leave some five squares empty.
     #[test]
     fn design_points_fill_the_ranges_of_two_unknowns() {
         let points: Vec<Vec<f64>> = (0..1024).map(|run| design_point(run, 8)).collect();
