@@ -102,7 +102,7 @@ pub(crate) fn median(values: &[f64]) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::points::cube;
+    use super::super::for_tests::cube;
     use super::*;
 
     /// Residuals are those of runs left out, compared with a regression that has not seen them.

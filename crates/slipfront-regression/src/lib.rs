@@ -5,9 +5,9 @@
 
 mod dense;
 mod fit;
-mod lengths;
 #[cfg(test)]
-mod points;
+mod for_tests;
+mod parameters;
 mod regression;
 
 pub use dense::squared_distances;

@@ -1,6 +1,6 @@
 //! Regression of one unknown on the summaries of training runs, which finds the summaries that matter.
 //!
-//! Kernel ridge regression with a Gaussian kernel, in which every summary has a weight of its own, found in `lengths.rs`:
+//! Kernel ridge regression with a Gaussian kernel, in which every summary has a weight of its own, found in `parameters.rs`:
 //!
 //! ```text
 //! f(x) = f_0 + sum_i a_i k(x, x_i),   A a = u - f_0,   A = K + lambda diag(v)
@@ -14,7 +14,7 @@
 //! f_without_i(x_i) = a_i/[A^-1]_ii`.
 
 use crate::fit::{Fit, Noise, kernel, kernel_of_all, median, multiplied};
-use crate::lengths::{Lengths, MAX_SEARCHED, NUMBERS_OF_A_PAIR};
+use crate::parameters::{MAX_SEARCHED, NUMBERS_OF_A_PAIR, Parameters};
 
 /// Size that is added to residuals before their logarithm is taken, over their median: a residual near 0 is chance.
 const LEAST_SIZE: f64 = 0.1;
@@ -161,13 +161,13 @@ impl Function {
             coefficients: Vec::new(),
         };
         let searched = n.min(MAX_SEARCHED);
-        let Some(lengths) = Lengths::likeliest(&summaries[..searched * d], &targets[..searched], noise)
+        let Some(parameters) = Parameters::likeliest(&summaries[..searched * d], &targets[..searched], noise)
         else {
             return (nothing, targets);
         };
-        let points = multiplied(summaries, &lengths.multipliers);
+        let points = multiplied(summaries, &parameters.multipliers);
         let fit = |variances: Vec<f64>| {
-            let noise = variances.into_iter().map(|variance| lengths.ridge * variance);
+            let noise = variances.into_iter().map(|variance| parameters.ridge * variance);
             Fit::of(kernel_of_all(&points, d), &targets, noise)
         };
         let Some(mut found) = fit(vec![1.0; n]) else {
@@ -178,7 +178,7 @@ impl Function {
         }
         let function = Self {
             mean,
-            multipliers: lengths.multipliers,
+            multipliers: parameters.multipliers,
             points,
             coefficients: found.coefficients,
         };
@@ -209,7 +209,7 @@ fn mean(values: &[f64]) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::points::{chance, cube, point};
+    use super::super::for_tests::{chance, cube, point};
     use super::*;
 
     #[test]

@@ -54,14 +54,14 @@ const MAX_RESIDUAL: f64 = 3.0;
 const LEAST_EXPLAINED: f64 = 0.02;
 
 /// Parameters of the kernel of an unknown.
-pub(crate) struct Lengths {
+pub(crate) struct Parameters {
     /// Multipliers of the summaries, the roots of their weights.
     pub(crate) multipliers: Vec<f64>,
     /// Noise of a run, which is added to the diagonal of the kernel.
     pub(crate) ridge: f64,
 }
 
-impl Lengths {
+impl Parameters {
     /// The likeliest parameters for values, whose mean is 0, at rows of summaries; none if no summary depends on the unknown.
     pub(crate) fn likeliest(summaries: &[f64], values: &[f64], noise: Noise) -> Option<Self> {
         let (n, d) = (values.len(), summaries.len() / values.len());
@@ -73,15 +73,15 @@ impl Lengths {
         }
         let start = [1.0 / (COMMON_SPREAD * spread), COMMON_RIDGE].map(libm::log);
         let mut common = first.common_weight(start.to_vec());
-        let residuals = first.fit_with_common_weight(&common)?.residuals;
-        if let Some(variances) = noise.variances(&residuals) {
+        if let Some(variances) =
+            first.learnt_variances(noise, &first.equal_weights(&common), libm::exp(common[1]))
+        {
             first.variances = variances;
             common = first.common_weight(common);
         }
         let weights = first.weights_of_slopes(&common)?;
         let mut all = Sample::of(summaries, values);
-        let residuals = all.fit(&weights, RIDGE)?.residuals;
-        if let Some(variances) = noise.variances(&residuals) {
+        if let Some(variances) = all.learnt_variances(noise, &weights, RIDGE) {
             all.variances = variances;
         }
         Some(all.weights_near(&weights))
@@ -117,10 +117,15 @@ impl<'a> Sample<'a> {
         self.summaries.len() / self.values.len()
     }
 
+    /// The summaries, each times the root of its weight.
+    fn points(&self, weights: &[f64]) -> Vec<f64> {
+        let roots: Vec<f64> = weights.iter().map(|weight| weight.sqrt()).collect();
+        multiplied(self.summaries, &roots)
+    }
+
     /// The kernel with these weights.
     fn kernel(&self, weights: &[f64]) -> Vec<f64> {
-        let roots: Vec<f64> = weights.iter().map(|weight| weight.sqrt()).collect();
-        kernel_of_all(&multiplied(self.summaries, &roots), self.d())
+        kernel_of_all(&self.points(weights), self.d())
     }
 
     /// The noise of the runs.
@@ -132,15 +137,23 @@ impl<'a> Sample<'a> {
         Fit::of(self.kernel(weights), self.values, self.noise(ridge))
     }
 
-    /// The regression with the logarithms of one weight for all summaries and of the ridge.
-    fn fit_with_common_weight(&self, logs: &[f64]) -> Option<Fit> {
-        self.fit(&vec![libm::exp(logs[0]); self.d()], libm::exp(logs[1]))
+    /// Variances of the noise that follow from the residuals of a regression; none if all runs have the same noise, which takes no regression.
+    fn learnt_variances(&self, noise: Noise, weights: &[f64], ridge: f64) -> Option<Vec<f64>> {
+        if noise == Noise::Normal {
+            return None;
+        }
+        noise.variances(&self.fit(weights, ridge)?.residuals)
+    }
+
+    /// One weight for all summaries, from the logarithms of it and of the ridge.
+    fn equal_weights(&self, common: &[f64]) -> Vec<f64> {
+        vec![libm::exp(common[0]); self.d()]
     }
 
     /// The likeliest logarithms of one weight for all summaries and of the ridge, from `start` on.
     fn common_weight(&self, start: Vec<f64>) -> Vec<f64> {
         descend(start, &|logs| {
-            let found = self.likelihood(&vec![libm::exp(logs[0]); self.d()], libm::exp(logs[1]))?;
+            let found = self.likelihood(&self.equal_weights(logs), libm::exp(logs[1]))?;
             Some(Slope {
                 value: found.value,
                 slopes: vec![found.of_weights.iter().sum(), found.of_ridge],
@@ -149,7 +162,7 @@ impl<'a> Sample<'a> {
     }
 
     /// The likeliest weight of every summary, where weights are log-normal around some before a run is known.
-    fn weights_near(&self, weights: &[f64]) -> Lengths {
+    fn weights_near(&self, weights: &[f64]) -> Parameters {
         let d = weights.len();
         let mut start: Vec<f64> = weights.iter().map(|&weight| libm::log(weight)).collect();
         start.push(libm::log(RIDGE));
@@ -165,7 +178,7 @@ impl<'a> Sample<'a> {
             slopes.push(found.of_ridge);
             Some(Slope { value, slopes })
         });
-        Lengths {
+        Parameters {
             multipliers: found[..d].iter().map(|log| libm::exp(0.5 * log)).collect(),
             ridge: libm::exp(found[d]),
         }
@@ -214,7 +227,8 @@ impl<'a> Sample<'a> {
     /// ```
     fn weights_of_slopes(&self, common: &[f64]) -> Option<Vec<f64>> {
         let (n, d) = (self.values.len(), self.d());
-        let fit = self.fit_with_common_weight(common)?;
+        let equal = self.equal_weights(common);
+        let fit = self.fit(&equal, libm::exp(common[1]))?;
         let variance = self.values.iter().map(|u| u * u).sum::<f64>() / n as f64;
         let bound = MAX_RESIDUAL * variance.sqrt();
         let squares = fit.residuals.iter().map(|e| {
@@ -225,7 +239,7 @@ impl<'a> Sample<'a> {
         if !has_learnt {
             return None;
         }
-        let mut kernel = self.kernel(&vec![libm::exp(common[0]); d]);
+        let mut kernel = self.kernel(&equal);
         for row in kernel.chunks_exact_mut(n) {
             for (k, a) in row.iter_mut().zip(&fit.coefficients) {
                 *k *= a;
@@ -243,8 +257,7 @@ impl<'a> Sample<'a> {
             .iter()
             .map(|square| (square / largest).max(LEAST_WEIGHT))
             .collect();
-        let roots: Vec<f64> = weights.iter().map(|weight| weight.sqrt()).collect();
-        let points = multiplied(self.summaries, &roots);
+        let points = self.points(&weights);
         let median = median(&squared_distances(&points, &points, d));
         (median > 0.0).then(|| weights.iter().map(|weight| weight * SPREAD / median).collect())
     }
@@ -301,7 +314,7 @@ fn descend(start: Vec<f64>, f: &dyn Fn(&[f64]) -> Option<Slope>) -> Vec<f64> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::points::{chance, cube};
+    use super::super::for_tests::{chance, cube};
     use super::*;
 
     /// A value of two of three summaries, with noise.
@@ -342,20 +355,20 @@ mod tests {
     #[test]
     fn what_never_differs_tells_nothing() {
         let (summaries, values) = sample(40);
-        assert!(Lengths::likeliest(&summaries, &[0.0; 40], Noise::HeavyTailed).is_none());
-        assert!(Lengths::likeliest(&[0.7; 120], &values, Noise::Normal).is_none());
+        assert!(Parameters::likeliest(&summaries, &[0.0; 40], Noise::HeavyTailed).is_none());
+        assert!(Parameters::likeliest(&[0.7; 120], &values, Noise::Normal).is_none());
         // Three runs of four have the same summaries.
         let some = summaries.chunks_exact(3).enumerate();
         let some: Vec<f64> = some
             .flat_map(|(i, row)| if i % 4 == 0 { row } else { &[0.7; 3] }.to_vec())
             .collect();
-        assert!(Lengths::likeliest(&some, &values, Noise::Normal).is_none());
+        assert!(Parameters::likeliest(&some, &values, Noise::Normal).is_none());
     }
 
     #[test]
     fn a_summary_without_influence_has_the_least_weight() {
         let (summaries, values) = sample(150);
-        let found = Lengths::likeliest(&summaries, &values, Noise::Normal).unwrap();
+        let found = Parameters::likeliest(&summaries, &values, Noise::Normal).unwrap();
         let [first, second, third] = found.multipliers[..] else {
             panic!("{:?}", found.multipliers);
         };

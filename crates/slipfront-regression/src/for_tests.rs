@@ -1,4 +1,4 @@
-//! Points of tests.
+//! Points and chance for tests.
 
 /// Point `run` of the unit cube, less its mean: multiples of the roots of 2, 3 and 5, which fill it.
 pub(crate) fn point(run: usize, d: usize) -> Vec<f64> {
