@@ -123,6 +123,7 @@ class Calibration:
         *records: Record,
         folder: str | os.PathLike[str] | None = None,
         training: str | os.PathLike[str] | None = None,
+        force: bool = False,
         progress: bool | Callable[[int, int], object] | None = None,
         threads: int | None = None,
     ) -> CalibrationResults:
@@ -138,6 +139,8 @@ class Calibration:
         training
             A folder that keeps training runs, which fits of other records at the same times then have in common. In memory, fits of this
             object have them in common.
+        force
+            Replace files of the results that were edited since they were written.
         progress
             True for a bar, False for none, None for one in terminals and notebooks, or a function of the numbers of runs that are done and
             of all.
@@ -163,7 +166,7 @@ class Calibration:
                 bar.show(done, total)
 
             kept = None if training is None else Path(training)
-            self._native.execute(path, kept, paths, _threads(threads), show)
+            self._native.execute(path, force, kept, paths, _threads(threads), show)
             return CalibrationResults.read(path, None if folder is None else path)
 
     def _path(self, record: Record, path: Path) -> Path:

@@ -121,6 +121,7 @@ def converge(
     case: CaseLike,
     folder: str | os.PathLike[str] | None = None,
     *,
+    force: bool = False,
     levels: int = 3,
     replicates: int | None = None,
     threads: int | None = None,
@@ -140,6 +141,8 @@ def converge(
     folder
         A folder of results, in which a call that was stopped goes on, and which has the bytes of `slipfront converge`; in memory unless it
         is given.
+    force
+        Replace files of the results that were edited since they were written.
     levels
         Number of meshes, 3 to 7, each of half the blocks' size of the one before; the second is that of the case.
     replicates
@@ -179,5 +182,5 @@ def converge(
         native = _slipfront.Case.parse(text, case.name, Path(), [], {})
     study = _slipfront.Study.on_meshes(native, levels, replicates)
     study.check_cost(_threads(threads), max_memory, max_time)
-    found, _ = executed(study, Convergence, folder, progress, threads)
+    found, _ = executed(study, Convergence, folder, force, progress, threads)
     return found

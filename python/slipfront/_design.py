@@ -187,6 +187,7 @@ class Design:
         *,
         runs: int | None = None,
         time: float | None = None,
+        force: bool = False,
         progress: DesignProgress = None,
         threads: int | None = None,
     ) -> DesignResults:
@@ -201,6 +202,8 @@ class Design:
             Runs of the search, in place of those of the design.
         time
             Seconds after which the search is cut short; what is found then depends on the speed of the machine.
+        force
+            Replace files of the results that were edited since they were written.
         progress
             How far it is, as `DesignProgress` says.
         threads
@@ -221,7 +224,7 @@ class Design:
                 bar.show(done, total, f"best {best:.4g}" if best == best else "verdict")
 
             path = temporary.path / self.name if folder is None else Path(folder)
-            self._native.execute(path, runs, time, _threads(threads), show)
+            self._native.execute(path, force, runs, time, _threads(threads), show)
             return DesignResults.read(path, None if folder is None else path)
 
     def _bytes(self, mask: npt.ArrayLike) -> bytes:

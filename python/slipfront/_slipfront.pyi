@@ -131,6 +131,7 @@ class Study:
     def execute(
         self,
         folder: Path,
+        force: bool,
         threads: int,
         look: Callable[[Case, Record, tuple[int, int, bool]], list[float]] | None,
         watch: Callable[[int, int, int], object] | None,
@@ -154,6 +155,7 @@ class Design:
     def execute(
         self,
         folder: Path,
+        force: bool,
         runs: int | None,
         seconds: float | None,
         threads: int,
@@ -173,6 +175,7 @@ class Calibration:
     def execute(
         self,
         folder: Path,
+        force: bool,
         training: Path | None,
         records: list[Path],
         threads: int,

@@ -133,6 +133,7 @@ class Study:
         self,
         folder: str | os.PathLike[str] | None = None,
         *,
+        force: bool = False,
         progress: Progress = None,
         threads: int | None = None,
         quantities: Quantities | None = None,
@@ -143,6 +144,8 @@ class Study:
         ----------
         folder
             A folder of results, in which a study that was stopped goes on; tables alone, in memory, unless it is given.
+        force
+            Replace files of the results that were edited since they were written.
         progress
             True for a bar, False for none, None for one in terminals and notebooks, or a function of the numbers of runs that
             are done, of all, and of failed ones.
@@ -169,7 +172,7 @@ class Study:
             result = Run(Case._of(native), record)
             return [float(quantity(result)) for quantity in own.values()]
 
-        results, values = executed(self._native, StudyResults, folder, progress, threads, look if own else None)
+        results, values = executed(self._native, StudyResults, folder, force, progress, threads, look if own else None)
         if own:
             self._add(results, own, values)
         return results
@@ -310,6 +313,7 @@ def executed(
     native: _slipfront.Study,
     kind: type[Results],
     folder: str | os.PathLike[str] | None,
+    force: bool,
     progress: Progress,
     threads: int | None,
     look: Look | None = None,
@@ -325,7 +329,7 @@ def executed(
             bar.show(done, total, f"{failed} failed" if failed else "")
 
         path = temporary.path / native.name if folder is None else Path(folder)
-        values, failures = native.execute(path, _threads(threads), look, show)
+        values, failures = native.execute(path, force, _threads(threads), look, show)
         results = kind.read(path, failures)
         if folder is None:
             results.folder = None

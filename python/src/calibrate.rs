@@ -46,6 +46,7 @@ impl Calibration {
         &self,
         py: Python<'_>,
         folder: PathBuf,
+        force: bool,
         training: Option<PathBuf>,
         records: Vec<PathBuf>,
         threads: usize,
@@ -53,7 +54,7 @@ impl Calibration {
     ) -> PyResult<String> {
         let opened = detached(py, || {
             self.file.check_memory(&records, threads)?;
-            CalibrationFolder::open(&folder, training.as_deref(), &self.file, &records)
+            CalibrationFolder::open(&folder, training.as_deref(), &self.file, &records, force)
         })?;
         let mut opened = opened.map_err(|error| study_error(py, &error))?;
         let progress: Mutex<Option<CalibrationProgress>> = Mutex::new(None);

@@ -122,6 +122,7 @@ impl Design {
         &self,
         py: Python<'_>,
         folder: PathBuf,
+        force: bool,
         runs: Option<usize>,
         seconds: Option<f64>,
         threads: usize,
@@ -130,7 +131,7 @@ impl Design {
         let runs = runs.unwrap_or(self.file.keys.runs as usize);
         let opened = detached(py, || {
             self.file.check(runs, threads, seconds.is_some())?;
-            DesignFolder::open(&folder, &self.file)
+            DesignFolder::open(&folder, &self.file, force)
         })?;
         let mut opened = opened.map_err(|error| study_error(py, &error))?;
         let progress: Mutex<Option<SearchProgress>> = Mutex::new(None);
@@ -141,6 +142,7 @@ impl Design {
                 runs,
                 share_of_time: &share_of_time,
                 stop,
+                cuts: &[],
             };
             opened.find(&bounds, &mut |now| {
                 *progress.lock().unwrap_or_else(PoisonError::into_inner) = Some(now.clone());

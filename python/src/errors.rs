@@ -30,11 +30,13 @@ create_exception!(
 );
 
 /// Options of the command, and their counterparts in Python.
-const OPTIONS: [(&str, &str); 11] = [
+const OPTIONS: [(&str, &str); 13] = [
     ("another --set", "another override"),
     ("--set ", ""),
     ("with --out", "by `folder`"),
     ("with --force", "by `force=True`"),
+    ("give --force", "give `force=True`"),
+    ("--training", "`training`"),
     ("--max-memory", "`max_memory`"),
     ("--max-time", "`max_time`"),
     ("--levels", "`levels`"),

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -21,7 +22,7 @@ use slipfront_study::calibrate::is_calibration;
 use slipfront_study::converge::is_written;
 use slipfront_study::design::is_design;
 use slipfront_study::study_of;
-use slipfront_study::verify::{has_records, verify as verify_folder};
+use slipfront_study::verify::{Extent, has_records, verify as verify_folder};
 
 use crate::case::{Case, make};
 use crate::errors::{FolderError, folder_error};
@@ -74,7 +75,10 @@ pub(crate) fn kind_of(folder: PathBuf) -> PyResult<Option<&'static str>> {
 /// Compares a folder with its manifest, or with its records.
 #[pyfunction]
 pub(crate) fn verify(py: Python<'_>, folder: PathBuf) -> PyResult<()> {
-    let verdict = detached(py, || verify_folder(&folder))?.map_err(folder_error)?;
+    let verdict = detached(py, || {
+        verify_folder(&folder, Extent::Derived, &AtomicBool::new(false))
+    })?
+    .map_err(folder_error)?;
     match verdict.differences.as_slice() {
         [] => Ok(()),
         differences => Err(FolderError::new_err(differences.join("\n"))),

@@ -49,11 +49,17 @@ impl Study {
     }
 
     /// Writes tables and pictures, and the comparison of meshes.
-    fn write(&self, plan: &Plan, results: &StudyResults, folder: &StudyFolder) -> Result<(), StudyError> {
+    fn write(
+        &self,
+        plan: &Plan,
+        results: &StudyResults,
+        folder: &StudyFolder,
+        stop: &AtomicBool,
+    ) -> Result<(), StudyError> {
         if self.is_of_meshes {
-            converge::write(plan, results, folder).map(drop)
+            converge::write(plan, results, folder, stop).map(drop)
         } else {
-            study::write(plan, results, folder)
+            study::write(plan, results, folder, stop)
         }
     }
 
@@ -189,6 +195,7 @@ impl Study {
         &self,
         py: Python<'_>,
         folder: PathBuf,
+        force: bool,
         threads: usize,
         look: Option<Py<PyAny>>,
         watch: Option<Py<PyAny>>,
@@ -196,7 +203,7 @@ impl Study {
         let failed = |error: StudyError| Python::attach(|py| study_error(py, &error));
         let opened = detached(py, || {
             self.plan.check_memory(threads)?;
-            let opened = StudyFolder::open(&folder, &self.file)?;
+            let opened = StudyFolder::open(&folder, &self.file, force)?;
             opened.check_disk(&self.plan)?;
             Ok(opened)
         })?;
@@ -230,7 +237,7 @@ impl Study {
             Some(Err(error)) => return Err(folder_error(error)),
             None => return Err(PyRuntimeError::new_err("a fault of the program ended the study")),
         };
-        detached(py, || self.write(&plan, &results, &opened))?.map_err(failed)?;
+        detached(py, || self.write(&plan, &results, &opened, &shared.stop))?.map_err(failed)?;
         let describe = |(run, reason): (RunKey, &str)| {
             let place = plan.describe(&plan.points[run.point]);
             (format!("{place}, replicate {}", run.replicate), reason.to_owned())

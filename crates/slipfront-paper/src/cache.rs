@@ -17,7 +17,7 @@ use slipfront_run::names::FIGURE_CACHE;
 use slipfront_run::program;
 
 /// Most bytes of a file; the data of a figure take some megabytes.
-const MAX_BYTES: u64 = 1 << 28;
+pub(crate) const MAX_BYTES: u64 = 1 << 28;
 
 /// The stored data of figures in a results folder.
 #[derive(Debug)]

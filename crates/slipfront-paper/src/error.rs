@@ -6,6 +6,7 @@ use thiserror::Error;
 use slipfront_case::case_file::CaseError;
 use slipfront_plot::PictureError;
 use slipfront_run::folder_error::FolderError;
+use slipfront_run::verify::VerifyError;
 use slipfront_study::StudyError;
 
 /// Reason for which the figures could not be run or the report not be written.
@@ -36,6 +37,8 @@ pub enum PaperError {
     Table(#[from] csv::Error),
     #[error(transparent)]
     Folder(#[from] FolderError),
+    #[error(transparent)]
+    Verify(#[from] VerifyError),
 }
 
 impl PaperError {

@@ -23,6 +23,7 @@ mod runner;
 mod statistics;
 mod step_rule;
 mod sweep;
+mod verify;
 
 pub use cache::FigureCache;
 pub use claims::{Claim, ClaimResult, ClaimVerdict, Reading, claims};
@@ -35,3 +36,4 @@ pub use number::MeasuredNumber;
 pub use paper::{Paper, PaperOptions, Stage, run};
 pub use report::{docs_page, foreign_docs, summary, write, write_docs};
 pub use step_rule::StepRule;
+pub use verify::verify;

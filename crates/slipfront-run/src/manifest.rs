@@ -3,7 +3,10 @@
 //! The manifest is the only file of a run that another run of the same case does not repeat, and the last to be written.
 
 use std::collections::BTreeMap;
+use std::fs::File;
+use std::io::Read;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use serde::{Deserialize, Serialize};
 use slipfront::surface::STREAMS;
@@ -197,7 +200,7 @@ impl Manifest {
     /// The manifest with its checksum, and the bytes of its file.
     pub(crate) fn with_checksum(mut self) -> (Self, Vec<u8>) {
         self.checksum = String::new();
-        self.checksum = checksum_of(&json(&self)).unwrap_or_default();
+        self.checksum = seal(&json(&self)).unwrap_or_default();
         let bytes = json(&self);
         (self, bytes)
     }
@@ -225,7 +228,7 @@ impl Manifest {
         };
         let manifest: Self =
             serde_json::from_slice(bytes).map_err(|error| damaged(single_line(&error.to_string())))?;
-        if checksum_of(bytes).as_ref() == Some(&manifest.checksum) {
+        if seal(bytes).as_ref() == Some(&manifest.checksum) {
             return Ok(manifest);
         }
         let why = if manifest.checksum.is_empty() {
@@ -242,18 +245,47 @@ impl Manifest {
     }
 }
 
-/// The checksum that the bytes of a manifest should have; none if they lack the key of it.
-fn checksum_of(manifest: &[u8]) -> Option<String> {
+/// The checksum that a list of files should have under its last key, `seal`, from the bytes before this key; none if the bytes lack
+/// the key.
+pub fn seal(manifest: &[u8]) -> Option<String> {
     let mut windows = manifest.windows(CHECKSUM_KEY.len());
     let before = windows.rposition(|bytes| bytes == CHECKSUM_KEY)?;
     Some(blake3::hash(&manifest[..before]).to_hex().to_string())
 }
 
+/// A file whose reading ends with an error as soon as `stop` is set.
+struct Until<'s> {
+    file: File,
+    stop: &'s AtomicBool,
+}
+
+impl Read for Until<'_> {
+    fn read(&mut self, bytes: &mut [u8]) -> std::io::Result<usize> {
+        if self.stop.load(Ordering::Relaxed) {
+            return Err(std::io::Error::other("stopped"));
+        }
+        self.file.read(bytes)
+    }
+}
+
 impl ManifestFile {
     /// A regular file of a folder as it is now.
     pub fn of(folder: &Path, name: &str) -> std::io::Result<Self> {
+        Self::of_until(folder, name, &AtomicBool::new(false))
+    }
+
+    /// A regular file of a folder as it is now; an error as soon as `stop` is set.
+    pub fn of_until(folder: &Path, name: &str, stop: &AtomicBool) -> std::io::Result<Self> {
         let mut hasher = blake3::Hasher::new();
-        hasher.update_reader(open_regular(&folder.join(name))?)?;
+        let file = open_regular(&folder.join(name))?;
+        hasher.update_reader(Until { file, stop })?;
+        Ok(Self::hashed(name, &hasher))
+    }
+
+    /// The entry under this name of a file that has another name still.
+    pub fn of_copy(name: &str, copy: &Path) -> std::io::Result<Self> {
+        let mut hasher = blake3::Hasher::new();
+        hasher.update_reader(File::open(copy)?)?;
         Ok(Self::hashed(name, &hasher))
     }
 

@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 use std::io::ErrorKind;
 use std::path::{Component, Path, PathBuf};
+use std::sync::atomic::AtomicBool;
 
 use thiserror::Error;
 
@@ -25,6 +26,8 @@ pub struct Verdict {
     pub differences: Vec<String>,
     /// Differences that do no harm, a line each.
     pub notes: Vec<String>,
+    /// Reason for which the files, although as they were written, were not derived again from the recorded runs.
+    pub not_derived: Option<String>,
 }
 
 /// A folder that cannot be verified.
@@ -55,7 +58,11 @@ pub fn expect_as_written(run: &Inspection, which: impl Fn(&str) -> bool) -> Resu
         Err(error) => return Err(error.into()),
     };
     let files = manifest.files.iter().filter(|file| which(&file.name));
-    match differences(files, &run.path, "were written").into_iter().next() {
+    let never = AtomicBool::new(false);
+    match differences(files, &run.path, "were written", &never)
+        .into_iter()
+        .next()
+    {
         None => Ok(()),
         Some(difference) => {
             let manifest = run.path.join(MANIFEST);
@@ -65,7 +72,10 @@ pub fn expect_as_written(run: &Inspection, which: impl Fn(&str) -> bool) -> Resu
 }
 
 /// Compares the files of a complete run with its manifest.
-pub fn verify_run(run: &Inspection) -> Result<Verdict, VerifyError> {
+///
+/// # Errors
+/// When the folder has no manifest, or the system does not say what it holds. After a stop the verdict is not complete.
+pub fn verify_run(run: &Inspection, stop: &AtomicBool) -> Result<Verdict, VerifyError> {
     let mut verdict = Verdict::default();
     let manifest = match run.manifest() {
         Ok(manifest) => manifest,
@@ -82,7 +92,7 @@ pub fn verify_run(run: &Inspection) -> Result<Verdict, VerifyError> {
         manifest.program(),
         truncated(&manifest.finished)
     );
-    verdict.differences = differences(&manifest.files, &run.path, "were written");
+    verdict.differences = differences(&manifest.files, &run.path, "were written", stop);
     verdict.differences.extend(unresolved(run));
     let listed = manifest.files.iter().map(|file| file.name.as_str());
     let has_unfinished = Unfinished::of(&run.path).is_managed()?;
@@ -127,11 +137,13 @@ pub fn inspect(folder: &Path) -> Result<Inspection, VerifyError> {
     Ok(Inspection::of(folder)?)
 }
 
-/// Differences between the files of a folder and the listed ones, a sentence for each; the verb may be `were written`.
+/// Differences between the files of a folder and the listed ones, a sentence for each; the verb may be `were written`. After a stop
+/// some files are not looked at.
 pub fn differences<'f>(
     files: impl IntoIterator<Item = &'f ManifestFile>,
     folder: &Path,
     how: &str,
+    stop: &AtomicBool,
 ) -> Vec<String> {
     let difference = |file: &ManifestFile| {
         let path = folder.join(&file.name);
@@ -145,7 +157,7 @@ pub fn differences<'f>(
             Ok(found) if found.is_file() && found.len() != file.bytes => {
                 format!("differs: it has {} bytes where {} {how}", found.len(), file.bytes)
             }
-            Ok(_) => match ManifestFile::of(folder, &file.name) {
+            Ok(_) => match ManifestFile::of_until(folder, &file.name, stop) {
                 Ok(found) if found == *file => return None,
                 Ok(_) => format!("differs: other bytes {how}"),
                 Err(error) => format!("cannot be read: {error}"),

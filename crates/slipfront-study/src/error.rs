@@ -7,7 +7,7 @@ use thiserror::Error;
 
 use slipfront_case::case_file::CaseError;
 use slipfront_case::number_format::{are, count};
-use slipfront_case::text::display_path;
+use slipfront_case::text::{display_path, single_line};
 use slipfront_plot::PictureError;
 use slipfront_run::folder_error::FolderError;
 use slipfront_run::pictures::error::RunPictureError;
@@ -80,8 +80,29 @@ pub enum StudyError {
         "the folder {path} holds another {what}, or this one before it was changed: choose another with --out"
     )]
     Changed { what: &'static str, path: PathBuf },
+    #[error(
+        "the folder {path} of a {of} holds files that were edited since they were written, or that are not slipfront's: {}; move them away, \
+        choose another folder with --out, or replace them with --force",
+        single_line(&names.join(", "))
+    )]
+    Edited {
+        of: &'static str,
+        path: PathBuf,
+        names: Vec<String>,
+    },
+    #[error(
+        "{} is damaged: {why}; it says which files are slipfront's, so that none is replaced: put it back as it was, choose another folder \
+        with --out, or give --force",
+        display_path(path)
+    )]
+    Checksums { path: PathBuf, why: String },
     #[error(transparent)]
     Training(#[from] TrainingError),
+    #[error(
+        "--training {} is the folder of the results, which keeps training runs without it: leave out --training, or name another folder",
+        display_path(path)
+    )]
+    TrainingInResults { path: PathBuf },
     #[error("cannot write the texture: {0}")]
     Texture(#[from] TextureFileError),
     #[error("another slipfront is running in {path}: wait for it, or choose another folder with --out")]
@@ -101,6 +122,10 @@ pub enum StudyError {
     Write { path: PathBuf, source: std::io::Error },
     #[error("{path} is no file of recorded runs")]
     NotRecords { path: PathBuf },
+    #[error(
+        "{path} holds runs of another kind of work, or of another version of slipfront, and none is lost: choose another folder"
+    )]
+    OtherRecords { path: PathBuf },
     #[error(
         "cannot keep the folder of a run: {0}; finished runs are safe, and the same command goes on from there"
     )]

@@ -1,27 +1,23 @@
 //! The results folder of a study: study file, journal, tables, pictures and run folders.
 
-use std::collections::HashSet;
-use std::fs::File;
 use std::io::Write;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::anisotropy::anisotropies;
 use crate::error::StudyError;
-use crate::files_in_folder::{copy_in, write_in, write_picture};
 use crate::journal::Records;
-use crate::pictures;
 use crate::plan::{Plan, RunKey};
+use crate::result_files::{Batch, Others, ResultFiles};
 use crate::study_file::StudyFile;
 use crate::study_results::StudyResults;
-use crate::{picture_plan, tables};
-use slipfront_case::disk::{
-    TEXT_MAX_BYTES, is_empty, make_folders, open_limited, read_limited, remove_if_there,
-};
+use crate::{converge, pictures, tables};
+use slipfront_case::disk::{TEXT_MAX_BYTES, is_empty, make_folders, open_limited, read_limited};
 use slipfront_case::machine::free_disk;
 use slipfront_case::number_format::byte_size;
 use slipfront_run::folder_error::FolderError;
 use slipfront_run::manifest::Manifest;
-use slipfront_run::names::{CASE, CONVERGENCE, FIGURE_CACHE, RECORDS, RUNS, TABLES};
+use slipfront_run::names::{CASE, FIGURE_CACHE, RECORDS, RUNS, TABLES};
 use slipfront_run::run_folder::copy::copy_run;
 
 /// The study file in the folder, with the base case as a table in it: `slipfront study DIR/study.toml` repeats the study.
@@ -33,6 +29,8 @@ pub struct StudyFolder {
     path: PathBuf,
     /// Finished runs.
     pub records: Records,
+    /// Result files of the folder.
+    pub(crate) files: ResultFiles,
     /// Whether the study has changed since the folder was last used.
     pub changed: bool,
     /// The study in the folder, which reads copies of its files.
@@ -40,14 +38,17 @@ pub struct StudyFolder {
 }
 
 impl StudyFolder {
-    /// Opens a results folder: a new one, an empty one, or one of an earlier call that no other process works in.
-    pub fn open(path: &Path, study: &StudyFile) -> Result<Self, StudyError> {
+    /// Opens a results folder: a new one, an empty one, or one of an earlier call that no other process works in. If the study has
+    /// changed since then, its tables and pictures are removed: they can be made from the records again.
+    ///
+    /// # Errors
+    /// When the folder holds other things, or files that were edited since they were written and may not be replaced by `force`; when
+    /// another process works in it, or it cannot be written to.
+    pub fn open(path: &Path, study: &StudyFile, force: bool) -> Result<Self, StudyError> {
         make_folders(path).map_err(FolderError::unwritable(path))?;
         let used = path.join(RECORDS).exists();
         let empty = is_empty(path).map_err(FolderError::unwritable(path))?;
-        // A folder of `slipfront paper` has records and no study file.
-        let is_of_figures = path.join(FIGURE_CACHE).is_dir() && !is_study(path);
-        if (!used && !empty) || is_of_figures {
+        if (!used && !empty) || is_of_figures(path) {
             return Err(StudyError::OtherThings {
                 what: "study",
                 path: path.to_owned(),
@@ -63,40 +64,23 @@ impl StudyFolder {
             StudyFile::parse(text, &name, &study.name, path)
         };
         let before = read_limited(&path.join(STUDY), TEXT_MAX_BYTES).ok();
-        let before = before.filter(|before| before != text.as_bytes());
-        let folder = Self {
+        let changed = before.is_some_and(|before| before != text.as_bytes());
+        let mut given = ResultFiles::new(path, "study", force).begin();
+        given.write(STUDY, |file| file.write_all(text.as_bytes()))?;
+        given.copy_all(&copies)?;
+        let files = given.place_given(if changed { Others::Go } else { Others::Stay })?;
+        Ok(Self {
             path: path.to_owned(),
             records,
-            changed: before.is_some(),
+            files,
+            changed,
             study: parse(&text)?,
-        };
-        copy_in(path, &copies)?;
-        if let Some(before) = before {
-            // Its tables and pictures do not belong to this study, and can be made from the records again. If its file cannot
-            // be read, the names of its pictures are not known, and they stay.
-            if let Ok(before) = parse(&String::from_utf8_lossy(&before)) {
-                folder.remove_pictures(picture_plan::names(&before.axes));
-            }
-            for name in TABLES.into_iter().chain(CONVERGENCE) {
-                let _ = remove_if_there(&folder.path.join(name));
-            }
-        }
-        folder.write(STUDY, |file| file.write_all(text.as_bytes()))?;
-        Ok(folder)
+        })
     }
 
     /// Path of the folder.
     pub fn path(&self) -> &Path {
         &self.path
-    }
-
-    /// Writes a file atomically.
-    pub(crate) fn write(
-        &self,
-        name: &str,
-        fill: impl FnOnce(&mut File) -> std::io::Result<()>,
-    ) -> Result<(), StudyError> {
-        write_in(&self.path, name, fill)
     }
 
     /// Copies complete run folders, and the cases of failed runs, from the folder of a shard, where this folder lacks them.
@@ -129,35 +113,52 @@ impl StudyFolder {
             _ => Ok(()),
         }
     }
-
-    /// Removes the pictures of these names. An error is ignored: an old picture that stays is no reason to stop.
-    fn remove_pictures(&self, names: impl Iterator<Item = String>) {
-        for name in names {
-            for ending in ["svg", "png"] {
-                let _ = remove_if_there(&self.path.join(format!("{name}.{ending}")));
-            }
-        }
-    }
 }
 
-/// Writes the tables and pictures of a study to its folder, and removes its pictures of earlier results.
-pub fn write(plan: &Plan, results: &StudyResults, folder: &StudyFolder) -> Result<(), StudyError> {
-    let [runs, points, anisotropy] = TABLES;
-    folder.write(runs, |file| Ok(tables::runs(plan, results, file)?))?;
-    folder.write(points, |file| Ok(tables::points(plan, results, file)?))?;
-    match anisotropies(plan, results).as_slice() {
-        // As with pictures, a table of earlier results that stays is no reason to stop.
-        [] => drop(remove_if_there(&folder.path.join(anisotropy))),
-        rows => folder.write(anisotropy, |file| Ok(tables::anisotropy(rows, file)?))?,
+/// Writes the tables and pictures of a study to its folder, and removes those of earlier results. If the folder has a comparison of
+/// meshes, this is written anew as well.
+///
+/// # Errors
+/// When the system refuses to write, when a file in its place was edited, and after a stop.
+pub fn write(
+    plan: &Plan,
+    results: &StudyResults,
+    folder: &StudyFolder,
+    stop: &AtomicBool,
+) -> Result<(), StudyError> {
+    let mut batch = folder.files.begin();
+    stage(plan, results, &mut batch, stop)?;
+    if converge::is_written(&folder.path, &plan.axes) && results.expect_no_failures(plan).is_ok() {
+        converge::stage(plan, results, &mut batch)?;
     }
-    let mut drawn: HashSet<String> = HashSet::new();
+    batch.place()
+}
+
+/// Writes the tables and pictures of a study to a batch of files, until a stop.
+pub(crate) fn stage(
+    plan: &Plan,
+    results: &StudyResults,
+    batch: &mut Batch,
+    stop: &AtomicBool,
+) -> Result<(), StudyError> {
+    let [runs, points, anisotropy] = TABLES;
+    batch.write(runs, |file| Ok(tables::runs(plan, results, file)?))?;
+    batch.write(points, |file| Ok(tables::points(plan, results, file)?))?;
+    let rows = anisotropies(plan, results);
+    if !rows.is_empty() {
+        batch.write(anisotropy, |file| Ok(tables::anisotropy(&rows, file)?))?;
+    }
     pictures::draw(plan, results, |name, picture| {
-        write_picture(&folder.path, &name, &picture)?;
-        drawn.insert(name);
-        Ok(())
-    })?;
-    folder.remove_pictures(picture_plan::names(&plan.axes).filter(|name| !drawn.contains(name)));
-    Ok(())
+        if stop.load(Ordering::Relaxed) {
+            return Err(StudyError::Interrupted);
+        }
+        batch.write_picture(&name, &picture)
+    })
+}
+
+/// Whether the folder is one of `slipfront paper`, which has records and no study file.
+pub fn is_of_figures(folder: &Path) -> bool {
+    folder.join(FIGURE_CACHE).is_dir() && !is_study(folder)
 }
 
 /// Whether the folder is the results folder of a study.
@@ -212,7 +213,7 @@ mod tests {
         let file = StudyFile::parse(text, "study.toml", "study", folder.path()).unwrap();
         let plan = Plan::new(&file, None).unwrap();
         let run = plan.runs(1).next().unwrap();
-        let out = StudyFolder::open(&folder.path().join("out"), &file).unwrap();
+        let out = StudyFolder::open(&folder.path().join("out"), &file, false).unwrap();
         std::fs::write(&original, table(0.8)).unwrap();
         let said = plan.case(run, &mut |_| true).unwrap_err().to_string();
         assert!(

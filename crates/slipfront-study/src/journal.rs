@@ -36,9 +36,7 @@ impl Journal {
         // A study that has changed since it was killed may not write the same files again.
         clear_unfinished(folder);
         let lines = JournalLines::read(&mut file).map_err(failed("open", &path))?;
-        if lines.are_foreign() {
-            return Err(StudyError::NotRecords { path });
-        }
+        lines.expect_ours(&path)?;
         lines.repair_end(&mut file).map_err(failed("write to", &path))?;
         file.seek(SeekFrom::End(0)).map_err(failed("open", &path))?;
         // A new file survives a power cut only once its folder is on the disk.
@@ -46,6 +44,20 @@ impl Journal {
             sync_folder(folder).map_err(failed("write to", &path))?;
         }
         Ok((Self { path, file }, lines.records, lines.damaged))
+    }
+
+    /// Copies a file of records of this kind, called `name`, from one folder to another. It is looked at before: what is no record is
+    /// not copied, however long it is.
+    pub(crate) fn copy<T: DeserializeOwned>(from: &Path, to: &Path, name: &str) -> Result<(), StudyError> {
+        let path = from.join(name);
+        let open = || open_limited(&path, u64::MAX);
+        let lines = open().and_then(|mut file| JournalLines::<T>::read(&mut file));
+        let lines = lines.map_err(failed("read", &path))?;
+        lines.expect_ours(&path)?;
+        let to = to.join(name);
+        let copied =
+            File::create(&to).and_then(|mut to| std::io::copy(&mut open()?.take(lines.bytes), &mut to));
+        copied.map(drop).map_err(failed("write to", &to))
     }
 
     /// Appends lines and waits until they are on the disk; earlier records stay whole.
@@ -140,9 +152,7 @@ impl Records {
         let read =
             open_limited(&path, u64::MAX).and_then(|mut file| JournalLines::<FinishedRun>::read(&mut file));
         let lines = read.map_err(failed("read", &path))?;
-        if lines.are_foreign() {
-            return Err(StudyError::NotRecords { path });
-        }
+        lines.expect_ours(&path)?;
         self.damaged += lines.damaged;
         let mut records = lines.records;
         records.retain(|record| self.get(&record.id).is_none());
@@ -202,6 +212,8 @@ struct JournalLines<T> {
     damaged: usize,
     /// Whether a line is a record or may once have been one.
     ours: bool,
+    /// Whether a line is whole, but no record of this kind.
+    is_of_others: bool,
     /// Whether a line is longer than any record.
     too_long: bool,
     bytes: u64,
@@ -219,6 +231,7 @@ impl<T: DeserializeOwned> JournalLines<T> {
             records: Vec::new(),
             damaged: 0,
             ours: false,
+            is_of_others: false,
             too_long: false,
             bytes: 0,
             lacks_break: false,
@@ -239,12 +252,16 @@ impl<T: DeserializeOwned> JournalLines<T> {
                 continue;
             }
             lines.ours |= looks_like_ours(&line) || (!broken && may_begin_ours(&line));
-            if let Some(record) = parse_line(&line) {
-                lines.records.push(record);
-                lines.lacks_break = !broken;
-            } else {
-                lines.damaged += 1;
-                lines.cut_at = (!broken).then_some(begin);
+            match parse_line(&line) {
+                Some(Ok(record)) => {
+                    lines.records.push(record);
+                    lines.lacks_break = !broken;
+                }
+                Some(Err(_)) => lines.is_of_others = true,
+                None => {
+                    lines.damaged += 1;
+                    lines.cut_at = (!broken).then_some(begin);
+                }
             }
         }
         Ok(lines)
@@ -260,9 +277,16 @@ impl<T: DeserializeOwned> JournalLines<T> {
         }
     }
 
-    /// Whether the file is not a record file, not even a damaged one.
-    fn are_foreign(&self) -> bool {
-        self.too_long || (self.damaged > 0 && !self.ours)
+    /// Refuses a file that is not a record file, not even a damaged one, or has records of another kind.
+    fn expect_ours(&self, path: &Path) -> Result<(), StudyError> {
+        let path = path.to_owned();
+        if self.too_long || (self.damaged > 0 && !self.ours) {
+            return Err(StudyError::NotRecords { path });
+        }
+        if self.is_of_others {
+            return Err(StudyError::OtherRecords { path });
+        }
+        Ok(())
     }
 }
 

@@ -20,15 +20,6 @@ const MOST_PICTURES: usize = 1000;
 /// Largest number of characters of the levels in the name of a picture: the length of file names is limited.
 const MOST_OF_LEVELS: usize = 100;
 
-/// Names of all pictures that a study of these axes may get.
-pub(crate) fn names(axes: &[Axis]) -> impl Iterator<Item = String> {
-    let pictures = QUANTITIES
-        .into_iter()
-        .flat_map(|quantity| planned(axes, quantity));
-    let polar = direction_axis(axes).map(|_| POLAR.to_owned());
-    pictures.map(|picture| picture.name).chain(polar)
-}
-
 /// The picture of friction over the directions of the drive.
 pub(crate) const POLAR: &str = "friction_polar";
 
@@ -255,9 +246,8 @@ mod tests {
     }
 
     fn names_of(axes: &str) -> Vec<String> {
-        names(&axes_of(axes))
-            .filter(|name| name.starts_with("static_friction_star"))
-            .collect()
+        let planned = planned(&axes_of(axes), "static_friction_star").into_iter();
+        planned.map(|picture| picture.name).collect()
     }
 
     /// Every picture has a name of its own, whatever the levels are called, and no name is too long.

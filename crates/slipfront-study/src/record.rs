@@ -63,14 +63,15 @@ pub(crate) fn to_line(record: &impl Serialize) -> Vec<u8> {
     format!("{} {json}\n", checksum(json.as_bytes())).into_bytes()
 }
 
-/// The record of a line without its line break; none if it fails its checksum.
-pub(crate) fn parse_line<T: DeserializeOwned>(line: &[u8]) -> Option<T> {
+/// The record of a line without its line break, or the reason for which the line is a record of another kind; none if it fails its
+/// checksum.
+pub(crate) fn parse_line<T: DeserializeOwned>(line: &[u8]) -> Option<serde_json::Result<T>> {
     let (sum, json) = line.split_at_checked(CHECKSUM)?;
     let json = json.strip_prefix(b" ")?;
     if checksum(json).as_bytes() != sum {
         return None;
     }
-    serde_json::from_slice(json).ok()
+    Some(serde_json::from_slice(json))
 }
 
 /// Whether a line has the form of a record, damaged or not. A file without any such line is not a journal.

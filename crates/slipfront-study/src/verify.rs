@@ -1,30 +1,34 @@
-//! Compares the folder of a study with the tables and pictures that its records give, and with the comparison of its meshes
-//! if it has one; the folders of the runs that it kept with their manifests; and the folder of a design or a calibration
-//! with the results of its runs.
+//! Compares the folder of a study, a design or a calibration with the list of its files, then with the tables, pictures and other
+//! results that its recorded runs give; and the run folders that a study has kept with their manifests.
 
 use std::collections::HashSet;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
 
+use serde::de::DeserializeOwned;
+use slipfront_case::disk::{TEXT_MAX_BYTES, open_limited};
 use slipfront_case::number_format::{are, count};
 use slipfront_case::unfinished::{TemporaryFolder, is_unfinished};
 use slipfront_run::folder_error::FolderError;
-use slipfront_run::manifest::ManifestFile;
-use slipfront_run::names::RUNS;
+use slipfront_run::names::{FIGURE_CACHE, RUNS, TABLES};
+use slipfront_run::program;
 use slipfront_run::verify::{
     Verdict, VerifyError, differences, first_line, inspect, unlisted_files, verify_run,
 };
 use thiserror::Error;
 
-use crate::calibrate::{CalibrationFolder, TRAINING, is_calibration, is_finished};
-use crate::converge::{is_written, write_meshes};
-use crate::design::{Bounds, DesignFile, DesignFolder, JOURNAL, is_design, search_of};
+use crate::calibrate::{CALIBRATION, CalibrationFolder, CalibrationRun, FOUND, TRAINING, is_calibration};
+use crate::converge;
+use crate::design::{
+    Bounds, DESIGN, DesignFile, DesignFolder, DesignRun, JOURNAL, VERDICT, is_design, searches_of,
+};
 use crate::error::{StudyError, of_others};
 use crate::execute::collect;
-use crate::folder::{StudyFolder, study_of, write};
-use crate::journal::Records;
+use crate::folder::{StudyFolder, stage, study_of};
+use crate::journal::{Journal, Records};
 use crate::plan::Plan;
+use crate::result_files::{CHECKSUMS, Checksums};
 use crate::study_file::RetainRuns;
 use crate::study_results::StudyResults;
 
@@ -57,42 +61,124 @@ pub fn has_records(folder: &Path) -> bool {
     crate::folder::is_study(folder) && folder.join(Records::FILE).exists()
 }
 
-/// Verifies the folder of a run or of a study that was finished.
-pub fn verify(folder: &Path) -> Result<Verdict, VerifyStudyError> {
-    if has_records(folder) {
-        verify_study(folder)
+/// Extent of a comparison.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Extent {
+    /// Files are compared with their checksums.
+    Checksums,
+    /// Results of recorded runs are derived from these again, too.
+    Derived,
+}
+
+/// Verifies the folder of a run, of a study, of a design or of a calibration that was finished.
+///
+/// # Errors
+/// When it is no such folder, was not finished, or cannot be read; after a stop.
+pub fn verify(folder: &Path, extent: Extent, stop: &AtomicBool) -> Result<Verdict, VerifyStudyError> {
+    let verdict = if has_records(folder) {
+        verify_study(folder, extent, stop)?
     } else if is_design(folder) {
-        verify_design(folder)
+        let derive = |verdict: &mut Verdict| derive_design(folder, verdict, stop);
+        verify_project(folder, "design", [JOURNAL, VERDICT[0]], extent, stop, derive)?
     } else if is_calibration(folder) {
-        verify_calibration(folder)
+        let derive = |verdict: &mut Verdict| derive_calibration(folder, verdict, stop);
+        verify_project(folder, "calibration", [TRAINING, FOUND[0]], extent, stop, derive)?
+    } else if crate::folder::is_of_figures(folder) {
+        Verdict {
+            not_derived: Some(format!(
+                "the figures in {} were not drawn again: `slipfront verify` does so",
+                folder.display()
+            )),
+            ..verify_checksums(folder, &[Records::FILE, FIGURE_CACHE], stop)?
+        }
     } else {
-        Ok(verify_run(&inspect(folder)?)?)
+        verify_run(&inspect(folder)?, stop)?
+    };
+    if stop.load(Ordering::Relaxed) {
+        return Err(StudyError::Interrupted.into());
     }
+    Ok(verdict)
+}
+
+/// Compares the files of a folder with its list, and notes entries that are neither in the list nor among the `others`.
+pub fn verify_checksums(folder: &Path, others: &[&str], stop: &AtomicBool) -> Result<Verdict, StudyError> {
+    let mut verdict = Verdict::default();
+    let path = folder.join(CHECKSUMS);
+    let list = match Checksums::read(folder) {
+        Ok(Some(list)) => list,
+        Ok(None) => {
+            let sentence = format!(
+                "{} is missing: the command that made the folder writes it when it is run again",
+                path.display()
+            );
+            verdict.differences.push(sentence);
+            return Ok(verdict);
+        }
+        Err(error @ StudyError::Checksums { .. }) => {
+            verdict.differences.push(error.to_string());
+            return Ok(verdict);
+        }
+        Err(error) => return Err(error),
+    };
+    verdict.differences = differences(&list.files, folder, "were written", stop);
+    if !list.replaced.is_empty() {
+        let sentence = format!(
+            "{}: the results were not written to their end; the command that made the folder ends it when it is run again",
+            path.display()
+        );
+        verdict.differences.push(sentence);
+    }
+    let by = program::in_words(&list.version, list.revision.as_deref());
+    verdict.what = format!("{} as {by} wrote them", count(list.files.len(), "file"));
+    let is_left = |name: &str| name.rsplit('/').next().is_some_and(is_unfinished);
+    let known = list.files.iter().map(|file| file.name.as_str());
+    let known = known.chain([CHECKSUMS]).chain(others.iter().copied()).collect();
+    verdict.notes = unlisted_files(folder, &known, is_left);
+    Ok(verdict)
+}
+
+/// Compares the folder of a design or a calibration with its list, then with the results that follow from the runs in its `journal`.
+/// Only a folder of work that was finished has a file of the name `finished`.
+fn verify_project(
+    folder: &Path,
+    what: &'static str,
+    [journal, finished]: [&str; 2],
+    extent: Extent,
+    stop: &AtomicBool,
+    derive: impl FnOnce(&mut Verdict) -> Result<(), VerifyStudyError>,
+) -> Result<Verdict, VerifyStudyError> {
+    let mut verdict = verify_checksums(folder, &[journal], stop)?;
+    if !verdict.differences.is_empty() {
+        return Ok(verdict);
+    }
+    if !folder.join(finished).exists() {
+        let path = folder.to_owned();
+        return Err(VerifyStudyError::UnfinishedSearch { what, path });
+    }
+    if extent == Extent::Derived {
+        derive(&mut verdict)?;
+    }
+    Ok(verdict)
 }
 
 /// Finds a design again from the runs in its journal, and compares the folder with the results.
-fn verify_design(folder: &Path) -> Result<Verdict, VerifyStudyError> {
-    let Some(search) = search_of(folder)? else {
-        let (what, path) = ("design", folder.to_owned());
-        return Err(VerifyStudyError::UnfinishedSearch { what, path });
+fn derive_design(folder: &Path, verdict: &mut Verdict, stop: &AtomicBool) -> Result<(), VerifyStudyError> {
+    let Some(searches) = searches_of(folder)? else {
+        let path = folder.join(VERDICT[0]);
+        verdict
+            .differences
+            .push(format!("{} does not say how long its search was", path.display()));
+        return Ok(());
     };
-    if search.is_cut_short {
-        let what =
-            "a design whose search --time has cut short: which drafts were tried depends on the machine";
-        return Ok(Verdict {
-            what: what.to_owned(),
-            notes: vec!["its files were not derived again from its runs".to_owned()],
-            ..Verdict::default()
-        });
-    }
-    verify_from_runs(folder, "design", JOURNAL, |temporary| {
-        let file = DesignFile::load(&folder.join("design.toml"))?;
-        let mut again = DesignFolder::open(temporary, &file)?;
+    derive_from_runs::<DesignRun>(folder, "design", JOURNAL, verdict, stop, |temporary| {
+        let file = DesignFile::load(&text_in(folder, DESIGN)?)?;
+        let mut again = DesignFolder::open(temporary, &file, false)?;
         let kept = again.n_kept();
         let bounds = Bounds {
-            runs: search.runs,
+            runs: searches.runs(),
             share_of_time: &|| 0.0,
-            stop: &AtomicBool::new(false),
+            stop,
+            cuts: &searches.cuts(),
         };
         again.find(&bounds, &mut |_| {})?;
         Ok([kept, again.n_kept()])
@@ -100,51 +186,87 @@ fn verify_design(folder: &Path) -> Result<Verdict, VerifyStudyError> {
 }
 
 /// Calibrates again from the runs in the journal, and compares the folder with the results.
-fn verify_calibration(folder: &Path) -> Result<Verdict, VerifyStudyError> {
-    if !is_finished(folder) {
-        let (what, path) = ("calibration", folder.to_owned());
-        return Err(VerifyStudyError::UnfinishedSearch { what, path });
-    }
-    verify_from_runs(folder, "calibration", TRAINING, |temporary| {
+fn derive_calibration(
+    folder: &Path,
+    verdict: &mut Verdict,
+    stop: &AtomicBool,
+) -> Result<(), VerifyStudyError> {
+    derive_from_runs::<CalibrationRun>(folder, "calibration", TRAINING, verdict, stop, |temporary| {
+        text_in(folder, CALIBRATION)?;
         let mut again = CalibrationFolder::again(folder, temporary)?;
         let kept = again.n_kept();
-        again.find(&AtomicBool::new(false), &mut |_| {})?;
+        again.find(stop, &mut |_| {})?;
         Ok([kept, again.n_kept()])
     })
 }
 
+/// Path of a text in a folder, if it is a regular file: opening a pipe would wait without end.
+fn text_in(folder: &Path, name: &str) -> Result<PathBuf, StudyError> {
+    let path = folder.join(name);
+    open_limited(&path, TEXT_MAX_BYTES).map_err(FolderError::read(&path))?;
+    Ok(path)
+}
+
 /// Compares a folder with the results that `again` finds in another folder from the runs in its journal; `again` returns the
 /// numbers of runs there before and after, since runs that the journal lacks are made.
-fn verify_from_runs(
+fn derive_from_runs<Run: DeserializeOwned>(
     folder: &Path,
     what: &str,
     journal: &str,
+    verdict: &mut Verdict,
+    stop: &AtomicBool,
     again: impl FnOnce(&Path) -> Result<[usize; 2], StudyError>,
-) -> Result<Verdict, VerifyStudyError> {
-    let mut verdict = Verdict::default();
+) -> Result<(), VerifyStudyError> {
     let temporary = TemporaryFolder::new(folder).map_err(VerifyError::Temporary)?;
-    std::fs::copy(folder.join(journal), temporary.path().join(journal)).map_err(VerifyError::Temporary)?;
+    Journal::copy::<Run>(folder, temporary.path(), journal)?;
     let [kept, all] = again(temporary.path())?;
     if all > kept {
         let sentence = format!("{} not in the journal, and made again", are(all - kept, "run"));
         verdict.notes.push(sentence);
     }
-    let mut files = files_below(temporary.path(), "").map_err(VerifyError::Temporary)?;
-    files.retain(|file| file.name != journal);
-    verdict.differences = differences(&files, folder, "follow from its runs");
-    let is_left = |name: &str| name.rsplit('/').next().is_some_and(is_unfinished);
-    let known = files.iter().map(|file| file.name.as_str());
-    verdict
-        .notes
-        .extend(unlisted_files(folder, &known.chain([journal]).collect(), is_left));
-    verdict.what = format!("a {what} as its {} give it", count(kept, "recorded run"));
+    verdict.differences = differences_from(temporary.path(), folder, "follow from its runs", stop)?;
+    verdict.what = format!(
+        "{}, a {what} as its {} give it",
+        verdict.what,
+        count(kept, "recorded run")
+    );
+    Ok(())
+}
+
+/// Differences of a folder from the results that were made again in a temporary one.
+fn differences_from(
+    temporary: &Path,
+    folder: &Path,
+    how: &str,
+    stop: &AtomicBool,
+) -> Result<Vec<String>, StudyError> {
+    let again = Checksums::read(temporary)?.unwrap_or_default();
+    Ok(differences(&again.files, folder, how, stop))
+}
+
+/// Compares a study with its list, makes its tables and pictures again from its records, and compares its run folders with their
+/// manifests.
+fn verify_study(folder: &Path, extent: Extent, stop: &AtomicBool) -> Result<Verdict, VerifyStudyError> {
+    let mut verdict = verify_checksums(folder, &[Records::FILE, RUNS], stop)?;
+    let mut derived = None;
+    if extent == Extent::Derived && verdict.differences.is_empty() {
+        derived = derive_study(folder, &mut verdict, stop)?;
+    } else if verdict.differences.is_empty() && !folder.join(TABLES[0]).exists() {
+        let (what, path) = ("study", folder.to_owned());
+        return Err(VerifyStudyError::UnfinishedSearch { what, path });
+    }
+    let kept = verify_kept(folder, derived.as_ref(), &mut verdict, stop)?;
+    verdict.what += &format!(", {} as they were written", count(kept, "run folder"));
     Ok(verdict)
 }
 
-/// Makes tables and pictures of a study again from its records, and compares the folder with them; then its run folders with
-/// their manifests.
-fn verify_study(folder: &Path) -> Result<Verdict, VerifyStudyError> {
-    let mut verdict = Verdict::default();
+/// Makes tables and pictures of a study again from its records, and compares the folder with them; returns the plan and the results
+/// of its runs unless they are lost.
+fn derive_study(
+    folder: &Path,
+    verdict: &mut Verdict,
+    stop: &AtomicBool,
+) -> Result<Option<(Plan, StudyResults)>, VerifyStudyError> {
     let made = study_of(folder).and_then(|file| Ok((Plan::new(&file, None)?, file)));
     let (plan, file) = match made {
         Ok(made) => made,
@@ -152,12 +274,12 @@ fn verify_study(folder: &Path) -> Result<Verdict, VerifyStudyError> {
             let (path, line) = (folder.join("study.toml"), first_line(&error));
             let difference = format!("{} is no study for this version: {line}", path.display());
             verdict.differences.push(difference);
-            return Ok(verdict);
+            return Ok(None);
         }
     };
     plan.check_memory(0)?;
     let temporary = TemporaryFolder::new(folder).map_err(VerifyError::Temporary)?;
-    let mut again = StudyFolder::open(temporary.path(), &file)?;
+    let mut again = StudyFolder::open(temporary.path(), &file, false)?;
     again.records.merge(folder)?;
     let records = folder.join(Records::FILE);
     let (damaged, records) = (again.records.damaged, records.display());
@@ -171,22 +293,18 @@ fn verify_study(folder: &Path) -> Result<Verdict, VerifyStudyError> {
         Err(StudyError::Missing { .. }) => {
             let damage = format!("{records} differs: it has {}", count(damaged, "damaged line"));
             verdict.differences.push(damage);
-            return Ok(verdict);
+            return Ok(None);
         }
         Err(error) => return Err(error.into()),
     };
-    write(&plan, &results, &again)?;
-    if is_written(folder, &plan.axes) {
-        write_meshes(&plan, &results, &again)?;
+    let mut batch = again.files.begin();
+    stage(&plan, &results, &mut batch, stop)?;
+    if converge::is_written(folder, &plan.axes) {
+        converge::stage(&plan, &results, &mut batch)?;
     }
-    let mut files = files_below(temporary.path(), "").map_err(VerifyError::Temporary)?;
-    files.retain(|file| file.name != Records::FILE);
-    let differ = differences(&files, folder, "follow from the records");
-    verdict.differences.extend(differ);
-    let is_left = |name: &str| name.rsplit('/').next().is_some_and(is_unfinished);
-    let known = files.iter().map(|file| file.name.as_str());
-    let known = known.chain([Records::FILE, RUNS]).collect();
-    verdict.notes = unlisted_files(folder, &known, is_left);
+    batch.place()?;
+    let how = "follow from the records";
+    verdict.differences = differences_from(temporary.path(), folder, how, stop)?;
     if damaged > 0 {
         let damage = format!(
             "{records} has {}, whose runs are recorded once more or not needed",
@@ -194,21 +312,20 @@ fn verify_study(folder: &Path) -> Result<Verdict, VerifyStudyError> {
         );
         verdict.notes.push(damage);
     }
-    let kept = verify_kept(folder, &plan, &results, &mut verdict)?;
     verdict.what = format!(
-        "tables and pictures as its {} give them, {} as they were written",
-        count(again.records.len(), "recorded run"),
-        count(kept, "run folder")
+        "tables and pictures as its {} give them",
+        count(again.records.len(), "recorded run")
     );
-    Ok(verdict)
+    Ok(Some((plan, results)))
 }
 
-/// Verifies the run folders that a study has kept; returns their number.
+/// Verifies the run folders that a study has kept, and looks for those that it lacks if its plan and results are known; returns their
+/// number.
 fn verify_kept(
     folder: &Path,
-    plan: &Plan,
-    results: &StudyResults,
+    derived: Option<&(Plan, StudyResults)>,
     verdict: &mut Verdict,
+    stop: &AtomicBool,
 ) -> Result<usize, VerifyStudyError> {
     let runs = folder.join(RUNS);
     let unreadable = FolderError::read(&runs);
@@ -218,8 +335,11 @@ fn verify_kept(
         Err(error) => return Err(unreadable(error).into()),
     };
     // Of a run that failed the case alone is kept.
-    let done = results.runs.iter().filter(|(_, result)| result.is_ok());
-    let done: HashSet<String> = done.map(|(run, _)| plan.folder_name(*run)).collect();
+    let done = derived.map(|(plan, results)| {
+        let done = results.runs.iter().filter(|(_, result)| result.is_ok());
+        done.map(|(run, _)| plan.folder_name(*run)).collect()
+    });
+    let done: HashSet<String> = done.unwrap_or_default();
     let (mut kept, mut missing) = (0, done.clone());
     for entry in entries.into_iter().flatten() {
         let entry = entry.map_err(&unreadable)?;
@@ -227,7 +347,7 @@ fn verify_kept(
         if !is_done && !entry.path().is_dir() {
             continue;
         }
-        match inspect(&entry.path()).and_then(|run| verify_run(&run)) {
+        match inspect(&entry.path()).and_then(|run| verify_run(&run, stop)) {
             Ok(of_run) => {
                 verdict.differences.extend(of_run.differences);
                 verdict.notes.extend(of_run.notes);
@@ -238,7 +358,8 @@ fn verify_kept(
         }
     }
     // They may have been removed on purpose, or have run before the study was told to keep them.
-    if plan.settings.keep == RetainRuns::All && !missing.is_empty() {
+    let keeps_all = derived.is_some_and(|(plan, _)| plan.settings.keep == RetainRuns::All);
+    if keeps_all && !missing.is_empty() {
         verdict.notes.push(format!(
             "{} of {} not in {}, where the study keeps all",
             missing.len(),
@@ -247,21 +368,4 @@ fn verify_kept(
         ));
     }
     Ok(kept)
-}
-
-/// Every file below a folder, named by its path from there.
-fn files_below(folder: &Path, prefix: &str) -> std::io::Result<Vec<ManifestFile>> {
-    let mut files = Vec::new();
-    for entry in std::fs::read_dir(folder.join(prefix))? {
-        let entry = entry?;
-        let name = Path::new(prefix).join(entry.file_name());
-        let name = name.to_string_lossy().into_owned();
-        if entry.file_type()?.is_dir() {
-            files.extend(files_below(folder, &name)?);
-        } else {
-            files.push(ManifestFile::of(folder, &name)?);
-        }
-    }
-    files.sort_by(|a, b| a.name.cmp(&b.name));
-    Ok(files)
 }

@@ -5,10 +5,9 @@ use std::path::Path;
 
 use png::{BitDepth, ColorType, Decoder, DecodingError, Encoder, EncodingError, Reader, Transformations};
 
-use super::error::{ArrayError, broken, contents_error, extension, unknown_extension};
+use super::error::{ArrayError, broken};
 use super::pixels::limit_pixels;
 use super::slab::Slab;
-use crate::disk::write_atomic;
 
 /// Largest ratio of compression: deflate cannot pack more than about 1030 bytes into one.
 const DEFLATE_MAX_RATIO: u64 = 1040;
@@ -190,32 +189,19 @@ pub(super) fn decoding_error(path: &Path, source: DecodingError) -> ArrayError {
     }
 }
 
-/// Writes a texture as a black and white PNG image: one pixel per block, textured = black.
+/// The bytes of a black and white PNG image of a texture: one pixel per block, textured = black.
 ///
 /// `textured` holds `nx * ny` values in row-major order, row j = 0 (the smallest y) first; the top row of the image is the
 /// largest y. For this lattice [`mask_png`] gives the mask back.
 ///
 /// # Errors
-/// [`ArrayError`] if the name does not end in `.png`, `textured` has another length or the file cannot be written.
-pub fn write_mask_png(path: &Path, nx: usize, ny: usize, textured: &[bool]) -> Result<(), ArrayError> {
-    let ending = extension(path);
-    if ending != "png" {
-        return Err(unknown_extension(path, &ending, ".png"));
-    }
+/// When there is no block, or more along a side than an image can have, or `textured` has another length.
+pub fn png_of_mask(nx: usize, ny: usize, textured: &[bool]) -> io::Result<Vec<u8>> {
     if textured.len() != nx * ny || textured.is_empty() {
-        let found = textured.len();
-        let problem = format!(
-            "has {found} pixels to write where nx * ny = {nx} * {ny} is wanted; hand over one value per block"
-        );
-        return Err(contents_error(path, problem));
+        let sentence = format!("{} blocks are no image of {nx} x {ny} pixels", textured.len());
+        return Err(io::Error::other(sentence));
     }
-    let encoded = encode(nx, ny, textured).map_err(io::Error::other);
-    encoded
-        .and_then(|bytes| write_atomic(path, &bytes))
-        .map_err(|source| ArrayError::Write {
-            path: path.to_owned(),
-            source,
-        })
+    encode(nx, ny, textured).map_err(io::Error::other)
 }
 
 /// The image in memory: one bit per pixel, 1 = white.

@@ -23,7 +23,7 @@ use std::path::Path;
 
 pub use error::{ArrayError, extension};
 pub use height_map::{HeightMap, HeightMapUnits, Room, Roughness, height_map};
-pub use mask::{mask_png, write_mask_png};
+pub use mask::{mask_png, png_of_mask};
 pub use npy::{mask_npy, npy_of_mask};
 pub use slab::Slab;
 pub use table::{reader as table_reader, separator};

@@ -181,7 +181,11 @@ fn what_is_fine_enough_or_not_known_is_not_noted() {
     }
     let folder = tempfile::tempdir().unwrap();
     let mask: Vec<bool> = (0..40 * 40).map(|block| block % 3 == 0).collect();
-    slipfront_case::arrays::write_mask_png(&folder.path().join("mask.png"), 40, 40, &mask).unwrap();
+    std::fs::write(
+        &folder.path().join("mask.png"),
+        slipfront_case::arrays::png_of_mask(40, 40, &mask).unwrap(),
+    )
+    .unwrap();
     let text = "slider.blocks = [40, 40]\n[[texture]]\nshape = 'mask'\nfile = 'mask.png'";
     let masked = Case::parse(text, "case", folder.path(), &[]).unwrap();
     assert_eq!(masked.too_coarse(), None);

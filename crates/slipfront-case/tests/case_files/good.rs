@@ -389,7 +389,11 @@ fn copies_share_the_coverage() {
 fn masks_fill_every_cell() {
     let folder = tempfile::tempdir().unwrap();
     let cell: Vec<bool> = (0..48).map(|b| b % 5 == 0 || b / 8 == 2).collect();
-    slipfront_case::arrays::write_mask_png(&folder.path().join("cell.png"), 8, 6, &cell).unwrap();
+    std::fs::write(
+        &folder.path().join("cell.png"),
+        slipfront_case::arrays::png_of_mask(8, 6, &cell).unwrap(),
+    )
+    .unwrap();
     let case = |pattern: &str| {
         let text =
             format!("slider.blocks = [32, 24]\n[[texture]]\nshape = 'mask'\nfile = 'cell.png'\n{pattern}");

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use serde_json::Value;
 use slipfront::testing::Threads;
 use slipfront_case::arrays::{
-    ArrayError, HeightMap, HeightMapUnits, Room, height_map, limit_length_of_height_map, open, write_mask_png,
+    ArrayError, HeightMap, HeightMapUnits, Room, height_map, limit_length_of_height_map, open, png_of_mask,
 };
 use slipfront_case::case::{Case, Ranks};
 use slipfront_case::case_file::CaseFile;
@@ -693,7 +693,11 @@ fn a_height_map_may_be_finer_than_blocks() {
         said.contains("bytes where 1 rows of 100 numbers take at most"),
         "{said}"
     );
-    write_mask_png(&folder.path().join("mask.png"), 2, 2, &[true; 4]).unwrap();
+    std::fs::write(
+        folder.path().join("mask.png"),
+        png_of_mask(2, 2, &[true; 4]).unwrap(),
+    )
+    .unwrap();
     let mask = text.replace("map.csv", "mask.png");
     let said = Case::parse(&mask, "case", folder.path(), &[])
         .unwrap_err()

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use slipfront::communicator::Communicator;
 use slipfront::testing::Threads;
-use slipfront_case::arrays::write_mask_png;
+use slipfront_case::arrays::png_of_mask;
 use slipfront_case::case::{Case, Files, FilesInMemory, Ranks};
 use slipfront_case::case_file::{CaseError, CaseFile};
 use test_case::{test_case, test_matrix};
@@ -51,7 +51,7 @@ fn write_inputs(folder: &Path) {
         "mask.npy",
         npy("|b1", "False", textured.iter().map(|t| u8::from(*t)).collect()),
     );
-    write_mask_png(&folder.join("mask.png"), NX, NY, &textured).unwrap();
+    std::fs::write(&folder.join("mask.png"), png_of_mask(NX, NY, &textured).unwrap()).unwrap();
     write(
         "cut.png",
         std::fs::read(folder.join("mask.png")).unwrap()[..60].to_vec(),

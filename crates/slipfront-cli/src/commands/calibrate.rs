@@ -36,6 +36,9 @@ pub(crate) struct CalibrateCommand {
     /// Folder that keeps training runs, which calibrations of other records then have in common [default: that of the results]
     #[arg(long, value_name = "DIR")]
     training: Option<PathBuf>,
+    /// Replace files of the results that were edited since they were written, and files of others in their places
+    #[arg(long)]
+    force: bool,
     /// Most runs at once [default: one per core]; results do not depend on it
     #[arg(long, value_name = "N", value_parser = count_from_one)]
     threads: Option<u16>,
@@ -52,7 +55,8 @@ impl CalibrateCommand {
         file.check_memory(&self.records, threads)
             .map_err(Failure::input)?;
         let out = self.out.unwrap_or_else(|| Path::new("results").join(&file.name));
-        let folder = CalibrationFolder::open(&out, self.training.as_deref(), &file, &self.records);
+        let training = self.training.as_deref();
+        let folder = CalibrationFolder::open(&out, training, &file, &self.records, self.force);
         let mut folder = folder.map_err(Failure::input)?;
         let signals = Signals::catch().map_err(Failure::running)?;
         if !self.quiet {

@@ -7,7 +7,7 @@ use jiff::SignedDuration;
 use slipfront_study::converge::{MAX_LEVELS, MIN_LEVELS, MeshStudy, text, write};
 use slipfront_study::{CostLimits, StudyFolder};
 
-use super::study::run_all;
+use super::study::{run_all, study_failure};
 use crate::case_args::CaseArgs;
 use crate::failure::Failure;
 use crate::print::print_message;
@@ -37,6 +37,9 @@ pub(crate) struct ConvergeCommand {
     /// Surfaces of each mesh [default: 5 if coefficients scatter, else 1]
     #[arg(long, value_name = "N", value_parser = count_from_one)]
     replicates: Option<u16>,
+    /// Replace files of the results that were edited since they were written, and files of others in their places
+    #[arg(long)]
+    force: bool,
     /// Most runs at once [default: one per core]; results do not depend on it
     #[arg(long, value_name = "N", value_parser = count_from_one)]
     threads: Option<u16>,
@@ -65,11 +68,12 @@ impl ConvergeCommand {
         };
         limits.check(&plan, threads).map_err(Failure::input)?;
         let out = self.out.unwrap_or_else(|| Path::new("results").join(&file.name));
-        let folder = StudyFolder::open(&out, &file).map_err(Failure::input)?;
+        let folder = StudyFolder::open(&out, &file, self.force).map_err(Failure::input)?;
         folder.check_disk(&plan).map_err(Failure::input)?;
         let plan = plan.reading_copies(&folder.study);
         let results = run_all(&plan, &folder, &signals, self.quiet)?;
-        let found = write(&plan, &results, &folder).map_err(Failure::running)?;
+        let found = write(&plan, &results, &folder, &signals.stop);
+        let found = found.map_err(|error| study_failure(&signals, error))?;
         if !self.quiet {
             print_message(&text(&plan, &found, stdout_columns()));
         }

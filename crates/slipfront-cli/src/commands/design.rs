@@ -39,6 +39,9 @@ pub(crate) struct DesignCommand {
     /// Cuts the search short after this time, such as 60s or 10min; what is found then depends on the speed of this machine
     #[arg(long, value_name = "TIME")]
     time: Option<SignedDuration>,
+    /// Replace files of the results that were edited since they were written, and files of others in their places
+    #[arg(long)]
+    force: bool,
     /// Most runs at once [default: one per core]; results do not depend on it
     #[arg(long, value_name = "N", value_parser = count_from_one)]
     threads: Option<u16>,
@@ -56,7 +59,7 @@ impl DesignCommand {
         file.check(runs, threads, self.time.is_some())
             .map_err(Failure::input)?;
         let out = self.out.unwrap_or_else(|| Path::new("results").join(&file.name));
-        let mut folder = DesignFolder::open(&out, &file).map_err(Failure::input)?;
+        let mut folder = DesignFolder::open(&out, &file, self.force).map_err(Failure::input)?;
         let signals = Signals::catch().map_err(Failure::running)?;
         let began = Instant::now();
         let most = self.time.map(|time| time.as_secs_f64());
@@ -65,6 +68,7 @@ impl DesignCommand {
             runs,
             share_of_time: &share_of_time,
             stop: &signals.stop,
+            cuts: &[],
         };
         if !self.quiet {
             print_notes(&folder);

@@ -6,6 +6,7 @@ use clap::Args;
 use slipfront_case::disk::{is_empty, make_folders};
 use slipfront_case::number_format::are;
 use slipfront_paper::PaperOptions;
+use slipfront_study::result_files::ResultFiles;
 use slipfront_study::{Records, is_study};
 
 use crate::failure::Failure;
@@ -29,6 +30,9 @@ pub(crate) struct PaperCommand {
     /// Folder for the results; what an earlier call there has finished is not run again
     #[arg(short, long, value_name = "DIR", default_value = "results/paper")]
     out: PathBuf,
+    /// Replace files of the results that were edited since they were written, and files of others in their places
+    #[arg(long)]
+    force: bool,
     /// Most runs at once [default: one per core]; results do not depend on it
     #[arg(long, value_name = "N", value_parser = count_from_one)]
     threads: Option<u16>,
@@ -51,6 +55,8 @@ impl PaperCommand {
             refuse_foreign(docs)?;
         }
         let records = open(&self.out)?;
+        let files = ResultFiles::new(&self.out, "paper", self.force);
+        files.expect_unedited().map_err(Failure::input)?;
         let signals = Signals::catch().map_err(Failure::running)?;
         let options = PaperOptions {
             threads,
@@ -70,7 +76,7 @@ impl PaperCommand {
                 Failure::running(error)
             }
         })?;
-        slipfront_paper::write(&paper, &self.out).map_err(Failure::running)?;
+        slipfront_paper::write(&paper, &files).map_err(Failure::running)?;
         if let Some(docs) = &self.docs {
             slipfront_paper::write_docs(&paper, docs).map_err(Failure::running)?;
         }

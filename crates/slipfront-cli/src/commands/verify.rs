@@ -9,6 +9,7 @@ use slipfront_case::case::{Case, Ranks};
 use slipfront_case::number_format::count;
 use slipfront_case::text::truncated;
 use slipfront_case::unfinished::TemporaryFolder;
+use slipfront_paper::verify as verify_paper;
 use slipfront_run::clock;
 use slipfront_run::manifest::Manifest;
 use slipfront_run::pictures;
@@ -19,7 +20,8 @@ use slipfront_run::run_folder::RunFolder;
 use slipfront_run::run_folder::inspection::{CaseDefect, Inspection};
 use slipfront_run::running::Running;
 use slipfront_run::verify::{Verdict, VerifyError, differences, inspect, verify_run};
-use slipfront_study::verify::{has_records, verify};
+use slipfront_study::is_of_figures;
+use slipfront_study::verify::{Extent, has_records, verify};
 
 use crate::failure::Failure;
 use crate::make_case::make_case;
@@ -31,24 +33,29 @@ use crate::signals::Signals;
 use crate::threads::{count_from_one, set_threads};
 use crate::wrap;
 
-/// Check that results are what was written: every file of a run against its manifest, a study against its records
+/// Check that results are what was written: every file against its checksum, and results of many runs against the recorded runs
 #[derive(Args)]
 #[command(after_help = "Examples:
   slipfront verify results/baseline
   slipfront verify results/*
-  slipfront verify --rerun results/baseline   runs its case again and compares every file
+  slipfront verify --checksums results/design   compares files with their checksums alone
+  slipfront verify --rerun results/baseline     runs its case again and compares every file
 
-Folders that hold pictures alone, as `slipfront plot` writes them, are passed over.
+Tables, pictures and masks of studies, convergences, designs, calibrations and of the paper are derived again from the runs that their
+folders record. Folders that hold pictures alone, as `slipfront plot` writes them, are passed over.
 
-Exit status 0 says that all is well, 1 that something differs, 2 that a folder is not one of a run or a study.")]
+Exit status 0 says that all is well, 1 that something differs or could not be derived again, 2 that a folder is not one of these.")]
 pub(crate) struct VerifyCommand {
-    /// Folders of runs or studies
+    /// Folders of results
     #[arg(required = true, value_name = "DIR")]
     folders: Vec<PathBuf>,
     /// Run the case of each run folder again, in the folder for temporary files (TMPDIR), and compare every file but the
     /// manifest
-    #[arg(long)]
+    #[arg(long, conflicts_with = "checksums")]
     rerun: bool,
+    /// Compare files with their checksums, and derive nothing again
+    #[arg(long)]
+    checksums: bool,
     /// Most threads to use [default: one per core]; results do not depend on it
     #[arg(long, value_name = "N", value_parser = count_from_one)]
     threads: Option<u16>,
@@ -60,13 +67,9 @@ pub(crate) struct VerifyCommand {
 impl VerifyCommand {
     pub(crate) fn execute(self) -> Result<(), Failure> {
         set_threads(self.threads)?;
-        // A signal ends the repeated run and not the process, so that nothing of it is left behind.
-        let signals = self
-            .rerun
-            .then(Signals::catch)
-            .transpose()
-            .map_err(Failure::running)?;
-        let (mut different, mut unusable, mut pictures) = (0, 0, 0);
+        // A signal ends the work and not the process, so that nothing of it is left in the folder for temporary files.
+        let signals = Signals::catch().map_err(Failure::running)?;
+        let (mut different, mut unusable, mut pictures, mut not_derived) = (0, 0, 0, 0);
         for folder in &self.folders {
             if holds_pictures_alone(folder) {
                 pictures += 1;
@@ -80,8 +83,10 @@ impl VerifyCommand {
                 continue;
             }
             let mut verdict = Verdict::default();
-            let looked_at = self.look_at(folder, signals.as_ref(), &mut verdict);
+            let looked_at = self.look_at(folder, &signals, &mut verdict);
+            Failure::if_stopped(&signals)?;
             different += usize::from(!verdict.differences.is_empty());
+            not_derived += usize::from(verdict.not_derived.is_some() && !self.checksums);
             print(&self.report(folder, &verdict, looked_at.is_ok()))?;
             match looked_at {
                 Ok(()) => {}
@@ -99,6 +104,10 @@ impl VerifyCommand {
             (0, 0) if pictures == self.folders.len() => Err(Failure::input(anyhow::anyhow!(
                 "there is nothing to verify: name folders of runs or studies"
             ))),
+            (0, 0) if not_derived > 0 => Err(Failure::running(anyhow::anyhow!(
+                "{not_derived} {of_all} {} as written, and could not be derived again: --checksums asks for no more",
+                if not_derived == 1 { "is" } else { "are" }
+            ))),
             (0, 0) => Ok(()),
             (0, _) => Err(Failure::running(anyhow::anyhow!(
                 "{different} {of_all} {differ} from what was written"
@@ -109,19 +118,28 @@ impl VerifyCommand {
         }
     }
 
-    fn look_at(&self, folder: &Path, rerun: Option<&Signals>, verdict: &mut Verdict) -> Result<(), Failure> {
-        if rerun.is_some() && has_records(folder) {
+    fn look_at(&self, folder: &Path, signals: &Signals, verdict: &mut Verdict) -> Result<(), Failure> {
+        if self.rerun && has_records(folder) {
             return Err(Failure::input(anyhow::anyhow!(
                 "{} is the folder of a study: --rerun repeats single runs, such as those in its folder runs/",
                 folder.display()
             )));
         }
-        let Some(signals) = rerun else {
-            *verdict = verify(folder).map_err(Failure::input)?;
+        if !self.rerun {
+            let extent = if self.checksums {
+                Extent::Checksums
+            } else {
+                Extent::Derived
+            };
+            *verdict = if is_of_figures(folder) {
+                verify_paper(folder, extent, &signals.stop).map_err(Failure::input)?
+            } else {
+                verify(folder, extent, &signals.stop).map_err(Failure::input)?
+            };
             return Ok(());
-        };
+        }
         let run = inspect(folder).map_err(Failure::input)?;
-        *verdict = verify_run(&run).map_err(Failure::input)?;
+        *verdict = verify_run(&run, &signals.stop).map_err(Failure::input)?;
         self.repeat(&run, signals, verdict)
     }
 
@@ -177,7 +195,7 @@ impl VerifyCommand {
         let now = complete_as(before, &case, made, started).map_err(Failure::running)?;
         verdict
             .differences
-            .extend(differences(&now.files, folder, "are written now"));
+            .extend(differences(&now.files, folder, "are written now", &signals.stop));
         if let Some(before) = before {
             verdict
                 .differences
@@ -210,7 +228,8 @@ impl VerifyCommand {
         if complete && verdict.differences.is_empty() {
             text += &format!("{}: {}\n", folder.display(), verdict.what);
         }
-        for note in &verdict.notes {
+        let not_derived = verdict.not_derived.iter().filter(|_| !self.checksums);
+        for note in verdict.notes.iter().chain(not_derived) {
             text += &wrap::note(note);
         }
         text

@@ -53,7 +53,9 @@ fn a_page_that_goes_ends_no_save() {
     );
     let run = slipfront_run::verify::inspect(&folder).unwrap();
     assert_eq!(
-        slipfront_run::verify::verify_run(&run).unwrap().differences,
+        slipfront_run::verify::verify_run(&run, &std::sync::atomic::AtomicBool::new(false))
+            .unwrap()
+            .differences,
         [""; 0]
     );
 }

@@ -1,5 +1,6 @@
 //! Writes the results folder and the page of `docs/validation`.
 
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
@@ -13,34 +14,42 @@ use crate::paper::Paper;
 use slipfront_case::disk::{begins_with, make_folders, write_atomic};
 use slipfront_plot::Picture;
 use slipfront_run::folder_error::FolderError;
+use slipfront_study::result_files::{Batch, ResultFiles};
 
 /// Writes pictures, tables and the report to a folder.
 ///
 /// # Errors
-/// When a picture cannot be drawn or a file not be written.
-pub fn write(paper: &Paper, folder: &Path) -> Result<(), PaperError> {
+/// When a picture cannot be drawn, a file not be written, or one in its place was edited.
+pub fn write(paper: &Paper, files: &ResultFiles) -> Result<(), PaperError> {
     let figures = paper.figures.par_iter();
-    let drawn: Vec<Vec<Picture>> = figures
-        .map(|(_, data)| write_figure(data, folder))
-        .collect::<Result<_, _>>()?;
-    write_file(folder, "claims.csv", &claims_csv(paper)?)?;
-    write_file(folder, "numbers.csv", &numbers_csv(paper)?)?;
-    write_file(folder, "report.html", html::page(paper, &drawn).as_bytes())
+    let drawn: Vec<Vec<Picture>> = figures.map(|(_, data)| draw(data)).collect::<Result<_, _>>()?;
+    let mut batch = files.begin();
+    for ((_, data), pictures) in paper.figures.iter().zip(&drawn) {
+        write_figure(data, pictures, &mut batch)?;
+    }
+    let report = html::page(paper, &drawn);
+    for (name, bytes) in [
+        ("claims.csv", claims_csv(paper)?),
+        ("numbers.csv", numbers_csv(paper)?),
+        ("report.html", report.into_bytes()),
+    ] {
+        batch.write(name, |to| to.write_all(&bytes))?;
+    }
+    Ok(batch.place()?)
 }
 
-/// Writes the pictures and tables of a figure, and returns the pictures.
-fn write_figure(data: &FigureData, folder: &Path) -> Result<Vec<Picture>, PaperError> {
-    let pictures = draw(data)?;
-    for (Panel { name, drawing, .. }, picture) in data.panels.iter().zip(&pictures) {
-        write_file(folder, &format!("{name}.svg"), picture.svg.as_bytes())?;
-        write_file(folder, &format!("{name}.png"), &picture.png)?;
-        write_file(folder, &format!("{name}.csv"), &drawing.csv()?)?;
+/// Writes the pictures and tables of a figure.
+fn write_figure(data: &FigureData, pictures: &[Picture], batch: &mut Batch) -> Result<(), PaperError> {
+    for (Panel { name, drawing, .. }, picture) in data.panels.iter().zip(pictures) {
+        batch.write_picture(name, picture)?;
+        let table = drawing.csv()?;
+        batch.write(&format!("{name}.csv"), |to| to.write_all(&table))?;
     }
     for table in &data.tables {
-        let rows = [&table.header].into_iter().chain(&table.rows);
-        write_file(folder, &format!("{}.csv", table.name), &csv(rows)?)?;
+        let rows = csv([&table.header].into_iter().chain(&table.rows))?;
+        batch.write(&format!("{}.csv", table.name), |to| to.write_all(&rows))?;
     }
-    Ok(pictures)
+    Ok(())
 }
 
 fn draw(data: &FigureData) -> Result<Vec<Picture>, PaperError> {

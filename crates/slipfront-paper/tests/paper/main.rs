@@ -3,10 +3,13 @@
 mod family;
 
 use std::collections::BTreeMap;
+use std::io::Write;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use slipfront_paper::{ClaimVerdict, FIGURES, Paper, PaperOptions};
+use slipfront_study::result_files::ResultFiles;
+use slipfront_study::verify::Extent;
 use slipfront_study::{Records, StudyError};
 
 fn options<'a>(folder: &'a Path, stop: &'a AtomicBool) -> PaperOptions<'a> {
@@ -29,6 +32,27 @@ fn run(names: &[&str], folder: &Path, stop: &AtomicBool) -> Result<Paper, slipfr
     )
 }
 
+/// A folder of figures is as it was written and as its data give it, until a file or the data are spoilt.
+fn verified(folder: &Path) {
+    let verify = |extent| slipfront_paper::verify(folder, extent, &AtomicBool::new(false)).unwrap();
+    let whole = verify(Extent::Derived);
+    assert_eq!((whole.differences, whole.not_derived), (Vec::new(), None));
+    // A list that fits a spoilt file is seen by what the data give.
+    let mut spoilt = ResultFiles::new(folder, "paper", true).begin();
+    spoilt.write("claims.csv", |to| to.write_all(b"spoilt")).unwrap();
+    spoilt.place_so_far().unwrap();
+    assert!(verify(Extent::Checksums).differences.is_empty());
+    let differences = verify(Extent::Derived).differences;
+    assert_eq!(differences.len(), 1);
+    assert!(differences[0].contains("claims.csv"), "{differences:?}");
+    std::fs::write(folder.join("numbers.csv"), "spoilt").unwrap();
+    let differences = verify(Extent::Checksums).differences;
+    assert!(
+        differences.len() == 1 && differences[0].contains("numbers.csv"),
+        "{differences:?}"
+    );
+}
+
 #[test]
 fn every_verdict_is_the_expected_one_and_the_documentation_tells_it() {
     let folder = tempfile::tempdir().unwrap();
@@ -48,7 +72,7 @@ fn every_verdict_is_the_expected_one_and_the_documentation_tells_it() {
     assert!(unexpected_verdicts.is_empty(), "{unexpected_verdicts:#?}");
     assert!(paper.results.len() >= 60);
 
-    slipfront_paper::write(&paper, folder.path()).unwrap();
+    slipfront_paper::write(&paper, &ResultFiles::new(folder.path(), "paper", false)).unwrap();
     let report = std::fs::read_to_string(folder.path().join("report.html")).unwrap();
     assert!(report.contains("Every figure and claim of <cite>"));
     let pictures: usize = paper.figures.iter().map(|(_, found)| found.panels.len()).sum();
@@ -66,6 +90,8 @@ fn every_verdict_is_the_expected_one_and_the_documentation_tells_it() {
             }
         }
     }
+
+    verified(folder.path());
 
     // docs/validation/paper.md is a full run's: its claims, criteria and verdicts are these.
     let page = slipfront_paper::docs_page(&paper);

@@ -8,6 +8,7 @@ mod ro_crate;
 
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
+use std::sync::atomic::AtomicBool;
 
 use slipfront_case::case_file::CaseFile;
 use slipfront_case::disk::{
@@ -106,7 +107,11 @@ impl WholeRun {
     /// [`ExportError::Run`] for a folder without a complete run, [`ExportError::Changed`] when a file has changed.
     pub fn read(folder: &Path) -> Result<Self, ExportError> {
         let run = inspect(folder)?;
-        if let Some(difference) = verify_run(&run)?.differences.into_iter().next() {
+        if let Some(difference) = verify_run(&run, &AtomicBool::new(false))?
+            .differences
+            .into_iter()
+            .next()
+        {
             return Err(ExportError::Changed { difference });
         }
         let manifest = run.manifest().map_err(VerifyError::from)?.clone();
@@ -152,7 +157,10 @@ impl WholeRun {
             });
             copied.map_err(|source| ExportError::Write { path, source })?;
         }
-        match differences(self.files(), to, "were copied").into_iter().next() {
+        match differences(self.files(), to, "were copied", &AtomicBool::new(false))
+            .into_iter()
+            .next()
+        {
             Some(difference) => Err(ExportError::Changed { difference }),
             None => Ok(()),
         }

@@ -301,7 +301,7 @@ impl RunFolder {
         let mut original = input.open().map_err(failed)?;
         let file = write_temp(&self.temporary(), |to| std::io::copy(&mut original, to).map(drop));
         let file = file.map_err(failed)?;
-        let copied = hash_temp(&file, &input.name).map_err(FolderError::write(&path))?;
+        let copied = ManifestFile::of_copy(&input.name, &file).map_err(FolderError::write(&path))?;
         if copied != ManifestFile::of_input(input) {
             let path = input.original.clone();
             return Err(FolderError::InputChanged { path });
@@ -312,7 +312,7 @@ impl RunFolder {
     /// Makes a finished temporary file a file of the run: it is listed in the journal, and then takes its name, where no
     /// foreign file stands in its place.
     pub fn place(&mut self, name: &str, file: TempPath) -> Result<(), FolderError> {
-        let listed = hash_temp(&file, name).map_err(FolderError::write(&self.path.join(name)))?;
+        let listed = ManifestFile::of_copy(name, &file).map_err(FolderError::write(&self.path.join(name)))?;
         self.place_listed(listed, file)
     }
 
@@ -378,15 +378,6 @@ impl RunFolder {
         // The run is complete whether it can be removed or not.
         let _ = self.unfinished.remove();
     }
-}
-
-/// Entry of a temporary file under the given name.
-fn hash_temp(file: &Path, name: &str) -> std::io::Result<ManifestFile> {
-    let mut hasher = blake3::Hasher::new();
-    Ok(ManifestFile::hashed(
-        name,
-        hasher.update_reader(File::open(file)?)?,
-    ))
 }
 
 /// Whether a path leads to a folder.

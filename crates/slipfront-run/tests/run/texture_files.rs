@@ -324,7 +324,11 @@ const SHAPES: &[&str] = &[
 fn outlines_fill_the_blocks_of_the_mask(slider: &str, shapes: &[&str]) {
     let folder = tempfile::tempdir().unwrap();
     let mask: Vec<bool> = (0..30).map(|b| b % 7 < 2 || b == 12).collect();
-    slipfront_case::arrays::write_mask_png(&folder.path().join("mask.png"), 6, 5, &mask).unwrap();
+    std::fs::write(
+        &folder.path().join("mask.png"),
+        slipfront_case::arrays::png_of_mask(6, 5, &mask).unwrap(),
+    )
+    .unwrap();
     for shape in shapes {
         let text = format!("{slider}{shape}");
         let case = Case::parse(&text, "case", folder.path(), &[]).unwrap();

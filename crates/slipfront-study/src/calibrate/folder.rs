@@ -2,11 +2,11 @@
 
 use std::collections::{BTreeMap, HashMap};
 use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::{Path, PathBuf, absolute};
 use std::sync::atomic::AtomicBool;
 
 use serde::{Deserialize, Serialize};
-use slipfront_case::disk::{TEXT_MAX_BYTES, is_empty, make_folders, read_limited};
+use slipfront_case::disk::{TEXT_MAX_BYTES, is_empty, is_same, make_folders, read_limited};
 use slipfront_run::folder_error::FolderError;
 
 use super::calibration::{Calibration, Estimate};
@@ -14,16 +14,16 @@ use super::file::{CalibrationFile, CalibrationKeys, GivenRecord};
 use super::findings::{Findings, Further, OnFinerBlocks, Told, ToldTogether};
 use super::grid::Grid;
 use super::predicted::{PREDICTED, bands};
-use super::report::{FOUND, Report};
+use super::report::Report;
 use super::set_up::{Curves, SetUp};
 use super::training::{Training, TrainingRun};
 use crate::error::StudyError;
-use crate::files_in_folder::{copy_in, write_in};
 use crate::journal::Journal;
 use crate::record::to_line;
+use crate::result_files::{Others, ResultFiles};
 
 /// The calibration file in the folder, with the base case as a table in it.
-const CALIBRATION: &str = "calibration.toml";
+pub(crate) const CALIBRATION: &str = "calibration.toml";
 
 /// The journal: a line for every training run.
 pub(crate) const TRAINING: &str = "training.jsonl";
@@ -36,7 +36,7 @@ const SAMPLE: usize = 400;
 
 /// A line of the journal.
 #[derive(Serialize, Deserialize)]
-struct KeptRun {
+pub(crate) struct CalibrationRun {
     /// Identity of the set-up.
     id: String,
     #[serde(flatten)]
@@ -110,6 +110,7 @@ impl Calibrated {
 #[derive(Debug)]
 pub struct CalibrationFolder {
     path: PathBuf,
+    files: ResultFiles,
     /// Journal of the folder, which keeps other processes out, and holds training runs unless another folder has them.
     journal: Journal,
     /// Training runs that several calibrations share.
@@ -127,13 +128,16 @@ pub fn is_calibration(folder: &Path) -> bool {
     folder.join(CALIBRATION).exists() && folder.join(TRAINING).exists()
 }
 
-/// Whether a calibration in the folder was finished.
-pub(crate) fn is_finished(folder: &Path) -> bool {
-    folder.join(FOUND[0]).exists()
+/// Whether two paths, which need not exist yet, are those of one folder.
+fn is_same_place(one: &Path, other: &Path) -> bool {
+    let are_equal = || matches!((absolute(one), absolute(other)), (Ok(one), Ok(other)) if one == other);
+    is_same(one, other) || are_equal()
 }
 
-/// Opens a journal of training runs; returns it, the runs in it, and the number of its damaged lines.
-fn open_journal(folder: &Path) -> Result<(Journal, Vec<KeptRun>, usize), StudyError> {
+/// Opens the journal of training runs in a folder, which is made where it is missing; returns it, the runs in it, and the number of
+/// its damaged lines.
+fn open_journal(folder: &Path) -> Result<(Journal, Vec<CalibrationRun>, usize), StudyError> {
+    make_folders(folder).map_err(FolderError::unwritable(folder))?;
     Journal::open(folder, TRAINING).map_err(|error| match error {
         StudyError::NotRecords { path } => FolderError::Foreign { path }.into(),
         error => error,
@@ -144,25 +148,40 @@ impl CalibrationFolder {
     /// Opens a results folder: a new one, an empty one, or one of an earlier call for these records that no other process works in. Training
     /// runs are kept in it, or in the folder `training`.
     ///
-    /// # Errors When the records cannot be read, or the ranges leave the bounds of the case: then nothing is written. When
-    /// the folder holds other files, another process works in it, or it cannot be written to.
+    /// # Errors
+    /// When the records cannot be read, or the ranges leave the bounds of the case: then nothing is written. When the folder holds other
+    /// files, or some that were edited since they were written and may not be replaced by `force`; when another process works in it, or
+    /// it cannot be written to.
     pub fn open(
         path: &Path,
         training: Option<&Path>,
         file: &CalibrationFile,
         records: &[PathBuf],
+        force: bool,
     ) -> Result<Self, StudyError> {
+        if let Some(training) = training
+            && is_same_place(path, training)
+        {
+            let path = training.to_owned();
+            return Err(StudyError::TrainingInResults { path });
+        }
         let given = file.read(records)?;
         file.set_up(&given)?;
-        make_folders(path).map_err(FolderError::unwritable(path))?;
         let used = path.join(TRAINING).exists();
-        if !used && !is_empty(path).map_err(FolderError::unwritable(path))? {
+        let is_free = || Ok(!path.exists() || is_empty(path)?);
+        if !used && !is_free().map_err(FolderError::unwritable(path))? {
             return Err(StudyError::OtherThings {
                 what: "calibration",
                 path: path.to_owned(),
             });
         }
-        let (journal, mut kept, mut damaged) = open_journal(path)?;
+        // A folder that another process works in is met before a new one is made.
+        let own = used.then(|| open_journal(path)).transpose()?;
+        let shared = training.map(open_journal).transpose()?;
+        let (journal, mut kept, mut damaged) = match own {
+            Some(own) => own,
+            None => open_journal(path)?,
+        };
         let (text, copies) = file.portable()?;
         let contents = contents(records)?;
         for (name, bytes) in contents
@@ -177,25 +196,25 @@ impl CalibrationFolder {
                 });
             }
         }
-        copy_in(path, &copies)?;
+        let mut given = ResultFiles::new(path, "calibration", force).begin();
+        given.copy_all(&copies)?;
         for (name, bytes) in &contents {
-            write_in(path, name, |to| to.write_all(bytes))?;
+            given.write(name, |to| to.write_all(bytes))?;
         }
-        write_in(path, CALIBRATION, |to| to.write_all(text.as_bytes()))?;
-        let mut shared = None;
-        if let Some(training) = training {
-            make_folders(training).map_err(FolderError::unwritable(training))?;
-            let (journal, more, more_damaged) = open_journal(training)?;
-            shared = Some(journal);
+        given.write(CALIBRATION, |to| to.write_all(text.as_bytes()))?;
+        let files = given.place_given(Others::Stay)?;
+        let shared = shared.map(|(journal, more, more_damaged)| {
             damaged += more_damaged;
             kept.extend(more);
-        }
+            journal
+        });
         let name = path.join(CALIBRATION).display().to_string();
         let file = CalibrationFile::parse(&text, &name, &file.name, path)?;
         let names: Vec<PathBuf> = contents.iter().map(|(name, _)| path.join(name)).collect();
         let records = file.read(&names)?;
         Ok(Self {
             path: path.to_owned(),
+            files,
             journal,
             shared,
             known: kept
@@ -224,7 +243,7 @@ impl CalibrationFolder {
         }
         let records: Vec<PathBuf> = records.into_values().collect();
         file.check_memory(&records, rayon::current_num_threads())?;
-        Self::open(other, None, &file, &records)
+        Self::open(other, None, &file, &records, false)
     }
 
     /// Path of the folder.
@@ -293,12 +312,15 @@ impl CalibrationFolder {
             next,
             version: env!("CARGO_PKG_VERSION"),
         };
-        let report = Report {
-            path: &self.path,
+        let mut batch = self.files.begin();
+        let mut report = Report {
+            batch: &mut batch,
             set_up: &set_up,
             findings: &findings,
         };
-        report.write(&told.curves, &bands, &sample(SAMPLE))
+        let text = report.write(&told.curves, &bands, &sample(SAMPLE))?;
+        batch.place()?;
+        Ok(text)
     }
 
     /// Trains with each of the further experiments beside the records, and returns how much narrower the intervals are.
@@ -364,7 +386,7 @@ impl CalibrationFolder {
             let lines: Vec<u8> = made
                 .iter()
                 .flat_map(|run| {
-                    to_line(&KeptRun {
+                    to_line(&CalibrationRun {
                         id: id.clone(),
                         run: run.clone(),
                     })

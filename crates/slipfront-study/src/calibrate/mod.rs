@@ -27,11 +27,12 @@ mod unknowns;
 
 pub use calibration::{Calibration, Estimate, Pair};
 pub use file::{CalibrationFile, CalibrationKeys};
+pub(crate) use folder::{CALIBRATION, CalibrationRun, TRAINING};
 pub use folder::{CalibrationFolder, CalibrationProgress, CalibrationStage, is_calibration};
-pub(crate) use folder::{TRAINING, is_finished};
 pub use grid::Grid;
 pub use intervals::Distribution;
 pub use misfit::Misfit;
+pub(crate) use report::FOUND;
 pub use set_up::{Conditions, Curves, SetUp, TrainingError};
 pub use training::{KeepRuns, Training, TrainingRun};
 pub use unknowns::{Unknown, UnknownError, design_point};

@@ -1,7 +1,6 @@
 //! Results of a calibration: numbers, tables, a case that runs, pictures, and a text for a person.
 
 use std::io::Write;
-use std::path::Path;
 
 use slipfront_case::number_format::{count, four_digits, in_print, si_prefix};
 use slipfront_case::text::{COLUMNS, wrapped};
@@ -13,19 +12,19 @@ use super::findings::{Findings, OnFinerBlocks, Told};
 use super::predicted::{Band, PREDICTED};
 use super::set_up::{Conditions, SetUp};
 use crate::error::StudyError;
-use crate::files_in_folder::{write_in, write_picture};
+use crate::result_files::Batch;
 use crate::text_table::table;
 
 /// The findings, as numbers and as a text.
-pub(super) const FOUND: [&str; 2] = ["calibration.json", "calibration.txt"];
+pub(crate) const FOUND: [&str; 2] = ["calibration.json", "calibration.txt"];
 
 /// Points that are drawn from the joint estimate of all unknowns, a row each.
 const POSTERIOR: &str = "posterior.csv";
 
 /// Writer of the results of a calibration.
 pub(super) struct Report<'a> {
-    /// The results folder.
-    pub(super) path: &'a Path,
+    /// Files of the results.
+    pub(super) batch: &'a mut Batch,
     pub(super) set_up: &'a SetUp,
     pub(super) findings: &'a Findings,
 }
@@ -33,25 +32,27 @@ pub(super) struct Report<'a> {
 impl Report<'_> {
     /// Writes the findings for these records, and returns them as a text.
     pub(super) fn write(
-        &self,
+        &mut self,
         records: &[Vec<f64>],
         bands: &[Band],
         sample: &[Vec<f64>],
     ) -> Result<String, StudyError> {
         let [numbers, words] = FOUND;
-        write_in(self.path, numbers, |to| {
-            Ok(serde_json::to_writer_pretty(to, self.findings)?)
-        })?;
-        write_in(self.path, POSTERIOR, |to| Ok(self.write_sample(sample, to)?))?;
+        let findings = self.findings;
+        self.batch
+            .write(numbers, |to| Ok(serde_json::to_writer_pretty(to, findings)?))?;
+        let set_up = self.set_up;
+        self.batch
+            .write(POSTERIOR, |to| Ok(write_sample(set_up, sample, to)?))?;
         for (number, ((record, band), conditions)) in
             records.iter().zip(bands).zip(&self.set_up.conditions).enumerate()
         {
             self.write_record(number + 1, record, band, conditions)?;
         }
         let case = self.case()?;
-        write_in(self.path, CASE, |to| to.write_all(case.as_bytes()))?;
+        self.batch.write(CASE, |to| to.write_all(case.as_bytes()))?;
         let text = in_words(self.findings);
-        write_in(self.path, words, |to| to.write_all(text.as_bytes()))?;
+        self.batch.write(words, |to| to.write_all(text.as_bytes()))?;
         Ok(text)
     }
 
@@ -69,24 +70,9 @@ impl Report<'_> {
         Ok(self.set_up.base.parse()?.with(&set)?.to_toml()?)
     }
 
-    /// Writes a row for every point, in the units of the unknowns.
-    fn write_sample(&self, sample: &[Vec<f64>], to: &mut impl Write) -> Result<(), csv::Error> {
-        let unknowns = &self.set_up.unknowns;
-        let mut table = csv::Writer::from_writer(to);
-        table.write_record(unknowns.iter().map(|unknown| match unknown.unit() {
-            Some(unit) => format!("{} ({unit})", unknown.key()),
-            None => unknown.key().to_owned(),
-        }))?;
-        for point in sample {
-            let values = unknowns.iter().zip(point);
-            table.write_record(values.map(|(unknown, &share)| unknown.at(share).to_string()))?;
-        }
-        Ok(table.flush()?)
-    }
-
     /// A record and the band of the calibrated model, as a table and as a picture.
     fn write_record(
-        &self,
+        &mut self,
         number: usize,
         record: &[f64],
         band: &Band,
@@ -96,7 +82,7 @@ impl Report<'_> {
         let places = grid.places();
         let name = format!("band-{number}");
         let [x_name, y_name] = [grid.along(), grid.friction()].map(|measure| title(measure, measure.unit()));
-        write_in(self.path, &format!("{name}.csv"), |to| {
+        self.batch.write(&format!("{name}.csv"), |to| {
             let mut table = csv::Writer::from_writer(to);
             table.write_record([&x_name, &y_name, "model 5 %", "model median", "model 95 %"])?;
             for (k, x) in places.iter().enumerate() {
@@ -106,8 +92,24 @@ impl Report<'_> {
             table.flush()
         })?;
         let picture = picture(&places, record, band, [grid.along(), grid.friction()]);
-        write_picture(self.path, &name, &picture.map_err(StudyError::picture(&name))?)
+        self.batch
+            .write_picture(&name, &picture.map_err(StudyError::picture(&name))?)
     }
+}
+
+/// Writes a row for every point, in the units of the unknowns.
+fn write_sample(set_up: &SetUp, sample: &[Vec<f64>], to: &mut impl Write) -> Result<(), csv::Error> {
+    let unknowns = &set_up.unknowns;
+    let mut table = csv::Writer::from_writer(to);
+    table.write_record(unknowns.iter().map(|unknown| match unknown.unit() {
+        Some(unit) => format!("{} ({unit})", unknown.key()),
+        None => unknown.key().to_owned(),
+    }))?;
+    for point in sample {
+        let values = unknowns.iter().zip(point);
+        table.write_record(values.map(|(unknown, &share)| unknown.at(share).to_string()))?;
+    }
+    Ok(table.flush()?)
 }
 
 /// Title of a column or an axis.

@@ -17,6 +17,7 @@ mod text;
 
 use std::io::Write as _;
 use std::path::Path;
+use std::sync::atomic::AtomicBool;
 
 use slipfront_case::text::COLUMNS;
 use slipfront_run::names::CONVERGENCE;
@@ -30,6 +31,7 @@ use crate::axis::Axis;
 use crate::error::StudyError;
 use crate::folder::{self, StudyFolder};
 use crate::plan::Plan;
+use crate::result_files::Batch;
 use crate::study_results::StudyResults;
 
 /// Whether the only axis of a study is the size of the blocks, on enough meshes.
@@ -47,22 +49,29 @@ pub fn is_written(folder: &Path, axes: &[Axis]) -> bool {
 /// Writes the tables and pictures of a study over meshes to its folder, and the comparison of the meshes.
 ///
 /// # Errors When a run failed, which the tables name, or when the system refuses to write.
-pub fn write(plan: &Plan, results: &StudyResults, folder: &StudyFolder) -> Result<OnMeshes, StudyError> {
-    folder::write(plan, results, folder)?;
-    results.expect_no_failures(plan)?;
-    write_meshes(plan, results, folder)
-}
-
-/// Writes the comparison of the meshes to the folder of the study: as `convergence.json`, and as a text for a person.
-pub(crate) fn write_meshes(
+pub fn write(
     plan: &Plan,
     results: &StudyResults,
     folder: &StudyFolder,
+    stop: &AtomicBool,
 ) -> Result<OnMeshes, StudyError> {
+    let mut batch = folder.files.begin();
+    folder::stage(plan, results, &mut batch, stop)?;
+    if let Err(failure) = results.expect_no_failures(plan) {
+        batch.place()?;
+        return Err(failure);
+    }
+    let found = stage(plan, results, &mut batch)?;
+    batch.place()?;
+    Ok(found)
+}
+
+/// Writes the comparison of the meshes to a batch of files: as `convergence.json`, and as a text for a person.
+pub(crate) fn stage(plan: &Plan, results: &StudyResults, batch: &mut Batch) -> Result<OnMeshes, StudyError> {
     let [numbers, words] = CONVERGENCE;
     let found = OnMeshes::of(plan, results)?;
     let text = text(plan, &found, COLUMNS);
-    folder.write(numbers, |file| Ok(serde_json::to_writer_pretty(file, &found)?))?;
-    folder.write(words, |file| file.write_all(text.as_bytes()))?;
+    batch.write(numbers, |file| Ok(serde_json::to_writer_pretty(file, &found)?))?;
+    batch.write(words, |file| file.write_all(text.as_bytes()))?;
     Ok(found)
 }

@@ -10,23 +10,23 @@ use slipfront_run::folder_error::FolderError;
 use super::evaluate::{Ended, Known, MadeRun, RunId};
 use super::file::DesignFile;
 use super::report::{Report, VERDICT};
-use super::stages::{Bounds, Length, SearchProgress, Work};
+use super::stages::{Bounds, Cut, Length, SearchProgress, Work};
 use super::wish::Measured;
 use super::{Design, Outcome};
 use crate::error::StudyError;
-use crate::files_in_folder::{copy_in, write_in};
 use crate::journal::Journal;
 use crate::record::to_line;
+use crate::result_files::{Batch, Others, ResultFiles};
 
 /// The design file in the folder, with the base case as a table in it: `slipfront design DIR/design.toml` repeats the design.
-const DESIGN: &str = "design.toml";
+pub(crate) const DESIGN: &str = "design.toml";
 
 /// The journal of a design: a line for every run.
 pub(crate) const JOURNAL: &str = "design.jsonl";
 
 /// A line of the journal: the numbers of a run, or the reason for which it has none.
 #[derive(Serialize, Deserialize)]
-struct KeptRun {
+pub(crate) struct DesignRun {
     id: RunId,
     #[serde(skip_serializing_if = "Option::is_none")]
     found: Option<Measured>,
@@ -34,7 +34,7 @@ struct KeptRun {
     failed: Option<String>,
 }
 
-impl KeptRun {
+impl DesignRun {
     fn of(run: &MadeRun) -> Self {
         Self {
             id: run.id.clone(),
@@ -52,6 +52,7 @@ impl KeptRun {
 #[derive(Debug)]
 pub struct DesignFolder {
     path: PathBuf,
+    files: ResultFiles,
     journal: Journal,
     known: Known,
     /// Lines of the journal that failed their checksum.
@@ -63,8 +64,10 @@ pub struct DesignFolder {
 impl DesignFolder {
     /// Opens a results folder: a new one, an empty one, or one of an earlier call that no other process works in.
     ///
-    /// # Errors When the folder holds other files, another process works in it, or it cannot be written to.
-    pub fn open(path: &Path, file: &DesignFile) -> Result<Self, StudyError> {
+    /// # Errors
+    /// When the folder holds other files, or some that were edited since they were written and may not be replaced by `force`; when
+    /// another process works in it, or it cannot be written to.
+    pub fn open(path: &Path, file: &DesignFile, force: bool) -> Result<Self, StudyError> {
         make_folders(path).map_err(FolderError::unwritable(path))?;
         let used = path.join(JOURNAL).exists();
         if !used && !is_empty(path).map_err(FolderError::unwritable(path))? {
@@ -82,7 +85,7 @@ impl DesignFolder {
             });
         }
         let (journal, kept, damaged) =
-            Journal::open::<KeptRun>(path, JOURNAL).map_err(|error| match error {
+            Journal::open::<DesignRun>(path, JOURNAL).map_err(|error| match error {
                 StudyError::NotRecords { path } => FolderError::Foreign { path }.into(),
                 error => error,
             })?;
@@ -92,13 +95,16 @@ impl DesignFolder {
                 path: path.to_owned(),
             });
         }
-        copy_in(path, &copies)?;
-        write_in(path, DESIGN, |to| to.write_all(text.as_bytes()))?;
+        let mut given = ResultFiles::new(path, "design", force).begin();
+        given.copy_all(&copies)?;
+        given.write(DESIGN, |to| to.write_all(text.as_bytes()))?;
+        let files = given.place_given(Others::Stay)?;
         let name = path.join(DESIGN).display().to_string();
         Ok(Self {
             path: path.to_owned(),
+            files,
             journal,
-            known: kept.into_iter().map(KeptRun::into_entry).collect(),
+            known: kept.into_iter().map(DesignRun::into_entry).collect(),
             damaged,
             file: DesignFile::parse(&text, &name, &file.name, path)?,
         })
@@ -109,10 +115,11 @@ impl DesignFolder {
         &self.path
     }
 
-    fn report(&self) -> Report<'_> {
+    fn report<'a>(&'a self, batch: &'a mut Batch) -> Report<'a> {
         Report {
             path: &self.path,
             file: &self.file,
+            batch,
         }
     }
 
@@ -121,7 +128,10 @@ impl DesignFolder {
     /// # Errors
     /// When the system refuses to write, or a picture cannot be drawn.
     pub fn write(&self, design: &Design, outcome: &Outcome) -> Result<String, StudyError> {
-        self.report().write(design, outcome)
+        let mut batch = self.files.begin();
+        let (text, _) = self.report(&mut batch).write(design, outcome)?;
+        batch.place()?;
+        Ok(text)
     }
 
     /// Number of runs that were kept.
@@ -142,18 +152,36 @@ impl DesignFolder {
         let design = self.file.design()?;
         let mut of_front = WorkOfFront::of(self.file.keys.front.len());
         let outcome = self.run(&design, bounds, &mut |now| watch(&of_front.with(now)))?;
-        let text = self.write(&design, &outcome)?;
-        let mut front = Vec::new();
-        for (percent, design) in self.file.designs_of_front()? {
-            of_front.go_on();
+        let mut batch = self.files.begin();
+        let (mut text, as_meshed) = self.report(&mut batch).write(&design, &outcome)?;
+        let designs = self.file.designs_of_front()?;
+        if !designs.is_empty() {
             // The results of the design stand, whatever becomes of its front.
-            match self.judged(&design, bounds, &mut |now| watch(&of_front.with(now))) {
-                Ok(outcome) => front.push((percent, Some((design, outcome)))),
-                Err(StudyError::NoDesign) => front.push((percent, None)),
+            batch.place_so_far()?;
+        }
+        let (mut front, mut cuts) = (Vec::new(), Vec::new());
+        for (percent, design) in designs {
+            of_front.go_on();
+            let bounds = bounds.of_search(1 + front.len());
+            match self.judged(&design, &bounds, &mut |now| watch(&of_front.with(now))) {
+                Ok(outcome) => {
+                    cuts.push(outcome.length.cut);
+                    front.push((percent, Some((design, outcome))));
+                }
+                Err(StudyError::NoDesign) => {
+                    cuts.push(None);
+                    front.push((percent, None));
+                }
                 Err(error) => return Err(error),
             }
         }
-        Ok(text + &self.report().write_front(&front)?)
+        let mut report = self.report(&mut batch);
+        if !front.is_empty() {
+            report.write_numbers(&outcome, &as_meshed, &cuts)?;
+        }
+        text += &report.write_front(&front)?;
+        batch.place()?;
+        Ok(text)
     }
 
     /// Searches and judges, or goes on from an earlier call; every run is kept as soon as the runs that were begun with it
@@ -177,7 +205,9 @@ impl DesignFolder {
         if let (Err(StudyError::Interrupted), Some(best)) = (&found, best)
             && !self.has_verdict()
         {
-            self.report().write_mask(design, &best)?;
+            let mut batch = self.files.begin();
+            self.report(&mut batch).write_mask(design, &best)?;
+            batch.place_so_far()?;
         }
         found
     }
@@ -196,7 +226,7 @@ impl DesignFolder {
     ) -> Result<Outcome, StudyError> {
         let Self { journal, known, .. } = self;
         let mut keep = |runs: &[MadeRun]| {
-            let lines: Vec<u8> = runs.iter().flat_map(|run| to_line(&KeptRun::of(run))).collect();
+            let lines: Vec<u8> = runs.iter().flat_map(|run| to_line(&DesignRun::of(run))).collect();
             if lines.is_empty() {
                 Ok(())
             } else {
@@ -249,20 +279,36 @@ impl WorkOfFront {
     }
 }
 
-/// Length of the search whose results stand in a folder; none if it was not finished.
-pub(crate) fn search_of(folder: &Path) -> Result<Option<Length>, StudyError> {
-    #[derive(Deserialize)]
-    struct Found {
-        search: Length,
+/// The search whose results a folder holds, and those of its front.
+#[derive(Deserialize)]
+pub(crate) struct Searches {
+    search: Length,
+    #[serde(default)]
+    front_cuts: Vec<Option<Cut>>,
+}
+
+impl Searches {
+    /// Number of runs of each search.
+    pub(crate) fn runs(&self) -> usize {
+        self.search.runs
     }
+
+    /// Places at which the searches ended for lack of time, as [`Bounds::cuts`] takes them.
+    pub(crate) fn cuts(&self) -> Vec<Option<Cut>> {
+        std::iter::once(self.search.cut)
+            .chain(self.front_cuts.iter().copied())
+            .collect()
+    }
+}
+
+/// The searches whose results stand in a folder; none if they were not finished.
+pub(crate) fn searches_of(folder: &Path) -> Result<Option<Searches>, StudyError> {
     let path = folder.join(VERDICT[0]);
     if !path.exists() {
         return Ok(None);
     }
     let text = read_limited(&path, TEXT_MAX_BYTES).map_err(FolderError::read(&path))?;
-    Ok(serde_json::from_slice::<Found>(&text)
-        .ok()
-        .map(|found| found.search))
+    Ok(serde_json::from_slice(&text).ok())
 }
 
 /// Whether the folder is the results folder of a design.

@@ -8,7 +8,6 @@ use slipfront_plot::{Response, Responses};
 use super::report::{Report, called, unit};
 use super::{Design, Outcome};
 use crate::error::StudyError;
-use crate::files_in_folder::{write_in, write_picture};
 use crate::text_table::table;
 
 /// Table and pictures of a front.
@@ -32,7 +31,7 @@ impl Report<'_> {
     /// # Errors
     /// When the system refuses to write, or the picture cannot be drawn.
     pub(super) fn write_front(
-        &self,
+        &mut self,
         front: &[(f64, Option<(Design, Outcome)>)],
     ) -> Result<String, StudyError> {
         let designs: Vec<_> = front
@@ -51,7 +50,7 @@ impl Report<'_> {
         };
         let wish = first.evaluator.wish();
         let surfaces = outcome.verdict.surfaces;
-        write_in(self.path, &format!("{FRONT}.csv"), |to| {
+        self.batch.write(&format!("{FRONT}.csv"), |to| {
             let mut table = csv::Writer::from_writer(to);
             for (limit, (_, Outcome { verdict, .. })) in &designs {
                 let friction = verdict.design.cases[0].static_friction_star;
@@ -102,7 +101,8 @@ impl Report<'_> {
             curves: vec![curve],
             ..Responses::default()
         });
-        write_picture(self.path, FRONT, &picture.map_err(StudyError::picture(FRONT))?)?;
+        self.batch
+            .write_picture(FRONT, &picture.map_err(StudyError::picture(FRONT))?)?;
         Ok(format!(
             "\nWith less texture:\n{}",
             table(&["at most", "covers", called(wish), "texture"], &rows)

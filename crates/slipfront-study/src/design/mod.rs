@@ -44,14 +44,15 @@ use crate::error::StudyError;
 
 pub use self::evaluate::{Ended, Keep, Known, MadeRun, RunId};
 pub use self::file::{DesignFile, DesignKeys};
+pub(crate) use self::folder::{DESIGN, DesignRun, JOURNAL, searches_of};
 pub use self::folder::{DesignFolder, is_design};
-pub(crate) use self::folder::{JOURNAL, search_of};
 pub use self::grid::Grid;
 pub use self::judge::Mean;
 pub use self::limits::{Illegal, Limits};
 pub use self::open_search::OpenSearch;
+pub(crate) use self::report::VERDICT;
 pub use self::sensitivity::{Changed, LeftOut, Sensitivity};
-pub use self::stages::{Bounds, DesignStage, SearchProgress, Work};
+pub use self::stages::{Bounds, Cut, DesignStage, SearchProgress, Work};
 pub use self::verdict::{Given, OnFresh, Verdict};
 pub use self::wish::{Measured, Quantity, Wish};
 

@@ -6,31 +6,32 @@ use std::path::Path;
 use std::sync::Arc;
 
 use serde::Serialize;
-use slipfront_case::arrays::{npy_of_mask, write_mask_png};
-use slipfront_case::case::{Case, Ranks};
+use slipfront_case::arrays::{npy_of_mask, png_of_mask};
+use slipfront_case::case::{Case, Files, FilesInMemory, Ranks};
+use slipfront_case::case_file::CaseFile;
 use slipfront_case::number_format::{count, four_digits, with_half_width, with_si_prefix};
 use slipfront_case::text::{COLUMNS, note, wrapped};
 use slipfront_plot::{FieldMap, FieldMaps, FrictionAxes, FrictionCurve};
 use slipfront_run::names::CASE;
-use slipfront_run::pictures::texture_file::{self, TextureFileError};
+use slipfront_run::pictures::texture_file;
 use slipfront_run::running;
 
 use super::file::DesignFile;
 use super::judge::Mean;
-use super::stages::{Length, Tried};
+use super::stages::{Cut, Length, Tried};
 use super::subject::{Fidelity, MASK, masked};
 use super::verdict::{Given, OnFresh, Verdict};
 use super::wish::{Quantity, Wish};
 use super::{Design, Outcome};
 use crate::error::StudyError;
-use crate::files_in_folder::{write_in, write_picture};
+use crate::result_files::Batch;
 use crate::text_table::table;
 
 /// A table of every draft that was tried.
 const EVALUATIONS: &str = "evaluations.csv";
 
 /// The verdict, as numbers and as a text.
-pub(super) const VERDICT: [&str; 2] = ["design.json", "design.txt"];
+pub(crate) const VERDICT: [&str; 2] = ["design.json", "design.txt"];
 
 /// Endings of the mask in other formats.
 const MASK_ENDINGS: [&str; 3] = ["svg", "dxf", "gsf"];
@@ -57,10 +58,17 @@ pub(super) struct AsMeshed {
 #[derive(Serialize)]
 struct Written<'a> {
     search: Length,
+    /// Places at which the searches of a front ended for lack of time, if one did.
+    #[serde(skip_serializing_if = "is_all_none")]
+    front_cuts: &'a [Option<Cut>],
     as_meshed: &'a AsMeshed,
     #[serde(flatten)]
     verdict: &'a Verdict,
     version: &'static str,
+}
+
+fn is_all_none(cuts: &[Option<Cut>]) -> bool {
+    cuts.iter().all(Option::is_none)
 }
 
 /// A row of `evaluations.csv`.
@@ -81,52 +89,91 @@ pub(super) struct Report<'a> {
     pub(super) path: &'a Path,
     /// Design file in the folder.
     pub(super) file: &'a DesignFile,
+    /// Files of the results.
+    pub(super) batch: &'a mut Batch,
 }
 
 impl Report<'_> {
-    /// Writes the results of a design, and returns the text of the verdict.
+    /// Writes the results of a design, and returns the text of the verdict and the properties of the texture.
     ///
     /// # Errors
     /// When the system refuses to write, or a picture cannot be drawn.
-    pub(super) fn write(&self, design: &Design, outcome: &Outcome) -> Result<String, StudyError> {
-        let folder = self.path;
+    pub(super) fn write(
+        &mut self,
+        design: &Design,
+        outcome: &Outcome,
+    ) -> Result<(String, AsMeshed), StudyError> {
         let texture = outcome.texture.as_slice();
-        self.write_mask(design, texture)?;
-        let case = Case::load(&folder.join(CASE), &[], &mut |_| true, Ranks::ALONE)?;
+        let case = self.write_mask(design, texture)?;
         for ending in MASK_ENDINGS {
-            texture_file::write(&case, &folder.join(format!("mask.{ending}")), None)?;
+            let name = format!("mask.{ending}");
+            let (bytes, _) = texture_file::contents(&case, Path::new(&name), None)?;
+            self.batch.write(&name, |to| to.write_all(&bytes))?;
         }
         self.write_pictures(design, outcome)?;
-        write_in(folder, EVALUATIONS, |to| Ok(evaluations(design, outcome, to)?))?;
+        self.batch
+            .write(EVALUATIONS, |to| Ok(evaluations(design, outcome, to)?))?;
         let as_meshed = self.as_meshed(design, texture, &case);
-        let [numbers, words] = VERDICT;
+        self.write_numbers(outcome, &as_meshed, &[])?;
+        let text = self.in_words(design, outcome, &as_meshed, &case);
+        let [_, words] = VERDICT;
+        self.batch.write(words, |to| to.write_all(text.as_bytes()))?;
+        Ok((text, as_meshed))
+    }
+
+    /// Writes the results of a design as numbers, with the places at which the searches of its front ended for lack of time.
+    ///
+    /// # Errors
+    /// When the system refuses to write.
+    pub(super) fn write_numbers(
+        &mut self,
+        outcome: &Outcome,
+        as_meshed: &AsMeshed,
+        front_cuts: &[Option<Cut>],
+    ) -> Result<(), StudyError> {
+        let [numbers, _] = VERDICT;
         let written = Written {
             search: outcome.length,
-            as_meshed: &as_meshed,
+            front_cuts,
+            as_meshed,
             verdict: &outcome.verdict,
             version: env!("CARGO_PKG_VERSION"),
         };
-        write_in(folder, numbers, |to| {
-            Ok(serde_json::to_writer_pretty(to, &written)?)
-        })?;
-        let text = self.in_words(design, outcome, &as_meshed, &case);
-        write_in(folder, words, |to| to.write_all(text.as_bytes()))?;
-        Ok(text)
+        self.batch
+            .write(numbers, |to| Ok(serde_json::to_writer_pretty(to, &written)?))
     }
 
-    /// Writes a mask, and the cases that read it.
-    pub(super) fn write_mask(&self, design: &Design, texture: &[bool]) -> Result<(), StudyError> {
+    /// Writes a mask, and the cases that read it; returns the first of these.
+    pub(super) fn write_mask(&mut self, design: &Design, texture: &[bool]) -> Result<Case, StudyError> {
         let [nx, ny] = design.evaluator.grid.size();
-        write_in(self.path, MASK, |to| to.write_all(&npy_of_mask(nx, texture)))?;
-        let picture = self.path.join(PICTURE);
-        write_mask_png(&picture, nx, ny, texture).map_err(TextureFileError::from)?;
+        self.batch
+            .write(MASK, |to| to.write_all(&npy_of_mask(nx, texture)))?;
+        let path = self.path.join(PICTURE);
+        let picture = png_of_mask(nx, ny, texture).map_err(|source| StudyError::Write { path, source })?;
+        self.batch.write(PICTURE, |to| to.write_all(&picture))?;
+        let mut first = None;
         for (k, Case { mut file, .. }) in self.file.cases()?.into_iter().enumerate() {
             // A picture is laid over every mesh; an array belongs to its blocks.
             file.texture = vec![masked(PICTURE)];
             let text = file.to_toml()?;
-            write_in(self.path, &case_name(k), |to| to.write_all(text.as_bytes()))?;
+            self.batch
+                .write(&case_name(k), |to| to.write_all(text.as_bytes()))?;
+            first.get_or_insert(text);
         }
-        Ok(())
+        // As it will be read from the folder.
+        let in_memory = FilesInMemory::from([(PICTURE.to_owned(), picture.into())]);
+        let files = Files {
+            folder: self.path,
+            in_memory: Some(&in_memory),
+        };
+        let file = CaseFile::parse(&first.unwrap_or_default(), CASE, &[])?;
+        Ok(Case::to_run_with(
+            file,
+            "case",
+            files,
+            &mut |_| true,
+            Ranks::ALONE,
+        )?)
     }
 
     fn as_meshed(&self, design: &Design, texture: &[bool], case: &Case) -> AsMeshed {
@@ -144,7 +191,7 @@ impl Report<'_> {
     }
 
     /// Writes curves of the design and of the textures in its comparison, on a fresh surface, and maps of their first slips.
-    fn write_pictures(&self, design: &Design, outcome: &Outcome) -> Result<(), StudyError> {
+    fn write_pictures(&mut self, design: &Design, outcome: &Outcome) -> Result<(), StudyError> {
         let subject = &design.evaluator.subjects[0];
         let [nx, ny] = design.evaluator.grid.size();
         let (mut curves, mut maps, mut latest) = (Vec::new(), Vec::new(), 0.0_f64);
@@ -193,7 +240,8 @@ impl Report<'_> {
             ("first_slips", slipfront_plot::field_maps(&maps)),
         ];
         for (name, picture) in pictures {
-            write_picture(self.path, name, &picture.map_err(StudyError::picture(name))?)?;
+            self.batch
+                .write_picture(name, &picture.map_err(StudyError::picture(name))?)?;
         }
         Ok(())
     }

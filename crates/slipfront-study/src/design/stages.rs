@@ -93,6 +93,7 @@ impl Work {
 }
 
 /// Bounds on the length of a search.
+#[derive(Clone, Copy)]
 pub struct Bounds<'a> {
     /// Runs of the search, without those of the verdict.
     pub runs: usize,
@@ -100,9 +101,34 @@ pub struct Bounds<'a> {
     pub share_of_time: &'a dyn Fn() -> f64,
     /// Flag that ends all runs.
     pub stop: &'a AtomicBool,
+    /// Places at which earlier searches ended for lack of time, to make them again: of the design, then of each design of its front; none
+    /// of a search that had time for all of its runs. Empty for new searches.
+    pub cuts: &'a [Option<Cut>],
 }
 
-impl Bounds<'_> {
+/// Numbers of runs after which each stage of a search that ran out of time had ended: with them the search can be made again.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Cut {
+    /// Number of runs after the stage on one surface.
+    pub explored: usize,
+    /// Number of runs after both stages.
+    pub refined: usize,
+}
+
+impl<'a> Bounds<'a> {
+    /// The bounds for one of several searches: of the design, 0, or of its front, from 1 on.
+    pub(super) fn of_search(&self, number: usize) -> Self {
+        Self {
+            cuts: self.cuts.get(number..).unwrap_or_default(),
+            ..*self
+        }
+    }
+
+    /// Place at which the search has to end.
+    fn cut(&self) -> Option<Cut> {
+        self.cuts.first().copied().flatten()
+    }
+
     /// Share of a time that has passed, in seconds; 1 where the time is no number of more than 0, and 0 without a bound.
     pub fn share_of(passed: f64, most: Option<f64>) -> f64 {
         match most {
@@ -120,6 +146,9 @@ pub(crate) struct Length {
     pub(crate) runs: usize,
     /// Whether the allowed time was over first, so that the drafts tried depend on the speed of the machine.
     pub(crate) is_cut_short: bool,
+    /// Place at which the allowed time was over.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) cut: Option<Cut>,
 }
 
 /// A search, with what it has tried.
@@ -130,6 +159,8 @@ pub(crate) struct Stages<'a> {
     runs: usize,
     /// Whether surfaces differ by their seeds.
     scatters: bool,
+    /// Number of runs after the first stage.
+    explored: usize,
     /// Whether the allowed time was over before the runs.
     is_cut_short: bool,
     /// All drafts that were tried, in their order.
@@ -144,6 +175,7 @@ impl<'a> Stages<'a> {
             evaluator,
             search,
             runs: 0,
+            explored: 0,
             scatters: evaluator.scatters(),
             is_cut_short: false,
             tried: Vec::new(),
@@ -160,17 +192,18 @@ impl<'a> Stages<'a> {
     ) -> Result<Vec<Arc<Vec<bool>>>, StudyError> {
         self.evaluator.check_reference(known, bounds.stop, keep)?;
         let explored = explored(bounds);
-        while self.runs < explored && self.is_within(bounds, EXPLORED) {
+        while self.runs < explored && self.has_time(bounds, false) {
             let proposals = self.ask(batch(bounds), bounds)?;
             if !self.try_out(proposals, false, bounds, known, keep, watch)? {
                 break;
             }
         }
+        self.explored = self.runs;
         let best = self.search.refine();
         let surfaces = self.stage(true).0.count();
         let refined_batch = (batch(bounds) / surfaces).max(GENERATION);
         let mut goes_on = self.try_out(best, true, bounds, known, keep, watch)?;
-        while goes_on && self.runs < bounds.runs && self.is_within(bounds, 1.0) {
+        while goes_on && self.runs < bounds.runs && self.has_time(bounds, true) {
             let proposals = self.ask(refined_batch, bounds)?;
             goes_on = self.try_out(proposals, true, bounds, known, keep, watch)?;
         }
@@ -188,11 +221,15 @@ impl<'a> Stages<'a> {
         Ok(asked)
     }
 
-    /// Whether less than this share of the time has passed.
-    fn is_within(&mut self, bounds: &Bounds, share: f64) -> bool {
-        let is_within = (bounds.share_of_time)() < share;
-        self.is_cut_short |= !is_within;
-        is_within
+    /// Whether there is time for more runs of a stage, or were more of them in the search that is made again.
+    fn has_time(&mut self, bounds: &Bounds, is_refined: bool) -> bool {
+        let has_time = match bounds.cut() {
+            Some(cut) if is_refined => self.runs < cut.refined,
+            Some(cut) => self.runs < cut.explored,
+            None => (bounds.share_of_time)() < if is_refined { 1.0 } else { EXPLORED },
+        };
+        self.is_cut_short |= !has_time;
+        has_time
     }
 
     /// Textures that were tried.
@@ -205,6 +242,10 @@ impl<'a> Stages<'a> {
         Length {
             runs: bounds.runs,
             is_cut_short: self.is_cut_short,
+            cut: self.is_cut_short.then_some(Cut {
+                explored: self.explored,
+                refined: self.runs,
+            }),
         }
     }
 

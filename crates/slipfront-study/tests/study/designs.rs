@@ -7,6 +7,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use slipfront_study::StudyError;
 use slipfront_study::design::{Bounds, Design, DesignFile, DesignFolder, DesignStage, Known, Outcome, Work};
+use slipfront_study::verify::{Extent, verify};
 
 /// A small slider whose named patterns cover less than the limits allow.
 const BASE: &str = "[base]\nslider.blocks = [16, 16]\ndrive.v_star = 0.1\n[design]\n";
@@ -32,6 +33,7 @@ fn bounds(runs: usize, stop: &AtomicBool) -> Bounds<'_> {
         runs,
         share_of_time: &|| 0.0,
         stop,
+        cuts: &[],
     }
 }
 
@@ -133,7 +135,7 @@ fn a_search_that_was_stopped_leaves_the_same_bytes() {
             .build()
             .unwrap()
     };
-    let mut folder = DesignFolder::open(in_one_go, &file).unwrap();
+    let mut folder = DesignFolder::open(in_one_go, &file, false).unwrap();
     let design = folder.file.design().unwrap();
     let never = AtomicBool::new(false);
     let outcome = on(3).install(|| folder.run(&design, &bounds(150, &never), &mut |_| {}).unwrap());
@@ -142,7 +144,7 @@ fn a_search_that_was_stopped_leaves_the_same_bytes() {
     let stopped = folders[1].path();
     let mut stages = Vec::new();
     for round in 0.. {
-        let mut folder = DesignFolder::open(stopped, &file).unwrap();
+        let mut folder = DesignFolder::open(stopped, &file, false).unwrap();
         assert_eq!(folder.damaged, usize::from(round > 0));
         let design = folder.file.design().unwrap();
         let stop = AtomicBool::new(false);
@@ -302,7 +304,7 @@ fn a_base_may_name_files() {
     let file = DesignFile::parse(text, "design.toml", "design", folder.path()).unwrap();
     let found = run(&file.design().unwrap(), 20);
     let out = folder.path().join("out");
-    let mut opened = DesignFolder::open(&out, &file).unwrap();
+    let mut opened = DesignFolder::open(&out, &file, false).unwrap();
     opened
         .find(&bounds(20, &AtomicBool::new(false)), &mut |_| {})
         .unwrap();
@@ -368,7 +370,7 @@ fn what_never_comes_to_rest_is_told() {
     let file = of("0.5,1e-4");
     let out = folder.path().join("out");
     let find = || {
-        let mut opened = DesignFolder::open(&out, &file).unwrap();
+        let mut opened = DesignFolder::open(&out, &file, false).unwrap();
         let text = opened
             .find(&bounds(40, &AtomicBool::new(false)), &mut |_| {})
             .unwrap();
@@ -444,7 +446,7 @@ fn the_folder_has_the_cases_of_the_verdict() {
          cases = [{ drive.v_star = 0.2 }, { drive.v_star = 0.3, load.pressure = '2 MPa' }]",
     );
     let folder = tempfile::tempdir().unwrap();
-    let mut opened = DesignFolder::open(folder.path(), &file).unwrap();
+    let mut opened = DesignFolder::open(folder.path(), &file, false).unwrap();
     let stop = AtomicBool::new(false);
     let (mut is_judged, mut work) = (false, Vec::new());
     let stopped = opened.find(&bounds(60, &stop), &mut |now| {
@@ -502,7 +504,7 @@ fn drawings_are_judged() {
             groove(6.25, 4)
         ),
     );
-    let mut opened = DesignFolder::open(folder.path(), &file).unwrap();
+    let mut opened = DesignFolder::open(folder.path(), &file, false).unwrap();
     let text = opened
         .find(&bounds(1, &AtomicBool::new(false)), &mut |_| {})
         .unwrap();
@@ -547,7 +549,7 @@ fn results_belong_to_one_search() {
                 [design]\nwish = { least = 'static_friction' }\ncoverage = [0, 25]\n\
                 forbidden = [{ shape = 'mask', file = 'clamp.npy' }]";
     let file = DesignFile::parse(text, "design.toml", "design", folder.path()).unwrap();
-    let mut opened = DesignFolder::open(&out, &file).unwrap();
+    let mut opened = DesignFolder::open(&out, &file, false).unwrap();
     opened
         .find(&bounds(20, &AtomicBool::new(false)), &mut |_| {})
         .unwrap();
@@ -558,12 +560,15 @@ fn results_belong_to_one_search() {
     });
     assert!(matches!(stopped, Err(StudyError::Interrupted)));
     assert_eq!(fs::read(out.join("mask.npy")).unwrap(), before);
-    assert!(slipfront_study::verify::verify(&out).is_ok_and(|verdict| verdict.differences.is_empty()));
+    assert!(
+        verify(&out, Extent::Derived, &AtomicBool::new(false))
+            .is_ok_and(|verdict| verdict.differences.is_empty())
+    );
     drop(opened);
     forbid(7);
     let file = DesignFile::parse(text, "design.toml", "design", folder.path()).unwrap();
     assert!(matches!(
-        DesignFolder::open(&out, &file),
+        DesignFolder::open(&out, &file, false),
         Err(StudyError::Changed { .. })
     ));
 }

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use png::{BitDepth, ColorType, Encoder};
 use slipfront_case::arrays;
-use slipfront_case::arrays::{ArrayError, HeightMapUnits, Room, Slab, mask_npy, write_mask_png};
+use slipfront_case::arrays::{ArrayError, HeightMapUnits, Room, Slab, mask_npy, png_of_mask};
 
 use crate::checks::readable;
 use crate::{Memory, Target, scratch};
@@ -303,7 +303,7 @@ fn mask(input: &[u8]) {
     };
     assert_eq!(mask.len(), NX * NY);
     let again = scratch::file("again.png", b"");
-    write_mask_png(&again, NX, NY, &mask).unwrap();
+    std::fs::write(&again, png_of_mask(NX, NY, &mask).unwrap()).unwrap();
     assert_eq!(read(&std::fs::read(&again).unwrap()).unwrap(), mask);
 }
 

@@ -1,11 +1,13 @@
 //! The JSON files of a run folder: the summary, the manifest with its checksum, and the journal of a run that is not complete.
 
+use std::sync::atomic::AtomicBool;
+
 use slipfront_run::folder_error::FolderError;
 use slipfront_run::manifest::{Manifest, ManifestFile, Random};
 use slipfront_run::run_folder::RunFolder;
 use slipfront_run::run_folder::inspection::Inspection;
 use slipfront_run::summary::{InstantSummary, Summary, read_summary, summary_json};
-use slipfront_study::verify::verify;
+use slipfront_study::verify::{Extent, verify};
 
 use crate::checks::readable;
 use crate::{Memory, Target, scratch};
@@ -198,7 +200,7 @@ fn manifest(bytes: &[u8]) {
             readable(&manifest.program());
         }
     }
-    match verify(&folder) {
+    match verify(&folder, Extent::Derived, &AtomicBool::new(false)) {
         Err(error) => readable(&error),
         Ok(verdict) => {
             for line in [vec![verdict.what], verdict.differences, verdict.notes].concat() {

@@ -9,6 +9,7 @@ use slipfront_study::{Plan, StudyFolder, collect, is_study, refuse_foreign, stud
 use super::run::{Shown, finish};
 use crate::failure::Failure;
 use crate::print_stderr::print_stderr;
+use crate::signals::Signals;
 use crate::threads::set_threads;
 
 /// Unite the shards of a study: their records, tables and pictures; may be repeated
@@ -20,6 +21,9 @@ pub(crate) struct Merge {
     /// Folder of the united study
     #[arg(short, long, value_name = "DIR")]
     out: PathBuf,
+    /// Replace files of the results that were edited since they were written, and files of others in their places
+    #[arg(long)]
+    force: bool,
     /// Show no tables
     #[arg(short, long)]
     quiet: bool,
@@ -35,7 +39,7 @@ impl Merge {
         let study = study_of(&self.shards[0]).map_err(Failure::input)?;
         let plan = Plan::new(&study, None).map_err(Failure::input)?;
         plan.check_memory(0).map_err(Failure::input)?;
-        let mut folder = StudyFolder::open(&self.out, &study).map_err(Failure::input)?;
+        let mut folder = StudyFolder::open(&self.out, &study, self.force).map_err(Failure::input)?;
         let mut taken = 0;
         for shard in &self.shards {
             taken += folder.records.merge(shard).map_err(Failure::running)?;
@@ -54,6 +58,7 @@ impl Merge {
                 .map_err(Failure::running)?;
         }
         let shown = if self.quiet { Shown::Nothing } else { Shown::Tables };
-        finish(&plan, &results, &folder, shown)
+        let signals = Signals::catch().map_err(Failure::running)?;
+        finish(&plan, &results, &folder, shown, &signals)
     }
 }

@@ -29,6 +29,9 @@ pub(crate) struct StudyRun {
     /// Folder for the results [default: results/ and the name of the study]
     #[arg(short, long, value_name = "DIR")]
     out: Option<PathBuf>,
+    /// Replace files of the results that were edited since they were written, and files of others in their places
+    #[arg(long)]
+    force: bool,
     /// Most runs at once [default: one per core]; results do not depend on it
     #[arg(long, value_name = "N", value_parser = count_from_one)]
     threads: Option<u16>,
@@ -84,7 +87,7 @@ impl StudyRun {
         plan.check_memory(threads).map_err(Failure::input)?;
         let out = self.out.unwrap_or_else(|| default_out(&file.name, self.shard));
         refuse_to_replace(&path, &file, &out)?;
-        let folder = StudyFolder::open(&out, &file).map_err(Failure::input)?;
+        let folder = StudyFolder::open(&out, &file, self.force).map_err(Failure::input)?;
         folder.check_disk(&plan).map_err(Failure::input)?;
         let plan = plan.reading_copies(&folder.study);
         let signals = Signals::catch().map_err(Failure::running)?;
@@ -96,7 +99,7 @@ impl StudyRun {
         } else {
             Shown::Tables
         };
-        finish(&plan, &results, &folder, shown)
+        finish(&plan, &results, &folder, shown, &signals)
     }
 }
 
@@ -138,10 +141,7 @@ pub(in crate::commands) fn run_all(
         progress.show(now);
     });
     progress.finish();
-    done.map_err(|error| match error {
-        StudyError::Interrupted => Failure::stopped(signals, error),
-        error => Failure::running(error),
-    })
+    done.map_err(|error| study_failure(signals, error))
 }
 
 /// Prints notes before the runs: on axes that change nothing, and on a folder that has been used before.
@@ -161,6 +161,15 @@ fn print_notes(plan: &Plan, folder: &StudyFolder) {
     }
 }
 
+/// The failure of results that could not be written, or were not to be.
+pub(in crate::commands) fn study_failure(signals: &Signals, error: StudyError) -> Failure {
+    match error {
+        StudyError::Interrupted => Failure::stopped(signals, error),
+        StudyError::Edited { .. } | StudyError::Checksums { .. } => Failure::input(error),
+        error => Failure::running(error),
+    }
+}
+
 /// Form in which the answer of a study is printed.
 #[derive(Clone, Copy)]
 pub(super) enum Shown {
@@ -177,8 +186,10 @@ pub(super) fn finish(
     results: &StudyResults,
     folder: &StudyFolder,
     shown: Shown,
+    signals: &Signals,
 ) -> Result<(), Failure> {
-    study::write(plan, results, folder).map_err(Failure::running)?;
+    let written = study::write(plan, results, folder, &signals.stop);
+    written.map_err(|error| study_failure(signals, error))?;
     match shown {
         Shown::Tables => print_message(&report::study(plan, results, folder.path())),
         Shown::Json => print(&text_of(&study::answer(plan, results)))?,

@@ -11,7 +11,7 @@ pub use self::drawing::{Fill, Layer, OutlineDrawing};
 use std::path::Path;
 
 use slipfront::surface::{Clearance, clearance};
-use slipfront_case::arrays::{ArrayError, extension, write_mask_png};
+use slipfront_case::arrays::{ArrayError, extension, png_of_mask};
 use slipfront_case::case::Case;
 use slipfront_case::case_file::CaseError;
 use slipfront_case::disk::write_atomic;
@@ -74,13 +74,30 @@ pub fn smallest(case: &Case) -> Result<Clearance, CaseError> {
 ///
 /// # Errors [`TextureFileError`], if the ending names no format, the file would be too large, or cannot be written.
 pub fn write(case: &Case, path: &Path, scale: Option<usize>) -> Result<Vec<String>, TextureFileError> {
+    let (bytes, notes) = contents(case, path, scale)?;
+    write_atomic(path, &bytes).map_err(|source| ArrayError::Write {
+        path: path.to_owned(),
+        source,
+    })?;
+    Ok(notes)
+}
+
+/// The bytes of the file that [`write`] writes to `path`, and notes about it.
+///
+/// # Errors
+/// [`TextureFileError`], if the ending names no format, or the file would be too large.
+pub fn contents(
+    case: &Case,
+    path: &Path,
+    scale: Option<usize>,
+) -> Result<(Vec<u8>, Vec<String>), TextureFileError> {
     let name = || path.display().to_string();
     let ending = extension(path);
     if ending != "png" && scale.is_some() {
         return Err(TextureFileError::Scale { path: name() });
     }
     let (nx, ny) = (case.model.lattice.nx, case.model.lattice.ny);
-    let (bytes, notes) = match ending.as_str() {
+    Ok(match ending.as_str() {
         "png" => {
             let scale = scale.unwrap_or(1);
             let (width, height) = (nx * scale, ny * scale);
@@ -90,8 +107,12 @@ pub fn write(case: &Case, path: &Path, scale: Option<usize>) -> Result<Vec<Strin
             let textured = textured_blocks(case);
             let pixel = |at: usize| textured[at / width / scale * nx + at % width / scale];
             let pixels: Vec<bool> = (0..width * height).map(pixel).collect();
-            write_mask_png(path, width, height, &pixels)?;
-            return Ok(Vec::new());
+            let bytes = png_of_mask(width, height, &pixels);
+            let failed = |source| ArrayError::Write {
+                path: path.to_owned(),
+                source,
+            };
+            (bytes.map_err(failed)?, Vec::new())
         }
         "gsf" => (gsf::field(case), Vec::new()),
         "svg" | "dxf" => {
@@ -104,10 +125,5 @@ pub fn write(case: &Case, path: &Path, scale: Option<usize>) -> Result<Vec<Strin
             (text.into_bytes(), drawing.notes)
         }
         _ => return Err(TextureFileError::Extension { path: name() }),
-    };
-    write_atomic(path, &bytes).map_err(|source| ArrayError::Write {
-        path: path.to_owned(),
-        source,
-    })?;
-    Ok(notes)
+    })
 }
