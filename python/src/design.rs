@@ -142,7 +142,7 @@ impl Design {
                 runs,
                 share_of_time: &share_of_time,
                 stop,
-                cuts: &[],
+                cut: None,
             };
             opened.find(&bounds, &mut |now| {
                 *progress.lock().unwrap_or_else(PoisonError::into_inner) = Some(now.clone());

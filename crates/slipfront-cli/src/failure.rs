@@ -1,6 +1,7 @@
 //! Reasons for which a command fails, and its exit status.
 
 use slipfront_run::agree::RankFailure;
+use slipfront_study::StudyError;
 
 use crate::print_stderr::print_stderr;
 use crate::signals::Signals;
@@ -28,6 +29,15 @@ impl Failure {
     /// A command that one of `signals` has stopped.
     pub(crate) fn stopped(signals: &Signals, error: impl Into<anyhow::Error>) -> Self {
         Self::Stopped(signals.stopped().unwrap_or_default(), error.into())
+    }
+
+    /// A command that could not make or keep results.
+    pub(crate) fn of_results(signals: &Signals, error: StudyError) -> Self {
+        match error {
+            StudyError::Interrupted => Self::stopped(signals, error),
+            StudyError::Edited { .. } | StudyError::Checksums { .. } => Self::input(error),
+            error => Self::running(error),
+        }
     }
 
     /// Fails if one of `signals` came that stops the program.

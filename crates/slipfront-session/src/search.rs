@@ -122,7 +122,7 @@ pub(crate) fn search(document: &Document, worker: &dyn Worker) -> Result<Mask, S
         runs: MAX_RUNS,
         share_of_time: &|| (worker.now() - began).as_secs_f64() / SEARCH_TIME.as_secs_f64(),
         stop: worker.stop(),
-        cuts: &[],
+        cut: None,
     };
     let searched = design.search(&bounds, &mut |now| {
         worker.tell(Event(EventKind::Tried(Tried {

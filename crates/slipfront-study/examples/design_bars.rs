@@ -68,7 +68,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             runs: runs.parse()?,
             share_of_time: &|| 0.0,
             stop: &stop,
-            cuts: &[],
+            cut: None,
         };
         let outcome = design.run(&bounds, &mut HashMap::new(), &mut |_| Ok(()), &mut |_| {})?;
         let of_cavity = design.losses(vec![cavity.clone()], SURFACES, false, &mut HashMap::new(), &stop)?;

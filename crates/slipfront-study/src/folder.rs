@@ -64,9 +64,17 @@ impl StudyFolder {
             StudyFile::parse(text, &name, &study.name, path)
         };
         let before = read_limited(&path.join(STUDY), TEXT_MAX_BYTES).ok();
-        let changed = before.is_some_and(|before| before != text.as_bytes());
+        let changed = before.as_ref().is_some_and(|before| before != text.as_bytes());
+        // A user may change the study in the folder, and run that.
+        let is_this = |before: &Vec<u8>| {
+            let there = parse(&String::from_utf8_lossy(before)).ok();
+            there.is_some_and(|there| there.portable().is_ok_and(|(there, _)| there == text))
+        };
         let mut given = ResultFiles::new(path, "study", force).begin();
         given.write(STUDY, |file| file.write_all(text.as_bytes()))?;
+        if before.is_some_and(|before| is_this(&before)) {
+            given.may_replace(STUDY);
+        }
         given.copy_all(&copies)?;
         let files = given.place_given(if changed { Others::Go } else { Others::Stay })?;
         Ok(Self {

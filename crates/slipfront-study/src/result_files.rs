@@ -128,6 +128,7 @@ impl ResultFiles {
             files: self.clone(),
             staged: Vec::new(),
             placed: self.given.clone(),
+            replaceable: None,
         }
     }
 
@@ -210,6 +211,8 @@ pub struct Batch {
     staged: Vec<(TempPath, ManifestFile)>,
     /// Files that have their names already.
     placed: Vec<ManifestFile>,
+    /// Name of a file that may be replaced although it was edited.
+    replaceable: Option<String>,
 }
 
 /// What becomes of files of earlier batches that a batch does not write.
@@ -258,6 +261,11 @@ impl Batch {
             file.write_all(picture.svg.as_bytes())
         })?;
         self.write(&format!("{name}.png"), |file| file.write_all(&picture.png))
+    }
+
+    /// Lets a file be replaced although it was edited.
+    pub(crate) fn may_replace(&mut self, name: &str) {
+        self.replaceable = Some(name.to_owned());
     }
 
     /// Copies files that cases read to the names that a study gives the copies.
@@ -318,13 +326,15 @@ impl Batch {
             files,
             staged,
             placed,
+            replaceable,
         } = self;
         let folder = &files.folder;
         let before = files.list()?;
         let mut foreign = Vec::new();
         let mut listed: Vec<ManifestFile> = placed.clone();
         for (_, file) in &*staged {
-            if !files.is_own(&file.name, &before, Some(file))? {
+            let may_go = replaceable.as_ref() == Some(&file.name);
+            if !may_go && !files.is_own(&file.name, &before, Some(file))? {
                 foreign.push(file.name.clone());
             }
             listed.retain(|placed| placed.name != file.name);

@@ -21,7 +21,7 @@ use thiserror::Error;
 use crate::calibrate::{CALIBRATION, CalibrationFolder, CalibrationRun, FOUND, TRAINING, is_calibration};
 use crate::converge;
 use crate::design::{
-    Bounds, DESIGN, DesignFile, DesignFolder, DesignRun, JOURNAL, VERDICT, is_design, searches_of,
+    Bounds, DESIGN, DesignFile, DesignFolder, DesignRun, JOURNAL, VERDICT, is_design, search_of,
 };
 use crate::error::{StudyError, of_others};
 use crate::execute::collect;
@@ -163,7 +163,7 @@ fn verify_project(
 
 /// Finds a design again from the runs in its journal, and compares the folder with the results.
 fn derive_design(folder: &Path, verdict: &mut Verdict, stop: &AtomicBool) -> Result<(), VerifyStudyError> {
-    let Some(searches) = searches_of(folder)? else {
+    let Some(search) = search_of(folder)? else {
         let path = folder.join(VERDICT[0]);
         verdict
             .differences
@@ -175,10 +175,10 @@ fn derive_design(folder: &Path, verdict: &mut Verdict, stop: &AtomicBool) -> Res
         let mut again = DesignFolder::open(temporary, &file, false)?;
         let kept = again.n_kept();
         let bounds = Bounds {
-            runs: searches.runs(),
+            runs: search.runs,
             share_of_time: &|| 0.0,
             stop,
-            cuts: &searches.cuts(),
+            cut: search.cut,
         };
         again.find(&bounds, &mut |_| {})?;
         Ok([kept, again.n_kept()])

@@ -71,7 +71,7 @@ impl CalibrateCommand {
                 Failure::stopped(&signals, anyhow::anyhow!(sentence))
             }
             StudyError::Training(error) => Failure::input(error),
-            error => Failure::running(error),
+            error => Failure::of_results(&signals, error),
         })?;
         if !self.quiet {
             print_message(&format!("{text}\n{}\n", folder.path().display()));

@@ -7,7 +7,7 @@ use jiff::SignedDuration;
 use slipfront_study::converge::{MAX_LEVELS, MIN_LEVELS, MeshStudy, text, write};
 use slipfront_study::{CostLimits, StudyFolder};
 
-use super::study::{run_all, study_failure};
+use super::study::run_all;
 use crate::case_args::CaseArgs;
 use crate::failure::Failure;
 use crate::print::print_message;
@@ -73,7 +73,7 @@ impl ConvergeCommand {
         let plan = plan.reading_copies(&folder.study);
         let results = run_all(&plan, &folder, &signals, self.quiet)?;
         let found = write(&plan, &results, &folder, &signals.stop);
-        let found = found.map_err(|error| study_failure(&signals, error))?;
+        let found = found.map_err(|error| Failure::of_results(&signals, error))?;
         if !self.quiet {
             print_message(&text(&plan, &found, stdout_columns()));
         }

@@ -68,7 +68,7 @@ impl DesignCommand {
             runs,
             share_of_time: &share_of_time,
             stop: &signals.stop,
-            cuts: &[],
+            cut: None,
         };
         if !self.quiet {
             print_notes(&folder);
@@ -96,7 +96,7 @@ impl DesignCommand {
                 Failure::stopped(&signals, anyhow::anyhow!(sentence))
             }
             StudyError::NoDesign => Failure::input(error),
-            error => Failure::running(error),
+            error => Failure::of_results(&signals, error),
         })?;
         if !self.quiet {
             print_message(&format!("{text}\n{}\n", folder.path().display()));

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use slipfront_case::disk::{is_empty, make_folders};
 use slipfront_case::number_format::are;
-use slipfront_paper::PaperOptions;
+use slipfront_paper::{PaperError, PaperOptions};
 use slipfront_study::result_files::ResultFiles;
 use slipfront_study::{Records, is_study};
 
@@ -76,7 +76,10 @@ impl PaperCommand {
                 Failure::running(error)
             }
         })?;
-        slipfront_paper::write(&paper, &files).map_err(Failure::running)?;
+        slipfront_paper::write(&paper, &files).map_err(|error| match error {
+            PaperError::Study(error) => Failure::of_results(&signals, error),
+            error => Failure::running(error),
+        })?;
         if let Some(docs) = &self.docs {
             slipfront_paper::write_docs(&paper, docs).map_err(Failure::running)?;
         }

@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-use crate::fixtures::unwrapped;
+use crate::fixtures::{list_as_written, unwrapped};
 use crate::support::process::stdout;
 use crate::support::workspace::Workspace;
 
@@ -76,12 +76,15 @@ fn verify_holds_what_meshes_found_against_the_records() {
         let mut digit = text.clone();
         digit.replace_range(place..=place, "2");
         workspace.write(&path, digit);
+        is_told(name, "differs: other bytes were written");
+        list_as_written(&workspace, "meshes", name);
         is_told(name, "differs: other bytes follow from the records");
         workspace.write(&path, workspace.read_text(&format!("other/{name}")));
         is_told(name, "differs: ");
         workspace.remove(&path);
         is_told(name, "is missing");
         workspace.write(&path, text);
+        list_as_written(&workspace, "meshes", name);
     }
     workspace.succeed("verify meshes");
     // `slipfront study` on the study file computes tables alone, of which the folder is complete.

@@ -1,5 +1,9 @@
 //! Small cases, and checks of the folders of their runs.
 
+use std::io::Write;
+
+use slipfront_study::result_files::ResultFiles;
+
 use crate::support::workspace::{Files, Workspace};
 
 /// A small and quick case: 30 blocks, 800 steps.
@@ -24,6 +28,14 @@ pub(crate) const RUN_FILES: [&str; 12] = [
     "stress.svg",
     "summary.json",
 ];
+
+/// Lists a file of a results folder with the checksum that it has now, as a forger would.
+pub(crate) fn list_as_written(workspace: &Workspace, folder: &str, name: &str) {
+    let bytes = workspace.read(&format!("{folder}/{name}"));
+    let mut batch = ResultFiles::new(&workspace.path(folder), "study", true).begin();
+    batch.write(name, |to| to.write_all(&bytes)).unwrap();
+    batch.place_so_far().unwrap();
+}
 
 impl Workspace {
     /// A workspace that holds `small.toml`.

@@ -26,6 +26,7 @@ mod paper;
 mod plot;
 mod printed;
 mod repetition;
+mod result_files;
 mod study;
 mod texture;
 mod verify;

@@ -427,6 +427,37 @@ fn of_a_study_folder() {
 }
 
 #[test]
+fn of_designs_and_calibrations() {
+    let mut tally = Tally::new("damage");
+    for job in &JOBS[8..] {
+        let (workspace, whole) = with_results(job);
+        for name in whole.keys() {
+            // Their lines are read one by one, and those that are damaged are made again.
+            if name.ends_with(".jsonl") {
+                continue;
+            }
+            let target = Target {
+                kind: "designs and calibrations that are verified",
+                name: &format!("out/{name}"),
+                most: cases(1, 100),
+            };
+            torture(&mut tally, &workspace, &target, &|_| {
+                seen(&workspace, "verify out")
+            });
+            let target = Target {
+                kind: "designs and calibrations that go on",
+                most: cases(1, 10),
+                ..target
+            };
+            torture(&mut tally, &workspace, &target, &|_| {
+                mended(&workspace, job, &whole)
+            });
+        }
+    }
+    tally.close();
+}
+
+#[test]
 fn of_kept_runs() {
     let workspace = workspace();
     let mut tally = Tally::new("damage");

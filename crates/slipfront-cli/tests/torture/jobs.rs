@@ -1,7 +1,7 @@
 //! Commands that write folders: their inputs, their continuation, and the required content of their folders.
 
 use std::collections::BTreeMap;
-use std::sync::Mutex;
+use std::sync::{Mutex, OnceLock};
 
 use serde_json::Value;
 
@@ -26,7 +26,7 @@ pub(crate) struct Job {
 }
 
 /// All jobs.
-pub(crate) const JOBS: [Job; 8] = [
+pub(crate) const JOBS: [Job; 10] = [
     Job {
         name: "run",
         is_given_a_run: false,
@@ -36,24 +36,8 @@ pub(crate) const JOBS: [Job; 8] = [
         saves: false,
         verified: true,
     },
-    Job {
-        name: "study",
-        is_given_a_run: false,
-        line: "study study.toml --quiet --threads 1 -o out",
-        again: "study study.toml --quiet --threads 1 -o out",
-        anew: "study study.toml --quiet --threads 1 -o out",
-        saves: false,
-        verified: true,
-    },
-    Job {
-        name: "paper",
-        is_given_a_run: false,
-        line: "paper fig02 fig13 --reduced --quiet --threads 1 -o out",
-        again: "paper fig02 fig13 --reduced --quiet --threads 1 -o out",
-        anew: "paper fig02 fig13 --reduced --quiet --threads 1 -o out",
-        saves: false,
-        verified: false,
-    },
+    goes_on("study", "study study.toml --quiet --threads 1 -o out"),
+    goes_on("paper", "paper fig02 fig13 --reduced --quiet --threads 1 -o out"),
     Job {
         name: "resumed run",
         is_given_a_run: false,
@@ -68,7 +52,25 @@ pub(crate) const JOBS: [Job; 8] = [
     on_a_run("texture", "texture case.toml --force -o out/texture.png"),
     // It works in the folder for temporary files.
     on_a_run("repeated run", "verify --rerun --quiet --threads 1 done"),
+    goes_on("design", "design wish.toml --quiet --threads 1 -o out"),
+    goes_on(
+        "calibration",
+        "calibrate fit.toml record.csv --quiet --threads 1 -o out",
+    ),
 ];
+
+/// A job that goes on where it was when it is repeated.
+const fn goes_on(name: &'static str, line: &'static str) -> Job {
+    Job {
+        name,
+        is_given_a_run: false,
+        line,
+        again: line,
+        anew: line,
+        saves: false,
+        verified: true,
+    }
+}
 
 /// A job that is the same however often it is repeated.
 const fn on_a_run(name: &'static str, line: &'static str) -> Job {
@@ -152,6 +154,49 @@ time = { duration_star = 20 }
 output = { snapshots = [], series = 1 }
 "#;
 
+/// A design with a front, whose drafts take a millisecond each.
+const WISH: &str = r#"
+[base]
+slider.blocks = [8, 8]
+drive.v_star = 0.1
+friction = { sigma_static_star = 0, sigma_kinetic_star = 0 }
+[design]
+wish = { least = "static_friction" }
+coverage = [0, 25]
+runs = 40
+front = [10]
+"#;
+
+/// The calibration of a slider whose runs take a millisecond each.
+const FIT: &str = r#"
+[base]
+slider.blocks = [4, 4]
+drive.v_star = 0.1
+time.step = 0.4
+[calibrate]
+x = "time_s"
+y = "friction_force_n"
+noise = 0.01
+runs = 200
+finer_runs = 0
+unknowns = { "friction.mu_static" = [0.3, 0.9] }
+"#;
+
+/// The record of a run of the slider that is calibrated.
+fn record() -> Vec<u8> {
+    static RECORD: OnceLock<Vec<u8>> = OnceLock::new();
+    let make = || {
+        let workspace = Workspace::new();
+        let truth = "slider.blocks = [4, 4]\ndrive.v_star = 0.1\ntime = { step = 0.4, duration_star = 120 }\noutput.series = 1\n";
+        workspace.write("truth.toml", truth);
+        workspace
+            .succeed_bounded("run truth.toml -o truth --no-pictures --quiet")
+            .unwrap();
+        workspace.read("truth/series.csv")
+    };
+    RECORD.get_or_init(make).clone()
+}
+
 /// An array of numpy, `ny` rows of `nx` values of a type such as `|b1`.
 fn npy(kind: &str, nx: usize, ny: usize, data: &[u8]) -> Vec<u8> {
     let header = format!("{{'descr': '{kind}', 'fortran_order': False, 'shape': ({ny}, {nx}), }}");
@@ -199,6 +244,9 @@ pub(crate) fn workspace() -> Workspace {
     workspace.write("slow.toml", SLOW);
     workspace.write("study.toml", STUDY);
     workspace.write("kept.toml", KEPT);
+    workspace.write("wish.toml", WISH);
+    workspace.write("fit.toml", FIT);
+    workspace.write("record.csv", record());
     workspace
 }
 
@@ -236,7 +284,7 @@ fn unfinished(name: &str) -> bool {
 
 /// Whether a file of a run depends on the time at which it was made.
 fn told_by_time(name: &str) -> bool {
-    name.ends_with("manifest.json") || name == "records.jsonl"
+    name.ends_with("manifest.json") || name.ends_with(".jsonl")
 }
 
 /// Outcomes of recorded runs by their identities. A run that is recorded twice is a finding.
@@ -261,7 +309,8 @@ fn records(bytes: &[u8]) -> Result<BTreeMap<String, Value>, String> {
 /// Demands that a folder holds only files as they should be, some of which may be missing.
 pub(crate) fn expect_sound(now: &Files, whole: &Files) -> Result<(), String> {
     for (name, bytes) in now {
-        if unfinished(name) || told_by_time(name) {
+        // The list of results grows with them.
+        if unfinished(name) || told_by_time(name) || name == "checksums.json" {
             continue;
         }
         match whole.get(name) {
@@ -312,6 +361,9 @@ pub(crate) fn expect_all(now: &Files, whole: &Files) -> Result<(), String> {
         return Err(format!("{missing} is missing"));
     }
     expect_sound(now, whole)?;
+    if now.get("checksums.json") != whole.get("checksums.json") {
+        return Err("checksums.json is wrong".to_owned());
+    }
     if let (Some(now), Some(whole)) = (now.get("records.jsonl"), whole.get("records.jsonl")) {
         let now = records(now)?;
         // Runs of another study may stand there, too.

@@ -106,13 +106,23 @@ fn a_killed_repetition_of_a_run_is_repeated() {
     torture(&JOBS[7], cases(8, 200));
 }
 
+#[test]
+fn a_killed_design_goes_on() {
+    torture(&JOBS[8], cases(4, 200));
+}
+
+#[test]
+fn a_killed_calibration_goes_on() {
+    torture(&JOBS[9], cases(4, 200));
+}
+
 /// A signal that a command can answer leaves nothing that the next command would have to remove.
 #[test]
 fn what_a_signal_stops_leaves_nothing_behind() {
     let workspace = workspace();
     let mut tally = Tally::new("signals at random moments");
     let mut chance = Chance::new();
-    for job in &JOBS[4..] {
+    for job in &JOBS[4..8] {
         let whole = job.undisturbed();
         let takes = time_of(&workspace, job);
         for signal in ["-INT", "-TERM"] {

@@ -10,7 +10,7 @@ use slipfront_run::folder_error::FolderError;
 use super::evaluate::{Ended, Known, MadeRun, RunId};
 use super::file::DesignFile;
 use super::report::{Report, VERDICT};
-use super::stages::{Bounds, Cut, Length, SearchProgress, Work};
+use super::stages::{Bounds, Length, SearchProgress, Work};
 use super::wish::Measured;
 use super::{Design, Outcome};
 use crate::error::StudyError;
@@ -26,6 +26,7 @@ pub(crate) const JOURNAL: &str = "design.jsonl";
 
 /// A line of the journal: the numbers of a run, or the reason for which it has none.
 #[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub(crate) struct DesignRun {
     id: RunId,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -129,7 +130,7 @@ impl DesignFolder {
     /// When the system refuses to write, or a picture cannot be drawn.
     pub fn write(&self, design: &Design, outcome: &Outcome) -> Result<String, StudyError> {
         let mut batch = self.files.begin();
-        let (text, _) = self.report(&mut batch).write(design, outcome)?;
+        let text = self.report(&mut batch).write(design, outcome)?;
         batch.place()?;
         Ok(text)
     }
@@ -153,33 +154,22 @@ impl DesignFolder {
         let mut of_front = WorkOfFront::of(self.file.keys.front.len());
         let outcome = self.run(&design, bounds, &mut |now| watch(&of_front.with(now)))?;
         let mut batch = self.files.begin();
-        let (mut text, as_meshed) = self.report(&mut batch).write(&design, &outcome)?;
+        let mut text = self.report(&mut batch).write(&design, &outcome)?;
         let designs = self.file.designs_of_front()?;
         if !designs.is_empty() {
             // The results of the design stand, whatever becomes of its front.
             batch.place_so_far()?;
         }
-        let (mut front, mut cuts) = (Vec::new(), Vec::new());
+        let mut front = Vec::new();
         for (percent, design) in designs {
             of_front.go_on();
-            let bounds = bounds.of_search(1 + front.len());
-            match self.judged(&design, &bounds, &mut |now| watch(&of_front.with(now))) {
-                Ok(outcome) => {
-                    cuts.push(outcome.length.cut);
-                    front.push((percent, Some((design, outcome))));
-                }
-                Err(StudyError::NoDesign) => {
-                    cuts.push(None);
-                    front.push((percent, None));
-                }
+            match self.judged(&design, bounds, &mut |now| watch(&of_front.with(now))) {
+                Ok(outcome) => front.push((percent, Some((design, outcome)))),
+                Err(StudyError::NoDesign) => front.push((percent, None)),
                 Err(error) => return Err(error),
             }
         }
-        let mut report = self.report(&mut batch);
-        if !front.is_empty() {
-            report.write_numbers(&outcome, &as_meshed, &cuts)?;
-        }
-        text += &report.write_front(&front)?;
+        text += &self.report(&mut batch).write_front(&front)?;
         batch.place()?;
         Ok(text)
     }
@@ -279,36 +269,17 @@ impl WorkOfFront {
     }
 }
 
-/// The search whose results a folder holds, and those of its front.
-#[derive(Deserialize)]
-pub(crate) struct Searches {
-    search: Length,
-    #[serde(default)]
-    front_cuts: Vec<Option<Cut>>,
-}
-
-impl Searches {
-    /// Number of runs of each search.
-    pub(crate) fn runs(&self) -> usize {
-        self.search.runs
+/// Length of the search whose results stand in a folder; none if its file does not say.
+pub(crate) fn search_of(folder: &Path) -> Result<Option<Length>, StudyError> {
+    #[derive(Deserialize)]
+    struct Found {
+        search: Length,
     }
-
-    /// Places at which the searches ended for lack of time, as [`Bounds::cuts`] takes them.
-    pub(crate) fn cuts(&self) -> Vec<Option<Cut>> {
-        std::iter::once(self.search.cut)
-            .chain(self.front_cuts.iter().copied())
-            .collect()
-    }
-}
-
-/// The searches whose results stand in a folder; none if they were not finished.
-pub(crate) fn searches_of(folder: &Path) -> Result<Option<Searches>, StudyError> {
     let path = folder.join(VERDICT[0]);
-    if !path.exists() {
-        return Ok(None);
-    }
     let text = read_limited(&path, TEXT_MAX_BYTES).map_err(FolderError::read(&path))?;
-    Ok(serde_json::from_slice(&text).ok())
+    Ok(serde_json::from_slice::<Found>(&text)
+        .ok()
+        .map(|found| found.search))
 }
 
 /// Whether the folder is the results folder of a design.

@@ -44,7 +44,7 @@ use crate::error::StudyError;
 
 pub use self::evaluate::{Ended, Keep, Known, MadeRun, RunId};
 pub use self::file::{DesignFile, DesignKeys};
-pub(crate) use self::folder::{DESIGN, DesignRun, JOURNAL, searches_of};
+pub(crate) use self::folder::{DESIGN, DesignRun, JOURNAL, search_of};
 pub use self::folder::{DesignFolder, is_design};
 pub use self::grid::Grid;
 pub use self::judge::Mean;

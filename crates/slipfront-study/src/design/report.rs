@@ -18,7 +18,7 @@ use slipfront_run::running;
 
 use super::file::DesignFile;
 use super::judge::Mean;
-use super::stages::{Cut, Length, Tried};
+use super::stages::{Length, Tried};
 use super::subject::{Fidelity, MASK, masked};
 use super::verdict::{Given, OnFresh, Verdict};
 use super::wish::{Quantity, Wish};
@@ -58,17 +58,10 @@ pub(super) struct AsMeshed {
 #[derive(Serialize)]
 struct Written<'a> {
     search: Length,
-    /// Places at which the searches of a front ended for lack of time, if one did.
-    #[serde(skip_serializing_if = "is_all_none")]
-    front_cuts: &'a [Option<Cut>],
     as_meshed: &'a AsMeshed,
     #[serde(flatten)]
     verdict: &'a Verdict,
     version: &'static str,
-}
-
-fn is_all_none(cuts: &[Option<Cut>]) -> bool {
-    cuts.iter().all(Option::is_none)
 }
 
 /// A row of `evaluations.csv`.
@@ -94,15 +87,11 @@ pub(super) struct Report<'a> {
 }
 
 impl Report<'_> {
-    /// Writes the results of a design, and returns the text of the verdict and the properties of the texture.
+    /// Writes the results of a design, and returns the text of the verdict.
     ///
     /// # Errors
     /// When the system refuses to write, or a picture cannot be drawn.
-    pub(super) fn write(
-        &mut self,
-        design: &Design,
-        outcome: &Outcome,
-    ) -> Result<(String, AsMeshed), StudyError> {
+    pub(super) fn write(&mut self, design: &Design, outcome: &Outcome) -> Result<String, StudyError> {
         let texture = outcome.texture.as_slice();
         let case = self.write_mask(design, texture)?;
         for ending in MASK_ENDINGS {
@@ -114,33 +103,18 @@ impl Report<'_> {
         self.batch
             .write(EVALUATIONS, |to| Ok(evaluations(design, outcome, to)?))?;
         let as_meshed = self.as_meshed(design, texture, &case);
-        self.write_numbers(outcome, &as_meshed, &[])?;
-        let text = self.in_words(design, outcome, &as_meshed, &case);
-        let [_, words] = VERDICT;
-        self.batch.write(words, |to| to.write_all(text.as_bytes()))?;
-        Ok((text, as_meshed))
-    }
-
-    /// Writes the results of a design as numbers, with the places at which the searches of its front ended for lack of time.
-    ///
-    /// # Errors
-    /// When the system refuses to write.
-    pub(super) fn write_numbers(
-        &mut self,
-        outcome: &Outcome,
-        as_meshed: &AsMeshed,
-        front_cuts: &[Option<Cut>],
-    ) -> Result<(), StudyError> {
-        let [numbers, _] = VERDICT;
+        let [numbers, words] = VERDICT;
         let written = Written {
             search: outcome.length,
-            front_cuts,
-            as_meshed,
+            as_meshed: &as_meshed,
             verdict: &outcome.verdict,
             version: env!("CARGO_PKG_VERSION"),
         };
         self.batch
-            .write(numbers, |to| Ok(serde_json::to_writer_pretty(to, &written)?))
+            .write(numbers, |to| Ok(serde_json::to_writer_pretty(to, &written)?))?;
+        let text = self.in_words(design, outcome, &as_meshed, &case);
+        self.batch.write(words, |to| to.write_all(text.as_bytes()))?;
+        Ok(text)
     }
 
     /// Writes a mask, and the cases that read it; returns the first of these.

@@ -93,7 +93,6 @@ impl Work {
 }
 
 /// Bounds on the length of a search.
-#[derive(Clone, Copy)]
 pub struct Bounds<'a> {
     /// Runs of the search, without those of the verdict.
     pub runs: usize,
@@ -101,9 +100,8 @@ pub struct Bounds<'a> {
     pub share_of_time: &'a dyn Fn() -> f64,
     /// Flag that ends all runs.
     pub stop: &'a AtomicBool,
-    /// Places at which earlier searches ended for lack of time, to make them again: of the design, then of each design of its front; none
-    /// of a search that had time for all of its runs. Empty for new searches.
-    pub cuts: &'a [Option<Cut>],
+    /// Place at which an earlier search ended for lack of time, to make that search again; none for a new one.
+    pub cut: Option<Cut>,
 }
 
 /// Numbers of runs after which each stage of a search that ran out of time had ended: with them the search can be made again.
@@ -115,20 +113,7 @@ pub struct Cut {
     pub refined: usize,
 }
 
-impl<'a> Bounds<'a> {
-    /// The bounds for one of several searches: of the design, 0, or of its front, from 1 on.
-    pub(super) fn of_search(&self, number: usize) -> Self {
-        Self {
-            cuts: self.cuts.get(number..).unwrap_or_default(),
-            ..*self
-        }
-    }
-
-    /// Place at which the search has to end.
-    fn cut(&self) -> Option<Cut> {
-        self.cuts.first().copied().flatten()
-    }
-
+impl Bounds<'_> {
     /// Share of a time that has passed, in seconds; 1 where the time is no number of more than 0, and 0 without a bound.
     pub fn share_of(passed: f64, most: Option<f64>) -> f64 {
         match most {
@@ -223,7 +208,7 @@ impl<'a> Stages<'a> {
 
     /// Whether there is time for more runs of a stage, or were more of them in the search that is made again.
     fn has_time(&mut self, bounds: &Bounds, is_refined: bool) -> bool {
-        let has_time = match bounds.cut() {
+        let has_time = match bounds.cut {
             Some(cut) if is_refined => self.runs < cut.refined,
             Some(cut) => self.runs < cut.explored,
             None => (bounds.share_of_time)() < if is_refined { 1.0 } else { EXPLORED },

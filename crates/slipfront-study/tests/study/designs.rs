@@ -33,7 +33,7 @@ fn bounds(runs: usize, stop: &AtomicBool) -> Bounds<'_> {
         runs,
         share_of_time: &|| 0.0,
         stop,
-        cuts: &[],
+        cut: None,
     }
 }
 

@@ -8,7 +8,7 @@ use clap::{Args, Subcommand};
 
 use crate::failure::Failure;
 
-pub(super) use run::{run_all, study_failure};
+pub(super) use run::run_all;
 
 /// Run a study: vary a case over axes and seeds, and answer with tables and pictures
 #[derive(Args)]

@@ -141,7 +141,7 @@ pub(in crate::commands) fn run_all(
         progress.show(now);
     });
     progress.finish();
-    done.map_err(|error| study_failure(signals, error))
+    done.map_err(|error| Failure::of_results(signals, error))
 }
 
 /// Prints notes before the runs: on axes that change nothing, and on a folder that has been used before.
@@ -158,15 +158,6 @@ fn print_notes(plan: &Plan, folder: &StudyFolder) {
     }
     if folder.changed {
         note("the study has changed since this folder was last used; runs that still belong to it are kept");
-    }
-}
-
-/// The failure of results that could not be written, or were not to be.
-pub(in crate::commands) fn study_failure(signals: &Signals, error: StudyError) -> Failure {
-    match error {
-        StudyError::Interrupted => Failure::stopped(signals, error),
-        StudyError::Edited { .. } | StudyError::Checksums { .. } => Failure::input(error),
-        error => Failure::running(error),
     }
 }
 
@@ -189,7 +180,7 @@ pub(super) fn finish(
     signals: &Signals,
 ) -> Result<(), Failure> {
     let written = study::write(plan, results, folder, &signals.stop);
-    written.map_err(|error| study_failure(signals, error))?;
+    written.map_err(|error| Failure::of_results(signals, error))?;
     match shown {
         Shown::Tables => print_message(&report::study(plan, results, folder.path())),
         Shown::Json => print(&text_of(&study::answer(plan, results)))?,

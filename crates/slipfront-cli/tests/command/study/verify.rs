@@ -97,9 +97,10 @@ fn run_folders_of_a_study_are_verified_too() {
 fn records_of_something_else_are_called_so() {
     let workspace = Workspace::with_study(SMALL);
     workspace.study("out");
-    let text = std::fs::read_to_string(workspace.path("out/study.toml")).unwrap();
-    workspace.write("out/study.toml", format!("{text}\n[base.friction]\nseed = 77\n"));
-    let (status, _, problems) = verified(&workspace, "out");
+    workspace.write("other.toml", format!("{SMALL}\n[base.friction]\nseed = 77\n"));
+    workspace.succeed("study other.toml -o other");
+    workspace.write("other/records.jsonl", workspace.read("out/records.jsonl"));
+    let (status, _, problems) = verified(&workspace, "other");
     assert_eq!(status, 2);
     assert!(
         problems.contains("lacks 36 runs, and 36 recorded runs are of another program than slipfront "),
