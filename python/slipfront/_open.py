@@ -123,8 +123,8 @@ def open(folder: str | os.PathLike[str], *, verify: bool = True) -> Run | Interr
         That of a run, of a run that was stopped, of a study, of `slipfront converge`, of `slipfront design`, of `slipfront calibrate`, or of
         `slipfront paper`.
     verify
-        Hold what stands there against what was written. Of an interrupted run its checkpoint is always verified; that of the paper
-        has nothing to be held against.
+        Compare the folder with what was written. Of an interrupted run its checkpoint is always verified; figures of the paper are compared
+        with their checksums, and not drawn again.
 
     Returns
     -------
@@ -144,6 +144,8 @@ def open(folder: str | os.PathLike[str], *, verify: bool = True) -> Run | Interr
         case = Case._of(native)
         return InterruptedRun(path, case, Simulation._of(case, running, None))
     if kind == "paper" and (path / "claims.csv").exists():
+        if verify:
+            _slipfront.verify(path)
         return PaperResults(path)
     if kind not in ("run", "study", "meshes", "design", "calibration"):
         raise _slipfront.FolderError(f"{path} is not the folder of a run, of a study, of a design, of a calibration, or of a paper that is finished: name one with a case.toml, a study.toml, a design.json, a calibration.json or a claims.csv")

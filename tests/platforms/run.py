@@ -6,7 +6,7 @@
     tests/platforms/run.py --pin                 writes the hashes anew, with the widest vectors of this processor
 
 PLATFORM is baseline (SSE2), AVX2, AVX-512, aarch64 (qemu-aarch64), windows (wine64) or wasm (Node.js); without one all are taken. Hashes are
-of all files that a run, a study and the family leave but manifests and journals, which hold times and places, and of the pictures of one
+of all files that a run, a study and the family leave but manifests, lists of checksums and journals, which hold times, places and programs, and of the pictures of one
 case. --table writes the outcome to docs/reliability.md. --program FILE names another program than release/build.sh made.
 
 Needs the programs of release/build.sh (linux-x86_64, linux-aarch64, windows-x86_64) and, for another platform than this machine, the
@@ -36,7 +36,7 @@ STEPS = 500
 # The case whose pictures are drawn too.
 DRAWN = "circle"
 # They hold times, places and the order in which runs ended.
-NOT_HASHED = {"manifest.json", "records.jsonl"}
+NOT_HASHED = {"manifest.json", "checksums.json", "records.jsonl"}
 BEGIN, END = "<!-- written by tests/platforms/run.py -->\n", "<!-- end -->\n"
 
 
