@@ -77,6 +77,50 @@ fn another_record_needs_no_runs() {
     assert!(said.contains("holds another calibration"), "{said}");
 }
 
+/// What is wrong with a record is said before any run, and before a folder is made.
+#[test]
+fn a_record_that_cannot_be_meant_is_refused_before_any_run() {
+    let workspace = workspace();
+    let series = workspace.read_text("record.csv");
+    let (header, rows) = series.split_once('\n').unwrap();
+    let refused = |record: &str, words: &str| {
+        workspace.write("wrong.csv", record);
+        let said = workspace.fail("calibrate fit.toml wrong.csv -o new", 2);
+        assert!(said.contains(words), "{words}: {said}");
+        assert!(!workspace.exists("new"), "{words}");
+    };
+    // Longer than its copy could be: nothing of it is read.
+    let file = std::fs::File::create(workspace.path("long.csv")).unwrap();
+    file.set_len(1 << 40).unwrap();
+    let said = workspace.fail("calibrate fit.toml long.csv -o new", 2);
+    assert!(
+        said.contains("long.csv: it has 1099511627776 bytes where at most 16777216 can be meant"),
+        "{said}"
+    );
+    refused(
+        &format!("{header}\n{}", rows.replacen('\n', "\nNaN\n", 3)),
+        "line 3 of wrong.csv, \"NaN\", has no number in column",
+    );
+    // Times of the series begin at 0, in the first column of two that are asked for.
+    let place = header.split(',').position(|name| name == "time_s").unwrap();
+    let before = rows.lines().map(|row| {
+        let mut fields: Vec<String> = row.split(',').map(str::to_owned).collect();
+        fields[place] = (fields[place].parse::<f64>().unwrap() - 2.0).to_string();
+        fields.join(",") + "\n"
+    });
+    refused(
+        &format!("{header}\n{}", before.collect::<String>()),
+        "wrong.csv ends at -2 s, before the drive begins: times count from the beginning of the drive",
+    );
+    workspace.write("ended.csv", format!("{series}End of test\n"));
+    let output = workspace.output("calibrate fit.toml ended.csv -o ended");
+    let said = stderr(&output);
+    assert!(
+        output.status.success() && said.contains("note: ended.csv ends with 1 line without numbers"),
+        "{said}"
+    );
+}
+
 #[test]
 fn folders_of_others_are_left_alone() {
     let workspace = workspace();
