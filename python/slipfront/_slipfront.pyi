@@ -134,7 +134,7 @@ class Study:
         threads: int,
         look: Callable[[Case, Record, tuple[int, int, bool]], list[float]] | None,
         watch: Callable[[int, int, int], object] | None,
-    ) -> tuple[dict[tuple[int, int, bool], list[float]], list[tuple[str, str]]]: ...
+    ) -> tuple[dict[tuple[int, int, bool], list[float]], list[tuple[str, str]], str | None]: ...
 
 @final
 class Design:
@@ -177,7 +177,7 @@ class Calibration:
         records: list[Path],
         threads: int,
         watch: Callable[[int, int], object] | None,
-    ) -> str: ...
+    ) -> list[str]: ...
 
 @final
 class TemporaryParent:

@@ -41,7 +41,7 @@ impl Calibration {
         self.file.keys.columns()
     }
 
-    /// Calibrates in a folder, or goes on there, and returns the findings as a text.
+    /// Calibrates in a folder, or goes on there, and returns sentences about lines of the records that were passed over.
     fn execute(
         &self,
         py: Python<'_>,
@@ -50,12 +50,13 @@ impl Calibration {
         records: Vec<PathBuf>,
         threads: usize,
         watch: Option<Py<PyAny>>,
-    ) -> PyResult<String> {
+    ) -> PyResult<Vec<String>> {
         let opened = detached(py, || {
             self.file.check_memory(&records, threads)?;
-            CalibrationFolder::open(&folder, training.as_deref(), &self.file, &records)
+            let folder = CalibrationFolder::open(&folder, training.as_deref(), &self.file, &records)?;
+            Ok((folder, self.file.notes(&records)?))
         })?;
-        let mut opened = opened.map_err(|error| study_error(py, &error))?;
+        let (mut opened, notes) = opened.map_err(|error| study_error(py, &error))?;
         let progress: Mutex<Option<CalibrationProgress>> = Mutex::new(None);
         let find = |stop: &AtomicBool| {
             opened.find(stop, &mut |now| {
@@ -69,7 +70,8 @@ impl Calibration {
                 _ => Ok(()),
             }
         };
-        on_pool(py, threads, find, &mut show)
+        on_pool(py, threads, find, &mut show)?;
+        Ok(notes)
     }
 }
 

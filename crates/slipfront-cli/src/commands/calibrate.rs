@@ -72,7 +72,7 @@ impl CalibrateCommand {
         if !self.quiet {
             print_message(&format!("{text}\n{}\n", folder.path().display()));
         }
-        Ok(())
+        folder.expect_own_records().map_err(Failure::running)
     }
 }
 

@@ -15,7 +15,8 @@ fn workspace() -> Workspace {
         "truth.toml",
         "slider.blocks = [6, 6]\ndrive.v_star = 0.1\ntime = { step = 0.4, duration_star = 120 }\noutput.series = 1\n",
     );
-    workspace.succeed("run truth.toml -o truth --no-pictures --quiet");
+    // One of the surfaces that the check takes for its own.
+    workspace.succeed("run truth.toml --seed 2 -o truth --no-pictures --quiet");
     workspace.write("record.csv", workspace.read("truth/series.csv"));
     workspace
 }
@@ -119,6 +120,22 @@ fn a_record_that_cannot_be_meant_is_refused_before_any_run() {
         output.status.success() && said.contains("note: ended.csv ends with 1 line without numbers"),
         "{said}"
     );
+}
+
+/// A record that the model does not make has status 1, with all results and, also where nothing else is printed, a sentence.
+#[test]
+fn a_foreign_record_is_refused_aloud() {
+    let workspace = workspace();
+    let fit = FIT.replace("[calibrate]\n", "[calibrate]\ny_unit = 'MN'\n");
+    workspace.write("foreign.toml", fit);
+    let said = workspace.fail("calibrate foreign.toml record.csv -o found --quiet", 1);
+    assert!(
+        said.contains("the model does not make such records") && said.contains("found/calibration.txt"),
+        "{said}"
+    );
+    let text = workspace.read_text("found/calibration.txt");
+    assert!(text.starts_with("The model does not make such records"), "{text}");
+    assert!(workspace.exists("found/case.toml"));
 }
 
 #[test]

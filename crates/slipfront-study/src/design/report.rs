@@ -5,7 +5,7 @@ use std::io::Write;
 use std::path::Path;
 use std::sync::Arc;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use slipfront_case::arrays::{npy_of_mask, write_mask_png};
 use slipfront_case::case::{Case, Ranks};
 use slipfront_case::number_format::{count, four_digits, with_half_width, with_si_prefix};
@@ -16,6 +16,7 @@ use slipfront_run::pictures::texture_file::{self, TextureFileError};
 use slipfront_run::running;
 
 use super::file::DesignFile;
+use super::folder::DesignFolder;
 use super::judge::Mean;
 use super::stages::{Length, Tried};
 use super::subject::{Fidelity, MASK, masked};
@@ -25,6 +26,7 @@ use super::{Design, Outcome};
 use crate::error::StudyError;
 use crate::files_in_folder::{write_in, write_picture};
 use crate::text_table::table;
+use crate::written_numbers::read_numbers;
 
 /// A table of every draft that was tried.
 const EVALUATIONS: &str = "evaluations.csv";
@@ -61,6 +63,31 @@ struct Written<'a> {
     #[serde(flatten)]
     verdict: &'a Verdict,
     version: &'static str,
+}
+
+/// The part of the numbers that says whether there is a verdict.
+#[derive(Deserialize)]
+struct Decided {
+    design: Lost,
+}
+
+#[derive(Deserialize)]
+struct Lost {
+    lost: Option<String>,
+}
+
+impl DesignFolder {
+    /// Refuses a verdict on textures that are all lost.
+    ///
+    /// # Errors
+    /// A sentence that names the verdict; when the folder has none.
+    pub fn expect_verdict(&self) -> Result<(), StudyError> {
+        let [numbers, words] = VERDICT.map(|name| self.path().join(name));
+        match read_numbers::<Decided>(&numbers)?.design.lost {
+            None => Ok(()),
+            Some(_) => Err(StudyError::NoVerdict { path: words }),
+        }
+    }
 }
 
 /// A row of `evaluations.csv`.

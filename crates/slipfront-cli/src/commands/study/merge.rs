@@ -54,6 +54,7 @@ impl Merge {
                 .map_err(Failure::running)?;
         }
         let shown = if self.quiet { Shown::Nothing } else { Shown::Tables };
-        finish(&plan, &results, &folder, shown)
+        finish(&plan, &results, &folder, shown)?;
+        results.expect_values(&plan).map_err(Failure::running)
     }
 }
