@@ -54,11 +54,12 @@ def main(slipfront, run):
         for name in NAMES:
             folder = pathlib.Path(work) / name
             shutil.copytree(run, folder)
-            author = spaced(name)
+            # What stands in angle brackets is an ORCID.
+            author = spaced(name).replace("<", "")
 
             def cited(form):
-                done = subprocess.run([slipfront, "export", folder, form, "--author", author], capture_output=True, text=True, check=True)
-                return done.stdout
+                command = [slipfront, "export", folder, form, f"--author={author}"]
+                return subprocess.run(command, stdout=subprocess.PIPE, text=True, check=True).stdout
 
             title = f"Friction computed with slipfront: {name}"
             entries = pybtex.database.parse_string(cited("--bibtex"), "bibtex").entries

@@ -6,7 +6,7 @@ use crate::print_stderr::print_stderr;
 use crate::signals::Signals;
 use crate::wrap::for_stderr;
 
-/// What the exit status of every command says, in lines that a terminal of 80 columns does not wrap.
+/// Table of the exit statuses of all commands, in lines that a terminal of 80 columns does not wrap.
 pub(crate) const STATUSES: &str = "Exit status:
   0        done, and the answer is there
   1        the work failed, or its answer is no: a run failed, a disk is full, a

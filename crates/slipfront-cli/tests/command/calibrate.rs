@@ -78,7 +78,7 @@ fn another_record_needs_no_runs() {
     assert!(said.contains("holds another calibration"), "{said}");
 }
 
-/// What is wrong with a record is said before any run, and before a folder is made.
+/// A record that cannot be meant is refused before any run, and before a folder is made.
 #[test]
 fn a_record_that_cannot_be_meant_is_refused_before_any_run() {
     let workspace = workspace();

@@ -108,7 +108,7 @@ fn tex(text: &str) -> String {
     text.chars().map(sign).collect()
 }
 
-/// A string of YAML. Those of JSON are such, but for signs that some readers of YAML refuse or take for ends of lines.
+/// A string of YAML: a string of JSON, with numbers for the signs that some readers of YAML refuse or take for ends of lines.
 fn quoted(text: &str) -> String {
     let is_refused = |c: char| {
         c.is_control() || matches!(c, '\u{2028}' | '\u{2029}' | '\u{feff}' | '\u{fffe}' | '\u{ffff}')

@@ -196,7 +196,7 @@ mod tests {
         assert!(all.rms < 1e-2 && all.points == 501, "{all:?}");
     }
 
-    /// Of the shorter one: a curve that is shorter than a tenth of the record may lie within it.
+    /// A curve that is shorter than a tenth of the record may lie within it.
     #[test]
     fn a_long_record_may_go_beyond_the_curve() {
         let (xs, ys) = curve();
