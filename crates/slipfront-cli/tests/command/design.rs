@@ -175,7 +175,9 @@ fn lines_without_numbers_are_no_wish() {
     workspace.write("wish.toml", WISH.replace("{ least = 'static_friction' }", curve));
     let said = unwrapped(&workspace.fail("design wish.toml -o found", 2));
     assert!(
-        said.contains("wanted.csv ends with 1 line without numbers, from line 4 on: remove them, or begin them with #"),
+        said.contains(
+            "wanted.csv ends with 1 line without numbers, from line 4 on: remove them, or begin them with #"
+        ),
         "{said}"
     );
     assert!(!workspace.exists("found"));
