@@ -34,6 +34,9 @@ pub(crate) struct Study {
 /// replicate, and whether it is the reference.
 type OwnValues = BTreeMap<(usize, usize, bool), Vec<f64>>;
 
+/// Values of own quantities, places and reasons of failed runs, and why no run has a value of the main quantity, if none has.
+type Executed = (OwnValues, Vec<(String, String)>, Option<String>);
+
 impl Study {
     fn of(py: Python<'_>, read: impl FnOnce() -> Result<StudyFile, StudyError> + Send) -> PyResult<Self> {
         let planned = detached(py, || {
@@ -192,7 +195,7 @@ impl Study {
         threads: usize,
         look: Option<Py<PyAny>>,
         watch: Option<Py<PyAny>>,
-    ) -> PyResult<(OwnValues, Vec<(String, String)>, Option<String>)> {
+    ) -> PyResult<Executed> {
         let failed = |error: StudyError| Python::attach(|py| study_error(py, &error));
         let opened = detached(py, || {
             self.plan.check_memory(threads)?;
