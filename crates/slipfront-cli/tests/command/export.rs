@@ -177,6 +177,12 @@ fn several_runs_are_one_crate() {
     assert!(workspace.files("all/run") == workspace.files("b/run"));
     let refused = workspace.fail("export b/run --ro-crate -o all", 2);
     assert!(refused.contains("the folder all is not empty"), "{refused}");
+    let refused = workspace.fail("export b/run --ro-crate -o .", 2);
+    assert!(refused.contains("the command works in the folder ."), "{refused}");
+    // An empty folder gets the name of the crate that takes its place.
+    std::fs::create_dir(workspace.path("empty")).unwrap();
+    workspace.succeed("export b/run --ro-crate -o empty");
+    expect_complete(&workspace, "empty");
     let refused = workspace.fail("export b/run all/run --ro-crate -o new", 2);
     assert!(
         refused.contains("two of the runs stand in folders of the name run"),
