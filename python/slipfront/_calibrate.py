@@ -6,6 +6,7 @@ import csv
 import dataclasses
 import json
 import os
+import warnings
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, TypeAlias
@@ -151,6 +152,11 @@ class Calibration:
         ------
         CaseError
             When a record cannot be read, or the ranges leave the bounds of the case.
+
+        Warns
+        -----
+        UserWarning
+            When the model does not make such records, and about lines without numbers at the end of a record.
         """
         shown, watch = parted(progress)
         temporary = TemporaryFolder()
@@ -166,8 +172,13 @@ class Calibration:
                 bar.show(done, total)
 
             kept = None if training is None else Path(training)
-            self._native.execute(path, force, kept, paths, _threads(threads), show)
-            return CalibrationResults.read(path, None if folder is None else path)
+            notes = self._native.execute((path, force), kept, paths, _threads(threads), show)
+            results = CalibrationResults.read(path, None if folder is None else path)
+        if results.is_refused:
+            notes.append("the model does not make such records, and the intervals promise nothing: `text` says why, and what to look at")
+        for note in notes:
+            warnings.warn(note, stacklevel=2)
+        return results
 
     def _path(self, record: Record, path: Path) -> Path:
         """Path of a record; a record that is given as columns is written there."""

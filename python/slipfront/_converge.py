@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import json
 import os
+import warnings
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -163,6 +164,11 @@ def converge(
     RunError
         When a run fails, of which the tables in the folder tell.
 
+    Warns
+    -----
+    UserWarning
+        When no quantity has a value on every mesh.
+
     Examples
     --------
     >>> coarse = {"slider.blocks": [20, 20], "slider.block_size": "50 um", "time.stop": "after_onset"}
@@ -182,5 +188,7 @@ def converge(
         native = _slipfront.Case.parse(text, case.name, Path(), [], {})
     study = _slipfront.Study.on_meshes(native, levels, replicates)
     study.check_cost(_threads(threads), max_memory, max_time)
-    found, _ = executed(study, Convergence, folder, force, progress, threads)
+    found, _, _ = executed(study, Convergence, folder, force, progress, threads)
+    if not found.quantities:
+        warnings.warn("no quantity has a value on every mesh: `runs` says what the runs found", stacklevel=2)
     return found

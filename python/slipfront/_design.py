@@ -213,6 +213,11 @@ class Design:
         ------
         CaseError
             When no texture keeps the limits.
+
+        Warns
+        -----
+        UserWarning
+            When there is no verdict, since every texture that was judged is lost.
         """
         shown, watch = parted(progress)
         temporary = TemporaryFolder()
@@ -224,8 +229,11 @@ class Design:
                 bar.show(done, total, f"best {best:.4g}" if best == best else "verdict")
 
             path = temporary.path / self.name if folder is None else Path(folder)
-            self._native.execute(path, force, runs, time, _threads(threads), show)
-            return DesignResults.read(path, None if folder is None else path)
+            self._native.execute((path, force), runs, time, _threads(threads), show)
+            results = DesignResults.read(path, None if folder is None else path)
+        if results.to_dict()["design"]["lost"] is not None:
+            warnings.warn("every texture that was judged is lost on fresh surfaces: `text` says why", stacklevel=2)
+        return results
 
     def _bytes(self, mask: npt.ArrayLike) -> bytes:
         array = np.asarray(mask)

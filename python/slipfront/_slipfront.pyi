@@ -130,12 +130,11 @@ class Study:
     def statistics(self, values: list[float]) -> list[tuple[str, float]]: ...
     def execute(
         self,
-        folder: Path,
-        force: bool,
+        folder: tuple[Path, bool],
         threads: int,
         look: Callable[[Case, Record, tuple[int, int, bool]], list[float]] | None,
         watch: Callable[[int, int, int], object] | None,
-    ) -> tuple[dict[tuple[int, int, bool], list[float]], list[tuple[str, str]]]: ...
+    ) -> tuple[dict[tuple[int, int, bool], list[float]], list[tuple[str, str]], str | None]: ...
 
 @final
 class Design:
@@ -154,8 +153,7 @@ class Design:
     def losses(self, masks: list[bytes], surfaces: int, is_coarse: bool, threads: int) -> list[tuple[float, str | None]]: ...
     def execute(
         self,
-        folder: Path,
-        force: bool,
+        folder: tuple[Path, bool],
         runs: int | None,
         seconds: float | None,
         threads: int,
@@ -174,13 +172,12 @@ class Calibration:
     def columns(self) -> list[str]: ...
     def execute(
         self,
-        folder: Path,
-        force: bool,
+        folder: tuple[Path, bool],
         training: Path | None,
         records: list[Path],
         threads: int,
         watch: Callable[[int, int], object] | None,
-    ) -> str: ...
+    ) -> list[str]: ...
 
 @final
 class TemporaryParent:

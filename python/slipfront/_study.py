@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import warnings
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
@@ -155,6 +156,11 @@ class Study:
             Own quantities: functions of a run, whose values are columns of `StudyResults.runs` and, with their statistics, rows
             of `points`. They are called in the threads of the runs.
 
+        Warns
+        -----
+        UserWarning
+            When no run has a value of the main quantity, such as a transition from static to kinetic friction.
+
         Examples
         --------
         >>> case = Case.from_dict({"slider": {"blocks": [8, 8]}, "time": {"duration_star": 150}})
@@ -172,7 +178,10 @@ class Study:
             result = Run(Case._of(native), record)
             return [float(quantity(result)) for quantity in own.values()]
 
-        results, values = executed(self._native, StudyResults, folder, force, progress, threads, look if own else None)
+        results, values, why = executed(self._native, StudyResults, folder, force, progress, threads, look if own else None)
+        # Own quantities are an answer, whatever else there is.
+        if why is not None and not own:
+            warnings.warn(why, stacklevel=2)
         if own:
             self._add(results, own, values)
         return results
@@ -317,8 +326,9 @@ def executed(
     progress: Progress,
     threads: int | None,
     look: Look | None = None,
-) -> tuple[Results, dict[tuple[int, int, bool], list[float]]]:
-    """Make the runs that the folder of a study lacks, a temporary one unless it is given; return its results, and the values of own quantities by run."""
+) -> tuple[Results, dict[tuple[int, int, bool], list[float]], str | None]:
+    """Make the runs that the folder of a study lacks, a temporary one unless it is given; return its results, the values of own quantities by run,
+    and why no run has a value of the main quantity, if none has."""
     shown, watch = parted(progress)
     temporary = TemporaryFolder()
     with Bar(shown, None, "run", native.name) as bar:
@@ -329,11 +339,11 @@ def executed(
             bar.show(done, total, f"{failed} failed" if failed else "")
 
         path = temporary.path / native.name if folder is None else Path(folder)
-        values, failures = native.execute(path, force, _threads(threads), look, show)
+        values, failures, why = native.execute((path, force), _threads(threads), look, show)
         results = kind.read(path, failures)
         if folder is None:
             results.folder = None
-    return results, values
+    return results, values, why
 
 
 def _axis(name: str, levels: Sequence[Any] | Mapping[str, Mapping[str, Any]], arrays: _toml.Arrays) -> str:

@@ -41,22 +41,24 @@ impl Calibration {
         self.file.keys.columns()
     }
 
-    /// Calibrates in a folder, or goes on there, and returns the findings as a text.
+    /// Calibrates in a folder, or goes on there, and returns sentences about lines of the records that were passed over. Beside the folder
+    /// stands whether edited files there are replaced.
     fn execute(
         &self,
         py: Python<'_>,
-        folder: PathBuf,
-        force: bool,
+        folder: (PathBuf, bool),
         training: Option<PathBuf>,
         records: Vec<PathBuf>,
         threads: usize,
         watch: Option<Py<PyAny>>,
-    ) -> PyResult<String> {
+    ) -> PyResult<Vec<String>> {
+        let (folder, force) = folder;
         let opened = detached(py, || {
             self.file.check_memory(&records, threads)?;
-            CalibrationFolder::open(&folder, training.as_deref(), &self.file, &records, force)
+            let folder = CalibrationFolder::open(&folder, training.as_deref(), &self.file, &records, force)?;
+            Ok((folder, self.file.notes(&records)?))
         })?;
-        let mut opened = opened.map_err(|error| study_error(py, &error))?;
+        let (mut opened, notes) = opened.map_err(|error| study_error(py, &error))?;
         let progress: Mutex<Option<CalibrationProgress>> = Mutex::new(None);
         let find = |stop: &AtomicBool| {
             opened.find(stop, &mut |now| {
@@ -70,7 +72,8 @@ impl Calibration {
                 _ => Ok(()),
             }
         };
-        on_pool(py, threads, find, &mut show)
+        on_pool(py, threads, find, &mut show)?;
+        Ok(notes)
     }
 }
 

@@ -117,17 +117,18 @@ impl Design {
         on_pool(py, threads, evaluate, &mut |_| Ok(()))
     }
 
-    /// Searches in a folder, or goes on there, and writes the results of the design; returns the verdict as a text.
+    /// Searches in a folder, or goes on there, and writes the results of the design; returns the verdict as a text. Beside the folder
+    /// stands whether edited files there are replaced.
     fn execute(
         &self,
         py: Python<'_>,
-        folder: PathBuf,
-        force: bool,
+        folder: (PathBuf, bool),
         runs: Option<usize>,
         seconds: Option<f64>,
         threads: usize,
         watch: Option<Py<PyAny>>,
     ) -> PyResult<String> {
+        let (folder, force) = folder;
         let runs = runs.unwrap_or(self.file.keys.runs as usize);
         let opened = detached(py, || {
             self.file.check(runs, threads, seconds.is_some())?;

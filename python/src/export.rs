@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 use std::str::FromStr;
+use std::sync::atomic::AtomicBool;
 
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -21,7 +22,10 @@ pub(crate) fn ro_crate(
     force: bool,
 ) -> PyResult<(PathBuf, Vec<String>)> {
     let told = told(author, licence)?;
-    let written = detached(py, || write_crate(&read(&folders)?, out.as_deref(), &told, force))?;
+    let never = AtomicBool::new(false);
+    let written = detached(py, || {
+        write_crate(&read(&folders)?, out.as_deref(), &told, force, &never)
+    })?;
     let notes = told.notes().into_iter().map(in_words_of_python).collect();
     Ok((written.map_err(export_error)?, notes))
 }

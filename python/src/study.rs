@@ -34,6 +34,9 @@ pub(crate) struct Study {
 /// replicate, and whether it is the reference.
 type OwnValues = BTreeMap<(usize, usize, bool), Vec<f64>>;
 
+/// Values of own quantities, places and reasons of failed runs, and why no run has a value of the main quantity, if none has.
+type Executed = (OwnValues, Vec<(String, String)>, Option<String>);
+
 impl Study {
     fn of(py: Python<'_>, read: impl FnOnce() -> Result<StudyFile, StudyError> + Send) -> PyResult<Self> {
         let planned = detached(py, || {
@@ -187,19 +190,20 @@ impl Study {
         [vec![("n", values.len() as f64)], found.unwrap_or_default()].concat()
     }
 
-    /// Makes the runs that the folder lacks, and writes tables, pictures and the comparison of meshes there. `look` is
+    /// Makes the runs that the folder lacks, and writes tables, pictures and the comparison of meshes there. Beside the folder stands whether
+    /// edited files there are replaced. `look` is
     /// called with the case, the record and the place of every run that ends, and returns the values of the user's own
     /// quantities; `watch` is called with the numbers of runs that are done, of all, and of failed ones. Returns the values
-    /// by run, and the reasons of the runs that failed.
+    /// by run, the reasons of the runs that failed, and why no run has a value of the main quantity, if none has.
     fn execute(
         &self,
         py: Python<'_>,
-        folder: PathBuf,
-        force: bool,
+        folder: (PathBuf, bool),
         threads: usize,
         look: Option<Py<PyAny>>,
         watch: Option<Py<PyAny>>,
-    ) -> PyResult<(OwnValues, Vec<(String, String)>)> {
+    ) -> PyResult<Executed> {
+        let (folder, force) = folder;
         let failed = |error: StudyError| Python::attach(|py| study_error(py, &error));
         let opened = detached(py, || {
             self.plan.check_memory(threads)?;
@@ -242,8 +246,10 @@ impl Study {
             let place = plan.describe(&plan.points[run.point]);
             (format!("{place}, replicate {}", run.replicate), reason.to_owned())
         };
-        let failures = results.failures().map(describe).collect();
-        Ok((std::mem::take(&mut *locked(&shared.own)), failures))
+        let failures: Vec<_> = results.failures().map(describe).collect();
+        let why = results.expect_values(&plan).err().filter(|_| failures.is_empty());
+        let why = why.map(|error| error.to_string());
+        Ok((std::mem::take(&mut *locked(&shared.own)), failures, why))
     }
 }
 

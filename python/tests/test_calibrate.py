@@ -52,6 +52,18 @@ def test_a_calibration_has_the_bytes_of_the_command(tmp_path: Path) -> None:
         sf.open(tmp_path / "two")
 
 
+def test_what_promises_nothing_has_a_warning(tmp_path: Path) -> None:
+    made, measured = calibration(), record()
+    with pytest.warns(UserWarning, match="the model does not make such records"):
+        foreign = made.fit({**measured, "force_n": 100 * measured["force_n"]}, progress=False)
+    assert foreign.is_refused
+    path = tmp_path / "ended.csv"
+    rows = zip(measured["time_s"].tolist(), measured["force_n"].tolist(), strict=True)
+    path.write_text("time_s,force_n\n" + "".join(f"{time},{force}\n" for time, force in rows) + "End of test\n")
+    with pytest.warns(UserWarning, match=r"ended\.csv ends with 1 line without numbers"):
+        made.fit(path, progress=False)
+
+
 def test_records_in_memory_share_their_runs() -> None:
     made = calibration()
     first = made.fit(record(), progress=False)

@@ -119,6 +119,13 @@ def test_blocks_that_are_too_coarse_are_told_once(small: sf.Case) -> None:
     assert sentence == f"{coarse} (at 2 points, the first texture.0.coverage = 5)"
 
 
+def test_a_study_without_an_answer_has_a_warning(small: sf.Case) -> None:
+    short = small.replace({"time.duration_star": 5})
+    with pytest.warns(UserWarning, match="no run has a value of static_friction_star, since none has a transition"):
+        results = sf.Study(short, {"drive.v_star": [0.05, 0.1]}).run(progress=False)
+    assert len(results.runs) == 2
+
+
 def test_an_axis_may_have_named_variants(small: sf.Case) -> None:
     mask = np.zeros(small.shape, dtype=bool)
     mask[3:6, 3:6] = True

@@ -12,6 +12,7 @@ use std::sync::{Arc, Mutex, PoisonError, Weak};
 
 use tempfile::{Builder, NamedTempFile, TempDir};
 
+use crate::disk::{folder_of, sync_folder};
 use crate::machine::host_name;
 
 /// The beginning of every hidden name.
@@ -59,7 +60,7 @@ pub fn clear_unfinished(folder: &Path) {
 pub struct TemporaryFolder {
     // Dropped first: as long as it is removed, it is locked.
     folder: TempDir,
-    lock: Option<File>,
+    _lock: Option<File>,
     /// The process that made the folder.
     process: u32,
 }
@@ -85,29 +86,15 @@ impl TemporaryFolder {
     }
 
     fn of_target(target: &[u8]) -> Result<Self> {
-        let parent = std::env::temp_dir();
         // Machines may share the folder, and not know of each other's locks.
         let host = host_name();
         let beginning = beginning_for(&[host.as_encoded_bytes(), b"\0", target].concat());
-        let make = || {
-            let folder = builder(&beginning, 0o700).tempdir_in(&parent)?;
-            // Some systems do not open folders: there it has no lock, and nobody removes it.
-            let lock = File::open(folder.path()).ok();
-            Ok(Self {
-                folder,
-                lock,
-                process: std::process::id(),
-            })
-        };
-        let made = until_locked(make, |made| hold(made.lock.as_ref(), made.path()))?;
-        if let Ok(own) = made.path().symlink_metadata() {
-            // Where locks fail, its own one is none that was left.
-            clear(&parent, &beginning, |entry| {
-                let is_alike = |found: Metadata| found.is_dir() && owner(&found) == owner(&own);
-                Some(&*entry.file_name()) != made.path().file_name() && entry.metadata().is_ok_and(is_alike)
-            });
-        }
-        Ok(made)
+        let (folder, lock) = locked_folder(&std::env::temp_dir(), &beginning, 0o700)?;
+        Ok(Self {
+            folder,
+            _lock: lock,
+            process: std::process::id(),
+        })
     }
 
     /// Path of the folder.
@@ -125,6 +112,59 @@ impl Drop for TemporaryFolder {
     fn drop(&mut self) {
         self.folder.disable_cleanup(!self.is_own());
     }
+}
+
+/// A folder under a hidden name beside the place that it will be renamed to. Until then it is removed with all its contents when it
+/// is dropped.
+#[derive(Debug)]
+pub struct UnfinishedFolder {
+    // Dropped first: as long as it is removed, it is locked.
+    folder: TempDir,
+    _lock: Option<File>,
+}
+
+impl UnfinishedFolder {
+    /// Makes an empty folder, and removes such folders that killed processes have left for the same place.
+    pub fn beside(path: &Path) -> Result<Self> {
+        let beginning = beginning_for(path.file_name().unwrap_or_default().as_encoded_bytes());
+        let (folder, lock) = locked_folder(folder_of(path), &beginning, 0o777)?;
+        Ok(Self { folder, _lock: lock })
+    }
+
+    /// Path of the folder under its hidden name.
+    pub fn path(&self) -> &Path {
+        self.folder.path()
+    }
+
+    /// Gives the folder its name, in the place of an empty folder if there is one, such that it survives a power failure.
+    pub fn persist(mut self, path: &Path) -> Result<()> {
+        sync_folder(self.path())?;
+        // Not every system replaces an empty folder.
+        let _ = std::fs::remove_dir(path);
+        std::fs::rename(self.path(), path)?;
+        self.folder.disable_cleanup(true);
+        sync_folder(folder_of(path))
+    }
+}
+
+/// Makes an empty folder with this beginning of its name, locked, and removes such folders of this user whose lock is free.
+fn locked_folder(parent: &Path, beginning: &str, mode: u32) -> Result<(TempDir, Option<File>)> {
+    let make = || {
+        let folder = builder(beginning, mode).tempdir_in(parent)?;
+        // Some systems do not open folders: there it has no lock, and nobody removes it.
+        let lock = File::open(folder.path()).ok();
+        Ok((folder, lock))
+    };
+    let made = until_locked(make, |(folder, lock)| hold(lock.as_ref(), folder.path()))?;
+    let (folder, _) = &made;
+    if let Ok(own) = folder.path().symlink_metadata() {
+        // Where locks fail, its own one is none that was left.
+        clear(parent, beginning, |entry| {
+            let is_alike = |found: Metadata| found.is_dir() && owner(&found) == owner(&own);
+            Some(&*entry.file_name()) != folder.path().file_name() && entry.metadata().is_ok_and(is_alike)
+        });
+    }
+    Ok(made)
 }
 
 /// A builder of temporary files and folders whose names have this beginning, with this mode.
@@ -367,6 +407,34 @@ mod tests {
         let path = second.path().to_owned();
         drop(second);
         assert!(!path.exists());
+    }
+
+    #[test]
+    fn a_folder_is_hidden_until_it_is_whole() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("crate");
+        // As a killed process leaves it.
+        let left = hidden(folder.path(), "crate");
+        std::fs::create_dir(&left).unwrap();
+        std::fs::write(left.join("half"), "half of").unwrap();
+        let made = UnfinishedFolder::beside(&path).unwrap();
+        assert!(!left.exists() && !path.exists());
+        std::fs::write(made.path().join("whole"), "whole").unwrap();
+        made.persist(&path).unwrap();
+        assert_eq!(names(folder.path()), ["crate"]);
+        assert_eq!(names(&path), ["whole"]);
+        let plain = folder.path().join("plain");
+        std::fs::create_dir(&plain).unwrap();
+        let mode = |path: &Path| path.metadata().unwrap().permissions().mode();
+        assert_eq!(mode(&path), mode(&plain));
+        // An empty folder is replaced, any other one is not.
+        let made = UnfinishedFolder::beside(&plain).unwrap();
+        std::fs::write(made.path().join("whole"), "whole").unwrap();
+        made.persist(&plain).unwrap();
+        assert_eq!(names(&plain), ["whole"]);
+        let made = UnfinishedFolder::beside(&plain).unwrap();
+        assert!(made.persist(&plain).is_err());
+        assert_eq!(names(folder.path()), ["crate", "plain"]);
     }
 
     /// In a folder that users share, others can make what looks like a leftover.

@@ -7,11 +7,20 @@ use crate::print_stderr::print_stderr;
 use crate::signals::Signals;
 use crate::wrap::for_stderr;
 
+/// Table of the exit statuses of all commands, in lines that a terminal of 80 columns does not wrap.
+pub(crate) const STATUSES: &str = "Exit status:
+  0        done, and the answer is there
+  1        the work failed, or its answer is no: a run failed, a disk is full, a
+           file is not as it was written, a claim or an exact answer is missed, no
+           run has the quantity of the study, the model does not make such records
+  2        the input or the command line is wrong: the sentence says what to change
+  128 + N  stopped by the signal N: 129, 130, 143 by SIGHUP, SIGINT, SIGTERM";
+
 /// Reason for which a command failed.
 pub(crate) enum Failure {
     /// Bad input or usage: status 2.
     Input(anyhow::Error),
-    /// An error while running: status 1.
+    /// An error while running, or an answer that is no: status 1.
     Running(anyhow::Error),
     /// Stopped by the signal with this number: status 128 + number.
     Stopped(i32, anyhow::Error),

@@ -1,8 +1,7 @@
 //! The command `slipfront` as a library, for its program and for other packages that contain the command: one file per
 //! subcommand under `commands/`, each thin. `run` is the same code for one process and for the ranks of `slipfront-mpi`.
 //!
-//! Errors go to stderr as sentences, results to stdout. Exit status: 0 done, 1 a run failed, 2 bad input or
-//! usage, 128 + its number stopped by a signal: 129, 130 and 143 by SIGHUP, SIGINT and SIGTERM.
+//! Errors go to stderr as sentences, results to stdout. `failure.rs` says what each exit status means.
 
 // The macros of these lints panic where they cannot print.
 #![deny(clippy::print_stderr, clippy::print_stdout)]
@@ -28,7 +27,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use clap::error::{ContextKind, ContextValue, ErrorKind};
-use clap::{CommandFactory, Parser, Subcommand};
+use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 
 use slipfront::Communicator;
 use slipfront_case::text::shell_quoted;
@@ -38,7 +37,7 @@ use slipfront_study::StudyFile;
 
 use crate::commands::run::{CHECKPOINTS_HELP, RunCommand};
 use crate::divided_override::divided_override;
-use crate::failure::{Failure, report};
+use crate::failure::{Failure, STATUSES, report};
 use crate::print::{expect_printed, print};
 use crate::print_stderr::silence;
 use crate::ranks::CommandRanks;
@@ -134,7 +133,7 @@ pub fn main(args: impl IntoIterator<Item = OsString>, module_folder: Option<&Pat
     if let Err(failure) = limit_vectors() {
         return failure.report();
     }
-    let command = match Cli::try_parse_from(args) {
+    let command = match parse::<Cli>(args) {
         Ok(cli) => cli.command,
         Err(error) => {
             return match forgotten_subcommand(&error) {
@@ -160,11 +159,26 @@ pub fn main(args: impl IntoIterator<Item = OsString>, module_folder: Option<&Pat
             Command::Verify(verify) => verify.execute(),
             Command::Export(export) => export.execute(),
             Command::Completions(completions) => completions.execute(Cli::command()),
-            Command::Man(man) => man.execute(Cli::command()),
+            Command::Man(man) => man.execute(with_statuses(Cli::command())),
             Command::Licences(licences) => licences.execute(),
         };
         done.map_err(RankFailure::from)
     })
+}
+
+/// Parses arguments, for whose help every command has the table of exit statuses at its end.
+fn parse<T: CommandFactory + FromArgMatches>(args: Vec<OsString>) -> Result<T, clap::Error> {
+    let mut command = with_statuses(T::command());
+    let matches = command.try_get_matches_from_mut(args)?;
+    T::from_arg_matches(&matches).map_err(|error| error.format(&mut command))
+}
+
+fn with_statuses(command: clap::Command) -> clap::Command {
+    let help = match command.get_after_help() {
+        Some(help) => format!("{help}\n\n{STATUSES}"),
+        None => STATUSES.to_owned(),
+    };
+    command.after_help(help).mut_subcommands(with_statuses)
 }
 
 /// Runs the command `slipfront-mpi`, of which there is a process for every rank of the communicator; arguments and exit
@@ -213,7 +227,7 @@ fn parse_on_rank(args: impl IntoIterator<Item = OsString>) -> Result<Parsed, Fai
     if let Some(sentence) = divided_override(&args) {
         return Err(Failure::input(anyhow::anyhow!(sentence)));
     }
-    match RanksCli::try_parse_from(args) {
+    match parse::<RanksCli>(args) {
         Ok(cli) => Ok(match cli.command {
             RanksCommand::Run(run) => Parsed::Run(Box::new(run)),
             RanksCommand::Licences(licences) => Parsed::Licences(licences),

@@ -33,3 +33,4 @@ pub use export::{ExportError, MODULE, export_folder, export_single, find_module}
 pub use offline::OfflineSession;
 pub use opening::{OpeningError, Start};
 pub use server::{Laboratory, Patience, ServerOptions};
+pub use start_page::PrivateFile;

@@ -18,7 +18,7 @@ use crate::host::Setting;
 use crate::opening::Start;
 use crate::saves::Saves;
 use crate::socket::{MAX_PAGES, Shared};
-use crate::start_page::StartPage;
+use crate::start_page::{PrivateFile, StartPage};
 use crate::token::Token;
 use crate::{assets, connections, guard, presets, socket};
 
@@ -116,6 +116,14 @@ impl Laboratory {
     /// When the system refuses to write.
     pub fn start_page(&self, link: Option<&str>) -> io::Result<PathBuf> {
         self.start_page.open(&self.address(link))
+    }
+
+    /// Writes the address to a file that only this user can read.
+    ///
+    /// # Errors
+    /// When the system refuses to write.
+    pub fn address_file(&self, link: Option<&str>) -> io::Result<PrivateFile> {
+        PrivateFile::write(".txt", &format!("{}\n", self.address(link)))
     }
 
     /// Answers until `stop` is done. Then pages are told, whatever is open is closed, and what is being saved takes its unfinished

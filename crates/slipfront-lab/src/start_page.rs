@@ -1,10 +1,11 @@
-//! The page that leads a browser to the address of the laboratory.
+//! Files that hold the address of the laboratory, and which only their owner can read.
 //!
 //! Every user of the machine can read the arguments with which a browser is started, so that they must not hold the token of the
-//! address. They name this file, which only its owner can read, and which is gone once a page has connected.
+//! address. They name the start page, which leads to the address, and which is gone once a page has connected. A log that others can
+//! read names a file with the address.
 
 use std::io::{self, Write};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use slipfront_case::unfinished::TemporaryFolder;
@@ -12,7 +13,7 @@ use tempfile::{Builder, NamedTempFile};
 
 /// The start page of a laboratory, while its file exists.
 #[derive(Clone, Default)]
-pub(crate) struct StartPage(Arc<Mutex<Option<StartPageFile>>>);
+pub(crate) struct StartPage(Arc<Mutex<Option<PrivateFile>>>);
 
 impl StartPage {
     /// Writes the page that leads to this address; gives its path.
@@ -20,8 +21,8 @@ impl StartPage {
     /// # Errors
     /// When the system refuses to write.
     pub(crate) fn open(&self, address: &str) -> io::Result<PathBuf> {
-        let page = StartPageFile::write(address)?;
-        let path = page.page.path().to_owned();
+        let page = PrivateFile::write(".html", &html(address))?;
+        let path = page.path().to_owned();
         self.put(Some(page));
         Ok(path)
     }
@@ -31,31 +32,36 @@ impl StartPage {
         self.put(None);
     }
 
-    fn put(&self, page: Option<StartPageFile>) {
+    fn put(&self, page: Option<PrivateFile>) {
         *self.0.lock().unwrap_or_else(PoisonError::into_inner) = page;
     }
 }
 
-/// The file of a start page in the folder of temporary files of this process. Dropping the value removes the file.
-struct StartPageFile {
-    page: NamedTempFile,
+/// A file in the folder of temporary files of this process, for this user alone. Dropping the value removes the file.
+pub struct PrivateFile {
+    file: NamedTempFile,
     _folder: Arc<TemporaryFolder>,
 }
 
-impl StartPageFile {
-    /// Writes a page that leads to this address.
+impl PrivateFile {
+    /// Writes a file whose name has this ending.
     ///
     /// # Errors
     /// When the system refuses to write.
-    fn write(address: &str) -> io::Result<Self> {
+    pub(crate) fn write(ending: &str, text: &str) -> io::Result<Self> {
         let folder = TemporaryFolder::shared()?;
         // Such files are for their owner alone.
-        let mut page = Builder::new().suffix(".html").tempfile_in(folder.path())?;
-        page.write_all(html(address).as_bytes())?;
+        let mut file = Builder::new().suffix(ending).tempfile_in(folder.path())?;
+        file.write_all(text.as_bytes())?;
         Ok(Self {
-            page,
+            file,
             _folder: folder,
         })
+    }
+
+    /// Path of the file, which may be told to everybody.
+    pub fn path(&self) -> &Path {
+        self.file.path()
     }
 }
 

@@ -1,11 +1,12 @@
 //! A measured record: two columns of a table, such as force against time.
 
-use std::io::Read;
+use std::io::{BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
 
 use csv::ByteRecord;
 use slipfront_case::arrays::{separator, table_reader};
 use slipfront_case::disk::open_limited;
+use slipfront_case::number_format::count;
 use slipfront_case::quantity::{Duration, Force, Length, QuantityError};
 use slipfront_case::text::{display_path, truncated};
 use thiserror::Error;
@@ -60,8 +61,21 @@ pub enum MeasuredError {
         column: String,
         why: String,
     },
-    #[error("line {line} of {}: {text:?} is no number", display_path(path))]
-    Value { path: PathBuf, line: u64, text: String },
+    #[error(
+        "line {line} of {}, {text:?}, has no number in column `{column}`: write one, remove the line, or begin it with #",
+        display_path(path)
+    )]
+    NoNumber {
+        path: PathBuf,
+        line: u64,
+        text: String,
+        column: String,
+    },
+    #[error(
+        "the field that ends in line {line} of {} goes over several lines: remove the quotation mark with which it begins",
+        display_path(path)
+    )]
+    Lines { path: PathBuf, line: u64 },
     #[error(
         "line {line} of {}: the time or displacement falls, from {before} to {value} in SI units; a record goes forwards",
         display_path(path)
@@ -93,6 +107,16 @@ pub struct MeasuredRecord {
     pub along: Measure,
     /// Whether the ordinates are forces or coefficients.
     pub of: Measure,
+    /// Which lines at the end of the table have no numbers, if there are some: a sentence without its stop.
+    pub footer: Option<String>,
+}
+
+/// A line without a number in one of the columns.
+struct NoNumber {
+    /// Number of bytes of the table up to the end of the line.
+    end: u64,
+    text: String,
+    column: String,
 }
 
 impl Measure {
@@ -124,11 +148,11 @@ impl Measure {
 
 impl MeasuredRecord {
     /// Reads two columns of a table whose fields are separated by commas, semicolons, tabs or blanks; unless commas
-    /// separate, numbers may have decimal commas. Lines that begin with `#`, and those without a number in one of the
-    /// columns, count as none. The first column is along times or displacements; the second has forces, or coefficients if
-    /// its unit is 1.
+    /// separate, numbers may have decimal commas. Empty lines, and those that begin with `#`, count as none; lines without
+    /// numbers at the end are passed over, and named. The first column is along times or displacements; the second has
+    /// forces, or coefficients if its unit is 1.
     ///
-    /// # Errors When the table cannot be read, has not these columns, or holds entries in them that are no numbers; when no
+    /// # Errors When the table cannot be read, has not these columns, or lacks numbers in them before its end; when no
     /// unit is known.
     pub fn read(path: &Path, columns: [&Column; 2], along: Measure) -> Result<Self, MeasuredError> {
         let failed = |source: csv::Error| MeasuredError::Read {
@@ -147,7 +171,10 @@ impl MeasuredRecord {
             y: Vec::new(),
             along,
             of: Measure::Force,
+            footer: None,
         };
+        // The first line without numbers behind the last one that has some, and how many there are.
+        let mut footer: Option<(NoNumber, usize)> = None;
         let mut row = ByteRecord::new();
         let mut is_first = true;
         while table.read_byte_record(&mut row).map_err(failed)? {
@@ -181,24 +208,32 @@ impl MeasuredRecord {
                     continue;
                 }
             }
-            let line = row.position().map_or(0, csv::Position::line);
-            let field = |k: usize| fields.get(places[k]).map_or("", String::as_str);
-            if (0..2).any(|k| field(k).is_empty()) {
+            let end = table.position().byte();
+            if row.as_slice().contains(&b'\n') {
+                let (path, line) = (path.to_owned(), line_at(path, end).map_err(failed)?);
+                return Err(MeasuredError::Lines { path, line });
+            }
+            if fields.iter().all(String::is_empty) {
                 continue;
             }
-            let value = |k: usize| {
-                let value = number(field(k)).ok_or_else(|| MeasuredError::Value {
-                    path: path.to_owned(),
-                    line,
-                    text: truncated(field(k)),
-                })?;
-                Ok(factors[k] * value)
+            let values = [0, 1].map(|k| number(fields.get(places[k])?).map(|value| factors[k] * value));
+            let [Some(x), Some(y)] = values else {
+                let without = usize::from(values[0].is_some());
+                let first = || NoNumber {
+                    end,
+                    text: truncated(&fields.join(&char::from(separator).to_string())),
+                    column: columns[without].name.clone(),
+                };
+                footer.get_or_insert_with(|| (first(), 0)).1 += 1;
+                continue;
             };
-            let (x, y) = (value(0)?, value(1)?);
+            if let Some((line, _)) = footer {
+                return Err(line.error(path));
+            }
             if let Some(&before) = record.x.last().filter(|before| x < **before) {
                 return Err(MeasuredError::Falls {
                     path: path.to_owned(),
-                    line,
+                    line: line_at(path, end).map_err(failed)?,
                     before,
                     value: x,
                 });
@@ -206,13 +241,57 @@ impl MeasuredRecord {
             record.x.push(x);
             record.y.push(y);
         }
-        match record.x.len() {
-            found @ 0..2 => Err(MeasuredError::TooShort {
-                path: path.to_owned(),
-                found,
-            }),
-            _ => Ok(record),
+        match (record.x.len(), footer) {
+            (0..2, Some((line, _))) => return Err(line.error(path)),
+            (found @ 0..2, None) => {
+                let path = path.to_owned();
+                return Err(MeasuredError::TooShort { path, found });
+            }
+            (_, None) => {}
+            (_, Some((first, lines))) => {
+                record.footer = Some(format!(
+                    "{} ends with {} without numbers, from line {} on",
+                    display_path(path),
+                    count(lines, "line"),
+                    line_at(path, first.end).map_err(failed)?
+                ));
+            }
         }
+        Ok(record)
+    }
+}
+
+impl NoNumber {
+    /// The error about this line of a table.
+    fn error(self, path: &Path) -> MeasuredError {
+        match line_at(path, self.end) {
+            Ok(line) => MeasuredError::NoNumber {
+                path: path.to_owned(),
+                line,
+                text: self.text,
+                column: self.column,
+            },
+            Err(source) => MeasuredError::Read {
+                path: path.to_owned(),
+                source,
+            },
+        }
+    }
+}
+
+/// Number of the line that ends, with its terminator if it has one, at the byte `end` of a file. The reader of tables counts no lines that
+/// are empty, comments or end as those of Windows.
+fn line_at(path: &Path, end: u64) -> csv::Result<u64> {
+    let mut before = BufReader::new(open_limited(path, u64::MAX)?.take(end.saturating_sub(1)));
+    let mut line = 1;
+    loop {
+        let bytes = before.fill_buf()?;
+        if bytes.is_empty() {
+            return Ok(line);
+        }
+        line += bytes.iter().filter(|&&byte| byte == b'\n').count() as u64;
+        let read = bytes.len();
+        before.consume(read);
     }
 }
 
@@ -330,7 +409,7 @@ mod tests {
     #[test_case("Zeit [ms];Kraft [N]\n0;0,5\n2;1,0\n", ["zeit", "2"]; "decimal commas")]
     #[test_case("\u{feff}# a comment\nt (ms),Force (kN),x\n0,0.0005,a\n2,0.001,b\n", ["t", "force"]; "brackets")]
     #[test_case("n\tt / ms\tF / mN\n1\t0\t500\n2\t2\t1000\n", ["t", "F"]; "tabs")]
-    #[test_case("time_ms,force_n\n0,0.5\n1,\n\n2,1\n", ["1", "2"]; "gaps")]
+    #[test_case("time_ms,force_n\n0,0.5\n\n# a comment\n,\n2,1\n", ["1", "2"]; "empty lines")]
     fn tables_of_many_kinds(text: &str, names: [&str; 2]) {
         let record = read(text, names, [None; 2]).unwrap();
         assert_eq!(record.x, [0.0, 0.002]);
@@ -361,10 +440,35 @@ mod tests {
         ; "ambiguous"
     )]
     #[test_case("time_s,force_n\n0,1\n1,two\n", ["time", "force"], "line 3 of"; "number")]
+    #[test_case("time_s,force_n\n0,1\n1,\n2,1\n", ["time", "force"], ", \"1,\", has no number in column `force`"; "gap")]
+    #[test_case("time_s,force_n\n0,1\n1\n2,1\n", ["time", "force"], "has no number in column `force`"; "few fields")]
+    #[test_case("time_s,force_n\n0,1\n,0.5\n2,1\n", ["time", "force"], "has no number in column `time`"; "no time")]
+    #[test_case("time_s,force_n\n0,1\nNaN\n2,1\n", ["time", "force"], ", \"NaN\", has no number"; "no finite number")]
+    #[test_case(
+        "time_s\tforce_n\r\n# a\r\n\r\n0\t1\r\n*** sensor overload ***\r\n2\t1\r\n", ["time", "force"],
+        "line 5 of"
+        ; "line of an instrument"
+    )]
+    #[test_case("time_s,force_n\n0,1\n1,1\n1,\"2\n2,2\n", ["time", "force"], "goes over several lines"; "quote")]
     #[test_case("time_s,force_n\n1,1\n0,2\n", ["time", "force"], "falls, from 1 to 0"; "order")]
     #[test_case("time_s,force_n\n1,1\n", ["time", "force"], "has 1 lines of numbers"; "short")]
+    #[test_case("time_s,force_n\n", ["time", "force"], "has 0 lines of numbers"; "header alone")]
     fn what_is_wrong_is_said(text: &str, names: [&str; 2], sentence: &str) {
         let error = read(text, names, [None; 2]).unwrap_err().to_string();
         assert!(error.contains(sentence), "{error}");
+    }
+
+    /// The line is that of an editor, wherever it stands and however lines end.
+    #[test_case("t_s,f_n\n0,1\n1,1\nEnd of test\n\n2024-01-01,\n", 4, 2; "two lines")]
+    #[test_case("t_s,f_n\r\n\r\n0,1\r\n1,1\r\n\r\n1.5,", 6, 1; "a line that was cut")]
+    fn lines_without_numbers_at_the_end_are_told(text: &str, from: u64, lines: usize) {
+        let record = read(text, ["1", "2"], [None; 2]).unwrap();
+        assert_eq!(record.x, [0.0, 1.0]);
+        let footer = record.footer.unwrap();
+        let told = format!(
+            "ends with {} without numbers, from line {from} on",
+            count(lines, "line")
+        );
+        assert!(footer.ends_with(&told), "{footer}");
     }
 }

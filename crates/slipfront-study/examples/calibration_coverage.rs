@@ -116,6 +116,7 @@ fn set_up() -> Result<(SetUp, f64), Box<dyn Error>> {
         x,
         along: Measure::Time,
         of: Measure::Coefficient,
+        footer: None,
     };
     let grid = Grid::of(&record).ok_or("no grid")?;
     let conditions = vec![Conditions {

@@ -180,6 +180,33 @@ pub enum StudyError {
         reason: String,
     },
     #[error(
+        "no run has a value of {quantity}{}: the tables hold the other numbers",
+        if *needs_transition {
+            ", since none has a transition from static to kinetic friction. Lengthen `time.duration_star` of the base if the runs end before it"
+        } else {
+            ""
+        }
+    )]
+    NoValue {
+        quantity: String,
+        needs_transition: bool,
+    },
+    #[error(
+        "no quantity has a value on every mesh: {} says what the runs found. Lengthen `time.duration_star` if they end before a transition",
+        display_path(path)
+    )]
+    NotOnMeshes { path: PathBuf },
+    #[error(
+        "the model does not make such records, and the intervals promise nothing: {} says why, and what to look at",
+        display_path(path)
+    )]
+    Refused { path: PathBuf },
+    #[error(
+        "there is no verdict, since every texture that was judged is lost on fresh surfaces: {} says why",
+        display_path(path)
+    )]
+    NoVerdict { path: PathBuf },
+    #[error(
         "no texture keeps these limits: widen `design.coverage`, lower `design.feature` or `design.gap`, or allow more features"
     )]
     NoDesign,

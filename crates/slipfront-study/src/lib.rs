@@ -46,6 +46,7 @@ mod tables;
 pub mod text_table;
 mod told_warnings;
 pub mod verify;
+mod written_numbers;
 
 pub use anisotropy::{Anisotropy, OverDirections, anisotropies};
 pub use answer::answer;

@@ -146,10 +146,10 @@ impl ResultFiles {
         let Some(found) = found_at(&path).map_err(FolderError::read(&path))? else {
             return Ok(true);
         };
-        let of_name = |file: &&ManifestFile| file.name == name && file.bytes == found.len();
-        let known = list.files.iter().chain(&list.replaced).chain(new);
+        let is_of_name = |file: &ManifestFile| file.name == name && file.bytes == found.len();
+        let mut known = list.files.iter().chain(&list.replaced).chain(new);
         // A file of another length is not read: it may be huge.
-        if !found.is_file() || known.filter(of_name).next().is_none() {
+        if !found.is_file() || !known.any(is_of_name) {
             return Ok(false);
         }
         let found = ManifestFile::of(&self.folder, name).map_err(FolderError::read(&path))?;

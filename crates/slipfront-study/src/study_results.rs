@@ -6,7 +6,7 @@ use crate::error::StudyError;
 use crate::plan::{Plan, Role, RunKey};
 use crate::record::RunResult;
 use crate::statistics::Sample;
-use crate::summary_values::{REDUCTION, RunQuantity, reduction_percent};
+use crate::summary_values::{REDUCTION, RunQuantity, needs_transition, reduction_percent};
 
 /// Progress of a study.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -123,6 +123,20 @@ impl StudyResults {
             replicate: run.replicate,
             point: plan.describe(&plan.points[run.point]),
             reason: reason.to_owned(),
+        })
+    }
+
+    /// Refuses results in which no run has a value of the main quantity of the study.
+    ///
+    /// # Errors A sentence with the quantity.
+    pub fn expect_values(&self, plan: &Plan) -> Result<(), StudyError> {
+        let quantity = plan.main_quantity();
+        if (0..plan.points.len()).any(|position| self.sample(plan, position, quantity).is_some()) {
+            return Ok(());
+        }
+        Err(StudyError::NoValue {
+            quantity: quantity.to_owned(),
+            needs_transition: needs_transition(quantity),
         })
     }
 }

@@ -182,7 +182,7 @@ fn what_is_fine_enough_or_not_known_is_not_noted() {
     let folder = tempfile::tempdir().unwrap();
     let mask: Vec<bool> = (0..40 * 40).map(|block| block % 3 == 0).collect();
     std::fs::write(
-        &folder.path().join("mask.png"),
+        folder.path().join("mask.png"),
         slipfront_case::arrays::png_of_mask(40, 40, &mask).unwrap(),
     )
     .unwrap();

@@ -390,7 +390,7 @@ fn masks_fill_every_cell() {
     let folder = tempfile::tempdir().unwrap();
     let cell: Vec<bool> = (0..48).map(|b| b % 5 == 0 || b / 8 == 2).collect();
     std::fs::write(
-        &folder.path().join("cell.png"),
+        folder.path().join("cell.png"),
         slipfront_case::arrays::png_of_mask(8, 6, &cell).unwrap(),
     )
     .unwrap();

@@ -51,7 +51,7 @@ fn write_inputs(folder: &Path) {
         "mask.npy",
         npy("|b1", "False", textured.iter().map(|t| u8::from(*t)).collect()),
     );
-    std::fs::write(&folder.join("mask.png"), png_of_mask(NX, NY, &textured).unwrap()).unwrap();
+    std::fs::write(folder.join("mask.png"), png_of_mask(NX, NY, &textured).unwrap()).unwrap();
     write(
         "cut.png",
         std::fs::read(folder.join("mask.png")).unwrap()[..60].to_vec(),

@@ -60,7 +60,7 @@ impl CalibrateCommand {
         let mut folder = folder.map_err(Failure::input)?;
         let signals = Signals::catch().map_err(Failure::running)?;
         if !self.quiet {
-            print_notes(&folder);
+            print_notes(&file.notes(&self.records).map_err(Failure::input)?, &folder);
         }
         let mut progress = CalibrateProgress::new(self.quiet);
         let found = folder.find(&signals.stop, &mut |now| progress.show(now));
@@ -76,13 +76,14 @@ impl CalibrateCommand {
         if !self.quiet {
             print_message(&format!("{text}\n{}\n", folder.path().display()));
         }
-        Ok(())
+        folder.expect_own_records().map_err(Failure::running)
     }
 }
 
-/// Prints notes about a folder that has been used before.
-fn print_notes(folder: &CalibrationFolder) {
+/// Prints notes about the records, and about a folder that has been used before.
+fn print_notes(notes: &[String], folder: &CalibrationFolder) {
     let note = |sentence: &str| print_stderr(&for_stderr(&format!("note: {sentence}")));
+    notes.iter().for_each(|sentence| note(sentence));
     if folder.damaged > 0 {
         note(&format!(
             "the journal has {}, passed over: its runs count as not made",

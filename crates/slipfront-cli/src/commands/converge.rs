@@ -77,6 +77,6 @@ impl ConvergeCommand {
         if !self.quiet {
             print_message(&text(&plan, &found, stdout_columns()));
         }
-        Ok(())
+        found.expect_values(folder.path()).map_err(Failure::running)
     }
 }

@@ -101,7 +101,7 @@ impl DesignCommand {
         if !self.quiet {
             print_message(&format!("{text}\n{}\n", folder.path().display()));
         }
-        Ok(())
+        folder.expect_verdict().map_err(Failure::running)
     }
 }
 

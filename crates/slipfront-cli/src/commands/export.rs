@@ -7,6 +7,7 @@ use slipfront_run::export::{Author, ExportError, Licence, Told, WholeRun, bibtex
 
 use crate::failure::Failure;
 use crate::print::{print, print_message};
+use crate::signals::Signals;
 use crate::wrap;
 
 /// Describe complete runs for a data repository (RO-Crate), or print their citations
@@ -67,7 +68,12 @@ impl ExportCommand {
         if self.form.cff {
             return print(&cff(&runs, &told).map_err(failure)?);
         }
-        let path = write_crate(&runs, self.out.as_deref(), &told, self.force).map_err(failure)?;
+        let signals = Signals::catch().map_err(Failure::running)?;
+        let path = write_crate(&runs, self.out.as_deref(), &told, self.force, &signals.stop);
+        let path = path.map_err(|error| match error {
+            ExportError::Interrupted => Failure::stopped(&signals, error),
+            error => failure(error),
+        })?;
         print_message(&format!("{}\n", path.display()));
         for note in told.notes() {
             print_message(&wrap::note(note));

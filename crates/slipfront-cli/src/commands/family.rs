@@ -15,9 +15,7 @@ use crate::threads::{count_from_one, set_worker_threads};
 #[derive(Args)]
 #[command(after_help = "Examples:
   slipfront family                         one line per option
-  slipfront family --docs docs/validation   the page of the documentation, with pictures
-
-Exit status 0 says that every answer is within its tolerance, 1 that one is not.")]
+  slipfront family --docs docs/validation   the page of the documentation, with pictures")]
 pub(crate) struct FamilyCommand {
     /// Write family.md and its pictures to this folder
     #[arg(long, value_name = "DIR")]

@@ -78,7 +78,6 @@ impl LabCommand {
         if self.export.is_some() || self.single.is_some() {
             return self.export(&start, module_folder);
         }
-        refuse_readable_output()?;
         let signals = Signals::catch().map_err(Failure::running)?;
         let laboratory = Laboratory::bind(ServerOptions {
             start,
@@ -95,8 +94,28 @@ impl LabCommand {
                 self.port
             ))
         })?;
-        let address = laboratory.address(link);
+        // Whoever has the address can use the laboratory. The file goes with this value, when the server has ended.
+        let file = if others_read_output() {
+            let file = laboratory.address_file(link);
+            Some(file.map_err(|error| {
+                Failure::running(anyhow::anyhow!(
+                    "others can read standard output, and the address cannot be written to a file that they cannot ({error}): make room in {}, \
+                     or use `chmod 600` on the output",
+                    std::env::temp_dir().display()
+                ))
+            })?)
+        } else {
+            None
+        };
+        let address = file.as_ref().map_or_else(
+            || laboratory.address(link),
+            |file| file.path().display().to_string(),
+        );
         print_message(&format!("The laboratory is open until Ctrl-C: {address}\n"));
+        if file.is_some() {
+            let note = "note: other users can read this output: the address is in the file that is named, which only you can read";
+            print_stderr(&for_stderr(note));
+        }
         if !self.no_open
             && let Err(reason) = start_browser(&laboratory, link)
         {
@@ -148,8 +167,8 @@ fn start_browser(laboratory: &Laboratory, link: Option<&str>) -> Result<(), Stri
     open::that_detached(page).map_err(|_| "none could be found".to_owned())
 }
 
-/// Refuses to print the address into a file that other users can read: whoever has it can use the laboratory.
-fn refuse_readable_output() -> Result<(), Failure> {
+/// Whether standard output is a file that other users can read.
+fn others_read_output() -> bool {
     #[cfg(unix)]
     {
         use std::os::fd::AsFd;
@@ -159,18 +178,10 @@ fn refuse_readable_output() -> Result<(), Failure> {
             .try_clone_to_owned()
             .map(std::fs::File::from);
         let output = output.and_then(|file| file.metadata());
-        if let Ok(output) = output
-            && output.is_file()
-            && output.mode() & 0o044 != 0
-        {
-            return Err(Failure::input(anyhow::anyhow!(
-                "other users can read the file that standard output is (mode {:o}), and who has the address that is printed there can \
-                 use the laboratory: keep it to yourself, by `umask 077` before the file is made or by `chmod 600`",
-                output.mode() & 0o777
-            )));
-        }
+        output.is_ok_and(|output| output.is_file() && output.mode() & 0o044 != 0)
     }
-    Ok(())
+    #[cfg(not(unix))]
+    false
 }
 
 /// Waits for the signal that ends the command.

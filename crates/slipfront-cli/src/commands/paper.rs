@@ -20,9 +20,7 @@ use crate::threads::{count_from_one, set_worker_threads};
 #[command(after_help = "Examples:
   slipfront paper                     everything, into results/paper: figures, claims.csv, report.html
   slipfront paper fig12 fig15         two figures and the claims about them
-  slipfront paper --docs docs/validation   the claims table of the documentation, too
-
-Exit status 0 says that every verdict is the expected one, 1 that one is not.")]
+  slipfront paper --docs docs/validation   the claims table of the documentation, too")]
 pub(crate) struct PaperCommand {
     /// Figures: fig1 ... fig18, table1, sensitivity, or all; those finished in the folder are reported in any case
     #[arg(value_name = "FIGURE")]

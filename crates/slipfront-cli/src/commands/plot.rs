@@ -272,6 +272,9 @@ impl PlotCommand {
             }
             (_, Some(path)) => {
                 let measured = self.measured(path).map_err(Failure::input)?;
+                if let Some(footer) = &measured.record.footer {
+                    print_message(&format!("note: {footer}: passed over\n"));
+                }
                 overlay_measured(
                     folders,
                     self.against().unwrap_or_default(),
@@ -315,8 +318,13 @@ impl PlotCommand {
         };
         let mut text = format!("{}: shifted by {}\n", data.display(), quantity(fit.shift, x));
         for (folder, misfit) in self.folders.iter().zip(&fit.misfits) {
-            let misfit = misfit.map_or("no point within its curve".to_owned(), |misfit| {
-                format!("RMS misfit {}", quantity(misfit, y))
+            let misfit = misfit.map_or("too little in common for a misfit".to_owned(), |misfit| {
+                format!(
+                    "RMS misfit {} over {} of {}",
+                    quantity(misfit.rms, y),
+                    misfit.points,
+                    count(fit.points, "point")
+                )
             });
             text += &format!("  {}: {misfit}\n", folder.display());
         }

@@ -120,7 +120,7 @@ fn a_limit_of_addresses_ends_nothing_in_an_abort() {
     let workspace = Workspace::small();
     workspace.write(
         "study.toml",
-        "base.slider.blocks = [2, 2]\nbase.time.duration_star = 1\n[[axes]]\nkey = 'drive.v_star'\n\
+        "base.slider.blocks = [2, 2]\nbase.time.stop = 'after_onset'\n[[axes]]\nkey = 'drive.v_star'\n\
          linspace = [0.1, 0.2, 20]\n[[axes]]\nkey = 'drive.direction'\nlinspace = [0, 45, 15]\n",
     );
     workspace.succeed("run small.toml -o a");

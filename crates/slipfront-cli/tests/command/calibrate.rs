@@ -15,7 +15,8 @@ fn workspace() -> Workspace {
         "truth.toml",
         "slider.blocks = [6, 6]\ndrive.v_star = 0.1\ntime = { step = 0.4, duration_star = 120 }\noutput.series = 1\n",
     );
-    workspace.succeed("run truth.toml -o truth --no-pictures --quiet");
+    // One of the surfaces that the check takes for its own.
+    workspace.succeed("run truth.toml --seed 2 -o truth --no-pictures --quiet");
     workspace.write("record.csv", workspace.read("truth/series.csv"));
     workspace
 }
@@ -75,6 +76,66 @@ fn another_record_needs_no_runs() {
     assert!(workspace.read("runs/training.jsonl") == runs);
     let said = workspace.fail("calibrate fit.toml other.csv -o one", 2);
     assert!(said.contains("holds another calibration"), "{said}");
+}
+
+/// A record that cannot be meant is refused before any run, and before a folder is made.
+#[test]
+fn a_record_that_cannot_be_meant_is_refused_before_any_run() {
+    let workspace = workspace();
+    let series = workspace.read_text("record.csv");
+    let (header, rows) = series.split_once('\n').unwrap();
+    let refused = |record: &str, words: &str| {
+        workspace.write("wrong.csv", record);
+        let said = workspace.fail("calibrate fit.toml wrong.csv -o new", 2);
+        assert!(said.contains(words), "{words}: {said}");
+        assert!(!workspace.exists("new"), "{words}");
+    };
+    // Longer than its copy could be: nothing of it is read.
+    let file = std::fs::File::create(workspace.path("long.csv")).unwrap();
+    file.set_len(1 << 40).unwrap();
+    let said = workspace.fail("calibrate fit.toml long.csv -o new", 2);
+    assert!(
+        said.contains("long.csv: it has 1099511627776 bytes where at most 16777216 can be meant"),
+        "{said}"
+    );
+    refused(
+        &format!("{header}\n{}", rows.replacen('\n', "\nNaN\n", 3)),
+        "line 3 of wrong.csv, \"NaN\", has no number in column",
+    );
+    // Times of the series begin at 0, in the first column of two that are asked for.
+    let place = header.split(',').position(|name| name == "time_s").unwrap();
+    let before = rows.lines().map(|row| {
+        let mut fields: Vec<String> = row.split(',').map(str::to_owned).collect();
+        fields[place] = (fields[place].parse::<f64>().unwrap() - 2.0).to_string();
+        fields.join(",") + "\n"
+    });
+    refused(
+        &format!("{header}\n{}", before.collect::<String>()),
+        "wrong.csv ends at -2 s, before the drive begins: times count from the beginning of the drive",
+    );
+    workspace.write("ended.csv", format!("{series}End of test\n"));
+    let output = workspace.output("calibrate fit.toml ended.csv -o ended");
+    let said = stderr(&output);
+    assert!(
+        output.status.success() && said.contains("note: ended.csv ends with 1 line without numbers"),
+        "{said}"
+    );
+}
+
+/// A record that the model does not make has status 1, with all results and, also where nothing else is printed, a sentence.
+#[test]
+fn a_foreign_record_is_refused_aloud() {
+    let workspace = workspace();
+    let fit = FIT.replace("[calibrate]\n", "[calibrate]\ny_unit = 'MN'\n");
+    workspace.write("foreign.toml", fit);
+    let said = workspace.fail("calibrate foreign.toml record.csv -o found --quiet", 1);
+    assert!(
+        said.contains("the model does not make such records") && said.contains("found/calibration.txt"),
+        "{said}"
+    );
+    let text = workspace.read_text("found/calibration.txt");
+    assert!(text.starts_with("The model does not make such records"), "{text}");
+    assert!(workspace.exists("found/case.toml"));
 }
 
 #[test]

@@ -200,3 +200,19 @@ fn what_cannot_be_put_on_meshes_is_refused() {
         assert!(!workspace.exists("out"), "{arguments}");
     }
 }
+
+/// Runs that end before anything has slipped have nothing that meshes could be compared by.
+#[test]
+fn meshes_without_a_number_have_status_1() {
+    let workspace = Workspace::new();
+    workspace.write(
+        "sheet.toml",
+        SHEET.replace("stop = 'after_onset'", "duration_star = 2"),
+    );
+    let said = workspace.fail("converge sheet.toml -o meshes --quiet", 1);
+    assert!(
+        unwrapped(&said).contains("no quantity has a value on every mesh: meshes/runs.csv says"),
+        "{said}"
+    );
+    assert!(workspace.exists("meshes/convergence.json"));
+}

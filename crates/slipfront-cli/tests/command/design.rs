@@ -165,3 +165,20 @@ fn a_signal_keeps_the_best() {
     let said = workspace.output("design wish.toml -o found --time 0s");
     assert!(stderr(&said).contains("of an earlier call, which are not repeated"));
 }
+
+/// A wished curve is no instrument's file: every line of it is meant.
+#[test]
+fn lines_without_numbers_are_no_wish() {
+    let workspace = Workspace::new();
+    workspace.write("wanted.csv", "X (um),mu (1)\n0,0\n1,0.4\nEnd of test\n");
+    let curve = "{ curve = { file = 'wanted.csv', x = 'X', y = 'mu' } }";
+    workspace.write("wish.toml", WISH.replace("{ least = 'static_friction' }", curve));
+    let said = unwrapped(&workspace.fail("design wish.toml -o found", 2));
+    assert!(
+        said.contains(
+            "wanted.csv ends with 1 line without numbers, from line 4 on: remove them, or begin them with #"
+        ),
+        "{said}"
+    );
+    assert!(!workspace.exists("found"));
+}

@@ -1,9 +1,10 @@
 //! The command `slipfront export`: what a Process Run Crate must have, and what becomes of the folder. `tests/ro_crate` has crates validated.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use serde_json::Value;
 
+use crate::support::process::{stderr, stdout};
 use crate::support::workspace::Workspace;
 use crate::verify::verified;
 
@@ -176,6 +177,12 @@ fn several_runs_are_one_crate() {
     assert!(workspace.files("all/run") == workspace.files("b/run"));
     let refused = workspace.fail("export b/run --ro-crate -o all", 2);
     assert!(refused.contains("the folder all is not empty"), "{refused}");
+    let refused = workspace.fail("export b/run --ro-crate -o .", 2);
+    assert!(refused.contains("the command works in the folder ."), "{refused}");
+    // An empty folder gets the name of the crate that takes its place.
+    std::fs::create_dir(workspace.path("empty")).unwrap();
+    workspace.succeed("export b/run --ro-crate -o empty");
+    expect_complete(&workspace, "empty");
     let refused = workspace.fail("export b/run all/run --ro-crate -o new", 2);
     assert!(
         refused.contains("two of the runs stand in folders of the name run"),
@@ -208,6 +215,67 @@ fn only_whole_runs_are_exported() {
     assert!(refused.contains("https://orcid.org/"), "{refused}");
     let refused = workspace.fail("export a --ro-crate --licence my_own", 2);
     assert!(refused.contains("https://spdx.org/licenses"), "{refused}");
+}
+
+/// The fields of entries of BibTeX as BibTeX reads them: a value ends with the brace that closes its first one, and a backslash before a
+/// brace counts for nothing.
+fn entries(bibtex: &str) -> Vec<BTreeMap<String, String>> {
+    let mut found = Vec::new();
+    for entry in bibtex.split_inclusive("\n}\n") {
+        let (head, mut rest) = entry.split_once(",\n").unwrap();
+        assert!(head.starts_with('@') && head.matches('{').count() == 1, "{head}");
+        let mut fields = BTreeMap::new();
+        while rest != "}\n" {
+            let (name, value) = rest.split_once(" = {").unwrap_or_else(|| panic!("{entry}"));
+            let mut depth = 1;
+            let end = value.find(|c| {
+                depth += i32::from(c == '{') - i32::from(c == '}');
+                depth == 0
+            });
+            let (value, after) = value.split_at(end.unwrap_or_else(|| panic!("{entry}")));
+            fields.insert(name.trim().to_owned(), value.to_owned());
+            rest = after.strip_prefix("},\n").unwrap_or_else(|| panic!("{entry}"));
+        }
+        found.push(fields);
+    }
+    found
+}
+
+/// Names of folders and authors are free; `tests/ro_crate/citations.py` has the entries read by other programs.
+#[test]
+fn any_name_can_be_cited() {
+    let workspace = Workspace::small();
+    workspace.succeed("run small.toml --no-pictures -o plain");
+    for (name, title) in [
+        ("{", "\\textbraceleft{}"),
+        ("a}b", "a\\textbraceright{}b"),
+        ("a\\", "a\\textbackslash{}"),
+        ("\\{", "\\textbackslash{}\\textbraceleft{}"),
+        (
+            "100 % of #1 & $2_^~",
+            "100 \\% of \\#1 \\& \\$2\\_\\textasciicircum{}\\textasciitilde{}",
+        ),
+        ("@misc{a, \"q\" = 'b'", "@misc\\textbraceleft{}a, \"q\" = 'b'"),
+        ("\u{e4}\u{df} \u{3bc}\u{6f22}", "\u{e4}\u{df} \u{3bc}\u{6f22}"),
+        ("two\nlines", "two lines"),
+    ] {
+        std::fs::rename(workspace.path("plain"), workspace.path(name)).unwrap();
+        let mut process = workspace.process("export --bibtex --author");
+        let output = process
+            .args([name.replace('\n', " "), name.to_owned()])
+            .output()
+            .unwrap();
+        let bibtex = stdout(&output);
+        assert!(output.status.success(), "{name}: {}", stderr(&output));
+        let entries = entries(&bibtex);
+        assert_eq!(entries.len(), 3, "{bibtex}");
+        assert_eq!(
+            entries[0]["title"],
+            format!("{{Friction computed with slipfront: {title}}}")
+        );
+        assert_eq!(entries[0]["author"], format!("{{{title}}}"));
+        std::fs::rename(workspace.path(name), workspace.path("plain")).unwrap();
+    }
 }
 
 #[test]

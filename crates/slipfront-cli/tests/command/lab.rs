@@ -229,28 +229,55 @@ fn a_browser_that_cannot_read_the_page_is_not_started() {
     desktop.0.wait_for("opened");
 }
 
+/// A log that others can read names a file that they cannot read, and which is there as long as the server.
 #[test]
 fn the_address_is_not_printed_into_a_file_that_others_can_read() {
     let workspace = Workspace::small();
-    let path = workspace.path("log");
-    for (mode, is_refused) in [(0o644, true), (0o640, true), (0o604, true), (0o600, false)] {
-        let log = File::create(&path).unwrap();
-        fs::set_permissions(&path, PermissionsExt::from_mode(mode)).unwrap();
+    fs::create_dir(workspace.path("tmp")).unwrap();
+    let in_temporary = || fs::read_dir(workspace.path("tmp")).unwrap().count();
+    for (mode, signal, is_hidden) in [
+        (0o644, "-TERM", true),
+        (0o640, "-KILL", true),
+        (0o604, "-TERM", true),
+        (0o600, "-TERM", false),
+    ] {
+        let log = File::create(workspace.path("log")).unwrap();
+        log.set_permissions(PermissionsExt::from_mode(mode)).unwrap();
         let mut process = workspace.process("lab --no-open");
-        let child = process.stdout(log).stderr(Stdio::piped()).spawn().unwrap();
-        if !is_refused {
-            wait_for("address", || workspace.read_text("log").contains("#token="));
-            send(&child, "-TERM");
+        let process = process
+            .env("TMPDIR", workspace.path("tmp"))
+            .stdout(log)
+            .stderr(Stdio::piped());
+        let child = process.spawn().unwrap();
+        let printed = || workspace.read_text("log");
+        wait_for("address", || printed().ends_with('\n'));
+        let shown = printed().split_whitespace().last().unwrap().to_owned();
+        assert_eq!(printed().contains("#token="), !is_hidden, "{shown}");
+        if is_hidden {
+            let address = fs::read_to_string(&shown).unwrap();
+            let (host, _) = parts(address.trim());
+            assert!(TcpStream::connect(host).is_ok(), "{address}");
+            let mode = fs::metadata(&shown).unwrap().permissions().mode();
+            assert_eq!(mode & 0o777, 0o600);
+            if let Some(seen) = as_nobody(&format!("cat {shown}")) {
+                assert!(!seen.contains("#token="), "another user has read the token");
+            }
+            // What the server before has left is gone.
+            assert_eq!(in_temporary(), 1);
         }
+        send(&child, signal);
         let output = ended(child);
         let said = stderr(&output);
         assert_eq!(
-            output.status.code(),
-            Some(if is_refused { 2 } else { 0 }),
+            said.contains("other users can read this output"),
+            is_hidden,
             "{said}"
         );
-        assert_eq!(said.contains("other users can read"), is_refused, "{said}");
-        assert_eq!(workspace.read_text("log").contains("#token="), !is_refused);
+        if signal == "-KILL" {
+            assert_eq!(in_temporary(), 1);
+        } else {
+            assert_eq!((output.status.code(), in_temporary()), (Some(0), 0), "{said}");
+        }
     }
 }
 

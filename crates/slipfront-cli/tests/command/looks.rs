@@ -23,6 +23,12 @@ fn help_names_every_subcommand_and_says_what_it_does() {
             "{own}"
         );
     }
+    // One table of exit statuses for all of them.
+    let statuses = &help[help.find("\nExit status:\n").unwrap()..];
+    for command in ["run", "study", "study merge", "verify", "lab"] {
+        let own = workspace.succeed(&format!("{command} --help"));
+        assert!(own.ends_with(statuses), "{own}");
+    }
     let version = format!("slipfront {}\n", env!("CARGO_PKG_VERSION"));
     assert_eq!(workspace.succeed("-V"), version);
     let told = workspace.succeed("--version");

@@ -209,6 +209,8 @@ fn a_measured_record_finds_its_place() {
         .lines()
         .find_map(|line| line.strip_prefix("  a: RMS misfit "))
         .unwrap();
+    let (misfit, points) = misfit.split_once(" over ").unwrap();
+    assert_eq!(points, "500 of 500 points");
     // Far below the friction of microns: what the search for the shift leaves.
     assert!(
         misfit.ends_with(" fN") || misfit.ends_with(" aN") || misfit.ends_with(" pN"),
@@ -346,9 +348,30 @@ fn the_place_of_a_record_is_found_or_asked_for() {
     assert!(said.contains("  slow: RMS misfit "), "{said}");
     let said = workspace.fail("plot a --data slow.csv --x t --y F --shift 1 -o none", 2);
     assert!(
-        said.contains("no point of slow.csv lies within the curve of a run: shifted, the record goes from 1 s to 1 s, and a from 0 s to "),
+        said.contains(
+            "slow.csv and the curve of a run have too little in common, less than a tenth of the shorter of both: shifted, the record goes \
+             from 1 s to 1 s, and a from 0 s to "
+        ),
         "{said}"
     );
+    // On the last twentieth of its own curve, and on the last fifth of it.
+    let times = column(&workspace, "slow", "time_s");
+    let end = times.last().unwrap();
+    let shifted = |share: f64| {
+        let shift = 3e-9 + share * end;
+        format!("plot slow --data slow.csv --x t --y F --shift {shift:e} -o part")
+    };
+    let said = workspace.fail(&shifted(0.95), 2);
+    assert!(said.contains("too little in common"), "{said}");
+    let said = workspace.succeed(&shifted(0.8));
+    let points = said
+        .split_once(" over ")
+        .and_then(|(_, rest)| rest.split_once(" of "));
+    let (points, of) = points.unwrap_or_else(|| panic!("{said}"));
+    assert!(of.starts_with(&format!("{} points\n", times.len())), "{said}");
+    // The steps of the series are equal, but for where a stride ends.
+    let share = points.parse::<f64>().unwrap() / times.len() as f64;
+    assert!((share - 0.2).abs() < 0.01, "{said}");
     let plateau = column(&workspace, "a", "friction_force_n").pop().unwrap();
     workspace.write(
         "flat.csv",
@@ -360,4 +383,33 @@ fn the_place_of_a_record_is_found_or_asked_for() {
         "{said}"
     );
     assert!(!workspace.exists("none"));
+}
+
+/// A line that cannot be read is refused within a record, and told at its end.
+#[test]
+fn lines_without_numbers_are_not_passed_over_in_silence() {
+    let workspace = Workspace::small();
+    workspace.succeed("run small.toml -o a");
+    let series = workspace.read_text("a/series.csv");
+    let ended = format!("{series}End of test\nOperator: N. N.\n");
+    workspace.write("ended.csv", &ended);
+    let data = "--x time_s --y friction_force_n";
+    let said = workspace.succeed(&format!("plot a --data ended.csv {data} -o ended"));
+    let from = series.lines().count() + 1;
+    assert!(
+        said.starts_with(&format!(
+            "note: ended.csv ends with 2 lines without numbers, from line {from} on: passed over\n"
+        )),
+        "{said}"
+    );
+    let overload = series.replacen("\n", "\n*** sensor overload ***\n", 20);
+    workspace.write("overload.csv", overload);
+    let said = workspace.fail(&format!("plot a --data overload.csv {data} -o overload"), 2);
+    assert!(
+        said.contains(
+            "line 2 of overload.csv, \"*** sensor overload ***\", has no number in column `time_s`"
+        ),
+        "{said}"
+    );
+    assert!(!workspace.exists("overload"));
 }

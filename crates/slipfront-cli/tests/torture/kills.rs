@@ -116,6 +116,61 @@ fn a_killed_calibration_goes_on() {
     torture(&JOBS[9], cases(4, 200));
 }
 
+/// Names in the folder of the workspace that are no inputs of an export.
+fn made(workspace: &Workspace) -> Vec<String> {
+    let names = std::fs::read_dir(workspace.path("")).unwrap();
+    let names = names.map(|entry| entry.unwrap().file_name().into_string().unwrap());
+    names
+        .filter(|name| name == "crate" || name.starts_with('.'))
+        .collect()
+}
+
+/// A crate is whole or not there, whatever ends the command; what a kill leaves has a hidden name, and the next call removes it.
+#[test]
+fn a_killed_export_leaves_no_crate() {
+    let workspace = workspace();
+    let export = &JOBS[4];
+    let line = "export done --ro-crate -o crate";
+    export.prepare(&workspace);
+    let began = Instant::now();
+    workspace.succeed_bounded(line).unwrap();
+    let takes = began.elapsed();
+    // Of the day, which may end meanwhile, the description has the date.
+    let files = || {
+        let mut files = workspace.files("crate");
+        files.remove("ro-crate-metadata.json").map(|_| files)
+    };
+    let whole = files();
+    let mut tally = Tally::new("kills of an export at random moments");
+    let mut chance = Chance::new();
+    for signal in ["-KILL", "-KILL", "-TERM", "-INT"] {
+        for _ in 0..cases(3, 100) {
+            workspace.remove("crate");
+            let mut child = workspace.start_silent(line);
+            let after = takes.mul_f64(chance.below(1000) as f64 / 1000.0);
+            std::thread::sleep(after);
+            try_send(&child, signal);
+            let had_ended = child.wait().unwrap().success();
+            let now = made(&workspace);
+            let ended = match now.iter().position(|name| name == "crate") {
+                Some(_) if files() != whole => Err("half of a crate has its name".to_owned()),
+                None if had_ended => Err("there is no crate".to_owned()),
+                None if signal != "-KILL" && !now.is_empty() => Err(format!("{now:?} is left behind")),
+                Some(_) => Ok("had ended"),
+                None => workspace
+                    .succeed_bounded(line)
+                    .map(|_| "stopped, and made by the next call"),
+            };
+            let ended = ended.and_then(|ended| match (made(&workspace).as_slice(), files() == whole) {
+                ([_], true) => Ok(ended),
+                (now, _) => Err(format!("{now:?} is there after the next call")),
+            });
+            tally.note("export", &format!("{signal} after {after:?}"), ended);
+        }
+    }
+    tally.close();
+}
+
 /// A signal that a command can answer leaves nothing that the next command would have to remove.
 #[test]
 fn what_a_signal_stops_leaves_nothing_behind() {

@@ -61,7 +61,7 @@ pub fn bibtex(runs: &[WholeRun], told: &Told) -> String {
         &[
             ("title", "{slipfront}".to_owned()),
             ("author", format!("{{{DEVELOPERS}}}")),
-            ("version", versions(runs)),
+            ("version", tex(&versions(runs))),
             ("note", MODEL.to_owned()),
         ],
     );
@@ -93,16 +93,34 @@ fn versions(runs: &[WholeRun]) -> String {
     versions.join(", ")
 }
 
-/// A text in which TeX reads every sign as it stands.
+/// A text in which TeX reads every sign as it stands. BibTeX counts braces, also those behind a backslash, so that none stands alone.
 fn tex(text: &str) -> String {
     let sign = |c: char| match c {
-        '&' | '%' | '$' | '#' | '_' | '{' | '}' => format!("\\{c}"),
+        '&' | '%' | '$' | '#' | '_' => format!("\\{c}"),
+        '{' => "\\textbraceleft{}".to_owned(),
+        '}' => "\\textbraceright{}".to_owned(),
         '\\' => "\\textbackslash{}".to_owned(),
         '~' => "\\textasciitilde{}".to_owned(),
         '^' => "\\textasciicircum{}".to_owned(),
+        c if c.is_control() => " ".to_owned(),
         _ => c.to_string(),
     };
     text.chars().map(sign).collect()
+}
+
+/// A string of YAML: a string of JSON, with numbers for the signs that some readers of YAML refuse or take for ends of lines.
+fn quoted(text: &str) -> String {
+    let is_refused = |c: char| {
+        c.is_control() || matches!(c, '\u{2028}' | '\u{2029}' | '\u{feff}' | '\u{fffe}' | '\u{ffff}')
+    };
+    let sign = |c: char| {
+        if is_refused(c) {
+            format!("\\u{:04x}", u32::from(c))
+        } else {
+            c.to_string()
+        }
+    };
+    json!(text).to_string().chars().map(sign).collect()
 }
 
 /// A citation file (CFF 1.2.0) of runs, as `CITATION.cff` beside them.
@@ -112,8 +130,6 @@ fn tex(text: &str) -> String {
 pub fn cff(runs: &[WholeRun], told: &Told) -> Result<String, ExportError> {
     let author = told.author.as_ref().ok_or(ExportError::NeedsAuthor)?;
     let names: Vec<&str> = runs.iter().map(|run| run.name.as_str()).collect();
-    // Strings of JSON are strings of YAML.
-    let quoted = |text: &str| json!(text).to_string();
     let mut text = format!(
         "cff-version: 1.2.0\nmessage: \"If you use these results, please cite them, slipfront and the article of its model.\"\n\
          type: dataset\ntitle: {}\nauthors:\n  - name: {}\n",

@@ -8,13 +8,14 @@ mod ro_crate;
 
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use slipfront_case::case_file::CaseFile;
 use slipfront_case::disk::{
-    folder_of, is_empty, make_folders, open_regular, sync_folder, write_atomic, write_atomic_with,
+    folder_of, is_empty, is_same, make_folders, open_regular, sync_folder, write_atomic, write_atomic_with,
 };
 use slipfront_case::text::truncated;
+use slipfront_case::unfinished::UnfinishedFolder;
 use thiserror::Error;
 
 pub use self::citation::{bibtex, cff};
@@ -89,6 +90,12 @@ pub enum ExportError {
     #[error("the folder {path} is not empty: choose another with --out")]
     NotEmpty { path: PathBuf },
     #[error(
+        "the command works in the folder {path}, which a new one would replace: name one in it with --out"
+    )]
+    WorkedIn { path: PathBuf },
+    #[error("stopped by a signal: nothing is written")]
+    Interrupted,
+    #[error(
         "two of the runs stand in folders of the name {name}, as which both would be copied: rename one of them"
     )]
     SameName { name: String },
@@ -147,8 +154,11 @@ impl WholeRun {
     }
 
     /// Copies every file of the run to a new folder, where it is compared with its checksum.
-    fn copy(&self, to: &Path) -> Result<(), ExportError> {
+    fn copy(&self, to: &Path, stop: &AtomicBool) -> Result<(), ExportError> {
         for ManifestFile { name, .. } in self.files() {
+            if stop.load(Ordering::Relaxed) {
+                return Err(ExportError::Interrupted);
+            }
             let (original, path) = (self.folder.join(name), to.join(name));
             let copied = make_folders(folder_of(&path)).and_then(|()| {
                 write_atomic_with(&path, |to| {
@@ -229,16 +239,17 @@ impl FromStr for Licence {
 /// `out` one run in its own folder, where `force` replaces an earlier description.
 ///
 /// # Errors
-/// [`ExportError::NeedsFolder`] for several runs without `out`; when a file or folder stands where one is to be made, when two runs have one
+/// [`ExportError::NeedsFolder`] for several runs without `out`; [`ExportError::Interrupted`] after a stop; when a file or folder stands where one is to be made, when two runs have one
 /// name, and when the system refuses to read or write.
 pub fn write_crate(
     runs: &[WholeRun],
     out: Option<&Path>,
     told: &Told,
     force: bool,
+    stop: &AtomicBool,
 ) -> Result<PathBuf, ExportError> {
     match (out, runs) {
-        (Some(out), runs) => crate_of_copies(runs, out, told),
+        (Some(out), runs) => crate_of_copies(runs, out, told, stop),
         (None, [run]) => describe_in_place(run, told, force),
         (None, _) => Err(ExportError::NeedsFolder),
     }
@@ -256,9 +267,14 @@ fn describe_in_place(run: &WholeRun, told: &Told, force: bool) -> Result<PathBuf
     Ok(path)
 }
 
-/// Copies runs to a new folder, each to a folder of its name, describes them there in `ro-crate-metadata.json`, which is written last, and
-/// returns the path of this file.
-fn crate_of_copies(runs: &[WholeRun], out: &Path, told: &Told) -> Result<PathBuf, ExportError> {
+/// Copies runs to a new folder, each to a folder of its name, describes them there in `ro-crate-metadata.json`, and returns the path of this
+/// file. The folder has its name when all of it is there.
+fn crate_of_copies(
+    runs: &[WholeRun],
+    out: &Path,
+    told: &Told,
+    stop: &AtomicBool,
+) -> Result<PathBuf, ExportError> {
     let mut names: Vec<&String> = runs.iter().map(|run| &run.name).collect();
     names.sort_unstable();
     if let Some(pair) = names.windows(2).find(|pair| pair[0] == pair[1]) {
@@ -270,17 +286,24 @@ fn crate_of_copies(runs: &[WholeRun], out: &Path, told: &Told) -> Result<PathBuf
         path: out.to_owned(),
         source,
     };
-    make_folders(out).map_err(failed)?;
-    if !is_empty(out).map_err(failed)? {
+    if is_same(out, Path::new(".")) {
+        return Err(ExportError::WorkedIn { path: out.to_owned() });
+    }
+    // A link leads to the folder that is meant.
+    let place = out.canonicalize().unwrap_or_else(|_| out.to_owned());
+    if place.exists() && !is_empty(&place).map_err(failed)? {
         return Err(ExportError::NotEmpty { path: out.to_owned() });
     }
+    make_folders(folder_of(&place)).map_err(failed)?;
+    let hidden = UnfinishedFolder::beside(&place).map_err(failed)?;
     for run in runs {
-        run.copy(&out.join(&run.name))?;
+        run.copy(&hidden.path().join(&run.name), stop)?;
     }
     let placed: Vec<_> = runs.iter().map(|run| (run, format!("{}/", run.name))).collect();
-    let path = out.join(RO_CRATE);
-    write_durably(&path, &ro_crate::metadata(&placed, told, clock::now()))?;
-    Ok(path)
+    let description = ro_crate::metadata(&placed, told, clock::now());
+    write_durably(&hidden.path().join(RO_CRATE), &description)?;
+    hidden.persist(&place).map_err(failed)?;
+    Ok(out.join(RO_CRATE))
 }
 
 fn write_durably(path: &Path, bytes: &[u8]) -> Result<(), ExportError> {

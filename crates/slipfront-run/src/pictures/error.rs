@@ -59,11 +59,11 @@ pub enum RunPictureError {
 #[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
 pub enum RecordError {
     #[error(
-        "no point of {record} lies within the curve of a run: shifted, the record goes from {from} to {to}, and {} from {start} to {end}; look at \
-        its units, and give the shift with --shift",
+        "{record} and the curve of a run have too little in common, less than a tenth of the shorter of both: shifted, the record goes from \
+        {from} to {to}, and {} from {start} to {end}; look at its units, and give another shift with --shift, or none",
         run.display()
     )]
-    NothingInCommon {
+    LittleInCommon {
         record: String,
         from: String,
         to: String,

@@ -7,6 +7,7 @@ use slipfront_case::number_format::{in_print, si_prefix, with_si_prefix};
 use slipfront_plot::{self as plot, FrictionAxes, FrictionCurve, Instant, KineticLine, Picture, PictureSize};
 
 use super::error::{RecordError, RunPictureError};
+pub use super::record_fit::Misfit;
 use super::record_fit::{Points, ends, fitting_shifts, misfit, rival};
 use crate::measured::{Measure, MeasuredRecord};
 use crate::names::{SERIES, SUMMARY};
@@ -56,9 +57,10 @@ pub struct Fit {
     pub measures: [Measure; 2],
     /// Shift of the record's times or displacements.
     pub shift: f64,
-    /// Root mean square of the difference between the record and each run, over the points that lie within the run; none if
-    /// there are none.
-    pub misfits: Vec<Option<f64>>,
+    /// Number of points of the record.
+    pub points: usize,
+    /// Distance between the record and each run; none for a run that has less than a tenth of the shorter of both in common with it.
+    pub misfits: Vec<Option<Misfit>>,
 }
 
 /// Names and size of a picture of friction that differ from the usual ones.
@@ -156,8 +158,8 @@ pub fn overlay(
 /// Draws the friction curves of run folders and a measured record over each other, in SI units.
 ///
 /// # Errors
-/// As for [`overlay`]; when no point of the record lies within a curve, and when a shift that is not given could be one or
-/// another.
+/// As for [`overlay`]; when the record has less than a tenth of the shorter of both in common with every curve, and when a shift that
+/// is not given could be one or another.
 pub fn overlay_measured(
     folders: &[PathBuf],
     against: Against,
@@ -194,14 +196,20 @@ pub fn overlay_measured(
             })
         })?,
     };
-    let misfits: Vec<Option<f64>> = curves
+    let misfits: Vec<Option<Misfit>> = curves
         .iter()
-        .map(|curve| Some(up * misfit(record, (&curve.x, &curve.friction), shift)?))
+        .map(|curve| {
+            let Misfit { rms, points } = misfit(record, (&curve.x, &curve.friction), shift)?;
+            Some(Misfit {
+                rms: up * rms,
+                points,
+            })
+        })
         .collect();
     if misfits.iter().all(Option::is_none) {
         let [from, to] = ends(record.0).map(|x| in_units(x + shift));
         let [start, end] = ends(&curves[0].x).map(in_units);
-        return Err(Box::new(RecordError::NothingInCommon {
+        return Err(Box::new(RecordError::LittleInCommon {
             record: measured.label.clone(),
             from,
             to,
@@ -214,6 +222,7 @@ pub fn overlay_measured(
     let fit = Fit {
         measures: [measured.record.along, measured.record.of],
         shift: along * shift,
+        points: x.len(),
         misfits,
     };
     curves.push(FrictionCurve {

@@ -10,6 +10,18 @@ pub(super) struct Fitting {
     pub(super) misfit: f64,
 }
 
+/// Distance between a shifted record and a curve.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Misfit {
+    /// Root mean square of the differences.
+    pub rms: f64,
+    /// Number of points of the record that lie within the curve.
+    pub points: usize,
+}
+
+/// Part of the shorter of record and curve that both must have in common for a misfit: less of it tells nothing of them.
+const LEAST_COMMON: f64 = 0.1;
+
 /// Misfit relative to the least one up to which another shift may be the right one as well.
 const AS_GOOD: f64 = 2.0;
 
@@ -31,17 +43,25 @@ fn value_at((xs, ys): Points, x: f64) -> Option<f64> {
     Some(y + share * (end - y))
 }
 
-/// Root mean square of the difference between a record, shifted, and a curve, over the points of the record within the curve.
-pub(super) fn misfit((xs, ys): Points, curve: Points, shift: f64) -> Option<f64> {
+/// Distance between a record, shifted, and a curve, over the points of the record within the curve; none if they have too little in
+/// common.
+pub(super) fn misfit((xs, ys): Points, curve: Points, shift: f64) -> Option<Misfit> {
+    let ([from, to], [start, end]) = (ends(xs).map(|x| x + shift), ends(curve.0));
+    if to.min(end) - from.max(start) < LEAST_COMMON * (to - from).min(end - start) {
+        return None;
+    }
     let differences = xs
         .iter()
         .zip(ys)
         .filter_map(|(x, y)| Some(value_at(curve, x + shift)? - y));
-    let (mut sum, mut n) = (0.0, 0_u32);
+    let (mut sum, mut points) = (0.0, 0);
     for difference in differences {
-        (sum, n) = (sum + difference * difference, n + 1);
+        (sum, points) = (sum + difference * difference, points + 1);
     }
-    (n > 0).then(|| (sum / f64::from(n)).sqrt())
+    (points > 0).then(|| Misfit {
+        rms: (sum / points as f64).sqrt(),
+        points,
+    })
 }
 
 /// First and last of values, 0 where there are none.
@@ -63,7 +83,7 @@ pub(super) fn fitting_shifts(record: Points, curve: Points) -> Vec<Fitting> {
     let ([from, to], [start, end]) = (ends(record.0), ends(curve.0));
     let common = 0.5 * (to - from).min(end - start);
     let (low, high) = (start - to + common, end - from - common);
-    let badness = |shift: f64| misfit((&xs, &ys), curve, shift).unwrap_or(f64::INFINITY);
+    let badness = |shift: f64| misfit((&xs, &ys), curve, shift).map_or(f64::INFINITY, |misfit| misfit.rms);
     let step = (high - low) / f64::from(SHIFTS);
     let tried: Vec<Fitting> = (0..=SHIFTS)
         .map(|k| low + step * f64::from(k))
@@ -162,12 +182,26 @@ mod tests {
         assert!(rival(found[0], &found, 0.2).is_some(), "{found:?}");
     }
 
-    /// Beyond its ends a curve says nothing, and no point within it has no misfit.
+    /// Beyond its ends a curve says nothing, and little in common says little.
     #[test]
     fn a_record_beside_the_curve_has_no_misfit() {
         let (xs, ys) = curve();
         let (at, of) = record(0.1, 0.8, 0.0);
-        assert_eq!(misfit((&at, &of), (&xs, &ys), 5.0), None);
-        assert!(misfit((&at, &of), (&xs, &ys), 0.0).unwrap() < 1e-2);
+        let misfit = |shift| misfit((&at, &of), (&xs, &ys), shift);
+        assert_eq!(misfit(5.0), None);
+        // The curve ends at 1, so that 0.069 and 0.071 of the record, which is 0.7 long, are left on it.
+        assert_eq!(misfit(0.831), None);
+        assert_eq!(misfit(0.829).unwrap().points, 51);
+        let all = misfit(0.0).unwrap();
+        assert!(all.rms < 1e-2 && all.points == 501, "{all:?}");
+    }
+
+    /// A curve that is shorter than a tenth of the record may lie within it.
+    #[test]
+    fn a_long_record_may_go_beyond_the_curve() {
+        let (xs, ys) = curve();
+        let at: Vec<f64> = (0..=200).map(f64::from).collect();
+        let found = misfit((&at, &at), (&xs, &ys), -100.0).unwrap();
+        assert_eq!(found.points, 2);
     }
 }

@@ -325,7 +325,7 @@ fn outlines_fill_the_blocks_of_the_mask(slider: &str, shapes: &[&str]) {
     let folder = tempfile::tempdir().unwrap();
     let mask: Vec<bool> = (0..30).map(|b| b % 7 < 2 || b == 12).collect();
     std::fs::write(
-        &folder.path().join("mask.png"),
+        folder.path().join("mask.png"),
         slipfront_case::arrays::png_of_mask(6, 5, &mask).unwrap(),
     )
     .unwrap();

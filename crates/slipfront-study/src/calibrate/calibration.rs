@@ -278,6 +278,7 @@ mod tests {
             x,
             along: Measure::Time,
             of: Measure::Coefficient,
+            footer: None,
         };
         Grid::of(&record).unwrap()
     }

@@ -5,7 +5,9 @@ use std::path::{Path, PathBuf};
 use serde::Deserialize;
 use slipfront_case::case::Case;
 use slipfront_case::case_file::{CaseError, Override, Source, Tables, syntax_error, unknown_key};
+use slipfront_case::disk::{TEXT_MAX_BYTES, open_limited};
 use slipfront_case::number_format::{are, with_si_prefix};
+use slipfront_run::folder_error::FolderError;
 use slipfront_run::measured::{Measure, MeasuredRecord};
 use slipfront_run::run_curve::steps_to;
 use toml::{Table, Value};
@@ -268,6 +270,10 @@ impl CalibrationFile {
             );
             return Err(self.error("records", sentence).into());
         }
+        // The folder keeps copies, which are read as a whole.
+        for path in paths {
+            open_limited(path, TEXT_MAX_BYTES).map_err(FolderError::read(path))?;
+        }
         let keys = &self.keys;
         let columns = MeasuredColumns::new(keys.columns(), [&keys.x_unit, &keys.y_unit]);
         let along = match keys.against {
@@ -285,9 +291,22 @@ impl CalibrationFile {
                 );
                 self.error("x", sentence)
             })?;
+            if grid.end() <= 0.0 {
+                return Err(self.before_the_drive(path, &grid).into());
+            }
             Ok(GivenRecord { measured, grid })
         };
         paths.iter().map(read).collect()
+    }
+
+    /// Sentences about lines of records that were passed over.
+    ///
+    /// # Errors
+    /// When a record cannot be read.
+    pub fn notes(&self, paths: &[PathBuf]) -> Result<Vec<String>, StudyError> {
+        let records = self.read(paths)?.into_iter();
+        let footers = records.filter_map(|record| record.measured.footer);
+        Ok(footers.map(|footer| format!("{footer}: passed over")).collect())
     }
 
     /// The set-up of the runs for records, on the blocks of the case. Both ends of every range are checked with the case.
@@ -343,6 +362,21 @@ impl CalibrationFile {
             Ok((names.join(", "), further))
         };
         self.keys.next.iter().map(further).collect()
+    }
+
+    /// The error of a record that ends before the drive moves.
+    fn before_the_drive(&self, path: &Path, grid: &Grid) -> CaseError {
+        let places = match self.keys.against {
+            Against::Time => "times",
+            Against::Displacement => "displacements",
+        };
+        let sentence = format!(
+            "{} ends at {}, before the drive begins: {places} count from the beginning of the drive, at 0. Add a number to all {places} of the \
+             record, so that the drive begins at 0",
+            path.display(),
+            with_si_prefix(grid.end(), grid.along().unit())
+        );
+        self.error("x", sentence)
     }
 
     /// The error of a record that takes too many steps.

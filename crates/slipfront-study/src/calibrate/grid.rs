@@ -142,6 +142,7 @@ mod tests {
             y,
             along: Measure::Time,
             of: Measure::Coefficient,
+            footer: None,
         }
     }
 
@@ -169,6 +170,7 @@ mod tests {
             y: vec![1.0; 100],
             along: Measure::Time,
             of: Measure::Force,
+            footer: None,
         };
         assert_eq!(Grid::of(&still), None);
         assert_eq!(Grid::of(&record(MIN_VALUES - 1)), None);

@@ -106,6 +106,7 @@ mod tests {
                 x,
                 along: Measure::Displacement,
                 of: Measure::Force,
+                footer: None,
             };
             Conditions {
                 overrides: vec![Override::new("drive.v_star", &toml::Value::from(speed))],

@@ -1,8 +1,11 @@
 //! Comparison of several meshes of one slider: the values on each, and the verdict on them.
 
+use std::path::Path;
+
 use serde::Serialize;
 use slipfront_case::case_file::CaseError;
 
+use crate::error::StudyError;
 use crate::plan::Plan;
 use crate::statistics::Sample;
 use crate::study_results::StudyResults;
@@ -146,6 +149,17 @@ impl OnMeshes {
             quantities: convergences(plan, results),
             lengths_of_a_block: of_a_block.iter().map(ToString::to_string).collect(),
         })
+    }
+
+    /// Refuses a comparison in the folder of a study in which no quantity has a value on every mesh.
+    ///
+    /// # Errors A sentence that names the table of the runs.
+    pub fn expect_values(&self, folder: &Path) -> Result<(), StudyError> {
+        if self.quantities.is_empty() {
+            let path = folder.join("runs.csv");
+            return Err(StudyError::NotOnMeshes { path });
+        }
+        Ok(())
     }
 }
 

@@ -450,6 +450,10 @@ impl DesignFile {
         let columns = MeasuredColumns::new([&keys.x, &keys.y], [&keys.x_unit, &keys.y_unit]);
         let record = columns.read(&path, Measure::Displacement);
         let record = record.map_err(|sentence| self.error("wish.curve", sentence))?;
+        if let Some(footer) = record.footer {
+            let sentence = format!("{footer}: remove them, or begin them with #");
+            return Err(self.error("wish.curve", sentence).into());
+        }
         if record.x.last().is_none_or(|&last| last <= 0.0) {
             let sentence =
                 "the curve ends before the drive has moved: its last path must be more than 0".to_owned();

@@ -17,6 +17,7 @@ use crate::error::StudyError;
 use crate::journal::Journal;
 use crate::record::to_line;
 use crate::result_files::{Batch, Others, ResultFiles};
+use crate::written_numbers::read_numbers;
 
 /// The design file in the folder, with the base case as a table in it: `slipfront design DIR/design.toml` repeats the design.
 pub(crate) const DESIGN: &str = "design.toml";
@@ -269,17 +270,16 @@ impl WorkOfFront {
     }
 }
 
-/// Length of the search whose results stand in a folder; none if its file does not say.
-pub(crate) fn search_of(folder: &Path) -> Result<Option<Length>, StudyError> {
+/// Length of the search whose results a folder holds.
+///
+/// # Errors
+/// When the file of the results cannot be read, or does not say.
+pub(crate) fn search_of(folder: &Path) -> Result<Length, StudyError> {
     #[derive(Deserialize)]
     struct Found {
         search: Length,
     }
-    let path = folder.join(VERDICT[0]);
-    let text = read_limited(&path, TEXT_MAX_BYTES).map_err(FolderError::read(&path))?;
-    Ok(serde_json::from_slice::<Found>(&text)
-        .ok()
-        .map(|found| found.search))
+    Ok(read_numbers::<Found>(&folder.join(VERDICT[0]))?.search)
 }
 
 /// Whether the folder is the results folder of a design.

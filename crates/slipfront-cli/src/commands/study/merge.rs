@@ -59,6 +59,7 @@ impl Merge {
         }
         let shown = if self.quiet { Shown::Nothing } else { Shown::Tables };
         let signals = Signals::catch().map_err(Failure::running)?;
-        finish(&plan, &results, &folder, shown, &signals)
+        finish(&plan, &results, &folder, shown, &signals)?;
+        results.expect_values(&plan).map_err(Failure::running)
     }
 }

@@ -99,7 +99,12 @@ impl StudyRun {
         } else {
             Shown::Tables
         };
-        finish(&plan, &results, &folder, shown, &signals)
+        finish(&plan, &results, &folder, shown, &signals)?;
+        // What a part of the points lacks, the others may have.
+        if self.shard.is_some() {
+            return Ok(());
+        }
+        results.expect_values(&plan).map_err(Failure::running)
     }
 }
 

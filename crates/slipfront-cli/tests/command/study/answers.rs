@@ -5,7 +5,7 @@ use std::path::Path;
 
 use super::results::{SMALL, SMALL_RUNS, deviation, mean};
 use crate::fixtures::unwrapped;
-use crate::support::process::stderr;
+use crate::support::process::{stderr, stdout};
 use crate::support::workspace::Workspace;
 
 /// Until the interval of mu_s* is narrow: some points need more than the fewest replicates, none the most.
@@ -498,6 +498,36 @@ fn runs_without_a_transition_are_pointed_out() {
     assert!(row("0.08").contains("none"), "{said}");
 }
 
+/// A study of which no run has its main quantity does not end as one that has an answer; a part of it may lack what the others have.
+#[test]
+fn a_study_without_an_answer_has_status_1() {
+    let workspace = Workspace::with_study(&SMALL.replace("stop = \"after_onset\"", "duration_star = 5"));
+    let refused = |line: &str| {
+        let said = unwrapped(&workspace.fail(line, 1));
+        assert!(
+            said.contains("no run has a value of static_reduction_percent, since none has a transition"),
+            "{line}: {said}"
+        );
+    };
+    refused("study study.toml --quiet -o out");
+    assert!(workspace.exists("out/points.csv"));
+    for part in 1..=2 {
+        workspace.succeed(&format!(
+            "study study.toml --quiet --shard {part}/2 -o part{part}"
+        ));
+    }
+    refused("study merge part1 part2 --quiet -o whole");
+    // Kinetic friction may be asked for where nothing else is.
+    let file = workspace.read_text("study.toml");
+    let largest = "[study]\nuntil = { key = 'mu_star_max', half_width = 1.0, min = 2, max = 3 }";
+    workspace.write(
+        "study.toml",
+        file.replacen("[study]", largest, 1)
+            .replace("replicates = 3\n", ""),
+    );
+    workspace.succeed("study study.toml --quiet -o other");
+}
+
 /// A tenth of a random surface touches, and mu* goes up and down about the level of sliding for ever. On the second seed it takes 130 t* to fall
 /// half-way, where the drive needs 83 to load the slider: that is creep, however long the run. `duration_star = "auto"` leaves time for the kinetic
 /// window all the same.
@@ -721,7 +751,14 @@ fn runs_without_the_number_that_decides_do_not_count_for_it() {
     let until = "base.slider.blocks = [4, 4]\nbase.time.stop = 'after_onset'\n\
                  study.until = { key = 'kinetic_friction_star', half_width = 1, min = 3, max = 50 }\n";
     let workspace = Workspace::with_study(until);
-    let said = workspace.succeed("study study.toml -o out");
+    let output = workspace.output("study study.toml -o out");
+    let said = stdout(&output);
+    assert_eq!(output.status.code(), Some(1));
+    assert!(
+        stderr(&output).contains("no run has a value of kinetic_friction_star: the tables"),
+        "{}",
+        stderr(&output)
+    );
     assert!(said.contains("none   0   (interval still too wide)"), "{said}");
     let missing = "there is no picture of kinetic_friction_star: no run has a value of it";
     assert!(said.contains(missing), "{said}");

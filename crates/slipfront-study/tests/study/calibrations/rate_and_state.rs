@@ -153,6 +153,7 @@ fn set_up() -> SetUp {
         x,
         along: Measure::Time,
         of: Measure::Coefficient,
+        footer: None,
     };
     SetUp {
         base,
