@@ -215,12 +215,12 @@ pub struct Batch {
     replaceable: Option<String>,
 }
 
-/// What becomes of files of earlier batches that a batch does not write.
+/// Fate of files of earlier batches that a batch does not write.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Others {
-    /// They stay.
+    /// Such files stay.
     Stay,
-    /// They are removed: they belong to other results.
+    /// Such files belong to other results, and are removed.
     Go,
 }
 

@@ -118,7 +118,7 @@ fn a_design_that_ran_out_of_time_is_verified_to_the_last_file() {
     }
 }
 
-/// What could not be derived again is said, and is no success unless checksums are all that is asked for.
+/// Figures that could not be derived again are named, and count as no success unless no more than checksums is asked for.
 #[test]
 fn figures_whose_data_are_lost_are_not_taken_for_verified() {
     let workspace = Workspace::new();
