@@ -218,9 +218,9 @@ pub struct Batch {
 /// Fate of files of earlier batches that a batch does not write.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Others {
-    /// Such files stay.
+    /// Files of earlier batches stay.
     Stay,
-    /// Such files belong to other results, and are removed.
+    /// Files of earlier batches are removed, since they belong to other results.
     Go,
 }
 
