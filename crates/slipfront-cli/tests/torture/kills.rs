@@ -106,13 +106,39 @@ fn a_killed_repetition_of_a_run_is_repeated() {
     torture(&JOBS[7], cases(8, 200));
 }
 
+#[test]
+fn a_killed_export_is_repeated() {
+    torture(&JOBS[8], cases(4, 200));
+}
+
+#[test]
+fn a_killed_merge_goes_on() {
+    torture(&JOBS[9], cases(4, 200));
+}
+
+#[test]
+fn a_killed_calibration_goes_on() {
+    torture(&JOBS[10], cases(4, 200));
+}
+
+#[test]
+fn a_killed_comparison_of_meshes_goes_on() {
+    torture(&JOBS[11], cases(4, 200));
+}
+
+#[test]
+fn a_killed_design_goes_on() {
+    torture(&JOBS[12], cases(4, 200));
+}
+
 /// A signal that a command can answer leaves nothing that the next command would have to remove.
 #[test]
 fn what_a_signal_stops_leaves_nothing_behind() {
     let workspace = workspace();
     let mut tally = Tally::new("signals at random moments");
     let mut chance = Chance::new();
-    for job in &JOBS[4..] {
+    // A run saves a checkpoint, and a design the best texture so far.
+    for job in &JOBS[4..12] {
         let whole = job.undisturbed();
         let takes = time_of(&workspace, job);
         for signal in ["-INT", "-TERM"] {
@@ -128,7 +154,7 @@ fn what_a_signal_stops_leaves_nothing_behind() {
                     Some(status) => Err(format!("`{}` ends with status {status}", job.line)),
                 };
                 let ended = ended.and_then(|ended| {
-                    let now = workspace.files("out");
+                    let now = workspace.files_if_any("out");
                     expect_sound(&now, &whole)?;
                     expect_nothing_unfinished(&now)?;
                     expect_nothing_temporary(&workspace)?;
