@@ -216,7 +216,7 @@ coverage = [0, 15]
 runs = 20
 "#;
 
-/// What commands have made for jobs: two shards of the study, and a record of friction.
+/// Inputs of jobs that other commands make: two shards of the study, and a record of friction.
 static MADE: LazyLock<Files> = LazyLock::new(|| {
     let workspace = given_workspace();
     for shard in [1, 2] {

@@ -367,7 +367,7 @@ mod tests {
         }
     }
 
-    /// Of forces of a quintillionth of a newton as much is found as of those of a newton: powers of two keep every digit.
+    /// Forces of a quintillionth of a newton tell as much as those of a newton: powers of two keep every digit.
     #[test]
     fn the_size_of_forces_does_not_matter() {
         let found = |newtons: f64| {
