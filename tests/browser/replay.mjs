@@ -37,25 +37,35 @@ async function runFolder(name) {
   return folder;
 }
 
+/**
+ * Drops a folder as a browser gives it: entries with a name and `inner` entries, or `bytes` in Base64, or a `size` without any, or a file that `fails`
+ * to be read; `copies` of an entry have a number behind their name.
+ */
+const dropEntry = (lab, entry) => lab.page.evaluate((dropped) => {
+  const contents = (base64) => Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0));
+  const entryOf = ({ name, inner, bytes, size, fails }) => ({
+    name,
+    isFile: !inner,
+    isDirectory: Boolean(inner),
+    file: (take, refuse) => (fails ? refuse(new DOMException('gone', 'NotFoundError')) : take(size ? Object.defineProperty(new File([], name), 'size', { value: size }) : new File([contents(bytes)], name))),
+    createReader: () => {
+      const left = inner.flatMap(({ copies, ...one }) => (copies ? Array.from({ length: copies }, (_, k) => entryOf({ ...one, name: `${one.name}${k}` })) : [entryOf(one)]));
+      return { readEntries: (take) => take(left.splice(0, 100)) };
+    },
+  });
+  const event = new Event('drop', { bubbles: true, cancelable: true });
+  Object.defineProperty(event, 'dataTransfer', { value: { items: [{ webkitGetAsEntry: () => entryOf(dropped) }], files: [] } });
+  document.body.dispatchEvent(event);
+}, entry);
+
+/** A folder of the disk as an entry. */
+const entryOf = (folder) => ({
+  name: path.basename(folder),
+  inner: readdirSync(folder, { withFileTypes: true }).map((entry) => (entry.isDirectory() ? entryOf(path.join(folder, entry.name)) : { name: entry.name, bytes: readFileSync(path.join(folder, entry.name), 'base64') })),
+});
+
 /** Drops a folder on the page: its files, and one of its folders. */
-const drop = (lab, folder) => {
-  const files = (of) => readdirSync(of, { withFileTypes: true }).map((entry) => (entry.isDirectory() ? { name: entry.name, inner: files(path.join(of, entry.name)) } : { name: entry.name, bytes: [...readFileSync(path.join(of, entry.name))] }));
-  return lab.page.evaluate(({ name, inner }) => {
-    const entryOf = ({ name, inner, bytes }) => ({
-      name,
-      isFile: !inner,
-      isDirectory: Boolean(inner),
-      file: (take) => take(new File([new Uint8Array(bytes)], name)),
-      createReader: () => {
-        let left = inner.map(entryOf);
-        return { readEntries: (take) => take(left.splice(0, 2)) };
-      },
-    });
-    const event = new Event('drop', { bubbles: true, cancelable: true });
-    Object.defineProperty(event, 'dataTransfer', { value: { items: [{ webkitGetAsEntry: () => entryOf({ name, inner }) }], files: [] } });
-    document.body.dispatchEvent(event);
-  }, { name: path.basename(folder), inner: files(folder) });
-};
+const drop = (lab, folder) => dropEntry(lab, entryOf(folder));
 
 /** Chooses a folder in the list of cases. */
 async function choose(lab, folder) {
@@ -98,4 +108,85 @@ test('a folder that is no run, or was changed, is refused in a sentence, and the
   const { sentence } = await lab.after(() => drop(lab, folder), 'refused');
   assert.match(sentence, /manifest\.json is damaged/);
   assert.equal(lab.last.case.toml, toml);
+});
+
+/** A text in Base64. */
+const text = (words) => Buffer.from(words).toString('base64');
+
+test('folders that are odd or hostile are refused in a sentence, and the page goes on', async (t) => {
+  const lab = await open(t, { toml: SMALL });
+  const { toml } = lab.last.case;
+  const whole = entryOf(await runFolder('hostile'));
+  const other = path.join(WORK, 'hostile-other.toml');
+  writeFileSync(other, `${SMALL}\n[output]\nsnapshots = [30]\n`);
+  const otherFolder = path.join(WORK, 'of the command', 'hostile-other');
+  await slipfront('run', other, '--quiet', '--out', otherFolder);
+  const bytesOf = (name) => whole.inner.find((entry) => entry.name === name).bytes;
+  const including = (...entries) => ({ name: 'odd', inner: [...whole.inner, ...entries] });
+  const instead = (name, entry) => ({ name: 'odd', inner: [...whole.inner.filter((one) => one.name !== name), { name, ...entry }] });
+  const tooLarge = /has more than the [\d.]+ MiB that this page can take/;
+  const cases = [
+    [{ name: 'empty', inner: [] }, /empty is no folder of a run: it has no/],
+    // A name that is none for a folder is replaced.
+    [{ name: '<img src=x onerror=alert(1)>', inner: [] }, /run is no folder of a run/],
+    [{ name: 'x'.repeat(10_000), inner: [] }, /run is no folder of a run/],
+    [{ name: 'many', inner: [{ name: 'file', copies: 10_000, bytes: text('x') }] }, /many is no folder of a run/],
+    [{ name: 'inputs', inner: [{ name: 'inputs', inner: [{ name: 'file', copies: 10_000, bytes: text('x') }] }] }, /inputs is no folder of a run/],
+    [{ name: 'deep', inner: [Array.from({ length: 20 }).reduce((inner) => ({ name: 'inputs', inner: [inner] }), { name: 'case.toml', bytes: text('x') })] }, /deep is no folder of a run/],
+    [{ name: 'gone', inner: [{ name: 'case.toml', fails: true }] }, say('run_unreadable', { name: 'gone' })],
+    [{ name: 'endless', inner: [{ name: 'case.toml', size: 2 ** 40 }] }, tooLarge],
+    [instead('manifest.json', { size: 2 ** 40 }), tooLarge],
+    [including({ name: 'inputs', inner: [{ name: 'map.npy', size: 2 ** 40 }] }), tooLarge],
+    [instead('manifest.json', { bytes: readFileSync(path.join(otherFolder, 'manifest.json'), 'base64') }), /has other bytes than its run has written/],
+    [instead('manifest.json', { bytes: text('['.repeat(1_000_000)) }), /manifest\.json is damaged/],
+    [instead('manifest.json', { bytes: '' }), /manifest\.json/],
+    [instead('fields.nc', { bytes: bytesOf('fields.nc').slice(0, 1000) }), /fields\.nc has other bytes than its run has written/],
+    [instead('case.toml', { bytes: Buffer.from(Array.from({ length: 1000 }, (_, k) => k)).toString('base64') }), /case\.toml has other bytes than its run has written/],
+    // A zip is no folder, and of two files of one name there is the last.
+    [including({ name: 'series.csv', bytes: text('PK\u0003\u0004') }), /series\.csv has other bytes than its run has written/],
+  ];
+  for (const [entry, sentence] of cases) {
+    await lab.find('#notices button').evaluateAll((buttons) => buttons.forEach((button) => button.click()));
+    await dropEntry(lab, entry);
+    const holds = (said) => (typeof sentence === 'string' ? said.includes(sentence) : sentence.test(said));
+    await until(async () => holds(await lab.text('notices')), async () => `a notice ${sentence} in "${(await lab.text('notices')).slice(0, 300)}"`);
+    assert.equal(lab.last.case.toml, toml);
+  }
+  // Names that lead out of the folder are names of no file of a run.
+  const outside = { name: 'inputs', inner: ['../../etc/passwd', '..', '/etc/passwd', 'a\\..\\b', 'CON', ''].map((name) => ({ name, bytes: text('x') })) };
+  await lab.after(() => dropEntry(lab, { ...including(outside, { name: 'notes', inner: [] }), name: 'outside' }), 'recorded');
+  assert.equal(lab.last.case.name, 'outside');
+  // Fields of a TiB are left out, and are not read.
+  await lab.after(() => dropEntry(lab, { ...instead('fields.nc', { size: 2 ** 40 }), name: 'sparse' }), 'case', ({ name }) => name === 'sparse');
+  await lab.notice('The fields of sparse are left out');
+});
+
+test('a dropped file that is no image is refused in a sentence, whatever size it claims', async (t) => {
+  const lab = await open(t, { toml: SMALL });
+  const { toml } = lab.last.case;
+  const png = (width, height) => {
+    const bytes = Buffer.from('89504e470d0a1a0a0000000d49484452000000000000000008000000000000000000000000', 'hex');
+    bytes.writeUInt32BE(width, 16);
+    bytes.writeUInt32BE(height, 20);
+    return [...bytes];
+  };
+  const zip = Buffer.alloc(64);
+  // A header of a file of 4 GiB.
+  zip.write('504b03041400000008000000000000000000', 0, 'hex');
+  zip.fill(0xff, 18, 26);
+  for (const [name, bytes] of Object.entries({
+    'run.zip': [...zip], 'empty.zip': [], 'wide.png': png(2 ** 31 - 1, 1), 'large.png': png(100_000, 100_000), 'none.png': png(0, 0),
+    'nested.svg': [...Buffer.from(`<svg xmlns="http://www.w3.org/2000/svg">${'<g>'.repeat(10_000)}`)], 'case.toml': [...Buffer.from(SMALL)], 'text.txt': [1, 2, 3],
+  })) {
+    await lab.find('#notices button').evaluateAll((buttons) => buttons.forEach((button) => button.click()));
+    await lab.page.evaluate(([named, contents]) => {
+      const event = new Event('drop', { bubbles: true, cancelable: true });
+      const file = new File([new Uint8Array(contents)], named);
+      Object.defineProperty(event, 'dataTransfer', { value: { items: [{ webkitGetAsEntry: () => ({ isDirectory: false }) }], files: [file] } });
+      document.body.dispatchEvent(event);
+    }, [name, bytes]);
+    await lab.notice(say('image_unreadable', { name }));
+  }
+  assert.equal(lab.last.case.toml, toml);
+  await lab.runToEnd();
 });

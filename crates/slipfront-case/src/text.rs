@@ -30,6 +30,38 @@ pub fn shell_quoted(word: &str) -> String {
     shlex::try_quote(word).unwrap_or_default().into_owned()
 }
 
+/// A path as one argument of a command that a reader can paste. What a terminal does not show as it is, and a backquote, with which the
+/// sentence around the command closes it, are written as in C between `$'` and `'`, which bash, zsh and ksh read.
+pub fn shell_path(path: &Path) -> String {
+    let path = if path.as_os_str().as_encoded_bytes().starts_with(b"-") {
+        // Else it would be taken for an option.
+        &Path::new(".").join(path)
+    } else {
+        path
+    };
+    let is_escaped = |c: char| c.is_control() || c == '`';
+    if let Some(word) = path.to_str().filter(|word| !word.contains(is_escaped)) {
+        return shell_quoted(word);
+    }
+    let octal = |bytes: &[u8]| {
+        bytes
+            .iter()
+            .map(|byte| format!("\\{byte:03o}"))
+            .collect::<String>()
+    };
+    let character = |c: char| match c {
+        '\'' | '\\' => format!("\\{c}"),
+        _ if is_escaped(c) => octal(c.encode_utf8(&mut [0; 4]).as_bytes()),
+        _ => c.to_string(),
+    };
+    let chunks = path.as_os_str().as_encoded_bytes().utf8_chunks();
+    let escaped = chunks.map(|chunk| {
+        let text: String = chunk.valid().chars().map(character).collect();
+        text + &octal(chunk.invalid())
+    });
+    format!("$'{}'", escaped.collect::<String>())
+}
+
 /// A note for a reader, with its line break, in lines of at most `columns` characters.
 pub fn note(sentence: &str, columns: usize) -> String {
     format!("{}\n", wrapped(&format!("note: {sentence}"), columns))
@@ -71,6 +103,48 @@ fn cut(text: &str, most: usize) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_path_is_one_argument_of_a_command() {
+        for (path, argument) in [
+            ("results/a-1", "results/a-1"),
+            ("my run", "'my run'"),
+            ("it's", "\"it's\""),
+            ("$HOME", "'$HOME'"),
+            ("-o", "./-o"),
+            ("-an option", "'./-an option'"),
+            ("two\nlines", "$'two\\012lines'"),
+            ("it's a\\b\u{85}", "$'it\\'s a\\\\b\\302\\205'"),
+            ("a ` b", "$'a \\140 b'"),
+        ] {
+            assert_eq!(shell_path(Path::new(path)), argument);
+        }
+    }
+
+    /// The shell gives a command the bytes of the name.
+    #[cfg(unix)]
+    #[test]
+    fn bash_reads_a_path_as_it_is() {
+        use std::ffi::OsStr;
+        use std::os::unix::ffi::OsStrExt;
+        use std::process::Command;
+        let echo = |script: &str| Command::new("bash").args(["-c", script]).output();
+        if echo("").is_err() {
+            return;
+        }
+        // Every byte that a name can have, alone and before a digit.
+        let all: Vec<u8> = (1..=255).filter(|byte| *byte != b'/').collect();
+        let each = all.iter().flat_map(|byte| [vec![*byte], vec![*byte, b'7']]);
+        for name in each.chain([all.clone(), "-ü \u{1f642} ' \" \\ \n".into()]) {
+            let argument = shell_path(Path::new(OsStr::from_bytes(&name)));
+            assert!(
+                !argument.contains(|c: char| c.is_control() || c == '`'),
+                "{argument}"
+            );
+            let read = echo(&format!("printf %s {argument}")).unwrap().stdout;
+            assert_eq!(read.strip_prefix(b"./").unwrap_or(&read), name, "{argument}");
+        }
+    }
 
     #[test]
     fn lines_break_between_words() {

@@ -30,7 +30,7 @@ use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 
 use slipfront::Communicator;
-use slipfront_case::text::shell_quoted;
+use slipfront_case::text::shell_path;
 use slipfront_run::agree::RankFailure;
 use slipfront_run::program::{this_build, version_lines};
 use slipfront_study::StudyFile;
@@ -284,7 +284,7 @@ fn forgotten_subcommand(error: &clap::Error) -> Option<String> {
     if error.kind() != ErrorKind::InvalidSubcommand || !(is_toml || path.is_dir()) {
         return None;
     }
-    let quoted = shell_quoted(word);
+    let quoted = shell_path(path);
     let meant = if path.is_dir() {
         format!("`slipfront plot {quoted}` or `slipfront verify {quoted}`")
     } else if StudyFile::load(path).is_ok_and(|study| study.is_study()) {

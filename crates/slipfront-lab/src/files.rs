@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use slipfront_case::case_file::{CaseError, read_text};
 use slipfront_case::disk::open_limited;
-use slipfront_case::text::{display_path, shell_quoted};
+use slipfront_case::text::{display_path, shell_path};
 use slipfront_session::{Document, MAX_FILES};
 
 /// The case of a file, with the files that stand in its folder or in those that are `allowed`.
@@ -66,7 +66,7 @@ impl<'a> ReadableFolders<'a> {
              `slipfront lab` with --allow-files {}",
             display_path(at),
             self.of,
-            shell_quoted(&display_path(at))
+            shell_path(at)
         ))
     }
 

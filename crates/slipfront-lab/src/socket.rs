@@ -29,8 +29,8 @@ const PROTOCOL: &str = "slipfront.lab.v2";
 /// Most pages at once.
 pub(crate) const MAX_PAGES: usize = 4;
 
-/// Requests that wait for the session.
-const MAX_WAITING_REQUESTS: usize = 64;
+/// Requests that wait for a session that is busy. Each may have the length of [`MAX_MESSAGE`].
+const MAX_WAITING_REQUESTS: usize = 8;
 
 /// Time between two attempts to hand a request to a session that is busy.
 const RETRY_INTERVAL: Duration = Duration::from_millis(5);

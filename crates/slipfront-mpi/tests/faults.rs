@@ -1,7 +1,7 @@
 //! File-system calls of one rank of two fail or kill it, while it goes on with a run that has a checkpoint: both ranks end,
 //! with one answer, and the run that they leave goes on to the same bytes.
 //!
-//! A few calls are tried; with `SLIPFRONT_TORTURE=long` every one.
+//! A few calls are tried, each fault under another law; with `SLIPFRONT_TORTURE=long` every call under every law.
 
 #![cfg(target_os = "linux")]
 #![allow(clippy::unwrap_used)] // A helper that cannot do its work fails its test.
@@ -13,7 +13,7 @@ mod watcher;
 use std::collections::BTreeSet;
 use std::path::Path;
 use std::process::Output;
-use std::sync::{Arc, LazyLock};
+use std::sync::Arc;
 
 use rstest::rstest;
 use slipfront::Execution;
@@ -33,6 +33,16 @@ use crate::watcher::watcher;
 const CASE: &str = "slider = { blocks = [60, 50], edges = ['periodic', 'free'] }\ndrive.v_star = 0.05\n\
                     time.duration_star = 200\noutput = { snapshots = [30, 150], series = 5 }\n";
 
+/// Laws of friction and a drive, of which each keeps other numbers in a checkpoint: the case with each of them.
+const LAWS: [&str; 6] = [
+    "friction.slip_weakening = { length_star = 0.4 }\n",
+    "friction.velocity = { law = 'weakening', v_c_star = 0.1, ratio = 0.2 }\n",
+    "friction.ageing = { law = 'logarithmic', beta = 0.07, time_star = 1 }\n",
+    "friction = { law = 'rate_and_state', a = 0.02, b = 0.06, d_c_star = 0.05, v_0_star = 0.01, mu_0 = 0.6 }\n",
+    "friction.correlation_length = '3 um'\n",
+    "drive.loading = 'held'\n",
+];
+
 const RESUME: &str = "run --resume run --checkpoint 0s";
 
 #[test]
@@ -41,19 +51,19 @@ fn plain_command() {
     run_plain_command();
 }
 
-/// Results of [`CASE`] by the plain command.
-static UNDISTURBED: LazyLock<Files> = LazyLock::new(|| {
+/// Results of [`CASE`] with a law by the plain command.
+fn undisturbed(law: &str) -> Files {
     let folder = TempDir::new().unwrap();
-    std::fs::write(folder.path().join("case.toml"), CASE).unwrap();
+    std::fs::write(folder.path().join("case.toml"), format!("{CASE}{law}")).unwrap();
     run_plain(folder.path(), "run case.toml --quiet -o run");
     results(&folder.path().join("run"))
-});
+}
 
-/// A folder with a run that was stopped in its middle.
-fn stopped_run() -> TempDir {
+/// A folder with a run under a law that was stopped in its middle.
+fn stopped_run(law: &str) -> TempDir {
     let folder = TempDir::new().unwrap();
     let path = folder.path().join("run");
-    let case = Arc::new(Case::parse(CASE, "run", "", &[]).unwrap());
+    let case = Arc::new(Case::parse(&format!("{CASE}{law}"), "run", "", &[]).unwrap());
     let mut run = RunFolder::prepare(&path, false, &case.inputs).unwrap();
     run_results::write_case(&case, &mut run).unwrap();
     let mut running = Running::start(&case, None, Execution::default());
@@ -92,9 +102,14 @@ fn resume_disturbed(folder: &Path, rank: usize, [action, from, to]: [&str; 3]) -
 /// Kinds of calls that are tried in the short form.
 const SHORT: usize = 5;
 
+/// Whether the long form is asked for.
+fn is_long() -> bool {
+    std::env::var("SLIPFRONT_TORTURE").is_ok()
+}
+
 /// Numbers of the calls that are tried with an action: of some kinds, which are a name and a file, the first.
 fn calls_to_try(calls: &[String], action: &str) -> Vec<usize> {
-    let long = std::env::var("SLIPFRONT_TORTURE").is_ok();
+    let long = is_long();
     let mut kinds = BTreeSet::new();
     let mut is_tried = |call: &str| {
         let mut words = call.splitn(3, ' ').skip(1);
@@ -114,11 +129,12 @@ fn calls_to_try(calls: &[String], action: &str) -> Vec<usize> {
 }
 
 #[rstest]
-#[case::full_disk("ENOSPC", true, "No space left on device")]
-#[case::failing_disk("EIO", false, "Input/output error")]
-#[case::kill("kill", false, "signal 9")]
+#[case::full_disk(0, "ENOSPC", true, "No space left on device")]
+#[case::failing_disk(1, "EIO", false, "Input/output error")]
+#[case::kill(2, "kill", false, "signal 9")]
 fn a_fault_of_one_rank_is_the_answer_of_all(
     #[values(0, 1)] rank: usize,
+    #[case] number: usize,
     #[case] action: &str,
     #[case] lasts: bool,
     #[case] cause: &str,
@@ -126,25 +142,39 @@ fn a_fault_of_one_rank_is_the_answer_of_all(
     if watcher().is_none() {
         return;
     }
-    let folder = stopped_run();
+    // Each fault of each rank meets a law of its own, and in the long form all of them.
+    let laws = if is_long() {
+        &LAWS
+    } else {
+        &LAWS[2 * number + rank..][..1]
+    };
+    for law in laws {
+        try_faults(rank, action, lasts, cause, law);
+    }
+}
+
+fn try_faults(rank: usize, action: &str, lasts: bool, cause: &str, law: &str) {
+    let whole = undisturbed(law);
+    let folder = stopped_run(law);
     let (undisturbed, calls) = resume_disturbed(folder.path(), rank, [action, "0", "0"]);
     assert!(undisturbed.status.success(), "{}", printed(&undisturbed));
     for number in calls_to_try(&calls, action) {
-        let folder = stopped_run();
+        let folder = stopped_run(law);
         let run = folder.path().join("run");
         let from = number.to_string();
         let to = if lasts { "0" } else { &from };
         let (disturbed, calls) = resume_disturbed(folder.path(), rank, [action, &from, to]);
         let text = printed(&disturbed);
+        eprintln!("{action} of rank {rank}: {:?}", disturbed.status.code());
         let met = calls.iter().find(|call| call.starts_with('*'));
-        let case = format!("{action} at {met:?}: {text}");
+        let case = format!("{law}{action} at {met:?}: {text}");
         // No rank has waited until the `--timeout` of mpirun.
         assert!(!text.contains("mpirun --timeout"), "{case}");
         let sentences: Vec<&str> = text.lines().filter(|line| line.starts_with("error: ")).collect();
         if disturbed.status.success() {
             // A checkpoint that is not saved is no more than a warning; and clocks decide how many there are.
             assert!(action != "kill" || met.is_none(), "{case}");
-            assert_same(&UNDISTURBED, &results(&run));
+            assert_same(&whole, &results(&run));
             continue;
         }
         if action == "kill" {
@@ -168,7 +198,7 @@ fn a_fault_of_one_rank_is_the_answer_of_all(
             let resumed = output(resumed.current_dir(folder.path()));
             assert!(resumed.status.success(), "{case}\n{}", printed(&resumed));
         }
-        assert_same(&UNDISTURBED, &results(&run));
+        assert_same(&whole, &results(&run));
         assert!(!run.join(".slipfront").exists(), "{case}");
     }
 }

@@ -15,6 +15,9 @@ use crate::view::ViewChange;
 /// Longest message of the page, in bytes: an image of the texture.
 pub const MAX_MESSAGE: usize = 8 << 20;
 
+/// Most values of a request, those within lists and tables too: one takes some 30 times the memory of its text.
+const MAX_VALUES: usize = 20_000;
+
 /// A message of the page, which holds one request.
 #[derive(Debug)]
 pub struct Message(pub(crate) Request);
@@ -23,13 +26,31 @@ impl Message {
     /// Reads a message, which is JSON.
     ///
     /// # Errors
-    /// A sentence, if it is no request.
+    /// A sentence, if it is no request, or has too many values.
     pub fn parse(text: &str) -> Result<Self, String> {
+        if most_values(text) > MAX_VALUES {
+            return Err(format!("not a request: it has more than {MAX_VALUES} values"));
+        }
         let request = serde_json::from_str(text);
         request
             .map(Self)
             .map_err(|error| format!("not a request: {error}"))
     }
+}
+
+/// A number of values that a text of JSON cannot exceed: every value but the first is behind a comma or an opening bracket.
+fn most_values(text: &str) -> usize {
+    let (mut is_quoted, mut is_escaped, mut values) = (false, false, 1);
+    for byte in text.bytes() {
+        match byte {
+            _ if is_escaped => is_escaped = false,
+            b'\\' => is_escaped = is_quoted,
+            b'"' => is_quoted = !is_quoted,
+            b',' | b'[' | b'{' if !is_quoted => values += 1,
+            _ => {}
+        }
+    }
+    values
 }
 
 /// A request of the page.

@@ -1,7 +1,9 @@
 //! A batch script for Slurm: an array of tasks, each of which runs a shard on all cores of a node.
 
+use std::path::PathBuf;
+
 use slipfront_case::number_format::count;
-use slipfront_case::text::shell_quoted;
+use slipfront_case::text::shell_path;
 
 /// The contents of a batch script.
 #[derive(Clone, Debug, PartialEq)]
@@ -9,18 +11,18 @@ pub struct Batch {
     /// Name of the job.
     pub name: String,
     /// Path of the command, as the job will see it.
-    pub command: String,
+    pub command: PathBuf,
     /// Path of the study file, as the job will see it.
-    pub study: String,
+    pub study: PathBuf,
     /// Folder of the results; every task has a subfolder of its own.
-    pub out: String,
+    pub out: PathBuf,
     /// Number of tasks.
     pub tasks: usize,
 }
 
 /// The text of a batch script.
 pub fn script(batch: &Batch) -> String {
-    let [command, study, out] = [&batch.command, &batch.study, &batch.out].map(|word| shell_quoted(word));
+    let [command, study, out] = [&batch.command, &batch.study, &batch.out].map(|path| shell_path(path));
     let name = batch.name.replace(|c: char| !c.is_ascii_alphanumeric(), "-");
     let (tasks, all) = (batch.tasks, count(batch.tasks, "task"));
     format!(
@@ -56,9 +58,9 @@ mod tests {
     fn words_are_words_of_the_shell() {
         let script = script(&Batch {
             name: "my study".to_owned(),
-            command: "/opt/slipfront".to_owned(),
-            study: "/data/it's mine/study.toml".to_owned(),
-            out: "/data/out".to_owned(),
+            command: "/opt/slipfront".into(),
+            study: "/data/it's mine/study.toml".into(),
+            out: "/data/out".into(),
             tasks: 3,
         });
         assert!(

@@ -275,6 +275,31 @@ fn of_a_repeated_run() {
     torture(&JOBS[7], 3);
 }
 
+#[test]
+fn of_an_export() {
+    torture(&JOBS[8], 3);
+}
+
+#[test]
+fn of_a_merge() {
+    torture(&JOBS[9], 3);
+}
+
+#[test]
+fn of_a_calibration() {
+    torture(&JOBS[10], 3);
+}
+
+#[test]
+fn of_a_comparison_of_meshes() {
+    torture(&JOBS[11], 3);
+}
+
+#[test]
+fn of_a_design() {
+    torture(&JOBS[12], 3);
+}
+
 /// Killed at the worst moment: a file is whole, and has not got its name yet.
 #[test]
 fn a_file_that_was_not_renamed_goes_with_the_next() {

@@ -107,13 +107,28 @@ fn a_killed_repetition_of_a_run_is_repeated() {
 }
 
 #[test]
-fn a_killed_design_goes_on() {
+fn a_killed_export_is_repeated() {
     torture(&JOBS[8], cases(4, 200));
 }
 
 #[test]
-fn a_killed_calibration_goes_on() {
+fn a_killed_merge_goes_on() {
     torture(&JOBS[9], cases(4, 200));
+}
+
+#[test]
+fn a_killed_calibration_goes_on() {
+    torture(&JOBS[10], cases(4, 200));
+}
+
+#[test]
+fn a_killed_comparison_of_meshes_goes_on() {
+    torture(&JOBS[11], cases(4, 200));
+}
+
+#[test]
+fn a_killed_design_goes_on() {
+    torture(&JOBS[12], cases(4, 200));
 }
 
 /// Names in the folder of the workspace that are no inputs of an export.
@@ -177,7 +192,8 @@ fn what_a_signal_stops_leaves_nothing_behind() {
     let workspace = workspace();
     let mut tally = Tally::new("signals at random moments");
     let mut chance = Chance::new();
-    for job in &JOBS[4..8] {
+    // A run saves a checkpoint, and a design the best texture so far.
+    for job in &JOBS[4..12] {
         let whole = job.undisturbed();
         let takes = time_of(&workspace, job);
         for signal in ["-INT", "-TERM"] {
@@ -193,7 +209,7 @@ fn what_a_signal_stops_leaves_nothing_behind() {
                     Some(status) => Err(format!("`{}` ends with status {status}", job.line)),
                 };
                 let ended = ended.and_then(|ended| {
-                    let now = workspace.files("out");
+                    let now = workspace.files_if_any("out");
                     expect_sound(&now, &whole)?;
                     expect_nothing_unfinished(&now)?;
                     expect_nothing_temporary(&workspace)?;

@@ -20,6 +20,8 @@ mod bounded;
 mod damage;
 #[cfg(target_os = "linux")]
 mod faults;
+#[cfg(target_os = "linux")]
+mod full_disk;
 mod jobs;
 mod kills;
 // Where /proc tells how much memory a process has had.

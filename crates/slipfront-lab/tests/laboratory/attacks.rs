@@ -378,3 +378,83 @@ fn a_flood_does_not_fill_the_memory() {
     let mut other = Page::with_case(&lab, SMALL);
     other.reply("case");
 }
+
+/// A value of JSON takes many times the memory of its text: a message of the largest length has no more of them than a page needs.
+#[test]
+fn millions_of_values_are_no_request() {
+    let lab = Served::new();
+    let list = |values: usize| format!("[{}1]", "1,".repeat(values - 1));
+    let mut page = Page::with_case(&lab, SMALL);
+    page.reply("case");
+    page.socket
+        .send(Message::text(format!(
+            "{{\"do\":\"set\",\"gesture\":1,\"keys\":{{\"drive.v_star\":{}}}}}",
+            list(10_000)
+        )))
+        .unwrap();
+    let said = page.reply("refused")["sentence"].to_string();
+    assert!(said.contains("v_star") && said.len() < 1000, "{said}");
+    let texts = [
+        format!(
+            "{{\"do\":\"set\",\"gesture\":1,\"keys\":{{\"drive.v_star\":{}}}}}",
+            list(4_000_000)
+        ),
+        format!("{{\"do\":\"explode\",\"a\":{}", "[".repeat(8_000_000)),
+        format!("{{\"do\":\"explode\",\"a\":\"\\\"\",\"b\":{}}}", list(4_000_000)),
+    ];
+    for text in texts {
+        let mut page = Page::open(&lab);
+        page.socket.send(Message::text(text)).unwrap();
+        let end = page.end();
+        let reason = "not a request: it has more than 20000 values".to_owned();
+        assert_eq!(end, Some((1008, reason)));
+    }
+    // Commas of a text are none of the message.
+    let toml = format!("# {}\n{SMALL}", ",[".repeat(100_000));
+    page.send(&json!({ "do": "open", "source": { "toml": toml } }));
+    page.reply("case");
+}
+
+/// Small requests, pings, pieces of one byte, and sessions that begin and end at once, each in thousands: another page is served.
+#[test]
+fn floods_of_small_things_keep_nobody_out() {
+    let lab = Served::new();
+    let mut watching = Page::with_case(&lab, SMALL);
+    watching.reply("case");
+    let mut is_served = |after: &str| {
+        watching.send(&json!({ "do": "view", "paused": true }));
+        let reply = watching.reply("numbers");
+        assert_eq!(reply["is"], "numbers", "after {after}");
+    };
+    // A page that reads nothing takes pings and requests until its window is full, or all of them.
+    let frame = |first: u8, text: &[u8]| [&[first, 0x80 | text.len() as u8, 0, 0, 0, 0], text].concat();
+    for (what, bytes) in [
+        ("requests", frame(0x81, br#"{"do":"view","paused":true}"#)),
+        ("pings", frame(0x89, &[b'x'; 125])),
+        ("pieces", frame(0x01, b" ")),
+    ] {
+        let mut page = Page::open(&lab);
+        let stream = page.socket.get_mut();
+        stream
+            .set_write_timeout(Some(Duration::from_millis(200)))
+            .unwrap();
+        let rest = if what == "pieces" {
+            frame(0x00, b" ")
+        } else {
+            bytes.clone()
+        };
+        let _ = stream.write_all(&bytes);
+        let many = rest.repeat(100);
+        let _ = (0..100).try_for_each(|_| stream.write_all(&many));
+        is_served(what);
+    }
+    for number in 0..300 {
+        // A place may still be held by a session that ends.
+        if let Ok(mut page) = try_connect(&lab, &lab.token, &[])
+            && number % 3 == 0
+        {
+            page.send(&json!({ "do": "open", "source": { "toml": SMALL } }));
+        }
+    }
+    is_served("sessions");
+}

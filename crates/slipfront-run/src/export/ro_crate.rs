@@ -3,10 +3,13 @@
 //! A run is a `CreateAction`: slipfront is its instrument; the case, the files that the case reads and the keys of the case are its
 //! objects; every other file of the run is a result.
 
+use std::path::Path;
+
 use jiff::Timestamp;
 use serde_json::{Map, Value, json};
 use slipfront_case::disk::json as json_bytes;
 use slipfront_case::number_format::count;
+use slipfront_case::text::shell_path;
 
 use super::citation::{ARTICLE_TITLE, ARTICLE_URL, ARTICLE_YEAR, DEVELOPERS, MODEL};
 use super::parameters::{Parameter, parameters};
@@ -168,7 +171,8 @@ fn add_run(graph: &mut Graph, run: &WholeRun, at: &str, agent: Option<Value>) {
     let mut action = json!({
         "name": format!("Run of the case {}", run.name),
         "description": format!(
-            "`slipfront run {at}{CASE}` repeats it with the same bytes; on {}, {}, {}; {CASE} has the BLAKE3 hash {}",
+            "`slipfront run {}` repeats it with the same bytes; on {}, {}, {}; {CASE} has the BLAKE3 hash {}",
+            shell_path(Path::new(&format!("{at}{CASE}"))),
             manifest.host,
             manifest.platform,
             count(manifest.threads, "thread"),

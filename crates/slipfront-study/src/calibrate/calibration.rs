@@ -7,7 +7,7 @@ use super::grid::Grid;
 use super::intervals::Distribution;
 use super::misfit::{Check, Misfit};
 use super::normals::{Stream, noisy, normals};
-use super::scaling::{Scaling, summaries_of};
+use super::scaling::{Scaling, summaries_of, units_of_friction};
 use super::training::Training;
 
 /// Width of an interval of 90 %, as a share of the range, above which the record does not determine the unknown.
@@ -20,6 +20,8 @@ const WIDTH_OF_A_PAIR: f64 = 0.2;
 /// A training whose summaries are regressed at one level of noise.
 #[derive(Clone, Debug)]
 pub struct Calibration {
+    /// Units of the friction of the records in their summaries.
+    units: Vec<f64>,
     scaling: Scaling,
     /// Shares of the ranges of the training runs: for every unknown the shares of all runs.
     truths: Vec<Vec<f64>>,
@@ -83,6 +85,7 @@ impl Calibration {
     /// deviation is the share `noise` of their mean friction. `grids` are those of the set-up.
     pub fn new(training: &Training, grids: &[Grid], noise: f64) -> Self {
         let shares: Vec<f64> = grids.iter().map(|grid| noise * grid.noise_share()).collect();
+        let units = units_of_friction(training, grids);
         let rows: Vec<Vec<f64>> = training
             .curves
             .par_iter()
@@ -92,7 +95,7 @@ impl Calibration {
                 let noisy = records.map(|(record, (curve, &noise))| {
                     noisy(curve, noise, normals(Stream::Noise, run, record))
                 });
-                summaries_of(&noisy.collect::<Vec<_>>())
+                summaries_of(&noisy.collect::<Vec<_>>(), &units)
             })
             .collect();
         let scaling = Scaling::of(&rows);
@@ -108,9 +111,10 @@ impl Calibration {
                 .map(|truth| Regression::learn(&table, truth))
                 .collect()
         };
-        let check = || Check::learn(training, &shares, &scaling, &table);
+        let check = || Check::learn(training, [&shares, &units], &scaling, &table);
         let (regressions, check) = rayon::join(learn, check);
         Self {
+            units,
             scaling,
             truths,
             regressions,
@@ -120,7 +124,7 @@ impl Calibration {
 
     /// Estimate from records, each made by [`Grid::record`].
     pub fn estimate(&self, records: &[Vec<f64>]) -> Estimate {
-        let summaries = self.scaling.scaled(&summaries_of(records));
+        let summaries = self.scaling.scaled(&summaries_of(records, &self.units));
         let predictions: Vec<_> = self
             .regressions
             .iter()
@@ -272,12 +276,16 @@ mod tests {
     }
 
     fn grid() -> Grid {
+        grid_of(Measure::Coefficient)
+    }
+
+    fn grid_of(of: Measure) -> Grid {
         let x: Vec<f64> = (0..100).map(f64::from).collect();
         let record = MeasuredRecord {
             y: x.clone(),
             x,
             along: Measure::Time,
-            of: Measure::Coefficient,
+            of,
             footer: None,
         };
         Grid::of(&record).unwrap()
@@ -357,6 +365,24 @@ mod tests {
             let noise = normals(Stream::Noise, 1000, number);
             let found = calibration.estimate(&[noisy(&curve(&[0.3, 0.6, 0.5]), 0.01, noise)]);
             assert!(!found.misfit.is_outside(), "{:?}", found.misfit);
+        }
+    }
+
+    /// Forces of a quintillionth of a newton tell as much as those of a newton: powers of two keep every digit.
+    #[test]
+    fn the_size_of_forces_does_not_matter() {
+        let found = |newtons: f64| {
+            let scale = |curve: &mut Vec<f64>| curve.iter_mut().for_each(|y| *y *= newtons);
+            let mut training = training(300);
+            training.curves.iter_mut().flatten().for_each(scale);
+            let mut record = noisy(&curve(&[0.3, 0.6, 0.5]), 0.01, normals(Stream::Noise, 1000, 0));
+            scale(&mut record);
+            Calibration::new(&training, &[grid_of(Measure::Force)], 0.01).estimate(&[record])
+        };
+        let of_newtons = found(1.0);
+        assert_eq!(of_newtons.undetermined, [2]);
+        for power in [-60, 60] {
+            assert_eq!(found(2.0_f64.powi(power)).distributions, of_newtons.distributions);
         }
     }
 

@@ -85,9 +85,14 @@ fn drift_at(share: f64) -> f64 {
 }
 
 impl Check {
-    /// Learns drift from the training runs, each with a drift of its own; `noise` is the noise of every record, as a share
-    /// of friction.
-    pub(super) fn learn(training: &Training, noise: &[f64], scaling: &Scaling, table: &[f64]) -> Self {
+    /// Learns drift from the training runs, each with a drift of its own; of every record there are the noise, as a share
+    /// of friction, and the unit of friction in its summaries.
+    pub(super) fn learn(
+        training: &Training,
+        [noise, units]: [&[f64]; 2],
+        scaling: &Scaling,
+        table: &[f64],
+    ) -> Self {
         let runs = training.curves.len();
         let drifts: Vec<f64> = (0..runs)
             .map(|run| draws(Stream::Drift, run, 0).uniform())
@@ -107,7 +112,7 @@ impl Check {
                     (drifting, level(&record_of(curve)))
                 });
                 let (drifting, levels): (Vec<_>, Vec<_>) = records.unzip();
-                (scaling.scaled(&summaries_of(&drifting)), levels)
+                (scaling.scaled(&summaries_of(&drifting, units)), levels)
             })
             .unzip();
         let drift = Regression::learn(&rows.concat(), &drifts);

@@ -1,10 +1,34 @@
 //! Scaling of summaries of records.
 
-use super::summaries::summaries;
+use slipfront_run::measured::Measure;
 
-/// Summaries of several records in a row.
-pub(super) fn summaries_of(curves: &[Vec<f64>]) -> Vec<f64> {
-    curves.iter().flat_map(|curve| summaries(curve)).collect()
+use super::grid::Grid;
+use super::summaries::{level, summaries};
+use super::training::Training;
+
+/// Units of the friction of several records in their summaries: 1 for a coefficient, and for a force the mean of the training. Forces may be
+/// nanonewtons or meganewtons, and the bounds of summaries are small numbers in the unit of friction.
+pub(super) fn units_of_friction(training: &Training, grids: &[Grid]) -> Vec<f64> {
+    let mean = |record: usize| {
+        let levels = training.curves.iter().map(|curves| level(&curves[record]).abs());
+        levels.sum::<f64>() / training.curves.len() as f64
+    };
+    let units = grids
+        .iter()
+        .enumerate()
+        .map(|(record, grid)| match grid.friction() {
+            Measure::Force => mean(record),
+            _ => 1.0,
+        });
+    // Without any friction there is nothing to divide by.
+    units.map(|unit| if unit > 0.0 { unit } else { 1.0 }).collect()
+}
+
+/// Summaries of several records in a row, of friction in these units.
+pub(super) fn summaries_of(curves: &[Vec<f64>], units: &[f64]) -> Vec<f64> {
+    let records = curves.iter().zip(units);
+    let in_units = records.map(|(curve, unit)| curve.iter().map(|y| y / unit).collect::<Vec<f64>>());
+    in_units.flat_map(|curve| summaries(&curve)).collect()
 }
 
 /// Means and standard deviations by which summaries are scaled.

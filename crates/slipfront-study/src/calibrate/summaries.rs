@@ -13,7 +13,7 @@ mod steady;
 /// Smallest number of values of a curve that has summaries.
 pub(super) const MIN_VALUES: usize = 40;
 
-/// Lower bound of ratios before their logarithm is taken.
+/// Lower bound of ratios, and of friction in its unit, before their logarithm is taken.
 const LEAST: f64 = 1e-4;
 
 /// A curve, with quantities that several summaries need.

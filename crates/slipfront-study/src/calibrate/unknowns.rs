@@ -19,6 +19,11 @@ pub struct Unknown {
 pub enum UnknownError {
     #[error("the range of `{key}` goes from {from} to {to}: give two finite numbers, the smaller one first")]
     Order { key: String, from: f64, to: f64 },
+    #[error(
+        "the range of `{key}` goes from {from:e} to {to:e}: the difference of its ends, on a logarithmic scale their ratio, is \
+         above the largest number, 1.8e308; narrow it"
+    )]
+    Width { key: String, from: f64, to: f64 },
     #[error("the range of `{key}` begins at {from}: a range on a logarithmic scale begins above 0")]
     Logarithm { key: String, from: f64 },
     #[error("`friction.seed` numbers the surfaces that training draws: it is no unknown")]
@@ -29,7 +34,7 @@ impl Unknown {
     /// An unknown with values of `key` between `from` and `to`, equally likely, or equally likely in their logarithm.
     ///
     /// # Errors
-    /// When the range is empty or not finite, begins at or below 0 on a logarithmic scale, or is one of seeds.
+    /// When the range is empty, not finite or too wide for its width to be a number, begins at or below 0 on a logarithmic scale, or is one of seeds.
     pub fn new(key: &str, from: f64, to: f64, is_logarithmic: bool) -> Result<Self, UnknownError> {
         let key = key.to_owned();
         if key == "friction.seed" {
@@ -40,6 +45,10 @@ impl Unknown {
         }
         if is_logarithmic && from <= 0.0 {
             return Err(UnknownError::Logarithm { key, from });
+        }
+        let width = if is_logarithmic { to / from } else { to - from };
+        if !width.is_finite() {
+            return Err(UnknownError::Width { key, from, to });
         }
         Ok(Self {
             key,
@@ -130,6 +139,8 @@ mod tests {
         assert!(refused(0.9, 0.3, false).contains("from 0.9 to 0.3"));
         assert!(refused(f64::NAN, 0.3, false).contains("NaN"));
         assert!(refused(0.0, 0.3, true).contains("begins at 0"));
+        assert!(refused(-1e308, 1e308, false).contains("above the largest number"));
+        assert!(refused(1e-300, 1e300, true).contains("from 1e-300 to 1e300"));
         assert!(Unknown::new("friction.seed", 1.0, 2.0, false).is_err());
     }
 

@@ -11,7 +11,7 @@ use clap::Args;
 use slipfront::Execution;
 use slipfront_case::case::Case;
 use slipfront_case::same::Given;
-use slipfront_case::text::{display_path, shell_quoted};
+use slipfront_case::text::shell_path;
 use slipfront_run::agree::RankFailure;
 use slipfront_run::checkpoint::Checkpoints;
 use slipfront_run::clock;
@@ -178,7 +178,7 @@ fn with_free_folder(error: FolderError, out: &Path) -> Failure {
     });
     match numbered.find(|free| is_taken && free.symlink_metadata().is_err()) {
         Some(free) => {
-            let free = shell_quoted(&display_path(&free));
+            let free = shell_path(&free);
             Failure::input(anyhow::anyhow!("{error}; `--out {free}` is free"))
         }
         None => Failure::input(error),

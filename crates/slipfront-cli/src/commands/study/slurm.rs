@@ -42,9 +42,9 @@ impl Slurm {
         let command = std::env::current_exe().map_err(Failure::running)?;
         print(&script(&Batch {
             name: study.name.clone(),
-            command: command.display().to_string(),
-            study: absolute(self.study)?.display().to_string(),
-            out: absolute(out)?.display().to_string(),
+            command,
+            study: absolute(self.study)?,
+            out: absolute(out)?,
             // More tasks than points would have nothing to do.
             tasks: usize::from(self.tasks).min(points),
         }))
