@@ -265,9 +265,9 @@ fn long_maps() -> Vec<Vec<u8>> {
             .map(|k| piece.replace('#', &k.to_string()))
             .collect::<String>()
     };
-    let namespaces = names(" xmlns:n#='u:#'", 5000);
+    let namespaces = names(" xmlns:n#='u:#'", 3000);
     let descriptions = [
-        format!("<r{namespaces}>{}</r>", "<a xmlns:a='c'/>".repeat(10_000)),
+        format!("<r{namespaces}>{}</r>", "<a xmlns:a='c'/>".repeat(4000)),
         format!("<r{}/>", names(" a#='1'", 20_000)),
         names("<r a='#'>", 20_000),
         format!("<r>{}</r>", "<a/>".repeat(200_000)),
