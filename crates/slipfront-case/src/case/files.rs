@@ -63,7 +63,8 @@ impl Seek for Opened {
     }
 }
 
-/// A file that is read until somebody ends it: every read first asks whether to go on, whatever the format of the file.
+/// A file that is read until somebody ends it: every read first asks whether to go on, whatever the format of the file. It ends where it did
+/// when it was opened, since one that grows meanwhile may have no end.
 pub(super) struct Watched<'a, 'w> {
     file: Opened,
     /// Length of the file, and the place of the next read.
@@ -94,7 +95,9 @@ impl Read for Watched<'_, '_> {
             self.is_stopped = true;
             return Err(io::Error::other("stopped"));
         }
-        let count = self.file.read(bytes)?;
+        let left = self.length.saturating_sub(self.place);
+        let most = bytes.len().min(left.try_into().unwrap_or(usize::MAX));
+        let count = self.file.read(&mut bytes[..most])?;
         self.place += count as u64;
         Ok(count)
     }
