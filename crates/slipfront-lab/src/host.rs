@@ -49,6 +49,10 @@ impl Host for PageHost {
         self.outbox.is_full()
     }
 
+    fn is_gone(&self) -> bool {
+        self.outbox.is_closed()
+    }
+
     fn threads(&self) -> usize {
         self.setting.threads
     }

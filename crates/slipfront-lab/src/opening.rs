@@ -36,12 +36,12 @@ impl Start {
         let refused = |error: CaseError| OpeningError(error.to_string());
         if path.is_dir() {
             let opened = replay::read(path, allow_files).map_err(OpeningError)?;
-            opened.document.case_to_show().map_err(refused)?;
+            opened.document.case_to_show(&mut |_| true).map_err(refused)?;
             return Ok(Self(StartSource::Folder(path.to_owned())));
         }
         let name = path.file_stem().unwrap_or_default().to_string_lossy();
         let document = files::document(path, &name, allow_files).map_err(refused)?;
-        document.case_to_show().map_err(refused)?;
+        document.case_to_show(&mut |_| true).map_err(refused)?;
         Ok(Self(StartSource::Case(Box::new(document))))
     }
 }

@@ -57,6 +57,11 @@ impl Outbox {
         drop(self.taken.wait_while(self.waiting(), is_full));
     }
 
+    /// Whether the page is gone.
+    pub(crate) fn is_closed(&self) -> bool {
+        self.waiting().closed
+    }
+
     /// Lets nobody wait for a page that is gone.
     pub(crate) fn close(&self) {
         self.waiting().closed = true;

@@ -7,6 +7,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use slipfront::Execution;
+use slipfront_case::case_file::CaseError;
 use slipfront_case::disk::{folder_of, make_folders, sync_folder};
 use slipfront_case::text::{display_path, truncated};
 use slipfront_run::clock;
@@ -70,7 +71,10 @@ pub(crate) fn save(
         error.to_string()
     }
     let started = clock::now();
-    let case = Arc::new(document.case().map_err(sentence)?);
+    let case = match document.case(&mut |_| !stop.load(Ordering::Relaxed)) {
+        Err(CaseError::Stopped) => return Ok(false),
+        case => Arc::new(case.map_err(sentence)?),
+    };
     let budget = pictures::run_budget(&case);
     budget.check_memory(&case.file).map_err(sentence)?;
     budget.check_disk(&case.file, out, 0, false).map_err(sentence)?;

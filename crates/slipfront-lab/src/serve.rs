@@ -35,6 +35,9 @@ fn converse(mut session: Session, outbox: &Outbox, messages: &Receiver<Message>)
         match first {
             Ok(first) => {
                 for message in once(first).chain(messages.try_iter()) {
+                    if outbox.is_closed() {
+                        return;
+                    }
                     // A page that reads no replies leaves none.
                     outbox.wait_for_room();
                     session.handle(message);
@@ -79,6 +82,10 @@ mod tests {
 
         fn is_full(&self) -> bool {
             self.0.is_full()
+        }
+
+        fn is_gone(&self) -> bool {
+            self.0.is_gone()
         }
 
         fn threads(&self) -> usize {

@@ -6,7 +6,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
-use slipfront_case::case::{Case, Files, FilesInMemory, Ranks};
+use slipfront_case::case::{Case, Files, FilesInMemory, Ranks, Watch};
 use slipfront_case::case_file::{CaseError, CaseFile, partners_of, parts_of};
 use slipfront_case::ordered::map_of;
 use slipfront_case::text::truncated;
@@ -277,32 +277,33 @@ impl Document {
         others.and_image(index, &png, slipfront_case::case_file::DEFAULT_THRESHOLD)
     }
 
-    /// The case that can be run, as `slipfront run` makes it.
+    /// The case that can be run, as `slipfront run` makes it, unless `watch` ends the work.
     ///
     /// # Errors
-    /// When the keys are no case that can be run, or it has more than [`MAX_BLOCKS`] blocks.
-    pub fn case(&self) -> Result<Case, CaseError> {
-        self.build(&[])
+    /// When the keys are no case that can be run, or it has more than [`MAX_BLOCKS`] blocks, or the work was ended.
+    pub fn case(&self, watch: &mut Watch) -> Result<Case, CaseError> {
+        self.build(&[], watch)
     }
 
-    /// The case that is shown: it writes nothing, and keeps no more snapshots than the instants A-F.
+    /// The case that is shown, unless `watch` ends the work: it writes nothing, and keeps no more snapshots than the instants A-F.
     ///
     /// # Errors
-    /// When the keys are no case that can be run, or it has more than [`MAX_BLOCKS`] blocks.
-    pub fn case_to_show(&self) -> Result<Case, CaseError> {
-        self.build(&[
+    /// When the keys are no case that can be run, or it has more than [`MAX_BLOCKS`] blocks, or the work was ended.
+    pub fn case_to_show(&self, watch: &mut Watch) -> Result<Case, CaseError> {
+        let overrides = [
             "output.fields=[\"sliding\"]",
             "output.snapshots=\"auto\"",
             "output.series=\"auto\"",
             "output.movie=false",
-        ])
+        ];
+        self.build(&overrides, watch)
     }
 
     /// The case with other values of keys, each as `key=value`.
     ///
     /// # Errors
-    /// When the keys are no case that can be run, or it has more than [`MAX_BLOCKS`] blocks.
-    fn build(&self, overrides: &[&str]) -> Result<Case, CaseError> {
+    /// When the keys are no case that can be run, or it has more than [`MAX_BLOCKS`] blocks, or the work was ended.
+    fn build(&self, overrides: &[&str], watch: &mut Watch) -> Result<Case, CaseError> {
         let overrides: Vec<String> = overrides.iter().map(|&text| text.to_owned()).collect();
         let mut file = CaseFile::parse(&self.toml(), &self.name, &overrides)?;
         self.expect_own_files(&mut file)?;
@@ -321,7 +322,7 @@ impl Document {
             folder: Path::new(""),
             in_memory: Some(&in_memory),
         };
-        Case::to_run_with(file, &self.name, files, &mut |_| true, Ranks::ALONE)
+        Case::to_run_with(file, &self.name, files, watch, Ranks::ALONE)
     }
 
     /// Refuses a file that does not belong to the case, wherever that may be: keys may come from anybody's link.
@@ -458,9 +459,13 @@ mod tests {
         );
         assert_eq!(slow.toml().trim(), "[drive]\nspeed = \"1 um/s\"");
         let fast = set(&slow, "drive.v_star", Some(0.1.into()));
-        assert_eq!(fast.case().unwrap().groups.v_star, 0.1);
+        assert_eq!(fast.case(&mut |_| true).unwrap().groups.v_star, 0.1);
         assert_eq!(
-            set(&fast, "drive.v_star", None).case().unwrap().groups.v_star,
+            set(&fast, "drive.v_star", None)
+                .case(&mut |_| true)
+                .unwrap()
+                .groups
+                .v_star,
             0.03
         );
         let error = fast
@@ -478,7 +483,7 @@ mod tests {
                 .with_mask(&mask, nx)
                 .unwrap();
             assert_eq!(
-                painted.case().unwrap().model.surface.textured,
+                painted.case(&mut |_| true).unwrap().model.surface.textured,
                 mask,
                 "{nx} x {ny}"
             );
@@ -529,7 +534,7 @@ mod tests {
             document.files().keys().collect::<Vec<_>>(),
             ["2-mu.csv", "mu.csv"]
         );
-        let surface = &document.case().unwrap().model.surface;
+        let surface = &document.case(&mut |_| true).unwrap().model.surface;
         assert_eq!((surface.mu_static[0], surface.mu_kinetic[0]), (1.0, 2.0));
     }
 }

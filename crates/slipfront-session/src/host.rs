@@ -19,6 +19,9 @@ pub trait Host {
     /// Whether the page is so far behind that it is given no more than answers.
     fn is_full(&self) -> bool;
 
+    /// Whether the page is gone, so that whatever is done for it is to end.
+    fn is_gone(&self) -> bool;
+
     /// Threads of a run and of work beside the session.
     fn threads(&self) -> usize;
 

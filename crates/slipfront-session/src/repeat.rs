@@ -39,7 +39,8 @@ fn static_friction(document: &Document, seed: u64, stop: &AtomicBool) -> Result<
         ("time.stop", Value::from("after_onset")),
     ];
     let seeded = document.with(keys.map(|(key, value)| (key.to_owned(), Some(value))))?;
-    let case: Arc<Case> = Arc::new(seeded.case_to_show().map_err(|error| error.to_string())?);
+    let case = seeded.case_to_show(&mut |_| !stop.load(Ordering::Relaxed));
+    let case: Arc<Case> = Arc::new(case.map_err(|error| error.to_string())?);
     let record = run_unless(&case, &|| stop.load(Ordering::Relaxed));
     let record = record.transpose().map_err(|error| error.to_string())?;
     let found = |summary: &Summary| summary.transition.then_some(summary.static_friction_star);

@@ -1,7 +1,7 @@
 //! A search for a texture with less static friction than the painted one.
 
 use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use slipfront_case::case::Case;
@@ -106,8 +106,9 @@ fn refuse_large(design: &Design, threads: usize) -> Result<(), String> {
 }
 
 /// The design that a search for a document is for, and the painted blocks, if there are any.
-fn design_for(document: &Document) -> Result<(Design, Option<Vec<bool>>), String> {
-    let case = document.case_to_show().map_err(|error| error.to_string())?;
+fn design_for(document: &Document, stop: &AtomicBool) -> Result<(Design, Option<Vec<bool>>), String> {
+    let case = document.case_to_show(&mut |_| !stop.load(Ordering::Relaxed));
+    let case = case.map_err(|error| error.to_string())?;
     design(&case).map_err(|error| error.to_string())
 }
 
@@ -117,7 +118,7 @@ fn design_for(document: &Document) -> Result<(Design, Option<Vec<bool>>), String
 /// A sentence, if there is none, or the search was stopped.
 pub(crate) fn search(document: &Document, worker: &dyn Worker) -> Result<Mask, String> {
     let began = worker.now();
-    let (design, _) = design_for(document)?;
+    let (design, _) = design_for(document, worker.stop())?;
     let bounds = Bounds {
         runs: MAX_RUNS,
         share_of_time: &|| (worker.now() - began).as_secs_f64() / SEARCH_TIME.as_secs_f64(),
@@ -153,7 +154,7 @@ pub(crate) const NOTHING_TRIED: &str =
 /// # Errors
 /// A sentence, if runs cannot be made, or the comparison was stopped.
 pub(crate) fn compare(document: &Document, best: &Mask, stop: &AtomicBool) -> Result<Comparison, String> {
-    let (design, painted) = design_for(document)?;
+    let (design, painted) = design_for(document, stop)?;
     let both: Vec<Arc<Vec<bool>>> = [Arc::clone(&best.0)]
         .into_iter()
         .chain(painted.map(Arc::new))

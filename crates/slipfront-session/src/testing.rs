@@ -25,6 +25,7 @@ pub(crate) struct TestHost {
     replies: RefCell<Vec<String>>,
     pub(crate) pictures: RefCell<Vec<Vec<u8>>>,
     pub(crate) is_full: Cell<bool>,
+    pub(crate) is_gone: Cell<bool>,
     /// Names of the runs that were to be saved, and of those that were to be stopped.
     pub(crate) saves: RefCell<Vec<String>>,
     pub(crate) stops: RefCell<Vec<String>>,
@@ -47,6 +48,10 @@ impl Host for TestHost {
 
     fn is_full(&self) -> bool {
         self.is_full.get()
+    }
+
+    fn is_gone(&self) -> bool {
+        self.is_gone.get()
     }
 
     fn threads(&self) -> usize {

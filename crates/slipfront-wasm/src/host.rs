@@ -81,6 +81,11 @@ impl Host for WorkerHost {
         self.unread.get() >= MAX_UNREAD
     }
 
+    /// Never: a Worker ends with its page.
+    fn is_gone(&self) -> bool {
+        false
+    }
+
     fn threads(&self) -> usize {
         1
     }

@@ -34,6 +34,12 @@ impl Target {
         files_of(&own_folder("findings", self.name), "")
     }
 
+    /// Long inputs that are made in code.
+    pub fn long_inputs(&self) -> Vec<Input> {
+        let made = (self.long)().into_iter().enumerate();
+        made.map(|(k, bytes)| (format!("long {k}"), bytes)).collect()
+    }
+
     /// The text of the target's dictionary in the format of libFuzzer, for case and study files and requests with the keys
     /// of a case; empty without one.
     pub fn words(&self) -> String {

@@ -4,7 +4,7 @@
 #![allow(clippy::unwrap_used)]
 
 use slipfront::testing::alone;
-use slipfront_fuzz::{Mutator, TARGETS, Target};
+use slipfront_fuzz::{LONG_BYTES, Mutator, TARGETS, Target};
 
 /// Runs a target on all of its inputs.
 fn replay(name: &str) {
@@ -20,6 +20,9 @@ fn replay(name: &str) {
         run(target, &mutator.mutated(&seeds), &format!("mutation {number}"));
     }
     // Time or memory that grows with the square of the length is noticed only in long inputs.
+    for (name, bytes) in target.long_inputs() {
+        run(target, &bytes, &name);
+    }
     for number in 0..target.repetitions {
         run(
             target,
@@ -29,16 +32,13 @@ fn replay(name: &str) {
     }
 }
 
-/// Length of the long inputs, in bytes.
-const LONG_BYTES: usize = 300_000;
-
 fn run(target: &Target, bytes: &[u8], name: &str) {
     let failed = std::panic::catch_unwind(|| target.run(bytes)).is_err();
     assert!(
         !failed,
         "{} fails on {name}: {:?}",
         target.name,
-        String::from_utf8_lossy(bytes)
+        String::from_utf8_lossy(&bytes[..bytes.len().min(10_000)])
     );
 }
 
@@ -46,7 +46,7 @@ macro_rules! replay {
     ($($name:ident)*) => {
         $(#[test]
         fn $name() {
-            // Memory is measured for the whole process.
+            // Memory and time are measured for the whole process.
             alone(stringify!($name), || replay(stringify!($name)));
         })*
 

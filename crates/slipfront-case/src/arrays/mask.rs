@@ -16,8 +16,7 @@ const DEFLATE_MAX_RATIO: u64 = 1040;
 /// depth.
 ///
 /// The image is stretched over the slider, and a block is textured if the pixel at its centre is dark. Returns the values in
-/// row-major order, the smallest y (the bottom of the image) first: no other pixel is kept, though all are read. `watch`
-/// gets the share of the rows of the image that have been read, and its error ends the work.
+/// row-major order, the smallest y (the bottom of the image) first: no other pixel is kept, though all are read.
 ///
 /// A pixel is dark when its luminance, in 0 to 1, lies below `threshold`. The luminance is
 ///
@@ -35,10 +34,9 @@ pub fn mask_png(
     source: &mut (impl BufRead + Seek),
     threshold: f64,
     slab: &Slab,
-    watch: &mut dyn FnMut(f64) -> Result<(), ArrayError>,
 ) -> Result<Vec<bool>, ArrayError> {
     let reader = png_reader(path, source, Transformations::EXPAND)?;
-    read_rows(path, reader, threshold, slab, watch)
+    read_rows(path, reader, threshold, slab)
 }
 
 /// Opens a PNG image of any colour type and depth, as far as its header is true.
@@ -89,14 +87,11 @@ fn read_rows(
     mut reader: Reader<impl BufRead + Seek>,
     threshold: f64,
     slab: &Slab,
-    watch: &mut dyn FnMut(f64) -> Result<(), ArrayError>,
 ) -> Result<Vec<bool>, ArrayError> {
     let (width, height) = (reader.info().width as usize, reader.info().height as usize);
     let (color, depth) = reader.output_color_type();
     let pixel_bytes = color.samples() * if depth == BitDepth::Sixteen { 2 } else { 1 };
-    let lines = || lines(width, height, reader.info().interlaced);
-    let total = lines().count() as f64;
-    let mut lines = lines().enumerate();
+    let mut lines = lines(width, height, reader.info().interlaced);
     // The pixel at the centre of each block, along a row from the left and along a column from the top.
     let pixel = |block: usize, blocks: usize, pixels: usize| (2 * block + 1) * pixels / (2 * blocks);
     let Slab { nx, ny, ref rows } = *slab;
@@ -109,8 +104,7 @@ fn read_rows(
         .collect();
     let mut dark = vec![false; slab.n_blocks()];
     while let Some(stored) = reader.next_row().map_err(|source| decoding_error(path, source))? {
-        let Some((done, line)) = lines.next() else { break };
-        watch(done as f64 / total)?;
+        let Some(line) = lines.next() else { break };
         let first = from_top.partition_point(|&row| row < line.row);
         for k in (first..from_top.len()).take_while(|&k| from_top[k] == line.row) {
             let blocks = &mut dark[(from_top.len() - 1 - k) * nx..][..nx];

@@ -49,9 +49,10 @@ pub(super) fn values(
             }
             for (column, field) in lines.fields().enumerate() {
                 let at = [row, column];
-                let value = number(path, field, at)?;
+                let value = number(path, field, at, lines.number())?;
                 if is_wrong(value) {
-                    return Err(value_error(path, &value.to_string(), at, wanted));
+                    let value = format!("{value} in line {},", lines.number());
+                    return Err(value_error(path, &value, at, wanted));
                 }
                 values.push(value);
             }
@@ -77,7 +78,7 @@ pub(super) fn rows(
     while lines.next()? {
         values.clear();
         for (column, field) in lines.fields().enumerate() {
-            values.push(number(path, field, [row, column])?);
+            values.push(number(path, field, [row, column], lines.number())?);
         }
         let wanted = *columns.get_or_insert(values.len());
         if values.len() != wanted {
@@ -159,10 +160,10 @@ impl<'a, R: BufRead + Seek> TableLines<'a, &'a mut R> {
     }
 }
 
-/// The number of a field in the row and column `at`.
-fn number(path: &Path, field: &str, at: [usize; 2]) -> Result<f64, ArrayError> {
+/// The number of a field in the row and column `at`, which stand in this line of the file.
+fn number(path: &Path, field: &str, at: [usize; 2], line: u64) -> Result<f64, ArrayError> {
     field.parse().map_err(|_| {
-        let field = format!("`{}`", excerpt(field));
+        let field = format!("`{}` in line {line},", excerpt(field));
         value_error(path, &field, at, "a number with a decimal point")
     })
 }

@@ -7,7 +7,7 @@ use slipfront::surface::{
 use slipfront::{Lattice, Scales};
 
 use super::groups::Groups;
-use super::inputs::Inputs;
+use super::inputs::{Inputs, Watch};
 use crate::case_file::{CaseError, CaseFile};
 use crate::number_format::four_digits;
 
@@ -52,11 +52,13 @@ pub(super) fn coefficients(
     groups: &Groups,
     lattice: &Lattice,
     inputs: &Inputs,
+    watch: &mut Watch,
 ) -> Result<Coefficients, CaseError> {
     let friction = &file.friction;
     let mean = friction.mu_static;
-    let mu_static = inputs.read_field(file, "friction.mu_static_field", &friction.mu_static_field)?;
-    let mu_kinetic = inputs.read_field(file, "friction.mu_kinetic_field", &friction.mu_kinetic_field)?;
+    let mut read = |key: &str, name| inputs.read_field(file, key, name, watch);
+    let mu_static = read("friction.mu_static_field", &friction.mu_static_field)?;
+    let mu_kinetic = read("friction.mu_kinetic_field", &friction.mu_kinetic_field)?;
     // A given field takes the place of its draws; the other stream is not shifted by it.
     let spread = |mean: f64, sigma_star: f64, given: bool| Distribution {
         mean,
@@ -84,13 +86,14 @@ pub(super) fn contact(
     scales: &Scales,
     lattice: &Lattice,
     inputs: &Inputs,
+    watch: &mut Watch,
 ) -> Result<Contact, CaseError> {
     let load = if file.load.redistribute {
         Load::Redistributed
     } else {
         Load::Kept
     };
-    let given = inputs.read_field(file, "load.pressure_field", &file.load.pressure_field)?;
+    let given = inputs.read_field(file, "load.pressure_field", &file.load.pressure_field, watch)?;
     let pressure = match &file.load.profile {
         Some(profile) => Some(pressure_along(
             lattice,

@@ -6,6 +6,8 @@ use std::io::{self, Cursor, Read, Seek, SeekFrom};
 use std::path::Path;
 use std::sync::Arc;
 
+use super::inputs::Watch;
+
 /// Contents of files by the names that a case gives them.
 pub type FilesInMemory = HashMap<String, Arc<[u8]>>;
 
@@ -58,5 +60,52 @@ impl Seek for Opened {
             Self::OnDisk(file) => file.seek(place),
             Self::InMemory(contents) => contents.seek(place),
         }
+    }
+}
+
+/// A file that is read until somebody ends it: every read first asks whether to go on, whatever the format of the file. It ends where it did
+/// when it was opened, since one that grows meanwhile may have no end.
+pub(super) struct Watched<'a, 'w> {
+    file: Opened,
+    /// Length of the file, and the place of the next read.
+    length: u64,
+    place: u64,
+    watch: &'a mut Watch<'w>,
+    /// Whether a read was refused, since the work is to end.
+    pub(super) is_stopped: bool,
+}
+
+impl<'a, 'w> Watched<'a, 'w> {
+    /// Begins to read a file of this length.
+    pub(super) fn new(file: Opened, length: u64, watch: &'a mut Watch<'w>) -> Self {
+        Self {
+            file,
+            length,
+            place: 0,
+            watch,
+            is_stopped: false,
+        }
+    }
+}
+
+impl Read for Watched<'_, '_> {
+    fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
+        let share = self.place as f64 / self.length.max(1) as f64;
+        if !(self.watch)(share.min(1.0)) {
+            self.is_stopped = true;
+            return Err(io::Error::other("stopped"));
+        }
+        let left = self.length.saturating_sub(self.place);
+        let most = bytes.len().min(left.try_into().unwrap_or(usize::MAX));
+        let count = self.file.read(&mut bytes[..most])?;
+        self.place += count as u64;
+        Ok(count)
+    }
+}
+
+impl Seek for Watched<'_, '_> {
+    fn seek(&mut self, place: SeekFrom) -> io::Result<u64> {
+        self.place = self.file.seek(place)?;
+        Ok(self.place)
     }
 }

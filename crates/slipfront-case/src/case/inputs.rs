@@ -8,7 +8,7 @@ use std::sync::Arc;
 use blake3::Hasher;
 use slipfront::{Communicator, Lattice};
 
-use super::files::{Files, Opened};
+use super::files::{Files, Opened, Watched};
 use super::ranks::Ranks;
 use crate::arrays::{self, ArrayError, Slab};
 use crate::case_file::{CaseError, CaseFile, FileUse};
@@ -17,7 +17,8 @@ use crate::machine::machine_number;
 use crate::same::{Given, expect_same, of_all, words_of};
 use crate::text::{display_path, single_line};
 
-/// Function that gets the share that is done of laying the texture over the blocks; `false` ends the work.
+/// Function that gets the share that is done of a part of making a case: of a file that is read, or of laying the texture over the
+/// blocks; `false` ends the work.
 pub type Watch<'a> = dyn FnMut(f64) -> bool + 'a;
 
 /// A file that a case reads. The run folder holds a copy of it.
@@ -134,11 +135,12 @@ impl NamedFiles {
     /// One of the ranks that find the same files, such as those of one machine, hashes them.
     ///
     /// # Errors
-    /// When a file is not the same for all ranks, or cannot be read.
+    /// When a file is not the same for all ranks, or cannot be read, or `watch` ends the work.
     pub(super) fn read(
         &self,
         file: &mut CaseFile,
         lattice: &Lattice,
+        watch: &mut Watch,
         ranks: &Ranks,
     ) -> Result<Vec<Input>, CaseError> {
         if self.0.is_empty() {
@@ -150,7 +152,7 @@ impl NamedFiles {
         let seen = of_all(communicator, words_of(&blake3::hash(seen.as_bytes()))[0]);
         let reader = seen.iter().position(|other| *other == seen[communicator.rank()]);
         let own = if reader == Some(communicator.rank()) {
-            self.hash(file, lattice).map(Some)
+            self.hash(file, lattice, watch).map(Some)
         } else {
             Ok(None)
         };
@@ -163,7 +165,7 @@ impl NamedFiles {
     }
 
     /// Length and hash of each file.
-    fn hash(&self, file: &CaseFile, lattice: &Lattice) -> Result<Vec<Digest>, CaseError> {
+    fn hash(&self, file: &CaseFile, lattice: &Lattice, watch: &mut Watch) -> Result<Vec<Digest>, CaseError> {
         let mut known: HashMap<&Path, Digest> = HashMap::new();
         let digests = self.0.iter().map(|found| {
             let original = &found.original;
@@ -179,7 +181,7 @@ impl NamedFiles {
             );
             let digest = opened.and_then(|opened| match contents {
                 Some((contents, hash)) => Ok((contents.len() as u64, *hash)),
-                None => digest(original, opened),
+                None => read_watched(opened, watch, |source| digest(original, source)),
             });
             let digest = digest.map_err(|error| placed(file, &found.key, error))?;
             known.insert(original, digest);
@@ -289,13 +291,13 @@ fn hash_of_words(words: [i64; 4]) -> blake3::Hash {
 }
 
 /// Opens a file that is in memory or on the disk, and limits its length to that of its use for a lattice of `nx` x `ny`
-/// blocks.
+/// blocks. Returns the file and its length.
 fn open(
     original: &Path,
     contents: Option<&Arc<[u8]>>,
     holds: FileUse,
     [nx, ny]: [usize; 2],
-) -> Result<Opened, ArrayError> {
+) -> Result<(Opened, u64), ArrayError> {
     let (opened, length) = match contents {
         Some(contents) => (Opened::in_memory(contents), contents.len() as u64),
         None => {
@@ -307,12 +309,27 @@ fn open(
         FileUse::Blocks => arrays::limit_length(original, length, nx, ny)?,
         FileUse::HeightMap => arrays::limit_length_of_height_map(original, length)?,
     }
-    Ok(opened)
+    Ok((opened, length))
 }
 
-fn digest(path: &Path, file: Opened) -> Result<Digest, ArrayError> {
+/// Reads a file of this length with `read`, as long as `watch` lets it.
+fn read_watched<T>(
+    (file, length): (Opened, u64),
+    watch: &mut Watch,
+    read: impl FnOnce(&mut BufReader<Watched>) -> Result<T, ArrayError>,
+) -> Result<T, ArrayError> {
+    let mut source = BufReader::new(Watched::new(file, length, watch));
+    let read = read(&mut source);
+    // Formats make different errors of a read that was refused.
+    if source.get_ref().is_stopped {
+        return Err(ArrayError::Stopped);
+    }
+    read
+}
+
+fn digest(path: &Path, source: impl Read) -> Result<Digest, ArrayError> {
     let mut hasher = Hasher::new();
-    hasher.update_reader(file).map_err(|source| ArrayError::Read {
+    hasher.update_reader(source).map_err(|source| ArrayError::Read {
         path: path.to_owned(),
         source,
     })?;
@@ -332,14 +349,15 @@ impl Inputs {
         file: &CaseFile,
         (key, name): (&str, &str),
         holds: FileUse,
-        read: impl FnOnce(&Path, &mut BufReader<Opened>) -> Result<T, ArrayError>,
+        watch: &mut Watch,
+        read: impl FnOnce(&Path, &mut BufReader<Watched>) -> Result<T, ArrayError>,
     ) -> Result<T, CaseError> {
         let Slab { nx, ny, .. } = self.slab;
         let input = self.files.iter().find(|input| input.name == name);
         let original = input.map_or(Path::new(name), |input| &input.original);
         let contents = input.and_then(|input| input.contents.as_ref());
         let opened = open(original, contents, holds, [nx, ny]);
-        let read = opened.and_then(|opened| read(original, &mut BufReader::new(opened)));
+        let read = opened.and_then(|opened| read_watched(opened, watch, |source| read(original, source)));
         read.map_err(|error| placed(file, key, error))
     }
 
@@ -354,13 +372,11 @@ impl Inputs {
         slab: &Slab,
         watch: &mut Watch,
     ) -> Result<Vec<bool>, CaseError> {
-        self.read(file, (key, name), FileUse::Blocks, |path, source| {
+        self.read(file, (key, name), FileUse::Blocks, watch, |path, source| {
             if is_array(path) {
                 arrays::mask_npy(path, source, slab)
             } else {
-                arrays::mask_png(path, source, threshold, slab, &mut |share| {
-                    watch(share).then_some(()).ok_or(ArrayError::Stopped)
-                })
+                arrays::mask_png(path, source, threshold, slab)
             }
         })
     }
@@ -371,9 +387,10 @@ impl Inputs {
         file: &CaseFile,
         key: &str,
         name: &str,
-        read: impl FnOnce(&Path, &mut BufReader<Opened>) -> Result<T, ArrayError>,
+        watch: &mut Watch,
+        read: impl FnOnce(&Path, &mut BufReader<Watched>) -> Result<T, ArrayError>,
     ) -> Result<T, CaseError> {
-        self.read(file, (key, name), FileUse::HeightMap, read)
+        self.read(file, (key, name), FileUse::HeightMap, watch, read)
     }
 
     /// Reads a number of every block from the file of this name, if the case names one.
@@ -382,9 +399,10 @@ impl Inputs {
         file: &CaseFile,
         key: &str,
         name: &Option<String>,
+        watch: &mut Watch,
     ) -> Result<Option<Vec<f64>>, CaseError> {
         let read = |name: &String| {
-            self.read(file, (key, name), FileUse::Blocks, |path, source| {
+            self.read(file, (key, name), FileUse::Blocks, watch, |path, source| {
                 arrays::field(path, source, &self.slab)
             })
         };

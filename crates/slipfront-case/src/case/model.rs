@@ -45,8 +45,8 @@ pub(super) fn make(
     let mut slider = blocks.slider(file, ranks.communicator)?;
     let n_blocks = slider.n_blocks(&lattice);
     let made = textures::mesh(file, scales, &lattice, n_blocks, inputs, watch).and_then(|meshed| {
-        let coefficients = coefficients(file, groups, &lattice, inputs)?;
-        let contact = contact(file, scales, &lattice, inputs)?;
+        let coefficients = coefficients(file, groups, &lattice, inputs, watch)?;
+        let contact = contact(file, scales, &lattice, inputs, watch)?;
         Ok((meshed, coefficients, contact, attached(file, inputs, watch)?))
     });
     let ((meshed, in_blocks), coefficients, contact, attached) = ranks.agree_on_rows(made)?;

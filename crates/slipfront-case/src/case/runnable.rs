@@ -79,8 +79,8 @@ impl Expected {
 
 impl Case {
     /// Loads a case file and the files it names, which stand relative to it. A case whose model needs more memory to be
-    /// stepped than there is, is refused before any array is allocated. `watch` gets the progress of laying the texture over
-    /// the blocks. All `ranks` make the case at once, as [`to_run`](Self::to_run) does.
+    /// stepped than there is, is refused before any array is allocated. `watch` gets the progress of reading files and of laying
+    /// the texture over the blocks, and can end both. All `ranks` make the case at once, as [`to_run`](Self::to_run) does.
     pub fn load(
         path: &Path,
         overrides: &[String],
@@ -187,7 +187,7 @@ impl Case {
             .and_then(|derived| Ok((derived, NamedFiles::find(&mut file, files)?)));
         let (mut derived, named) = ranks.agree(derived)?;
         let inputs = Inputs {
-            files: named.read(&mut file, &lattice, &ranks)?,
+            files: named.read(&mut file, &lattice, watch, &ranks)?,
             slab: Slab {
                 nx,
                 ny,

@@ -44,12 +44,12 @@ impl GivenBlocks {
         let slider = &file.slider;
         let rows = || inputs.slab.rows.clone();
         let exists = outline(file, lattice, inputs, &inputs.slab, watch)?;
-        let property = |field: &str, name: &Option<String>, grade: &Option<Grade>| {
+        let mut property = |field: &str, name: &Option<String>, grade: &Option<Grade>| {
             if let Some(Grade { along, from, to }) = *grade {
                 return Ok(Some(Slider::grade(lattice, rows(), along as usize, [from, to])));
             }
             let key = format!("slider.{field}");
-            let values = inputs.read_field(file, &key, name)?;
+            let values = inputs.read_field(file, &key, name, watch)?;
             let bounds = MIN_RELATIVE..=MAX_RELATIVE;
             let mut of_blocks = values.iter().flatten().enumerate();
             let is_wrong = |(b, value): &(usize, &f64)| {

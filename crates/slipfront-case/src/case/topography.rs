@@ -6,7 +6,7 @@ use slipfront::surface::{Array, Tile, n_copies};
 use slipfront::{Edges, Lattice};
 
 use super::inputs::{Inputs, Watch};
-use crate::arrays::{self, ArrayError, HeightMapUnits, Room, Roughness, Slab};
+use crate::arrays::{self, HeightMapUnits, Room, Roughness, Slab};
 use crate::case_file::{Bearing, CaseError, CaseFile, HeightMap, Pitch};
 use crate::quantity::Length;
 
@@ -71,10 +71,8 @@ impl Ground<'_> {
             is_place: !self.arrays.is_empty(),
         };
         let key = format!("texture.{index}.file");
-        let read = inputs.read_height_map(file, &key, &map.file, |path, source| {
-            arrays::height_map(path, source, &units, &room, &mut |share| {
-                watch(share).then_some(()).ok_or(ArrayError::Stopped)
-            })
+        let read = inputs.read_height_map(file, &key, &map.file, watch, |path, source| {
+            arrays::height_map(path, source, &units, &room)
         })?;
         let standing = self.standing(&read.blocks);
         let asked = match map.bearing {

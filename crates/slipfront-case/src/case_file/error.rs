@@ -31,7 +31,7 @@ pub enum CaseError {
     Unwritable(#[from] toml::ser::Error),
     #[error(transparent)]
     Invalid(Box<Invalid>),
-    #[error("stopped while the texture was laid over the blocks; nothing was written")]
+    #[error("stopped while the case was made; nothing was written")]
     Stopped,
     /// An error of another rank, in the words of that rank.
     #[error("{0}")]

@@ -1,13 +1,14 @@
 //! Height maps that public tools have written (`heights/make.py`), against what numpy computes of them.
 
 use std::fs::File;
-use std::io::{BufReader, Write};
+use std::io::{BufReader, Cursor, Write};
 use std::path::{Path, PathBuf};
 
 use serde_json::Value;
 use slipfront::testing::Threads;
 use slipfront_case::arrays::{
-    ArrayError, HeightMap, HeightMapUnits, Room, height_map, limit_length_of_height_map, open, png_of_mask,
+    self, ArrayError, HeightMap, HeightMapUnits, Room, Slab, height_map, limit_length_of_height_map, open,
+    png_of_mask,
 };
 use slipfront_case::case::{Case, Ranks};
 use slipfront_case::case_file::CaseFile;
@@ -25,7 +26,7 @@ fn read(path: &Path, units: HeightMapUnits, blocks: [usize; 2]) -> Result<Height
         blocks,
         is_place: false,
     };
-    height_map(path, &mut source, &units, &room, &mut |_| Ok(()))
+    height_map(path, &mut source, &units, &room)
 }
 
 fn reference() -> Value {
@@ -143,6 +144,9 @@ fn the_aspect_is_kept() {
     assert!(said.contains(sentence), "{said}");
 }
 
+/// Tag of the width of a tile.
+const TILE_WIDTH: u16 = 322;
+
 /// A TIFF file of grey levels 1, 2 and, in the row below, 3, 4, with changes to its tags, each a number of 16 bits or of 32.
 fn tiff(changes: &[(u16, u32)]) -> Vec<u8> {
     let pixels = [1_u16, 2, 3, 4].map(u16::to_le_bytes);
@@ -159,6 +163,10 @@ fn tiff(changes: &[(u16, u32)]) -> Vec<u8> {
         (279, length),
     ]);
     tags.extend(changes.iter().copied());
+    // Of tiles there are no strips.
+    if tags.contains_key(&TILE_WIDTH) {
+        tags.retain(|tag, _| ![273, 278, 279].contains(tag));
+    }
     let mut bytes = b"II*\0".to_vec();
     bytes.extend((header + length).to_le_bytes());
     bytes.extend(pixels.as_flattened());
@@ -195,6 +203,20 @@ fn tiff_files_have_one_strip_and_one_orientation() {
         let sentence = format!("says by `Orientation` = {other} that it is to be turned or mirrored");
         assert!(said.to_string().contains(&sentence), "{said}");
     }
+}
+
+/// All columns of a tile are decoded, those too that the picture does not have.
+#[test]
+fn tiles_far_wider_than_their_picture_are_refused() {
+    let tiles = |width| {
+        // Height, place and length of the tile.
+        let tags = [(TILE_WIDTH, width), (323, 16), (324, 8), (325, 8)];
+        read_bytes("a.tif", &tiff(&tags)).unwrap_err().to_string()
+    };
+    let sentence =
+        "has tiles 1040 pixels wide and is 2 wide itself: save it in strips, or in tiles of at most 1024";
+    assert!(tiles(1040).contains(sentence), "{}", tiles(1040));
+    assert!(!tiles(1024).contains("pixels wide"), "{}", tiles(1024));
 }
 
 /// Pictures of grey levels and opacity are no colours.
@@ -362,6 +384,76 @@ fn damaged_x3p_files_are_refused() {
     );
     let said = read_bytes("a.x3p", b"PK").unwrap_err().to_string();
     assert!(said.contains("it is no zip archive"), "{said}");
+}
+
+/// The parser would compare all of them with each other: 10 000 elements within 5000 namespaces take it minutes.
+#[test]
+fn descriptions_with_thousands_of_names_are_refused_before_they_are_parsed() {
+    let names = |count: usize, name: &dyn Fn(usize) -> String| (0..count).map(name).collect::<String>();
+    let namespaces = names(5000, &|k| format!(" xmlns:n{k}='u:{k}'"));
+    let elements = "<a xmlns:a='c'/>".repeat(10_000);
+    let attributes = names(20_000, &|k| format!(" a{k} =\n\"\""));
+    for (xml, sentence) in [
+        (
+            format!("<r{namespaces}>{elements}</r>"),
+            "`main.xml` declares 15000 namespaces, and at most 64 are read; write the file again",
+        ),
+        (
+            format!("<r{attributes}/>"),
+            "an element of `main.xml` has 20000 attributes, and at most 64 are read; write the file again",
+        ),
+        (
+            format!("<r>{}</r>", "<a/>".repeat(100_000)),
+            "`main.xml` is no XML (nodes limit reached)",
+        ),
+    ] {
+        let bytes = zip(&[("main.xml", xml.as_bytes())]);
+        let said = read_bytes("a.x3p", &bytes).unwrap_err().to_string();
+        assert!(said.contains(sentence), "{said}\nlacks\n{sentence}");
+    }
+}
+
+#[test]
+fn comments_and_texts_are_no_names_of_a_description() {
+    let lines = format!("{}\n", "=".repeat(72)).repeat(100);
+    let comments = format!("<!-- {lines} -->").repeat(5);
+    let texts = format!("{comments}<Record2><![CDATA[{lines}]]><Comment a=\"1\">{lines}</Comment></Record2>");
+    let whole = description("<DataType>D</DataType>", LINKED);
+    let xml = whole.replace("<Record3>", &format!("{texts}<Record3>"));
+    let bytes = zip(&[("main.xml", xml.as_bytes()), ("bindata/data.bin", &[0; 32])]);
+    assert_eq!(read_bytes("a.x3p", &bytes).unwrap().blocks, [0.0; 4]);
+}
+
+/// Neither within a table nor at its end, and neither of heights nor of numbers of blocks.
+#[test]
+fn no_line_of_a_table_is_skipped() {
+    let field = |text: &str| {
+        let found = arrays::field(Path::new("a.csv"), &mut Cursor::new(text), &Slab::whole(2, 2));
+        found.unwrap_err().to_string()
+    };
+    for (line, of_heights, of_blocks) in [
+        (
+            "*** sensor overload ***",
+            "has `*** sensor overload ***` in line 2,",
+            "1 numbers in line 2",
+        ),
+        ("NaN", "has 1 numbers in line 2", "1 numbers in line 2"),
+        (
+            "0.5,NaN",
+            "has NaN in row 1, column 1",
+            "has NaN in line 2, in row 1, column 1",
+        ),
+        (",0.5", "has `` in line 2,", "has `` in line 2,"),
+        ("0.5", "has 1 numbers in line 2", "1 numbers in line 2"),
+        ("0.5,1,2", "has 3 numbers in line 2", "3 numbers in line 2"),
+    ] {
+        for rest in ["\n0.5,1\n", "\n", ""] {
+            let text = format!("0.5,1\n{line}{rest}");
+            let said = read_bytes("a.csv", text.as_bytes()).unwrap_err().to_string();
+            assert!(said.contains(of_heights), "{line}: {said}");
+            assert!(field(&text).contains(of_blocks), "{line}: {}", field(&text));
+        }
+    }
 }
 
 #[test]

@@ -1,15 +1,15 @@
-//! Progress of a texture that is laid over the blocks.
+//! Progress of a case that is made: of files that are read, and of a texture that is laid over the blocks.
 
 use std::time::{Duration, Instant};
 
 use super::display::{ProgressDisplay, time_left};
 
-/// Time before any progress is shown: most textures take less.
+/// Time before any progress is shown: most cases take less.
 const PATIENCE: Duration = Duration::from_millis(500);
 /// Time between two updates of the display, for which there are millions of calls.
 const PAUSE: Duration = Duration::from_millis(50);
 
-/// Display of the share of the texture that is laid over the blocks, if that takes long.
+/// Display of the share of a part of the work that is done, if the case takes long.
 pub(crate) struct MeshProgress {
     quiet: bool,
     began: Instant,
@@ -39,7 +39,7 @@ impl MeshProgress {
         let new = || ProgressDisplay::new("{wide_bar} {msg}", self.quiet);
         self.display.get_or_insert_with(new).show(done, ALL, |_| {
             let left = time_left(ALL - done, done, passed);
-            format!("{:3.0} % of the texture meshed{left}", 100.0 * share)
+            format!("making the case: {:3.0} % of this part{left}", 100.0 * share)
         });
     }
 

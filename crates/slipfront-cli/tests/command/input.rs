@@ -1,6 +1,6 @@
 //! Errors of a case are sentences with status 2, and nothing is written.
 
-use crate::support::process::{program, stderr};
+use crate::support::process::{program, send, stderr, wait_for_signal_handlers};
 use crate::support::workspace::Workspace;
 
 #[test]
@@ -50,6 +50,55 @@ fn bad_cases_are_refused_with_a_remedy() {
         }
     }
     assert_eq!(workspace.files(".").len(), 2, "something has been written");
+}
+
+/// Files that take a second, of which no command has read the last byte when the signal comes.
+#[cfg(unix)]
+#[test]
+fn a_signal_ends_the_reading_of_any_file() {
+    let workspace = Workspace::small();
+    let npy = |kind: &str, side: usize| {
+        let header = format!(
+            "{{'descr': '{kind}', 'fortran_order': False, 'shape': ({side}, {side}), }}{:60}\n",
+            ""
+        );
+        let length = (header.len() as u16).to_le_bytes();
+        [&b"\x93NUMPY\x01\0"[..], &length, header.as_bytes()].concat()
+    };
+    workspace.write("mu.csv", format!("{}1\n", "1,".repeat(1999)).repeat(2000));
+    workspace.write(
+        "mu.npy",
+        [npy("<f8", 2000), 1_f64.to_le_bytes().repeat(2000 * 2000)].concat(),
+    );
+    workspace.write("mask.npy", [npy("|b1", 8000), vec![0; 8000 * 8000]].concat());
+    workspace.write("map.npy", [npy("|u1", 4000), vec![0; 4000 * 4000]].concat());
+    workspace.write("map.csv", "# a comment\n".repeat(4_000_000));
+    let map =
+        |file: &str| format!("[[texture]]\nshape = 'height_map'\nfile = '{file}'\nbearing_percent = 50\n");
+    for case in [
+        "slider.blocks = [2000, 2000]\nfriction.mu_static_field = 'mu.csv'\n".to_owned(),
+        "slider.blocks = [2000, 2000]\nload.pressure_field = 'mu.npy'\n".to_owned(),
+        "slider = { blocks = [8000, 8000], outline = 'mask', outline_file = 'mask.npy' }\n".to_owned(),
+        map("map.npy"),
+        map("map.csv"),
+    ] {
+        workspace.write("large.toml", &case);
+        for command in ["check large.toml", "run large.toml -o out"] {
+            let child = workspace.start(command);
+            wait_for_signal_handlers(&child);
+            send(&child, "-INT");
+            let output = child.wait_with_output().unwrap();
+            assert_eq!(
+                output.status.code(),
+                Some(130),
+                "{command} {case}: {}",
+                stderr(&output)
+            );
+            let said = "error: stopped while the case was made; nothing was written\n";
+            assert_eq!(stderr(&output), said, "{command} {case}");
+        }
+    }
+    assert!(!workspace.exists("out"));
 }
 
 #[test]

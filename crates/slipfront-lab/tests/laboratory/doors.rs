@@ -49,6 +49,58 @@ fn ask_for_much(page: &mut Page) {
     }
 }
 
+/// An image of 2^28 white pixels in some ten kilobytes, and a case that reads it a hundred times, which takes minutes.
+#[cfg(target_os = "linux")]
+fn case_of_minutes() -> serde_json::Value {
+    let mut image = Vec::new();
+    let mut encoder = png::Encoder::new(&mut image, 1 << 14, 1 << 14);
+    encoder.set_color(png::ColorType::Grayscale);
+    encoder.set_depth(png::BitDepth::One);
+    let mut writer = encoder.write_header().unwrap();
+    writer.write_image_data(&vec![0xff; 1 << 25]).unwrap();
+    writer.finish().unwrap();
+    // Images of different thresholds are read anew.
+    let texture = |k: u32| format!("[[texture]]\nshape = 'mask'\nfile = 'a.png'\nthreshold = 0.{k}\n");
+    let toml: String = (1000..1100).map(texture).collect();
+    json!({ "do": "open", "source": { "toml": toml, "files": { "a.png": BASE64_STANDARD.encode(image) } } })
+}
+
+/// Processor time that the threads of sessions have taken, in hundredths of a second; none if there is no such thread.
+#[cfg(target_os = "linux")]
+fn time_of_sessions() -> Option<u64> {
+    let tasks = std::fs::read_dir("/proc/self/task").unwrap();
+    // One that has just ended cannot be read.
+    let stats = tasks.filter_map(|task| std::fs::read_to_string(task.ok()?.path().join("stat")).ok());
+    let of_sessions = stats.filter_map(|stat| {
+        let (_, fields) = stat.split_once("(session) ")?;
+        fields.split(' ').nth(11)?.parse::<u64>().ok()
+    });
+    of_sessions.reduce(|all, one| all + one)
+}
+
+/// A link of a stranger may lead to a case that takes minutes to make.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_page_that_is_gone_leaves_no_case_that_is_being_made() {
+    let name = "doors::a_page_that_is_gone_leaves_no_case_that_is_being_made";
+    // The sessions of other tests are in the same process.
+    slipfront::testing::alone(name, || {
+        let wait_until = |what: &str, holds: &dyn Fn(Option<u64>) -> bool| {
+            let began = Instant::now();
+            while !holds(time_of_sessions()) {
+                assert!(began.elapsed() < TIMEOUT, "{what}");
+                thread::sleep(Duration::from_millis(10));
+            }
+        };
+        let lab = Served::new();
+        let mut page = Page::open(&lab);
+        page.send(&case_of_minutes());
+        wait_until("no case is made", &|time| time.is_some_and(|time| time > 20));
+        drop(page);
+        wait_until("the case is made for nobody", &|time| time.is_none());
+    });
+}
+
 #[test]
 fn connections_that_say_nothing_keep_no_page_out() {
     let lab = Served::impatient();

@@ -104,7 +104,7 @@ fn requests_are_read_as_the_page_sends_them() {
 fn each_reply(check: &mut impl FnMut(&Reply)) {
     let text = "[[texture]]\nshape = 'cavity'\ncoverage = 5\n";
     let document = Document::new("case", text, |_| Err("there is no file".to_owned())).unwrap();
-    let case = document.case().unwrap();
+    let case = document.case(&mut |_| true).unwrap();
     let presets = [PresetEntry {
         name: "circle",
         group: "cases",

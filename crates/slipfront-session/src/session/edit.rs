@@ -1,7 +1,6 @@
 //! Changes of the case.
 
 use std::path::Path;
-use std::sync::Arc;
 
 use slipfront_case::text::truncated;
 use toml::Value;
@@ -21,7 +20,7 @@ impl Session {
     pub(super) fn open(&mut self, source: Source) -> Result<(), String> {
         let Opened { document, recorded } = self.opened(source)?;
         // Whether it can be run is known before anything is given up.
-        let case = Arc::new(document.case_to_show().map_err(|error| error.to_string())?);
+        let case = self.case_of(&document)?;
         self.give_up_work();
         (self.edited, self.painting) = (None, None);
         self.shown_recording = None;
@@ -188,12 +187,12 @@ impl Session {
     /// A sentence, if it cannot be run; then the present case stays.
     pub(super) fn run_edited(&mut self, mut document: Document, gesture: u64) -> Result<(), String> {
         let from_rest = self.view.after_change == AfterChange::Rest;
-        let case = document.case_to_show().map_err(|error| error.to_string())?;
+        let case = self.case_of(&document)?;
         document.drop_unnamed_files().map_err(|error| error.to_string())?;
         self.give_up_work();
         if let Some(history) = &mut self.history {
             history.change(document, gesture);
         }
-        self.start_run(&Arc::new(case), "change", from_rest)
+        self.start_run(&case, "change", from_rest)
     }
 }

@@ -25,7 +25,7 @@ impl Session {
         }
         self.apply_edits();
         let document = self.document()?.clone();
-        let case = document.case_to_show().map_err(|error| error.to_string())?;
+        let case = self.case_of(&document)?;
         search::check(&case, self.host.threads())?;
         self.search = Some(TextureSearch {
             gesture,

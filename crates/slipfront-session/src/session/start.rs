@@ -5,16 +5,20 @@ use std::sync::Arc;
 use slipfront_case::case::Case;
 
 use super::state::{Session, Twin};
+use crate::document::Document;
 use crate::live::LiveRun;
 
 impl Session {
     /// Runs the present case again, from rest or from where it is.
     pub(super) fn run_present_case(&mut self, why: &'static str, from_rest: bool) -> Result<(), String> {
-        let case = self
-            .document()?
-            .case_to_show()
-            .map_err(|error| error.to_string())?;
-        self.start_run(&Arc::new(case), why, from_rest)
+        let case = self.case_of(self.document()?)?;
+        self.start_run(&case, why, from_rest)
+    }
+
+    /// The case of a document, to be shown; none is made for a page that is gone.
+    pub(super) fn case_of(&self, document: &Document) -> Result<Arc<Case>, String> {
+        let case = document.case_to_show(&mut |_| !self.host.is_gone());
+        case.map(Arc::new).map_err(|error| error.to_string())
     }
 
     /// Runs a case that was made of the present document, from rest or from where the run is.
@@ -58,7 +62,7 @@ impl Session {
         {
             return Ok(());
         }
-        let case = Arc::new(document.case_to_show().map_err(|error| error.to_string())?);
+        let case = self.case_of(&document)?;
         let went_on = match &mut self.twin {
             Some(twin) if !from_rest => {
                 twin.toml.clone_from(&toml);

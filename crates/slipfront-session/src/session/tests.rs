@@ -438,7 +438,7 @@ fn paint_below_a_shape_stays() {
 /// A run of a case, as the files of its folder in Base64.
 fn run_files(case: &str) -> serde_json::Map<String, Value> {
     let document = crate::document::Document::new("case", case, |_| Err("there is none".to_owned())).unwrap();
-    let case = std::sync::Arc::new(document.case().unwrap());
+    let case = std::sync::Arc::new(document.case(&mut |_| true).unwrap());
     let mut record = slipfront_run::running::run(&case, 1).unwrap();
     let files = slipfront_run::results::in_memory(&case, &mut record).unwrap();
     let encoded = files.into_iter();

@@ -1,6 +1,6 @@
 //! Arrays and images that a case names.
 
-use std::io::Cursor;
+use std::io::{Cursor, Write};
 use std::path::Path;
 
 use png::{BitDepth, ColorType, Encoder};
@@ -8,7 +8,8 @@ use slipfront_case::arrays;
 use slipfront_case::arrays::{ArrayError, HeightMapUnits, Room, Slab, mask_npy, png_of_mask};
 
 use crate::checks::readable;
-use crate::{Memory, Target, scratch};
+use crate::long::{LONG_BYTES, many, nested};
+use crate::{Memory, Target, Time, scratch};
 
 /// The lattice that arrays are read for: not square, so that exchanged rows and columns are noticed.
 const NX: usize = 3;
@@ -27,8 +28,10 @@ pub(crate) const NPY: Target = Target {
         bytes: 1 << 20,
         per_byte: 512,
     },
+    time: Time::READING,
     mutations: 3000,
     repetitions: 20,
+    long: long_headers,
 };
 
 /// Tables of numbers as text.
@@ -44,8 +47,10 @@ pub(crate) const CSV_TABLE: Target = Target {
         bytes: 256 << 10,
         per_byte: 128,
     },
+    time: Time::READING,
     mutations: 3000,
     repetitions: 60,
+    long: long_tables,
 };
 
 /// Masks as images.
@@ -61,8 +66,10 @@ pub(crate) const MASK_PNG: Target = Target {
         bytes: 4 << 20,
         per_byte: 2 * 8 * 1040,
     },
+    time: Time::DRAWN,
     mutations: 500,
     repetitions: 20,
+    long: long_images,
 };
 
 /// Height maps, read as each of their formats.
@@ -93,8 +100,10 @@ pub(crate) const HEIGHT_MAP: Target = Target {
         bytes: 160 << 20,
         per_byte: 2 * 8 * 1040,
     },
+    time: Time::DRAWN,
     mutations: 1500,
     repetitions: 20,
+    long: long_maps,
 };
 
 fn npy_files() -> Vec<Vec<u8>> {
@@ -148,6 +157,223 @@ fn tables() -> Vec<Vec<u8>> {
         "1,2,nan\n1,2,-3\n",
     ];
     texts.map(|text| text.as_bytes().to_vec()).into()
+}
+
+/// Headers of arrays with many keys, lengths and brackets.
+fn long_headers() -> Vec<Vec<u8>> {
+    let texts = [
+        many("{", "'a#': 1, ", "}"),
+        many(
+            "{'descr': '",
+            "<f8",
+            "', 'fortran_order': False, 'shape': (2, 3), }",
+        ),
+        many(
+            "{'descr': '<f8', 'fortran_order': False, 'shape': (",
+            "1, ",
+            "), }",
+        ),
+        nested("{'descr': ", "[", "", "]", "}"),
+        nested("", "{'descr': ", "1", "}", ""),
+        nested("", "(", "", ")", ""),
+        many(
+            "{'descr': '<f8', 'fortran_order': False, 'shape': (2, 3), }",
+            " ",
+            "\n",
+        ),
+    ];
+    // As long as can be, and beyond.
+    let lengths = [9000, LONG_BYTES];
+    let file = |(text, length): (&Vec<u8>, usize)| {
+        let text = &text[..text.len().min(length)];
+        [b"\x93NUMPY\x02\0", &(text.len() as u32).to_le_bytes()[..], text].concat()
+    };
+    let all = texts.iter().flat_map(|text| lengths.map(|length| (text, length)));
+    all.map(file).collect()
+}
+
+/// Tables with many lines, columns, comments and quotes, and with long numbers.
+fn long_tables() -> Vec<Vec<u8>> {
+    vec![
+        many("", "1,2,3\n", ""),
+        many("", "1,", "1\n1,2,3\n"),
+        many("1,2,3\n", "1 ", "\n"),
+        many("", "# a comment\n", "1,2,3\n4,5,6\n"),
+        many("#", " a comment", "\n1,2,3\n4,5,6\n"),
+        many("", "#", "\n1,2,3\n4,5,6\n"),
+        many("", "\n", "1,2,3\n4,5,6\n"),
+        many("", "\r", "1,2,3\n4,5,6\n"),
+        many("", " \n", "1,2,3\n4,5,6\n"),
+        many("", "\"", "\n1,2,3\n"),
+        many("\"", "1,2,3\n", ""),
+        many("1.", "0", ",2,3\n4,5,6\n"),
+        many("", "0", "1,2,3\n4,5,6\n"),
+        many("", " ", "1 2 3\n4 5 6\n"),
+        many("", ";", ""),
+        many("1,2,3\n", "*** sensor overload *** # ", "\n"),
+    ]
+}
+
+/// Compressed zeros.
+fn packed_zeros(count: usize) -> Vec<u8> {
+    let mut encoder = flate2::write::ZlibEncoder::new(Vec::new(), flate2::Compression::best());
+    encoder.write_all(&vec![0; count]).unwrap();
+    encoder.finish().unwrap()
+}
+
+/// Images with many chunks, or a large one, and as large as so many bytes can be.
+fn long_images() -> Vec<Vec<u8>> {
+    let seed = &images()[3];
+    // Behind the signature and the header.
+    let (begin, end) = seed.split_at(33);
+    let chunks = |kind: &[u8; 4], data: &[u8], count: usize| {
+        let chunk = [&(data.len() as u32).to_be_bytes()[..], kind, data, &[0; 4]].concat();
+        with_checksums(&[begin, &chunk.repeat(count), end].concat())
+    };
+    let mut images = Vec::new();
+    for kind in [
+        b"tEXt", b"IDAT", b"prVt", b"gAMA", b"acTL", b"PLTE", b"tRNS", b"IHDR",
+    ] {
+        // The decoder makes room for 32 KiB at each of them.
+        images.push(chunks(kind, b"", LONG_BYTES / 120));
+    }
+    let text = packed_zeros(1000 * LONG_BYTES);
+    for kind in [b"tEXt", b"iCCP", b"zTXt", b"iTXt", b"PLTE", b"eXIf"] {
+        images.push(chunks(kind, &[0; LONG_BYTES], 1));
+        images.push(chunks(kind, &[b"a\0\0", &text[..]].concat(), 1));
+    }
+    // One bit a pixel: 2^28 pixels, in lines as long as can be and in as many.
+    for (width, height) in [(1 << 20, 1 << 8), (1 << 8, 1 << 20)] {
+        let mut bytes = Vec::new();
+        let mut encoder = Encoder::new(&mut bytes, width, height);
+        encoder.set_depth(BitDepth::One);
+        encoder.set_color(ColorType::Grayscale);
+        let mut writer = encoder.write_header().unwrap();
+        let pixels = vec![0; (width / 8 * height) as usize];
+        writer.write_image_data(&pixels).unwrap();
+        writer.finish().unwrap();
+        images.push(bytes);
+    }
+    images
+}
+
+/// Height maps with many of each thing that a format counts.
+fn long_maps() -> Vec<Vec<u8>> {
+    let mut maps = long_tables();
+    let names = |piece: &str, count: usize| {
+        (0..count)
+            .map(|k| piece.replace('#', &k.to_string()))
+            .collect::<String>()
+    };
+    let namespaces = names(" xmlns:n#='u:#'", 3000);
+    let descriptions = [
+        format!("<r{namespaces}>{}</r>", "<a xmlns:a='c'/>".repeat(4000)),
+        format!("<r{}/>", names(" a#='1'", 20_000)),
+        names("<r a='#'>", 20_000),
+        format!("<r>{}</r>", "<a/>".repeat(200_000)),
+        format!("<r>{}</r>", "&amp;".repeat(50_000)),
+        format!("<r a='{}'/>", "&#65;".repeat(50_000)),
+        format!("<r>{}</r>", "<![CDATA[a]]>".repeat(20_000)),
+        format!("<r>{}</r>", "<!-- a -->".repeat(20_000)),
+        format!("{}<r/>", "<?a b?>".repeat(20_000)),
+        "<!".repeat(100_000),
+        "<![CDATA[".repeat(30_000),
+        "=".repeat(1 << 19),
+    ];
+    maps.extend(descriptions.map(|xml| zip(&[("main.xml".to_owned(), xml.into_bytes())])));
+    let entries: Vec<_> = (0..4000).map(|k| (format!("a{k}"), Vec::new())).collect();
+    maps.push(zip(&entries));
+    maps.push(many("Gwyddion Simple Field 1.0\n", "Xres# = 2\n", "\0"));
+    maps.push(many(
+        "Gwyddion Simple Field 1.0\nXRes = 2\nYRes = 1\nTitle = ",
+        "=",
+        "\n\0",
+    ));
+    maps.extend(long_tiffs());
+    maps
+}
+
+/// A zip archive of these files.
+fn zip(files: &[(String, Vec<u8>)]) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    let mut archive = rawzip::ZipArchiveWriter::new(&mut bytes);
+    for (name, contents) in files {
+        let file = archive
+            .new_file(name)
+            .compression_method(rawzip::CompressionMethod::DEFLATE);
+        let (mut entry, config) = file.start().unwrap();
+        let encoder = flate2::write::DeflateEncoder::new(&mut entry, flate2::Compression::fast());
+        let mut writer = config.wrap(encoder);
+        writer.write_all(contents).unwrap();
+        let (encoder, descriptor) = writer.finish().unwrap();
+        encoder.finish().unwrap();
+        entry.finish(descriptor).unwrap();
+    }
+    archive.finish().unwrap();
+    bytes
+}
+
+/// A tag of a TIFF file with its numbers.
+type TiffTag = (u16, Vec<u32>);
+
+/// A picture of 16 bits with these tags more, whose `data` stands at byte 8; the next picture stands at `next`, 0 for none.
+fn tiff([width, height]: [u32; 2], own: Vec<TiffTag>, data: &[u8], next: u32) -> Vec<u8> {
+    /// Type of a number of 32 bits.
+    const LONG: u16 = 4;
+    let of_all = [(256, width), (257, height), (258, 16), (262, 1), (277, 1)];
+    let mut tags: Vec<TiffTag> = of_all.map(|(tag, value)| (tag, vec![value])).into();
+    tags.extend(own);
+    tags.sort_by_key(|(tag, _)| *tag);
+    let start = 8 + data.len() as u32;
+    let mut bytes = [b"II*\0", &start.to_le_bytes()[..], data].concat();
+    bytes.extend((tags.len() as u16).to_le_bytes());
+    let lists_start = start + 2 + 12 * tags.len() as u32 + 4;
+    let mut lists: Vec<u8> = Vec::new();
+    for (tag, values) in &tags {
+        bytes.extend([tag.to_le_bytes(), LONG.to_le_bytes()].as_flattened());
+        bytes.extend((values.len() as u32).to_le_bytes());
+        if let [value] = values[..] {
+            bytes.extend(value.to_le_bytes());
+        } else {
+            bytes.extend((lists_start + lists.len() as u32).to_le_bytes());
+            lists.extend(values.iter().flat_map(|value| value.to_le_bytes()));
+        }
+    }
+    bytes.extend(next.to_le_bytes());
+    bytes.extend(lists);
+    bytes
+}
+
+/// Pictures of many strips or tiles, all of them the same bytes, and of many tags.
+fn long_tiffs() -> Vec<Vec<u8>> {
+    const DEFLATE: u32 = 8;
+    let pieces = |shape: [TiffTag; 2], [places, lengths]: [u16; 2], count: usize, data: &[u8]| {
+        let mut tags = vec![(259, vec![DEFLATE])];
+        tags.extend(shape);
+        tags.push((places, vec![8; count]));
+        tags.push((lengths, vec![data.len() as u32; count]));
+        tags
+    };
+    let strips = |count: usize, data: &[u8]| {
+        let shape = [(278, vec![1]), (284, vec![1])];
+        pieces(shape, [273, 279], count, data)
+    };
+    let tiles = |count: usize, [width, height]: [u32; 2], data: &[u8]| {
+        let shape = [(322, vec![width]), (323, vec![height])];
+        pieces(shape, [324, 325], count, data)
+    };
+    let count = LONG_BYTES / 8;
+    let (row, tile) = (packed_zeros(2 * 6), packed_zeros(32 << 20));
+    let unknown = (0..20_000).map(|tag| (tag + 40_000, vec![1])).collect();
+    vec![
+        tiff([6, count as u32], strips(count, &row), &row, 0),
+        // Tiles of which one column, or one row, has points.
+        tiff([1, 16 * 2000], tiles(2000, [1 << 20, 16], &tile), &tile, 0),
+        tiff([16 * 2000, 1], tiles(2000, [16, 1 << 20], &tile), &tile, 0),
+        tiff([2, 2], unknown, &[0; 8], 0),
+        // The next picture is this one.
+        tiff([6, 2], strips(2, &row), &row, 8 + row.len() as u32),
+    ]
 }
 
 /// Small images of every colour type and depth.
@@ -266,7 +492,7 @@ fn height_map(input: &[u8]) {
         // A file that says nothing of its units is asked about them, and then answered.
         for units in [HeightMapUnits::default(), UNITS] {
             let mut source = Cursor::new(input);
-            match arrays::height_map(Path::new(&path), &mut source, &units, &room, &mut |_| Ok(())) {
+            match arrays::height_map(Path::new(&path), &mut source, &units, &room) {
                 Err(error) => readable(&error),
                 Ok(map) => {
                     assert_eq!(map.blocks.len(), NX * NY);
@@ -295,7 +521,7 @@ fn mask_png(input: &[u8]) {
 fn mask(input: &[u8]) {
     let read = |bytes: &[u8]| {
         let path = Path::new("mask.png");
-        read(|slab| arrays::mask_png(path, &mut Cursor::new(bytes), 0.5, slab, &mut |_| Ok(())))
+        read(|slab| arrays::mask_png(path, &mut Cursor::new(bytes), 0.5, slab))
     };
     let mask = match read(input) {
         Ok(mask) => mask,

@@ -4,8 +4,9 @@ use slipfront_case::case::{Case, Ranks};
 use slipfront_case::case_file::CaseFile;
 
 use crate::checks::readable;
+use crate::long::{many, nested};
 use crate::scratch::repository;
-use crate::{Memory, Target};
+use crate::{Memory, Target, Time};
 
 const CASES: &[&str] = &[
     "cases/*.toml",
@@ -26,8 +27,10 @@ pub(crate) const CASE_FILE: Target = Target {
         bytes: 1 << 20,
         per_byte: 512,
     },
+    time: Time::READING,
     mutations: 3000,
     repetitions: 100,
+    long,
 };
 
 /// The case that follows from the text, with its surface, for a small lattice.
@@ -43,9 +46,59 @@ pub(crate) const CASE: Target = Target {
         bytes: 8 << 20,
         per_byte: 512,
     },
+    time: Time::READING,
     mutations: 300,
     repetitions: 30,
+    long,
 };
+
+/// Texts with many of each thing that a case may have, and with long and deep ones.
+fn long() -> Vec<Vec<u8>> {
+    vec![
+        many("", "[[texture]]\nshape = 'cavity'\ncoverage = 1\n", ""),
+        many("texture = [", "{ shape = 'cavity', s = # },", "]"),
+        many(
+            "[[texture]]\nshape = 'polygon'\npoints = [",
+            "['# um', '# um'],",
+            "]",
+        ),
+        many("drive.program = [", "{ v_star = 0.1, until_star = # },", "]"),
+        many("output.snapshots = [", "#, ", "]"),
+        many("output.fields = [", "'sliding', ", "]"),
+        many("[friction]\n", "mu_statik# = 1\n", ""),
+        many("[friction]\n", "mu_static = #\n", ""),
+        many("", "mu_static.a# = 1\n", ""),
+        many("", "[friktion#]\n", ""),
+        many("", "[friction.a#]\nb = 1\n", ""),
+        many("", "[[friction]]\n", ""),
+        many("", "# set: friction.mu_static=#\n", ""),
+        many("", "# set: texture.0.a#=1\n", "[[texture]]\nshape = 'cavity'"),
+        many("", "# set: texture.#.shape='cavity'\n", ""),
+        many("# set: a", ".a#", "=1\n"),
+        many("# set: friction.mu_static=[", "[", "\n"),
+        many("", "x", " = 1"),
+        many("", "a.", "a = 1"),
+        many("[", "a.", "a]"),
+        many("[friction]\nlaw = '", "projection#", "'"),
+        many("[friction]\nlaw = \"", "\\u00e9\\n", "\""),
+        many("[friction]\nlaw = '''", "'\n", "'''"),
+        many("[friction]\nmu_static = 0.", "0", "1"),
+        many("[friction]\nmu_static = 1", "_0", ""),
+        many("slider.block_size = '1", " um", "'"),
+        many("slider.block_size = '1 ", "m/", "m'"),
+        many("", "# a comment = 'of [many'\n", ""),
+        many("", "\n", "x"),
+        many("", "\r\n", "friction = 1"),
+        many("", " \t", "a"),
+        many("", "\u{e9}", "a"),
+        many("", "\"", ""),
+        many("a = \"", "\\", ""),
+        nested("a = ", "[", "", "]", ""),
+        nested("a = ", "{ a = ", "1", " }", ""),
+        nested("texture = ", "[", "", "]", ""),
+        nested("friction = ", "{ friction = ", "1", " }", ""),
+    ]
+}
 
 /// Most blocks of a lattice that is made: only the memory of the machine bounds a lattice.
 const MAX_BLOCKS: u64 = 1000;

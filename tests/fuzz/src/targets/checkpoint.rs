@@ -16,8 +16,9 @@ use slipfront_run::names::CHECKPOINT;
 use slipfront_run::run_folder::unfinished::Unfinished;
 use slipfront_run::running::Running;
 
+use super::json::long_objects;
 use crate::checks::readable;
-use crate::{Memory, Target, scratch};
+use crate::{Memory, Target, Time, scratch};
 
 /// The first byte chooses one of [`CASES`]. The rest is read as it is, then with the right checksum, then with the right
 /// header as well, but for its columns; a run is resumed if the file can be read.
@@ -33,8 +34,10 @@ pub(crate) const CHECKPOINTS: Target = Target {
         bytes: 16 << 20,
         per_byte: 256,
     },
+    time: Time::READING,
     mutations: 300,
     repetitions: 20,
+    long: || long_objects("\0", "\n"),
 };
 
 /// Both kernels, and both ways to keep fields.

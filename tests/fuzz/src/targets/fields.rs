@@ -7,7 +7,8 @@ use slipfront_run::fields::{
 };
 
 use crate::checks::readable;
-use crate::{Memory, Target, scratch};
+use crate::long::LONG_BYTES;
+use crate::{Memory, Target, Time, scratch};
 
 /// Reads the whole file, then the maps of single fields.
 pub(crate) const FIELDS: Target = Target {
@@ -29,8 +30,15 @@ pub(crate) const FIELDS: Target = Target {
         bytes: 1 << 20,
         per_byte: 128,
     },
+    time: Time::READING,
     mutations: 2000,
     repetitions: 40,
+    long: || {
+        let mut files = long_headers();
+        // Many instants of one block.
+        files.push(file([1, 1], 1, 4000, 1e-6));
+        files
+    },
 };
 
 /// The bytes of a file for a small lattice.
@@ -74,6 +82,64 @@ pub(crate) fn file([nx, ny]: [usize; 2], stride: usize, frames: usize, block_siz
         .persist(&path)
         .unwrap();
     std::fs::read(path).unwrap()
+}
+
+/// Headers of NetCDF with many dimensions, attributes and variables, and with a variable of many of either.
+pub(crate) fn long_headers() -> Vec<Vec<u8>> {
+    /// Tags of lists.
+    const DIMENSIONS: u32 = 10;
+    const VARIABLES: u32 = 11;
+    const ATTRIBUTES: u32 = 12;
+    let number = |number: u32| number.to_be_bytes().to_vec();
+    let list = |tag: u32, elements: &[Vec<u8>]| {
+        [number(tag), number(elements.len() as u32), elements.concat()].concat()
+    };
+    let name = |name: String| {
+        let mut bytes = [number(name.len() as u32), name.into_bytes()].concat();
+        bytes.resize(bytes.len().next_multiple_of(4), 0);
+        bytes
+    };
+    let many = |element: &dyn Fn(usize) -> Vec<u8>| -> Vec<Vec<u8>> {
+        (0..LONG_BYTES / element(LONG_BYTES).len()).map(element).collect()
+    };
+    let dimension = |k: usize| [name(format!("d{k}")), number(1)].concat();
+    // Of one byte.
+    let attribute = |k: usize| [name(format!("a{k}")), number(1), number(1), vec![0; 4]].concat();
+    // The dimensions, and a list of attributes; then a type, a size and a place.
+    let variable = |k: usize, dimensions: &[Vec<u8>], attributes: &[Vec<u8>]| {
+        let dimensions = [number(dimensions.len() as u32), dimensions.concat()].concat();
+        let rest = [number(1), number(4), vec![0; 8]].concat();
+        [
+            name(format!("v{k}")),
+            dimensions,
+            list(ATTRIBUTES, attributes),
+            rest,
+        ]
+        .concat()
+    };
+    let (dimensions, attributes) = (many(&dimension), many(&attribute));
+    let first = vec![number(0); dimensions.len()];
+    let file = |dimensions: &[Vec<u8>], attributes: &[Vec<u8>], variables: &[Vec<u8>]| {
+        [
+            b"CDF\x02\0\0\0\0".to_vec(),
+            list(DIMENSIONS, dimensions),
+            list(ATTRIBUTES, attributes),
+            list(VARIABLES, variables),
+        ]
+        .concat()
+    };
+    vec![
+        file(&dimensions, &[], &[]),
+        file(&[], &attributes, &[]),
+        file(&dimensions[..1], &[], &many(&|k| variable(k, &first[..1], &[]))),
+        file(&dimensions, &[], &[variable(0, &first, &attributes)]),
+        // Each over all dimensions.
+        file(
+            &dimensions[..500],
+            &[],
+            &vec![variable(0, &first[..500], &[]); 140],
+        ),
+    ]
 }
 
 fn fields(input: &[u8]) {

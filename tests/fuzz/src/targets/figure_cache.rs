@@ -5,7 +5,7 @@ use std::cell::OnceCell;
 use slipfront_paper::{Drawing, FigureCache, FigureData, MeasuredNumber, Panel, StepRule, Table};
 use slipfront_plot::{FieldMap, FieldMaps, FrictionCurve, Shape};
 
-use crate::{Memory, Target, scratch};
+use crate::{Memory, Target, Time, scratch};
 
 /// The file as it is, then its contents with a valid checksum.
 pub(crate) const FIGURE_CACHE: Target = Target {
@@ -20,8 +20,10 @@ pub(crate) const FIGURE_CACHE: Target = Target {
         bytes: 16 << 20,
         per_byte: 512,
     },
+    time: Time::READING,
     mutations: 2000,
     repetitions: 40,
+    long: Vec::new,
 };
 
 fn generated() -> Vec<Vec<u8>> {

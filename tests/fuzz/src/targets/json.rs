@@ -10,7 +10,8 @@ use slipfront_run::summary::{InstantSummary, Summary, read_summary, summary_json
 use slipfront_study::verify::{Extent, verify};
 
 use crate::checks::readable;
-use crate::{Memory, Target, scratch};
+use crate::long::{many, nested};
+use crate::{Memory, Target, Time, scratch};
 
 /// The summary of a run.
 pub(crate) const SUMMARY: Target = Target {
@@ -29,8 +30,10 @@ pub(crate) const SUMMARY: Target = Target {
         bytes: 256 << 10,
         per_byte: 64,
     },
+    time: Time::READING,
     mutations: 2000,
     repetitions: 60,
+    long: || long_objects("", ""),
 };
 
 /// The manifest as it is, then with the right checksum, in a folder that is verified and replaced.
@@ -45,8 +48,10 @@ pub(crate) const MANIFEST: Target = Target {
         bytes: 1 << 20,
         per_byte: 256,
     },
+    time: Time::READING,
     mutations: 500,
     repetitions: 40,
+    long: long_manifests,
 };
 
 /// The journal of a run that is not complete, in a folder whose files are replaced.
@@ -54,8 +59,62 @@ pub(crate) const JOURNAL: Target = Target {
     name: "journal",
     check: check_journal,
     generated: journals,
+    long: long_journals,
     ..MANIFEST
 };
+
+/// Objects with many keys, values and brackets, between these texts.
+pub(crate) fn long_objects(before: &str, after: &str) -> Vec<Vec<u8>> {
+    let around = |begin: &str, piece: &str, end: &str| {
+        many(&format!("{before}{begin}"), piece, &format!("{end}{after}"))
+    };
+    let (open, close) = (format!("{before}{{\"a\": "), format!("}}{after}"));
+    vec![
+        around("{", "\"a#\": 1, ", "\"b\": 1}"),
+        around("{", "\"id\": #, ", "\"b\": 1}"),
+        around("{\"", "a", "\": 1}"),
+        around("{\"warnings\": [", "\"a#\", ", "\"\"]}"),
+        around("{\"warnings\": [", "#, ", "1]}"),
+        around("{\"version\": \"", "\\u00e9\\n", "\"}"),
+        around("{\"version\": \"", "\\ud800", "\"}"),
+        around("{\"dt_star\": 1", "0", "}"),
+        around("{\"dt_star\": 0.", "0", "1}"),
+        around("{\"dt_star\": 0.", "123456789", "e9}"),
+        around("", " \n", "{}"),
+        around("", "{}\n", "{}"),
+        around("", "\"", ""),
+        nested(&open, "[", "", "]", &close),
+        nested(&open, "{\"a\": ", "1", "}", &close),
+        nested(before, "[", "", "]", after),
+    ]
+}
+
+/// A file of zeros as a manifest or a journal lists it.
+fn long_entry(name: &str) -> String {
+    let zeros = "0".repeat(64);
+    format!("{{\"name\": \"{name}\", \"bytes\": 0, \"blake3\": \"{zeros}\"}}")
+}
+
+/// Manifests of many files.
+fn long_manifests() -> Vec<Vec<u8>> {
+    let files = |name: &str| {
+        let entry = format!("{},", long_entry(name));
+        many("{\"files\": [", &entry, "{}], \"seal\": \"\"}")
+    };
+    let mut all = long_objects("", "");
+    all.extend(long_objects("{\"files\": [], \"a\": ", ", \"seal\": \"\"}"));
+    all.extend(["inputs/a#", "inputs/a", "summary.json", "a/a/a/a/a/a#", ".."].map(files));
+    all.push(many("", "{\"seal\": ", ""));
+    all
+}
+
+/// Journals of many files.
+fn long_journals() -> Vec<Vec<u8>> {
+    let line = |name: &str| many("", &format!("{}\n", long_entry(name)), "");
+    let mut all = long_objects("", "\n");
+    all.extend(["inputs/a#", "inputs/a", "summary.json", "a/a/a/a/a/a#"].map(line));
+    all
+}
 
 /// A summary with a value for every key.
 pub(crate) fn summary() -> Summary {

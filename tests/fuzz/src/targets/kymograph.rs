@@ -6,8 +6,9 @@ use slipfront_case::case::Case;
 use slipfront_run::fields::{kymograph_bytes, read_kymograph};
 use slipfront_run::running;
 
+use super::fields::long_headers;
 use crate::checks::readable;
-use crate::{Memory, Target, scratch};
+use crate::{Memory, Target, Time, scratch};
 
 /// Reads the file.
 pub(crate) const KYMOGRAPH: Target = Target {
@@ -30,8 +31,10 @@ pub(crate) const KYMOGRAPH: Target = Target {
         bytes: 1 << 20,
         per_byte: 128,
     },
+    time: Time::READING,
     mutations: 2000,
     repetitions: 40,
+    long: long_headers,
 };
 
 /// The bytes of the file of a run.

@@ -8,7 +8,7 @@ use slipfront_run::summary::summary_json;
 use super::json::summary;
 use super::{fields, series};
 use crate::checks::readable;
-use crate::{Memory, Target, scratch};
+use crate::{Memory, Target, Time, scratch};
 
 /// Summary, series, events of slip and fields of a run in one input, separated by [`END`]; the case is one of two, by the length of the
 /// input.
@@ -24,8 +24,11 @@ pub(crate) const PLOT: Target = Target {
         bytes: 256 << 20,
         per_byte: 1024,
     },
+    // Drawing takes the most.
+    time: Time::DRAWN,
     mutations: 5,
     repetitions: 0,
+    long: Vec::new,
 };
 
 /// A slider that is driven as a whole, and a chain that is pushed at its end.

@@ -5,7 +5,8 @@ use slipfront_case::quantity::{Density, Duration, Kind, Length, Pressure, Quanti
 use slipfront_study::Shard;
 
 use crate::checks::readable;
-use crate::{Memory, Target};
+use crate::long::many;
+use crate::{Memory, Target, Time};
 
 /// The text as a quantity of every dimension, as a shard and as the name of a field.
 pub(crate) const QUANTITY: Target = Target {
@@ -19,8 +20,24 @@ pub(crate) const QUANTITY: Target = Target {
         bytes: 64 << 10,
         per_byte: 64,
     },
+    time: Time::READING,
     mutations: 5000,
     repetitions: 20,
+    long: || {
+        vec![
+            many("1", "0", " um"),
+            many("0.", "0", "1 um"),
+            many("1", " ", "um"),
+            many("1 ", "m/", "s"),
+            many("1 ", "m ", "s"),
+            many("1 m^", "1", ""),
+            many("1 m", "\u{b2}", ""),
+            many("1 ", "\u{b5}", "m"),
+            many("1 ", "x#", ""),
+            many("1", "e9", " m"),
+            many("", "1/", "2"),
+        ]
+    },
 };
 
 fn generated() -> Vec<Vec<u8>> {

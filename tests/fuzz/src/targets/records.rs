@@ -2,9 +2,10 @@
 
 use slipfront_study::{FinishedRun, Outcome, Records};
 
-use super::json::summary;
+use super::json::{long_objects, summary};
 use crate::checks::readable;
-use crate::{Memory, Target, scratch};
+use crate::long::many;
+use crate::{Memory, Target, Time, scratch};
 
 /// The file as it is, then with the right checksum in every line.
 pub(crate) const RECORDS: Target = Target {
@@ -18,8 +19,10 @@ pub(crate) const RECORDS: Target = Target {
         bytes: 1 << 20,
         per_byte: 256,
     },
+    time: Time::READING,
     mutations: 300,
     repetitions: 40,
+    long,
 };
 
 fn record(id: &str, outcome: Outcome) -> FinishedRun {
@@ -42,6 +45,16 @@ fn generated() -> Vec<Vec<u8>> {
         [line(&failed), line(&failed), b"0123456789abcdef {\"id\"".to_vec()].concat(),
         b"some notes\nof mine\n".to_vec(),
     ]
+}
+
+/// Files of many records and of long ones.
+fn long() -> Vec<Vec<u8>> {
+    let failed = |id: &str| {
+        format!("0123456789abcdef {{\"id\":\"{id}\",\"wall_time_s\":1,\"outcome\":{{\"Failed\":\"\"}}}}\n")
+    };
+    let mut all = long_objects("0123456789abcdef ", "\n");
+    all.extend([failed("a#"), failed("a"), "\n".to_owned()].map(|line| many("", &line, "")));
+    all
 }
 
 /// A line with the right checksum.

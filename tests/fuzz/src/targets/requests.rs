@@ -12,7 +12,8 @@ use slipfront_case::case_file::{KeyKind, SECTIONS};
 use slipfront_lab::OfflineSession;
 
 use crate::checks::readable;
-use crate::{Memory, Target, scratch};
+use crate::long::{many, nested as nest};
+use crate::{Memory, Target, Time, scratch};
 
 /// Messages of a page.
 pub(crate) const REQUESTS: Target = Target {
@@ -29,9 +30,58 @@ pub(crate) const REQUESTS: Target = Target {
         bytes: 8 * 18_000_000,
         per_byte: 2048,
     },
+    time: Time::READING,
     mutations: 150,
     repetitions: 10,
+    long,
 };
+
+/// Messages with many of each thing that they may have, and with long and deep ones, each to a session with a case.
+fn long() -> Vec<Vec<u8>> {
+    let open = "{\"do\":\"open\",\"source\":{\"toml\":\"slider.blocks = [12, 9]\"}}\n";
+    let message = |begin: &str, piece: &str, end: &str| many(&format!("{open}{begin}"), piece, end);
+    let set = "{\"do\":\"set\",\"gesture\":1,\"keys\":{";
+    let toml = "{\"do\":\"open\",\"source\":{\"toml\":\"";
+    vec![
+        message(set, "\"friction.a#\":1,", "\"b\":1}}"),
+        message(set, "\"texture.#.coverage\":1,", "\"b\":1}}"),
+        message(set, "\"a#.b.c.d.e\":1,", "\"b\":1}}"),
+        message(&format!("{set}\""), "a.", "a\":1}}"),
+        message(
+            &format!("{set}\"texture\":["),
+            "{\"shape\":\"cavity\",\"coverage\":1},",
+            "{}]}}",
+        ),
+        message(&format!("{set}\"output.snapshots\":["), "#,", "1e9]}}"),
+        message(&format!("{set}\"friction.law\":\""), "\\n\\u00e9", "\"}}"),
+        nest(&format!("{open}{set}\"texture\":"), "[", "", "]", "}}"),
+        nest(&format!("{open}{set}\"texture\":"), "{\"a\":", "1", "}", "}}"),
+        message(
+            "{\"do\":\"paint\",\"radius\":2,\"textured\":true,\"gesture\":1,\"points\":[",
+            "[1,1],[9,#],",
+            "[1,1]]}",
+        ),
+        message(
+            "{\"do\":\"image\",\"threshold\":0.5,\"gesture\":1,\"png\":\"",
+            "AAAA",
+            "\"}",
+        ),
+        message(toml, "[[texture]]\\nshape = 'cavity'\\ncoverage = 1\\n", "\"}}"),
+        message(toml, "friction.mu_statik# = 1\\n", "\"}}"),
+        message(&format!("{toml}a."), "a.", "a = 1\"}}"),
+        message(
+            "{\"do\":\"open\",\"source\":{\"toml\":\"\",\"files\":{",
+            "\"a#\":\"AAAA\",",
+            "\"b\":\"\"}}}",
+        ),
+        message(
+            "{\"do\":\"open\",\"source\":{\"run\":{",
+            "\"a#\":\"AAAA\",",
+            "\"b\":\"\"}}}",
+        ),
+        message("{\"do\":\"save\",\"name\":\"", "a", "\"}"),
+    ]
+}
 
 /// Stack of the thread that answers: an eighth of that of a page's own thread, so that excessive use shows early. A stack
 /// that overflows ends the process.

@@ -6,7 +6,8 @@ use slipfront_run::precursors;
 use slipfront_run::series::{SeriesRow, read_csv, to_csv};
 
 use crate::checks::readable;
-use crate::{Memory, Target, scratch};
+use crate::long::many;
+use crate::{Memory, Target, Time, scratch};
 
 /// Target for `series.csv`.
 pub(crate) const SERIES: Target = Target {
@@ -20,8 +21,10 @@ pub(crate) const SERIES: Target = Target {
         bytes: 256 << 10,
         per_byte: 256,
     },
+    time: Time::READING,
     mutations: 2000,
     repetitions: 60,
+    long: || long(&csv(1), &csv(0)),
 };
 
 /// Target for `precursors.csv`.
@@ -29,8 +32,30 @@ pub(crate) const PRECURSORS: Target = Target {
     name: "precursors",
     check: events,
     generated: || vec![events_csv(3), events_csv(1), events_csv(0)],
+    long: || long(&events_csv(1), &events_csv(0)),
     ..SERIES
 };
+
+/// Tables with many rows, columns and comments, by one with a row and one with the header alone.
+fn long(row: &[u8], header: &[u8]) -> Vec<Vec<u8>> {
+    let (row, header) = (String::from_utf8_lossy(row), String::from_utf8_lossy(header));
+    let row = &row[header.len()..];
+    let (head, below) = (header.trim_end(), format!("\n{row}"));
+    vec![
+        many(&header, row, ""),
+        many(&header, "#,", "\n"),
+        many(&header, "#\n", ""),
+        many(&header, "\n", row),
+        many(&header, "# a comment\n", row),
+        many(&header, ",\n", ""),
+        many(head, ",a#", &below),
+        many(head, ",step", &below),
+        many("", "a#,", &format!("{header}{row}")),
+        many("", "# a comment\n", &header),
+        many(&header, "\"", row),
+        many(&header, "0", row),
+    ]
+}
 
 /// Events as CSV, `count` of them, the last of which goes on.
 pub(crate) fn events_csv(count: u32) -> Vec<u8> {

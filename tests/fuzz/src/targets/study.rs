@@ -4,7 +4,8 @@ use slipfront_case::case_file::ParsedCase;
 use slipfront_study::{StudyFile, StudyFolder};
 
 use crate::checks::readable;
-use crate::{Memory, Target, scratch};
+use crate::long::{many, nested};
+use crate::{Memory, Target, Time, scratch};
 
 /// The text of a study, its copy in the results folder, and the cases of some of its points.
 pub(crate) const STUDY_FILE: Target = Target {
@@ -19,9 +20,50 @@ pub(crate) const STUDY_FILE: Target = Target {
         bytes: 512 << 20,
         per_byte: 1024,
     },
+    time: Time::READING,
     mutations: 200,
     repetitions: 60,
+    long,
 };
+
+/// Texts with many of each thing that a study may have, and with long and deep ones.
+fn long() -> Vec<Vec<u8>> {
+    let axis = "base = '../circle.toml'\n[[axes]]\n";
+    let of_axis = |begin: &str, piece: &str, end: &str| many(&format!("{axis}{begin}"), piece, end);
+    vec![
+        of_axis("key = 'friction.seed'\nlist = [", "#, ", "]"),
+        of_axis("key = 'friction.seed'\nlist = [", "'#', ", "]"),
+        of_axis("key = 'slider.blocks'\nlist = [", "[#, 9], ", "]"),
+        of_axis("key = '", "a.", "a'\nlist = [1]"),
+        of_axis(
+            "name = 'a'\n[axes.variants]\n",
+            "v# = { friction.seed = # }\n",
+            "",
+        ),
+        many(
+            "base = '../circle.toml'\n",
+            "[[axes]]\nkey = 'friction.seed'\nlist = [1]\n",
+            "",
+        ),
+        many(
+            "base = '../circle.toml'\n",
+            "[[axes]]\nkey = 'friction.a#'\nlist = [1]\n",
+            "",
+        ),
+        many("", "[[base.texture]]\nshape = 'cavity'\n", "[[axes]]\n"),
+        many("[base.friction]\n", "mu_statik# = 1\n", ""),
+        many("base = '../circle.toml'\n[study]\n", "replicats# = 1\n", ""),
+        many(
+            "base = '../circle.toml'\n[study]\nreference = { ",
+            "a# = 1, ",
+            "b = 1 }",
+        ),
+        many("base = '", "../", "circle.toml'"),
+        many("", "axes.", "a = 1"),
+        nested("base = ", "{ base = ", "1", " }", ""),
+        nested("axes = ", "[", "", "]", ""),
+    ]
+}
 
 /// Most levels of the longest axis whose cases are parsed.
 const MAX_LEVELS: usize = 3;

@@ -59,7 +59,7 @@ pub struct HeightMap {
 /// Reads the height map called `path`, and averages it over the blocks of a room.
 ///
 /// An array, `.npy` or `.csv`, begins with the row of the smallest y, every other file with the top row, which lies at the
-/// largest y. `watch` gets the share that is done, and its error ends the work.
+/// largest y.
 ///
 /// # Errors
 /// [`ArrayError`] if the file is of another format or has more than 2^28 points or 2^20 along a side, a height is missing, a unit
@@ -69,11 +69,9 @@ pub fn height_map(
     source: &mut (impl BufRead + Seek),
     units: &HeightMapUnits,
     room: &Room,
-    watch: &mut dyn FnMut(f64) -> Result<(), ArrayError>,
 ) -> Result<HeightMap, ArrayError> {
     let mut mean = Mean::default();
     let grid = read(path, source, &mut |line| {
-        watch(0.0)?;
         let gap = line.heights.iter().position(|height| !height.is_finite());
         gap.map_or(Ok(()), |gap| Err(not_measured(path, line, gap)))?;
         mean.add(line.heights);
@@ -94,9 +92,7 @@ pub fn height_map(
     let mut moments = Moments::default();
     let mut averages = Averages::new(points, room.blocks, Quantum::of(range));
     let mut deviations = Vec::new();
-    let mut done = 0.0;
     read(path, source, &mut |line| {
-        watch(done / (points[0] as f64 * points[1] as f64))?;
         if line.row >= points[1] || line.column + line.heights.len() > points[0] {
             return Err(contents_error(
                 path,
@@ -114,7 +110,6 @@ pub fn height_map(
             },
             ..*line
         });
-        done += line.heights.len() as f64;
         Ok(())
     })?;
     let roughness = moments.roughness(unit);

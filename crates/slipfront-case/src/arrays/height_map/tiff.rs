@@ -14,6 +14,8 @@ use crate::arrays::error::{ArrayError, broken, contents_error};
 
 /// The largest strip or tile, in bytes.
 const PIECE_MAX_BYTES: usize = 1 << 26;
+/// Largest width of a tile that is wider than its picture: all of its columns are decoded, however few of them the picture has.
+const TILE_MAX_WIDTH: u32 = 1 << 10;
 /// Value of the tag for grey levels that rise towards black.
 const WHITE_IS_ZERO: u32 = 0;
 /// Value of the tag for rows from the top, each from the left.
@@ -74,6 +76,12 @@ pub(super) fn read(
     let points = points(path, ".tif", width.into(), height.into())?;
     // Of strips the last is shorter, and may say that it is as long as can be.
     let (chunk_width, chunk_height) = decoder.chunk_dimensions();
+    if chunk_width > width.max(TILE_MAX_WIDTH) {
+        let problem = format!(
+            "has tiles {chunk_width} pixels wide and is {width} wide itself: save it in strips, or in tiles of at most {TILE_MAX_WIDTH}"
+        );
+        return Err(contents_error(path, problem));
+    }
     let across = width.div_ceil(chunk_width);
     let mut heights = Vec::new();
     for chunk in 0..across * height.div_ceil(chunk_height) {

@@ -10,7 +10,7 @@ use std::path::Path;
 
 use flate2::read::DeflateDecoder;
 use rawzip::{CompressionMethod, RECOMMENDED_BUFFER_SIZE, ZipArchive};
-use roxmltree::{Document, Node};
+use roxmltree::{Document, Node, ParsingOptions};
 
 use super::grid::{HeightGrid, Line, Take, points};
 use crate::arrays::error::{ArrayError, broken, contents_error};
@@ -18,6 +18,10 @@ use crate::text::truncated;
 
 /// Largest length of `main.xml`: a description takes a few thousand bytes.
 const XML_MAX_BYTES: u64 = 1 << 20;
+/// Most nodes of `main.xml`: elements, comments and the texts between them. A description takes a few hundred.
+const NODES_MAX: u32 = 1 << 16;
+/// Most namespaces of `main.xml`, and most attributes of one of its elements. A description takes a few.
+const NAMES_MAX: usize = 64;
 
 pub(super) fn read(
     path: &Path,
@@ -168,7 +172,12 @@ struct Description {
 impl Description {
     fn of(path: &Path, xml: &str) -> Result<Self, ArrayError> {
         let refuse = |detail: &str| broken(path, ".x3p", detail);
-        let document = Document::parse(xml);
+        limit_names(xml).map_err(|detail| refuse(&detail))?;
+        let options = ParsingOptions {
+            nodes_limit: NODES_MAX,
+            ..ParsingOptions::default()
+        };
+        let document = Document::parse_with_options(xml, options);
         let document = document.map_err(|error| refuse(&format!("`main.xml` is no XML ({error})")))?;
         let root = document.root_element();
         let text = |place: &str| text_at(root, place);
@@ -235,6 +244,30 @@ impl Description {
             valid: text("Record3/DataLink/ValidPointsLink").map(str::to_owned),
         })
     }
+}
+
+/// Refuses XML with many namespaces or attributes: the parser compares each with all others of its element, and each element with all
+/// namespaces around it, so that its time would grow with the cube of the length of the text.
+///
+/// # Errors
+/// What there is too much of, with both numbers.
+fn limit_names(xml: &str) -> Result<(), String> {
+    let namespaces = xml.matches("xmlns").count();
+    if namespaces > NAMES_MAX {
+        return Err(format!(
+            "`main.xml` declares {namespaces} namespaces, and at most {NAMES_MAX} are read"
+        ));
+    }
+    // No value of an attribute contains a `<`, so that all attributes of an element stand before the next one.
+    let begins_value = |after: &&str| after.trim_start().starts_with(['"', '\'']);
+    let of_element = |piece: &str| piece.split('=').skip(1).filter(begins_value).count();
+    let attributes = xml.split('<').map(of_element).max().unwrap_or(0);
+    if attributes > NAMES_MAX {
+        return Err(format!(
+            "an element of `main.xml` has {attributes} attributes, and at most {NAMES_MAX} are read"
+        ));
+    }
+    Ok(())
 }
 
 /// The text of an element below another one, such as `Record1/Axes`, if it is there and not empty.
