@@ -31,16 +31,17 @@ use crate::watcher::watcher;
 
 /// Some tenths of a second, with frames before the checkpoint and after it.
 const CASE: &str = "slider = { blocks = [60, 50], edges = ['periodic', 'free'] }\ndrive.v_star = 0.05\n\
-                    time.duration_star = 200\noutput = { snapshots = [30, 150], series = 5 }\n";
+                    output = { snapshots = [20, 55], series = 5 }\n";
 
-/// Laws of friction and a drive, of which each keeps other numbers in a checkpoint: the case with each of them.
+/// Laws of friction and a drive, of which each keeps other numbers in a checkpoint, with the end of [`CASE`].
 const LAWS: [&str; 6] = [
-    "friction.slip_weakening = { length_star = 0.4 }\n",
-    "friction.velocity = { law = 'weakening', v_c_star = 0.1, ratio = 0.2 }\n",
-    "friction.ageing = { law = 'logarithmic', beta = 0.07, time_star = 1 }\n",
-    "friction = { law = 'rate_and_state', a = 0.02, b = 0.06, d_c_star = 0.05, v_0_star = 0.01, mu_0 = 0.6 }\n",
-    "friction.correlation_length = '3 um'\n",
-    "drive.loading = 'held'\n",
+    "friction.slip_weakening = { length_star = 0.4 }\ntime.duration_star = 200\n",
+    "friction.velocity = { law = 'weakening', v_c_star = 0.1, ratio = 0.2 }\ntime.duration_star = 200\n",
+    "friction.ageing = { law = 'logarithmic', beta = 0.07, time_star = 1 }\ntime.duration_star = 200\n",
+    "friction = { law = 'rate_and_state', a = 0.02, b = 0.06, d_c_star = 0.05, v_0_star = 0.01, mu_0 = 0.6 }\ntime.duration_star = 200\n",
+    "friction.correlation_length = '3 um'\ntime.duration_star = 200\n",
+    // Steps in which the drive is held come on top, and would be a hundred thousand.
+    "drive.loading = 'held'\ntime.duration_star = 60\n",
 ];
 
 const RESUME: &str = "run --resume run --checkpoint 0s";
