@@ -115,15 +115,19 @@ def test_a_folder_is_opened_and_held_against_its_records(sheet: Path, tmp_path: 
     assert opened.to_dict() == found.to_dict() and opened.text == found.text and opened.runs.equals(found.runs)
     told = folder / "convergence.json"
     told.write_text(told.read_text().replace("1.00", "1.01", 1))
-    with pytest.raises(sf.FolderError, match="convergence.json differs: other bytes follow from the records"):
+    with pytest.raises(sf.FolderError, match="convergence.json differs: other bytes were written"):
         sf.open(folder)
-    # Once more, it is written as the records give it.
-    sf.converge(sheet, folder, progress=False)
+    # An edited file is replaced on demand, as the records give it.
+    with pytest.raises(sf.FolderError, match="convergence.json; .* by `force=True`"):
+        sf.converge(sheet, folder, progress=False)
+    sf.converge(sheet, folder, force=True, progress=False)
     assert isinstance(sf.open(folder), sf.Convergence)
-    # Without what meshes found it is the folder of any study.
+    # Without what meshes found it is the folder of any study, of which files are missing.
     for name in ("convergence.json", "convergence.txt"):
         (folder / name).unlink()
-    assert type(sf.open(folder)) is sf.StudyResults
+    with pytest.raises(sf.FolderError, match="convergence.json is missing"):
+        sf.open(folder)
+    assert type(sf.open(folder, verify=False)) is sf.StudyResults
 
 
 @pytest.mark.usefixtures("interruptible")
