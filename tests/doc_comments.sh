@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Doc comments that cannot be understood alone, although rustdoc shows each of them by itself: those that begin with a pronoun or with a
 # clause in place of a noun, and those with a sentence that leans on another comment, such as "The same of ...", "Those of ..." or
-# "Of the ...".
+# "Of the ..."; and headings that a text follows on their line.
 #
 #     tests/doc_comments.sh
 #     tests/doc_comments.sh crates/slipfront
@@ -43,5 +43,10 @@ while IFS= read -r comment; do
   echo "$comment"
   found=$((found + 1))
 done < <(comments "$@" | grep -E "^[^:]*:[0-9]+: *(($pronoun)( |,|\.|:|$)|($leaning))|(\.|\|) +(The same( of|\.)|(That|Those|Ones) of|All of (it|them)\.|Of (the|these|those|a|an|its|all) )" || true)
+# rustdoc takes the rest of the line for a part of the heading.
+while IFS= read -r heading; do
+  echo "$heading"
+  found=$((found + 1))
+done < <(git ls-files --cached --others --exclude-standard -- "$@" | grep '\.rs$' | xargs -r grep -nE '^ *//[/!] # (Errors|Panics) +[^ ]' || true)
 echo "$found doc comments that cannot be understood alone"
 (( found == 0 ))

@@ -125,7 +125,8 @@ pub fn open_limited(path: &Path, most: u64) -> std::io::Result<Take<File>> {
 
 /// Refuses a file of more than `most` bytes.
 ///
-/// # Errors With both numbers.
+/// # Errors
+/// With both numbers.
 pub fn expect_at_most(length: u64, most: u64) -> std::io::Result<()> {
     if length > most {
         let sentence = format!("it has {length} bytes where at most {most} can be meant");

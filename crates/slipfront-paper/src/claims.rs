@@ -188,7 +188,8 @@ impl Claim {
 
     /// Judges the claim by the measured numbers.
     ///
-    /// # Errors [`PaperError::Unmeasured`] when the claim's number is not among them.
+    /// # Errors
+    /// [`PaperError::Unmeasured`] when the claim's number is not among them.
     pub fn judge(self, numbers: &BTreeMap<String, MeasuredNumber>) -> Result<ClaimResult, PaperError> {
         let measured = |quantity: &String| {
             let number = numbers.get(quantity).copied();

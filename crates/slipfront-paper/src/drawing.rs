@@ -45,7 +45,8 @@ impl Drawing {
 
     /// Numbers of the picture as CSV, with as many digits as read back to the same bits.
     ///
-    /// # Errors When the numbers cannot be written as CSV.
+    /// # Errors
+    /// When the numbers cannot be written as CSV.
     pub fn csv(&self) -> Result<Vec<u8>, PaperError> {
         let mut table = csv::Writer::from_writer(Vec::new());
         match self {

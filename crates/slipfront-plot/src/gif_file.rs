@@ -22,7 +22,8 @@ pub struct MovieGif {
 impl MovieGif {
     /// A file without pictures, which will be of this size and have these colours, at most 255.
     ///
-    /// # Errors When there are more colours.
+    /// # Errors
+    /// When there are more colours.
     pub fn of(palette: &[[u8; 3]], size: MovieSize) -> Result<Self, PictureError> {
         let transparent = palette.len();
         let mut colours = palette.concat();
@@ -40,7 +41,8 @@ impl MovieGif {
 
     /// Adds a picture that is shown for `delay` hundredths of a second.
     ///
-    /// # Errors When the picture has another number of pixels.
+    /// # Errors
+    /// When the picture has another number of pixels.
     pub fn add(&mut self, pixels: Vec<u8>, delay: u16) -> Result<(), PictureError> {
         let [width, height] = self.pixels;
         let [left, top, right, bottom] = if self.before.len() == pixels.len() {
@@ -76,7 +78,8 @@ impl MovieGif {
 
     /// The bytes of the file.
     ///
-    /// # Errors No error can be foreseen, because the file is written to memory.
+    /// # Errors
+    /// No error can be foreseen, because the file is written to memory.
     pub fn finish(self) -> Result<Vec<u8>, PictureError> {
         Ok(self.encoder.into_inner()?)
     }

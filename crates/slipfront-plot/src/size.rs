@@ -48,14 +48,16 @@ impl PictureSize {
 
     /// Refuses a width in which letters leave no room for curves.
     ///
-    /// # Errors [`PictureError::TooSmall`], with the least width for these letters.
+    /// # Errors
+    /// [`PictureError::TooSmall`], with the least width for these letters.
     pub(crate) fn check_width(self, usual: f64) -> Result<(), PictureError> {
         self.expect("width", self.width(usual), MIN_WIDTH)
     }
 
     /// Refuses a height in which a legend of height `above` leaves no room for curves.
     ///
-    /// # Errors [`PictureError::TooSmall`], with the least height for these letters.
+    /// # Errors
+    /// [`PictureError::TooSmall`], with the least height for these letters.
     pub(crate) fn check_height(self, above: f64) -> Result<(), PictureError> {
         let height = self.height().unwrap_or(f64::INFINITY);
         self.expect("height", height, above + MIN_HEIGHT)

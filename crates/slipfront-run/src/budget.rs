@@ -280,7 +280,8 @@ impl RunBudget {
     /// Refuses a run, new or resumed, that needs more memory than there is; surface and slider of all ranks are in memory
     /// already.
     ///
-    /// # Errors A sentence with both figures, the cause of the largest part, and the key to change.
+    /// # Errors
+    /// A sentence with both figures, the cause of the largest part, and the key to change.
     pub fn check_memory(&self, file: &CaseFile) -> Result<(), CaseError> {
         let made = self.case.blocks * self.case.surface;
         self.compare_memory(file, made, available_memory())

@@ -69,7 +69,8 @@ impl Running {
     /// where X is the displacement of the driven end over each block, and a prime marks the new case. Scales, load and the
     /// state of stuck blocks follow the new case. This run stays as it is.
     ///
-    /// # Errors [`ChangeError`] when the cases have other blocks, contacts of one of them remember more than a state holds,
+    /// # Errors
+    /// [`ChangeError`] when the cases have other blocks, contacts of one of them remember more than a state holds,
     /// or the run diverges.
     ///
     /// # Panics

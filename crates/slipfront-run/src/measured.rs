@@ -152,7 +152,8 @@ impl MeasuredRecord {
     /// numbers at the end are passed over, and named. The first column is along times or displacements; the second has
     /// forces, or coefficients if its unit is 1.
     ///
-    /// # Errors When the table cannot be read, has not these columns, or lacks numbers in them before its end; when no
+    /// # Errors
+    /// When the table cannot be read, has not these columns, or lacks numbers in them before its end; when no
     /// unit is known.
     pub fn read(path: &Path, columns: [&Column; 2], along: Measure) -> Result<Self, MeasuredError> {
         let failed = |source: csv::Error| MeasuredError::Read {

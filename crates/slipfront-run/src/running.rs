@@ -225,7 +225,8 @@ impl Running {
     /// `execution` says, on no more threads than have enough blocks; ranks that share the lattice call this and then the
     /// same functions.
     ///
-    /// # Panics If a number of the state is not finite, or the state has another number of blocks.
+    /// # Panics
+    /// If a number of the state is not finite, or the state has another number of blocks.
     pub fn start(case: &Arc<Case>, state: Option<State>, execution: Execution) -> Self {
         let (model, dt_star) = (Arc::clone(&case.model), case.time_plan.dt_star);
         let execution = on_useful_threads(case, execution);
@@ -241,7 +242,8 @@ impl Running {
     /// Goes on with a run where its state was written down; none if the state is not one of this case. `read` gets a place
     /// in the columns of the state and room for the bytes from there on.
     ///
-    /// # Errors Errors of `read`.
+    /// # Errors
+    /// Errors of `read`.
     pub fn resume<E>(
         case: &Arc<Case>,
         state: RunState,
@@ -385,7 +387,8 @@ impl Running {
     /// Passes the numbers of the rows that are held here to `write`, with a place in the columns and the bytes from there
     /// on.
     ///
-    /// # Errors Errors of `write`.
+    /// # Errors
+    /// Errors of `write`.
     pub fn write_columns<E>(&self, mut write: impl FnMut(u64, &[u8]) -> Result<(), E>) -> Result<(), E> {
         let [blocks, fields] = self.columns();
         let mut bytes = Vec::new();

@@ -47,7 +47,8 @@ pub fn estimated_seconds(plan: &Plan, threads: usize) -> Result<f64, CaseError> 
 impl CostLimits {
     /// Refuses a plan if there is no memory for `threads` runs at once, or if it exceeds the limits.
     ///
-    /// # Errors A sentence with the cost, the limit, and the remedy.
+    /// # Errors
+    /// A sentence with the cost, the limit, and the remedy.
     pub fn check(self, plan: &Plan, threads: usize) -> Result<(), StudyError> {
         const GB: f64 = 1e9;
         plan.check_memory(threads)?;

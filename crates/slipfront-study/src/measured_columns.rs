@@ -27,7 +27,8 @@ impl MeasuredColumns {
 
     /// The record in a table.
     ///
-    /// # Errors A sentence on why the table is no record.
+    /// # Errors
+    /// A sentence on why the table is no record.
     pub(crate) fn read(&self, path: &Path, along: Measure) -> Result<MeasuredRecord, String> {
         let read = MeasuredRecord::read(path, [&self.x, &self.y], along);
         read.map_err(|error| match error {

@@ -219,7 +219,8 @@ impl StudyFile {
 
     /// Sets keys of the base case, each by a text such as `drive.v_star=0.05`.
     ///
-    /// # Errors A text that is no override, and a key that an axis sets.
+    /// # Errors
+    /// A text that is no override, and a key that an axis sets.
     pub fn set(&mut self, overrides: &[String]) -> Result<(), CaseError> {
         for text in overrides {
             let change = Override::parse(text)?;

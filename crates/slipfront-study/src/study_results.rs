@@ -112,7 +112,8 @@ impl StudyResults {
 
     /// Refuses results with failed runs, and names the first.
     ///
-    /// # Errors A sentence with the number of failed runs, and the reason of the first.
+    /// # Errors
+    /// A sentence with the number of failed runs, and the reason of the first.
     pub fn expect_no_failures(&self, plan: &Plan) -> Result<(), StudyError> {
         let Some((run, reason)) = self.failures().next() else {
             return Ok(());
@@ -128,7 +129,8 @@ impl StudyResults {
 
     /// Refuses results in which no run has a value of the main quantity of the study.
     ///
-    /// # Errors A sentence with the quantity.
+    /// # Errors
+    /// A sentence with the quantity.
     pub fn expect_values(&self, plan: &Plan) -> Result<(), StudyError> {
         let quantity = plan.main_quantity();
         if (0..plan.points.len()).any(|position| self.sample(plan, position, quantity).is_some()) {

@@ -122,7 +122,8 @@ impl Simulation {
     /// first block, and the values. The columns are [`BlockColumn::ALL`] and those of the law of friction, together
     /// [`Model::n_columns`].
     ///
-    /// # Errors Errors of `write`.
+    /// # Errors
+    /// Errors of `write`.
     pub fn write_columns<E>(
         &self,
         mut write: impl FnMut(usize, usize, &[f64]) -> Result<(), E>,

@@ -40,7 +40,8 @@ pub struct Input {
 impl Input {
     /// Contents of the file, read once more unless they are in memory.
     ///
-    /// # Errors When the file cannot be read, or has changed since the case was made from it.
+    /// # Errors
+    /// When the file cannot be read, or has changed since the case was made from it.
     pub fn read_again(&self) -> Result<Arc<[u8]>, CaseError> {
         if let Some(contents) = &self.contents {
             return Ok(Arc::clone(contents));
@@ -61,7 +62,8 @@ impl Input {
 
     /// Opens the file to be copied.
     ///
-    /// # Errors When the file is on the disk and is no regular file that can be read.
+    /// # Errors
+    /// When the file is on the disk and is no regular file that can be read.
     pub fn open(&self) -> io::Result<Opened> {
         match &self.contents {
             Some(contents) => Ok(Opened::in_memory(contents)),

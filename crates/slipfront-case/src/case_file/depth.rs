@@ -19,7 +19,8 @@ const MAX_PARTS: usize = 4;
 
 /// The parts of a key by which a value is set, such as `texture.0.coverage`.
 ///
-/// # Errors A sentence, if the parts are too many or no names.
+/// # Errors
+/// A sentence, if the parts are too many or no names.
 pub fn parts_of(key: &str) -> Result<Vec<&str>, &'static str> {
     let is_bare = |c: char| c.is_ascii_alphanumeric() || "_-".contains(c);
     let is_name = |part: &&str| !part.is_empty() && part.chars().all(is_bare);

@@ -68,7 +68,8 @@ impl CaseFile {
     /// `name` stands for the file in messages. An override's value is TOML, or else a string as it stands; it replaces
     /// a key that excludes it, such as `drive.v_star` of the file when `drive.speed` is set.
     ///
-    /// # Errors [`CaseError::Invalid`], with its place, for text that is not TOML, unknown keys and values out of their
+    /// # Errors
+    /// [`CaseError::Invalid`], with its place, for text that is not TOML, unknown keys and values out of their
     /// bounds.
     pub fn parse(text: &str, name: &str, overrides: &[String]) -> Result<Self, CaseError> {
         let base = ParsedCase::parse(text, name)?;
@@ -143,7 +144,8 @@ impl CaseFile {
 
     /// Writes the case with every default filled in, in the order of the design; reading it back gives an equal case.
     ///
-    /// # Errors Errors of [`check`](Self::check) for a case that was changed in code, so that the written text can be read.
+    /// # Errors
+    /// Errors of [`check`](Self::check) for a case that was changed in code, so that the written text can be read.
     pub fn to_toml(&self) -> Result<String, CaseError> {
         self.check()?;
         // By way of a table, so that the keys of every struct need only one writer.
@@ -224,14 +226,16 @@ pub struct ParsedCase<'t> {
 impl<'t> ParsedCase<'t> {
     /// Parses the text of a case file, which messages call `name`.
     ///
-    /// # Errors [`CaseError::Invalid`] for text that is not TOML.
+    /// # Errors
+    /// [`CaseError::Invalid`] for text that is not TOML.
     pub fn parse(text: &'t str, name: &str) -> Result<Self, CaseError> {
         Self::parse_from(text, Source::new(name, text))
     }
 
     /// Parses the text of a case file; `source` is that text, with what is known of its places.
     ///
-    /// # Errors [`CaseError::Invalid`] for text that is not TOML.
+    /// # Errors
+    /// [`CaseError::Invalid`] for text that is not TOML.
     pub fn parse_from(text: &'t str, source: Source) -> Result<Self, CaseError> {
         let root = DeTable::parse(limit_nesting(&source, 0, text)?);
         let root = root.map_err(|error| syntax_error(&source, 0, &error))?;
@@ -244,7 +248,8 @@ impl<'t> ParsedCase<'t> {
 
     /// Sets these keys of the file, one after the other, as `--set` does.
     ///
-    /// # Errors [`CaseError::Invalid`] for an override that does not fit; errors of the case come from [`with`](Self::with).
+    /// # Errors
+    /// [`CaseError::Invalid`] for an override that does not fit; errors of the case come from [`with`](Self::with).
     pub fn set(mut self, overrides: &'t [Override]) -> Result<Self, CaseError> {
         for change in overrides {
             change.apply(&mut self.root, &mut self.source)?;
@@ -254,7 +259,8 @@ impl<'t> ParsedCase<'t> {
 
     /// The keys of the file, without defaults.
     ///
-    /// # Errors [`CaseError::Invalid`] for a value that no table of TOML can hold.
+    /// # Errors
+    /// [`CaseError::Invalid`] for a value that no table of TOML can hold.
     pub fn to_table(&self) -> Result<toml::Table, CaseError> {
         let tables = Tables {
             root: DeTable::default(),
@@ -267,7 +273,8 @@ impl<'t> ParsedCase<'t> {
     /// Makes the case with these overrides the base of many cases. The base is read once, so that [`with`](Self::with) only
     /// reads the tables that are changed further.
     ///
-    /// # Errors [`CaseError::Invalid`] for an override that does not fit; errors of the case come from `with`.
+    /// # Errors
+    /// [`CaseError::Invalid`] for an override that does not fit; errors of the case come from `with`.
     pub fn prepared<'a>(&'a self, overrides: &[&'a Override]) -> Result<ParsedCase<'a>, CaseError> {
         let mut prepared = ParsedCase {
             root: self.root.clone(),

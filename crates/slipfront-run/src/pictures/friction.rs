@@ -135,7 +135,8 @@ impl Scale {
 /// Without units and abscissa of their own, runs of different materials are drawn where they can be compared: if their mean
 /// local coefficients differ, as mu; if their units of time differ, against the path of the drive.
 ///
-/// # Errors When a folder cannot be read, or its run lacks the requested data.
+/// # Errors
+/// When a folder cannot be read, or its run lacks the requested data.
 pub fn overlay(
     folders: &[PathBuf],
     units: AxisUnits,

@@ -48,7 +48,8 @@ pub(super) fn of_run(run: RunFiles) -> Result<Option<Picture>, RunPictureError> 
 
 /// Draws the kymograph of a run from its first instant to its last.
 ///
-/// # Errors When the files cannot be read, or none is a kymograph.
+/// # Errors
+/// When the files cannot be read, or none is a kymograph.
 pub fn draw_kymograph(run: RunFiles) -> Result<Picture, RunPictureError> {
     let summary = summary_of(&run.file(SUMMARY)?)?;
     let kymograph = fields::read_kymograph(run.file(KYMOGRAPH)?)?;

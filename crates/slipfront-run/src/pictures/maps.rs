@@ -73,7 +73,8 @@ pub(super) fn of_run(run: RunFiles) -> Result<Option<Picture>, RunPictureError> 
 
 /// Draws the maps of a field of a run from its files, which must be there and undamaged.
 ///
-/// # Errors When the files cannot be read, or hold no such maps.
+/// # Errors
+/// When the files cannot be read, or hold no such maps.
 pub fn draw_field(run: RunFiles, field: Field) -> Result<Picture, RunPictureError> {
     draw_maps(run, case_of(run)?.as_ref(), field)?.ok_or_else(|| RunPictureError::NoMaps {
         path: run.path().join(FIELDS),

@@ -123,7 +123,8 @@ pub fn of_run(run: RunFiles, field: Option<Field>) -> Result<Option<Movie>, RunP
 
 /// Duration of each picture of a movie, in hundredths of a second.
 ///
-/// # Errors When pictures would be shown for too short a time.
+/// # Errors
+/// When pictures would be shown for too short a time.
 pub fn delays(movie: &Movie, pace: MoviePace) -> Result<Vec<u16>, RunPictureError> {
     let weight = |frame: &MovieFrame| {
         if frame.label.is_empty() {
@@ -169,14 +170,16 @@ fn usual_delays(movie: &Movie) -> Vec<u16> {
 
 /// The pictures of a movie before they are drawn, and their colours.
 ///
-/// # Errors When the pictures cannot be drawn.
+/// # Errors
+/// When the pictures cannot be drawn.
 pub fn pictures(movie: &Movie, size: MovieSize) -> Result<MoviePictures<'_>, RunPictureError> {
     MoviePictures::of(movie, size).map_err(not_drawn)
 }
 
 /// Draws the pictures of a movie one after the other, and passes each to `take`.
 ///
-/// # Errors Errors of `take`.
+/// # Errors
+/// Errors of `take`.
 pub fn draw<E>(
     movie: &Movie,
     pictures: &MoviePictures,

@@ -50,7 +50,8 @@ pub enum CaseDefect {
 impl Inspection {
     /// Reads the case and the manifest of a folder.
     ///
-    /// # Errors When the folder cannot be listed, or the system does not tell what it holds.
+    /// # Errors
+    /// When the folder cannot be listed, or the system does not tell what it holds.
     pub fn of(folder: &Path) -> Result<Self, FolderError> {
         let is_unused = is_unused(folder)?;
         let case = read_case(folder);

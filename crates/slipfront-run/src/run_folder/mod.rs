@@ -71,7 +71,8 @@ impl OpenedFolder {
     /// Makes the folder ready for a run that reads these `inputs`: it is created, or is empty, or with `force` the files of
     /// an earlier run are removed (and nothing else).
     ///
-    /// # Errors When the folder holds other files, which includes foreign files in the place of the copies, or cannot be
+    /// # Errors
+    /// When the folder holds other files, which includes foreign files in the place of the copies, or cannot be
     /// written.
     pub fn prepare(self, force: bool, inputs: &[Input]) -> Result<RunFolder, FolderError> {
         self.claim(force, inputs)?.take()
@@ -160,7 +161,8 @@ pub struct ClaimedFolder {
 impl ClaimedFolder {
     /// Removes the files of the earlier run.
     ///
-    /// # Errors When a file cannot be removed.
+    /// # Errors
+    /// When a file cannot be removed.
     pub fn take(self) -> Result<RunFolder, FolderError> {
         let (manifest, others): (Vec<_>, Vec<_>) =
             self.replaced.into_iter().partition(|name| name == MANIFEST);
@@ -188,7 +190,8 @@ impl ClaimedFolder {
 /// Fails on all ranks, with the same words, unless each of them sees under its path the folder in which rank 0 is about to run.
 /// Every rank must ask.
 ///
-/// # Errors When a rank does not; the sentence names it.
+/// # Errors
+/// When a rank does not; the sentence names it.
 pub fn expect_shared(path: &Path, communicator: &dyn Communicator) -> Result<(), RankFailure> {
     if communicator.size() == 1 {
         return Ok(());
@@ -290,7 +293,8 @@ impl RunFolder {
 
     /// Copies a file that the case reads, where no foreign file stands in its place.
     ///
-    /// # Errors When the file has changed since the case was made from it, or cannot be read or written.
+    /// # Errors
+    /// When the file has changed since the case was made from it, or cannot be read or written.
     pub(crate) fn copy(&mut self, input: &Input) -> Result<(), FolderError> {
         let path = self.path.join(&input.name);
         let failed = |source| FolderError::Copy {

@@ -96,7 +96,8 @@ impl SetUp {
 
     /// The case of a record at these shares of the ranges, over the surface that `friction.seed` draws.
     ///
-    /// # Errors When the case is not valid, or cannot be put on blocks of half the size where they are asked for.
+    /// # Errors
+    /// When the case is not valid, or cannot be put on blocks of half the size where they are asked for.
     pub fn case(&self, shares: &[f64], seed: u64, conditions: &Conditions) -> Result<Case, CaseError> {
         let mut changes = self.set_to(shares);
         changes.push(Override::new("friction.seed", &toml::Value::from(seed as i64)));
@@ -114,7 +115,8 @@ impl SetUp {
 
     /// The curves of all records at these shares of the ranges, over the surface that `friction.seed` draws; none after a stop.
     ///
-    /// # Errors When the case is not valid there, the run diverges, or it ends before a record.
+    /// # Errors
+    /// When the case is not valid there, the run diverges, or it ends before a record.
     pub fn curves(
         &self,
         shares: &[f64],

@@ -38,7 +38,8 @@ impl Training {
     /// Runs the points of the ranges that are not `known`, each over a surface of its own, on rayon's threads; `keep` gets
     /// the runs as they end.
     ///
-    /// # Errors The error of the first run that has one, errors of `keep`, and after a stop.
+    /// # Errors
+    /// The error of the first run that has one, errors of `keep`, and after a stop.
     pub fn run(
         set_up: &SetUp,
         runs: usize,

@@ -48,7 +48,8 @@ pub fn is_written(folder: &Path, axes: &[Axis]) -> bool {
 
 /// Writes the tables and pictures of a study over meshes to its folder, and the comparison of the meshes.
 ///
-/// # Errors When a run failed, which the tables name, or when the system refuses to write.
+/// # Errors
+/// When a run failed, which the tables name, or when the system refuses to write.
 pub fn write(
     plan: &Plan,
     results: &StudyResults,

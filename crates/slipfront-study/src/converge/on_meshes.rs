@@ -141,7 +141,8 @@ pub struct OnMeshes {
 impl OnMeshes {
     /// The comparison from the runs of a study over meshes.
     ///
-    /// # Errors When the case is no longer valid.
+    /// # Errors
+    /// When the case is no longer valid.
     pub(crate) fn of(plan: &Plan, results: &StudyResults) -> Result<Self, CaseError> {
         let of_a_block = plan.first_case_file()?.lengths_of_a_block();
         Ok(Self {
@@ -153,7 +154,8 @@ impl OnMeshes {
 
     /// Refuses a comparison in the folder of a study in which no quantity has a value on every mesh.
     ///
-    /// # Errors A sentence that names the table of the runs.
+    /// # Errors
+    /// A sentence that names the table of the runs.
     pub fn expect_values(&self, folder: &Path) -> Result<(), StudyError> {
         if self.quantities.is_empty() {
             let path = folder.join("runs.csv");

@@ -187,14 +187,16 @@ impl DesignFile {
 
     /// The case in which designs are tried first, with its own texture.
     ///
-    /// # Errors When the case is not valid.
+    /// # Errors
+    /// When the case is not valid.
     pub fn case(&self) -> Result<Case, CaseError> {
         self.case_with(&[])
     }
 
     /// The cases for which the texture is designed, with the texture of the base: one for every table of `cases`, or the base alone.
     ///
-    /// # Errors When one of them is not valid.
+    /// # Errors
+    /// When one of them is not valid.
     pub(super) fn cases(&self) -> Result<Vec<Case>, CaseError> {
         if self.keys.cases.is_empty() {
             return Ok(vec![self.case()?]);

@@ -86,7 +86,8 @@ impl Design {
     /// A design for some cases, at least one, all on the same blocks, each with the wish in its own units; `is_worst` asks for the
     /// worst case, in place of the mean over them.
     ///
-    /// # Errors When a case cannot be run for as long as the search needs, or one of its files has changed since the case
+    /// # Errors
+    /// When a case cannot be run for as long as the search needs, or one of its files has changed since the case
     /// was made.
     ///
     /// # Panics

@@ -171,7 +171,8 @@ pub(super) fn most_runs(evaluator: &Evaluator) -> (usize, f64) {
 impl Evaluator {
     /// The evaluator with its cases at another speed of the drive.
     ///
-    /// # Errors When a case has a program of speeds, or cannot be run at that speed.
+    /// # Errors
+    /// When a case has a program of speeds, or cannot be run at that speed.
     fn at_speed(&self, factor: f64) -> Result<Self, CaseError> {
         let faster = |speed: &DriveSpeed| match speed {
             DriveSpeed::VStar(v_star) => Ok(DriveSpeed::VStar(v_star * factor)),
@@ -187,7 +188,8 @@ impl Evaluator {
 
     /// The cases on blocks of half the size, as [`Case::on_other_blocks`](slipfront_case::case::Case::on_other_blocks) puts them there.
     ///
-    /// # Errors When a case cannot be put there.
+    /// # Errors
+    /// When a case cannot be put there.
     pub(super) fn on_finer_blocks(&self) -> Result<Self, CaseError> {
         let subjects = self.subjects.iter().map(Subject::on_finer_blocks);
         let subjects = subjects.collect::<Result<_, _>>()?;

@@ -122,7 +122,8 @@ impl Subject {
 
     /// The case on blocks of half the size.
     ///
-    /// # Errors When the case cannot be put on such blocks.
+    /// # Errors
+    /// When the case cannot be put on such blocks.
     pub(crate) fn on_finer_blocks(&self) -> Result<Self, CaseError> {
         let case = self.made_of(self.file.clone(), &self.files)?;
         let set = case.on_other_blocks(2.0)?;

@@ -72,7 +72,8 @@ pub fn smallest(case: &Case) -> Result<Clearance, CaseError> {
 /// Writes the texture of a case to `path`, in the format of its ending; `scale` is the number of pixels of a block along a
 /// side of a picture, one if there is none. Returns notes about the file.
 ///
-/// # Errors [`TextureFileError`], if the ending names no format, the file would be too large, or cannot be written.
+/// # Errors
+/// [`TextureFileError`], if the ending names no format, the file would be too large, or cannot be written.
 pub fn write(case: &Case, path: &Path, scale: Option<usize>) -> Result<Vec<String>, TextureFileError> {
     let (bytes, notes) = contents(case, path, scale)?;
     write_atomic(path, &bytes).map_err(|source| ArrayError::Write {
