@@ -176,7 +176,9 @@ def test_the_folder_of_the_paper_is_tables(tmp_path: Path) -> None:
     (tmp_path / "claims.csv").write_text("number,claim,value\n1,it slips,0.69\n")
     (tmp_path / "fig03.png").write_bytes(b"")
     (tmp_path / "fig03.csv").write_text("t,mu\n0,0\n1,0.5\n")
-    paper = sf.open(tmp_path)
+    with pytest.raises(sf.FolderError, match="checksums.json is missing"):
+        sf.open(tmp_path)
+    paper = sf.open(tmp_path, verify=False)
     assert isinstance(paper, sf.PaperResults)
     assert paper.claims["value"].tolist() == [0.69]
     assert list(paper.figures) == ["fig03"] and paper.figures["fig03"]["mu"].tolist() == [0, 0.5]

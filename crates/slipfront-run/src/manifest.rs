@@ -254,12 +254,12 @@ pub fn seal(manifest: &[u8]) -> Option<String> {
 }
 
 /// A file whose reading ends with an error as soon as `stop` is set.
-struct Until<'s> {
-    file: File,
-    stop: &'s AtomicBool,
+pub(crate) struct Until<'s, R> {
+    pub(crate) file: R,
+    pub(crate) stop: &'s AtomicBool,
 }
 
-impl Read for Until<'_> {
+impl<R: Read> Read for Until<'_, R> {
     fn read(&mut self, bytes: &mut [u8]) -> std::io::Result<usize> {
         if self.stop.load(Ordering::Relaxed) {
             return Err(std::io::Error::other("stopped"));

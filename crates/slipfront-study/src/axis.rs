@@ -79,6 +79,9 @@ const MAX_LEVELS: usize = 100_000;
 /// The longest key of an axis, in bytes: all keys of a case are shorter. A key is repeated in every level.
 const MAX_KEY: usize = 100;
 
+/// Largest number of keys that a level sets: a case without textures has fewer. Every one is compared with all others.
+const MAX_KEYS: usize = 300;
+
 impl Axis {
     pub(crate) fn new(keys: AxisKeys) -> Result<Self, String> {
         let all = keys.key.iter().chain(keys.zip.iter().flat_map(toml::Table::keys));
@@ -177,6 +180,13 @@ impl Axis {
             }
         }
         for level in &self.levels {
+            let count = level.overrides.len();
+            if count > MAX_KEYS {
+                return Err(format!(
+                    "the level {} sets {count} keys, more than {MAX_KEYS}: put what all levels share into the base",
+                    truncated(&level.labels.join(", "))
+                ));
+            }
             let mut earlier = BTreeSet::new();
             for key in level.overrides.iter().map(Override::key) {
                 if let Some(other) = conflict(key, &earlier) {
@@ -702,6 +712,20 @@ mod tests {
         );
         assert_eq!(axis.levels[1].number, Some(50.0));
         assert!(crate::Axis::new(toml::from_str("zip = { a = [1], b = [1, 2] }").unwrap()).is_err());
+    }
+
+    /// Every key is compared with all others, which would take minutes in a file of 300 kB.
+    #[test]
+    fn more_keys_than_a_case_has_are_refused() {
+        let keys =
+            |value: &str| -> String { (0..400).map(|k| format!("'friction.a{k}' = {value}, ")).collect() };
+        for text in [
+            format!("zip = {{ {} }}", keys("[1]")),
+            format!("name = 'a'\nvariants = {{ b = {{ {} }} }}", keys("1")),
+        ] {
+            let said = axis(&text).unwrap_err();
+            assert!(said.contains("sets 400 keys, more than 300"), "{said}");
+        }
     }
 
     /// A few megabytes of text must not become terabytes.

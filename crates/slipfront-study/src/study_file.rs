@@ -412,6 +412,9 @@ pub(crate) fn read_base(tables: &mut Tables, file: &str, folder: &Path) -> Resul
     }
 }
 
+/// Largest number of axes: 20 of two levels are as many points as a study may have.
+const MAX_AXES: usize = 64;
+
 fn read_axes(tables: &mut Tables) -> Result<Vec<Axis>, StudyError> {
     let Some(value) = tables.root.remove("axes") else {
         return Ok(Vec::new());
@@ -421,6 +424,13 @@ fn read_axes(tables: &mut Tables) -> Result<Vec<Axis>, StudyError> {
         let sentence = "`axes` must be a list of tables: write [[axes]] above the keys of each";
         return Err(tables.source.error_at(span, sentence))?;
     };
+    if values.len() > MAX_AXES {
+        let sentence = format!(
+            "the study has {} axes, more than {MAX_AXES}: an axis of one level belongs to the base",
+            values.len()
+        );
+        Err(tables.source.error_at(span, sentence))?;
+    }
     let mut axes: Vec<Axis> = Vec::new();
     for value in values {
         let span = value.span();

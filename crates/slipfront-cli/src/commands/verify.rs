@@ -172,7 +172,7 @@ impl VerifyCommand {
         );
         let case = Arc::new(case?);
         let again =
-            TemporaryFolder::new(folder).map_err(|error| Failure::running(VerifyError::Temporary(error)))?;
+            TemporaryFolder::new(folder).map_err(|error| Failure::input(VerifyError::Temporary(error)))?;
         pictures::run_budget(&case)
             .check_disk(&case.file, again.path(), 0, false)
             .map_err(Failure::input)?;

@@ -302,6 +302,23 @@ fn journals_of_another_kind_are_refused() {
     }
 }
 
+/// A line of a design that says of a run neither what it found nor why it failed is no line of a design.
+#[test]
+fn a_run_without_an_end_is_none() {
+    let workspace = workspace();
+    let (line, _) = WRITERS[0];
+    workspace.succeed(line);
+    let text = workspace.read_text("out/design.jsonl");
+    let json: serde_json::Value = serde_json::from_str(&text.lines().next().unwrap()[17..]).unwrap();
+    let json = serde_json::json!({ "id": json["id"] }).to_string();
+    let sum = &blake3::hash(json.as_bytes()).to_hex()[..16];
+    workspace.write("out/design.jsonl", format!("{sum} {json}\n"));
+    for line in [line, "verify out"] {
+        let said = workspace.fail(line, 2);
+        assert!(said.contains("holds runs of another kind of work"), "{said}");
+    }
+}
+
 #[test]
 fn the_folder_of_training_runs_is_not_that_of_the_results() {
     let workspace = workspace();

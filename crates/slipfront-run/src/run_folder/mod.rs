@@ -12,6 +12,8 @@ pub mod unfinished;
 use std::fs::{File, TryLockError};
 use std::io::Write;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 
 use slipfront::Communicator;
 use slipfront::communicator::text_of;
@@ -27,7 +29,7 @@ use self::journal::Journal;
 use self::unfinished::Unfinished;
 use crate::agree::{RankFailure, agree};
 use crate::folder_error::FolderError;
-use crate::manifest::{Manifest, ManifestFile};
+use crate::manifest::{Manifest, ManifestFile, Until};
 use crate::names::{CASE, CHECKPOINT, JOURNAL, MANIFEST, PREVIOUS, UNFINISHED};
 
 /// A folder that was locked, if it exists, and inspected, for a run that begins or is resumed there.
@@ -227,6 +229,8 @@ pub struct RunFolder {
     written: Vec<ManifestFile>,
     /// Whether this process began the run.
     new: bool,
+    /// Flag that ends the copying of files that the case reads.
+    stop: Arc<AtomicBool>,
     /// Lock of the folder, held as long as the run goes on.
     _lock: Option<File>,
 }
@@ -248,8 +252,14 @@ impl RunFolder {
             unfinished,
             written: Vec::new(),
             new: false,
+            stop: Arc::default(),
             _lock: lock,
         })
+    }
+
+    /// Lets a flag end the copying of files that the case reads, however long they are.
+    pub fn stop_on(&mut self, stop: Arc<AtomicBool>) {
+        self.stop = stop;
     }
 
     /// Ends a run that failed: removes the files that this process has written, if it began the run. A resumed run keeps its
@@ -302,7 +312,11 @@ impl RunFolder {
             to: path.clone(),
             source,
         };
-        let mut original = input.open().map_err(failed)?;
+        let file = input.open().map_err(failed)?;
+        let mut original = Until {
+            file,
+            stop: &self.stop,
+        };
         let file = write_temp(&self.temporary(), |to| std::io::copy(&mut original, to).map(drop));
         let file = file.map_err(failed)?;
         let copied = ManifestFile::of_copy(&input.name, &file).map_err(FolderError::write(&path))?;

@@ -27,26 +27,37 @@ pub(crate) const JOURNAL: &str = "design.jsonl";
 
 /// A line of the journal: the numbers of a run, or the reason for which it has none.
 #[derive(Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
 pub(crate) struct DesignRun {
     id: RunId,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    found: Option<Measured>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    failed: Option<String>,
+    #[serde(flatten)]
+    end: RunEnd,
+}
+
+/// End of a run in the journal.
+#[derive(Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+enum RunEnd {
+    Found(Measured),
+    Failed(String),
 }
 
 impl DesignRun {
     fn of(run: &MadeRun) -> Self {
         Self {
             id: run.id.clone(),
-            found: run.ended.clone().ok(),
-            failed: run.ended.clone().err(),
+            end: match &run.ended {
+                Ok(found) => RunEnd::Found(found.clone()),
+                Err(why) => RunEnd::Failed(why.clone()),
+            },
         }
     }
 
     fn into_entry(self) -> (RunId, Ended) {
-        (self.id, self.found.ok_or(self.failed.unwrap_or_default()))
+        let ended = match self.end {
+            RunEnd::Found(found) => Ok(found),
+            RunEnd::Failed(why) => Err(why),
+        };
+        (self.id, ended)
     }
 }
 

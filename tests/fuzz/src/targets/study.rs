@@ -33,6 +33,12 @@ fn long() -> Vec<Vec<u8>> {
     vec![
         of_axis("key = 'friction.seed'\nlist = [", "#, ", "]"),
         of_axis("key = 'friction.seed'\nlist = [", "'#', ", "]"),
+        of_axis("zip = { ", "'friction.a#' = [1], ", "b = [1] }"),
+        of_axis(
+            "name = 'a'\nvariants = { b = { friction = { ",
+            "a# = 1, ",
+            "b = 1 } } }",
+        ),
         of_axis("key = 'slider.blocks'\nlist = [", "[#, 9], ", "]"),
         of_axis("key = '", "a.", "a'\nlist = [1]"),
         of_axis(

@@ -91,7 +91,11 @@ impl RunCommand {
             }
             return Err(failure);
         }
-        let folder = ranks.agree(claimed.map(|claimed| begin_folder(claimed, &case)).transpose())?;
+        let signals = &options.signals;
+        let folder = claimed
+            .map(|claimed| begin_folder(claimed, &case, signals))
+            .transpose();
+        let folder = ranks.agree(folder)?;
         if options.is_verbose() {
             print_message(&report::physics(&case));
         }
@@ -158,11 +162,19 @@ fn claim_folder(
 }
 
 /// Writes the case and its inputs to the folder of a new run, in the place of an earlier one, so that the run can go on if
-/// it is stopped.
-fn begin_folder(claimed: ClaimedFolder, case: &Case) -> Result<RunFolder, Failure> {
+/// it is stopped. A signal ends the copying, and leaves nothing of it.
+fn begin_folder(claimed: ClaimedFolder, case: &Case, signals: &Signals) -> Result<RunFolder, Failure> {
     let mut folder = claimed.take().map_err(Failure::input)?;
-    results::write_case(case, &mut folder).map_err(Failure::running)?;
-    Ok(folder)
+    folder.stop_on(Arc::clone(&signals.stop));
+    match results::write_case(case, &mut folder) {
+        Ok(()) => Ok(folder),
+        Err(_) if signals.stopped().is_some() => {
+            folder.discard();
+            let sentence = "stopped while files were copied to the folder; nothing was left there";
+            Err(Failure::stopped(signals, anyhow::anyhow!(sentence)))
+        }
+        Err(error) => Err(Failure::running(error)),
+    }
 }
 
 /// The refusal of a folder; where it is taken, with the name of one that is free.
