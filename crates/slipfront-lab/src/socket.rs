@@ -4,8 +4,9 @@ use std::rc::Rc;
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, SyncSender, TrySendError, sync_channel};
 use std::thread;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
+use axum::body::Bytes;
 use axum::extract::ws::{CloseFrame, Message, Utf8Bytes, WebSocket, WebSocketUpgrade, close_code};
 use axum::extract::{Path, State};
 use axum::http::{HeaderMap, StatusCode, header};
@@ -34,6 +35,9 @@ const MAX_WAITING_REQUESTS: usize = 8;
 
 /// Time between two attempts to hand a request to a session that is busy.
 const RETRY_INTERVAL: Duration = Duration::from_millis(5);
+
+/// Time between two pings to a page whose requests wait for a busy session.
+const PING_INTERVAL: Duration = Duration::from_millis(300);
 
 /// Setting, token, start page and limits, which all connections share.
 #[derive(Clone)]
@@ -148,6 +152,7 @@ async fn forward(
 ) {
     // For a session that is busy.
     let mut kept = None;
+    let mut asked = Instant::now();
     loop {
         if let Some(request) = kept.take() {
             kept = match requests.try_send(request) {
@@ -177,7 +182,15 @@ async fn forward(
                 Some(Ok(Message::Ping(_) | Message::Pong(_))) => {}
                 Some(Ok(Message::Close(_)) | Err(_)) | None => return,
             },
-            () = sleep(RETRY_INTERVAL), if kept.is_some() => {}
+            () = sleep(RETRY_INTERVAL), if kept.is_some() => {
+                // Nothing is read from the page meanwhile: that it has gone shows only when something is sent.
+                if asked.elapsed() > PING_INTERVAL {
+                    asked = Instant::now();
+                    if to_page.send(Message::Ping(Bytes::new())).await.is_none() {
+                        return;
+                    }
+                }
+            }
             _ = ends.changed() => {
                 return to_page.close(close_code::AWAY, "the laboratory was stopped in its terminal").await;
             }
