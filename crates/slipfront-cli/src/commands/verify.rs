@@ -42,9 +42,8 @@ use crate::wrap;
   slipfront verify --rerun results/baseline     runs its case again and compares every file
 
 Tables, pictures and masks of studies, convergences, designs, calibrations and of the paper are derived again from the runs that their
-folders record. Folders that hold pictures alone, as `slipfront plot` writes them, are passed over.
-
-Exit status 0 says that all is well, 1 that something differs or could not be derived again, 2 that a folder is not one of these.")]
+folders record. What cannot be derived again is no success, unless --checksums asks for no more. Folders that hold pictures alone, as
+`slipfront plot` writes them, are passed over, and pages that `--docs` writes are not known here: tests of the project hold them.")]
 pub(crate) struct VerifyCommand {
     /// Folders of results
     #[arg(required = true, value_name = "DIR")]
