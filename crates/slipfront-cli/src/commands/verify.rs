@@ -43,7 +43,7 @@ use crate::wrap;
 
 Tables, pictures and masks of studies, convergences, designs, calibrations and of the paper are derived again from the runs that their
 folders record. What cannot be derived again is no success, unless --checksums asks for no more. Folders that hold pictures alone, as
-`slipfront plot` writes them, are passed over, and pages that `--docs` writes are not known here: tests of the project hold them.")]
+`slipfront plot` writes them, are passed over. Pages that `--docs` writes are documents, and are not verified here.")]
 pub(crate) struct VerifyCommand {
     /// Folders of results
     #[arg(required = true, value_name = "DIR")]
