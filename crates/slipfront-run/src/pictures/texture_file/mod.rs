@@ -83,7 +83,7 @@ pub fn write(case: &Case, path: &Path, scale: Option<usize>) -> Result<Vec<Strin
     Ok(notes)
 }
 
-/// The bytes of the file that [`write`] writes to `path`, and notes about it.
+/// The bytes of the file that [`write()`] writes to `path`, and notes about it.
 ///
 /// # Errors
 /// [`TextureFileError`], if the ending names no format, or the file would be too large.
