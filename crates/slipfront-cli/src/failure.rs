@@ -40,6 +40,14 @@ impl Failure {
         Self::Stopped(signals.stopped().unwrap_or_default(), error.into())
     }
 
+    /// A results folder that could not be opened.
+    pub(crate) fn of_folder(error: StudyError) -> Self {
+        match error {
+            StudyError::Write { .. } | StudyError::Records { .. } => Self::running(error),
+            error => Self::input(error),
+        }
+    }
+
     /// A command that could not make or keep results.
     pub(crate) fn of_results(signals: &Signals, error: StudyError) -> Self {
         match error {

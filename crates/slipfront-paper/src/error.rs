@@ -8,6 +8,7 @@ use slipfront_plot::PictureError;
 use slipfront_run::folder_error::FolderError;
 use slipfront_run::verify::VerifyError;
 use slipfront_study::StudyError;
+use slipfront_study::verify::VerifyStudyError;
 
 /// Reason for which the figures could not be run or the report not be written.
 #[derive(Debug, Error)]
@@ -39,6 +40,8 @@ pub enum PaperError {
     Folder(#[from] FolderError),
     #[error(transparent)]
     Verify(#[from] VerifyError),
+    #[error(transparent)]
+    VerifyStudy(#[from] VerifyStudyError),
 }
 
 impl PaperError {

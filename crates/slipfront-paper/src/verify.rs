@@ -2,7 +2,7 @@
 
 use std::fs::File;
 use std::path::Path;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use slipfront_case::disk::{make_folders, open_limited};
 use slipfront_case::unfinished::TemporaryFolder;
@@ -10,13 +10,13 @@ use slipfront_run::folder_error::FolderError;
 use slipfront_run::manifest::ManifestFile;
 use slipfront_run::names::FIGURE_CACHE;
 use slipfront_run::verify::{Verdict, VerifyError, differences};
-use slipfront_study::Records;
 use slipfront_study::result_files::{Checksums, ResultFiles};
-use slipfront_study::verify::{Extent, verify_checksums};
+use slipfront_study::verify::{Extent, VerifyStudyError, verify_checksums};
+use slipfront_study::{Records, StudyError};
 
 use crate::cache::MAX_BYTES;
 use crate::error::PaperError;
-use crate::paper::{Paper, PaperOptions, run};
+use crate::paper::{PaperOptions, run};
 use crate::report::write;
 
 /// Compares the folder of `slipfront paper` with the list of its files, then with pictures and tables that are made again from the
@@ -25,42 +25,52 @@ use crate::report::write;
 /// # Errors
 /// When the folder cannot be read, and after a stop.
 pub fn verify(folder: &Path, extent: Extent, stop: &AtomicBool) -> Result<Verdict, PaperError> {
-    let mut verdict = verify_checksums(folder, &[Records::FILE, FIGURE_CACHE], stop)?;
-    if extent == Extent::Checksums || !verdict.differences.is_empty() {
-        return Ok(verdict);
+    let (mut verdict, is_complete) = verify_checksums(folder, &[Records::FILE, FIGURE_CACHE], stop)?;
+    if verdict.differences.is_empty() && !is_complete {
+        let (what, path) = ("paper", folder.to_owned());
+        return Err(VerifyStudyError::UnfinishedSearch { what, path }.into());
     }
+    if extent == Extent::Derived && verdict.differences.is_empty() {
+        derive(folder, &mut verdict, stop)?;
+    }
+    if stop.load(Ordering::Relaxed) {
+        return Err(StudyError::Interrupted.into());
+    }
+    Ok(verdict)
+}
+
+/// Makes pictures and tables again from the data of the figures, those of the full or of the reduced paper, and compares the folder with
+/// them.
+fn derive(folder: &Path, verdict: &mut Verdict, stop: &AtomicBool) -> Result<(), PaperError> {
     let temporary = TemporaryFolder::new(folder).map_err(VerifyError::Temporary)?;
-    copy_data(&folder.join(FIGURE_CACHE), &temporary.path().join(FIGURE_CACHE))?;
-    let records = Records::open(temporary.path())?;
-    let again = |reduced| -> Result<Paper, PaperError> {
+    let names = |files: &[ManifestFile]| files.iter().map(|file| file.name.clone()).collect::<Vec<_>>();
+    let files_of = |folder: &Path| Ok::<_, PaperError>(Checksums::read(folder)?.unwrap_or_default().files);
+    let listed = names(&files_of(folder)?);
+    for reduced in [false, true] {
+        let again = temporary.path().join(if reduced { "reduced" } else { "full" });
+        copy_data(&folder.join(FIGURE_CACHE), &again.join(FIGURE_CACHE))?;
         let options = PaperOptions {
             threads: 1,
             stop,
             reduced,
-            folder: temporary.path(),
+            folder: &again,
         };
         // No figure is asked for: there are those whose data were stored.
-        run(&[], &records, &options, &|_| {})
-    };
-    let mut paper = again(false)?;
-    if paper.figures.is_empty() {
-        paper = again(true)?;
+        let paper = run(&[], &Records::open(&again)?, &options, &|_| {})?;
+        write(&paper, &ResultFiles::new(&again, "paper", false))?;
+        let files = files_of(&again)?;
+        if names(&files) == listed {
+            verdict.differences = differences(&files, folder, "follow from the data of the figures", stop);
+            verdict.what += ", and as the data of the figures give them";
+            return Ok(());
+        }
     }
-    write(&paper, &ResultFiles::new(temporary.path(), "paper", false))?;
-    let names = |list: &[ManifestFile]| list.iter().map(|file| file.name.clone()).collect::<Vec<_>>();
-    let [listed, now] = [folder, temporary.path()].map(Checksums::read);
-    let [listed, now] = [listed?, now?].map(|list| list.unwrap_or_default().files);
-    if names(&listed) == names(&now) {
-        verdict.differences = differences(&now, folder, "follow from the data of the figures", stop);
-        verdict.what += ", and as the data of the figures give them";
-    } else {
-        verdict.not_derived = Some(format!(
-            "the pictures and tables in {} were not made again: not all of their data stand in {FIGURE_CACHE}/, or another program has \
-             measured them",
-            folder.display()
-        ));
-    }
-    Ok(verdict)
+    verdict.not_derived = Some(format!(
+        "the pictures and tables in {} were not made again: not all of their data stand in {FIGURE_CACHE}/, or another program has \
+         measured them",
+        folder.display()
+    ));
+    Ok(())
 }
 
 /// Copies the data of figures, which are regular files of a limited length.

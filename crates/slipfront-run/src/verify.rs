@@ -191,15 +191,25 @@ pub fn first_line(error: &impl ToString) -> String {
     error.to_string().lines().next().unwrap_or_default().to_owned()
 }
 
-/// A note on each entry of a folder and of its `inputs/` that is not `listed`.
+/// A note on each entry of a folder, and on each file below its `inputs/`, that is not `listed`.
 pub fn unlisted_files(folder: &Path, listed: &BTreeSet<&str>, is_left: impl Fn(&str) -> bool) -> Vec<String> {
-    let names = |folder: &Path| {
-        let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
-        entries.map(|entry| entry.file_name().to_string_lossy().into_owned())
-    };
-    let inputs = names(&folder.join("inputs")).map(|name| format!("inputs/{name}"));
-    let own = names(folder).filter(|name| name != "inputs");
-    let mut found: Vec<String> = own.chain(inputs).collect();
+    let mut found = Vec::new();
+    let mut folders = vec![String::new()];
+    while let Some(prefix) = folders.pop() {
+        let entries = std::fs::read_dir(folder.join(&prefix))
+            .into_iter()
+            .flatten()
+            .flatten();
+        for entry in entries {
+            let name = format!("{prefix}{}", entry.file_name().to_string_lossy());
+            let is_of_copies = name == "inputs" || name.starts_with("inputs/");
+            if is_of_copies && entry.file_type().is_ok_and(|found| found.is_dir()) {
+                folders.push(format!("{name}/"));
+            } else {
+                found.push(name);
+            }
+        }
+    }
     found.retain(|name| !listed.contains(name.as_str()));
     found.sort();
     let in_words = |name: String| {

@@ -123,7 +123,7 @@ pub enum StudyError {
     #[error("{path} is no file of recorded runs")]
     NotRecords { path: PathBuf },
     #[error(
-        "{path} holds runs of another kind of work, or of another version of slipfront, and none is lost: choose another folder"
+        "{path} holds runs of another kind of work: put back the file that was there, or choose another folder"
     )]
     OtherRecords { path: PathBuf },
     #[error(

@@ -64,7 +64,8 @@ impl StudyFolder {
             StudyFile::parse(text, &name, &study.name, path)
         };
         let before = read_limited(&path.join(STUDY), TEXT_MAX_BYTES).ok();
-        let changed = before.as_ref().is_some_and(|before| before != text.as_bytes());
+        let is_other = before.as_ref().is_some_and(|before| before != text.as_bytes());
+        let changed = is_other || copies.iter().any(|copy| copy.differs_in(path));
         // A user may change the study in the folder, and run that.
         let is_this = |before: &Vec<u8>| {
             let there = parse(&String::from_utf8_lossy(before)).ok();
@@ -92,8 +93,20 @@ impl StudyFolder {
     }
 
     /// Copies complete run folders, and the cases of failed runs, from the folder of a shard, where this folder lacks them.
-    pub fn take_kept(&self, plan: &Plan, results: &StudyResults, shard: &Path) -> Result<(), StudyError> {
+    ///
+    /// # Errors
+    /// When the system refuses to read or to write, and after a stop.
+    pub fn take_kept(
+        &self,
+        plan: &Plan,
+        results: &StudyResults,
+        shard: &Path,
+        stop: &AtomicBool,
+    ) -> Result<(), StudyError> {
         for (run, result) in &results.runs {
+            if stop.load(Ordering::Relaxed) {
+                return Err(StudyError::Interrupted);
+            }
             let name = plan.folder_name(*run);
             let is_whole = |folder: &Path| match result {
                 // The run folder may be incomplete if the process was killed.
@@ -139,7 +152,7 @@ pub fn write(
     if converge::is_written(&folder.path, &plan.axes) && results.expect_no_failures(plan).is_ok() {
         converge::stage(plan, results, &mut batch)?;
     }
-    batch.place()
+    batch.place(Others::Go)
 }
 
 /// Writes the tables and pictures of a study to a batch of files, until a stop.

@@ -9,10 +9,10 @@ use std::io::{BufRead, BufReader, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use serde::de::DeserializeOwned;
-
 use crate::error::StudyError;
-use crate::record::{FinishedRun, RunResult, looks_like_ours, may_begin_ours, parse_line, to_line};
+use crate::record::{
+    FinishedRun, JournalRecord, Line, RunResult, looks_like_ours, may_begin_ours, parse_line, to_line,
+};
 use slipfront_case::disk::{open_limited, sync_folder};
 use slipfront_case::unfinished::clear_unfinished;
 use slipfront_run::names::RECORDS;
@@ -27,7 +27,7 @@ pub(crate) struct Journal {
 impl Journal {
     /// Opens the file of this name in a folder, unless another process has it open, and makes an empty one where there is
     /// none. Returns the records in it, and the number of lines that failed their checksum.
-    pub(crate) fn open<T: DeserializeOwned>(
+    pub(crate) fn open<T: JournalRecord>(
         folder: &Path,
         name: &str,
     ) -> Result<(Self, Vec<T>, usize), StudyError> {
@@ -48,7 +48,7 @@ impl Journal {
 
     /// Copies a file of records of this kind, called `name`, from one folder to another. It is looked at before: what is no record is
     /// not copied, however long it is.
-    pub(crate) fn copy<T: DeserializeOwned>(from: &Path, to: &Path, name: &str) -> Result<(), StudyError> {
+    pub(crate) fn copy<T: JournalRecord>(from: &Path, to: &Path, name: &str) -> Result<(), StudyError> {
         let path = from.join(name);
         let open = || open_limited(&path, u64::MAX);
         let lines = open().and_then(|mut file| JournalLines::<T>::read(&mut file));
@@ -223,7 +223,7 @@ struct JournalLines<T> {
     cut_at: Option<u64>,
 }
 
-impl<T: DeserializeOwned> JournalLines<T> {
+impl<T: JournalRecord> JournalLines<T> {
     /// Reads line by line: a file of any length takes no more memory than its records.
     fn read(file: &mut impl Read) -> std::io::Result<Self> {
         let mut file = BufReader::new(file);
@@ -253,11 +253,13 @@ impl<T: DeserializeOwned> JournalLines<T> {
             }
             lines.ours |= looks_like_ours(&line) || (!broken && may_begin_ours(&line));
             match parse_line(&line) {
-                Some(Ok(record)) => {
+                Some(Line::Record(record)) => {
                     lines.records.push(record);
                     lines.lacks_break = !broken;
                 }
-                Some(Err(_)) => lines.is_of_others = true,
+                // Its run counts as not made, as that of a damaged line.
+                Some(Line::OfOtherVersion) => lines.damaged += 1,
+                Some(Line::OfOtherKind) => lines.is_of_others = true,
                 None => {
                     lines.damaged += 1;
                     lines.cut_at = (!broken).then_some(begin);

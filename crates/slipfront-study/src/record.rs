@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value};
 
 use crate::summary_values::SummaryValues;
 use slipfront_run::summary::Summary;
@@ -63,15 +64,41 @@ pub(crate) fn to_line(record: &impl Serialize) -> Vec<u8> {
     format!("{} {json}\n", checksum(json.as_bytes())).into_bytes()
 }
 
-/// The record of a line without its line break, or the reason for which the line is a record of another kind; none if it fails its
-/// checksum.
-pub(crate) fn parse_line<T: DeserializeOwned>(line: &[u8]) -> Option<serde_json::Result<T>> {
+/// A record that a line of a journal can hold.
+pub(crate) trait JournalRecord: DeserializeOwned {
+    /// Keys of which every record of this kind has one, in any version of slipfront.
+    const KEYS: &'static [&'static str];
+}
+
+impl JournalRecord for FinishedRun {
+    const KEYS: &'static [&'static str] = &["outcome"];
+}
+
+/// A whole line of a journal.
+pub(crate) enum Line<T> {
+    Record(T),
+    /// A record of this kind that another version of slipfront has written.
+    OfOtherVersion,
+    OfOtherKind,
+}
+
+/// The line of a journal without its line break; none if it fails its checksum.
+pub(crate) fn parse_line<T: JournalRecord>(line: &[u8]) -> Option<Line<T>> {
     let (sum, json) = line.split_at_checked(CHECKSUM)?;
     let json = json.strip_prefix(b" ")?;
     if checksum(json).as_bytes() != sum {
         return None;
     }
-    Some(serde_json::from_slice(json))
+    if let Ok(record) = serde_json::from_slice(json) {
+        return Some(Line::Record(record));
+    }
+    let keys: Map<String, Value> = serde_json::from_slice(json).unwrap_or_default();
+    let is_of_kind = T::KEYS.iter().any(|key| keys.contains_key(*key));
+    Some(if is_of_kind {
+        Line::OfOtherVersion
+    } else {
+        Line::OfOtherKind
+    })
 }
 
 /// Whether a line has the form of a record, damaged or not. A file without any such line is not a journal.

@@ -7,12 +7,12 @@
 
 use std::fs::File;
 use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 use slipfront_case::disk::{
-    TEXT_MAX_BYTES, folder_of, found_at, json, make_folders, open_regular, read_limited, remove_if_there,
-    sync_folder, write_atomic, write_beside,
+    TEXT_MAX_BYTES, folder_of, found_at, is_same, json, make_folders, open_regular, read_limited,
+    remove_if_there, sync_folder, write_atomic, write_beside,
 };
 use slipfront_case::text::single_line;
 use slipfront_plot::Picture;
@@ -40,7 +40,9 @@ pub struct Checksums {
     pub build: String,
     /// The result files, in the order of their names.
     pub files: Vec<ManifestFile>,
-    /// Files that were still to be replaced or removed when the list was written. A folder whose results are complete has none.
+    /// Whether the results are complete, and not those of work that goes on.
+    pub is_complete: bool,
+    /// Files that were still to be replaced or removed when the list was written.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub replaced: Vec<ManifestFile>,
     /// BLAKE3 hash of the list up to this key.
@@ -57,18 +59,34 @@ impl Checksums {
         if found_at(&path).map_err(FolderError::read(&path))?.is_none() {
             return Ok(None);
         }
-        let bytes = read_limited(&path, TEXT_MAX_BYTES).map_err(FolderError::read(&path))?;
         let damaged = |why: &str| StudyError::Checksums {
             path: path.clone(),
             why: single_line(why),
         };
+        let bytes = read_limited(&path, TEXT_MAX_BYTES).map_err(|error| damaged(&error.to_string()))?;
         let list: Self = serde_json::from_slice(&bytes).map_err(|error| damaged(&error.to_string()))?;
         if seal(&bytes).as_ref() != Some(&list.seal) {
             return Err(damaged(
                 "its seal does not fit, so that it was changed afterwards",
             ));
         }
-        Ok(Some(list))
+        // A list of somebody else must lead to no file outside of its folder.
+        let is_inside = |file: &ManifestFile| {
+            let mut parts = Path::new(&file.name).components();
+            parts.all(|part| matches!(part, Component::Normal(_)))
+        };
+        match list
+            .files
+            .iter()
+            .chain(&list.replaced)
+            .find(|file| !is_inside(file))
+        {
+            Some(file) => Err(damaged(&format!(
+                "it names {}, which lies outside of the folder",
+                file.name
+            ))),
+            None => Ok(Some(list)),
+        }
     }
 
     /// Whether slipfront has written a file of this name with these contents.
@@ -94,6 +112,8 @@ pub struct ResultFiles {
     force: bool,
     /// Files that the results are made from, which belong to every batch.
     given: Vec<ManifestFile>,
+    /// Names of files of the user in the folder, which the results are made from as well: they are neither replaced nor removed.
+    kept: Vec<String>,
 }
 
 impl ResultFiles {
@@ -104,6 +124,7 @@ impl ResultFiles {
             of,
             force,
             given: Vec::new(),
+            kept: Vec::new(),
         }
     }
 
@@ -143,6 +164,13 @@ impl ResultFiles {
     /// Whether a name is free, or holds a file of the list or the file that is to be written there.
     fn is_own(&self, name: &str, list: &Checksums, new: Option<&ManifestFile>) -> Result<bool, StudyError> {
         let path = self.folder.join(name);
+        // A link in the place of a folder leads to files of somebody else.
+        for above in path.ancestors().skip(1).take_while(|above| *above != self.folder) {
+            let found = found_at(above).map_err(FolderError::read(above))?;
+            if found.is_some_and(|found| !found.is_dir()) {
+                return Ok(false);
+            }
+        }
         let Some(found) = found_at(&path).map_err(FolderError::read(&path))? else {
             return Ok(true);
         };
@@ -217,7 +245,7 @@ pub struct Batch {
 
 /// Fate of files of earlier batches that a batch does not write.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Others {
+pub enum Others {
     /// Files of earlier batches stay.
     Stay,
     /// Files of earlier batches are removed, since they belong to other results.
@@ -268,13 +296,18 @@ impl Batch {
         self.replaceable = Some(name.to_owned());
     }
 
-    /// Copies files that cases read to the names that a study gives the copies.
+    /// Copies files that cases read to the names that a study gives the copies. A user may also have put such a file there.
     pub(crate) fn copy_all(&mut self, copies: &[Copy]) -> Result<(), StudyError> {
-        copies.iter().try_for_each(|copy| {
-            self.write(&copy.name, |to| {
-                std::io::copy(&mut open_regular(&copy.original)?, to).map(drop)
-            })
-        })
+        for Copy { name, original, .. } in copies {
+            let to = self.files.folder.join(name);
+            if is_same(original, &to) {
+                self.files.kept.push(name.clone());
+                continue;
+            }
+            let mut original = open_regular(original).map_err(FolderError::read(original))?;
+            self.write(name, |to| std::io::copy(&mut original, to).map(drop))?;
+        }
+        Ok(())
     }
 
     /// Refuses a link or a file in the place of a folder of the file: it may lead to a folder that is not of these results.
@@ -291,37 +324,37 @@ impl Batch {
         Ok(())
     }
 
-    /// Gives the files their names, and lists them with their checksums; files of earlier batches stay. The batch goes on.
-    ///
-    /// # Errors
-    /// As for [`place`](Self::place).
-    pub fn place_so_far(&mut self) -> Result<(), StudyError> {
-        self.put(Others::Stay)
-    }
-
     /// Gives the files their names that results are made from; they belong to all later batches.
     ///
     /// # Errors
     /// As for [`place`](Self::place).
     pub(crate) fn place_given(mut self, others: Others) -> Result<ResultFiles, StudyError> {
-        self.put(others)?;
+        self.put(others, false)?;
         Ok(ResultFiles {
             given: self.placed,
             ..self.files
         })
     }
 
-    /// Gives all files their names, lists them with their checksums, and removes files of earlier batches, which belong to other results.
-    /// Files that are there already with these contents are left as they are.
+    /// Gives the files of results that are not complete yet their names. The batch goes on.
+    ///
+    /// # Errors
+    /// As for [`place`](Self::place).
+    pub(crate) fn place_so_far(&mut self, others: Others) -> Result<(), StudyError> {
+        self.put(others, false)
+    }
+
+    /// Gives all files their names, and lists them with their checksums: the results are complete. Files that are there already with these
+    /// contents are left as they are.
     ///
     /// # Errors
     /// When a file in the place of one of these, or a file of an earlier batch, was edited or is of somebody else, unless such files may
     /// be replaced; then nothing is changed. When the system refuses to write.
-    pub fn place(mut self) -> Result<(), StudyError> {
-        self.put(Others::Go)
+    pub fn place(mut self, others: Others) -> Result<(), StudyError> {
+        self.put(others, true)
     }
 
-    fn put(&mut self, others: Others) -> Result<(), StudyError> {
+    fn put(&mut self, others: Others, completes: bool) -> Result<(), StudyError> {
         let Self {
             files,
             staged,
@@ -349,7 +382,13 @@ impl Batch {
             if listed.iter().any(|new| new.name == *name) {
                 continue;
             }
-            if !files.is_own(name, &before, None)? {
+            let is_own = files.is_own(name, &before, None)?;
+            if files.kept.contains(name) {
+                // What the user has changed there is the user's from now on.
+                listed.extend((is_own && is_listed(name)).then(|| file.clone()));
+                continue;
+            }
+            if !is_own {
                 foreign.push(name.clone());
             } else if others == Others::Go || !is_listed(name) {
                 gone.push(name.clone());
@@ -367,31 +406,55 @@ impl Batch {
             .into_iter()
             .filter(|(_, file)| !files.is_there(file))
             .collect();
-        let is_replaced = |file: &&ManifestFile| {
-            gone.contains(&file.name) || to_place.iter().any(|(_, new)| new.name == file.name)
-        };
-        let replaced = before.files.iter().chain(&before.replaced).filter(is_replaced);
-        let list = Checksums {
+        let changes = !to_place.is_empty() || !gone.is_empty();
+        // Of files that a killed process had still to replace, too.
+        let mut replaced: Vec<ManifestFile> = Vec::new();
+        for file in before.files.iter().chain(&before.replaced) {
+            let stays = listed.iter().any(|new| new.name == file.name);
+            if (stays || gone.contains(&file.name)) && !listed.contains(file) && !replaced.contains(file) {
+                replaced.push(file.clone());
+            }
+        }
+        let mut list = Checksums {
             of: files.of.to_owned(),
             version: program::VERSION.to_owned(),
             revision: program::REVISION.map(str::to_owned),
             build: program::this_build().to_owned(),
-            replaced: replaced.filter(|file| !listed.contains(file)).cloned().collect(),
             files: listed,
+            is_complete: completes || (before.is_complete && !changes),
+            replaced,
             seal: String::new(),
         };
-        let is_as_before = before.replaced.is_empty()
-            && (&before.files, &before.build, &before.of) == (&list.files, &list.build, &list.of);
-        if to_place.is_empty() && gone.is_empty() && is_as_before {
+        if !changes && !before.build.is_empty() {
+            // Another program may have written these files.
+            (list.version, list.revision) = (before.version.clone(), before.revision.clone());
+            list.build.clone_from(&before.build);
+        }
+        let before = Checksums {
+            seal: String::new(),
+            ..before
+        };
+        if !changes && list == before {
             return Ok(());
         }
         list.clone().write(folder)?;
         files.rename_and_remove(to_place, &gone)?;
-        if list.replaced.is_empty() {
+        let is_to_come = |old: &ManifestFile| {
+            list.files
+                .iter()
+                .any(|new| new.name == old.name && !files.is_there(new))
+        };
+        let to_come: Vec<ManifestFile> = list
+            .replaced
+            .iter()
+            .filter(|old| is_to_come(old))
+            .cloned()
+            .collect();
+        if to_come == list.replaced {
             return Ok(());
         }
         let list = Checksums {
-            replaced: Vec::new(),
+            replaced: to_come,
             ..list
         };
         list.write(folder)
@@ -411,7 +474,7 @@ mod tests {
     }
 
     fn place(files: &ResultFiles, contents: &[(&str, &str)]) -> Result<(), StudyError> {
-        batch_of(files, contents).place()
+        batch_of(files, contents).place(Others::Go)
     }
 
     fn read(folder: &Path, name: &str) -> Option<String> {
@@ -507,6 +570,12 @@ mod tests {
                 std::fs::remove_file(path.join("gone.csv")).unwrap();
             }
             files.expect_unedited().unwrap();
+            // However often the folder is opened before its results are written.
+            for _ in 0..2 {
+                batch_of(&files, &[("study.toml", "base")])
+                    .place_given(Others::Stay)
+                    .unwrap();
+            }
             place(&files, &after).unwrap();
             for (name, text) in after {
                 assert_eq!(read(path, name).unwrap(), text, "{done}");
@@ -517,6 +586,48 @@ mod tests {
                 "{done}"
             );
         }
+    }
+
+    /// A list that somebody else has made removes no file outside of its folder.
+    #[test]
+    fn a_list_leads_to_no_file_elsewhere() {
+        let above = tempfile::tempdir().unwrap();
+        let path = above.path().join("out");
+        std::fs::create_dir(&path).unwrap();
+        let mine = above.path().join("mine");
+        std::fs::write(&mine, "mine").unwrap();
+        for name in ["../mine", mine.to_str().unwrap()] {
+            let list = Checksums {
+                files: vec![ManifestFile::of_bytes(name, b"mine")],
+                ..Checksums::default()
+            };
+            list.write(&path).unwrap();
+            let files = ResultFiles::new(&path, "study", false);
+            let said = place(&files, &[("a.csv", "1")]).unwrap_err().to_string();
+            assert!(said.contains("lies outside of the folder"), "{said}");
+            place(&ResultFiles::new(&path, "study", true), &[("a.csv", "1")]).unwrap();
+            assert!(mine.exists());
+        }
+    }
+
+    /// A file that a user has put among the copies, and a study reads there, is the user's.
+    #[test]
+    fn inputs_of_the_user_stay_in_the_folder() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path();
+        std::fs::create_dir(path.join("inputs")).unwrap();
+        std::fs::write(path.join("inputs/mine.png"), "mine").unwrap();
+        let mut study: toml::Table = "base.texture = [{ shape = 'mask', file = 'inputs/mine.png' }]"
+            .parse()
+            .unwrap();
+        let copies = crate::input_copies::copy(&mut study, path).unwrap();
+        let mut given = ResultFiles::new(path, "study", false).begin();
+        given.copy_all(&copies).unwrap();
+        let files = given.place_given(Others::Go).unwrap();
+        place(&files, &[("runs.csv", "1")]).unwrap();
+        assert_eq!(listed(path), ["runs.csv"]);
+        place(&ResultFiles::new(path, "study", false), &[("runs.csv", "2")]).unwrap();
+        assert_eq!(read(path, "inputs/mine.png").unwrap(), "mine");
     }
 
     #[test]

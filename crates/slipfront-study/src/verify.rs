@@ -6,29 +6,27 @@ use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use serde::de::DeserializeOwned;
 use slipfront_case::disk::{TEXT_MAX_BYTES, open_limited};
 use slipfront_case::number_format::{are, count};
 use slipfront_case::unfinished::{TemporaryFolder, is_unfinished};
 use slipfront_run::folder_error::FolderError;
-use slipfront_run::names::{FIGURE_CACHE, RUNS, TABLES};
+use slipfront_run::names::{FIGURE_CACHE, RUNS};
 use slipfront_run::program;
 use slipfront_run::verify::{
     Verdict, VerifyError, differences, first_line, inspect, unlisted_files, verify_run,
 };
 use thiserror::Error;
 
-use crate::calibrate::{CALIBRATION, CalibrationFolder, CalibrationRun, FOUND, TRAINING, is_calibration};
+use crate::calibrate::{CALIBRATION, CalibrationFolder, CalibrationRun, TRAINING, is_calibration};
 use crate::converge;
-use crate::design::{
-    Bounds, DESIGN, DesignFile, DesignFolder, DesignRun, JOURNAL, VERDICT, is_design, search_of,
-};
+use crate::design::{Bounds, DESIGN, DesignFile, DesignFolder, DesignRun, JOURNAL, is_design, search_of};
 use crate::error::{StudyError, of_others};
 use crate::execute::collect;
-use crate::folder::{StudyFolder, stage, study_of};
+use crate::folder::{StudyFolder, is_of_figures, stage, study_of};
 use crate::journal::{Journal, Records};
 use crate::plan::Plan;
-use crate::result_files::{CHECKSUMS, Checksums};
+use crate::record::JournalRecord;
+use crate::result_files::{CHECKSUMS, Checksums, Others};
 use crate::study_file::RetainRuns;
 use crate::study_results::StudyResults;
 
@@ -79,17 +77,18 @@ pub fn verify(folder: &Path, extent: Extent, stop: &AtomicBool) -> Result<Verdic
         verify_study(folder, extent, stop)?
     } else if is_design(folder) {
         let derive = |verdict: &mut Verdict| derive_design(folder, verdict, stop);
-        verify_project(folder, "design", [JOURNAL, VERDICT[0]], extent, stop, derive)?
+        verify_project(folder, ["design", JOURNAL], extent, stop, derive)?
     } else if is_calibration(folder) {
         let derive = |verdict: &mut Verdict| derive_calibration(folder, verdict, stop);
-        verify_project(folder, "calibration", [TRAINING, FOUND[0]], extent, stop, derive)?
-    } else if crate::folder::is_of_figures(folder) {
+        verify_project(folder, ["calibration", TRAINING], extent, stop, derive)?
+    } else if is_of_figures(folder) {
+        let (verdict, _) = verify_checksums(folder, &[Records::FILE, FIGURE_CACHE], stop)?;
         Verdict {
             not_derived: Some(format!(
                 "the figures in {} were not drawn again: `slipfront verify` does so",
                 folder.display()
             )),
-            ..verify_checksums(folder, &[Records::FILE, FIGURE_CACHE], stop)?
+            ..verdict
         }
     } else {
         verify_run(&inspect(folder)?, stop)?
@@ -100,8 +99,16 @@ pub fn verify(folder: &Path, extent: Extent, stop: &AtomicBool) -> Result<Verdic
     Ok(verdict)
 }
 
-/// Compares the files of a folder with its list, and notes entries that are neither in the list nor among the `others`.
-pub fn verify_checksums(folder: &Path, others: &[&str], stop: &AtomicBool) -> Result<Verdict, StudyError> {
+/// Compares the files of a folder with its list, and notes entries that are neither in the list nor among the `others`; the results are
+/// complete if the second value is true.
+///
+/// # Errors
+/// When the system does not say what the folder holds.
+pub fn verify_checksums(
+    folder: &Path,
+    others: &[&str],
+    stop: &AtomicBool,
+) -> Result<(Verdict, bool), StudyError> {
     let mut verdict = Verdict::default();
     let path = folder.join(CHECKSUMS);
     let list = match Checksums::read(folder) {
@@ -112,11 +119,13 @@ pub fn verify_checksums(folder: &Path, others: &[&str], stop: &AtomicBool) -> Re
                 path.display()
             );
             verdict.differences.push(sentence);
-            return Ok(verdict);
+            return Ok((verdict, false));
         }
-        Err(error @ StudyError::Checksums { .. }) => {
-            verdict.differences.push(error.to_string());
-            return Ok(verdict);
+        Err(StudyError::Checksums { why, .. }) => {
+            verdict
+                .differences
+                .push(format!("{} is damaged: {why}", path.display()));
+            return Ok((verdict, false));
         }
         Err(error) => return Err(error),
     };
@@ -134,24 +143,22 @@ pub fn verify_checksums(folder: &Path, others: &[&str], stop: &AtomicBool) -> Re
     let known = list.files.iter().map(|file| file.name.as_str());
     let known = known.chain([CHECKSUMS]).chain(others.iter().copied()).collect();
     verdict.notes = unlisted_files(folder, &known, is_left);
-    Ok(verdict)
+    Ok((verdict, list.is_complete))
 }
 
-/// Compares the folder of a design or a calibration with its list, then with the results that follow from the runs in its `journal`.
-/// Only a folder of work that was finished has a file of the name `finished`.
+/// Compares the folder of a design or a calibration with its list, then with the results that follow from the runs in its journal.
 fn verify_project(
     folder: &Path,
-    what: &'static str,
-    [journal, finished]: [&str; 2],
+    [what, journal]: [&'static str; 2],
     extent: Extent,
     stop: &AtomicBool,
     derive: impl FnOnce(&mut Verdict) -> Result<(), VerifyStudyError>,
 ) -> Result<Verdict, VerifyStudyError> {
-    let mut verdict = verify_checksums(folder, &[journal], stop)?;
+    let (mut verdict, is_complete) = verify_checksums(folder, &[journal], stop)?;
     if !verdict.differences.is_empty() {
         return Ok(verdict);
     }
-    if !folder.join(finished).exists() {
+    if !is_complete {
         let path = folder.to_owned();
         return Err(VerifyStudyError::UnfinishedSearch { what, path });
     }
@@ -203,7 +210,7 @@ fn text_in(folder: &Path, name: &str) -> Result<PathBuf, StudyError> {
 
 /// Compares a folder with the results that `again` finds in another folder from the runs in its journal; `again` returns the
 /// numbers of runs there before and after, since runs that the journal lacks are made.
-fn derive_from_runs<Run: DeserializeOwned>(
+fn derive_from_runs<Run: JournalRecord>(
     folder: &Path,
     what: &str,
     journal: &str,
@@ -241,11 +248,12 @@ fn differences_from(
 /// Compares a study with its list, makes its tables and pictures again from its records, and compares its run folders with their
 /// manifests.
 fn verify_study(folder: &Path, extent: Extent, stop: &AtomicBool) -> Result<Verdict, VerifyStudyError> {
-    let mut verdict = verify_checksums(folder, &[Records::FILE, RUNS], stop)?;
+    let (mut verdict, is_complete) = verify_checksums(folder, &[Records::FILE, RUNS], stop)?;
     let mut derived = None;
     if extent == Extent::Derived && verdict.differences.is_empty() {
         derived = derive_study(folder, &mut verdict, stop)?;
-    } else if verdict.differences.is_empty() && !folder.join(TABLES[0]).exists() {
+    }
+    if verdict.differences.is_empty() && !is_complete {
         let (what, path) = ("study", folder.to_owned());
         return Err(VerifyStudyError::UnfinishedSearch { what, path });
     }
@@ -296,7 +304,7 @@ fn derive_study(
     if converge::is_written(folder, &plan.axes) {
         converge::stage(&plan, &results, &mut batch)?;
     }
-    batch.place()?;
+    batch.place(Others::Go)?;
     let how = "follow from the records";
     verdict.differences = differences_from(temporary.path(), folder, how, stop)?;
     if damaged > 0 {

@@ -56,9 +56,10 @@ impl CalibrateCommand {
             .map_err(Failure::input)?;
         let out = self.out.unwrap_or_else(|| Path::new("results").join(&file.name));
         let training = self.training.as_deref();
-        let folder = CalibrationFolder::open(&out, training, &file, &self.records, self.force);
-        let mut folder = folder.map_err(Failure::input)?;
+        // A signal leaves nothing of what is copied to the folder.
         let signals = Signals::catch().map_err(Failure::running)?;
+        let folder = CalibrationFolder::open(&out, training, &file, &self.records, self.force);
+        let mut folder = folder.map_err(Failure::of_folder)?;
         if !self.quiet {
             print_notes(&file.notes(&self.records).map_err(Failure::input)?, &folder);
         }

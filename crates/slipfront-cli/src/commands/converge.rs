@@ -68,7 +68,7 @@ impl ConvergeCommand {
         };
         limits.check(&plan, threads).map_err(Failure::input)?;
         let out = self.out.unwrap_or_else(|| Path::new("results").join(&file.name));
-        let folder = StudyFolder::open(&out, &file, self.force).map_err(Failure::input)?;
+        let folder = StudyFolder::open(&out, &file, self.force).map_err(Failure::of_folder)?;
         folder.check_disk(&plan).map_err(Failure::input)?;
         let plan = plan.reading_copies(&folder.study);
         let results = run_all(&plan, &folder, &signals, self.quiet)?;

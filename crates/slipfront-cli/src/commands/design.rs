@@ -59,8 +59,9 @@ impl DesignCommand {
         file.check(runs, threads, self.time.is_some())
             .map_err(Failure::input)?;
         let out = self.out.unwrap_or_else(|| Path::new("results").join(&file.name));
-        let mut folder = DesignFolder::open(&out, &file, self.force).map_err(Failure::input)?;
+        // A signal leaves nothing of what is copied to the folder.
         let signals = Signals::catch().map_err(Failure::running)?;
+        let mut folder = DesignFolder::open(&out, &file, self.force).map_err(Failure::of_folder)?;
         let began = Instant::now();
         let most = self.time.map(|time| time.as_secs_f64());
         let share_of_time = || Bounds::share_of(began.elapsed().as_secs_f64(), most);

@@ -119,7 +119,12 @@ impl LabCommand {
         if !self.no_open
             && let Err(reason) = start_browser(&laboratory, link)
         {
-            let note = format!("note: no browser was started, since {reason}: open this address in one");
+            let address = if file.is_some() {
+                "the address in that file"
+            } else {
+                "this address"
+            };
+            let note = format!("note: no browser was started, since {reason}: open {address} in one");
             print_stderr(&for_stderr(&note));
         }
         laboratory.serve(stopped(&signals)).map_err(Failure::running)

@@ -2,7 +2,7 @@
 
 use std::io::Write;
 
-use slipfront_study::result_files::ResultFiles;
+use slipfront_study::result_files::{Others, ResultFiles};
 
 use crate::support::workspace::{Files, Workspace};
 
@@ -34,7 +34,7 @@ pub(crate) fn list_as_written(workspace: &Workspace, folder: &str, name: &str) {
     let bytes = workspace.read(&format!("{folder}/{name}"));
     let mut batch = ResultFiles::new(&workspace.path(folder), "study", true).begin();
     batch.write(name, |to| to.write_all(&bytes)).unwrap();
-    batch.place_so_far().unwrap();
+    batch.place(Others::Stay).unwrap();
 }
 
 impl Workspace {

@@ -14,7 +14,7 @@ use crate::paper::Paper;
 use slipfront_case::disk::{begins_with, make_folders, write_atomic};
 use slipfront_plot::Picture;
 use slipfront_run::folder_error::FolderError;
-use slipfront_study::result_files::{Batch, ResultFiles};
+use slipfront_study::result_files::{Batch, Others, ResultFiles};
 
 /// Writes pictures, tables and the report to a folder.
 ///
@@ -35,7 +35,8 @@ pub fn write(paper: &Paper, files: &ResultFiles) -> Result<(), PaperError> {
     ] {
         batch.write(name, |to| to.write_all(&bytes))?;
     }
-    Ok(batch.place()?)
+    // Figures that an earlier program has left there take hours.
+    Ok(batch.place(Others::Stay)?)
 }
 
 /// Writes the pictures and tables of a figure.

@@ -11,7 +11,7 @@ use std::path::Path;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use slipfront_paper::{ClaimVerdict, FIGURES, Paper, PaperOptions};
-use slipfront_study::result_files::ResultFiles;
+use slipfront_study::result_files::{Others, ResultFiles};
 use slipfront_study::verify::Extent;
 use slipfront_study::{Records, StudyError};
 
@@ -43,7 +43,7 @@ fn verified(folder: &Path) {
     // A list that fits a spoilt file is seen by what the data give.
     let mut spoilt = ResultFiles::new(folder, "paper", true).begin();
     spoilt.write("claims.csv", |to| to.write_all(b"spoilt")).unwrap();
-    spoilt.place_so_far().unwrap();
+    spoilt.place(Others::Stay).unwrap();
     assert!(verify(Extent::Checksums).differences.is_empty());
     let differences = verify(Extent::Derived).differences;
     assert_eq!(differences.len(), 1);

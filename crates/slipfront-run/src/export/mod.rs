@@ -20,7 +20,7 @@ use thiserror::Error;
 
 pub use self::citation::{bibtex, cff};
 use crate::clock;
-use crate::manifest::{Manifest, ManifestError, ManifestFile};
+use crate::manifest::{Manifest, ManifestError, ManifestFile, Until};
 use crate::names::{MANIFEST, RO_CRATE};
 use crate::verify::{VerifyError, differences, inspect, verify_run};
 
@@ -156,21 +156,23 @@ impl WholeRun {
     /// Copies every file of the run to a new folder, where it is compared with its checksum.
     fn copy(&self, to: &Path, stop: &AtomicBool) -> Result<(), ExportError> {
         for ManifestFile { name, .. } in self.files() {
-            if stop.load(Ordering::Relaxed) {
-                return Err(ExportError::Interrupted);
-            }
             let (original, path) = (self.folder.join(name), to.join(name));
             let copied = make_folders(folder_of(&path)).and_then(|()| {
                 write_atomic_with(&path, |to| {
-                    std::io::copy(&mut open_regular(&original)?, to).map(drop)
+                    let file = open_regular(&original)?;
+                    std::io::copy(&mut Until { file, stop }, to).map(drop)
                 })
             });
+            if stop.load(Ordering::Relaxed) {
+                return Err(ExportError::Interrupted);
+            }
             copied.map_err(|source| ExportError::Write { path, source })?;
         }
-        match differences(self.files(), to, "were copied", &AtomicBool::new(false))
-            .into_iter()
-            .next()
-        {
+        let differences = differences(self.files(), to, "were copied", stop);
+        if stop.load(Ordering::Relaxed) {
+            return Err(ExportError::Interrupted);
+        }
+        match differences.into_iter().next() {
             Some(difference) => Err(ExportError::Changed { difference }),
             None => Ok(()),
         }

@@ -8,6 +8,7 @@ use std::sync::atomic::AtomicBool;
 use serde::{Deserialize, Serialize};
 use slipfront_case::disk::{TEXT_MAX_BYTES, is_empty, is_same, make_folders, read_limited};
 use slipfront_run::folder_error::FolderError;
+use slipfront_run::manifest::ManifestFile;
 
 use super::calibration::{Calibration, Estimate};
 use super::file::{CalibrationFile, CalibrationKeys, GivenRecord};
@@ -19,8 +20,8 @@ use super::set_up::{Curves, SetUp};
 use super::training::{Training, TrainingRun};
 use crate::error::StudyError;
 use crate::journal::Journal;
-use crate::record::to_line;
-use crate::result_files::{Others, ResultFiles};
+use crate::record::{JournalRecord, to_line};
+use crate::result_files::{Checksums, Others, ResultFiles};
 
 /// The calibration file in the folder, with the base case as a table in it.
 pub(crate) const CALIBRATION: &str = "calibration.toml";
@@ -41,6 +42,10 @@ pub(crate) struct CalibrationRun {
     id: String,
     #[serde(flatten)]
     run: TrainingRun,
+}
+
+impl JournalRecord for CalibrationRun {
+    const KEYS: &'static [&'static str] = &["curves"];
 }
 
 /// Stage of a calibration.
@@ -188,7 +193,7 @@ impl CalibrationFolder {
             .iter()
             .chain([&(CALIBRATION.to_owned(), text.clone().into_bytes())])
         {
-            let before = read_limited(&path.join(name), u64::MAX).ok();
+            let before = read_limited(&path.join(name), TEXT_MAX_BYTES).ok();
             if before.is_some_and(|before| before != *bytes) {
                 return Err(StudyError::Changed {
                     what: "calibration",
@@ -231,14 +236,14 @@ impl CalibrationFolder {
     /// The calibration in one folder, to be found again in another.
     pub(crate) fn again(folder: &Path, other: &Path) -> Result<Self, StudyError> {
         let file = CalibrationFile::load(&folder.join(CALIBRATION))?;
-        let names = std::fs::read_dir(folder).map_err(FolderError::read(folder))?;
+        let listed = Checksums::read(folder)?.unwrap_or_default().files;
         let mut records = BTreeMap::new();
-        for entry in names {
-            let path = entry.map_err(FolderError::read(folder))?.path();
-            let stem = path.file_stem().and_then(|stem| stem.to_str());
-            let number = stem.and_then(|stem| stem.strip_prefix(RECORD)?.parse::<usize>().ok());
+        for ManifestFile { name, .. } in listed {
+            let number = name
+                .strip_prefix(RECORD)
+                .and_then(|rest| rest.split('.').next()?.parse::<usize>().ok());
             if let Some(number) = number {
-                records.insert(number, path);
+                records.insert(number, folder.join(name));
             }
         }
         let records: Vec<PathBuf> = records.into_values().collect();
@@ -319,7 +324,7 @@ impl CalibrationFolder {
             findings: &findings,
         };
         let text = report.write(&told.curves, &bands, &sample(SAMPLE))?;
-        batch.place()?;
+        batch.place(Others::Go)?;
         Ok(text)
     }
 

@@ -32,7 +32,6 @@ pub use folder::{CalibrationFolder, CalibrationProgress, CalibrationStage, is_ca
 pub use grid::Grid;
 pub use intervals::Distribution;
 pub use misfit::Misfit;
-pub(crate) use report::FOUND;
 pub use set_up::{Conditions, Curves, SetUp, TrainingError};
 pub use training::{KeepRuns, Training, TrainingRun};
 pub use unknowns::{Unknown, UnknownError, design_point};

@@ -19,7 +19,7 @@ use crate::text_table::table;
 use crate::written_numbers::read_numbers;
 
 /// The findings, as numbers and as a text.
-pub(crate) const FOUND: [&str; 2] = ["calibration.json", "calibration.txt"];
+pub(super) const FOUND: [&str; 2] = ["calibration.json", "calibration.txt"];
 
 /// The part of the findings that decides whether they promise anything.
 #[derive(Deserialize)]

@@ -31,7 +31,7 @@ use crate::axis::Axis;
 use crate::error::StudyError;
 use crate::folder::{self, StudyFolder};
 use crate::plan::Plan;
-use crate::result_files::Batch;
+use crate::result_files::{Batch, Others};
 use crate::study_results::StudyResults;
 
 /// Whether the only axis of a study is the size of the blocks, on enough meshes.
@@ -59,11 +59,11 @@ pub fn write(
     let mut batch = folder.files.begin();
     folder::stage(plan, results, &mut batch, stop)?;
     if let Err(failure) = results.expect_no_failures(plan) {
-        batch.place()?;
+        batch.place(Others::Go)?;
         return Err(failure);
     }
     let found = stage(plan, results, &mut batch)?;
-    batch.place()?;
+    batch.place(Others::Go)?;
     Ok(found)
 }
 

@@ -15,7 +15,7 @@ use super::wish::Measured;
 use super::{Design, Outcome};
 use crate::error::StudyError;
 use crate::journal::Journal;
-use crate::record::to_line;
+use crate::record::{JournalRecord, to_line};
 use crate::result_files::{Batch, Others, ResultFiles};
 use crate::written_numbers::read_numbers;
 
@@ -31,6 +31,10 @@ pub(crate) struct DesignRun {
     id: RunId,
     #[serde(flatten)]
     end: RunEnd,
+}
+
+impl JournalRecord for DesignRun {
+    const KEYS: &'static [&'static str] = &["found", "failed"];
 }
 
 /// End of a run in the journal.
@@ -136,17 +140,6 @@ impl DesignFolder {
         }
     }
 
-    /// Writes the results of a design, and returns the text of the verdict.
-    ///
-    /// # Errors
-    /// When the system refuses to write, or a picture cannot be drawn.
-    pub fn write(&self, design: &Design, outcome: &Outcome) -> Result<String, StudyError> {
-        let mut batch = self.files.begin();
-        let text = self.report(&mut batch).write(design, outcome)?;
-        batch.place()?;
-        Ok(text)
-    }
-
     /// Number of runs that were kept.
     pub fn n_kept(&self) -> usize {
         self.known.len()
@@ -170,7 +163,7 @@ impl DesignFolder {
         let designs = self.file.designs_of_front()?;
         if !designs.is_empty() {
             // The results of the design stand, whatever becomes of its front.
-            batch.place_so_far()?;
+            batch.place_so_far(Others::Go)?;
         }
         let mut front = Vec::new();
         for (percent, design) in designs {
@@ -182,7 +175,7 @@ impl DesignFolder {
             }
         }
         text += &self.report(&mut batch).write_front(&front)?;
-        batch.place()?;
+        batch.place(Others::Go)?;
         Ok(text)
     }
 
@@ -209,7 +202,7 @@ impl DesignFolder {
         {
             let mut batch = self.files.begin();
             self.report(&mut batch).write_mask(design, &best)?;
-            batch.place_so_far()?;
+            batch.place_so_far(Others::Stay)?;
         }
         found
     }

@@ -50,7 +50,6 @@ pub use self::grid::Grid;
 pub use self::judge::Mean;
 pub use self::limits::{Illegal, Limits};
 pub use self::open_search::OpenSearch;
-pub(crate) use self::report::VERDICT;
 pub use self::sensitivity::{Changed, LeftOut, Sensitivity};
 pub use self::stages::{Bounds, Cut, DesignStage, SearchProgress, Work};
 pub use self::verdict::{Given, OnFresh, Verdict};

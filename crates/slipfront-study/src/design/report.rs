@@ -33,7 +33,7 @@ use crate::written_numbers::read_numbers;
 const EVALUATIONS: &str = "evaluations.csv";
 
 /// The verdict, as numbers and as a text.
-pub(crate) const VERDICT: [&str; 2] = ["design.json", "design.txt"];
+pub(super) const VERDICT: [&str; 2] = ["design.json", "design.txt"];
 
 /// Endings of the mask in other formats.
 const MASK_ENDINGS: [&str; 3] = ["svg", "dxf", "gsf"];

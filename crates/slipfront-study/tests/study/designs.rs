@@ -136,21 +136,18 @@ fn a_search_that_was_stopped_leaves_the_same_bytes() {
             .unwrap()
     };
     let mut folder = DesignFolder::open(in_one_go, &file, false).unwrap();
-    let design = folder.file.design().unwrap();
     let never = AtomicBool::new(false);
-    let outcome = on(3).install(|| folder.run(&design, &bounds(150, &never), &mut |_| {}).unwrap());
-    folder.write(&design, &outcome).unwrap();
+    on(3).install(|| folder.find(&bounds(150, &never), &mut |_| {}).unwrap());
 
     let stopped = folders[1].path();
     let mut stages = Vec::new();
     for round in 0.. {
         let mut folder = DesignFolder::open(stopped, &file, false).unwrap();
         assert_eq!(folder.damaged, usize::from(round > 0));
-        let design = folder.file.design().unwrap();
         let stop = AtomicBool::new(false);
         let before = folder.n_kept();
         let found = on(1).install(|| {
-            folder.run(&design, &bounds(150, &stop), &mut |now| {
+            folder.find(&bounds(150, &stop), &mut |now| {
                 let is_enough = match round {
                     0 => now.runs > 60,
                     1 => now.stage == DesignStage::Refining,
@@ -165,10 +162,7 @@ fn a_search_that_was_stopped_leaves_the_same_bytes() {
             })
         });
         match found {
-            Ok(outcome) => {
-                folder.write(&design, &outcome).unwrap();
-                break;
-            }
+            Ok(_) => break,
             Err(StudyError::Interrupted) => assert!(folder.n_kept() > before),
             Err(error) => panic!("{error}"),
         }

@@ -39,9 +39,12 @@ impl Merge {
         let study = study_of(&self.shards[0]).map_err(Failure::input)?;
         let plan = Plan::new(&study, None).map_err(Failure::input)?;
         plan.check_memory(0).map_err(Failure::input)?;
-        let mut folder = StudyFolder::open(&self.out, &study, self.force).map_err(Failure::input)?;
+        // A signal leaves nothing of what is copied to the folder.
+        let signals = Signals::catch().map_err(Failure::running)?;
+        let mut folder = StudyFolder::open(&self.out, &study, self.force).map_err(Failure::of_folder)?;
         let mut taken = 0;
         for shard in &self.shards {
+            Failure::if_stopped(&signals)?;
             taken += folder.records.merge(shard).map_err(Failure::running)?;
         }
         if !self.quiet {
@@ -54,11 +57,10 @@ impl Merge {
         let results = collect(&plan, &folder.records).map_err(Failure::running)?;
         for shard in &self.shards {
             folder
-                .take_kept(&plan, &results, shard)
-                .map_err(Failure::running)?;
+                .take_kept(&plan, &results, shard, &signals.stop)
+                .map_err(|error| Failure::of_results(&signals, error))?;
         }
         let shown = if self.quiet { Shown::Nothing } else { Shown::Tables };
-        let signals = Signals::catch().map_err(Failure::running)?;
         finish(&plan, &results, &folder, shown, &signals)?;
         results.expect_values(&plan).map_err(Failure::running)
     }

@@ -87,10 +87,11 @@ impl StudyRun {
         plan.check_memory(threads).map_err(Failure::input)?;
         let out = self.out.unwrap_or_else(|| default_out(&file.name, self.shard));
         refuse_to_replace(&path, &file, &out)?;
-        let folder = StudyFolder::open(&out, &file, self.force).map_err(Failure::input)?;
+        // A signal leaves nothing of what is copied to the folder.
+        let signals = Signals::catch().map_err(Failure::running)?;
+        let folder = StudyFolder::open(&out, &file, self.force).map_err(Failure::of_folder)?;
         folder.check_disk(&plan).map_err(Failure::input)?;
         let plan = plan.reading_copies(&folder.study);
-        let signals = Signals::catch().map_err(Failure::running)?;
         let results = run_all(&plan, &folder, &signals, self.quiet)?;
         let shown = if self.json {
             Shown::Json
