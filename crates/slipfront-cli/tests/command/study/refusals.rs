@@ -43,10 +43,14 @@ fn bad_studies_are_refused_with_a_sentence() {
         ),
         (axis("key = 'drive.v_star'\nlinspace = [0.1, 1, 1]"), "give 2 to"),
         (axis("key = 'drive.v_star'\nlits = [0.1]"), "did you mean `list`?"),
-        // A hundred lines that would make ten million levels.
+        // Sixty lines that would make six million levels.
         (
-            axis(&vec!["key = 'drive.v_star'\nlinspace = [0.1, 1, 100000]"; 100].join("\n[[axes]]\n")),
+            axis(&vec!["key = 'drive.v_star'\nlinspace = [0.1, 1, 100000]"; 60].join("\n[[axes]]\n")),
             "multiply to more than 1000000 points",
+        ),
+        (
+            axis(&vec!["key = 'drive.v_star'\nlist = [0.1]"; 65].join("\n[[axes]]\n")),
+            "the study has 65 axes, more than 64",
         ),
         (
             axis("key = 'drive.v_sar'\nlist = [0.1]"),
