@@ -349,7 +349,7 @@ fn the_place_of_a_record_is_found_or_asked_for() {
     let said = workspace.fail("plot a --data slow.csv --x t --y F --shift 1 -o none", 2);
     assert!(
         said.contains(
-            "slow.csv and the curve of a run have too little in common, less than a tenth of the shorter of both: shifted, the record goes \
+            "slow.csv and the curve of a run have too little in common, no point or less than a tenth of the shorter of both: shifted, the record goes \
              from 1 s to 1 s, and a from 0 s to "
         ),
         "{said}"

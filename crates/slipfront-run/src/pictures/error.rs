@@ -59,8 +59,8 @@ pub enum RunPictureError {
 #[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
 pub enum RecordError {
     #[error(
-        "{record} and the curve of a run have too little in common, less than a tenth of the shorter of both or no point of the record: \
-        shifted, the record goes from {from} to {to}, and {} from {start} to {end}; look at its units, and give another shift with --shift, or none",
+        "{record} and the curve of a run have too little in common, no point or less than a tenth of the shorter of both: shifted, the record goes \
+        from {from} to {to}, and {} from {start} to {end}; look at its units, and give another shift with --shift, or none",
         run.display()
     )]
     LittleInCommon {
