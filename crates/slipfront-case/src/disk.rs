@@ -7,6 +7,7 @@ use std::path::Path;
 use serde::Serialize;
 use tempfile::{NamedTempFile, TempPath};
 
+pub use crate::folders::{folder_of, sync_folder};
 use crate::unfinished;
 
 /// Writes a file atomically: as a [hidden file](unfinished) in its folder, which is then renamed, or removed after an error. A file that is
@@ -33,12 +34,6 @@ pub fn write_beside(
     fill_and_sync(unfinished::file_for(folder_of(path), path)?, fill)
 }
 
-/// The folder in which a file is, or will be.
-pub fn folder_of(path: &Path) -> &Path {
-    let parent = path.parent().filter(|parent| !parent.as_os_str().is_empty());
-    parent.unwrap_or(Path::new("."))
-}
-
 /// Writes a temporary file in a folder that no other process writes to, and syncs it. The file is removed when dropped,
 /// unless it is renamed (`persist`).
 pub fn write_temp(
@@ -56,20 +51,6 @@ fn fill_and_sync(
     fill(file.as_file_mut())?;
     file.as_file().sync_all()?;
     Ok(file)
-}
-
-/// Syncs a folder, so that files renamed in it keep their names after a power failure.
-pub fn sync_folder(folder: &Path) -> std::io::Result<()> {
-    // Only Unix opens folders as files.
-    if cfg!(not(unix)) {
-        return Ok(());
-    }
-    match File::open(folder) {
-        Ok(folder) => folder.sync_all(),
-        // One that may be written to and not read cannot be synced.
-        Err(error) if error.kind() == ErrorKind::PermissionDenied => Ok(()),
-        Err(error) => Err(error),
-    }
 }
 
 /// Removes a file if it exists.

@@ -11,6 +11,7 @@ pub mod case;
 pub mod case_file;
 pub mod disk;
 pub mod field_info;
+mod folders;
 pub mod machine;
 pub mod number_format;
 pub mod ordered;

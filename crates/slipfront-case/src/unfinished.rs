@@ -12,7 +12,7 @@ use std::sync::{Arc, Mutex, PoisonError, Weak};
 
 use tempfile::{Builder, NamedTempFile, TempDir};
 
-use crate::disk::{folder_of, sync_folder};
+use crate::folders::{folder_of, sync_folder};
 use crate::machine::host_name;
 
 /// The beginning of every hidden name.

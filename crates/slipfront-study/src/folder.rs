@@ -11,7 +11,7 @@ use crate::plan::{Plan, RunKey};
 use crate::result_files::{Batch, Others, ResultFiles};
 use crate::study_file::StudyFile;
 use crate::study_results::StudyResults;
-use crate::{converge, pictures, tables};
+use crate::{pictures, tables};
 use slipfront_case::disk::{TEXT_MAX_BYTES, is_empty, make_folders, open_limited, read_limited};
 use slipfront_case::machine::free_disk;
 use slipfront_case::number_format::byte_size;
@@ -134,25 +134,6 @@ impl StudyFolder {
             _ => Ok(()),
         }
     }
-}
-
-/// Writes the tables and pictures of a study to its folder, and removes those of earlier results. If the folder has a comparison of
-/// meshes, this is written anew as well.
-///
-/// # Errors
-/// When the system refuses to write, when a file in its place was edited, and after a stop.
-pub fn write(
-    plan: &Plan,
-    results: &StudyResults,
-    folder: &StudyFolder,
-    stop: &AtomicBool,
-) -> Result<(), StudyError> {
-    let mut batch = folder.files.begin();
-    stage(plan, results, &mut batch, stop)?;
-    if converge::is_written(&folder.path, &plan.axes) && results.expect_no_failures(plan).is_ok() {
-        converge::stage(plan, results, &mut batch)?;
-    }
-    batch.place(Others::Go)
 }
 
 /// Writes the tables and pictures of a study to a batch of files, until a stop.

@@ -46,6 +46,7 @@ mod tables;
 pub mod text_table;
 mod told_warnings;
 pub mod verify;
+mod write;
 mod written_numbers;
 
 pub use anisotropy::{Anisotropy, OverDirections, anisotropies};
@@ -54,7 +55,7 @@ pub use axis::{Axis, Level, Spacing};
 pub use error::StudyError;
 pub use estimate_cost::{CostLimits, estimated_seconds};
 pub use execute::{LookAtRun, collect, execute, execute_and_look};
-pub use folder::{StudyFolder, is_of_figures, is_study, refuse_foreign, study_of, write};
+pub use folder::{StudyFolder, is_of_figures, is_study, refuse_foreign, study_of};
 pub use friction_tensor::Principal;
 pub use idle_axes::idle_axes;
 pub use journal::Records;
@@ -72,3 +73,4 @@ pub use summary_values::{REDUCTION, RunQuantity, SummaryValues, is_column, known
 /// BLAKE3 hash of the sources of this crate: a part of the identity of the runs that it records.
 pub const SOURCE_HASH: &str = env!("SLIPFRONT_SOURCE_HASH");
 pub use told_warnings::told_warnings;
+pub use write::write;

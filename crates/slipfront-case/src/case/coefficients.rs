@@ -6,8 +6,9 @@ use slipfront::surface::{
 };
 use slipfront::{Lattice, Scales};
 
+use super::files::Watch;
 use super::groups::Groups;
-use super::inputs::{Inputs, Watch};
+use super::inputs::Inputs;
 use crate::case_file::{CaseError, CaseFile};
 use crate::number_format::four_digits;
 

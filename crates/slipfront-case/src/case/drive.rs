@@ -6,9 +6,9 @@ use std::sync::Arc;
 use slipfront::lattice::K_DRIVE;
 use slipfront::{Communicator, Drive, Lattice, Model, Program, Rotation, Scales, Slider};
 
+use super::files::Watch;
 use super::groups::{Groups, within};
 use super::inputs::Inputs;
-use super::inputs::Watch;
 use crate::case_file::{
     Attached, CaseError, CaseFile, DEFAULT_THRESHOLD, DriveSpeed, DriveStiffness, Motion,
 };

@@ -6,7 +6,9 @@ use std::io::{self, Cursor, Read, Seek, SeekFrom};
 use std::path::Path;
 use std::sync::Arc;
 
-use super::inputs::Watch;
+/// Function that gets the share that is done of a part of making a case: of a file that is read, or of laying the texture over the
+/// blocks; `false` ends the work.
+pub type Watch<'a> = dyn FnMut(f64) -> bool + 'a;
 
 /// Contents of files by the names that a case gives them.
 pub type FilesInMemory = HashMap<String, Arc<[u8]>>;

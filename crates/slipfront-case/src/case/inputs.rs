@@ -8,7 +8,7 @@ use std::sync::Arc;
 use blake3::Hasher;
 use slipfront::{Communicator, Lattice};
 
-use super::files::{Files, Opened, Watched};
+use super::files::{Files, Opened, Watch, Watched};
 use super::ranks::Ranks;
 use crate::arrays::{self, ArrayError, Slab};
 use crate::case_file::{CaseError, CaseFile, FileUse};
@@ -16,10 +16,6 @@ use crate::disk::open_regular;
 use crate::machine::machine_number;
 use crate::same::{Given, expect_same, of_all, words_of};
 use crate::text::{display_path, single_line};
-
-/// Function that gets the share that is done of a part of making a case: of a file that is read, or of laying the texture over the
-/// blocks; `false` ends the work.
-pub type Watch<'a> = dyn FnMut(f64) -> bool + 'a;
 
 /// A file that a case reads. The run folder holds a copy of it.
 #[derive(Clone, Debug, PartialEq)]

@@ -24,9 +24,9 @@ mod whole_slider;
 
 pub use self::budget::{Budget, Cause, Demand, PROGRAM};
 pub use self::derived::scales;
-pub use self::files::{Files, FilesInMemory, Opened};
+pub use self::files::{Files, FilesInMemory, Opened, Watch};
 pub use self::groups::Groups;
-pub use self::inputs::{Input, Watch, name_of_copy};
+pub use self::inputs::{Input, name_of_copy};
 pub use self::lengths::CaseLength;
 pub use self::model::TextureReport;
 pub use self::output::{MAX_MAPS, MAX_PICTURES, Output, Snapshots, mapped_field};

@@ -2,7 +2,8 @@
 
 use slipfront::{Communicator, Lattice, Outline, Slider};
 
-use super::inputs::{Inputs, Watch};
+use super::files::Watch;
+use super::inputs::Inputs;
 use crate::arrays::Slab;
 use crate::case_file::{self, CaseError, CaseFile, DEFAULT_THRESHOLD, Grade};
 use crate::case_file::{MAX_RELATIVE, MIN_RELATIVE};

@@ -7,7 +7,8 @@ use std::sync::Arc;
 use slipfront::surface::Tile;
 use slipfront::{Lattice, Scales, surface};
 
-use super::inputs::{Inputs, Watch};
+use super::files::Watch;
+use super::inputs::Inputs;
 use super::slider::outline;
 use super::topography::{self, Ground, Topography};
 use crate::arrays::Slab;

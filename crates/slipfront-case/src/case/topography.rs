@@ -5,7 +5,8 @@ use std::sync::Arc;
 use slipfront::surface::{Array, Tile, n_copies};
 use slipfront::{Edges, Lattice};
 
-use super::inputs::{Inputs, Watch};
+use super::files::Watch;
+use super::inputs::Inputs;
 use crate::arrays::{self, HeightMapUnits, Room, Roughness, Slab};
 use crate::case_file::{Bearing, CaseError, CaseFile, HeightMap, Pitch};
 use crate::quantity::Length;

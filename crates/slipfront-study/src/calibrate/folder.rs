@@ -15,13 +15,14 @@ use super::file::{CalibrationFile, CalibrationKeys, GivenRecord};
 use super::findings::{Findings, Further, OnFinerBlocks, Told, ToldTogether};
 use super::grid::Grid;
 use super::predicted::{PREDICTED, bands};
-use super::report::Report;
+use super::report::{FOUND, Report};
 use super::set_up::{Curves, SetUp};
 use super::training::{Training, TrainingRun};
 use crate::error::StudyError;
 use crate::journal::Journal;
 use crate::record::{JournalRecord, to_line};
 use crate::result_files::{Checksums, Others, ResultFiles};
+use crate::written_numbers::read_numbers;
 
 /// The calibration file in the folder, with the base case as a table in it.
 pub(crate) const CALIBRATION: &str = "calibration.toml";
@@ -421,6 +422,26 @@ impl CalibrationFolder {
             Ok((0..runs as usize).filter(is_missing).count())
         });
         missing.sum()
+    }
+}
+
+/// The part of the findings that decides whether they promise anything.
+#[derive(Deserialize)]
+struct Decided {
+    is_refused: bool,
+}
+
+impl CalibrationFolder {
+    /// Refuses findings about records that the model cannot have made.
+    ///
+    /// # Errors
+    /// A sentence that names the findings; when the folder has none.
+    pub fn expect_own_records(&self) -> Result<(), StudyError> {
+        let [numbers, words] = FOUND.map(|name| self.path().join(name));
+        match read_numbers(&numbers)? {
+            Decided { is_refused: false } => Ok(()),
+            Decided { is_refused: true } => Err(StudyError::Refused { path: words }),
+        }
     }
 }
 

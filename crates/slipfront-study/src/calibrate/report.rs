@@ -2,7 +2,6 @@
 
 use std::io::Write;
 
-use serde::Deserialize;
 use slipfront_case::number_format::{count, four_digits, in_print, si_prefix};
 use slipfront_case::text::{COLUMNS, wrapped};
 use slipfront_plot::{Picture, PictureError, Response, Responses};
@@ -10,36 +9,14 @@ use slipfront_run::measured::Measure;
 use slipfront_run::names::CASE;
 
 use super::findings::{Findings, OnFinerBlocks, Told};
-use super::folder::CalibrationFolder;
 use super::predicted::{Band, PREDICTED};
 use super::set_up::{Conditions, SetUp};
 use crate::error::StudyError;
 use crate::result_files::Batch;
 use crate::text_table::table;
-use crate::written_numbers::read_numbers;
 
 /// The findings, as numbers and as a text.
 pub(super) const FOUND: [&str; 2] = ["calibration.json", "calibration.txt"];
-
-/// The part of the findings that decides whether they promise anything.
-#[derive(Deserialize)]
-struct Decided {
-    is_refused: bool,
-}
-
-impl CalibrationFolder {
-    /// Refuses findings about records that the model cannot have made.
-    ///
-    /// # Errors
-    /// A sentence that names the findings; when the folder has none.
-    pub fn expect_own_records(&self) -> Result<(), StudyError> {
-        let [numbers, words] = FOUND.map(|name| self.path().join(name));
-        match read_numbers(&numbers)? {
-            Decided { is_refused: false } => Ok(()),
-            Decided { is_refused: true } => Err(StudyError::Refused { path: words }),
-        }
-    }
-}
 
 /// Points that are drawn from the joint estimate of all unknowns, a row each.
 const POSTERIOR: &str = "posterior.csv";

@@ -274,6 +274,31 @@ impl WorkOfFront {
     }
 }
 
+/// The part of the numbers that says whether there is a verdict.
+#[derive(Deserialize)]
+struct Decided {
+    design: Lost,
+}
+
+#[derive(Deserialize)]
+struct Lost {
+    lost: Option<String>,
+}
+
+impl DesignFolder {
+    /// Refuses a verdict on textures that are all lost.
+    ///
+    /// # Errors
+    /// A sentence that names the verdict; when the folder has none.
+    pub fn expect_verdict(&self) -> Result<(), StudyError> {
+        let [numbers, words] = VERDICT.map(|name| self.path().join(name));
+        match read_numbers::<Decided>(&numbers)?.design.lost {
+            None => Ok(()),
+            Some(_) => Err(StudyError::NoVerdict { path: words }),
+        }
+    }
+}
+
 /// Length of the search whose results a folder holds.
 ///
 /// # Errors

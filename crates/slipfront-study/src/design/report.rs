@@ -5,7 +5,7 @@ use std::io::Write;
 use std::path::Path;
 use std::sync::Arc;
 
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 use slipfront_case::arrays::{npy_of_mask, png_of_mask};
 use slipfront_case::case::{Case, Files, FilesInMemory, Ranks};
 use slipfront_case::case_file::CaseFile;
@@ -17,7 +17,6 @@ use slipfront_run::pictures::texture_file;
 use slipfront_run::running;
 
 use super::file::DesignFile;
-use super::folder::DesignFolder;
 use super::judge::Mean;
 use super::stages::{Length, Tried};
 use super::subject::{Fidelity, MASK, masked};
@@ -27,7 +26,6 @@ use super::{Design, Outcome};
 use crate::error::StudyError;
 use crate::result_files::Batch;
 use crate::text_table::table;
-use crate::written_numbers::read_numbers;
 
 /// A table of every draft that was tried.
 const EVALUATIONS: &str = "evaluations.csv";
@@ -64,31 +62,6 @@ struct Written<'a> {
     #[serde(flatten)]
     verdict: &'a Verdict,
     version: &'static str,
-}
-
-/// The part of the numbers that says whether there is a verdict.
-#[derive(Deserialize)]
-struct Decided {
-    design: Lost,
-}
-
-#[derive(Deserialize)]
-struct Lost {
-    lost: Option<String>,
-}
-
-impl DesignFolder {
-    /// Refuses a verdict on textures that are all lost.
-    ///
-    /// # Errors
-    /// A sentence that names the verdict; when the folder has none.
-    pub fn expect_verdict(&self) -> Result<(), StudyError> {
-        let [numbers, words] = VERDICT.map(|name| self.path().join(name));
-        match read_numbers::<Decided>(&numbers)?.design.lost {
-            None => Ok(()),
-            Some(_) => Err(StudyError::NoVerdict { path: words }),
-        }
-    }
 }
 
 /// A row of `evaluations.csv`.
