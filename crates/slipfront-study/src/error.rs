@@ -5,9 +5,9 @@ use std::path::PathBuf;
 use jiff::SignedDuration;
 use thiserror::Error;
 
+use slipfront_base::number_format::{are, count};
+use slipfront_base::text::{display_path, single_line};
 use slipfront_case::case_file::CaseError;
-use slipfront_case::number_format::{are, count};
-use slipfront_case::text::{display_path, single_line};
 use slipfront_plot::PictureError;
 use slipfront_run::folder_error::FolderError;
 use slipfront_run::pictures::error::RunPictureError;

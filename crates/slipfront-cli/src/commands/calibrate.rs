@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use slipfront_case::number_format::count;
+use slipfront_base::number_format::count;
 use slipfront_study::StudyError;
 use slipfront_study::calibrate::{CalibrationFile, CalibrationFolder};
 

@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use clap::Args;
 use jiff::SignedDuration;
-use slipfront_case::number_format::count;
+use slipfront_base::number_format::count;
 use slipfront_study::StudyError;
 use slipfront_study::design::{Bounds, DesignFile, DesignFolder};
 

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use slipfront_case::disk::is_same;
+use slipfront_base::disk::is_same;
 use slipfront_run::pictures::texture_file;
 
 use crate::case_args::CaseArgs;

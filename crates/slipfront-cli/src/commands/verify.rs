@@ -5,10 +5,10 @@ use std::sync::Arc;
 
 use clap::Args;
 use slipfront::Execution;
+use slipfront_base::number_format::count;
+use slipfront_base::text::truncated;
+use slipfront_base::unfinished::TemporaryFolder;
 use slipfront_case::case::{Case, Ranks};
-use slipfront_case::number_format::count;
-use slipfront_case::text::truncated;
-use slipfront_case::unfinished::TemporaryFolder;
 use slipfront_paper::verify as verify_paper;
 use slipfront_run::clock;
 use slipfront_run::manifest::Manifest;

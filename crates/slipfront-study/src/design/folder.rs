@@ -4,7 +4,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
-use slipfront_case::disk::{TEXT_MAX_BYTES, is_empty, make_folders, read_limited};
+use slipfront_base::disk::{TEXT_MAX_BYTES, is_empty, make_folders, read_limited};
 use slipfront_run::folder_error::FolderError;
 
 use super::evaluate::{Ended, Known, MadeRun, RunId};
