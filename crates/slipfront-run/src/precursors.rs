@@ -65,11 +65,6 @@ pub fn columns(rows: &[PrecursorRow]) -> impl Iterator<Item = (&'static str, Vec
         .map(move |(name, value)| (name, rows.iter().map(value).map(number).collect()))
 }
 
-/// Columns of the table of events.
-pub fn n_columns() -> usize {
-    names_of::<PrecursorRow>().len()
-}
-
 /// The events as CSV, with the header also where there is none.
 pub fn to_csv(events: &[SlipEvent], scales: &Scales) -> Result<Vec<u8>, csv::Error> {
     let mut writer = csv::WriterBuilder::new()

@@ -16,14 +16,6 @@ use crate::case_file::{
 /// Largest angle, in rad, by which a drive may turn: the far ends move along tangents, not along circles.
 const MAX_ANGLE: f64 = 1e-3;
 
-/// Bytes of the blocks that [`attached`] returns.
-pub(super) fn bytes_of_attached(file: &CaseFile, n_blocks: usize) -> usize {
-    match file.drive.attached {
-        Attached::File(_) => n_blocks * size_of::<bool>(),
-        Attached::At(_) => 0,
-    }
-}
-
 /// The blocks of these rows that have a drive spring, if a file names them.
 pub(super) fn attached(
     file: &CaseFile,

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use serde::Deserialize;
 use slipfront_base::disk::{TEXT_MAX_BYTES, open_limited};
 use slipfront_base::number_format::{are, with_si_prefix};
-use slipfront_case::case::Case;
+use slipfront_case::case::{Case, PROGRAM};
 use slipfront_case::case_file::{CaseError, Override, Source, Tables, syntax_error, unknown_key};
 use slipfront_run::folder_error::FolderError;
 use slipfront_run::measured::{Measure, MeasuredRecord};
@@ -14,12 +14,13 @@ use toml::{Table, Value};
 
 use super::grid::Grid;
 use super::set_up::{Conditions, SetUp};
-use super::summaries::MIN_VALUES;
+use super::summaries::{MIN_VALUES, n_summaries};
 use super::unknowns::Unknown;
 use crate::axis::overrides;
 use crate::error::StudyError;
 use crate::input_copies::Copy;
 use crate::measured_columns::MeasuredColumns;
+use crate::room::WorkMemory;
 use crate::study_file::{Base, found_at, parse_noting_places, portable, read_base, read_named};
 
 /// The tables of a calibration file.
@@ -339,6 +340,55 @@ impl CalibrationFile {
         Ok(set_up)
     }
 
+    /// Refuses a calibration from these records if there is no memory for `threads` runs at once and the regressions behind them, and says
+    /// how many there is memory for.
+    ///
+    /// # Errors
+    /// When the records cannot be read or the ranges leave the bounds of the case, and with both figures of memory.
+    pub fn check_memory(&self, records: &[PathBuf], threads: usize) -> Result<(), StudyError> {
+        let no_memory = |needed, available| StudyError::CalibrationMemory { needed, available };
+        self.memory(records)?.check(threads, no_memory)
+    }
+
+    /// Memory of the calibration from these records.
+    ///
+    /// # Errors
+    /// When the records cannot be read, or the ranges leave the bounds of the case.
+    pub fn memory(&self, records: &[PathBuf]) -> Result<WorkMemory, StudyError> {
+        const NUMBER: f64 = size_of::<f64>() as f64;
+        // Runs from which a regression finds its weights, with four numbers of a pair: it takes no less.
+        const LEAST: usize = 2 * 900;
+        let set_up = self.set_up(&self.read(records)?)?;
+        let [runs, finer_runs] = [self.keys.runs, self.keys.finer_runs].map(|runs| runs as usize);
+        let further = self.further(&set_up)?;
+        // Blocks of half the size that are not possible are left out of a calibration.
+        let finer = set_up.finer().ok().filter(|_| finer_runs > 0);
+        let mut trainings = vec![(&set_up, runs)];
+        trainings.extend(finer.iter().map(|finer| (finer, finer_runs)));
+        trainings.extend(further.iter().map(|(_, further)| (further, runs)));
+        let (mut values, mut run) = (0, 0.0_f64);
+        for (set_up, runs) in trainings {
+            values += runs
+                * set_up
+                    .conditions
+                    .iter()
+                    .map(|one| one.grid.n_values())
+                    .sum::<usize>();
+            run = run.max(set_up.bytes_of_run()?);
+        }
+        // One for each unknown, and that of the drift of a record; with a further experiment and without.
+        let regressions = 1 + set_up.unknowns.len();
+        let records = set_up.conditions.len() + usize::from(!further.is_empty());
+        let kept = 10 * (regressions + 1) * runs * records * n_summaries();
+        // Curves are in the journal, in a training and in copies of both.
+        let numbers = (4 * values + kept) as f64;
+        let regression = NUMBER * (runs.max(LEAST) as f64).powi(2);
+        Ok(WorkMemory {
+            beside: PROGRAM + NUMBER * numbers,
+            pieces: vec![(run, usize::MAX), (regression, regressions)],
+        })
+    }
+
     /// The set-ups of the experiments that may be made next, over the path of the first record of `set_up`, and their names.
     pub(crate) fn further(&self, set_up: &SetUp) -> Result<Vec<(String, SetUp)>, StudyError> {
         let middle = set_up.middle();
@@ -413,5 +463,61 @@ impl Number {
                 None => (text.trim().parse().ok(), None),
             },
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The memory of a calibration of a small slider from a record of 50 values.
+    fn memory(keys: &str) -> WorkMemory {
+        let folder = tempfile::tempdir().unwrap();
+        let record = folder.path().join("record.csv");
+        let rows: String = (0..50).map(|k| format!("{k}e-9,{k}\n")).collect();
+        std::fs::write(&record, format!("t_s,f_n\n{rows}")).unwrap();
+        let text = format!(
+            "[base]\nslider.blocks = [8, 8]\n[calibrate]\nx = 't_s'\ny = 'f_n'\nnoise = 0.01\n{keys}\n\
+             unknowns = {{ 'friction.r_star' = [0.3, 0.9], 'friction.mu_static' = [0.3, 0.9] }}"
+        );
+        let file = CalibrationFile::parse(&text, "fit.toml", "fit", Path::new("")).unwrap();
+        file.memory(&[record]).unwrap()
+    }
+
+    #[test]
+    fn threads_are_held_against_the_memory() {
+        let found = memory("runs = 2000\nfiner_runs = 0");
+        // A kernel of all runs, which becomes its factor; of a regression for each unknown and one more.
+        assert_eq!(found.pieces[1], (8.0 * 2000.0 * 2000.0, 3));
+        let no_memory = |needed, available| StudyError::CalibrationMemory { needed, available };
+        assert!(found.compare(2, found.of(2), no_memory).is_ok());
+        assert!(matches!(
+            found.compare(8, found.of(2), no_memory),
+            Err(StudyError::Memory {
+                threads: 8,
+                fit: 2,
+                ..
+            })
+        ));
+        let said = found
+            .compare(2, found.of(1) - 1.0, no_memory)
+            .unwrap_err()
+            .to_string();
+        assert!(
+            said.starts_with("the calibration takes") && said.contains("or `calibrate.runs`"),
+            "{said}"
+        );
+    }
+
+    /// Blocks of half the size have runs of four times the blocks and twice the steps, and curves of their own.
+    #[test]
+    fn all_trainings_count() {
+        let plain = memory("runs = 200\nfiner_runs = 0");
+        let finer = memory("runs = 200\nfiner_runs = 200");
+        let further = memory("runs = 200\nfiner_runs = 0\nnext = [{ drive.v_star = 0.01 }]");
+        let curve = 8.0 * 50.0;
+        assert!(finer.pieces[0].0 > 1.9 * plain.pieces[0].0);
+        assert!(finer.beside - plain.beside >= 2.0 * 200.0 * curve);
+        assert!(further.beside - plain.beside > 3.0 * 200.0 * curve);
     }
 }

@@ -70,6 +70,14 @@ impl Evaluator {
         &self.subjects[0].wish
     }
 
+    /// Memory of the largest run, in bytes.
+    pub(crate) fn bytes_of_run(&self) -> Result<f64, CaseError> {
+        self.subjects.iter().try_fold(0.0, |largest: f64, subject| {
+            let case = subject.case(None, 0, Fidelity::Verdict)?;
+            Ok(largest.max(case.budget.beside_others(false)))
+        })
+    }
+
     /// Mean cost over the cases of a run, in steps times blocks.
     pub(crate) fn work(&self, fidelity: Fidelity) -> f64 {
         let work: f64 = self.subjects.iter().map(|subject| subject.work(fidelity)).sum();

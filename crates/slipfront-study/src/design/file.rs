@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use serde::Deserialize;
-use slipfront_case::case::{Case, Ranks};
+use slipfront_case::case::{Case, PROGRAM, Ranks};
 use slipfront_case::case_file::{CaseError, CaseFile, Override, Source, Tables, syntax_error, unknown_key};
 use slipfront_case::quantity::{Force, Length};
 use slipfront_run::measured::Measure;
@@ -17,6 +17,7 @@ use crate::axis::overrides;
 use crate::error::StudyError;
 use crate::input_copies::Copy;
 use crate::measured_columns::MeasuredColumns;
+use crate::room::WorkMemory;
 use crate::study_file::{Base, found_at, parse_noting_places, portable, read_base, read_named};
 
 /// The tables of a design file.
@@ -258,9 +259,31 @@ impl DesignFile {
             let sentence = "a search that is cut short by a time has no time for a front: give a number of runs, or leave out `front`";
             return Err(self.error("front", sentence.to_owned()).into());
         }
+        let no_memory = |needed, available| StudyError::DesignMemory { needed, available };
+        self.memory(runs)?.check(threads, no_memory)
+    }
+
+    /// Memory of the design with a search of this many runs.
+    ///
+    /// # Errors
+    /// As [`design`](Self::design).
+    pub fn memory(&self, runs: usize) -> Result<WorkMemory, StudyError> {
+        // A draft keeps its blocks, its patches, and its line of the table.
+        const DRAFT: f64 = 2048.0;
+        let evaluator = self.design()?.evaluator;
+        // A mesh that has no room for a single run is left out of the verdict.
+        let finer = evaluator.on_finer_blocks().ok();
+        let mut run = evaluator.bytes_of_run()?;
+        if let Some(finer) = finer {
+            run = run.max(finer.bytes_of_run()?);
+        }
         // Every design of a front keeps what it has tried until all are written.
         let drafts = runs.saturating_mul(1 + self.keys.front.len());
-        self.design()?.check_memory(drafts, threads)
+        Ok(WorkMemory {
+            // Masks and limits of the search take less than a run.
+            beside: PROGRAM + run + drafts as f64 * (DRAFT + evaluator.grid.n_blocks() as f64),
+            pieces: vec![(run, usize::MAX)],
+        })
     }
 
     /// The designs of a front: every coverage in `front`, with the design of at most this coverage.
@@ -539,5 +562,50 @@ impl DesignKeys {
             }
         }
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Memory counts runs as they are on blocks of half the size, and drafts with their blocks.
+    #[test]
+    fn threads_are_held_against_the_memory() {
+        let memory = |blocks: usize, runs: usize| {
+            let text = format!(
+                "[base]\nslider.blocks = [{blocks}, {blocks}]\n[design]\nwish = {{ least = 'static_friction' }}\ncoverage = [0, 10]"
+            );
+            let file = DesignFile::parse(&text, "design.toml", "design", Path::new("")).unwrap();
+            file.memory(runs).unwrap()
+        };
+        let found = memory(200, 100);
+        let [(run, _)] = found.pieces[..] else {
+            panic!("{found:?}")
+        };
+        assert!(memory(400, 100).pieces[0].0 > 3.0 * run);
+        assert_eq!(
+            memory(200, 300).beside - found.beside,
+            200.0 * (2048.0 + 200.0 * 200.0)
+        );
+        let available = found.of(2) + 0.5 * run;
+        let no_memory = |needed, available| StudyError::DesignMemory { needed, available };
+        assert!(found.compare(2, available, no_memory).is_ok());
+        assert!(matches!(
+            found.compare(3, available, no_memory),
+            Err(StudyError::Memory {
+                threads: 3,
+                fit: 2,
+                ..
+            })
+        ));
+        let said = found
+            .compare(2, found.of(1) - 1.0, no_memory)
+            .unwrap_err()
+            .to_string();
+        assert!(
+            said.starts_with("the design takes") && said.contains("lower `slider.blocks` or `design.runs`"),
+            "{said}"
+        );
     }
 }

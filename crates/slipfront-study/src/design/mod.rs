@@ -14,7 +14,6 @@ mod front;
 mod grid;
 mod judge;
 mod limits;
-mod memory;
 mod named;
 mod open_search;
 mod patch;

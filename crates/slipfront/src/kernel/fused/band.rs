@@ -119,14 +119,6 @@ pub(super) struct Band {
     pub(super) stride: usize,
 }
 
-/// Bytes of a [`Band`] per element: of the element itself, of its vector and of its tile.
-pub(super) const BYTES_PER_ELEMENT: f64 = {
-    let element = 2 * size_of::<[f64; 2]>() + 2 * size_of::<f64>() + size_of::<u32>();
-    let vector = (4 + 4) * size_of::<u8>() + size_of::<u64>() + size_of::<i64>();
-    let tile = size_of::<TileState>() + size_of::<TileTask>();
-    element as f64 + vector as f64 / LANES as f64 + tile as f64 / TILE as f64
-};
-
 /// Intermediate results on the way through the tiles, which are not needed later.
 #[derive(Debug, Default)]
 pub(super) struct Scratch {
