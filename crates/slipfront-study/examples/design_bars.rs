@@ -18,7 +18,7 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use slipfront_case::case::Case;
-use slipfront_run::pictures::texture_file::textured_blocks;
+use slipfront_case::texture_file::textured_blocks;
 use slipfront_run::running;
 use slipfront_study::design::{Bounds, Design, Limits, Mean, OnFresh, Quantity, Verdict, Wish};
 

@@ -11,9 +11,9 @@ use slipfront_base::text::{COLUMNS, note, wrapped};
 use slipfront_case::arrays::{npy_of_mask, png_of_mask};
 use slipfront_case::case::{Case, Files, FilesInMemory, Ranks};
 use slipfront_case::case_file::CaseFile;
+use slipfront_case::texture_file;
 use slipfront_plot::{FieldMap, FieldMaps, FrictionAxes, FrictionCurve};
 use slipfront_run::names::CASE;
-use slipfront_run::pictures::texture_file;
 use slipfront_run::running;
 
 use super::file::DesignFile;
