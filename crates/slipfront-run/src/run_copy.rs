@@ -4,9 +4,9 @@ use std::path::Path;
 
 use slipfront_base::disk::{open_regular, write_temp};
 
-use super::RunFolder;
 use crate::folder_error::FolderError;
 use crate::names::{CASE, MANIFEST, UNFINISHED};
+use crate::run_folder::RunFolder;
 
 /// Copies the files of a run folder. The case and the manifest come last: without them, the copy does not count as whole.
 pub fn copy_run(from: &Path, to: &Path) -> Result<(), FolderError> {

@@ -1,6 +1,6 @@
 //! Widths and pieces of sets of blocks. A set has a mark for every block, row-major, the smallest y first.
 
-use super::{Edges, Lattice};
+use crate::lattice::{Edges, Lattice};
 
 impl Lattice {
     /// The opening of a set: all its squares of `side` x `side` blocks, each wholly in the set. Places beyond free edges are
