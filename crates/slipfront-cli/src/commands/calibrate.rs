@@ -3,9 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use slipfront_calibrate::{CalibrationFile, CalibrationFolder};
 use slipfront_case::number_format::count;
 use slipfront_study::StudyError;
-use slipfront_study::calibrate::{CalibrationFile, CalibrationFolder};
 
 use crate::failure::Failure;
 use crate::print::print_message;
