@@ -3,10 +3,10 @@
 use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
+use slipfront_base::disk::{TEXT_MAX_BYTES, open_limited};
+use slipfront_base::number_format::{are, with_si_prefix};
 use slipfront_case::case::Case;
 use slipfront_case::case_file::{CaseError, Override, Source, Tables, syntax_error, unknown_key};
-use slipfront_case::disk::{TEXT_MAX_BYTES, open_limited};
-use slipfront_case::number_format::{are, with_si_prefix};
 use slipfront_run::folder_error::FolderError;
 use slipfront_run::measured::{Measure, MeasuredRecord};
 use slipfront_run::run_curve::steps_to;

@@ -105,7 +105,7 @@ impl Told {
 
     /// A value of the unknown, as a text with its unit.
     pub(crate) fn text(&self, value: f64) -> String {
-        let number = slipfront_case::number_format::four_digits(value);
+        let number = slipfront_base::number_format::four_digits(value);
         match &self.unit {
             Some(unit) => format!("{number} {unit}"),
             None => number,

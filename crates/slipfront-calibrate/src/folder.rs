@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf, absolute};
 use std::sync::atomic::AtomicBool;
 
 use serde::{Deserialize, Serialize};
-use slipfront_case::disk::{TEXT_MAX_BYTES, is_empty, is_same, make_folders, read_limited};
+use slipfront_base::disk::{TEXT_MAX_BYTES, is_empty, is_same, make_folders, read_limited};
 use slipfront_run::folder_error::FolderError;
 use slipfront_run::manifest::ManifestFile;
 

@@ -2,9 +2,9 @@
 
 use std::path::PathBuf;
 
+use slipfront_base::machine::available_of;
+use slipfront_base::number_format::byte_size;
 use slipfront_case::case::{Budget, PROGRAM};
-use slipfront_case::machine::available_of;
-use slipfront_case::number_format::byte_size;
 use slipfront_regression::Regression;
 use slipfront_run::run_curve::{RunCurve, steps_to};
 

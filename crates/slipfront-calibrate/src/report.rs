@@ -2,8 +2,8 @@
 
 use std::io::Write;
 
-use slipfront_case::number_format::{count, four_digits, in_print, si_prefix};
-use slipfront_case::text::{COLUMNS, wrapped};
+use slipfront_base::number_format::{count, four_digits, in_print, si_prefix};
+use slipfront_base::text::{COLUMNS, wrapped};
 use slipfront_plot::{Picture, PictureError, Response, Responses};
 use slipfront_run::measured::Measure;
 use slipfront_run::names::CASE;

@@ -9,16 +9,10 @@
 pub mod arrays;
 pub mod case;
 pub mod case_file;
-pub mod disk;
 pub mod field_info;
-mod folders;
-pub mod machine;
-pub mod number_format;
-pub mod ordered;
 pub mod quantity;
 pub mod same;
-pub mod text;
-pub mod unfinished;
+pub mod texture_file;
 
 /// BLAKE3 hash of the sources of this crate.
 pub const SOURCE_HASH: &str = env!("SLIPFRONT_SOURCE_HASH");

@@ -12,8 +12,8 @@ use serde::de::{Deserialize, Deserializer, Visitor};
 use serde::ser::{Serialize, Serializer};
 use thiserror::Error;
 
-use crate::number_format::exact;
-use crate::text::truncated;
+use slipfront_base::number_format::exact;
+use slipfront_base::text::truncated;
 
 /// The longest text that is read as a quantity, in bytes.
 const MAX_TEXT: usize = 200;

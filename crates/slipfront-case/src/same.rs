@@ -5,7 +5,7 @@ use slipfront::Communicator;
 use slipfront::communicator::{lowest_rank, text_of};
 use thiserror::Error;
 
-use crate::text::truncated;
+use slipfront_base::text::truncated;
 
 /// A difference between the inputs of a rank and those of rank 0.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]

@@ -3,7 +3,7 @@
 use std::ffi::OsString;
 use std::path::Path;
 
-use slipfront_case::text::{shell_quoted, truncated};
+use slipfront_base::text::{shell_quoted, truncated};
 
 /// The sentence about the first `--set` among the arguments whose key and value are several words, with the one word that was
 /// meant: `--set drive.v_star 0.05`, or `--set slider.blocks=[50, 50]` without quotes around it.

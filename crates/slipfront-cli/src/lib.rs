@@ -30,7 +30,7 @@ use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 
 use slipfront::Communicator;
-use slipfront_case::text::shell_path;
+use slipfront_base::text::shell_path;
 use slipfront_run::agree::RankFailure;
 use slipfront_run::program::{this_build, version_lines};
 use slipfront_study::StudyFile;

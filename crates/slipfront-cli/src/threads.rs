@@ -7,7 +7,7 @@ use std::sync::{Arc, Mutex};
 use std::thread::{Builder, available_parallelism};
 
 use rayon::{ThreadBuilder, ThreadPoolBuilder};
-use slipfront_case::machine::threads_that_fit;
+use slipfront_base::machine::threads_that_fit;
 
 use crate::failure::Failure;
 use crate::print_stderr::print_stderr;

@@ -1,6 +1,6 @@
 //! Sentences broken between words, where a terminal would break them anywhere.
 
-use slipfront_case::text::{self, COLUMNS, wrapped};
+use slipfront_base::text::{self, COLUMNS, wrapped};
 
 /// The columns of the terminal that stdout is, or 80 for a file or pipe.
 pub(crate) fn stdout_columns() -> usize {

@@ -18,8 +18,8 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use slipfront_case::case::Case;
+use slipfront_case::texture_file::textured_blocks;
 use slipfront_design::{Bounds, Design, Limits, Mean, OnFresh, Quantity, Verdict, Wish};
-use slipfront_run::pictures::texture_file::textured_blocks;
 use slipfront_run::running;
 
 /// Keys that are added to the case whose curve is asked for.

@@ -6,8 +6,8 @@ use serde::Deserialize;
 use slipfront_case::case::{Case, Ranks};
 use slipfront_case::case_file::{CaseError, CaseFile, Override, Source, Tables, syntax_error, unknown_key};
 use slipfront_case::quantity::{Force, Length};
+use slipfront_case::texture_file::textured_blocks;
 use slipfront_run::measured::Measure;
-use slipfront_run::pictures::texture_file::textured_blocks;
 use toml::{Table, Value};
 
 use crate::design::Design;

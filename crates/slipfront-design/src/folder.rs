@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
 use serde::{Deserialize, Serialize};
-use slipfront_case::disk::{TEXT_MAX_BYTES, is_empty, make_folders, read_limited};
+use slipfront_base::disk::{TEXT_MAX_BYTES, is_empty, make_folders, read_limited};
 use slipfront_run::folder_error::FolderError;
 
 use crate::design::{Design, Outcome};

@@ -1,8 +1,8 @@
 //! A front: the best value of a wish for several coverages.
 
 use serde::Serialize;
-use slipfront_case::number_format::four_digits;
-use slipfront_case::text::{COLUMNS, note};
+use slipfront_base::number_format::four_digits;
+use slipfront_base::text::{COLUMNS, note};
 use slipfront_plot::{Response, Responses};
 
 use crate::design::{Design, Outcome};

@@ -1,6 +1,6 @@
 //! Limits on the textures of a design, and the texture of a draft: legal as it is made.
 
-use slipfront_case::number_format::{are, count as count_of};
+use slipfront_base::number_format::{are, count as count_of};
 
 use crate::grid::{Grid, count};
 use crate::patch::Draft;

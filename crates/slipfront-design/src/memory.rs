@@ -1,9 +1,9 @@
 //! Memory of a design, compared with the memory of the machine before the first run.
 
+use slipfront_base::machine::available_of;
+use slipfront_base::number_format::byte_size;
 use slipfront_case::case::PROGRAM;
 use slipfront_case::case_file::CaseError;
-use slipfront_case::machine::available_of;
-use slipfront_case::number_format::byte_size;
 use slipfront_run::pictures;
 
 use crate::design::Design;

@@ -6,14 +6,14 @@ use std::path::Path;
 use std::sync::Arc;
 
 use serde::Serialize;
+use slipfront_base::number_format::{count, four_digits, with_half_width, with_si_prefix};
+use slipfront_base::text::{COLUMNS, note, wrapped};
 use slipfront_case::arrays::{npy_of_mask, png_of_mask};
 use slipfront_case::case::{Case, Files, FilesInMemory, Ranks};
 use slipfront_case::case_file::CaseFile;
-use slipfront_case::number_format::{count, four_digits, with_half_width, with_si_prefix};
-use slipfront_case::text::{COLUMNS, note, wrapped};
+use slipfront_case::texture_file;
 use slipfront_plot::{FieldMap, FieldMaps, FrictionAxes, FrictionCurve};
 use slipfront_run::names::CASE;
-use slipfront_run::pictures::texture_file;
 use slipfront_run::running;
 
 use crate::design::{Design, Outcome};

@@ -9,8 +9,8 @@ use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD;
 use serde::Serialize;
 use sha2::{Digest, Sha256};
-use slipfront_case::disk::{is_empty, make_folders, write_atomic};
-use slipfront_case::text::display_path;
+use slipfront_base::disk::{is_empty, make_folders, write_atomic};
+use slipfront_base::text::display_path;
 use slipfront_session::{Document, Presets};
 
 use crate::opening::{Start, StartSource};

@@ -3,9 +3,9 @@
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
+use slipfront_base::disk::open_limited;
+use slipfront_base::text::{display_path, shell_path};
 use slipfront_case::case_file::{CaseError, read_text};
-use slipfront_case::disk::open_limited;
-use slipfront_case::text::{display_path, shell_path};
 use slipfront_session::{Document, MAX_FILES};
 
 /// The case of a file, with the files that stand in its folder or in those that are `allowed`.

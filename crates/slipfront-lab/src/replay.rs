@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use slipfront_case::text::{display_path, truncated};
+use slipfront_base::text::{display_path, truncated};
 use slipfront_run::names::{FIELDS, MANIFEST, SERIES};
 use slipfront_session::{MAX_FILES, Opened, is_plain_name, recorded_run};
 

@@ -7,9 +7,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use slipfront::Execution;
+use slipfront_base::disk::{folder_of, make_folders, sync_folder};
+use slipfront_base::text::{display_path, truncated};
 use slipfront_case::case_file::CaseError;
-use slipfront_case::disk::{folder_of, make_folders, sync_folder};
-use slipfront_case::text::{display_path, truncated};
 use slipfront_run::clock;
 use slipfront_run::pictures;
 use slipfront_run::results;

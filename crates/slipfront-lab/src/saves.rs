@@ -7,7 +7,7 @@ use std::sync::mpsc::Sender;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
 use std::thread;
 
-use slipfront_case::text::display_path;
+use slipfront_base::text::display_path;
 use slipfront_session::{Document, refused, saved, saving};
 
 use crate::outbox::Outbox;

@@ -12,7 +12,7 @@ use axum::extract::{Path, State};
 use axum::http::{HeaderMap, StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use serde_json::json;
-use slipfront_case::text::display_path;
+use slipfront_base::text::display_path;
 use slipfront_session::{Host, MAX_MESSAGE, Message as Request, hello};
 use tokio::sync::{Semaphore, watch};
 use tokio::time::{sleep, timeout};

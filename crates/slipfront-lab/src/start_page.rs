@@ -8,7 +8,7 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
-use slipfront_case::unfinished::TemporaryFolder;
+use slipfront_base::unfinished::TemporaryFolder;
 use tempfile::{Builder, NamedTempFile};
 
 /// The start page of a laboratory, while its file exists.

@@ -1,7 +1,7 @@
 //! A measured number and its confidence interval.
 
 use serde::{Deserialize, Serialize};
-use slipfront_case::number_format::with_interval;
+use slipfront_base::number_format::with_interval;
 use slipfront_study::Sample;
 
 /// Confidence of all intervals.

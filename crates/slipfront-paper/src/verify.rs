@@ -4,8 +4,8 @@ use std::fs::File;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use slipfront_case::disk::{make_folders, open_limited};
-use slipfront_case::unfinished::TemporaryFolder;
+use slipfront_base::disk::{make_folders, open_limited};
+use slipfront_base::unfinished::TemporaryFolder;
 use slipfront_run::folder_error::FolderError;
 use slipfront_run::manifest::ManifestFile;
 use slipfront_run::names::FIGURE_CACHE;

@@ -10,10 +10,10 @@ use std::ops::Range;
 use std::path::Path;
 
 use slipfront::observe::{CurveRow, Frame, KineticHistory, Kymograph, Precursors, SlipEvent, frames};
+use slipfront_base::machine::{available_memory, free_disk};
+use slipfront_base::number_format::{byte_size, count};
 use slipfront_case::case::{Budget, Case, Cause, Demand, PROGRAM};
 use slipfront_case::case_file::{CaseError, CaseFile};
-use slipfront_case::machine::{available_memory, free_disk};
-use slipfront_case::number_format::{byte_size, count};
 
 use crate::fields::{SHARE_BYTES, STATIC_BYTES, WORKING_SHARE_BYTES, record_bytes};
 use crate::series::COLUMN_BYTES;

@@ -2,8 +2,8 @@
 
 use std::path::PathBuf;
 
+use slipfront_base::text;
 use slipfront_case::case_file::CaseError;
-use slipfront_case::text;
 use thiserror::Error;
 
 use crate::fields::FieldsError;

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use slipfront_case::text::display_path;
+use slipfront_base::text::display_path;
 use thiserror::Error;
 
 use crate::manifest::ManifestError;

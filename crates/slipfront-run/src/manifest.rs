@@ -16,11 +16,11 @@ use thiserror::Error;
 use crate::names::{CASE, MANIFEST, RunPicture};
 use crate::resume_command::resume_command;
 use crate::{clock, program};
+use slipfront_base::disk::{TEXT_MAX_BYTES, json, open_regular, read_limited};
+use slipfront_base::machine::host_name;
+use slipfront_base::ordered::map_of;
+use slipfront_base::text::{single_line, truncated};
 use slipfront_case::case::{Case, Input};
-use slipfront_case::disk::{TEXT_MAX_BYTES, json, open_regular, read_limited};
-use slipfront_case::machine::host_name;
-use slipfront_case::ordered::map_of;
-use slipfront_case::text::{single_line, truncated};
 
 /// The last key of a manifest in its file. The checksum, its value, is the hash of all bytes before it.
 const CHECKSUM_KEY: &[u8] = b"\"seal\"";

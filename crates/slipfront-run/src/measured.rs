@@ -4,11 +4,11 @@ use std::io::{BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
 
 use csv::ByteRecord;
+use slipfront_base::disk::open_limited;
+use slipfront_base::number_format::count;
+use slipfront_base::text::{display_path, truncated};
 use slipfront_case::arrays::{separator, table_reader};
-use slipfront_case::disk::open_limited;
-use slipfront_case::number_format::count;
 use slipfront_case::quantity::{Duration, Force, Length, QuantityError};
-use slipfront_case::text::{display_path, truncated};
 use thiserror::Error;
 
 /// A column as a user names it.

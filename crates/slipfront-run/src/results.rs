@@ -7,8 +7,8 @@ use std::path::Path;
 use slipfront::Outline;
 use slipfront::communicator::{Alone, Communicator};
 use slipfront::observe::Frame;
+use slipfront_base::disk;
 use slipfront_case::case::Case;
-use slipfront_case::disk;
 use tempfile::TempPath;
 
 use crate::error::ResultsError;

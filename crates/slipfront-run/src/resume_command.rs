@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use slipfront_case::text::shell_path;
+use slipfront_base::text::shell_path;
 
 /// The command of a program, `slipfront` or `slipfront-mpi`, that goes on with the run in a folder, as a shell reads it.
 pub fn resume_command(program: &str, folder: &Path) -> String {

@@ -3,7 +3,7 @@
 use std::io::{Cursor, ErrorKind, Read, Seek};
 use std::path::{Path, PathBuf};
 
-use slipfront_case::disk::{expect_at_most, found_behind, open_regular};
+use slipfront_base::disk::{expect_at_most, found_behind, open_regular};
 
 use crate::folder_error::FolderError;
 

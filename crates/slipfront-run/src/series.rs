@@ -12,8 +12,8 @@ use thiserror::Error;
 use crate::friction_unit::FrictionUnit;
 use crate::names::SERIES;
 use crate::run_files::RunFile;
-use slipfront_case::disk::open_limited;
-use slipfront_case::text;
+use slipfront_base::disk::open_limited;
+use slipfront_base::text;
 
 /// One row of `series.csv`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]

@@ -19,9 +19,9 @@ use crate::front::LatticeFront;
 use crate::names::SUMMARY;
 use crate::program::VERSION;
 use crate::run_files::RunFile;
+use slipfront_base::disk::{TEXT_MAX_BYTES, json};
 use slipfront_case::case::{Case, Topography};
 use slipfront_case::case_file::Motion;
-use slipfront_case::disk::{TEXT_MAX_BYTES, json};
 
 /// The numbers of a run. Starred quantities are dimensionless (Eq. 11); times without a star are in s. A drive that is held
 /// has its own time, which counts only while it moves.

@@ -12,10 +12,10 @@ use crate::manifest::{Manifest, ManifestError, ManifestFile};
 use crate::names::{CASE, MANIFEST, RO_CRATE, UNFINISHED};
 use crate::run_folder::inspection::{CaseDefect, Inspection};
 use crate::run_folder::unfinished::Unfinished;
-use slipfront_case::disk::{TEXT_MAX_BYTES, read_limited};
-use slipfront_case::number_format::count;
-use slipfront_case::text::{single_line, truncated};
-use slipfront_case::unfinished::is_unfinished;
+use slipfront_base::disk::{TEXT_MAX_BYTES, read_limited};
+use slipfront_base::number_format::count;
+use slipfront_base::text::{single_line, truncated};
+use slipfront_base::unfinished::is_unfinished;
 
 /// Result of verifying a folder.
 #[derive(Clone, Debug, Default, PartialEq)]

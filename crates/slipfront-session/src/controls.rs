@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 
 use serde::Serialize;
+use slipfront_base::ordered::map_of;
 use slipfront_case::case::Case;
-use slipfront_case::ordered::map_of;
 
 /// A quantity with a slider.
 #[derive(Debug, Serialize)]

@@ -6,10 +6,10 @@ use std::path::Path;
 use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
+use slipfront_base::ordered::map_of;
+use slipfront_base::text::truncated;
 use slipfront_case::case::{Case, Files, FilesInMemory, Ranks, Watch};
 use slipfront_case::case_file::{CaseError, CaseFile, partners_of, parts_of};
-use slipfront_case::ordered::map_of;
-use slipfront_case::text::truncated;
 use toml::{Table, Value};
 
 use crate::base64;

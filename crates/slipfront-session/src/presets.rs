@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
-use slipfront_case::text::truncated;
+use slipfront_base::text::truncated;
 
 use crate::base64;
 use crate::document::Document;

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use slipfront_case::text::display_path;
+use slipfront_base::text::display_path;
 use slipfront_run::fields::read_fields;
 use slipfront_run::manifest::{Manifest, ManifestFile};
 use slipfront_run::names::{CASE, FIELDS, MANIFEST, SERIES, SUMMARY};

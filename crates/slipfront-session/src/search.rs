@@ -4,10 +4,10 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
+use slipfront_base::number_format::count;
 use slipfront_case::case::Case;
-use slipfront_case::number_format::count;
+use slipfront_case::texture_file::textured_blocks;
 use slipfront_design::{Bounds, Design, Limits, Quantity, Wish};
-use slipfront_run::pictures::texture_file::textured_blocks;
 use slipfront_study::StudyError;
 
 use crate::document::Document;

@@ -9,7 +9,7 @@ use crate::plan::Plan;
 use crate::statistics::{Sample, mean};
 use crate::study_results::StudyResults;
 use crate::summary_values::RunQuantity;
-use slipfront_case::number_format::{are, count};
+use slipfront_base::number_format::{are, count};
 
 /// Names of friction along and across the drive.
 pub(crate) const FRICTION: [(&str, &str); 2] = [

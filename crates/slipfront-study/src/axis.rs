@@ -7,10 +7,10 @@ use serde::Deserialize;
 use toml::Value;
 
 use crate::input_copies::plain_name;
+use slipfront_base::number_format::{exact, si_prefix};
+use slipfront_base::text::truncated;
 use slipfront_case::case_file::{Override, exclude_each_other, names_a_file, partners_of};
-use slipfront_case::number_format::{exact, si_prefix};
 use slipfront_case::quantity::WrittenQuantity;
-use slipfront_case::text::truncated;
 
 /// An axis and its levels.
 #[derive(Clone, Debug, PartialEq)]

@@ -6,13 +6,13 @@ use jiff::SignedDuration;
 use slipfront::RunError;
 use thiserror::Error;
 
+use slipfront_base::number_format::{are, count};
+use slipfront_base::text::{display_path, single_line};
 use slipfront_case::case_file::CaseError;
-use slipfront_case::number_format::{are, count};
-use slipfront_case::text::{display_path, single_line};
+use slipfront_case::texture_file::TextureFileError;
 use slipfront_plot::PictureError;
 use slipfront_run::folder_error::FolderError;
 use slipfront_run::pictures::error::RunPictureError;
-use slipfront_run::pictures::texture_file::TextureFileError;
 use slipfront_run::program;
 
 /// A study that cannot be used, or had to stop.

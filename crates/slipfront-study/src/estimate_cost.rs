@@ -3,8 +3,8 @@
 use std::collections::HashMap;
 
 use jiff::SignedDuration;
+use slipfront_base::number_format::byte_size;
 use slipfront_case::case_file::CaseError;
-use slipfront_case::number_format::byte_size;
 use slipfront_run::estimate_cost::seconds_per_step;
 
 use crate::error::StudyError;

@@ -13,8 +13,8 @@ use crate::error::StudyError;
 use crate::record::{
     FinishedRun, JournalRecord, Line, RunResult, looks_like_ours, may_begin_ours, parse_line, to_line,
 };
-use slipfront_case::disk::{open_limited, sync_folder};
-use slipfront_case::unfinished::clear_unfinished;
+use slipfront_base::disk::{open_limited, sync_folder};
+use slipfront_base::unfinished::clear_unfinished;
 use slipfront_run::names::RECORDS;
 
 /// A file of records, a line each, open for one process alone.

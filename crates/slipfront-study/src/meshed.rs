@@ -3,7 +3,7 @@
 
 use std::collections::HashMap;
 
-use slipfront_case::number_format::count;
+use slipfront_base::number_format::count;
 
 use crate::axis::Spacing;
 use crate::plan::Plan;

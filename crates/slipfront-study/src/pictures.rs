@@ -15,7 +15,7 @@ use crate::plan::{PICTURES_AT_ONCE, Plan};
 use crate::statistics::mean;
 use crate::study_results::StudyResults;
 use crate::summary_values::needs_transition;
-use slipfront_case::number_format::four_digits;
+use slipfront_base::number_format::four_digits;
 use slipfront_plot::{
     Bar, BarChart, BarGroup, HeatAxis, HeatMap, Picture, PictureError, Polar, Response, Responses,
 };

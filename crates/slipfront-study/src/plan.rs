@@ -12,11 +12,11 @@ use crate::room::check_room;
 use crate::shard::Shard;
 use crate::study_file::{Base, RetainRuns, Settings, StudyFile};
 use crate::summary_values::REDUCTION;
+use slipfront_base::machine::available_of;
+use slipfront_base::number_format::byte_size;
+use slipfront_base::text::display_path;
 use slipfront_case::case::{Case, PROGRAM, Ranks, Watch};
 use slipfront_case::case_file::{AutoOr, CaseError, CaseFile, Override, ParsedCase, Snapshots};
-use slipfront_case::machine::available_of;
-use slipfront_case::number_format::byte_size;
-use slipfront_case::text::display_path;
 use slipfront_plot::Picture;
 use slipfront_run::pictures;
 

@@ -10,11 +10,11 @@ use std::io::Write;
 use std::path::{Component, Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
-use slipfront_case::disk::{
+use slipfront_base::disk::{
     TEXT_MAX_BYTES, folder_of, found_at, is_same, json, make_folders, open_regular, read_limited,
     remove_if_there, sync_folder, write_atomic, write_beside,
 };
-use slipfront_case::text::single_line;
+use slipfront_base::text::single_line;
 use slipfront_plot::Picture;
 use slipfront_run::folder_error::FolderError;
 use slipfront_run::manifest::{ManifestFile, seal};

@@ -1,6 +1,6 @@
 //! Memory of work on several threads, compared with the memory that is available.
 
-use slipfront_case::number_format::byte_size;
+use slipfront_base::number_format::byte_size;
 
 use crate::error::StudyError;
 

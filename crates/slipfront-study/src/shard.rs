@@ -4,7 +4,7 @@ use std::fmt;
 use std::str::FromStr;
 
 use crate::error::StudyError;
-use slipfront_case::text::truncated;
+use slipfront_base::text::truncated;
 
 /// Part `number` of `count`, counted from 1. A shard holds every `count`-th point, so that all shards have nearly equal
 /// sizes.

@@ -2,8 +2,8 @@
 
 use std::path::PathBuf;
 
-use slipfront_case::number_format::count;
-use slipfront_case::text::shell_path;
+use slipfront_base::number_format::count;
+use slipfront_base::text::shell_path;
 
 /// The contents of a batch script.
 #[derive(Clone, Debug, PartialEq)]

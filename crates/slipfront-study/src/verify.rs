@@ -6,9 +6,9 @@ use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use slipfront_case::disk::{TEXT_MAX_BYTES, open_limited};
-use slipfront_case::number_format::{are, count};
-use slipfront_case::unfinished::{TemporaryFolder, is_unfinished};
+use slipfront_base::disk::{TEXT_MAX_BYTES, open_limited};
+use slipfront_base::number_format::{are, count};
+use slipfront_base::unfinished::{TemporaryFolder, is_unfinished};
 use slipfront_run::folder_error::FolderError;
 use slipfront_run::names::{FIGURE_CACHE, RUNS};
 use slipfront_run::program;

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use serde::de::DeserializeOwned;
-use slipfront_case::disk::{TEXT_MAX_BYTES, read_limited};
+use slipfront_base::disk::{TEXT_MAX_BYTES, read_limited};
 use slipfront_run::folder_error::FolderError;
 
 use crate::error::StudyError;

@@ -3,7 +3,7 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
-use crate::text::single_line;
+use slipfront_base::text::single_line;
 
 /// An error of an array or image file: one sentence that ends with the remedy.
 #[derive(Debug, thiserror::Error)]

@@ -28,8 +28,8 @@ pub use npy::{mask_npy, npy_of_mask};
 pub use slab::Slab;
 pub use table::{reader as table_reader, separator};
 
-use crate::disk::open_regular;
 use error::{contents_error, unknown_extension};
+use slipfront_base::disk::open_regular;
 
 /// Opens a file; returns it and its length in bytes.
 ///

@@ -8,7 +8,7 @@ use super::head::length_and_head;
 use super::npy_header::NpyHeader;
 use super::pixels::{SIDE_MAX, limit_pixels};
 use super::slab::Slab;
-use crate::text::truncated;
+use slipfront_base::text::truncated;
 
 /// Largest length of a header; numpy itself refuses longer ones.
 pub(super) const HEADER_MAX_BYTES: u64 = 10_000;

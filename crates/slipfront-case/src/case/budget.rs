@@ -11,8 +11,8 @@ use slipfront::{Kernel, Lattice, ModelOptions, Surface};
 use super::ranks::Ranks;
 use super::{drive, textures};
 use crate::case_file::{CaseError, CaseFile};
-use crate::machine::{available_memory, can_be_had};
-use crate::number_format::{byte_size, count};
+use slipfront_base::machine::{available_memory, can_be_had};
+use slipfront_base::number_format::{byte_size, count};
 
 /// Largest ratio of resident to allocated memory: the allocator keeps memory that has been given back, and cannot use gaps
 /// between pieces that have not. The ratio was up to 1.04.
@@ -235,7 +235,7 @@ impl Budget {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::machine::free_disk;
+    use slipfront_base::machine::free_disk;
 
     #[test]
     fn the_machine_says_what_it_has() {

@@ -2,7 +2,7 @@
 
 use super::runnable::Case;
 use crate::case_file::{MAX_BLOCKS, MAX_BLOCKS_TOTAL, Outline};
-use crate::number_format::{exact, four_digits, si_prefix, with_si_prefix};
+use slipfront_base::number_format::{exact, four_digits, si_prefix, with_si_prefix};
 
 /// Share by which a length may be too small: rounding of lengths and of the block size.
 const ROUNDING: f64 = 1e-6;

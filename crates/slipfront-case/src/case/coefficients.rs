@@ -10,7 +10,7 @@ use super::files::Watch;
 use super::groups::Groups;
 use super::inputs::Inputs;
 use crate::case_file::{CaseError, CaseFile};
-use crate::number_format::four_digits;
+use slipfront_base::number_format::four_digits;
 
 /// Refuses a correlation length with which coefficients could not be drawn, before any file is read.
 pub(super) fn check_correlation(file: &CaseFile) -> Result<(), CaseError> {

@@ -5,7 +5,7 @@ use std::ops::RangeInclusive;
 use slipfront::Scales;
 
 use crate::case_file::{CaseError, CaseFile, Damping, DriveSpeed};
-use crate::number_format::four_digits;
+use slipfront_base::number_format::four_digits;
 
 /// The dimensionless groups on which the model depends (Eq. 11).
 #[derive(Clone, Copy, Debug, PartialEq)]

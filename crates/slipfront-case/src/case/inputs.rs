@@ -12,10 +12,10 @@ use super::files::{Files, Opened, Watch, Watched};
 use super::ranks::Ranks;
 use crate::arrays::{self, ArrayError, Slab};
 use crate::case_file::{CaseError, CaseFile, FileUse};
-use crate::disk::open_regular;
-use crate::machine::machine_number;
 use crate::same::{Given, expect_same, of_all, words_of};
-use crate::text::{display_path, single_line};
+use slipfront_base::disk::open_regular;
+use slipfront_base::machine::machine_number;
+use slipfront_base::text::{display_path, single_line};
 
 /// A file that a case reads. The run folder holds a copy of it.
 #[derive(Clone, Debug, PartialEq)]

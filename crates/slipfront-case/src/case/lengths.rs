@@ -10,7 +10,7 @@ use slipfront::surface::{Clearance, clearance};
 use super::runnable::Case;
 use super::textures::outlines_in_blocks;
 use crate::case_file::{Attached, AttachedEdge, CaseFile, DriveStiffness, LengthOfABlock, Motion, Texture};
-use crate::number_format::{four_digits, with_si_prefix};
+use slipfront_base::number_format::{four_digits, with_si_prefix};
 
 /// Number of blocks in the critical size of slip that is enough.
 const OF_CRITICAL_SIZE: f64 = 5.0;

@@ -9,7 +9,7 @@ use super::groups::Groups;
 use crate::case_file::{
     self, Attached, AttachedEdge, AutoOr, CaseError, CaseFile, DriveSpeed, RunTime, Snapshots, TimeStep,
 };
-use crate::number_format::four_digits;
+use slipfront_base::number_format::four_digits;
 
 /// Duration and time step of a run, its end and the window of the kinetic friction.
 #[derive(Clone, Copy, Debug, PartialEq)]

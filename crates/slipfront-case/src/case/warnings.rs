@@ -11,7 +11,7 @@ use super::topography::Topography;
 use crate::case_file::{
     Count, DEFAULT_THRESHOLD, Law, Mask, Outlined, Pattern, Pitch, Shape, Texture, friction_warning,
 };
-use crate::number_format::{are, count, four_digits, with_si_prefix};
+use slipfront_base::number_format::{are, count, four_digits, with_si_prefix};
 
 /// Blocks that a pattern may leave free at periodic edges without a warning.
 const LARGE_SEAM: f64 = 0.5;

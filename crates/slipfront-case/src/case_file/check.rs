@@ -8,8 +8,8 @@ use super::error::CaseError;
 use super::key::{Bounds, Key, KeyKind};
 use super::source::Source;
 use super::values::AutoOr;
-use crate::number_format::exact;
 use crate::quantity::{self, Quantity};
+use slipfront_base::number_format::exact;
 
 /// The checks of one table. Keys are named as within that table.
 pub(super) struct Check<'a> {

@@ -9,7 +9,7 @@ use super::key_table::Section;
 use super::keys;
 use super::source::Source;
 use super::synonyms::advice_on;
-use crate::text::truncated;
+use slipfront_base::text::truncated;
 
 /// Messages of the parser about common slips, by their beginnings, and the advice for a user on each.
 const GRAMMAR: [(&str, &str); 7] = [

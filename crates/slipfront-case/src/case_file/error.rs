@@ -8,7 +8,7 @@ use std::path::PathBuf;
 use thiserror::Error;
 
 use crate::same::Difference;
-use crate::text::{MAX_EXCERPT, single_line, truncated};
+use slipfront_base::text::{MAX_EXCERPT, single_line, truncated};
 
 /// A case file that cannot be used.
 #[derive(Debug, Error)]

@@ -7,7 +7,7 @@ use super::check::Check;
 use super::error::CaseError;
 use super::key_table::{SNAPSHOT_TIME, SPACING};
 use super::values::{AutoOr, words};
-use crate::number_format::exact;
+use slipfront_base::number_format::exact;
 
 /// The table `[output]`: snapshots, fields and the series.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

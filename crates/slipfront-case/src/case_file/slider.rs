@@ -10,8 +10,8 @@ use super::key_table::RELATIVE_PROPERTY;
 use super::motion::Along;
 use super::values::{Pair, pair, word};
 use super::words::Outline;
-use crate::number_format::count;
 use crate::quantity::{Density, Length, Pressure, Rate};
+use slipfront_base::number_format::count;
 
 /// `[slider]`: the blocks, their material, the damping and the edges.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -8,8 +8,8 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::error::{CaseError, Place};
-use crate::ordered::map_of;
-use crate::text::truncated;
+use slipfront_base::ordered::map_of;
+use slipfront_base::text::truncated;
 
 /// The longest key whose place is noted, in bytes: all known keys are shorter. Each key below one of many megabytes would
 /// take its length.

@@ -2,8 +2,8 @@ use std::fs;
 use std::ops::Bound::{Excluded, Included, Unbounded};
 use std::path::Path;
 
+use slipfront_base::number_format::exact;
 use slipfront_case::case_file::{Bounds, CaseFile, KeyKind, SECTIONS};
-use slipfront_case::number_format::exact;
 
 /// The TOML blocks of the reference are cases that can be read, and every key of the default is explained there.
 #[test]

@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use slipfront_base::number_format::count;
 use slipfront_calibrate::{CalibrationFile, CalibrationFolder};
-use slipfront_case::number_format::count;
 use slipfront_study::StudyError;
 
 use crate::failure::Failure;

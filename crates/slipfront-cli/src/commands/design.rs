@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use clap::Args;
 use jiff::SignedDuration;
-use slipfront_case::number_format::count;
+use slipfront_base::number_format::count;
 use slipfront_design::{Bounds, DesignFile, DesignFolder};
 use slipfront_study::StudyError;
 

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use slipfront_case::number_format::are;
+use slipfront_base::number_format::are;
 use slipfront_paper::family;
 
 use crate::failure::Failure;

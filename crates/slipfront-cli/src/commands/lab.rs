@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use clap::Args;
-use slipfront_case::text::display_path;
+use slipfront_base::text::display_path;
 use slipfront_lab::{Laboratory, Patience, ServerOptions, Start, export_folder, export_single, find_module};
 
 use super::licences::NOTICES;

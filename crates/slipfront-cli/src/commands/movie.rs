@@ -6,13 +6,13 @@ use std::process::{Child, Command, Stdio};
 
 use clap::{Args, ValueEnum};
 use slipfront::observe::Field;
+use slipfront_base::disk::{folder_of, is_same, write_atomic};
+use slipfront_base::number_format::{count, four_digits};
+use slipfront_base::unfinished::TemporaryFolder;
 use slipfront_case::arrays::extension;
 use slipfront_case::case::mapped_field;
 use slipfront_case::case_file::CaseFile;
-use slipfront_case::disk::{folder_of, is_same, write_atomic};
 use slipfront_case::field_info::{FIELDS, field_info, field_named};
-use slipfront_case::number_format::{count, four_digits};
-use slipfront_case::unfinished::TemporaryFolder;
 use slipfront_plot::{MoviePictures, MovieSize};
 use slipfront_run::names::MOVIE;
 use slipfront_run::pictures::movie::MoviePace;
@@ -263,6 +263,6 @@ fn feed(
     let said = String::from_utf8_lossy(&ended.stderr);
     Err(Failure::running(anyhow::anyhow!(
         "ffmpeg could not make the movie: {}",
-        slipfront_case::text::single_line(said.trim())
+        slipfront_base::text::single_line(said.trim())
     )))
 }

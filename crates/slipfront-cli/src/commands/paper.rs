@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use slipfront_case::disk::{is_empty, make_folders};
-use slipfront_case::number_format::are;
+use slipfront_base::disk::{is_empty, make_folders};
+use slipfront_base::number_format::are;
 use slipfront_paper::{PaperError, PaperOptions};
 use slipfront_study::result_files::ResultFiles;
 use slipfront_study::{Records, is_study};

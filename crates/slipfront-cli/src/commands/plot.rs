@@ -4,12 +4,12 @@ use std::path::{Path, PathBuf};
 
 use clap::builder::PossibleValuesParser;
 use clap::{Args, ValueEnum};
+use slipfront_base::disk::{is_same, make_folders, read_limited, write_atomic};
+use slipfront_base::machine::available_of;
+use slipfront_base::number_format::{byte_size, count, four_digits, with_si_prefix};
 use slipfront_case::arrays::extension;
 use slipfront_case::case::PROGRAM;
-use slipfront_case::disk::{is_same, make_folders, read_limited, write_atomic};
 use slipfront_case::field_info::{FIELDS, field_info, field_named};
-use slipfront_case::machine::available_of;
-use slipfront_case::number_format::{byte_size, count, four_digits, with_si_prefix};
 use slipfront_plot::{KYMOGRAPH_BYTES, Picture, PictureSize};
 use slipfront_run::measured::{Column, Measure, MeasuredError, MeasuredRecord};
 use slipfront_run::names::MANIFEST;

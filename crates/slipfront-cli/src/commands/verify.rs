@@ -5,11 +5,11 @@ use std::sync::Arc;
 
 use clap::Args;
 use slipfront::Execution;
+use slipfront_base::number_format::count;
+use slipfront_base::text::truncated;
+use slipfront_base::unfinished::TemporaryFolder;
 use slipfront_calibrate::CALIBRATIONS;
 use slipfront_case::case::{Case, Ranks};
-use slipfront_case::number_format::count;
-use slipfront_case::text::truncated;
-use slipfront_case::unfinished::TemporaryFolder;
 use slipfront_design::DESIGNS;
 use slipfront_paper::verify as verify_paper;
 use slipfront_run::clock;

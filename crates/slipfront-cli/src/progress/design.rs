@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use slipfront_case::number_format::four_digits;
+use slipfront_base::number_format::four_digits;
 use slipfront_design::{DesignStage, SearchProgress};
 
 use super::display::{ProgressDisplay, duration_left};

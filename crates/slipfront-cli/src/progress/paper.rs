@@ -1,6 +1,6 @@
 //! Progress of the figures of the paper.
 
-use slipfront_case::number_format::count;
+use slipfront_base::number_format::count;
 use slipfront_paper::{Stage, StepRule};
 
 use super::display::ProgressDisplay;

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use slipfront_case::number_format::count;
+use slipfront_base::number_format::count;
 use slipfront_study::Progress;
 
 use super::display::{ProgressDisplay, time_left};

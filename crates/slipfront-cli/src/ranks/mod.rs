@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use slipfront::Communicator;
 use slipfront::communicator::Alone;
-use slipfront_case::machine::machine_number;
+use slipfront_base::machine::machine_number;
 use slipfront_case::same::{Given, expect_same, of_all};
 use slipfront_run::agree::{RankFailure, agree};
 use slipfront_run::resume_command::resume_command;

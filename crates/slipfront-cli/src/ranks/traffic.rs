@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use slipfront::Communicator;
-use slipfront_case::number_format::byte_size;
+use slipfront_base::number_format::byte_size;
 
 /// A connection with other ranks that counts its messages.
 #[derive(Debug)]

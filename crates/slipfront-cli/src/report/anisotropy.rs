@@ -1,6 +1,6 @@
 //! Dependence of friction on the direction of the drive, for a study that varies it.
 
-use slipfront_case::number_format::{four_digits, with_half_width};
+use slipfront_base::number_format::{four_digits, with_half_width};
 use slipfront_study::text_table::table;
 use slipfront_study::{Anisotropy, OverDirections, Plan, Sample, StudyResults, anisotropies};
 

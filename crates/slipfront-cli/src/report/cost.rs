@@ -1,8 +1,8 @@
 //! Additions of `slipfront check` to the physics of a case.
 
+use slipfront_base::machine::available_memory;
+use slipfront_base::number_format::{byte_size, four_digits, with_half_width, with_si_prefix};
 use slipfront_case::case::Case;
-use slipfront_case::machine::available_memory;
-use slipfront_case::number_format::{byte_size, four_digits, with_half_width, with_si_prefix};
 use slipfront_run::pictures;
 
 use super::summary::notes;

@@ -1,8 +1,8 @@
 //! Reports for programs, as JSON.
 
 use serde_json::{Value, json};
+use slipfront_base::machine::available_memory;
 use slipfront_case::case::Case;
-use slipfront_case::machine::available_memory;
 use slipfront_run::pictures;
 
 use super::cost::warnings;

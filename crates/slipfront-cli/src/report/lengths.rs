@@ -1,7 +1,7 @@
 //! The lengths of a case, in blocks and in metres.
 
+use slipfront_base::number_format::{four_digits, with_si_prefix};
 use slipfront_case::case::{Case, CaseLength};
-use slipfront_case::number_format::{four_digits, with_si_prefix};
 
 use slipfront_study::text_table::table;
 

@@ -2,9 +2,9 @@
 
 use slipfront::Loading;
 use slipfront::surface::Clearance;
+use slipfront_base::number_format::{count, four_digits, with_si_prefix};
 use slipfront_case::case::{Case, Topography};
 use slipfront_case::case_file::{Attached, AttachedEdge, DriveStiffness, Grade, Motion, Outline};
-use slipfront_case::number_format::{count, four_digits, with_si_prefix};
 
 use super::summary::notes;
 

@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 use std::path::Path;
 
-use slipfront_case::number_format::{are, byte_size, count, four_digits, with_half_width};
+use slipfront_base::number_format::{are, byte_size, count, four_digits, with_half_width};
 use slipfront_study::text_table::table;
 use slipfront_study::{
     MeshedCoverage, Plan, REDUCTION, StudyResults, idle_axes, quantities_without_pictures, told_warnings,

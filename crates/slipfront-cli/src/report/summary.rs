@@ -1,8 +1,8 @@
 //! The summary of a run, to be read at a glance.
 
+use slipfront_base::number_format::{count, four_digits, with_si_prefix, with_uncertainty};
 use slipfront_case::case::Case;
 use slipfront_case::case_file::Motion;
-use slipfront_case::number_format::{count, four_digits, with_si_prefix, with_uncertainty};
 use slipfront_run::summary::{CycleSummary, PrecursorSummary, Summary};
 
 use super::times::instant;

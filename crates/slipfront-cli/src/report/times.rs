@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use indicatif::HumanDuration;
 use slipfront::Scales;
-use slipfront_case::number_format::{four_digits, with_si_prefix};
+use slipfront_base::number_format::{four_digits, with_si_prefix};
 
 /// An instant, dimensionless and in seconds.
 pub(super) fn instant(time_star: f64, scales: &Scales) -> String {

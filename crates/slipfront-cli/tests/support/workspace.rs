@@ -5,7 +5,7 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 
-use slipfront_case::machine::free_disk;
+use slipfront_base::machine::free_disk;
 use tempfile::TempDir;
 
 use super::process::{ended_with, program, stderr, stdout, wait_for};

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
-use slipfront_case::disk::begins_with;
+use slipfront_base::disk::begins_with;
 use slipfront_plot::Picture;
 
 use super::answer::{Answer, Chapter};

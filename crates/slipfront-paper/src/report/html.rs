@@ -11,7 +11,7 @@ use crate::figure_data::{FigureData, Panel, Table};
 use crate::figures::{FIGURES, Figure};
 use crate::paper::Paper;
 use crate::step_rule::StepRule;
-use slipfront_case::number_format::count;
+use slipfront_base::number_format::count;
 use slipfront_plot::Picture;
 
 const STYLE: &str = include_str!("style.css");

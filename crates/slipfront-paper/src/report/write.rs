@@ -11,7 +11,7 @@ use super::{html, markdown};
 use crate::error::PaperError;
 use crate::figure_data::{FigureData, Panel};
 use crate::paper::Paper;
-use slipfront_case::disk::{begins_with, make_folders, write_atomic};
+use slipfront_base::disk::{begins_with, make_folders, write_atomic};
 use slipfront_plot::Picture;
 use slipfront_run::folder_error::FolderError;
 use slipfront_study::result_files::{Batch, Others, ResultFiles};

@@ -12,9 +12,9 @@ use blake3::OUT_LEN;
 use jiff::Timestamp;
 use serde::{Deserialize, Serialize};
 use slipfront::Communicator;
-use slipfront_case::disk::{open_regular, remove_if_there};
+use slipfront_base::disk::{open_regular, remove_if_there};
+use slipfront_base::text::truncated;
 use slipfront_case::same::expect_same;
-use slipfront_case::text::truncated;
 
 use super::error::{CheckpointError, LAYOUT};
 use crate::agree::agree_on_io;

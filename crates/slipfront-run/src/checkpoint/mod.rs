@@ -12,8 +12,8 @@ use std::sync::Arc;
 
 use jiff::Timestamp;
 use slipfront::{Communicator, Execution};
+use slipfront_base::disk::{found_at, remove_if_there, sync_folder};
 use slipfront_case::case::Case;
-use slipfront_case::disk::{found_at, remove_if_there, sync_folder};
 use slipfront_case::same::expect_same;
 
 pub use self::error::CheckpointError;

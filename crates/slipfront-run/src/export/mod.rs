@@ -10,12 +10,12 @@ use std::path::{Path, PathBuf};
 use std::str::FromStr;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use slipfront_case::case_file::CaseFile;
-use slipfront_case::disk::{
+use slipfront_base::disk::{
     folder_of, is_empty, is_same, make_folders, open_regular, sync_folder, write_atomic, write_atomic_with,
 };
-use slipfront_case::text::truncated;
-use slipfront_case::unfinished::UnfinishedFolder;
+use slipfront_base::text::truncated;
+use slipfront_base::unfinished::UnfinishedFolder;
+use slipfront_case::case_file::CaseFile;
 use thiserror::Error;
 
 pub use self::citation::{bibtex, cff};

@@ -7,9 +7,9 @@ use std::path::Path;
 
 use jiff::Timestamp;
 use serde_json::{Map, Value, json};
-use slipfront_case::disk::json as json_bytes;
-use slipfront_case::number_format::count;
-use slipfront_case::text::shell_path;
+use slipfront_base::disk::json as json_bytes;
+use slipfront_base::number_format::count;
+use slipfront_base::text::shell_path;
 
 use super::citation::{ARTICLE_TITLE, ARTICLE_URL, ARTICLE_YEAR, DEVELOPERS, MODEL};
 use super::parameters::{Parameter, parameters};

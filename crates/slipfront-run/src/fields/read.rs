@@ -5,8 +5,8 @@ use std::path::Path;
 
 use slipfront::observe::Field;
 use slipfront::observe::frames::kept;
+use slipfront_base::text;
 use slipfront_case::field_info::{field_info, field_named};
-use slipfront_case::text;
 
 use super::frame::*;
 use super::netcdf3_reader::{NetCdf3Reader, NetCdfError, broken};

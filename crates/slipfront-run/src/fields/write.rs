@@ -6,9 +6,9 @@ use std::path::Path;
 
 use slipfront::communicator::{Communicator, text_of};
 use slipfront::observe::Field;
-use slipfront_case::disk::write_temp;
+use slipfront_base::disk::write_temp;
+use slipfront_base::ordered::map_of;
 use slipfront_case::field_info::field_info;
-use slipfront_case::ordered::map_of;
 use tempfile::TempPath;
 
 use super::definition::define;

@@ -3,8 +3,8 @@
 use std::fs::Metadata;
 use std::path::Path;
 
+use slipfront_base::disk::found_behind;
 use slipfront_case::case_file::{CaseFile, read_text_from};
-use slipfront_case::disk::found_behind;
 
 use super::error::RunPictureError;
 use crate::folder_error::FolderError;

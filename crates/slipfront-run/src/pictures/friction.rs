@@ -2,8 +2,8 @@
 
 use std::path::PathBuf;
 
+use slipfront_base::number_format::{in_print, si_prefix, with_si_prefix};
 use slipfront_case::case_file::Motion;
-use slipfront_case::number_format::{in_print, si_prefix, with_si_prefix};
 use slipfront_plot::{self as plot, FrictionAxes, FrictionCurve, Instant, KineticLine, Picture, PictureSize};
 
 use super::error::{RecordError, RunPictureError};

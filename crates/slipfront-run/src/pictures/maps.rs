@@ -3,10 +3,10 @@
 use std::collections::HashMap;
 
 use slipfront::observe::Field;
+use slipfront_base::number_format::{in_print, si_prefix};
 use slipfront_case::case::{MAX_MAPS, mapped_field, scales};
 use slipfront_case::case_file::{CaseFile, Motion};
 use slipfront_case::field_info::field_info;
-use slipfront_case::number_format::{in_print, si_prefix};
 use slipfront_plot::{self as plot, CellMeans, Picture, StressMap, StressMaps};
 
 use super::error::RunPictureError;

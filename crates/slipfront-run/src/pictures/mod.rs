@@ -12,7 +12,6 @@ mod maps;
 pub mod movie;
 mod precursors;
 mod record_fit;
-pub mod texture_file;
 
 use slipfront::parallel::*;
 use slipfront_case::case::Case;

@@ -2,7 +2,7 @@
 
 use std::path::{Component, Path, PathBuf};
 
-use slipfront_case::disk::{found_at, is_folder, remove_if_there};
+use slipfront_base::disk::{found_at, is_folder, remove_if_there};
 
 use super::unfinished::Unfinished;
 use crate::folder_error::FolderError;

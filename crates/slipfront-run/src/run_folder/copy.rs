@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use slipfront_case::disk::{open_regular, write_temp};
+use slipfront_base::disk::{open_regular, write_temp};
 
 use super::RunFolder;
 use crate::folder_error::FolderError;

@@ -3,8 +3,8 @@
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
+use slipfront_base::disk::{TEXT_MAX_BYTES, open_limited};
 use slipfront_case::case_file::{CaseError, CaseFile, read_text};
-use slipfront_case::disk::{TEXT_MAX_BYTES, open_limited};
 
 use super::contents::{is_as_listed, managed_bytes};
 use super::unfinished::Unfinished;

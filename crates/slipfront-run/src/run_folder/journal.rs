@@ -7,7 +7,7 @@ use std::fs::{File, OpenOptions};
 use std::io::{Read, Write};
 use std::path::Path;
 
-use slipfront_case::disk::{TEXT_MAX_BYTES, open_limited};
+use slipfront_base::disk::{TEXT_MAX_BYTES, open_limited};
 
 use crate::manifest::ManifestFile;
 

@@ -17,10 +17,10 @@ use std::sync::atomic::AtomicBool;
 
 use slipfront::Communicator;
 use slipfront::communicator::text_of;
+use slipfront_base::disk::{found_at, found_behind, make_folders, sync_folder, write_temp};
+use slipfront_base::text::display_path;
+use slipfront_base::unfinished::clear_unfinished;
 use slipfront_case::case::{Case, Input};
-use slipfront_case::disk::{found_at, found_behind, make_folders, sync_folder, write_temp};
-use slipfront_case::text::display_path;
-use slipfront_case::unfinished::clear_unfinished;
 use tempfile::TempPath;
 
 use self::contents::{managed_files, refuse_unmanaged, remove_files, result_files};

@@ -4,7 +4,7 @@
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
-use slipfront_case::disk::{found_at, is_empty, is_folder, remove_if_there, sync_folder};
+use slipfront_base::disk::{found_at, is_empty, is_folder, remove_if_there, sync_folder};
 
 use super::journal::{self, Journal};
 use crate::folder_error::FolderError;

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use slipfront_case::text::truncated;
+use slipfront_base::text::truncated;
 use toml::Value;
 
 use super::painting::Painting;

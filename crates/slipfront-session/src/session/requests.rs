@@ -1,6 +1,6 @@
 //! Requests of a page, and how a session meets them.
 
-use slipfront_case::ordered::map_of;
+use slipfront_base::ordered::map_of;
 
 use super::state::Session;
 use crate::history::History;

@@ -4,8 +4,8 @@ use std::time::Duration;
 
 use slipfront::PositionBins;
 use slipfront::lattice::K_DRIVE;
+use slipfront_base::ordered::map_of;
 use slipfront_case::case_file::Motion;
-use slipfront_case::ordered::map_of;
 use slipfront_run::summary::summary_json;
 
 use super::clock::is_due;

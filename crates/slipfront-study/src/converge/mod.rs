@@ -19,7 +19,7 @@ use std::io::Write as _;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
-use slipfront_case::text::COLUMNS;
+use slipfront_base::text::COLUMNS;
 use slipfront_run::names::CONVERGENCE;
 
 pub use mesh_study::{MAX_LEVELS, MIN_LEVELS, MeshStudy};

@@ -1,7 +1,7 @@
 //! Comparison of several meshes, as a text.
 
-use slipfront_case::number_format::{four_digits, with_half_width};
-use slipfront_case::text::note;
+use slipfront_base::number_format::{four_digits, with_half_width};
+use slipfront_base::text::note;
 
 use super::on_meshes::{Convergence, OnMeshes, Verdict};
 use crate::plan::Plan;

@@ -7,7 +7,7 @@ use super::grid::{HeightGrid, Line, Take, points};
 use crate::arrays::error::{ArrayError, broken, contents_error};
 use crate::arrays::head::length_and_head;
 use crate::quantity::Length;
-use crate::text::truncated;
+use slipfront_base::text::truncated;
 
 const MAGIC: &[u8] = b"Gwyddion Simple Field 1.0\n";
 /// Largest length of a header: comments may make it longer than a few hundred bytes.

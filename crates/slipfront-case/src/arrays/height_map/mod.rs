@@ -23,7 +23,7 @@ use self::quantum::Quantum;
 use self::roughness::{Mean, Moments};
 use super::error::{ArrayError, contents_error, extension, unknown_extension};
 use super::{npy, table};
-use crate::number_format::{four_digits, with_si_prefix};
+use slipfront_base::number_format::{four_digits, with_si_prefix};
 
 /// Units of a height map that the case states, m; a unit that the file states too is refused.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

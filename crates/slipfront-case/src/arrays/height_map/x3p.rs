@@ -14,7 +14,7 @@ use roxmltree::{Document, Node, ParsingOptions};
 
 use super::grid::{HeightGrid, Line, Take, points};
 use crate::arrays::error::{ArrayError, broken, contents_error};
-use crate::text::truncated;
+use slipfront_base::text::truncated;
 
 /// Largest length of `main.xml`: a description takes a few thousand bytes.
 const XML_MAX_BYTES: u64 = 1 << 20;

@@ -7,7 +7,7 @@ use crate::case_file::check::Check;
 use crate::case_file::error::CaseError;
 use crate::case_file::key::{Key, KeyKind, TIME_STAR, key, number, within};
 use crate::case_file::values::word;
-use crate::number_format::four_digits;
+use slipfront_base::number_format::four_digits;
 
 #[rustfmt::skip]
 pub(super) const KEYS: &[Key] = &[

@@ -3,7 +3,7 @@
 use slipfront::ContactSprings;
 
 use crate::case_file::key::{Key, KeyKind, STIFFNESS_PER_AREA, above, key, number};
-use crate::number_format::four_digits;
+use slipfront_base::number_format::four_digits;
 
 #[rustfmt::skip]
 pub(super) const KEYS: &[Key] = &[

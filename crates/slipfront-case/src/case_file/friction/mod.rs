@@ -25,8 +25,8 @@ use super::key::{ARRAY, Key, KeyKind, above, count, joined, key, number, quantit
 use super::length_of_a_block::LengthOfABlock;
 use super::probe::names_of;
 use super::values::word;
-use crate::number_format::four_digits;
 use crate::quantity::{Length, Pressure, StiffnessPerArea};
+use slipfront_base::number_format::four_digits;
 
 const SIGMA: KeyKind = number(
     within(0.0, 1.0),

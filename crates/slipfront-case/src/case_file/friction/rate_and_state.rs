@@ -3,7 +3,7 @@
 use slipfront::{Model, RateAndState};
 
 use crate::case_file::key::{Key, SPEED_STAR, TIME_STAR, above, key, number, within};
-use crate::number_format::four_digits;
+use slipfront_base::number_format::four_digits;
 
 #[rustfmt::skip]
 pub(super) const KEYS: &[Key] = &[

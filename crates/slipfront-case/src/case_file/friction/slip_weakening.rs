@@ -6,8 +6,8 @@ use slipfront::{Scales, SlipWeakening};
 use crate::case_file::check::Check;
 use crate::case_file::error::CaseError;
 use crate::case_file::key::{Key, KeyKind, MAX_TIME_STAR, above, key, number, quantity, within};
-use crate::number_format::four_digits;
 use crate::quantity::Length;
+use slipfront_base::number_format::four_digits;
 
 #[rustfmt::skip]
 pub(super) const KEYS: &[Key] = &[

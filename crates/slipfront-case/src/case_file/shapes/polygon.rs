@@ -8,8 +8,8 @@ use crate::case_file::check::Check;
 use crate::case_file::error::CaseError;
 use crate::case_file::key::{COORDINATE, Key, KeyKind, key};
 use crate::case_file::values::Pair;
-use crate::number_format::count;
 use crate::quantity::Length;
+use slipfront_base::number_format::count;
 
 #[rustfmt::skip]
 pub(super) const KEYS: &[Key] = &[

@@ -9,9 +9,9 @@ use std::sync::Arc;
 
 use clap::Args;
 use slipfront::Execution;
+use slipfront_base::text::shell_path;
 use slipfront_case::case::Case;
 use slipfront_case::same::Given;
-use slipfront_case::text::shell_path;
 use slipfront_run::agree::RankFailure;
 use slipfront_run::checkpoint::Checkpoints;
 use slipfront_run::clock;

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use slipfront_case::number_format::count;
+use slipfront_base::number_format::count;
 use slipfront_study::{Plan, StudyFolder, collect, is_study, refuse_foreign, study_of};
 
 use super::run::{Shown, finish};

@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use slipfront_case::disk::is_same;
-use slipfront_case::number_format::count;
+use slipfront_base::disk::is_same;
+use slipfront_base::number_format::count;
 use slipfront_study as study;
 use slipfront_study::{Plan, Shard, StudyError, StudyFile, StudyFolder, StudyResults};
 

@@ -1,10 +1,9 @@
 //! The outlines of the textures of a case, layer by layer.
 
-use slipfront::surface::{Contour, Texture, contours, copies_overlap, mesh};
-use slipfront_case::case::Case;
-use slipfront_plot::mask_outline;
+use slipfront::surface::{Contour, Texture, contours, copies_overlap, mask_outline, mesh};
 
 use super::{TextureFileError, textured_blocks};
+use crate::case::Case;
 
 /// Largest number of corners of all outlines: a file of about a gigabyte.
 const MAX_CORNERS: usize = 1 << 24;

@@ -5,7 +5,7 @@ use std::fs;
 use std::path::Path;
 
 use slipfront_case::case::Case;
-use slipfront_run::pictures::texture_file::{smallest, textured_blocks, write};
+use slipfront_case::texture_file::{smallest, textured_blocks, write};
 use test_case::test_case;
 
 /// A piece of a closed line, in blocks.

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 /// every type of entries: 40 kB and more of the module that the page without a server loads.
 ///
 /// ```
-/// use slipfront_case::ordered::map_of;
+/// use slipfront_base::ordered::map_of;
 /// let map = map_of([('b', 1), ('a', 2), ('b', 3)]);
 /// assert_eq!(Vec::from_iter(map), [('a', 2), ('b', 3)]);
 /// ```

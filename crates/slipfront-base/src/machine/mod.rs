@@ -5,8 +5,6 @@ mod of_system;
 #[cfg(not(feature = "disk"))]
 mod without_disk;
 
-use crate::same::words_of;
-
 #[cfg(feature = "disk")]
 pub use self::of_system::{free_disk, host_name};
 #[cfg(not(feature = "disk"))]
@@ -16,7 +14,8 @@ pub use self::without_disk::{free_disk, host_name};
 pub fn machine_number() -> i64 {
     // Machines without a name are taken for one: what is found on them is compared otherwise.
     let name = sysinfo::System::host_name().unwrap_or_default();
-    words_of(&blake3::hash(name.as_bytes()))[0]
+    let hash = blake3::hash(name.as_bytes());
+    i64::from_le_bytes(hash.as_bytes().as_chunks().0[0])
 }
 
 /// Memory that this process may still take, in bytes: the memory that the machine can give without swapping, or the rest of

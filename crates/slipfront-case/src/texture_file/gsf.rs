@@ -1,8 +1,7 @@
 //! A Gwyddion simple field: a header of lines, and the heights as 32-bit numbers, the top row first.
 
-use slipfront_case::case::Case;
-
 use super::textured_blocks;
+use crate::case::Case;
 
 /// The height of the blocks, without a unit: 1 where they touch, 0 where they are textured.
 pub(super) fn field(case: &Case) -> Vec<u8> {

@@ -10,11 +10,11 @@ pub use self::drawing::{Fill, Layer, OutlineDrawing};
 
 use std::path::Path;
 
+use crate::arrays::{ArrayError, extension, png_of_mask};
+use crate::case::Case;
+use crate::case_file::CaseError;
 use slipfront::surface::{Clearance, clearance};
-use slipfront_case::arrays::{ArrayError, extension, png_of_mask};
-use slipfront_case::case::Case;
-use slipfront_case::case_file::CaseError;
-use slipfront_case::disk::write_atomic;
+use slipfront_base::disk::write_atomic;
 
 /// Largest number of pixels of a picture along a side, and of all: no program, this one included, reads more.
 const MAX_PIXELS: [usize; 2] = [1 << 20, 1 << 28];

@@ -1,0 +1,13 @@
+//! What every crate of slipfront needs below a case: files that are whole or not there at all, numbers and texts for people, and
+//! the memory and the disk of the machine.
+
+pub mod disk;
+mod folders;
+pub mod machine;
+pub mod number_format;
+pub mod ordered;
+pub mod text;
+pub mod unfinished;
+
+/// BLAKE3 hash of the sources of this crate.
+pub const SOURCE_HASH: &str = env!("SLIPFRONT_SOURCE_HASH");
