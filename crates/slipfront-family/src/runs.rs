@@ -4,47 +4,38 @@ use std::sync::Arc;
 
 use slipfront::communicator::Alone;
 use slipfront::lattice::K_DRIVE;
-use slipfront::observe::{Curve, CurveRow, Observer, Scheduled};
+use slipfront::observe::{Curve, CurveRow, Scheduled};
 use slipfront::{Execution, Model, Simulation, Snapshot, State, Stop, VectorField, scales};
 use slipfront_case::case::Case;
 
-use crate::error::PaperError;
+use crate::error::FamilyError;
 
 /// A run that has ended.
-pub(super) struct AnswerRun {
+pub(crate) struct AnswerRun {
     /// The simulation at the end of the run.
-    pub(super) simulation: Simulation,
+    pub(crate) simulation: Simulation,
     /// Rows of every step.
-    pub(super) rows: Vec<CurveRow>,
-    pub(super) model: Arc<Model>,
+    pub(crate) rows: Vec<CurveRow>,
+    pub(crate) model: Arc<Model>,
 }
 
 /// A slider that no case describes.
-pub(super) struct Experiment {
-    pub(super) model: Arc<Model>,
-    pub(super) dt_star: f64,
+pub(crate) struct Experiment {
+    pub(crate) model: Arc<Model>,
+    pub(crate) dt_star: f64,
     /// State at the start; at rest if there is none.
-    pub(super) state: Option<State>,
+    pub(crate) state: Option<State>,
 }
 
 impl AnswerRun {
     /// Runs a case given as a user would write it.
-    pub(super) fn of_case(name: &str, text: &str) -> Result<Self, PaperError> {
-        Self::watched(name, text, &mut [])
-    }
-
-    /// Runs a case given as a user would write it, with further observers at every step.
-    pub(super) fn watched(
-        name: &str,
-        text: &str,
-        others: &mut [&mut dyn Observer],
-    ) -> Result<Self, PaperError> {
+    pub(crate) fn of_case(name: &str, text: &str) -> Result<Self, FamilyError> {
         let (experiment, last_step) = Experiment::of_case(name, text)?;
-        experiment.run(name, last_step, others)
+        experiment.run(name, last_step)
     }
 
     /// Time of the first slip of any block; NaN if none has slipped.
-    pub(super) fn first_slip(&self) -> f64 {
+    pub(crate) fn first_slip(&self) -> f64 {
         self.simulation
             .snapshot()
             .earliest_first_slip()
@@ -52,30 +43,30 @@ impl AnswerRun {
     }
 
     /// The row of the first instant at which a block slides.
-    pub(super) fn first_sliding(&self) -> Option<&CurveRow> {
+    pub(crate) fn first_sliding(&self) -> Option<&CurveRow> {
         self.rows.iter().find(|row| row.point.n_sliding > 0)
     }
 
     /// mu* at the row nearest to a time.
-    pub(super) fn mu_star_at(&self, time_star: f64) -> f64 {
+    pub(crate) fn mu_star_at(&self, time_star: f64) -> f64 {
         let after = self.rows.partition_point(|row| row.time_star < time_star - 1e-9);
         self.rows.get(after).map_or(f64::NAN, |row| row.point.mu_star)
     }
 
     /// mu* at its first peak.
-    pub(super) fn peak(&self) -> f64 {
+    pub(crate) fn peak(&self) -> f64 {
         self.simulation.peak().mu_star
     }
 
     /// The largest mu* of the run.
-    pub(super) fn largest(&self) -> f64 {
+    pub(crate) fn largest(&self) -> f64 {
         self.simulation.peak().largest.mu_star
     }
 }
 
 impl Experiment {
     /// The experiment that a case describes, and its last step.
-    pub(super) fn of_case(name: &str, text: &str) -> Result<(Self, u64), PaperError> {
+    pub(crate) fn of_case(name: &str, text: &str) -> Result<(Self, u64), FamilyError> {
         let case = Case::parse(text, name, "", &[])?;
         let experiment = Self {
             model: Arc::clone(&case.model),
@@ -86,18 +77,11 @@ impl Experiment {
     }
 
     /// Runs the experiment to this step.
-    pub(super) fn run(
-        self,
-        name: &str,
-        last_step: u64,
-        others: &mut [&mut dyn Observer],
-    ) -> Result<AnswerRun, PaperError> {
+    pub(crate) fn run(self, name: &str, last_step: u64) -> Result<AnswerRun, FamilyError> {
         let mut simulation = self.begin();
         let mut curve = Curve::every(1);
-        let mut observers = vec![Scheduled::always(&mut curve)];
-        observers.extend(others.iter_mut().map(|observer| Scheduled::always(*observer)));
-        let done = simulation.run(Stop::at_step(last_step), &mut observers);
-        done.map_err(|source| PaperError::Run {
+        let done = simulation.run(Stop::at_step(last_step), &mut [Scheduled::always(&mut curve)]);
+        done.map_err(|source| FamilyError::Run {
             name: name.to_owned(),
             source,
         })?;
@@ -109,7 +93,7 @@ impl Experiment {
     }
 
     /// The simulation at the first instant.
-    pub(super) fn begin(&self) -> Simulation {
+    pub(crate) fn begin(&self) -> Simulation {
         let execution = Execution::default();
         Simulation::new(
             Arc::clone(&self.model),
@@ -120,7 +104,7 @@ impl Experiment {
     }
 
     /// Values of `value` at these times, which follow one another.
-    pub(super) fn values(&self, times: &[f64], value: impl Fn(&Snapshot) -> f64) -> Vec<f64> {
+    pub(crate) fn values(&self, times: &[f64], value: impl Fn(&Snapshot) -> f64) -> Vec<f64> {
         let mut simulation = self.begin();
         let at = |time: &f64| {
             let step = (time / self.dt_star).round() as u64;
@@ -134,17 +118,17 @@ impl Experiment {
 }
 
 /// Reason for the distance that [`rounding`] allows for the level of steady sliding with Omega* = 1, in steps of 0.1.
-pub(super) const ROUNDING: &str = "rounding of displacements, ε X/2 a step, which swings forget in 2/Ω; of these exp(-Ω t/2) is left, nothing";
+pub(crate) const ROUNDING: &str = "rounding of displacements, ε X/2 a step, which swings forget in 2/Ω; of these exp(-Ω t/2) is left, nothing";
 
 /// Rounding of mu* in steady sliding with Omega* = 1, in steps of 0.1, when the far ends have gone this far: `k_s (eps X/2)` of each of
 /// the last `2/(Omega dt)` steps.
-pub(super) fn rounding(path: f64) -> f64 {
+pub(crate) fn rounding(path: f64) -> f64 {
     K_DRIVE * f64::EPSILON * path / (scales::damping(1.0) * 0.1)
 }
 
 /// Rate at which an oscillation `x = A exp(s t) cos(w t + p)` grows, from four of its values a time `apart`: `x_2 = p x_1 - q x_0` with
 /// `q = exp(2 s apart)`.
-pub(super) fn growth(values: &[f64], apart: f64) -> f64 {
+pub(crate) fn growth(values: &[f64], apart: f64) -> f64 {
     let &[x0, x1, x2, x3] = values else {
         return f64::NAN;
     };
@@ -153,7 +137,7 @@ pub(super) fn growth(values: &[f64], apart: f64) -> f64 {
 }
 
 /// Growth rate of a small disturbance of steady sliding of blocks that move as one, from `t* = first` on, as for [`growth`].
-pub(super) fn growth_of_disturbance(model: Model, dt_star: f64, first: f64, apart: f64) -> f64 {
+pub(crate) fn growth_of_disturbance(model: Model, dt_star: f64, first: f64, apart: f64) -> f64 {
     let (v_star, n) = (model.drive.v_star, model.lattice.n_blocks());
     let behind = model.steady_level(&Alone) / model.drive.k_drive;
     let along_x = |x: f64| VectorField {

@@ -2,13 +2,13 @@
 
 use slipfront::scales;
 
-use super::answer::{Answer, Chapter};
-use super::runs::{AnswerRun, ROUNDING, rounding};
-use crate::error::PaperError;
+use crate::answer::{Answer, Chapter};
+use crate::error::FamilyError;
+use crate::runs::{AnswerRun, ROUNDING, rounding};
 
 const V_STAR: f64 = 0.03;
 
-pub(super) fn chapter() -> Result<Chapter, PaperError> {
+pub(crate) fn chapter() -> Result<Chapter, FamilyError> {
     let mut answers = Vec::new();
     for (along, slope) in [("x", 0.8), ("y", -0.5)] {
         let text = format!(

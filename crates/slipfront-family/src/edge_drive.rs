@@ -5,13 +5,11 @@ use slipfront::exact_solutions::precursor_load;
 use slipfront::lattice::K_STRAIGHT;
 use slipfront::observe::{Precursors, Scheduled};
 use slipfront::{Edge, Stop};
-use slipfront_plot::Responses;
+use slipfront_plot::{Response, Responses};
 
-use super::answer::{Answer, Chapter};
-use super::runs::Experiment;
-use crate::drawing::{Drawing, formula, measured};
-use crate::error::PaperError;
-use crate::number::MeasuredNumber;
+use crate::answer::{Answer, Chapter};
+use crate::error::FamilyError;
+use crate::runs::Experiment;
 
 const STATIC: f64 = 0.7;
 const KINETIC: f64 = 0.45;
@@ -60,7 +58,7 @@ impl Longer {
 
 impl Chain {
     /// Events that are longer than all before, and the largest load, of a run that ends when an event has crossed the chain.
-    fn precursors(&self, slope: f64, dt_star: f64) -> Result<(Vec<Longer>, f64), PaperError> {
+    fn precursors(&self, slope: f64, dt_star: f64) -> Result<(Vec<Longer>, f64), FamilyError> {
         let (n, v_star) = (f64::from(self.blocks), self.v_star);
         // Until the springs would pull with 1.3 times the kinetic friction of the whole chain, were it at rest.
         let duration = 1.3 * KINETIC / STATIC * n * n / (KAPPA * v_star);
@@ -80,7 +78,7 @@ impl Chain {
         while !has_crossed(&observer) {
             let observers = &mut [Scheduled::always(&mut observer)];
             let ended = simulation.advance(Stop::at_step(last_step), 10_000, observers);
-            let ended = ended.map_err(|source| PaperError::Run {
+            let ended = ended.map_err(|source| FamilyError::Run {
                 name: "precursors".to_owned(),
                 source,
             })?;
@@ -109,7 +107,7 @@ impl Chain {
     }
 
     /// Answers for the chain's runs under one profile of pressure; and the events of the run of the finest step.
-    fn answers(&self, slope: f64) -> Result<(Vec<Answer>, Vec<Longer>), PaperError> {
+    fn answers(&self, slope: f64) -> Result<(Vec<Answer>, Vec<Longer>), FamilyError> {
         let runs = self
             .steps
             .par_iter()
@@ -168,7 +166,7 @@ impl Chain {
     }
 }
 
-pub(super) fn chapter() -> Result<Chapter, PaperError> {
+pub(crate) fn chapter() -> Result<Chapter, FamilyError> {
     let pairs: Vec<(f64, &Chain)> = SLOPES
         .into_iter()
         .flat_map(|slope| CHAINS.iter().map(move |chain| (slope, chain)))
@@ -184,17 +182,14 @@ pub(super) fn chapter() -> Result<Chapter, PaperError> {
         if chain.blocks != CHAINS[0].blocks {
             continue;
         }
-        curves.push(formula(
+        curves.push(Response::of_formula(
             &format!("\u{3b8} = {slope}, exact"),
             &lengths,
             |length| precursor_load(length, KINETIC, slope),
         ));
         let x: Vec<f64> = events.iter().map(|event| event.length).collect();
-        let loads: Vec<MeasuredNumber> = events
-            .iter()
-            .map(|event| MeasuredNumber::exact(event.load))
-            .collect();
-        curves.push(measured(&format!("\u{3b8} = {slope}"), &x, &loads));
+        let loads: Vec<f64> = events.iter().map(|event| event.load).collect();
+        curves.push(Response::of_values(&format!("\u{3b8} = {slope}"), &x, &loads));
     }
     Ok(Chapter {
         title: "Driven at an edge: precursors",
@@ -203,12 +198,12 @@ pub(super) fn chapter() -> Result<Chapter, PaperError> {
         answers,
         picture: Some((
             "Load after each event that reached farther than all before, against its length, of 100 blocks under three profiles of pressure.",
-            Drawing::Responses(Responses {
+            Responses {
                 x_title: "length of the event over that of the chain".to_owned(),
                 y_title: "load F_T/F_N".to_owned(),
                 curves,
                 ..Responses::default()
-            }),
+            },
         )),
     })
 }

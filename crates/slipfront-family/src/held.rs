@@ -3,8 +3,8 @@
 use slipfront::lattice::K_DRIVE;
 use slipfront::{Drive, Execution, FrictionLaw, Lattice, Loading, Model, Simulation, Surface};
 
-use super::answer::{Answer, Chapter};
-use crate::error::PaperError;
+use crate::answer::{Answer, Chapter};
+use crate::error::FamilyError;
 
 /// Static threshold of a block.
 const STATIC: f64 = 1.0;
@@ -33,7 +33,7 @@ fn step_until(simulation: &mut Simulation, slides: bool) -> [f64; 2] {
     [now.model.drive.path(now.drive_time_star), now.point.mu_star]
 }
 
-pub(super) fn chapter() -> Result<Chapter, PaperError> {
+pub(crate) fn chapter() -> Result<Chapter, FamilyError> {
     let mut answers = Vec::new();
     for (blocks, v_star) in [([1, 1], 0.001), ([1, 1], 0.1), ([20, 16], 0.01)] {
         let [nx, ny] = blocks;

@@ -3,13 +3,11 @@
 use slipfront::exact_solutions::weakening_growth;
 use slipfront::lattice::K_DRIVE;
 use slipfront::{Coulomb, Drive, Friction, FrictionLaw, Lattice, Model, Surface, Weakening};
-use slipfront_plot::Responses;
+use slipfront_plot::{Response, Responses};
 
-use super::answer::{Answer, Chapter};
-use super::runs::growth_of_disturbance;
-use crate::drawing::{Drawing, formula, measured};
-use crate::error::PaperError;
-use crate::number::MeasuredNumber;
+use crate::answer::{Answer, Chapter};
+use crate::error::FamilyError;
+use crate::runs::growth_of_disturbance;
 
 const LAW: Weakening = Weakening {
     critical_speed: 0.1,
@@ -31,7 +29,7 @@ fn computed(damping: f64) -> f64 {
     growth_of_disturbance(model, DT_STAR, 0.0, 2.4)
 }
 
-pub(super) fn chapter() -> Result<Chapter, PaperError> {
+pub(crate) fn chapter() -> Result<Chapter, FamilyError> {
     let exact = |damping: f64| weakening_growth(&LAW, 0.5, V_STAR, K_DRIVE, damping);
     let found = DAMPINGS.map(computed);
     let answers = DAMPINGS.into_iter().zip(found).map(|(damping, found)| {
@@ -53,15 +51,15 @@ pub(super) fn chapter() -> Result<Chapter, PaperError> {
         answers: answers.collect(),
         picture: Some((
             "Growth rate of a small disturbance of steady sliding against damping: below the zero of the line it grows into stick-slip.",
-            Drawing::Responses(Responses {
+            Responses {
                 x_title: "damping \u{3a9}".to_owned(),
                 y_title: "growth rate".to_owned(),
                 curves: vec![
-                    formula("exact", &fine, exact),
-                    measured("computed", &DAMPINGS, &found.map(MeasuredNumber::exact)),
+                    Response::of_formula("exact", &fine, exact),
+                    Response::of_values("computed", &DAMPINGS, &found),
                 ],
                 ..Responses::default()
-            }),
+            },
         )),
     })
 }

@@ -6,13 +6,11 @@ use slipfront::communicator::Alone;
 use slipfront::exact_solutions::composite_peak;
 use slipfront::surface::{Coefficients, Contact, Load};
 use slipfront::{Drive, FrictionLaw, Lattice, Model, Outline, Slider, Surface, scales};
-use slipfront_plot::Responses;
+use slipfront_plot::{Response, Responses};
 
-use super::answer::{Answer, Chapter};
-use super::runs::Experiment;
-use crate::drawing::{Drawing, formula, measured};
-use crate::error::PaperError;
-use crate::number::MeasuredNumber;
+use crate::answer::{Answer, Chapter};
+use crate::error::FamilyError;
+use crate::runs::Experiment;
 
 const V_STAR: f64 = 0.005;
 const OMEGA_STAR: f64 = 1.5;
@@ -21,7 +19,7 @@ const WEAK: f64 = 0.5;
 const R_STAR: f64 = 0.5;
 
 /// Largest mu* of 10 x 10 blocks apart from each other, of which some rows are weak.
-fn largest(weak_rows: usize) -> Result<f64, PaperError> {
+fn largest(weak_rows: usize) -> Result<f64, FamilyError> {
     let lattice = Lattice::free(20, 20);
     let exists = (0..400).map(|b| (b % 20) % 2 == 0 && (b / 20) % 2 == 0);
     let slider = Slider::new(None, None, Some(Outline::new(exists.collect(), &Alone)), &Alone);
@@ -46,11 +44,11 @@ fn largest(weak_rows: usize) -> Result<f64, PaperError> {
         dt_star: DT_STAR,
         state: None,
     };
-    let run = experiment.run("composite", (6.0 / V_STAR / DT_STAR) as u64, &mut [])?;
+    let run = experiment.run("composite", (6.0 / V_STAR / DT_STAR) as u64)?;
     Ok(run.largest())
 }
 
-pub(super) fn chapter() -> Result<Chapter, PaperError> {
+pub(crate) fn chapter() -> Result<Chapter, FamilyError> {
     let (mut answers, mut found, mut shares) = (Vec::new(), Vec::new(), Vec::new());
     for weak_rows in 1..10 {
         let share = 0.1 * f64::from(weak_rows);
@@ -72,7 +70,7 @@ pub(super) fn chapter() -> Result<Chapter, PaperError> {
             tolerance,
         ));
         shares.push(share);
-        found.push(MeasuredNumber::exact(peak));
+        found.push(peak);
     }
     let fine: Vec<f64> = (0..=100).map(|k| 0.01 * f64::from(k)).collect();
     Ok(Chapter {
@@ -82,18 +80,18 @@ pub(super) fn chapter() -> Result<Chapter, PaperError> {
         answers,
         picture: Some((
             "Largest friction of a surface of two zones whose blocks do not pull at each other, against the share of the weak one.",
-            Drawing::Responses(Responses {
+            Responses {
                 x_title: "share of the weak zone".to_owned(),
                 y_title: "largest friction \u{3bc}*".to_owned(),
                 curves: vec![
-                    formula("exact", &fine, |share| composite_peak(share, [WEAK, 1.0], R_STAR)),
-                    formula("both thresholds at once", &fine, |share| {
+                    Response::of_formula("exact", &fine, |share| composite_peak(share, [WEAK, 1.0], R_STAR)),
+                    Response::of_formula("both thresholds at once", &fine, |share| {
                         WEAK * share + 1.0 - share
                     }),
-                    measured("computed", &shares, &found),
+                    Response::of_values("computed", &shares, &found),
                 ],
                 ..Responses::default()
-            }),
+            },
         )),
     })
 }

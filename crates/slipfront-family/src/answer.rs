@@ -1,6 +1,6 @@
 //! An exact answer and the value computed for it.
 
-use crate::drawing::Drawing;
+use slipfront_plot::Responses;
 
 /// A chapter: one option of the engine and its exact answers.
 #[derive(Clone, Debug)]
@@ -14,7 +14,7 @@ pub struct Chapter {
     /// The answers.
     pub answers: Vec<Answer>,
     /// A picture with its caption, where one helps.
-    pub picture: Option<(&'static str, Drawing)>,
+    pub picture: Option<(&'static str, Responses)>,
 }
 
 /// An exact answer and the computed value.

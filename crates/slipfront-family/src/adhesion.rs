@@ -3,17 +3,15 @@
 use slipfront::exact_solutions::{Facing, groove_edge_factor};
 use slipfront::scales;
 
-use super::answer::{Answer, Chapter};
-use super::runs::AnswerRun;
-use crate::drawing::{Drawing, formula, measured};
-use crate::error::PaperError;
-use crate::number::MeasuredNumber;
-use slipfront_plot::Responses;
+use crate::answer::{Answer, Chapter};
+use crate::error::FamilyError;
+use crate::runs::AnswerRun;
+use slipfront_plot::{Response, Responses};
 
 /// Adhesion over the pressure times mu_s.
 const STRENGTHS: [f64; 4] = [0.0, 0.25, 0.5, 1.0];
 
-pub(super) fn chapter() -> Result<Chapter, PaperError> {
+pub(crate) fn chapter() -> Result<Chapter, FamilyError> {
     let mut answers = Vec::new();
     let mut smooth = Vec::new();
     for adhesion in STRENGTHS {
@@ -23,7 +21,7 @@ pub(super) fn chapter() -> Result<Chapter, PaperError> {
             100.0 * adhesion
         );
         let found = AnswerRun::of_case("adhesion", &text)?.peak();
-        smooth.push(MeasuredNumber::exact(found));
+        smooth.push(found);
         answers.push(Answer::new(
             format!("μ_s* without texture, τ_a/(P μ̄_s) = {adhesion}"),
             [1.0 + adhesion, found],
@@ -59,15 +57,15 @@ pub(super) fn chapter() -> Result<Chapter, PaperError> {
         answers,
         picture: Some((
             "Static friction of a smooth uniform surface against adhesion: the line is exact, the points are computed.",
-            Drawing::Responses(Responses {
+            Responses {
                 x_title: "adhesion \u{3c4}\u{2090}/(P \u{3bc}\u{305}\u{209b})".to_owned(),
                 y_title: "static friction \u{3bc}\u{209b}*".to_owned(),
                 curves: vec![
-                    formula("exact", &STRENGTHS, |adhesion| 1.0 + adhesion),
-                    measured("computed", &STRENGTHS, &smooth),
+                    Response::of_formula("exact", &STRENGTHS, |adhesion| 1.0 + adhesion),
+                    Response::of_values("computed", &STRENGTHS, &smooth),
                 ],
                 ..Responses::default()
-            }),
+            },
         )),
     })
 }

@@ -8,8 +8,8 @@ use slipfront::{
     Surface,
 };
 
-use super::answer::{Answer, Chapter};
-use crate::error::PaperError;
+use crate::answer::{Answer, Chapter};
+use crate::error::FamilyError;
 
 /// Difference `S - K` of thresholds 1 and 0.5.
 const DROP: f64 = 0.5;
@@ -59,7 +59,7 @@ fn followed(weakening: f64, damping: f64, speed: f64, path: f64) -> f64 {
     simulation.snapshot().block(0).displacement[0]
 }
 
-pub(super) fn chapter() -> Result<Chapter, PaperError> {
+pub(crate) fn chapter() -> Result<Chapter, FamilyError> {
     let mut answers = Vec::new();
     for weakening in [0.6, 1.0, 2.0] {
         let exact = (DROP + (DROP * DROP - K_DRIVE * DROP * (DROP / weakening)).sqrt()) / K_DRIVE;

@@ -4,12 +4,12 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
-use slipfront_base::disk::begins_with;
-use slipfront_plot::Picture;
+use slipfront_base::disk::{begins_with, write_with_folders};
+use slipfront_plot::{Picture, response};
+use slipfront_run::folder_error::FolderError;
 
-use super::answer::{Answer, Chapter};
-use crate::error::PaperError;
-use crate::report::write_file;
+use crate::answer::{Answer, Chapter};
+use crate::error::FamilyError;
 
 /// The first line of the page, by which a page of an earlier call is recognised.
 const TITLE: &str = "# The family, answer by answer\n";
@@ -114,19 +114,19 @@ pub fn foreign_docs(folder: &Path) -> Option<PathBuf> {
 ///
 /// # Errors
 /// When a picture cannot be drawn or a file not be written.
-pub fn write_docs(chapters: &[Chapter], folder: &Path) -> Result<(), PaperError> {
+pub fn write_docs(chapters: &[Chapter], folder: &Path) -> Result<(), FamilyError> {
     let draw = |chapter: &Chapter| {
-        let (_, drawing) = chapter.picture.as_ref()?;
+        let (_, responses) = chapter.picture.as_ref()?;
         let name = chapter.name.to_owned();
-        let picture = drawing
-            .draw()
-            .map_err(|source| PaperError::Picture { name, source });
+        let picture = response(responses).map_err(|source| FamilyError::Picture { name, source });
         Some(picture.map(|picture| (chapter.name, picture)))
     };
     let pictures: Vec<(&str, Picture)> = chapters.par_iter().filter_map(draw).collect::<Result<_, _>>()?;
-    write_file(folder, PAGE, docs_page(chapters).as_bytes())?;
+    let write_file =
+        |path: PathBuf, bytes: &[u8]| write_with_folders(&path, bytes).map_err(FolderError::write(&path));
+    write_file(folder.join(PAGE), docs_page(chapters).as_bytes())?;
     for (name, picture) in pictures {
-        write_file(folder, &format!("{IMAGES}/{PICTURE}{name}.png"), &picture.png)?;
+        write_file(folder.join(format!("{IMAGES}/{PICTURE}{name}.png")), &picture.png)?;
     }
     Ok(())
 }

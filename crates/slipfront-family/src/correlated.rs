@@ -5,8 +5,8 @@ use std::f64::consts::PI;
 use slipfront::Lattice;
 use slipfront::surface::{Coefficients, CorrelatedField, Distribution, deviation_along};
 
-use super::answer::{Answer, Chapter};
-use crate::error::PaperError;
+use crate::answer::{Answer, Chapter};
+use crate::error::FamilyError;
 
 /// Seeds over which correlations are measured.
 const SEEDS: u16 = 10_000;
@@ -45,7 +45,7 @@ fn apart(length: f64) -> f64 {
     parents.iter().enumerate().map(difference).fold(0.0, f64::max)
 }
 
-pub(super) fn chapter() -> Result<Chapter, PaperError> {
+pub(crate) fn chapter() -> Result<Chapter, FamilyError> {
     let mut answers = Vec::new();
     for length in [0.25, 1.0, 5.0] {
         let field = CorrelatedField::new(&Lattice::free(25, 25), length);

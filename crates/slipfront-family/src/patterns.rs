@@ -2,11 +2,11 @@
 
 use slipfront::scales;
 
-use super::answer::{Answer, Chapter};
-use super::runs::{AnswerRun, ROUNDING, rounding};
-use crate::error::PaperError;
+use crate::answer::{Answer, Chapter};
+use crate::error::FamilyError;
+use crate::runs::{AnswerRun, ROUNDING, rounding};
 
-pub(super) fn chapter() -> Result<Chapter, PaperError> {
+pub(crate) fn chapter() -> Result<Chapter, FamilyError> {
     let groove = |width: f64, offset: f64| {
         format!("[[texture]]\nshape = \"groove\"\nwidth = \"{width} um\"\noffset = \"{offset} um\"\n")
     };

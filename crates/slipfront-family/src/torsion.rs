@@ -8,13 +8,11 @@ use slipfront::exact_solutions::{
 };
 use slipfront::lattice::K_DRIVE;
 use slipfront::{Drive, FrictionLaw, Lattice, Model, Outline, Rotation, Slider, Surface, scales};
-use slipfront_plot::Responses;
+use slipfront_plot::{Response, Responses};
 
-use super::answer::{Answer, Chapter};
-use super::runs::{AnswerRun, Experiment};
-use crate::drawing::{Drawing, formula, measured};
-use crate::error::PaperError;
-use crate::number::MeasuredNumber;
+use crate::answer::{Answer, Chapter};
+use crate::error::FamilyError;
+use crate::runs::{AnswerRun, Experiment};
 
 /// Distances of the blocks that exist from the middle.
 fn radii(model: &Model) -> Vec<f64> {
@@ -77,7 +75,7 @@ fn decoupled(r_star: f64) -> Experiment {
     }
 }
 
-pub(super) fn chapter() -> Result<Chapter, PaperError> {
+pub(crate) fn chapter() -> Result<Chapter, FamilyError> {
     let mut answers = Vec::new();
     let text = "friction.sigma_static_star = 0\nfriction.sigma_kinetic_star = 0\n\
                 [slider]\nblocks = [20, 20]\noutline = \"disc\"\n[drive]\nmotion = \"rotation\"\n\
@@ -111,11 +109,12 @@ pub(super) fn chapter() -> Result<Chapter, PaperError> {
                 ),
             ));
         }
-        curves.push(formula(&format!("R* = {r_star}, exact"), &shares, |stuck| {
-            torsion_of_decoupled_disc(stuck, r_star)
-        }));
-        let found: Vec<MeasuredNumber> = found.into_iter().map(MeasuredNumber::exact).collect();
-        curves.push(measured(&format!("R* = {r_star}"), &STUCK, &found));
+        curves.push(Response::of_formula(
+            &format!("R* = {r_star}, exact"),
+            &shares,
+            |stuck| torsion_of_decoupled_disc(stuck, r_star),
+        ));
+        curves.push(Response::of_values(&format!("R* = {r_star}"), &STUCK, &found));
     }
     Ok(Chapter {
         title: "Torsion",
@@ -124,12 +123,12 @@ pub(super) fn chapter() -> Result<Chapter, PaperError> {
         answers,
         picture: Some((
             "Torque of a disc whose blocks do not pull at each other, while those within a share of its radius still stick: the lines are of a continuous disc, the points of 40 blocks across.",
-            Drawing::Responses(Responses {
+            Responses {
                 x_title: "radius of the stuck part over that of the disc".to_owned(),
                 y_title: "torque over that of the whole load".to_owned(),
                 curves,
                 ..Responses::default()
-            }),
+            },
         )),
     })
 }

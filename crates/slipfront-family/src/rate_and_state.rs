@@ -4,13 +4,11 @@ use std::sync::Arc;
 
 use slipfront::exact_solutions::{friction_after_speed_step, rate_and_state_growth};
 use slipfront::{Drive, Friction, Lattice, Model, RateAndState, State, Surface, VectorField, scales};
-use slipfront_plot::Responses;
+use slipfront_plot::{Response, Responses};
 
-use super::answer::{Answer, Chapter};
-use super::runs::{Experiment, growth_of_disturbance};
-use crate::drawing::{Drawing, formula, measured};
-use crate::error::PaperError;
-use crate::number::MeasuredNumber;
+use crate::answer::{Answer, Chapter};
+use crate::error::FamilyError;
+use crate::runs::{Experiment, growth_of_disturbance};
 
 const LAW: RateAndState = RateAndState {
     a: 0.01,
@@ -97,7 +95,7 @@ fn after_step(v_2: f64) -> f64 {
     pulls[0] - drag - law.steady_coefficient(v_2)
 }
 
-pub(super) fn chapter() -> Result<Chapter, PaperError> {
+pub(crate) fn chapter() -> Result<Chapter, FamilyError> {
     let mut answers = Vec::new();
     for ratio in [0.1, 10.0] {
         let v_2 = V_1 * ratio;
@@ -148,15 +146,15 @@ pub(super) fn chapter() -> Result<Chapter, PaperError> {
         answers,
         picture: Some((
             "Growth rate of a small disturbance of steady sliding against the stiffness of the drive: softer than k_c it grows into stick-slip.",
-            Drawing::Responses(Responses {
+            Responses {
                 x_title: "stiffness of the drive over k_c".to_owned(),
                 y_title: "growth rate".to_owned(),
                 curves: vec![
-                    formula("exact", &fine, exact),
-                    measured("computed", &RATIOS, &found.map(MeasuredNumber::exact)),
+                    Response::of_formula("exact", &fine, exact),
+                    Response::of_values("computed", &RATIOS, &found),
                 ],
                 ..Responses::default()
-            }),
+            },
         )),
     })
 }

@@ -2,20 +2,18 @@
 
 use std::path::Path;
 
-use slipfront_paper::family;
-
 #[test]
 fn all_answers_are_within_their_tolerance_and_stand_in_the_book() {
-    let chapters = family::chapters().unwrap();
-    let summary = family::summary(&chapters);
+    let chapters = slipfront_family::chapters().unwrap();
+    let summary = slipfront_family::summary(&chapters);
     let answers = || chapters.iter().flat_map(|chapter| &chapter.answers);
-    assert!(answers().all(family::Answer::holds), "{summary}");
+    assert!(answers().all(slipfront_family::Answer::holds), "{summary}");
     assert!(answers().count() > 80, "{summary}");
     // The same bits on every machine, and so the same page.
     let book = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/validation/family.md");
     let page = std::fs::read_to_string(book).unwrap();
     assert!(
-        page == family::docs_page(&chapters),
+        page == slipfront_family::docs_page(&chapters),
         "docs/validation/family.md is not of this version: slipfront family --docs docs/validation"
     );
 }

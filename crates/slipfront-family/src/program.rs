@@ -2,11 +2,11 @@
 
 use slipfront::observe::CurveRow;
 
-use super::answer::{Answer, Chapter};
-use super::runs::{AnswerRun, ROUNDING, rounding};
-use crate::error::PaperError;
+use crate::answer::{Answer, Chapter};
+use crate::error::FamilyError;
+use crate::runs::{AnswerRun, ROUNDING, rounding};
 
-pub(super) fn chapter() -> Result<Chapter, PaperError> {
+pub(crate) fn chapter() -> Result<Chapter, FamilyError> {
     let mut answers = Vec::new();
     let equal = "friction.sigma_static_star = 0\nfriction.sigma_kinetic_star = 0\n";
     let text = format!(

@@ -12,6 +12,7 @@ mod composite;
 mod contact_springs;
 mod correlated;
 mod edge_drive;
+mod error;
 mod fronts;
 mod held;
 mod load;
@@ -24,15 +25,14 @@ mod slip_weakening;
 mod torsion;
 mod weakening;
 
-pub use self::answer::{Answer, Chapter, Tolerance};
-pub use self::page::{docs_page, foreign_docs, summary, write_docs};
-
 use rayon::prelude::*;
 
-use crate::error::PaperError;
+pub use answer::{Answer, Chapter, Tolerance};
+pub use error::FamilyError;
+pub use page::{docs_page, foreign_docs, summary, write_docs};
 
 /// Computes one chapter.
-type Compute = fn() -> Result<Chapter, PaperError>;
+type Compute = fn() -> Result<Chapter, FamilyError>;
 
 /// All chapters, in the order of the page.
 const CHAPTERS: &[Compute] = &[
@@ -58,6 +58,6 @@ const CHAPTERS: &[Compute] = &[
 ///
 /// # Errors
 /// When a run diverges.
-pub fn chapters() -> Result<Vec<Chapter>, PaperError> {
+pub fn chapters() -> Result<Vec<Chapter>, FamilyError> {
     CHAPTERS.par_iter().map(|compute| compute()).collect()
 }

@@ -8,9 +8,9 @@ use slipfront::lattice::{K_DRIVE, K_STRAIGHT};
 use slipfront::surface::{Coefficients, Load};
 use slipfront::{ContactSprings, Drive, Friction, Lattice, Model, Slider, Surface, scales};
 
-use super::answer::{Answer, Chapter};
-use super::runs::Experiment;
-use crate::error::PaperError;
+use crate::answer::{Answer, Chapter};
+use crate::error::FamilyError;
+use crate::runs::Experiment;
 
 /// Stiffness of the springs in contact over that of the drive.
 const SOFTNESS: f64 = 1e-3;
@@ -28,7 +28,7 @@ const CHAIN_DAMPING: f64 = 0.5;
 const CHAIN_DT_STAR: f64 = 0.2;
 
 /// First peak over the mean of sliding of a rigid slider whose thresholds are spread over 1 - w to 1 + w.
-fn ratio(w: f64, redraw: Option<u64>) -> Result<f64, PaperError> {
+fn ratio(w: f64, redraw: Option<u64>) -> Result<f64, FamilyError> {
     let lattice = Lattice::free(20, 20);
     // 7 and 400 have no common factor, so that each of 400 places is taken once.
     let threshold = |b: usize| 1.0 + w * ((2 * ((2401 * b + 3) % 400) + 1) as f64 / 400.0 - 1.0);
@@ -44,7 +44,7 @@ fn ratio(w: f64, redraw: Option<u64>) -> Result<f64, PaperError> {
         state: None,
     };
     let length = (1.0 / stiffness / v_star / dt_star) as usize;
-    let run = experiment.run("springs in contact", 50 * length as u64, &mut [])?;
+    let run = experiment.run("springs in contact", 50 * length as u64)?;
     let force = |row: &slipfront::observe::CurveRow| row.point.mu_star - damping * v_star;
     // The slider begins at rest and is at its speed long before the first spring breaks.
     let peak = run.rows[length / 2..].iter().map(force).fold(0.0, f64::max);
@@ -106,7 +106,7 @@ fn pull(n: usize, stiffness: f64) -> f64 {
     simulation.snapshot().block(0).force_drive[0]
 }
 
-pub(super) fn chapter() -> Result<Chapter, PaperError> {
+pub(crate) fn chapter() -> Result<Chapter, FamilyError> {
     let mut answers = Vec::new();
     for (redraw, which) in [(None, "kept"), (Some(5), "drawn anew")] {
         for w in [0.05, 0.1, 0.2] {

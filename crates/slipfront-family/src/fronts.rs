@@ -5,13 +5,11 @@ use std::sync::Arc;
 use slipfront::exact_solutions::front_speed;
 use slipfront::lattice::K_STRAIGHT;
 use slipfront::{Drive, FrictionLaw, Lattice, Model, State, Surface};
-use slipfront_plot::Responses;
+use slipfront_plot::{Response, Responses};
 
-use super::answer::{Answer, Chapter};
-use super::runs::Experiment;
-use crate::drawing::{Drawing, formula, measured};
-use crate::error::PaperError;
-use crate::number::MeasuredNumber;
+use crate::answer::{Answer, Chapter};
+use crate::error::FamilyError;
+use crate::runs::Experiment;
 
 const BLOCKS: usize = 200;
 const KINETIC: f64 = 0.5;
@@ -19,7 +17,7 @@ const DT_STAR: f64 = 5e-3;
 const PRESTRESSES: [f64; 6] = [0.4, 0.5, 0.6, 0.7, 0.8, 0.9];
 
 /// Speed over that of sound of a front in a chain with drive springs of `kappa` times its own stiffness, under a constant force.
-fn speed(kappa: f64, prestress: f64) -> Result<f64, PaperError> {
+fn speed(kappa: f64, prestress: f64) -> Result<f64, FamilyError> {
     let lattice = Lattice::free(BLOCKS, 1);
     let drive = Drive {
         k_drive: kappa * K_STRAIGHT,
@@ -37,15 +35,15 @@ fn speed(kappa: f64, prestress: f64) -> Result<f64, PaperError> {
         dt_star: DT_STAR,
         state: Some(state),
     };
-    let run = experiment.run("fronts", steps, &mut [])?;
+    let run = experiment.run("fronts", steps)?;
     let first = run.simulation.snapshot().first_slip_time_star();
     let (from, to) = (BLOCKS / 2, BLOCKS - 20);
     Ok((to - from) as f64 / (first[to] - first[from]) / sound)
 }
 
-pub(super) fn chapter() -> Result<Chapter, PaperError> {
+pub(crate) fn chapter() -> Result<Chapter, FamilyError> {
     let mut answers = Vec::new();
-    let mut curves = vec![formula(
+    let mut curves = vec![Response::of_formula(
         "no drive springs, exact",
         &(0..=50).map(|k| 0.4 + 0.01 * f64::from(k)).collect::<Vec<_>>(),
         |prestress| front_speed(1.0, prestress),
@@ -57,14 +55,14 @@ pub(super) fn chapter() -> Result<Chapter, PaperError> {
     ] {
         let mut found = Vec::new();
         for prestress in PRESTRESSES {
-            found.push(MeasuredNumber::exact(speed(kappa, prestress)?));
+            found.push(speed(kappa, prestress)?);
         }
         if kappa == 0.0 {
             for (prestress, found) in PRESTRESSES.into_iter().zip(&found) {
                 let exact = front_speed(1.0, prestress);
                 answers.push(Answer::new(
                     format!("v/c at a prestress of {prestress}"),
-                    [exact, found.value],
+                    [exact, *found],
                     (
                         0.5 * K_STRAIGHT.sqrt() * DT_STAR * exact * exact,
                         "a block starts at a whole step, up to half a step from its time l/v after the one before",
@@ -72,7 +70,7 @@ pub(super) fn chapter() -> Result<Chapter, PaperError> {
                 ));
             }
         }
-        curves.push(measured(label, &PRESTRESSES, &found));
+        curves.push(Response::of_values(label, &PRESTRESSES, &found));
     }
     Ok(Chapter {
         title: "Slip fronts",
@@ -81,12 +79,12 @@ pub(super) fn chapter() -> Result<Chapter, PaperError> {
         answers,
         picture: Some((
             "Speed of slip fronts along a chain, over that of sound. Drive springs slow them down most under a low prestress.",
-            Drawing::Responses(Responses {
+            Responses {
                 x_title: "prestress \u{3c4}".to_owned(),
                 y_title: "front speed v/c".to_owned(),
                 curves,
                 ..Responses::default()
-            }),
+            },
         )),
     })
 }

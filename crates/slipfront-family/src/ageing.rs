@@ -2,20 +2,18 @@
 
 use slipfront::Ageing;
 use slipfront::exact_solutions::ageing_slip_time;
-use slipfront_plot::Responses;
+use slipfront_plot::{Response, Responses};
 
-use super::answer::{Answer, Chapter};
-use super::runs::AnswerRun;
-use crate::drawing::{Drawing, formula, measured};
-use crate::error::PaperError;
-use crate::number::MeasuredNumber;
+use crate::answer::{Answer, Chapter};
+use crate::error::FamilyError;
+use crate::runs::AnswerRun;
 
 const LAW: Ageing = Ageing { beta: 0.1, time: 1.0 };
 const V_STAR: f64 = 0.05;
 const DT_STAR: f64 = 0.05;
 const HOLDS: [f64; 6] = [10.0, 30.0, 100.0, 300.0, 1000.0, 3000.0];
 
-pub(super) fn chapter() -> Result<Chapter, PaperError> {
+pub(crate) fn chapter() -> Result<Chapter, FamilyError> {
     let (mut answers, mut found) = (Vec::new(), Vec::new());
     for hold in HOLDS {
         let text = format!(
@@ -33,7 +31,7 @@ pub(super) fn chapter() -> Result<Chapter, PaperError> {
             [ageing_slip_time(&LAW, 0.0, hold, 0.375, V_STAR), run.first_slip()],
             (DT_STAR * (1.0 + 1e-9), "it is seen at the next step"),
         ));
-        found.push(MeasuredNumber::exact(run.largest()));
+        found.push(run.largest());
     }
     let fine: Vec<f64> = (0..=60).map(|k| libm::exp10(0.8 + 0.05 * f64::from(k))).collect();
     let peak = |hold: f64| 0.375 * V_STAR * (ageing_slip_time(&LAW, 0.0, hold, 0.375, V_STAR) - hold);
@@ -44,16 +42,16 @@ pub(super) fn chapter() -> Result<Chapter, PaperError> {
         answers,
         picture: Some((
             "Static friction after a hold, against its duration.",
-            Drawing::Responses(Responses {
+            Responses {
                 x_title: "hold t*".to_owned(),
                 log_x: true,
                 y_title: "static friction \u{3bc}\u{209b}*".to_owned(),
                 curves: vec![
-                    formula("exact", &fine, peak),
-                    measured("computed", &HOLDS, &found),
+                    Response::of_formula("exact", &fine, peak),
+                    Response::of_values("computed", &HOLDS, &found),
                 ],
                 ..Responses::default()
-            }),
+            },
         )),
     })
 }

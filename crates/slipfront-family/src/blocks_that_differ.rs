@@ -5,13 +5,13 @@ use std::sync::Arc;
 use slipfront::exact_solutions::{lagged_decay_rate, pair_modes, viscous_decay_rate};
 use slipfront::{Drive, FrictionLaw, Lattice, Model, Slider, State, Surface};
 
-use super::answer::{Answer, Chapter};
-use super::runs::{AnswerRun, Experiment, growth};
-use crate::error::PaperError;
+use crate::answer::{Answer, Chapter};
+use crate::error::FamilyError;
+use crate::runs::{AnswerRun, Experiment, growth};
 
 const EQUAL: &str = "friction.sigma_static_star = 0\nfriction.sigma_kinetic_star = 0\n";
 
-pub(super) fn chapter() -> Result<Chapter, PaperError> {
+pub(crate) fn chapter() -> Result<Chapter, FamilyError> {
     let mut answers = Vec::new();
     let text = format!(
         "{EQUAL}[slider]\nblocks = [50, 4]\nstiffness_grade = {{ along = \"x\", from = 1, to = 0.1 }}\n[time]\nstep = 0.01\nduration_star = 120"
