@@ -14,12 +14,13 @@ use slipfront_case::case::{Case as SlipfrontCase, Ranks};
 use slipfront_case::case_file::CaseFile;
 use slipfront_design::DESIGNS;
 use slipfront_run::checkpoint::Checkpoints;
-use slipfront_run::names::{FIELDS, FIGURE_CACHE, KYMOGRAPH, PRECURSORS, SERIES};
+use slipfront_run::names::{FIELDS, FIGURE_CACHE, KYMOGRAPH, SERIES};
+use slipfront_run::run_files::RunFiles;
 use slipfront_run::run_folder::RunFolder;
 use slipfront_run::run_folder::inspection::Contents;
 use slipfront_run::running::Running;
 use slipfront_run::verify::inspect;
-use slipfront_run::{fields, precursors, series, summary};
+use slipfront_run::{fields, series, summary};
 use slipfront_study::converge::is_written;
 use slipfront_study::study_of;
 use slipfront_study::verify::{Extent, has_records, verify as verify_folder};
@@ -130,11 +131,7 @@ pub(crate) fn read_run<'py>(py: Python<'py>, folder: PathBuf) -> PyResult<(Case,
         let data = fields::read_kymograph(&kymograph).map_err(folder_error)?;
         read.set_item("kymograph", record::kymograph(py, data)?)?;
     }
-    let events = folder.join(PRECURSORS);
-    if events.exists() {
-        let rows = precursors::read_csv(&events).map_err(folder_error)?;
-        read.set_item("precursors", record::precursors_of(py, &rows)?)?;
-    }
+    read.set_item("tables", record::tables(py, RunFiles::Folder(&folder))?)?;
     Ok((case, read))
 }
 

@@ -13,7 +13,8 @@ use slipfront_study::verify::{Extent, verify};
 
 use crate::checks::readable;
 use crate::long::{many, nested};
-use crate::{Memory, Target, Time, scratch};
+use crate::scratch;
+use crate::target::{Memory, Target, Time};
 
 /// The summary of a run.
 pub(crate) const SUMMARY: Target = Target {
