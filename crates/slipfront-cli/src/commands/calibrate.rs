@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use slipfront_base::number_format::count;
-use slipfront_calibrate::{CalibrationFile, CalibrationFolder};
+use slipfront_calibrate::{CalibrationFile, CalibrationFolder, GivenRecord};
 use slipfront_study::StudyError;
 
 use crate::failure::Failure;
@@ -51,17 +51,18 @@ impl CalibrateCommand {
     pub(crate) fn execute(self) -> Result<(), Failure> {
         let threads = set_threads(self.threads)?;
         let file = CalibrationFile::load(&self.calibration).map_err(Failure::input)?;
+        let records = file.read(&self.records).map_err(Failure::input)?;
         // A calibration that is invalid, or has no memory, leaves no folder.
-        file.check_memory(&self.records, threads)
-            .map_err(Failure::input)?;
-        let out = self.out.unwrap_or_else(|| Path::new("results").join(&file.name));
+        file.check_memory(&records, threads).map_err(Failure::input)?;
+        let out = self.out.unwrap_or_else(|| Path::new("results").join(file.name()));
         let training = self.training.as_deref();
+        let notes: Vec<String> = records.iter().filter_map(GivenRecord::note).collect();
         // A signal leaves nothing of what is copied to the folder.
         let signals = Signals::catch().map_err(Failure::running)?;
-        let folder = CalibrationFolder::open(&out, training, &file, &self.records, self.force);
+        let folder = CalibrationFolder::open(&out, training, &file, records, self.force);
         let mut folder = folder.map_err(Failure::of_folder)?;
         if !self.quiet {
-            print_notes(&file.notes(&self.records).map_err(Failure::input)?, &folder);
+            print_notes(&notes, &folder);
         }
         let mut progress = CalibrateProgress::new(self.quiet);
         let found = folder.find(&signals.stop, &mut |now| progress.show(now));

@@ -58,7 +58,7 @@ impl DesignCommand {
         // A design that is invalid, or has no memory, leaves no folder.
         file.check(runs, threads, self.time.is_some())
             .map_err(Failure::input)?;
-        let out = self.out.unwrap_or_else(|| Path::new("results").join(&file.name));
+        let out = self.out.unwrap_or_else(|| Path::new("results").join(file.name()));
         // A signal leaves nothing of what is copied to the folder.
         let signals = Signals::catch().map_err(Failure::running)?;
         let mut folder = DesignFolder::open(&out, &file, self.force).map_err(Failure::of_folder)?;
