@@ -18,7 +18,7 @@ use crate::set_up::{Curves, SetUp};
 use crate::training::{Training, TrainingRun};
 use slipfront_study::StudyError;
 use slipfront_study::project_folder::{
-    Checksums, Derivation, Given, Journal, JournalRecord, Others, ResultFiles, read_numbers,
+    Checksums, Derivation, Given, Journal, JournalRecord, Others, ResultFiles, notes_of_use, read_numbers,
 };
 
 /// Beginning of the names of copies of records.
@@ -222,6 +222,11 @@ impl CalibrationFolder {
     /// Path of the folder.
     pub fn path(&self) -> &Path {
         &self.path
+    }
+
+    /// Sentences about a folder that has been used before.
+    pub fn notes(&self) -> Vec<String> {
+        notes_of_use(self.damaged, self.n_kept())
     }
 
     /// Number of training runs that are known.

@@ -13,7 +13,7 @@ use crate::stages::{Bounds, Length, SearchProgress, Work};
 use crate::wish::Measured;
 use slipfront_study::StudyError;
 use slipfront_study::project_folder::{
-    Batch, Derivation, Journal, JournalRecord, Others, ResultFiles, read_numbers,
+    Batch, Derivation, Journal, JournalRecord, Others, ResultFiles, notes_of_use, read_numbers,
 };
 
 /// A line of the journal: the numbers of a run, or the reason for which it has none.
@@ -102,6 +102,11 @@ impl DesignFolder {
             file: &self.file,
             batch,
         }
+    }
+
+    /// Sentences about a folder that has been used before.
+    pub fn notes(&self) -> Vec<String> {
+        notes_of_use(self.damaged, self.n_kept())
     }
 
     /// Number of runs that were kept.

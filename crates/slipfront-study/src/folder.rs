@@ -13,7 +13,7 @@ use crate::study_results::StudyResults;
 use crate::{pictures, tables};
 use slipfront_base::disk::{TEXT_MAX_BYTES, open_limited, read_limited};
 use slipfront_base::machine::free_disk;
-use slipfront_base::number_format::byte_size;
+use slipfront_base::number_format::{byte_size, count};
 use slipfront_run::folder_error::FolderError;
 use slipfront_run::manifest::Manifest;
 use slipfront_run::names::{CASE, FIGURE_CACHE, RUNS, TABLES};
@@ -77,6 +77,20 @@ impl StudyFolder {
     /// Path of the folder.
     pub fn path(&self) -> &Path {
         &self.path
+    }
+
+    /// Sentences about a folder that has been used before.
+    pub fn notes(&self) -> Vec<String> {
+        let damaged = (self.records.damaged > 0).then(|| {
+            let lines = count(self.records.damaged, "damaged line");
+            format!("the record file has {lines}, passed over: its runs count as not run")
+        });
+        let changed =
+            "the study has changed since this folder was last used; runs that still belong to it are kept";
+        damaged
+            .into_iter()
+            .chain(self.changed.then(|| changed.to_owned()))
+            .collect()
     }
 
     /// Copies complete run folders, and the cases of failed runs, from the folder of a shard, where this folder lacks them.

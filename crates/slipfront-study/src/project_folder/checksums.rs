@@ -75,11 +75,6 @@ impl Checksums {
         }
     }
 
-    /// Whether slipfront has written a file of this name with these contents.
-    pub(super) fn has(&self, file: &ManifestFile) -> bool {
-        self.files.contains(file) || self.replaced.contains(file)
-    }
-
     pub(super) fn write(mut self, folder: &Path) -> Result<(), StudyError> {
         self.seal = String::new();
         self.seal = seal(&json(&self)).unwrap_or_default();

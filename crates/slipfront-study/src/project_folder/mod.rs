@@ -11,6 +11,7 @@ pub(crate) mod input_copies;
 mod journal;
 mod kind;
 mod line;
+mod notes;
 mod result_files;
 pub(crate) mod verify;
 mod written_numbers;
@@ -24,6 +25,7 @@ pub use kind::ProjectKind;
 pub use line::JournalRecord;
 #[cfg(test)]
 pub(crate) use line::to_line;
+pub use notes::notes_of_use;
 pub use result_files::{Batch, Others, ResultFiles};
 pub use verify::{Derivation, Extent, VerifyStudyError, verify_checksums};
 pub use written_numbers::read_numbers;

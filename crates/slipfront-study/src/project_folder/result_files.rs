@@ -14,7 +14,7 @@ use slipfront_base::disk::{
 };
 use slipfront_plot::Picture;
 use slipfront_run::folder_error::FolderError;
-use slipfront_run::manifest::ManifestFile;
+use slipfront_run::manifest::{ManifestFile, is_one_of};
 use slipfront_run::program;
 use tempfile::TempPath;
 
@@ -91,25 +91,14 @@ impl ResultFiles {
                 return Ok(false);
             }
         }
-        let Some(found) = found_at(&path).map_err(FolderError::read(&path))? else {
-            return Ok(true);
-        };
-        let is_of_name = |file: &ManifestFile| file.name == name && file.bytes == found.len();
-        let mut known = list.files.iter().chain(&list.replaced).chain(new);
-        // A file of another length is not read: it may be huge.
-        if !found.is_file() || !known.any(is_of_name) {
-            return Ok(false);
-        }
-        let found = ManifestFile::of(&self.folder, name).map_err(FolderError::read(&path))?;
-        Ok(list.has(&found) || new == Some(&found))
+        let known = list.files.iter().chain(&list.replaced).chain(new);
+        let is_known = is_one_of(&self.folder, name, known).map_err(FolderError::read(&path))?;
+        Ok(is_known.unwrap_or(true))
     }
 
     /// Whether this file is there already.
     fn is_there(&self, file: &ManifestFile) -> bool {
-        let found = found_at(&self.folder.join(&file.name));
-        let is_alike =
-            found.is_ok_and(|found| found.is_some_and(|found| found.is_file() && found.len() == file.bytes));
-        is_alike && ManifestFile::of(&self.folder, &file.name).is_ok_and(|found| found == *file)
+        matches!(is_one_of(&self.folder, &file.name, [file]), Ok(Some(true)))
     }
 
     /// Gives hidden files their names, and removes others.
