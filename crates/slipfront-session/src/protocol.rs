@@ -1,6 +1,6 @@
 //! Messages between the page and a session: requests as JSON, replies as JSON, pictures as bytes.
 //!
-//! The page is written against the types of `types/protocol.d.ts`; a test holds them against the types of this module.
+//! The page is written against the types of `types/protocol.d.ts`: samples of all messages hold them against the types of this module.
 
 use std::collections::BTreeMap;
 
