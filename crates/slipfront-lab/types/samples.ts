@@ -1,4 +1,4 @@
-// Messages of every kind, which the tests `page_types` of slipfront-session have written: with UPDATE=1 they write them anew.
+// Messages of every kind, written by the tests `page_types` of slipfront-session: with UPDATE=1 anew.
 import { Replies, Requests, Texture } from './protocol';
 import { Samples, Some } from './samples_check';
 

@@ -1,4 +1,5 @@
-// Holds the messages of `samples.ts` against the types of the page: they have these types, and show all that the types allow.
+// Holds the messages of `samples.ts` against the types of the page: they have these types, and show all that
+// the types allow.
 import { CaseValue, Replies, Requests, Texture } from './protocol';
 import { replies, requests, textures } from './samples';
 

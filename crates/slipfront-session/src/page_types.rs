@@ -1,7 +1,9 @@
-//! Holds `types/protocol.d.ts` of slipfront-lab, which the page is written against, against `protocol.rs` by samples of messages.
+//! Holds `types/protocol.d.ts` of slipfront-lab, which the page is written against, against `protocol.rs` by
+//! samples of messages.
 //!
-//! The tests write the samples as `types/samples.ts`, read every request among them, and know that a sample shows each key, word and
-//! kind of this crate. `tsc` (`tests/browser/run.sh`) finds the types of the page in them, and that they show all of these types.
+//! The tests write the samples as `types/samples.ts`, read every request among them, and know that a sample
+//! shows each key, word and kind of this crate. `tsc` (`tests/browser/run.sh`) finds the types of the page in
+//! them, and that they show all of these types.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -19,7 +21,8 @@ use crate::protocol::{
 };
 use crate::shapes;
 
-/// Requests as the page may send them: every key with every kind of value, and every key that may be absent so.
+/// Requests as the page may send them: every key with every kind of value, and every key that may be absent
+/// so.
 const REQUESTS: [&str; 30] = [
     r#"{"do":"open","source":{}}"#,
     r#"{"do":"open","source":{"preset":"circle"}}"#,
@@ -63,7 +66,7 @@ fn expected(error: &str) -> Vec<String> {
     names.split('`').skip(1).step_by(2).map(str::to_owned).collect()
 }
 
-/// What the requests show of the objects and texts at one place.
+/// Keys and texts that the requests show at one place.
 #[derive(Default)]
 struct Place {
     keys: BTreeSet<String>,
@@ -137,7 +140,8 @@ fn requests_are_read_and_show_every_key_and_word_that_is() {
     assert_eq!(of_words, ["view.after_change", "view.field"]);
 }
 
-/// What the page shows of `summary.json`, in the order of the alphabet: new numbers of runs change no sample.
+/// Keys of `summary.json` that the page shows, in the order of the alphabet: new numbers of runs change no
+/// sample.
 const SHOWN_OF_SUMMARY: [&str; 9] = [
     "energy_error",
     "front_duration_star",
@@ -150,7 +154,8 @@ const SHOWN_OF_SUMMARY: [&str; 9] = [
     "transition",
 ];
 
-/// Hands `check` every kind of reply, which between them have every kind of value that each of their keys may hold.
+/// Hands `check` every kind of reply, which between them have every kind of value that each of their keys may
+/// hold.
 fn each_reply(check: &mut impl FnMut(&Reply)) {
     let text = "[[texture]]\npoints = [['10 um', '10 um'], ['20 um', '10 um'], ['10 um', '20 um']]\nshape = 'polygon'\n";
     let document = Document::new("case", text, |_| Err("there is no file".to_owned())).unwrap();
@@ -362,7 +367,8 @@ fn each_reply(check: &mut impl FnMut(&Reply)) {
     });
 }
 
-/// Names each kind of reply, and all of them: the compiler demands a new kind here, and then the test a sample of it.
+/// Names each kind of reply, and all of them: the compiler demands a new kind here, and then the test a
+/// sample of it.
 macro_rules! kinds {
     ($($kind:ident)*) => {
         const KINDS: &[&str] = &[$(stringify!($kind)),*];
@@ -437,7 +443,7 @@ fn samples_are_those_that_the_page_is_checked_with() {
     let requests = by_kind(&REQUESTS.map(str::to_owned));
     let textures: String = textures().iter().map(|one| format!("  {one},\n")).collect();
     let text = format!(
-        "// Messages of every kind, which the tests `page_types` of slipfront-session have written: with UPDATE=1 they write them anew.\n\
+        "// Messages of every kind, written by the tests `page_types` of slipfront-session: with UPDATE=1 anew.\n\
          import {{ Replies, Requests, Texture }} from './protocol';\n\
          import {{ Samples, Some }} from './samples_check';\n\n\
          export const requests = {{\n{requests}}} satisfies Samples<Requests, 'do'>;\n\n\

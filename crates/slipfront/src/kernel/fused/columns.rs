@@ -8,7 +8,8 @@ use super::vector::LANES;
 use crate::checkpoint::BlockColumn;
 
 impl Band {
-    /// Takes over the values of a column of a checkpoint from block `first` on, as far as these blocks belong to the band.
+    /// Takes over the values of a column of a checkpoint from block `first` on, as far as these blocks belong
+    /// to the band.
     pub(super) fn set_column(
         &mut self,
         layout: &Layout,
@@ -36,7 +37,8 @@ impl Band {
         }
     }
 
-    /// Writes to `values` a column of a checkpoint from block `first` on, as far as these blocks belong to the band.
+    /// Writes to `values` a column of a checkpoint from block `first` on, as far as these blocks belong to
+    /// the band.
     pub(super) fn read_column(
         &self,
         layout: &Layout,
@@ -66,8 +68,8 @@ impl Band {
         }
     }
 
-    /// Takes over a column of the memory of the law of friction from block `first` on, as far as these blocks belong to the
-    /// band.
+    /// Takes over a column of the memory of the law of friction from block `first` on, as far as these blocks
+    /// belong to the band.
     pub(super) fn set_memory(&mut self, layout: &Layout, column: usize, first: usize, values: &[f64]) {
         for [of_values, own] in self.common(layout, first, values.len()) {
             let memory = self
@@ -80,8 +82,8 @@ impl Band {
         }
     }
 
-    /// Writes to `values` a column of the memory of the law of friction at t*, from block `first` on, as far as these blocks
-    /// belong to the band.
+    /// Writes to `values` a column of the memory of the law of friction at t*, from block `first` on, as far
+    /// as these blocks belong to the band.
     pub(super) fn read_memory(
         &self,
         layout: &Layout,
@@ -119,8 +121,8 @@ impl Band {
         })
     }
 
-    /// Continues from a checkpoint of which all columns are set, as if every tile had just been swept: the largest contact
-    /// stress of a checkpoint includes the skipped tiles.
+    /// Continues from a checkpoint of which all columns are set, as if every tile had just been swept: the
+    /// largest contact stress of a checkpoint includes the skipped tiles.
     pub(super) fn resume(&mut self) {
         for task in &mut self.tasks {
             task.active = u32::MAX;
