@@ -1,6 +1,6 @@
 //! Errors of `slipfront paper`.
 
-use slipfront::{RunError, SurfaceError};
+use slipfront::RunError;
 use thiserror::Error;
 
 use slipfront_case::case_file::CaseError;
@@ -8,7 +8,7 @@ use slipfront_plot::PictureError;
 use slipfront_run::folder_error::FolderError;
 use slipfront_run::verify::VerifyError;
 use slipfront_study::StudyError;
-use slipfront_study::verify::VerifyStudyError;
+use slipfront_study::project_folder::VerifyStudyError;
 
 /// Reason for which the figures could not be run or the report not be written.
 #[derive(Debug, Error)]
@@ -18,8 +18,6 @@ pub enum PaperError {
     Figure { given: String, known: String },
     #[error(transparent)]
     Case(#[from] CaseError),
-    #[error(transparent)]
-    Surface(#[from] SurfaceError),
     #[error(transparent)]
     Study(#[from] StudyError),
     #[error("the run {name} failed: {source}")]

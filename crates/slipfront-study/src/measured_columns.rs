@@ -6,15 +6,16 @@ use slipfront_run::measured::{Column, Measure, MeasuredError, MeasuredRecord};
 
 /// Columns of a table, by their names or numbers, and their units where the header has none.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct MeasuredColumns {
+pub struct MeasuredColumns {
     /// Times, or displacements of the drive.
-    pub(crate) x: Column,
+    pub x: Column,
     /// Forces, or coefficients if their unit is 1.
-    pub(crate) y: Column,
+    pub y: Column,
 }
 
 impl MeasuredColumns {
-    pub(crate) fn new([x, y]: [&str; 2], [x_unit, y_unit]: [&Option<String>; 2]) -> Self {
+    /// Columns of these names or numbers, and their units.
+    pub fn new([x, y]: [&str; 2], [x_unit, y_unit]: [&Option<String>; 2]) -> Self {
         let column = |name: &str, unit: &Option<String>| Column {
             name: name.to_owned(),
             unit: unit.clone(),
@@ -29,16 +30,33 @@ impl MeasuredColumns {
     ///
     /// # Errors
     /// A sentence on why the table is no record.
-    pub(crate) fn read(&self, path: &Path, along: Measure) -> Result<MeasuredRecord, String> {
+    pub fn read(&self, path: &Path, along: Measure) -> Result<MeasuredRecord, String> {
         let read = MeasuredRecord::read(path, [&self.x, &self.y], along);
-        read.map_err(|error| match error {
+        read.map_err(|error| Self::sentence(error, path))
+    }
+
+    /// The record in these bytes of a table, of which messages name the path.
+    ///
+    /// # Errors
+    /// A sentence on why the table is no record.
+    pub fn parse(&self, bytes: &[u8], path: &Path, along: Measure) -> Result<MeasuredRecord, String> {
+        let read = MeasuredRecord::parse(bytes, path, [&self.x, &self.y], along);
+        read.map_err(|error| Self::sentence(error, path))
+    }
+
+    /// The sentence of an error, with keys in place of options.
+    fn sentence(error: MeasuredError, path: &Path) -> String {
+        match error {
             MeasuredError::NoUnit {
-                column, axis, example, ..
+                column,
+                axis,
+                example,
+                ..
             } => format!(
                 "nothing tells the unit of column `{column}` of {}: give it as a key, such as {axis}_unit = \"{example}\"",
                 path.display()
             ),
             error => error.to_string(),
-        })
+        }
     }
 }

@@ -2,7 +2,7 @@
 //! before any of it is taken.
 //!
 //! The estimate is an upper bound with one margin: every figure of this file is the most that was measured over all options,
-//! rounded up. `tests/budget` of slipfront-study holds it against the memory that runs take.
+//! rounded up. `tests/budget` of slipfront-cli holds it against the memory that runs take.
 
 use std::ops::Range;
 use std::path::Path;

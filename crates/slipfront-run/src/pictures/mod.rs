@@ -11,7 +11,6 @@ mod maps;
 pub mod movie;
 mod precursors;
 mod record_fit;
-pub mod texture_file;
 
 use std::path::PathBuf;
 
@@ -20,8 +19,8 @@ use slipfront_case::case::{Case, PICTURES};
 use slipfront_plot::{MovieSize, Picture};
 
 use self::error::RunPictureError;
-pub use self::files::DRAWN_FROM;
 use self::files::found;
+pub use self::files::is_drawn_from;
 pub use self::front::draw_kymograph;
 pub use self::maps::draw_field;
 use self::movie::MoviePace;

@@ -1,0 +1,58 @@
+//! Summaries of a curve of friction: numbers from which a calibration learns.
+//!
+//! `y_i`, i from 0 to n - 1, is friction at n instants or places in equal steps. Widths of windows are shares of the record:
+//! "w of 400" is w n/400 values. `s3` and `s5` are running means over 3 and 5 of 400, `m` is the mean of the second half, in
+//! which a slider is taken to slide steadily. Each file of this folder has the formulas of its numbers; they are ratios and
+//! logarithms, so that a regression on them can be nearly linear.
+
+mod curve;
+mod levels;
+mod loading;
+mod release;
+mod steady;
+
+use self::curve::Curve;
+pub(crate) use self::curve::{level, quantiles};
+
+/// Smallest number of values of a curve that has summaries.
+pub(crate) const MIN_VALUES: usize = 40;
+
+/// The summaries of a curve of at least [`MIN_VALUES`] values, in a fixed order.
+///
+/// # Panics
+/// If there are fewer values.
+pub(crate) fn summaries(y: &[f64]) -> Vec<f64> {
+    assert!(y.len() >= MIN_VALUES);
+    let curve = Curve::new(y);
+    let mut found = loading::summaries(&curve);
+    found.extend(release::summaries(&curve));
+    found.extend(levels::summaries(&curve));
+    found.extend(steady::summaries(&curve));
+    // A curve without friction, or without noise, has ratios that are none.
+    for value in &mut found {
+        if !value.is_finite() {
+            *value = 0.0;
+        }
+    }
+    found
+}
+
+/// Number of the summaries of a curve.
+pub(crate) fn n_summaries() -> usize {
+    summaries(&[0.0; MIN_VALUES]).len()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::curve::tests::ramp_and_fall;
+    use super::*;
+
+    #[test]
+    fn every_curve_has_finite_summaries() {
+        for y in [vec![0.0; 40], vec![0.3; 1000], ramp_and_fall()] {
+            let found = summaries(&y);
+            assert!(found.iter().all(|value| value.is_finite()), "{found:?}");
+        }
+        assert_eq!(summaries(&[0.0; 40]).len(), summaries(&ramp_and_fall()).len());
+    }
+}

@@ -1,0 +1,551 @@
+//! The memory and disk space of a run are those that were stated before it began. The allocator counts for a whole process: every
+//! test has its own.
+
+#![allow(clippy::unwrap_used)] // A helper that cannot do its work fails its test.
+
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+
+use png::{BitDepth, ColorType, Encoder};
+use slipfront::Execution;
+use slipfront::communicator::Alone;
+use slipfront::testing::{Threads, alone};
+use slipfront_calibrate::{CalibrationFile, CalibrationFolder};
+use slipfront_case::case::{Case, MOVIE, PICTURES, PROGRAM, Ranks};
+use slipfront_case::case_file::CaseFile;
+use slipfront_design::{Bounds, DesignFile, Known};
+use slipfront_run::checkpoint::Checkpoints;
+use slipfront_run::measured::Measure;
+use slipfront_run::run_curve::run_curve_unless;
+use slipfront_run::run_files::RunFiles;
+use slipfront_run::run_folder::RunFolder;
+use slipfront_run::run_folder::unfinished::Unfinished;
+use slipfront_run::running::Running;
+use slipfront_run::{pictures, results, running};
+use slipfront_study as study;
+use slipfront_study::{Plan, Records, StudyFile};
+
+/// The system's allocator, counting bytes of all threads.
+struct Counting;
+
+static LIVE: AtomicUsize = AtomicUsize::new(0);
+static PEAK: AtomicUsize = AtomicUsize::new(0);
+
+fn grow(bytes: usize) {
+    let live = LIVE.fetch_add(bytes, Ordering::Relaxed) + bytes;
+    PEAK.fetch_max(live, Ordering::Relaxed);
+}
+
+#[allow(unsafe_code)] // A global allocator cannot be written otherwise; all work is the system's.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        grow(layout.size());
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, block: *mut u8, layout: Layout) {
+        LIVE.fetch_sub(layout.size(), Ordering::Relaxed);
+        unsafe { System.dealloc(block, layout) }
+    }
+
+    unsafe fn alloc_zeroed(&self, layout: Layout) -> *mut u8 {
+        grow(layout.size());
+        unsafe { System.alloc_zeroed(layout) }
+    }
+
+    unsafe fn realloc(&self, block: *mut u8, layout: Layout, size: usize) -> *mut u8 {
+        LIVE.fetch_sub(layout.size(), Ordering::Relaxed);
+        grow(size);
+        unsafe { System.realloc(block, layout, size) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+/// Largest number of bytes in use at once during some work.
+fn peak<T>(work: impl FnOnce() -> T) -> (f64, T) {
+    PEAK.store(LIVE.load(Ordering::Relaxed), Ordering::Relaxed);
+    let done = work();
+    (PEAK.load(Ordering::Relaxed) as f64, done)
+}
+
+/// Largest ratio of the stated memory to the taken one, beside what does not grow with a run: what takes less is not refused.
+const MARGIN: f64 = 1.5;
+
+/// Memory that is stated whatever a run is: the program itself, which no allocator sees, and pictures.
+const FIXED: f64 = PROGRAM + PICTURES + 2e6;
+
+fn is_near(said: f64, taken: f64, fixed: f64) -> bool {
+    said - fixed <= MARGIN * taken
+}
+
+/// Asserts that the stated memory is no less than the taken one, and within the margin of it.
+fn assert_honest(what: &str, said: f64, taken: f64, fixed: f64) {
+    let [shown_said, shown_taken] = [said, taken].map(|bytes| bytes / 1e6);
+    println!("{what}: {shown_said:.1} MB said, {shown_taken:.1} MB taken");
+    assert!(
+        said >= taken,
+        "{what}: {shown_said} MB said, {shown_taken} MB taken"
+    );
+    assert!(
+        is_near(said, taken, fixed),
+        "{what}: {shown_said} MB said, only {shown_taken} MB taken"
+    );
+}
+
+/// A `.npy` file of 400 x 400 values.
+fn npy(descr: &str, data: impl Iterator<Item = u8>) -> Vec<u8> {
+    let mut text = format!("{{'descr': '{descr}', 'fortran_order': False, 'shape': (400, 400), }}");
+    text += &" ".repeat(118 - 1 - text.len());
+    let mut bytes = b"\x93NUMPY\x01\x00\x76\x00".to_vec();
+    bytes.extend(text.bytes().chain(*b"\n").chain(data));
+    bytes
+}
+
+/// Files that are read: coefficients and a mask of 400 x 400 blocks, and a mask of 4000 x 4000 pixels, half of each.
+fn write_inputs(folder: &Path) {
+    let blocks = 400 * 400;
+    let mu = npy("<f8", (0..blocks).flat_map(|_| 0.9f64.to_le_bytes()));
+    std::fs::write(folder.join("mu.npy"), mu).unwrap();
+    let mask = npy("|u1", (0..blocks).map(|block| u8::from(2 * block < blocks)));
+    std::fs::write(folder.join("mask.npy"), mask).unwrap();
+    let file = std::fs::File::create(folder.join("mask.png")).unwrap();
+    let mut encoder = Encoder::new(file, 4000, 4000);
+    encoder.set_color(ColorType::Grayscale);
+    encoder.set_depth(BitDepth::One);
+    let mut writer = encoder.write_header().unwrap();
+    // The top row comes first, of the largest y: bright above, dark below, where the array is textured too.
+    let rows = [vec![255; 500 * 2000], vec![0; 500 * 2000]].concat();
+    writer.write_image_data(&rows).unwrap();
+    writer.finish().unwrap();
+}
+
+/// Does this work of the test `name` in a process of its own, in a folder with the files that are read.
+fn alone_in_folder(name: &str, work: impl FnOnce(&Path)) {
+    alone(name, || {
+        let folder = tempfile::tempdir().unwrap();
+        write_inputs(folder.path());
+        work(folder.path());
+    });
+}
+
+#[test]
+fn runs_take_what_is_said() {
+    alone_in_folder("runs_take_what_is_said", |folder| runs(&RUNS, folder));
+}
+
+#[test]
+fn other_runs_take_what_is_said() {
+    alone_in_folder("other_runs_take_what_is_said", |folder| runs(&OTHER_RUNS, folder));
+}
+
+#[test]
+fn models_take_what_is_said() {
+    alone_in_folder("models_take_what_is_said", models);
+}
+
+#[test]
+fn checkpoints_take_what_is_said() {
+    alone_in_folder("checkpoints_take_what_is_said", checkpoints);
+}
+
+#[test]
+fn runs_at_once_take_what_is_said() {
+    alone_in_folder("runs_at_once_take_what_is_said", |folder| {
+        for base in [
+            "",
+            "base.slider = { outline = 'disc', viscosity_time_star = 0.1 }\n",
+        ] {
+            study(base, folder);
+        }
+    });
+}
+
+#[test]
+fn designs_take_what_is_said() {
+    alone_in_folder("designs_take_what_is_said", designs);
+}
+
+#[test]
+fn calibrations_take_what_is_said() {
+    alone_in_folder("calibrations_take_what_is_said", calibrations);
+}
+
+#[test]
+fn masks_of_one_image_take_one_mask() {
+    alone_in_folder("masks_of_one_image_take_one_mask", masks);
+}
+
+#[test]
+fn ranks_take_no_more_than_one_process() {
+    alone_in_folder("ranks_take_no_more_than_one_process", ranks);
+}
+
+#[test]
+fn pictures_of_a_large_lattice_take_what_is_said() {
+    alone_in_folder(
+        "pictures_of_a_large_lattice_take_what_is_said",
+        pictures_of_a_large_lattice,
+    );
+}
+
+/// Whole runs: pictures, rows of a series, lattices and fronts.
+const RUNS: [&str; 7] = [
+    // Pictures, and the rows of a long series.
+    "slider.blocks=[1,1]",
+    "slider.blocks=[25,25];output.snapshots=[]",
+    "slider.blocks=[3,3];output.series=0.1;time.duration_star=8000",
+    // The lattice.
+    "slider.blocks=[600,600];time.duration_star=1;output.snapshots=[]",
+    "slider.blocks=[256,256];drive.v_star=0.3",
+    // Tall and wide pictures of the front.
+    "slider.blocks=[60,180];drive.v_star=0.1;output.snapshots=[]",
+    "slider.blocks=[300,75];drive.v_star=0.1;output.snapshots=[]",
+];
+
+/// Whole runs of other laws, in the other kernel, with events and snapshots, and of cases that read files.
+const OTHER_RUNS: [&str; 13] = [
+    // Laws of friction that remember more.
+    "slider.blocks=[400,400];time.duration_star=1;output.snapshots=[];friction.contact='springs';\
+     friction.contact_stiffness_star=0.1",
+    "slider.blocks=[300,300];time.duration_star=1;output.snapshots=[];friction.law='rate_and_state';friction.a=0.01;\
+     friction.b=0.02;friction.d_c_star=0.5;friction.v_0_star=0.03",
+    "slider.blocks=[3,3];output.series=0.1;time.duration_star=8000;friction.contact='springs';friction.contact_stiffness_star=0.1",
+    "slider.blocks=[400,400];time.duration_star=1;output.snapshots=[];friction.ageing={law='logarithmic',beta=0.1,time_star=1};\
+     friction.velocity={law='weakening',v_c_star=0.1,ratio=0.5}",
+    // Blocks that differ, in another kernel.
+    "slider.blocks=[500,500];slider.outline='disc';slider.viscosity_time_star=0.1;time.duration_star=1;output.snapshots=[]",
+    "slider.blocks=[500,500];slider.stiffness_grade={along='x',from=1,to=2};slider.density_grade={along='y',from=1,to=2};\
+     time.duration_star=1;output.snapshots=[]",
+    // Events of slip.
+    "slider.blocks=[60,1];slider.viscosity_time_star=0.3;slider.omega_star=0;friction.r_star=0.1;drive.attach='left';drive.v_star=1;\
+     drive.total_stiffness_star=0.004;time.step=0.6;time.duration_star=20000;output.snapshots=[];output.series=100",
+    // Snapshots.
+    "slider.blocks=[400,400];time.duration_star=2;output.snapshots={every=0.1}",
+    "slider.blocks=[400,400];time.duration_star=2;output.snapshots={every=0.1};output.stride=3",
+    "slider.blocks=[2,2];time.duration_star=200;output.snapshots={every=0.1};output.fields=[]",
+    "slider.blocks=[256,256];time.duration_star=20;output.snapshots={every=0.1};output.fields=['contact_stress_star'];output.movie=true",
+    // What is read.
+    "slider.blocks=[400,400];time.duration_star=1;output.snapshots=[];friction.mu_static_field='mu.npy';\
+     friction.mu_kinetic_field='mu.npy';texture=[{shape='mask',file='mask.png'},{shape='mask',file='mask.npy'}]",
+    // A thousand outlines of 4096 vertices.
+    "slider.blocks=[64,64];time.duration_star=1;output.snapshots=[];texture=[{shape='cavity',s=3,w=0.2,coverage=20,array=[40,25]}]",
+];
+
+/// Options of a model: kernels, sliders, laws.
+const MODELS: [&str; 18] = [
+    "",
+    ";slider.outline='disc'",
+    ";slider.stiffness_grade={along='x',from=1,to=2}",
+    ";slider.density_grade={along='y',from=1,to=2}",
+    ";drive.attach='left'",
+    ";load.profile={along='x',relative_slope=0.5}",
+    ";friction.velocity={law='weakening',v_c_star=0.1,ratio=0.5}",
+    ";friction.slip_weakening={length_star=0.5};friction.healing_time_star=1",
+    ";slider.stiffness_grade={along='x',from=1,to=2};slider.density_grade={along='y',from=1,to=2};drive.attach='left';\
+     load.profile={along='x',relative_slope=0.5}",
+    ";slider.viscosity_time_star=0.1",
+    ";slider.outline='disc';slider.viscosity_time_star=0.1",
+    ";slider.stiffness_grade={along='x',from=1,to=2};slider.density_grade={along='y',from=1,to=2};drive.attach='left';\
+     load.profile={along='x',relative_slope=0.5};slider.viscosity_time_star=0.1",
+    ";drive.motion='rotation'",
+    ";friction.law='reversal'",
+    ";friction.contact='springs';friction.contact_stiffness_star=0.1",
+    ";friction.law='rate_and_state';friction.a=0.01;friction.b=0.02;friction.d_c_star=0.5;friction.v_0_star=0.03",
+    ";friction.ageing={law='logarithmic',beta=0.1,time_star=1};friction.velocity={law='weakening',v_c_star=0.1,ratio=0.5}",
+    ";slider.outline='disc';slider.viscosity_time_star=0.1;drive.motion='rotation';\
+     friction.ageing={law='logarithmic',beta=0.1,time_star=1};friction.velocity={law='weakening',v_c_star=0.1,ratio=0.5}",
+];
+
+/// Whole runs of cases with these keys.
+fn runs(all: &[&str], folder: &Path) {
+    for sets in all.iter().copied() {
+        let overrides: Vec<String> = sets.split(';').map(str::to_owned).collect();
+        let out = folder.join("out");
+        let run = || {
+            let file = CaseFile::parse("", "case", &overrides).unwrap();
+            let case = Arc::new(Case::new(file, "case", folder, &mut |_| true, Ranks::ALONE).unwrap());
+            let mut record = running::run(&case, 2).unwrap();
+            let mut out = RunFolder::prepare(&out, false, &case.inputs).unwrap();
+            results::write_case(&case, &mut out).unwrap();
+            pictures::write_run(&case, &mut record, out, jiff::Timestamp::now(), 1).unwrap();
+            (case.budget.memory(), case.budget.disk())
+        };
+        let (taken, (memory, disk)) = peak(run);
+        assert_room(sets, disk, &out);
+        std::fs::remove_dir_all(&out).unwrap();
+        let [movie, _] = MOVIE;
+        let fixed = FIXED + if sets.contains("movie") { movie } else { 0.0 };
+        assert_honest(sets, memory, taken, fixed);
+    }
+}
+
+/// Models with every option, on one thread and on as many as have bands of their own.
+fn models(folder: &Path) {
+    for sets in MODELS {
+        let sets = format!("slider.blocks=[496,496];time.duration_star=0.5;output.snapshots=[]{sets}");
+        let overrides: Vec<String> = sets.split(';').map(str::to_owned).collect();
+        let taken_on = |threads| {
+            let before = LIVE.load(Ordering::Relaxed) as f64;
+            let (taken, said) = peak(|| {
+                let file = CaseFile::parse("", "case", &overrides).unwrap();
+                let case = Case::new(file, "case", folder, &mut |_| true, Ranks::ALONE).unwrap();
+                let case = Arc::new(case);
+                running::run(&case, threads).unwrap();
+                case.budget.memory()
+            });
+            (said, taken - before)
+        };
+        let [(said, on_one), (_, on_many)] = [1, 16].map(taken_on);
+        // The number of threads is not known to the estimate.
+        assert_honest(&sets, said, on_one.max(on_many), FIXED);
+    }
+}
+
+/// Ranks that make a case together take no more than a process that makes it alone, but for the buffers of those that read.
+fn ranks(folder: &Path) {
+    let text = "slider.blocks = [400, 400]\nfriction = { mu_static_field = 'mu.npy', mu_kinetic_field = 'mu.npy' }\n\
+                texture = [{ shape = 'mask', file = 'mask.png' }, { shape = 'mask', file = 'mask.npy' }]";
+    let make = |ranks: Ranks| {
+        let file = CaseFile::parse(text, "case", &[]).unwrap();
+        Case::new(file, "case", folder, &mut |_| true, ranks).unwrap()
+    };
+    let before = LIVE.load(Ordering::Relaxed) as f64;
+    let (alone, _) = peak(|| make(Ranks::ALONE));
+    let on_ranks = |size: usize| {
+        let (taken, _) = peak(|| {
+            Threads::run(size, |communicator| {
+                make(Ranks {
+                    communicator,
+                    on_node: size,
+                })
+            })
+        });
+        taken - before
+    };
+    let (alone, one, four) = (alone - before, on_ranks(1), on_ranks(4));
+    // The decoder of an image, the reader of a file and the texts of a case, which hardly grow with the lattice.
+    let buffers = 256.0 * 1024.0;
+    assert!(
+        four <= alone + 4.0 * buffers,
+        "{four} bytes of four ranks, {alone} of one process"
+    );
+    assert!(
+        (one - alone).abs() < buffers,
+        "{one} bytes of one rank, {alone} of one process"
+    );
+}
+
+/// A run that goes on from a checkpoint, and saves the next one, takes no more than a run that begins.
+fn checkpoints(folder: &Path) {
+    for sets in [
+        "slider.blocks=[600,600];time.duration_star=1;output.snapshots=[]",
+        "slider.blocks=[400,400];time.duration_star=2;output.snapshots={every=0.1}",
+        "slider.blocks=[400,400];time.duration_star=1;output.snapshots=[];friction.contact='springs';\
+         friction.contact_stiffness_star=0.1",
+    ] {
+        let overrides: Vec<String> = sets.split(';').map(str::to_owned).collect();
+        // `Case::parse` would reserve the memory of a run, to see whether it is available.
+        let made = || {
+            let file = CaseFile::parse("", "case", &overrides).unwrap();
+            Arc::new(Case::new(file, "case", folder, &mut |_| true, Ranks::ALONE).unwrap())
+        };
+        let out = folder.join("saved");
+        std::fs::create_dir(&out).unwrap();
+        Unfinished::of(&out).create().unwrap();
+        let save = |case: &Case, running: &Running| {
+            let mut checkpoints = Checkpoints::new(&out, case, jiff::Timestamp::UNIX_EPOCH);
+            checkpoints.save(running, &Alone).unwrap();
+        };
+        let case = made();
+        let mut running = Running::start(&case, None, Execution::default());
+        running.advance(case.time_plan.last_step - 1).unwrap();
+        save(&case, &running);
+        drop((case, running));
+        // The fonts of the pictures before, which a run has not yet when it goes on.
+        let before = LIVE.load(Ordering::Relaxed) as f64;
+        let (taken, said) = peak(|| {
+            let case = made();
+            let loaded = Checkpoints::load(&out, &case, false, &Alone).unwrap().unwrap();
+            let running = loaded.resume(&case, Execution::default()).unwrap().unwrap();
+            save(&case, &running);
+            case.budget.memory()
+        });
+        let taken = taken - before;
+        assert_honest(&format!("to go on with {sets}"), said, taken, FIXED);
+        let room = made().budget.disk_of_checkpoints() / 3.0;
+        assert_room(sets, room, &out);
+        std::fs::remove_dir_all(out).unwrap();
+    }
+}
+
+/// Maps are averaged while they are read, so that their memory does not depend on the lattice.
+fn pictures_of_a_large_lattice(folder: &Path) {
+    let sets = [
+        "slider.blocks=[1500,1200]",
+        "output.fields=['contact_stress_star']",
+        "time.duration_star=1",
+        "output.snapshots=[0,0.2,0.4,0.6,0.8,1]",
+    ];
+    let file = CaseFile::parse("", "case", &sets.map(str::to_owned)).unwrap();
+    let case = Arc::new(Case::new(file, "case", folder, &mut |_| true, Ranks::ALONE).unwrap());
+    let mut record = running::run(&case, 1).unwrap();
+    let out = folder.join("out");
+    let prepared = RunFolder::prepare(&out, false, &case.inputs).unwrap();
+    pictures::write_run(&case, &mut record, prepared, jiff::Timestamp::now(), 1).unwrap();
+    drop((case, record));
+    let before = LIVE.load(Ordering::Relaxed) as f64;
+    let (taken, drawn) = peak(|| pictures::draw(RunFiles::Folder(&out)).unwrap());
+    assert_eq!(drawn.len(), 2);
+    let said = pictures::memory(std::slice::from_ref(&out)).unwrap();
+    // Pictures may be of any size.
+    assert_honest("pictures of a large lattice", said, taken - before, FIXED + 100e6);
+    std::fs::remove_dir_all(out).unwrap();
+}
+
+/// Textures of one image take the memory of one mask of the lattice.
+fn masks(folder: &Path) {
+    let text = "[[texture]]\nshape = 'mask'\nfile = 'mask.png'\n".repeat(40);
+    let before = LIVE.load(Ordering::Relaxed) as f64;
+    let (taken, case) = peak(|| {
+        let file = CaseFile::parse(&text, "case", &[]).unwrap();
+        Case::new(file, "case", folder, &mut |_| true, Ranks::ALONE).unwrap()
+    });
+    // The centres of 13 of 25 rows of blocks lie in the dark half: the middle one on its first row of pixels.
+    assert_eq!((case.texture.meshed_percent, case.inputs.len()), (52.0, 1));
+    // A sixteenth of the pixels of the image, one byte each: the decoder, the file and its copy are in it.
+    let taken = taken - before;
+    assert!(taken < 1e6, "{taken} bytes for 625 blocks");
+}
+
+/// Bytes of all files below a folder.
+fn bytes_in(folder: &Path) -> f64 {
+    let entries = std::fs::read_dir(folder).unwrap().map(Result::unwrap);
+    let bytes = |entry: std::fs::DirEntry| match entry.metadata().unwrap() {
+        file if file.is_file() => file.len() as f64,
+        _ => bytes_in(&entry.path()),
+    };
+    entries.map(bytes).sum()
+}
+
+fn assert_room(what: &str, said: f64, out: &Path) {
+    let taken = bytes_in(out);
+    assert!(said >= taken, "{what}: {said} bytes said, {taken} taken");
+    // A number of a row has 18 characters at the mean and 24 at the most; pictures of few colours are small.
+    assert!(
+        said <= MARGIN * taken + 6e6,
+        "{what}: {said} bytes said, only {taken} taken"
+    );
+}
+
+/// A design with its verdict, on one thread and on two.
+fn designs(_: &Path) {
+    let text = "[base]\nslider.blocks = [100, 100]\ndrive.v_star = 0.3\n\
+                friction = { sigma_static_star = 0, sigma_kinetic_star = 0 }\n[design]\n\
+                wish = { least = 'static_friction' }\ncoverage = [0, 15]\nfeature_blocks = 4\ngap_blocks = 4\n";
+    let file = DesignFile::parse(text, "design.toml", "design", Path::new("")).unwrap();
+    let runs = 4;
+    let find = || {
+        let bounds = Bounds {
+            runs,
+            share_of_time: &|| 0.0,
+            stop: &AtomicBool::new(false),
+            cut: None,
+        };
+        let design = file.design().unwrap();
+        design.run(&bounds, &mut Known::new(), &mut |_| Ok(()), &mut |_| {})
+    };
+    for threads in [1, 2] {
+        let before = LIVE.load(Ordering::Relaxed) as f64;
+        let (taken, _) = peak(|| on_threads(threads, find).unwrap());
+        let said = file.memory(runs).unwrap().of(threads);
+        assert_honest(
+            &format!("a design on {threads} threads"),
+            said,
+            taken - before,
+            FIXED,
+        );
+    }
+}
+
+/// A calibration with its report, on one thread and on two.
+fn calibrations(folder: &Path) {
+    let text = "slider.blocks = [6, 6]\ntime.step = 0.4\ndrive = { v_star = 0.1, stiffness_star = 0.7 }";
+    let case = Case::parse(text, "truth", "", &[]).unwrap();
+    let curve = run_curve_unless(&case, Measure::Time, 120.0 * case.scales.time(), &|| false);
+    let curve = curve.unwrap().unwrap();
+    let unit = curve.unit_force.unwrap();
+    let rows = curve.time.iter().zip(&curve.coefficient);
+    let rows: String = rows
+        .map(|(time, mu)| format!("{time:e},{:e}\n", unit * mu))
+        .collect();
+    let record = folder.join("record.csv");
+    std::fs::write(&record, format!("time_s,force_n\n{rows}")).unwrap();
+    let records = [record];
+    let text = "[base]\nslider.blocks = [6, 6]\ndrive.v_star = 0.1\ntime.step = 0.4\n[calibrate]\nx = 'time_s'\n\
+                y = 'force_n'\nnoise = 0.01\nruns = 1000\nfiner_runs = 200\n\
+                unknowns = { 'friction.mu_static' = [0.3, 0.9], 'drive.stiffness_star' = [0.3, 0.9] }\n";
+    let file = CalibrationFile::parse(text, "fit.toml", "fit", Path::new("")).unwrap();
+    for threads in [1, 2] {
+        let out = folder.join("calibration");
+        let before = LIVE.load(Ordering::Relaxed) as f64;
+        let (taken, _) = peak(|| {
+            let mut opened =
+                CalibrationFolder::open(&out, None, &file, file.read(&records).unwrap(), false).unwrap();
+            on_threads(threads, || opened.find(&AtomicBool::new(false), &mut |_| {})).unwrap()
+        });
+        let said = file.memory(&file.read(&records).unwrap()).unwrap().of(threads);
+        assert_honest(
+            &format!("a calibration on {threads} threads"),
+            said,
+            taken - before,
+            FIXED,
+        );
+        std::fs::remove_dir_all(out).unwrap();
+    }
+}
+
+/// Does work on this many threads; the thread that waits for it is one more.
+fn on_threads<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> T {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads + 1).build();
+    pool.unwrap().install(work)
+}
+
+/// Runs at once, of two sizes.
+fn study(base: &str, folder: &Path) {
+    let text = format!(
+        "{base}base.time.duration_star = 2\n[study]\nreplicates = 2\n[[axes]]\nkey = 'slider.blocks'\n\
+         list = [[10, 10], [500, 500]]"
+    );
+    let file = StudyFile::parse(&text, "study.toml", "study", folder).unwrap();
+    let plan = Plan::new(&file, None).unwrap();
+    let mut alone = 0.0;
+    for threads in [1, 2] {
+        let records = tempfile::tempdir().unwrap();
+        // The fonts of the pictures before, which a study has not yet when it runs.
+        let before = LIVE.load(Ordering::Relaxed) as f64;
+        let (taken, ()) = peak(|| {
+            let records = Records::open(records.path()).unwrap();
+            let never = AtomicBool::new(false);
+            on_threads(threads, || {
+                study::execute(&plan, &records, folder, &never, &mut |_| {})
+            })
+            .unwrap();
+        });
+        let taken = taken - before;
+        if threads == 1 {
+            alone = taken;
+        }
+        // Whether the largest of two meet is up to the system: they may.
+        let most = taken.max(threads as f64 * alone);
+        assert_honest(
+            &format!("{threads} runs at once"),
+            plan.memory(threads),
+            most,
+            FIXED,
+        );
+    }
+}

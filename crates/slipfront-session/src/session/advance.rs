@@ -1,0 +1,69 @@
+//! The clock of a session: what is due by now, and when there is something to do next.
+
+use std::time::Duration;
+
+use super::state::Session;
+
+/// Time between two looks after work beside the session.
+const FOLLOW_INTERVAL: Duration = Duration::from_millis(100);
+
+impl Session {
+    /// Does what is due by `now`, some milliseconds of it at a time. Gives the time at which to be called again, which is `now` where more is
+    /// to be done at once, and none if there is nothing to do before the page asks for something.
+    ///
+    /// All times count from the same instant. The messages that have come are to be [handled](Self::handle) before.
+    pub fn advance(&mut self, now: Duration) -> Option<Duration> {
+        self.clock.end_slice(now);
+        // Changes that come while steps are taken wait for the picture, so that of many the case is made once.
+        let is_changed = !self.is_stepping && self.has_edits();
+        if is_changed {
+            self.apply_edits();
+        }
+        self.follow_repetition();
+        self.follow_search(now);
+        // A host may ask more often than anything moves.
+        if !self.is_idle() {
+            self.run_until_next_picture(now);
+        }
+        if is_changed {
+            self.clock.disturb_slice();
+        }
+        let follows = self.search.is_some() || self.repeating.is_some();
+        let followed = follows.then_some(now + FOLLOW_INTERVAL);
+        self.next_picture(now).into_iter().chain(followed).min()
+    }
+
+    /// Gives up all work beside the session, since its case is no longer the present one.
+    pub(super) fn give_up_work(&mut self) {
+        self.give_up_search();
+        self.end_repetition();
+    }
+
+    /// When there is something to do for the next picture; none if nothing moves.
+    fn next_picture(&self, now: Duration) -> Option<Duration> {
+        if self.is_idle() {
+            return None;
+        }
+        if self.host.is_full() {
+            return Some(now + self.picture_period());
+        }
+        let is_due = self.is_stepping || self.pending.redraw || self.clock.due >= 1.0 || self.has_edits();
+        if is_due {
+            return Some(now);
+        }
+        Some(now.max(self.clock.picture + self.picture_period()))
+    }
+
+    /// Whether there is nothing to do before the page asks for something.
+    fn is_idle(&self) -> bool {
+        if self.has_edits() {
+            return false;
+        }
+        if !self.view.visible || self.live.is_none() {
+            return true;
+        }
+        let runs = 1 + usize::from(self.twin.is_some());
+        let moves = self.count_ended() < runs && (!self.view.paused || self.single_steps > 0);
+        !(moves || self.pending.redraw || self.pending.ends_sent != self.count_ended())
+    }
+}

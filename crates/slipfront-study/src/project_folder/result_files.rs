@@ -1,0 +1,582 @@
+//! The files of a results folder that slipfront has written, with their checksums in `checksums.json`: they take their names
+//! together, and a file that was edited since, or that somebody else has put there, is neither replaced nor removed.
+//!
+//! All files of a batch are first written under hidden names. Then the list is written, with the checksums of the new files and of the
+//! files that they replace, and only then do they take their names. So whatever is found after a kill is known to be
+//! slipfront's, and the folder equals its list only when everything is there.
+
+use std::fs::File;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use slipfront_base::disk::{
+    folder_of, found_at, is_same, make_folders, open_regular, remove_if_there, sync_folder, write_beside,
+};
+use slipfront_plot::Picture;
+use slipfront_run::folder_error::FolderError;
+use slipfront_run::manifest::{ManifestFile, is_one_of};
+use slipfront_run::program;
+use tempfile::TempPath;
+
+use super::checksums::Checksums;
+use super::input_copies::Copy;
+use crate::error::StudyError;
+
+/// Result files of a folder that one process alone works in.
+#[derive(Clone, Debug)]
+pub struct ResultFiles {
+    folder: PathBuf,
+    /// Content of the folder, such as `study`.
+    of: &'static str,
+    /// Whether edited and foreign files are replaced.
+    force: bool,
+    /// Files that the results are made from, which belong to every batch.
+    given: Vec<ManifestFile>,
+    /// Names of files of the user in the folder, which the results are made from as well: they are neither replaced nor removed.
+    kept: Vec<String>,
+}
+
+impl ResultFiles {
+    /// The result files of a folder; `of` says what they are of, such as `study`. Edited and foreign files may be replaced by `force`.
+    pub fn new(folder: &Path, of: &'static str, force: bool) -> Self {
+        Self {
+            folder: folder.to_owned(),
+            of,
+            force,
+            given: Vec::new(),
+            kept: Vec::new(),
+        }
+    }
+
+    /// Refuses a folder with files that were edited since they were written, before work begins whose results replace them.
+    ///
+    /// # Errors
+    /// When there are such files, unless they may be replaced.
+    pub fn expect_unedited(&self) -> Result<(), StudyError> {
+        let list = self.list()?;
+        let mut edited = Vec::new();
+        for ManifestFile { name, .. } in &list.files {
+            if !self.is_own(name, &list, None)? {
+                edited.push(name.clone());
+            }
+        }
+        self.refuse(edited)
+    }
+
+    /// A batch of files that are to be written.
+    pub fn begin(&self) -> Batch {
+        Batch {
+            files: self.clone(),
+            staged: Vec::new(),
+            placed: self.given.clone(),
+            replaceable: None,
+        }
+    }
+
+    /// The list in the folder; an empty one if there is none, or, where edited files are replaced, none that can be used.
+    fn list(&self) -> Result<Checksums, StudyError> {
+        match Checksums::read(&self.folder) {
+            Err(StudyError::Checksums { .. }) if self.force => Ok(Checksums::default()),
+            list => Ok(list?.unwrap_or_default()),
+        }
+    }
+
+    /// Whether a name is free, or holds a file of the list or the file that is to be written there.
+    fn is_own(&self, name: &str, list: &Checksums, new: Option<&ManifestFile>) -> Result<bool, StudyError> {
+        let path = self.folder.join(name);
+        // A link in the place of a folder leads to files of somebody else.
+        for above in path.ancestors().skip(1).take_while(|above| *above != self.folder) {
+            let found = found_at(above).map_err(FolderError::read(above))?;
+            if found.is_some_and(|found| !found.is_dir()) {
+                return Ok(false);
+            }
+        }
+        let known = list.files.iter().chain(&list.replaced).chain(new);
+        let is_known = is_one_of(&self.folder, name, known).map_err(FolderError::read(&path))?;
+        Ok(is_known.unwrap_or(true))
+    }
+
+    /// Whether this file is there already.
+    fn is_there(&self, file: &ManifestFile) -> bool {
+        matches!(is_one_of(&self.folder, &file.name, [file]), Ok(Some(true)))
+    }
+
+    /// Gives hidden files their names, and removes others.
+    fn rename_and_remove(
+        &self,
+        to_place: Vec<(TempPath, ManifestFile)>,
+        gone: &[String],
+    ) -> Result<(), StudyError> {
+        let failed = |path: &Path| {
+            let path = path.to_owned();
+            |source| StudyError::Write { path, source }
+        };
+        let mut changed = vec![self.folder.clone()];
+        for (file, ManifestFile { name, .. }) in to_place {
+            let path = self.folder.join(name);
+            file.persist(&path).map_err(|error| failed(&path)(error.error))?;
+            changed.push(folder_of(&path).to_owned());
+        }
+        for name in gone {
+            let path = self.folder.join(name);
+            remove_if_there(&path).map_err(failed(&path))?;
+            changed.push(folder_of(&path).to_owned());
+        }
+        changed.sort();
+        changed.dedup();
+        changed
+            .iter()
+            .try_for_each(|folder| sync_folder(folder).map_err(failed(folder)))
+    }
+
+    fn refuse(&self, names: Vec<String>) -> Result<(), StudyError> {
+        if names.is_empty() || self.force {
+            return Ok(());
+        }
+        Err(StudyError::Edited {
+            of: self.of,
+            path: self.folder.clone(),
+            names,
+        })
+    }
+}
+
+/// Files that take their names together.
+pub struct Batch {
+    files: ResultFiles,
+    /// Files under hidden names.
+    staged: Vec<(TempPath, ManifestFile)>,
+    /// Files that have their names already.
+    placed: Vec<ManifestFile>,
+    /// Name of a file that may be replaced although it was edited.
+    replaceable: Option<String>,
+}
+
+/// Fate of files of earlier batches that a batch does not write.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Others {
+    /// Files of earlier batches stay.
+    Stay,
+    /// Files of earlier batches are removed, since they belong to other results.
+    Go,
+}
+
+impl Batch {
+    /// Writes a file, under a hidden name at first.
+    ///
+    /// # Errors
+    /// When the system refuses to write.
+    pub fn write(
+        &mut self,
+        name: &str,
+        fill: impl FnOnce(&mut File) -> std::io::Result<()>,
+    ) -> Result<(), StudyError> {
+        let path = self.files.folder.join(name);
+        let staged = self.expect_folder(name).and_then(|()| {
+            let stage = || {
+                make_folders(folder_of(&path))?;
+                // There may be more of them than can be open; whoever works in the folder keeps other processes out.
+                let file = write_beside(&path, fill)?.into_temp_path();
+                let listed = ManifestFile::of_copy(name, &file)?;
+                Ok((file, listed))
+            };
+            stage().map_err(|source| StudyError::Write {
+                path: path.clone(),
+                source,
+            })
+        })?;
+        self.staged.push(staged);
+        Ok(())
+    }
+
+    /// Writes a picture in both its formats.
+    ///
+    /// # Errors
+    /// When the system refuses to write.
+    pub fn write_picture(&mut self, name: &str, picture: &Picture) -> Result<(), StudyError> {
+        self.write(&format!("{name}.svg"), |file| {
+            file.write_all(picture.svg.as_bytes())
+        })?;
+        self.write(&format!("{name}.png"), |file| file.write_all(&picture.png))
+    }
+
+    /// Lets a file be replaced although it was edited.
+    pub fn may_replace(&mut self, name: &str) {
+        self.replaceable = Some(name.to_owned());
+    }
+
+    /// Copies files that cases read to the names that a study gives the copies. A user may also have put such a file there.
+    pub fn copy_all(&mut self, copies: &[Copy]) -> Result<(), StudyError> {
+        for Copy { name, original, .. } in copies {
+            let to = self.files.folder.join(name);
+            if is_same(original, &to) {
+                self.files.kept.push(name.clone());
+                continue;
+            }
+            let mut original = open_regular(original).map_err(FolderError::read(original))?;
+            self.write(name, |to| std::io::copy(&mut original, to).map(drop))?;
+        }
+        Ok(())
+    }
+
+    /// Refuses a link or a file in the place of a folder of the file: it may lead to a folder that is not of these results.
+    fn expect_folder(&self, name: &str) -> Result<(), StudyError> {
+        let folder = &self.files.folder;
+        let path = folder.join(name);
+        for above in path.ancestors().skip(1).take_while(|above| above != folder) {
+            let found = found_at(above).map_err(FolderError::read(above))?;
+            if found.is_some_and(|found| !found.is_dir()) {
+                let path = above.to_owned();
+                return Err(FolderError::Foreign { path }.into());
+            }
+        }
+        Ok(())
+    }
+
+    /// Gives the files their names that results are made from; they belong to all later batches.
+    ///
+    /// # Errors
+    /// As for [`place`](Self::place).
+    pub fn place_given(mut self, others: Others) -> Result<ResultFiles, StudyError> {
+        self.put(others, false)?;
+        Ok(ResultFiles {
+            given: self.placed,
+            ..self.files
+        })
+    }
+
+    /// Gives the files of results that are not complete yet their names. The batch goes on.
+    ///
+    /// # Errors
+    /// As for [`place`](Self::place).
+    pub fn place_so_far(&mut self, others: Others) -> Result<(), StudyError> {
+        self.put(others, false)
+    }
+
+    /// Gives all files their names, and lists them with their checksums: the results are complete. Files that are there already with these
+    /// contents are left as they are.
+    ///
+    /// # Errors
+    /// When a file in the place of one of these, or a file of an earlier batch, was edited or is of somebody else, unless such files may
+    /// be replaced; then nothing is changed. When the system refuses to write.
+    pub fn place(mut self, others: Others) -> Result<(), StudyError> {
+        self.put(others, true)
+    }
+
+    fn put(&mut self, others: Others, completes: bool) -> Result<(), StudyError> {
+        let Self {
+            files,
+            staged,
+            placed,
+            replaceable,
+        } = self;
+        let folder = &files.folder;
+        let before = files.list()?;
+        let mut foreign = Vec::new();
+        let mut listed: Vec<ManifestFile> = placed.clone();
+        for (_, file) in &*staged {
+            let may_go = replaceable.as_ref() == Some(&file.name);
+            if !may_go && !files.is_own(&file.name, &before, Some(file))? {
+                foreign.push(file.name.clone());
+            }
+            listed.retain(|placed| placed.name != file.name);
+            listed.push(file.clone());
+        }
+        let mut gone = Vec::new();
+        let is_listed = |name: &str| before.files.iter().any(|file| file.name == name);
+        // Files that a killed process had still to remove.
+        let left = before.replaced.iter().filter(|file| !is_listed(&file.name));
+        for file in before.files.iter().chain(left) {
+            let ManifestFile { name, .. } = file;
+            if listed.iter().any(|new| new.name == *name) {
+                continue;
+            }
+            let is_own = files.is_own(name, &before, None)?;
+            if files.kept.contains(name) {
+                // What the user has changed there is the user's from now on.
+                listed.extend((is_own && is_listed(name)).then(|| file.clone()));
+                continue;
+            }
+            if !is_own {
+                foreign.push(name.clone());
+            } else if others == Others::Go || !is_listed(name) {
+                gone.push(name.clone());
+            }
+            if others == Others::Stay && is_listed(name) {
+                listed.push(file.clone());
+            }
+        }
+        files.refuse(foreign)?;
+        listed.sort_by(|a, b| a.name.cmp(&b.name));
+        let staged = std::mem::take(staged);
+        placed.retain(|placed| staged.iter().all(|(_, file)| file.name != placed.name));
+        placed.extend(staged.iter().map(|(_, file)| file.clone()));
+        let to_place: Vec<_> = staged
+            .into_iter()
+            .filter(|(_, file)| !files.is_there(file))
+            .collect();
+        let changes = !to_place.is_empty() || !gone.is_empty();
+        // Of files that a killed process had still to replace, too.
+        let mut replaced: Vec<ManifestFile> = Vec::new();
+        for file in before.files.iter().chain(&before.replaced) {
+            let stays = listed.iter().any(|new| new.name == file.name);
+            if (stays || gone.contains(&file.name)) && !listed.contains(file) && !replaced.contains(file) {
+                replaced.push(file.clone());
+            }
+        }
+        let mut list = Checksums {
+            of: files.of.to_owned(),
+            version: program::VERSION.to_owned(),
+            revision: program::REVISION.map(str::to_owned),
+            build: program::this_build().to_owned(),
+            files: listed,
+            is_complete: completes || (before.is_complete && !changes),
+            replaced,
+            seal: String::new(),
+        };
+        if !changes && !before.build.is_empty() {
+            // Another program may have written these files.
+            (list.version, list.revision) = (before.version.clone(), before.revision.clone());
+            list.build.clone_from(&before.build);
+        }
+        let before = Checksums {
+            seal: String::new(),
+            ..before
+        };
+        if !changes && list == before {
+            return Ok(());
+        }
+        list.clone().write(folder)?;
+        files.rename_and_remove(to_place, &gone)?;
+        let is_to_come = |old: &ManifestFile| {
+            list.files
+                .iter()
+                .any(|new| new.name == old.name && !files.is_there(new))
+        };
+        let to_come: Vec<ManifestFile> = list
+            .replaced
+            .iter()
+            .filter(|old| is_to_come(old))
+            .cloned()
+            .collect();
+        if to_come == list.replaced {
+            return Ok(());
+        }
+        let list = Checksums {
+            replaced: to_come,
+            ..list
+        };
+        list.write(folder)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::checksums::CHECKSUMS;
+    use super::*;
+
+    fn batch_of(files: &ResultFiles, contents: &[(&str, &str)]) -> Batch {
+        let mut batch = files.begin();
+        for (name, text) in contents {
+            batch.write(name, |to| to.write_all(text.as_bytes())).unwrap();
+        }
+        batch
+    }
+
+    fn place(files: &ResultFiles, contents: &[(&str, &str)]) -> Result<(), StudyError> {
+        batch_of(files, contents).place(Others::Go)
+    }
+
+    fn read(folder: &Path, name: &str) -> Option<String> {
+        std::fs::read_to_string(folder.join(name)).ok()
+    }
+
+    fn listed(folder: &Path) -> Vec<String> {
+        let list = Checksums::read(folder).unwrap().unwrap();
+        list.files.into_iter().map(|file| file.name).collect()
+    }
+
+    #[test]
+    fn results_take_the_places_of_earlier_ones() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path();
+        let files = ResultFiles::new(path, "study", false);
+        let given = batch_of(&files, &[("study.toml", "base"), ("inputs/mask.png", "mask")]);
+        let files = given.place_given(Others::Stay).unwrap();
+        place(&files, &[("runs.csv", "1"), ("old.svg", "<svg/>")]).unwrap();
+        let before = std::fs::read(path.join(CHECKSUMS)).unwrap();
+        place(&files, &[("runs.csv", "1"), ("old.svg", "<svg/>")]).unwrap();
+        assert_eq!(std::fs::read(path.join(CHECKSUMS)).unwrap(), before);
+        place(&files, &[("runs.csv", "2"), ("new.svg", "<svg></svg>")]).unwrap();
+        assert_eq!(read(path, "runs.csv").unwrap(), "2");
+        assert_eq!(read(path, "old.svg"), None);
+        assert_eq!(
+            listed(path),
+            ["inputs/mask.png", "new.svg", "runs.csv", "study.toml"]
+        );
+        assert!(Checksums::read(path).unwrap().unwrap().replaced.is_empty());
+        // Hidden files are gone.
+        assert_eq!(std::fs::read_dir(path).unwrap().count(), 5);
+    }
+
+    #[test]
+    fn edited_files_and_files_of_others_are_refused_by_name_and_replaced_on_demand() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path();
+        let files = ResultFiles::new(path, "design", false);
+        place(&files, &[("mask.dxf", "1"), ("case.toml", "1"), ("old.csv", "1")]).unwrap();
+        std::fs::write(path.join("mask.dxf"), "mine").unwrap();
+        std::fs::write(path.join("old.csv"), "mine").unwrap();
+        std::fs::write(path.join("design.txt"), "notes of mine").unwrap();
+        let results = [("mask.dxf", "2"), ("case.toml", "2"), ("design.txt", "2")];
+        let said = files.expect_unedited().unwrap_err().to_string();
+        assert!(
+            said.contains("mask.dxf, old.csv") && said.contains("--force"),
+            "{said}"
+        );
+        let said = place(&files, &results).unwrap_err().to_string();
+        assert!(said.contains("mask.dxf, design.txt, old.csv"), "{said}");
+        assert_eq!(read(path, "case.toml").unwrap(), "1");
+        let forced = ResultFiles::new(path, "design", true);
+        forced.expect_unedited().unwrap();
+        place(&forced, &results).unwrap();
+        for (name, text) in results {
+            assert_eq!(read(path, name).unwrap(), text);
+        }
+        // It belongs to no result any more, and is not removed.
+        assert_eq!(read(path, "old.csv").unwrap(), "mine");
+        place(&files, &results).unwrap();
+    }
+
+    /// Whatever a kill has left, the next call knows which files are slipfront's.
+    #[test]
+    fn a_kill_between_list_and_files_is_made_good() {
+        let before = [("a.csv", "1"), ("gone.csv", "1"), ("b.csv", "1")];
+        let after = [("a.csv", "2"), ("b.csv", "1"), ("c.csv", "2")];
+        for done in 0..=3 {
+            let folder = tempfile::tempdir().unwrap();
+            let path = folder.path();
+            let files = ResultFiles::new(path, "study", false);
+            place(&files, &before).unwrap();
+            let old = Checksums::read(path).unwrap().unwrap();
+            let names = |name: &str| old.files.iter().find(|file| file.name == name).unwrap().clone();
+            Checksums {
+                files: after
+                    .iter()
+                    .map(|(name, text)| ManifestFile::of_bytes(name, text.as_bytes()))
+                    .collect(),
+                replaced: vec![names("a.csv"), names("gone.csv")],
+                ..old.clone()
+            }
+            .write(path)
+            .unwrap();
+            if done > 0 {
+                std::fs::write(path.join("a.csv"), "2").unwrap();
+            }
+            if done > 1 {
+                std::fs::write(path.join("c.csv"), "2").unwrap();
+            }
+            if done > 2 {
+                std::fs::remove_file(path.join("gone.csv")).unwrap();
+            }
+            files.expect_unedited().unwrap();
+            // However often the folder is opened before its results are written.
+            for _ in 0..2 {
+                batch_of(&files, &[("study.toml", "base")])
+                    .place_given(Others::Stay)
+                    .unwrap();
+            }
+            place(&files, &after).unwrap();
+            for (name, text) in after {
+                assert_eq!(read(path, name).unwrap(), text, "{done}");
+            }
+            assert_eq!(read(path, "gone.csv"), None, "{done}");
+            assert!(
+                Checksums::read(path).unwrap().unwrap().replaced.is_empty(),
+                "{done}"
+            );
+        }
+    }
+
+    /// A list that somebody else has made removes no file outside of its folder.
+    #[test]
+    fn a_list_leads_to_no_file_elsewhere() {
+        let above = tempfile::tempdir().unwrap();
+        let path = above.path().join("out");
+        std::fs::create_dir(&path).unwrap();
+        let mine = above.path().join("mine");
+        std::fs::write(&mine, "mine").unwrap();
+        for name in ["../mine", mine.to_str().unwrap()] {
+            let list = Checksums {
+                files: vec![ManifestFile::of_bytes(name, b"mine")],
+                ..Checksums::default()
+            };
+            list.write(&path).unwrap();
+            let files = ResultFiles::new(&path, "study", false);
+            let said = place(&files, &[("a.csv", "1")]).unwrap_err().to_string();
+            assert!(said.contains("lies outside of the folder"), "{said}");
+            place(&ResultFiles::new(&path, "study", true), &[("a.csv", "1")]).unwrap();
+            assert!(mine.exists());
+        }
+    }
+
+    /// A file that a user has put among the copies, and a study reads there, is the user's.
+    #[test]
+    fn inputs_of_the_user_stay_in_the_folder() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path();
+        std::fs::create_dir(path.join("inputs")).unwrap();
+        std::fs::write(path.join("inputs/mine.png"), "mine").unwrap();
+        let mut study: toml::Table = "base.texture = [{ shape = 'mask', file = 'inputs/mine.png' }]"
+            .parse()
+            .unwrap();
+        let copies = super::super::input_copies::copy(&mut study, path).unwrap();
+        let mut given = ResultFiles::new(path, "study", false).begin();
+        given.copy_all(&copies).unwrap();
+        let files = given.place_given(Others::Go).unwrap();
+        place(&files, &[("runs.csv", "1")]).unwrap();
+        assert_eq!(listed(path), ["runs.csv"]);
+        place(&ResultFiles::new(path, "study", false), &[("runs.csv", "2")]).unwrap();
+        assert_eq!(read(path, "inputs/mine.png").unwrap(), "mine");
+    }
+
+    #[test]
+    fn a_changed_list_says_nothing_of_files() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path();
+        let files = ResultFiles::new(path, "study", false);
+        place(&files, &[("a.csv", "1")]).unwrap();
+        let text = read(path, CHECKSUMS).unwrap();
+        std::fs::write(path.join(CHECKSUMS), text.replace("a.csv", "b.csv")).unwrap();
+        let said = place(&files, &[("a.csv", "2")]).unwrap_err().to_string();
+        assert!(said.contains("checksums.json is damaged"), "{said}");
+        assert_eq!(read(path, "a.csv").unwrap(), "1");
+        place(&ResultFiles::new(path, "study", true), &[("a.csv", "2")]).unwrap();
+        assert_eq!(read(path, "a.csv").unwrap(), "2");
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn links_and_folders_in_the_place_of_results_are_refused() {
+        let (folder, other) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+        let path = folder.path();
+        let files = ResultFiles::new(path, "study", false);
+        std::os::unix::fs::symlink(other.path(), path.join("inputs")).unwrap();
+        let mut batch = files.begin();
+        assert!(
+            batch
+                .write("inputs/mask.png", |to| to.write_all(b"mask"))
+                .is_err()
+        );
+        assert_eq!(std::fs::read_dir(other.path()).unwrap().count(), 0);
+        let mine = other.path().join("mine");
+        std::fs::write(&mine, "1").unwrap();
+        std::os::unix::fs::symlink(&mine, path.join("a.csv")).unwrap();
+        std::fs::create_dir(path.join("b.csv")).unwrap();
+        for name in ["a.csv", "b.csv"] {
+            let said = place(&files, &[(name, "1")]).unwrap_err().to_string();
+            assert!(said.contains(name), "{said}");
+        }
+        assert_eq!(read(other.path(), "mine").unwrap(), "1");
+    }
+}
