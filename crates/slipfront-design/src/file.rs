@@ -269,8 +269,8 @@ impl DesignFile {
         // Every design of a front keeps what it has tried until all are written.
         let drafts = runs.saturating_mul(1 + self.keys.front.len());
         Ok(WorkMemory {
-            // Masks and limits of the search take less than a run.
-            beside: PROGRAM + run + drafts as f64 * (DRAFT + evaluator.grid.n_blocks() as f64),
+            // Masks, and cases that are made of them, take as much as 1.2 runs (measured).
+            beside: PROGRAM + 1.25 * run + drafts as f64 * (DRAFT + evaluator.grid.n_blocks() as f64),
             pieces: vec![(run, usize::MAX)],
         })
     }
@@ -565,10 +565,8 @@ mod tests {
             panic!("{found:?}")
         };
         assert!(memory(400, 100).pieces[0].0 > 3.0 * run);
-        assert_eq!(
-            memory(200, 300).beside - found.beside,
-            200.0 * (2048.0 + 200.0 * 200.0)
-        );
+        let drafts = memory(200, 300).beside - found.beside;
+        assert!((drafts - 200.0 * (2048.0 + 200.0 * 200.0)).abs() < 1.0);
         let available = found.of(2) + 0.5 * run;
         let no_memory = |needed, available| StudyError::DesignMemory { needed, available };
         assert!(found.compare(2, available, no_memory).is_ok());

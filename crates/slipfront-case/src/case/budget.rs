@@ -23,13 +23,13 @@ const NUMBER: f64 = size_of::<f64>() as f64;
 const MIB: f64 = 1024.0 * 1024.0;
 
 /// Memory of the program itself.
-pub const PROGRAM: f64 = 8.0 * MIB;
+pub const PROGRAM: f64 = 12.0 * MIB;
 
 /// Memory while pictures of the usual size are drawn, two at once, whatever they show.
 pub const PICTURES: f64 = 28.0 * MIB;
 
-/// Memory while a movie is made, and for each picture of it.
-pub const MOVIE: [f64; 2] = [48.0 * MIB, 0.35 * MIB];
+/// Memory while pictures of a movie are drawn, some at once.
+const MOVIE: f64 = 48.0 * MIB;
 
 /// Bytes of the file of a movie for each of its pictures.
 const MOVIE_FILE: f64 = 3e4;
@@ -210,7 +210,7 @@ impl Budget {
                     what: format!("{} of the series", count(budget.rows as usize, "row")),
                     remedy: "raise `output.series`",
                 },
-                bytes: [950.0, 400.0, 200.0].map(|bytes| bytes * self.rows),
+                bytes: [750.0, 400.0, 200.0].map(|bytes| bytes * self.rows),
             },
             Part {
                 cause: |budget| Cause {
@@ -257,10 +257,12 @@ impl Budget {
 
     /// Bytes while pictures and movie are drawn, beside those of the run; its snapshots are in memory no more.
     fn drawing(&self) -> f64 {
-        let [movie, picture] = MOVIE;
-        let [_, snapshots, ..] = self.parts();
-        let more = movie + picture * self.movie - snapshots.bytes[Place::Memory as usize];
-        PICTURES + if self.movie > 0.0 { more.max(0.0) } else { 0.0 }
+        if self.movie == 0.0 {
+            return PICTURES;
+        }
+        let ([_, cells], [_, snapshots, ..]) = (self.cells, self.parts());
+        let more = memory_of_movie(self.movie, cells) - snapshots.bytes[Place::Memory as usize];
+        PICTURES + more.max(0.0)
     }
 
     /// Memory in which the case is made, in bytes.
@@ -455,6 +457,12 @@ impl Budget {
         let bytes = bytes_of(&most);
         ((most.cause)(self), bytes)
     }
+}
+
+/// Memory for making a movie of this many pictures of at most `cells` blocks, in bytes: maps of larger lattices are averaged.
+pub fn memory_of_movie(pictures: f64, cells: f64) -> f64 {
+    const MAX_CELLS: f64 = 65_536.0;
+    MOVIE + pictures * (1e5 + 4.0 * cells.min(MAX_CELLS))
 }
 
 impl Cause {

@@ -21,7 +21,7 @@ mod topography;
 mod warnings;
 mod whole_slider;
 
-pub use self::budget::{Budget, MOVIE, PICTURES, PROGRAM};
+pub use self::budget::{Budget, PICTURES, PROGRAM, memory_of_movie};
 pub use self::derived::scales;
 pub use self::files::{Files, FilesInMemory, OpenFile, Watch};
 pub use self::groups::Groups;

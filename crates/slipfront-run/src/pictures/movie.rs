@@ -4,7 +4,7 @@ use std::path::Path;
 
 use slipfront::observe::Field;
 use slipfront::parallel::*;
-use slipfront_case::case::{MAX_PICTURES, MOVIE};
+use slipfront_case::case::{MAX_PICTURES, memory_of_movie};
 use slipfront_case::case_file::Motion;
 use slipfront_plot::{
     CellMeans, FrictionAxes, Movie, MovieFrame, MovieGif, MoviePictures, MovieSize, PictureError,
@@ -48,8 +48,7 @@ pub enum MoviePace {
 pub fn memory(folder: &Path) -> Result<f64, RunPictureError> {
     let snapshots = fields::count_snapshots(&folder.join(FIELDS))?.min(MAX_PICTURES);
     let series = found(&folder.join(SERIES))?.map_or(0, |file| file.len());
-    let [movie, picture] = MOVIE;
-    Ok(movie + picture * snapshots as f64 + 4.0 * series as f64)
+    Ok(memory_of_movie(snapshots as f64, f64::INFINITY) + 4.0 * series as f64)
 }
 
 /// The movie of a run, of the given field or of the field whose maps are drawn; none if the run has kept no snapshot
