@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING, Any, Protocol
 import numpy as np
 import numpy.typing as npt
 
-from . import _dataset, _slipfront
+import slipfront._dataset as _dataset
+import slipfront._slipfront as _slipfront
 from ._case import Case
 from ._pickle import sealed
 

@@ -30,6 +30,7 @@ pub mod pictures;
 pub mod program;
 pub mod results;
 pub mod resume_command;
+pub mod run_copy;
 pub mod run_curve;
 pub mod run_files;
 pub mod run_folder;

@@ -2,7 +2,8 @@
 
 use slipfront::surface::{Contour, Texture, contours, copies_overlap, mask_outline, mesh};
 
-use super::{TextureFileError, textured_blocks};
+use super::error::TextureFileError;
+use super::textured_blocks::textured_blocks;
 use crate::case::Case;
 
 /// Largest number of corners of all outlines: a file of about a gigabyte.

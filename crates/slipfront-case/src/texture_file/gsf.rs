@@ -1,6 +1,6 @@
 //! A Gwyddion simple field: a header of lines, and the heights as 32-bit numbers, the top row first.
 
-use super::textured_blocks;
+use super::textured_blocks::textured_blocks;
 use crate::case::Case;
 
 /// The height of the blocks, without a unit: 1 where they touch, 0 where they are textured.

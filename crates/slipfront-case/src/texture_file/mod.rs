@@ -3,10 +3,15 @@
 
 mod drawing;
 mod dxf;
+mod error;
 mod gsf;
 mod svg;
+mod textured_blocks;
 
 pub use self::drawing::{Fill, Layer, OutlineDrawing};
+use self::error::MAX_PIXELS;
+pub use self::error::TextureFileError;
+pub use self::textured_blocks::textured_blocks;
 
 use std::path::Path;
 
@@ -15,54 +20,6 @@ use crate::case::Case;
 use crate::case_file::CaseError;
 use slipfront::surface::{Clearance, clearance};
 use slipfront_base::disk::write_atomic;
-
-/// Largest number of pixels of a picture along a side, and of all: no program, this one included, reads more.
-const MAX_PIXELS: [usize; 2] = [1 << 20, 1 << 28];
-
-/// An error of a file of a texture that was asked for.
-#[derive(Debug, thiserror::Error)]
-#[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
-pub enum TextureFileError {
-    #[error(
-        "cannot tell the format of `{path}`; name a file that ends in .svg or .dxf for outlines, in .png for a picture or in .gsf for a \
-         height field"
-    )]
-    Extension { path: String },
-    #[error(
-        "`--scale` is for pictures, and `{path}` is none: outlines and height fields have their true size"
-    )]
-    Scale { path: String },
-    #[error(
-        "the picture would have {width} x {height} pixels, and at most {} along a side and {} in all are read again: lower `--scale`",
-        MAX_PIXELS[0],
-        MAX_PIXELS[1]
-    )]
-    TooManyPixels { width: usize, height: usize },
-    #[error(
-        "the outlines would have {corners} corners, and at most {most} are written: write a .png or .gsf instead"
-    )]
-    TooManyCorners { corners: usize, most: usize },
-    #[error(transparent)]
-    Case(#[from] CaseError),
-    #[error(transparent)]
-    Write(#[from] ArrayError),
-}
-
-impl TextureFileError {
-    /// Whether the request is to blame, so that another file could be asked for.
-    pub fn is_input(&self) -> bool {
-        !matches!(self, Self::Write(_))
-    }
-}
-
-/// Whether each block is textured: a block that does not exist has no contact either, but is no texture.
-pub fn textured_blocks(case: &Case) -> Vec<bool> {
-    let (surface, slider) = (&case.model.surface, case.model.slider());
-    let blocks = surface.textured.iter().enumerate();
-    blocks
-        .map(|(b, textured)| *textured && slider.exists(b))
-        .collect()
-}
 
 /// The smallest feature and the smallest gap of the texture, in blocks.
 pub fn smallest(case: &Case) -> Result<Clearance, CaseError> {

@@ -28,13 +28,8 @@ pub(super) fn of_run(run: RunFiles) -> Result<Option<Picture>, RunPictureError> 
     let curve = |label: &str, points: Vec<(f64, f64)>, line: bool| {
         let (x, mean): (Vec<f64>, Vec<f64>) = points.into_iter().unzip();
         Response {
-            label: label.to_owned(),
-            low: vec![f64::NAN; x.len()],
-            high: vec![f64::NAN; x.len()],
-            x,
-            mean,
             line,
-            ..Response::default()
+            ..Response::of_values(label, &x, &mean)
         }
     };
     let mut curves = vec![curve("events", points.collect(), false)];
