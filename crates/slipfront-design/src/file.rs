@@ -385,14 +385,12 @@ impl DesignFile {
                 let (name, is_star) = of
                     .strip_suffix("_star")
                     .map_or((of.as_str(), false), |name| (name, true));
-                let quantity = match name {
-                    "static_friction" => Quantity::StaticFriction,
-                    "kinetic_friction" => Quantity::KineticFriction,
-                    "friction_drop" => Quantity::FrictionDrop,
-                    _ => {
-                        return refuse(
-                            "`of` must be static_friction, kinetic_friction or friction_drop, also with _star for a share of mu_s",
-                        );
+                let quantity = match Quantity::of_name(name) {
+                    Ok(quantity) => quantity,
+                    Err(names) => {
+                        return refuse(&format!(
+                            "`of` must be {names}, also with _star for a share of mu_s"
+                        ));
                     }
                 };
                 let star = match value {
