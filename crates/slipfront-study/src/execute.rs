@@ -8,9 +8,9 @@ use std::sync::mpsc::{self, Sender};
 use std::time::Instant;
 
 use crate::error::StudyError;
-use crate::journal::Records;
 use crate::plan::{Plan, RunKey};
 use crate::record::{FinishedRun, Outcome};
+use crate::records::Records;
 use crate::scheduler::{Ended, Scheduler, Task};
 use crate::study_file::RetainRuns;
 use crate::study_results::{Progress, StudyResults};

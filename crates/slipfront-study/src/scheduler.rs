@@ -9,9 +9,9 @@ use std::sync::mpsc::Receiver;
 use std::time::Duration;
 
 use crate::error::StudyError;
-use crate::journal::Records;
 use crate::plan::{Plan, RunKey};
 use crate::record::{FinishedRun, RunResult};
+use crate::records::Records;
 use crate::statistics::Sample;
 use crate::study_results::{PointResult, Progress, StudyResults};
 use crate::summary_values::RunQuantity;

@@ -14,7 +14,7 @@ use crate::paper::Paper;
 use slipfront_base::disk::{begins_with, write_with_folders};
 use slipfront_plot::Picture;
 use slipfront_run::folder_error::FolderError;
-use slipfront_study::result_files::{Batch, Others, ResultFiles};
+use slipfront_study::project_folder::{Batch, Others, ResultFiles};
 
 /// Writes pictures, tables and the report to a folder.
 ///
