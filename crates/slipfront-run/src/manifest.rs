@@ -25,7 +25,7 @@ use slipfront_case::case::{Case, Input};
 /// The last key of a manifest in its file. The checksum, its value, is the hash of all bytes before it.
 const CHECKSUM_KEY: &[u8] = b"\"seal\"";
 
-/// The files that were written, and their origin. Keys that an earlier version did not write are empty.
+/// The files that were written, and their origin. Keys that its file lacks are empty.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Manifest {
     /// Version of slipfront.

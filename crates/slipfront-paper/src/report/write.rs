@@ -35,7 +35,7 @@ pub fn write(paper: &Paper, files: &ResultFiles) -> Result<(), PaperError> {
     ] {
         batch.write(name, |to| to.write_all(&bytes))?;
     }
-    // Figures that an earlier program has left there take hours.
+    // Figures that an earlier call has left there took hours.
     Ok(batch.place(Others::Stay)?)
 }
 
