@@ -1,5 +1,5 @@
-//! Holds `types/protocol.d.ts` of slipfront-lab, which the page is written against, against `protocol.rs`: requests as the page may send them are read,
-//! and replies have the keys and values that the page expects.
+//! Holds `types/protocol.d.ts` of slipfront-lab, which the page is written against, against `protocol.rs`:
+//! requests as the page may send them are read, and replies have the keys and values that the page expects.
 
 mod declarations;
 
@@ -48,7 +48,8 @@ fn read(name: &str, place: &[&str], value: Value) -> Result<Request, serde_json:
     serde_json::from_value(request)
 }
 
-/// Holds the keys of an interface at a place of a request, and the words that they take, against those that are read.
+/// Holds the keys of an interface at a place of a request, and the words that they take, against those that
+/// are read.
 fn check_request(declared: &Declarations, request: &str, place: &[&str], interface: &str) {
     let keys = &declared.interface(interface).keys;
     if keys.is_empty() {
@@ -100,7 +101,8 @@ fn requests_are_read_as_the_page_sends_them() {
     }
 }
 
-/// Hands `check` every kind of reply, which between them have every kind of value that each of their keys may hold.
+/// Hands `check` every kind of reply, which between them have every kind of value that each of their keys may
+/// hold.
 fn each_reply(check: &mut impl FnMut(&Reply)) {
     let text = "[[texture]]\nshape = 'cavity'\ncoverage = 5\n";
     let document = Document::new("case", text, |_| Err("there is no file".to_owned())).unwrap();
@@ -338,7 +340,7 @@ fn textures_have_the_keys_of_the_case_file() {
             KeyKind::Number { .. } | KeyKind::Whole { .. } => Type::Number,
             KeyKind::Quantity { .. } | KeyKind::Words(_) | KeyKind::File(_) => Type::Text,
             KeyKind::Switch => Type::Boolean,
-            KeyKind::Special(_) => continue,
+            KeyKind::Table(..) | KeyKind::Special(_) => continue,
         };
         assert_eq!(keys[key.name].holds, holds, "{}", key.name);
     }

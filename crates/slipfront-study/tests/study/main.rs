@@ -2,6 +2,9 @@
 
 #![allow(clippy::unwrap_used)] // A helper that cannot do its work fails its test.
 
+#[path = "../../../slipfront-case/tests/support/reference_page.rs"]
+mod reference_page;
+
 mod calibrations;
 mod designs;
 mod study_files;
