@@ -15,7 +15,8 @@ from typing import Any, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from . import _slipfront, _toml
+import slipfront._slipfront as _slipfront
+import slipfront._toml as _toml
 from ._pickle import sealed
 
 Overrides: TypeAlias = Mapping[str, Any]

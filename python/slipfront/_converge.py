@@ -10,7 +10,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from . import _slipfront, _toml
+import slipfront._slipfront as _slipfront
+import slipfront._toml as _toml
 from ._case import Case, CaseLike, as_case
 from ._pickle import sealed
 from ._simulation import _threads

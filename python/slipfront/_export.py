@@ -8,7 +8,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Literal, overload
 
-from . import _slipfront
+import slipfront._slipfront as _slipfront
 from ._run import Run
 
 RunLike = Run | str | os.PathLike[str]

@@ -6,7 +6,7 @@ import json
 from collections.abc import Iterable
 from typing import Any
 
-from . import _slipfront
+import slipfront._slipfront as _slipfront
 from ._case import Case, CaseError, CaseLike, as_case
 from ._simulation import _threads
 

@@ -6,7 +6,7 @@ import os
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from . import _slipfront
+import slipfront._slipfront as _slipfront
 from ._case import Case
 from ._converge import Convergence
 from ._calibrate import CalibrationResults

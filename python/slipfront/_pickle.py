@@ -9,7 +9,7 @@ import pickle
 from collections.abc import Callable
 from typing import Any
 
-from . import _slipfront
+import slipfront._slipfront as _slipfront
 
 
 def sealed(make: Callable[..., object], *state: Any) -> tuple[Callable[[bytes], object], tuple[bytes]]:

@@ -14,7 +14,8 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from . import _dataset, _slipfront
+import slipfront._dataset as _dataset
+import slipfront._slipfront as _slipfront
 from ._case import Case, CaseLike, as_case
 from ._pickle import sealed
 from ._progress import Bar, parted

@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
 
 import numpy as np
 
-from . import _slipfront, _toml
+import slipfront._slipfront as _slipfront
+import slipfront._toml as _toml
 from ._case import Case
 from ._pickle import sealed
 from ._progress import Bar, parted

@@ -6,7 +6,7 @@ import tempfile
 import weakref
 from pathlib import Path
 
-from . import _slipfront
+import slipfront._slipfront as _slipfront
 
 
 def _remove(path: Path, parent: _slipfront.TemporaryParent, process: int) -> None:

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from . import _slipfront
+import slipfront._slipfront as _slipfront
 from ._temporary import TemporaryFolder
 
 _BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")

@@ -5,8 +5,8 @@ use std::sync::atomic::AtomicBool;
 use std::sync::{Mutex, PoisonError};
 
 use pyo3::prelude::*;
+use slipfront_calibrate::{CalibrationFile, CalibrationFolder, CalibrationProgress};
 use slipfront_study::StudyError;
-use slipfront_study::calibrate::{CalibrationFile, CalibrationFolder, CalibrationProgress};
 
 use crate::errors::study_error;
 use crate::process::{detached, on_pool};

@@ -8,10 +8,10 @@ use std::time::Instant;
 
 use pyo3::prelude::*;
 use pyo3::pybacked::PyBackedBytes;
-use slipfront_study::StudyError;
-use slipfront_study::design::{
+use slipfront_design::{
     Bounds, Design as SlipfrontDesign, DesignFile, DesignFolder, Known, OpenSearch, SearchProgress,
 };
+use slipfront_study::StudyError;
 
 use crate::errors::study_error;
 use crate::process::{detached, on_pool};

@@ -6,7 +6,7 @@ use std::sync::atomic::AtomicBool;
 
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use slipfront_run::export::{Author, ExportError, Licence, Told, WholeRun, bibtex, cff, write_crate};
+use slipfront_run::export::{Attribution, Author, ExportError, Licence, WholeRun, bibtex, cff, write_crate};
 
 use crate::errors::{folder_error, in_words_of_python};
 use crate::process::detached;
@@ -21,12 +21,12 @@ pub(crate) fn ro_crate(
     out: Option<PathBuf>,
     force: bool,
 ) -> PyResult<(PathBuf, Vec<String>)> {
-    let told = told(author, licence)?;
+    let by = attribution(author, licence)?;
     let never = AtomicBool::new(false);
     let written = detached(py, || {
-        write_crate(&read(&folders)?, out.as_deref(), &told, force, &never)
+        write_crate(&read(&folders)?, out.as_deref(), &by, force, &never)
     })?;
-    let notes = told.notes().into_iter().map(in_words_of_python).collect();
+    let notes = by.notes().into_iter().map(in_words_of_python).collect();
     Ok((written.map_err(export_error)?, notes))
 }
 
@@ -39,12 +39,12 @@ pub(crate) fn citation(
     author: Option<&str>,
     licence: Option<&str>,
 ) -> PyResult<String> {
-    let told = told(author, licence)?;
+    let by = attribution(author, licence)?;
     let runs = detached(py, || read(&folders))?.map_err(export_error)?;
     if is_cff {
-        cff(&runs, &told).map_err(export_error)
+        cff(&runs, &by).map_err(export_error)
     } else {
-        Ok(bibtex(&runs, &told))
+        Ok(bibtex(&runs, &by))
     }
 }
 
@@ -52,8 +52,8 @@ fn read(folders: &[PathBuf]) -> Result<Vec<WholeRun>, ExportError> {
     folders.iter().map(|folder| WholeRun::read(folder)).collect()
 }
 
-fn told(author: Option<&str>, licence: Option<&str>) -> PyResult<Told> {
-    Ok(Told {
+fn attribution(author: Option<&str>, licence: Option<&str>) -> PyResult<Attribution> {
+    Ok(Attribution {
         author: parsed::<Author>("author", author)?,
         licence: parsed::<Licence>("licence", licence)?,
     })

@@ -81,6 +81,15 @@ pub fn make_folders(path: &Path) -> std::io::Result<()> {
         .try_for_each(|made| sync_folder(folder_of(made)))
 }
 
+/// Writes a whole file or none, and makes the folders above it where they are missing.
+///
+/// # Errors
+/// When the system refuses.
+pub fn write_with_folders(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
+    make_folders(folder_of(path))?;
+    write_atomic(path, bytes)
+}
+
 /// Opens a regular file, and nothing else: a pipe may block, and a device such as `/dev/zero` has no end.
 pub fn open_regular(path: &Path) -> std::io::Result<File> {
     if !std::fs::metadata(path)?.is_file() {

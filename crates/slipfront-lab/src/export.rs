@@ -9,7 +9,7 @@ use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD;
 use serde::Serialize;
 use sha2::{Digest, Sha256};
-use slipfront_base::disk::{is_empty, make_folders, write_atomic};
+use slipfront_base::disk::{is_empty, write_atomic, write_with_folders};
 use slipfront_base::text::display_path;
 use slipfront_session::{Document, Presets};
 
@@ -195,9 +195,7 @@ impl Parts {
 /// When the module is none, the folder holds other things, or the system refuses.
 pub fn export_folder(start: &Start, module: &Path, notices: &str, out: &Path) -> Result<(), ExportError> {
     let write = |path: &Path, contents: &[u8]| {
-        let folder = path.parent().map_or(Ok(()), make_folders);
-        let written = folder.and_then(|()| write_atomic(path, contents));
-        written.map_err(|source| ExportError::Write {
+        write_with_folders(path, contents).map_err(|source| ExportError::Write {
             path: path.to_owned(),
             source,
         })

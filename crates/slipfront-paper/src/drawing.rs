@@ -129,19 +129,6 @@ pub(super) fn measured(label: &str, x: &[f64], numbers: &[MeasuredNumber]) -> Re
     }
 }
 
-pub(super) fn formula(label: &str, x: &[f64], value: impl Fn(f64) -> f64) -> Response {
-    let blank = vec![f64::NAN; x.len()];
-    Response {
-        label: label.to_owned(),
-        x: x.to_vec(),
-        mean: x.iter().map(|&x| value(x)).collect(),
-        low: blank.clone(),
-        high: blank,
-        line: true,
-        ..Response::default()
-    }
-}
-
 /// Maps of tau_c*, from 0 to its maximum in the run.
 pub(super) fn stress_maps(maps: Vec<FieldMap>, columns: usize) -> Drawing {
     Drawing::Maps(FieldMaps {

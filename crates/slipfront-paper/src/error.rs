@@ -1,6 +1,6 @@
 //! Errors of `slipfront paper`.
 
-use slipfront::{RunError, SurfaceError};
+use slipfront::RunError;
 use thiserror::Error;
 
 use slipfront_case::case_file::CaseError;
@@ -18,8 +18,6 @@ pub enum PaperError {
     Figure { given: String, known: String },
     #[error(transparent)]
     Case(#[from] CaseError),
-    #[error(transparent)]
-    Surface(#[from] SurfaceError),
     #[error(transparent)]
     Study(#[from] StudyError),
     #[error("the run {name} failed: {source}")]

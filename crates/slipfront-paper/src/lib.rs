@@ -12,7 +12,6 @@ mod claims;
 mod drawing;
 mod embedded_cases;
 mod error;
-pub mod family;
 mod figure_data;
 mod figures;
 mod number;

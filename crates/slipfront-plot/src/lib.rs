@@ -27,6 +27,7 @@ mod heat_map;
 mod label_placement;
 mod lattice_map;
 mod legend;
+#[expect(unreachable_pub, reason = "a link to a file of slipfront, which exports it")]
 mod mask_outline;
 mod movie;
 mod movie_colours;
@@ -56,7 +57,6 @@ pub use friction_curve::{FrictionAxes, FrictionCurve, Instant, KineticLine};
 pub use front::{FrontMap, KYMOGRAPH_BYTES, SpaceTime, front, front_bytes, kymograph};
 pub use gif_file::MovieGif;
 pub use heat_map::{HeatAxis, HeatMap, heat_map};
-pub use mask_outline::outline as mask_outline;
 pub use movie::{Movie, MovieFrame, MoviePictures, MovieSize};
 pub use picture::{Picture, PictureError};
 pub use polar::{Polar, polar};

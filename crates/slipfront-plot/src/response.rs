@@ -138,6 +138,27 @@ fn sorted(curve: &Response) -> Response {
 }
 
 impl Response {
+    /// The curve through `values` at the abscissae `x`, without intervals.
+    pub fn of_values(label: &str, x: &[f64], values: &[f64]) -> Self {
+        Self {
+            label: label.to_owned(),
+            x: x.to_vec(),
+            mean: values.to_vec(),
+            low: vec![f64::NAN; x.len()],
+            high: vec![f64::NAN; x.len()],
+            ..Self::default()
+        }
+    }
+
+    /// The line of the function `value`, drawn through its values at the abscissae `x`.
+    pub fn of_formula(label: &str, x: &[f64], value: impl Fn(f64) -> f64) -> Self {
+        let values: Vec<f64> = x.iter().map(|&x| value(x)).collect();
+        Self {
+            line: true,
+            ..Self::of_values(label, x, &values)
+        }
+    }
+
     /// Whether a point is marked by a cross.
     pub(crate) fn is_crossed(&self, point: usize) -> bool {
         self.crossed.get(point).copied().unwrap_or(false)

@@ -6,9 +6,9 @@ use std::time::Duration;
 
 use slipfront_base::number_format::count;
 use slipfront_case::case::Case;
-use slipfront_run::pictures::texture_file::textured_blocks;
+use slipfront_case::texture_file::textured_blocks;
+use slipfront_design::{Bounds, Design, Limits, Quantity, Wish};
 use slipfront_study::StudyError;
-use slipfront_study::design::{Bounds, Design, Limits, Quantity, Wish};
 
 use crate::document::Document;
 use crate::event::{Comparison, Event, EventKind, Mask, Tried, Worker};

@@ -378,7 +378,7 @@ fn label(key: &str, value: &Value) -> String {
 }
 
 /// The overrides that a table such as `{ drive.v_star = 0.05 }` or `{ "drive.v_star" = 0.05 }` stands for.
-pub(crate) fn overrides(keys: &toml::Table) -> Vec<Override> {
+pub fn overrides(keys: &toml::Table) -> Vec<Override> {
     let mut list = Vec::new();
     for (key, value) in keys {
         flatten(key, value, &mut list);

@@ -5,16 +5,16 @@ use chacha20::rand_core::{Rng, SeedableRng};
 
 /// A stream of random numbers.
 #[derive(Debug)]
-pub(crate) struct Draws(ChaCha8Rng);
+pub struct Draws(ChaCha8Rng);
 
 impl Draws {
     /// The stream of a start number.
-    pub(crate) fn new(start: u64) -> Self {
+    pub fn new(start: u64) -> Self {
         Self::of([start, 0, 0, 0])
     }
 
     /// The stream of four numbers that name it.
-    pub(crate) fn of(name: [u64; 4]) -> Self {
+    pub fn of(name: [u64; 4]) -> Self {
         let mut key = [0; 32];
         for (bytes, number) in key.chunks_exact_mut(8).zip(name) {
             bytes.copy_from_slice(&number.to_le_bytes());
@@ -23,23 +23,23 @@ impl Draws {
     }
 
     /// A uniform number in [0, 1).
-    pub(crate) fn uniform(&mut self) -> f64 {
+    pub fn uniform(&mut self) -> f64 {
         const UNIT: f64 = 1.0 / (1u64 << 53) as f64;
         (self.0.next_u64() >> 11) as f64 * UNIT
     }
 
     /// A uniform number from `low` to `high`.
-    pub(crate) fn between(&mut self, low: f64, high: f64) -> f64 {
+    pub fn between(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * self.uniform()
     }
 
     /// A whole number below `n`, which is at least 1.
-    pub(crate) fn below(&mut self, n: usize) -> usize {
+    pub fn below(&mut self, n: usize) -> usize {
         ((self.uniform() * n as f64) as usize).min(n - 1)
     }
 
     /// A standard normal number, by Box and Muller.
-    pub(crate) fn normal(&mut self) -> f64 {
+    pub fn normal(&mut self) -> f64 {
         let radius = (-2.0 * libm::log(1.0 - self.uniform())).sqrt();
         radius * libm::cos(std::f64::consts::TAU * self.uniform())
     }

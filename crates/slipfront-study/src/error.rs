@@ -3,18 +3,17 @@
 use std::path::PathBuf;
 
 use jiff::SignedDuration;
+use slipfront::RunError;
 use thiserror::Error;
 
 use slipfront_base::number_format::{are, count};
 use slipfront_base::text::{display_path, single_line};
 use slipfront_case::case_file::CaseError;
+use slipfront_case::texture_file::TextureFileError;
 use slipfront_plot::PictureError;
 use slipfront_run::folder_error::FolderError;
 use slipfront_run::pictures::error::RunPictureError;
-use slipfront_run::pictures::texture_file::TextureFileError;
 use slipfront_run::program;
-
-use crate::calibrate::TrainingError;
 
 /// A study that cannot be used, or had to stop.
 #[derive(Debug, Error)]
@@ -218,12 +217,27 @@ pub enum StudyError {
 
 impl StudyError {
     /// The error of a picture of this name that cannot be drawn.
-    pub(crate) fn picture(name: &str) -> impl Fn(PictureError) -> Self {
+    pub fn picture(name: &str) -> impl Fn(PictureError) -> Self {
         move |source| Self::Picture {
             name: name.to_owned(),
             source,
         }
     }
+}
+
+/// Reason for which the model has no curves at some values of the unknowns.
+#[derive(Debug, Error)]
+#[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
+pub enum TrainingError {
+    #[error("the unknowns {point}: {source}")]
+    Case { point: String, source: Box<CaseError> },
+    #[error("the unknowns {point}: {source}; narrow the ranges")]
+    Run { point: String, source: RunError },
+    #[error(
+        "the unknowns {point}: the run ends before record {record} does, or its friction is no force along the drive: \
+         set `time.duration` to the length of the record"
+    )]
+    Short { point: String, record: usize },
 }
 
 /// The explanation of recorded runs that do not belong to a study, to be inserted into a sentence.

@@ -18,7 +18,7 @@ use slipfront_base::number_format::byte_size;
 use slipfront_run::folder_error::FolderError;
 use slipfront_run::manifest::Manifest;
 use slipfront_run::names::{CASE, FIGURE_CACHE, RECORDS, RUNS, TABLES};
-use slipfront_run::run_folder::copy::copy_run;
+use slipfront_run::run_copy::copy_run;
 
 /// The study file in the folder, with the base case as a table in it: `slipfront study DIR/study.toml` repeats the study.
 const STUDY: &str = "study.toml";

@@ -6,7 +6,8 @@ use slipfront_case::case_file::{CaseError, CaseFile, NamedFile, ParsedCase, Sour
 
 use slipfront_run::program;
 
-use crate::SOURCE_HASH;
+/// BLAKE3 hash of the sources of this crate: a part of the identity of the runs that it records.
+pub const SOURCE_HASH: &str = env!("SLIPFRONT_SOURCE_HASH");
 
 /// A base of points, with hashes of the tables that they leave unchanged.
 pub(crate) struct Prepared<'a> {
@@ -31,10 +32,7 @@ impl<'a> Prepared<'a> {
 
 /// Hash of all that decides the numbers of a run but its seed: the physics of the case, the contents of its files and the
 /// program; not the names of files, nor the output. Tables that equal those of a `known` case are not hashed again.
-pub(crate) fn physics(
-    case: &Case,
-    known: Option<(&CaseFile, &[Vec<u8>; 6])>,
-) -> Result<blake3::Hash, CaseError> {
+pub fn physics(case: &Case, known: Option<(&CaseFile, &[Vec<u8>; 6])>) -> Result<blake3::Hash, CaseError> {
     let mut hasher = blake3::Hasher::new();
     hasher.update(program::this_build().as_bytes());
     // This crate makes the recorded numbers of what a run leaves.

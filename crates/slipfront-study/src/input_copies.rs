@@ -29,7 +29,7 @@ pub(crate) fn plain_name(written: &str) -> String {
 }
 
 /// A copy to be made of a file.
-pub(crate) struct Copy {
+pub struct Copy {
     /// Path of the copy in the results folder.
     pub(crate) name: String,
     /// Path of the original.
@@ -39,7 +39,7 @@ pub(crate) struct Copy {
 
 impl Copy {
     /// Whether the results folder has another file of this name.
-    pub(crate) fn differs_in(&self, folder: &Path) -> bool {
+    pub fn differs_in(&self, folder: &Path) -> bool {
         hash(&folder.join(&self.name)).is_ok_and(|found| found.is_some_and(|found| found != self.hash))
     }
 }

@@ -19,7 +19,7 @@ use slipfront_run::names::RECORDS;
 
 /// A file of records, a line each, open for one process alone.
 #[derive(Debug)]
-pub(crate) struct Journal {
+pub struct Journal {
     path: PathBuf,
     file: File,
 }
@@ -27,10 +27,7 @@ pub(crate) struct Journal {
 impl Journal {
     /// Opens the file of this name in a folder, unless another process has it open, and makes an empty one where there is
     /// none. Returns the records in it, and the number of lines that failed their checksum.
-    pub(crate) fn open<T: JournalRecord>(
-        folder: &Path,
-        name: &str,
-    ) -> Result<(Self, Vec<T>, usize), StudyError> {
+    pub fn open<T: JournalRecord>(folder: &Path, name: &str) -> Result<(Self, Vec<T>, usize), StudyError> {
         let path = folder.join(name);
         let mut file = open_locked(&path, folder)?;
         // A study that has changed since it was killed may not write the same files again.
@@ -48,7 +45,7 @@ impl Journal {
 
     /// Copies a file of records of this kind, called `name`, from one folder to another. It is looked at before: what is no record is
     /// not copied, however long it is.
-    pub(crate) fn copy<T: JournalRecord>(from: &Path, to: &Path, name: &str) -> Result<(), StudyError> {
+    pub fn copy<T: JournalRecord>(from: &Path, to: &Path, name: &str) -> Result<(), StudyError> {
         let path = from.join(name);
         let open = || open_limited(&path, u64::MAX);
         let lines = open().and_then(|mut file| JournalLines::<T>::read(&mut file));
@@ -61,7 +58,7 @@ impl Journal {
     }
 
     /// Appends lines and waits until they are on the disk; earlier records stay whole.
-    pub(crate) fn append(&mut self, lines: &[u8]) -> Result<(), StudyError> {
+    pub fn append(&mut self, lines: &[u8]) -> Result<(), StudyError> {
         let Self { path, file } = self;
         let before = file.stream_position();
         let before = before.map_err(failed("write to", path))?;

@@ -6,15 +6,16 @@ use slipfront_run::measured::{Column, Measure, MeasuredError, MeasuredRecord};
 
 /// Columns of a table, by their names or numbers, and their units where the header has none.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct MeasuredColumns {
+pub struct MeasuredColumns {
     /// Times, or displacements of the drive.
-    pub(crate) x: Column,
+    pub x: Column,
     /// Forces, or coefficients if their unit is 1.
-    pub(crate) y: Column,
+    pub y: Column,
 }
 
 impl MeasuredColumns {
-    pub(crate) fn new([x, y]: [&str; 2], [x_unit, y_unit]: [&Option<String>; 2]) -> Self {
+    /// Columns of these names or numbers, and their units.
+    pub fn new([x, y]: [&str; 2], [x_unit, y_unit]: [&Option<String>; 2]) -> Self {
         let column = |name: &str, unit: &Option<String>| Column {
             name: name.to_owned(),
             unit: unit.clone(),
@@ -29,7 +30,7 @@ impl MeasuredColumns {
     ///
     /// # Errors
     /// A sentence on why the table is no record.
-    pub(crate) fn read(&self, path: &Path, along: Measure) -> Result<MeasuredRecord, String> {
+    pub fn read(&self, path: &Path, along: Measure) -> Result<MeasuredRecord, String> {
         let read = MeasuredRecord::read(path, [&self.x, &self.y], along);
         read.map_err(|error| match error {
             MeasuredError::NoUnit {

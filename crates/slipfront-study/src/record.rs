@@ -58,14 +58,14 @@ pub struct FinishedRun {
 }
 
 /// The line of a record with its line break.
-pub(crate) fn to_line(record: &impl Serialize) -> Vec<u8> {
+pub fn to_line(record: &impl Serialize) -> Vec<u8> {
     // Our own struct of numbers and strings: serialisation cannot fail.
     let json = serde_json::to_string(record).unwrap_or_default();
     format!("{} {json}\n", checksum(json.as_bytes())).into_bytes()
 }
 
 /// A record that a line of a journal can hold.
-pub(crate) trait JournalRecord: DeserializeOwned {
+pub trait JournalRecord: DeserializeOwned {
     /// Keys of which every record of this kind has one, in any version of slipfront.
     const KEYS: &'static [&'static str];
 }

@@ -292,12 +292,12 @@ impl Batch {
     }
 
     /// Lets a file be replaced although it was edited.
-    pub(crate) fn may_replace(&mut self, name: &str) {
+    pub fn may_replace(&mut self, name: &str) {
         self.replaceable = Some(name.to_owned());
     }
 
     /// Copies files that cases read to the names that a study gives the copies. A user may also have put such a file there.
-    pub(crate) fn copy_all(&mut self, copies: &[Copy]) -> Result<(), StudyError> {
+    pub fn copy_all(&mut self, copies: &[Copy]) -> Result<(), StudyError> {
         for Copy { name, original, .. } in copies {
             let to = self.files.folder.join(name);
             if is_same(original, &to) {
@@ -328,7 +328,7 @@ impl Batch {
     ///
     /// # Errors
     /// As for [`place`](Self::place).
-    pub(crate) fn place_given(mut self, others: Others) -> Result<ResultFiles, StudyError> {
+    pub fn place_given(mut self, others: Others) -> Result<ResultFiles, StudyError> {
         self.put(others, false)?;
         Ok(ResultFiles {
             given: self.placed,
@@ -340,7 +340,7 @@ impl Batch {
     ///
     /// # Errors
     /// As for [`place`](Self::place).
-    pub(crate) fn place_so_far(&mut self, others: Others) -> Result<(), StudyError> {
+    pub fn place_so_far(&mut self, others: Others) -> Result<(), StudyError> {
         self.put(others, false)
     }
 

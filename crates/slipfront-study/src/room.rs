@@ -9,7 +9,7 @@ use crate::error::StudyError;
 ///
 /// # Errors
 /// With both figures.
-pub(crate) fn check_room(
+pub fn check_room(
     of: impl Fn(usize) -> f64,
     threads: usize,
     available: f64,

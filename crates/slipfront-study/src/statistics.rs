@@ -56,7 +56,7 @@ impl Sample {
 }
 
 /// The mean of values.
-pub(crate) fn mean(values: &[f64]) -> f64 {
+pub fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len() as f64
 }
 

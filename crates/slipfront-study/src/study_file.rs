@@ -49,7 +49,7 @@ pub struct Base {
 
 impl Base {
     /// The case file, parsed.
-    pub(crate) fn parse(&self) -> Result<ParsedCase<'_>, CaseError> {
+    pub fn parse(&self) -> Result<ParsedCase<'_>, CaseError> {
         let mut source = Source::new(&self.name, &self.text);
         if let Some(whole) = &self.whole {
             source = source.of_table(whole.clone(), "base");
@@ -118,7 +118,7 @@ key_rows! {
 }
 
 /// Confidence of intervals where the study asks for no other.
-pub(crate) const CONFIDENCE: f64 = 0.95;
+pub const CONFIDENCE: f64 = 0.95;
 
 /// Largest number of points that are listed.
 const MAX_POINTS: usize = 1_000_000;
@@ -301,7 +301,7 @@ fn refuse_rest(tables: &Tables) -> Result<(), CaseError> {
 }
 
 /// The text of a file, its name without the ending, or else `default`, and its folder.
-pub(crate) fn read_named<'p>(path: &'p Path, default: &str) -> Result<(String, String, &'p Path), CaseError> {
+pub fn read_named<'p>(path: &'p Path, default: &str) -> Result<(String, String, &'p Path), CaseError> {
     let text = read_text(path)?;
     let stem = path.file_stem();
     let name = stem.map_or_else(|| default.into(), |stem| stem.to_string_lossy());
@@ -310,7 +310,7 @@ pub(crate) fn read_named<'p>(path: &'p Path, default: &str) -> Result<(String, S
 }
 
 /// Parses a text, and notes the places of its keys in the source.
-pub(crate) fn parse_noting_places<'t>(source: &mut Source, text: &'t str) -> Result<DeTable<'t>, CaseError> {
+pub fn parse_noting_places<'t>(source: &mut Source, text: &'t str) -> Result<DeTable<'t>, CaseError> {
     let root = DeTable::parse(limit_nesting(source, 0, text)?);
     let root = root
         .map_err(|error| syntax_error(source, 0, &error))?
@@ -320,7 +320,7 @@ pub(crate) fn parse_noting_places<'t>(source: &mut Source, text: &'t str) -> Res
 }
 
 /// An error about a case that a key of a file makes, at the place of the key.
-pub(crate) fn found_at(source: &Source, key: &str, error: CaseError) -> CaseError {
+pub fn found_at(source: &Source, key: &str, error: CaseError) -> CaseError {
     match error {
         CaseError::Invalid(invalid) => match invalid.place {
             Some(Place::Override(given)) => source.error(key, format!("`{given}`: {}", invalid.sentence)),
@@ -331,7 +331,7 @@ pub(crate) fn found_at(source: &Source, key: &str, error: CaseError) -> CaseErro
 }
 
 /// The text of a file with its base case inside, and the copies of files that it names beside it.
-pub(crate) fn portable(base: &Base, table: &toml::Table) -> Result<(String, Vec<Copy>), StudyError> {
+pub fn portable(base: &Base, table: &toml::Table) -> Result<(String, Vec<Copy>), StudyError> {
     let mut portable = toml::Table::from_iter([("base".to_owned(), base_table(base)?.into())]);
     portable.extend(table.clone().into_iter().filter(|(key, _)| key != "base"));
     let copies = input_copies::copy(&mut portable, &base.folder)?;
@@ -367,7 +367,7 @@ pub(crate) fn portable_text(mut study: toml::Table) -> Result<String, CaseError>
 
 /// The base case of a file called `file`: a table of it, a case file that it names relative to `folder`, or
 /// the baseline.
-pub(crate) fn read_base(tables: &mut Tables, file: &str, folder: &Path) -> Result<Base, StudyError> {
+pub fn read_base(tables: &mut Tables, file: &str, folder: &Path) -> Result<Base, StudyError> {
     let folder = folder.to_owned();
     let Some(value) = tables.root.remove("base") else {
         // Without a base the baseline is varied.

@@ -1,4 +1,4 @@
-//! Compares the folder of a study, a design or a calibration with the list of its files, then with the tables, pictures and other
+//! Compares the folder of a study or of another project with the list of its files, then with the tables, pictures and other
 //! results that its recorded runs give; and the run folders that a study has kept with their manifests.
 
 use std::collections::HashSet;
@@ -17,15 +17,13 @@ use slipfront_run::verify::{
 };
 use thiserror::Error;
 
-use crate::calibrate::{CALIBRATION, CalibrationFolder, CalibrationRun, TRAINING, is_calibration};
 use crate::converge;
-use crate::design::{Bounds, DESIGN, DesignFile, DesignFolder, DesignRun, JOURNAL, is_design, search_of};
 use crate::error::{StudyError, of_others};
 use crate::execute::collect;
 use crate::folder::{StudyFolder, is_of_figures, stage, study_of};
-use crate::journal::{Journal, Records};
+use crate::journal::Records;
 use crate::plan::Plan;
-use crate::record::JournalRecord;
+use crate::project_kind::ProjectKind;
 use crate::result_files::{CHECKSUMS, Checksums, Others};
 use crate::study_file::RetainRuns;
 use crate::study_results::StudyResults;
@@ -68,19 +66,20 @@ pub enum Extent {
     Derived,
 }
 
-/// Verifies the folder of a run, of a study, of a design or of a calibration that was finished.
+/// Verifies the folder of a run, of a study, or of a project of one of these kinds that was finished.
 ///
 /// # Errors
 /// When it is no such folder, was not finished, or cannot be read; after a stop.
-pub fn verify(folder: &Path, extent: Extent, stop: &AtomicBool) -> Result<Verdict, VerifyStudyError> {
+pub fn verify(
+    folder: &Path,
+    kinds: &[&ProjectKind],
+    extent: Extent,
+    stop: &AtomicBool,
+) -> Result<Verdict, VerifyStudyError> {
     let verdict = if has_records(folder) {
         verify_study(folder, extent, stop)?
-    } else if is_design(folder) {
-        let derive = |verdict: &mut Verdict| derive_design(folder, verdict, stop);
-        verify_project(folder, ["design", JOURNAL], extent, stop, derive)?
-    } else if is_calibration(folder) {
-        let derive = |verdict: &mut Verdict| derive_calibration(folder, verdict, stop);
-        verify_project(folder, ["calibration", TRAINING], extent, stop, derive)?
+    } else if let Some(kind) = kinds.iter().find(|kind| kind.is_in(folder)) {
+        verify_project(folder, kind, extent, stop)?
     } else if is_of_figures(folder) {
         let (verdict, _) = verify_checksums(folder, &[Records::FILE, FIGURE_CACHE], stop)?;
         Verdict {
@@ -146,89 +145,48 @@ pub fn verify_checksums(
     Ok((verdict, list.is_complete))
 }
 
-/// Compares the folder of a design or a calibration with its list, then with the results that follow from the runs in its journal.
+/// Compares the folder of a project with its list, then with the results that follow from the runs in its journal.
 fn verify_project(
     folder: &Path,
-    [what, journal]: [&'static str; 2],
+    kind: &ProjectKind,
     extent: Extent,
     stop: &AtomicBool,
-    derive: impl FnOnce(&mut Verdict) -> Result<(), VerifyStudyError>,
 ) -> Result<Verdict, VerifyStudyError> {
-    let (mut verdict, is_complete) = verify_checksums(folder, &[journal], stop)?;
+    let (mut verdict, is_complete) = verify_checksums(folder, &[kind.journal], stop)?;
     if !verdict.differences.is_empty() {
         return Ok(verdict);
     }
     if !is_complete {
-        let path = folder.to_owned();
+        let (what, path) = (kind.name, folder.to_owned());
         return Err(VerifyStudyError::UnfinishedSearch { what, path });
     }
     if extent == Extent::Derived {
-        derive(&mut verdict)?;
+        derive_from_runs(folder, kind, &mut verdict, stop)?;
     }
     Ok(verdict)
 }
 
-/// Finds a design again from the runs in its journal, and compares the folder with the results.
-fn derive_design(folder: &Path, verdict: &mut Verdict, stop: &AtomicBool) -> Result<(), VerifyStudyError> {
-    let search = search_of(folder)?;
-    derive_from_runs::<DesignRun>(folder, "design", JOURNAL, verdict, stop, |temporary| {
-        let file = DesignFile::load(&text_in(folder, DESIGN)?)?;
-        let mut again = DesignFolder::open(temporary, &file, false)?;
-        let kept = again.n_kept();
-        let bounds = Bounds {
-            runs: search.runs,
-            share_of_time: &|| 0.0,
-            stop,
-            cut: search.cut,
-        };
-        again.find(&bounds, &mut |_| {})?;
-        Ok([kept, again.n_kept()])
-    })
-}
-
-/// Calibrates again from the runs in the journal, and compares the folder with the results.
-fn derive_calibration(
+/// Compares the folder of a project with the results that are found in another folder from the runs in its journal.
+fn derive_from_runs(
     folder: &Path,
+    kind: &ProjectKind,
     verdict: &mut Verdict,
     stop: &AtomicBool,
-) -> Result<(), VerifyStudyError> {
-    derive_from_runs::<CalibrationRun>(folder, "calibration", TRAINING, verdict, stop, |temporary| {
-        text_in(folder, CALIBRATION)?;
-        let mut again = CalibrationFolder::again(folder, temporary)?;
-        let kept = again.n_kept();
-        again.find(stop, &mut |_| {})?;
-        Ok([kept, again.n_kept()])
-    })
-}
-
-/// Path of a text in a folder, if it is a regular file: opening a pipe would wait without end.
-fn text_in(folder: &Path, name: &str) -> Result<PathBuf, StudyError> {
-    let path = folder.join(name);
-    open_limited(&path, TEXT_MAX_BYTES).map_err(FolderError::read(&path))?;
-    Ok(path)
-}
-
-/// Compares a folder with the results that `again` finds in another folder from the runs in its journal; `again` returns the
-/// numbers of runs there before and after, since runs that the journal lacks are made.
-fn derive_from_runs<Run: JournalRecord>(
-    folder: &Path,
-    what: &str,
-    journal: &str,
-    verdict: &mut Verdict,
-    stop: &AtomicBool,
-    again: impl FnOnce(&Path) -> Result<[usize; 2], StudyError>,
 ) -> Result<(), VerifyStudyError> {
     let temporary = TemporaryFolder::new(folder).map_err(VerifyError::Temporary)?;
-    Journal::copy::<Run>(folder, temporary.path(), journal)?;
-    let [kept, all] = again(temporary.path())?;
+    // Opening a pipe would wait without end.
+    let file = folder.join(kind.file);
+    open_limited(&file, TEXT_MAX_BYTES).map_err(FolderError::read(&file))?;
+    let [kept, all] = (kind.find_again)(folder, temporary.path(), stop)?;
     if all > kept {
         let sentence = format!("{} not in the journal, and made again", are(all - kept, "run"));
         verdict.notes.push(sentence);
     }
     verdict.differences = differences_from(temporary.path(), folder, "follow from its runs", stop)?;
     verdict.what = format!(
-        "{}, a {what} as its {} give it",
+        "{}, a {} as its {} give it",
         verdict.what,
+        kind.name,
         count(kept, "recorded run")
     );
     Ok(())

@@ -12,7 +12,7 @@ use crate::error::StudyError;
 ///
 /// # Errors
 /// When the file cannot be read, or lacks this part.
-pub(crate) fn read_numbers<T: DeserializeOwned>(path: &Path) -> Result<T, StudyError> {
+pub fn read_numbers<T: DeserializeOwned>(path: &Path) -> Result<T, StudyError> {
     let failed = FolderError::read(path);
     let bytes = read_limited(path, TEXT_MAX_BYTES).map_err(&failed)?;
     Ok(serde_json::from_slice(&bytes).map_err(|error| failed(error.into()))?)

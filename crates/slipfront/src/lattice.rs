@@ -3,8 +3,6 @@
 //! Block (i, j) has index `j nx + i`: i runs along x, row 0 lies at y = 0, and its centre stands at
 //! ((i + 1/2), (j + 1/2)) in units of the block size. The [`kernel`](crate::kernel) reads the springs from here.
 
-mod opening;
-
 use std::f64::consts::SQRT_2;
 use std::ops::Range;
 

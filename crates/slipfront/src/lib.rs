@@ -45,6 +45,7 @@ mod friction;
 mod measure;
 mod model;
 mod moduli;
+mod opening;
 mod options;
 mod position_bins;
 mod reductions;

@@ -5,8 +5,8 @@ use std::path::Path;
 
 use slipfront_case::case_file::{KeyKind, SECTIONS};
 
-use crate::Target;
 use crate::scratch::repository;
+use crate::target::Target;
 
 /// An input and the name by which a failure calls it.
 pub type Input = (String, Vec<u8>);

@@ -8,7 +8,7 @@ use slipfront_fuzz::{LONG_BYTES, Mutator, TARGETS, Target};
 
 /// Runs a target on all of its inputs.
 fn replay(name: &str) {
-    let target = Target::named(name).unwrap();
+    let target = slipfront_fuzz::named(name).unwrap();
     let inputs = [target.findings(), target.seeds()].concat();
     assert!(!inputs.is_empty(), "{name} has no seeds");
     for (name, bytes) in &inputs {

@@ -18,6 +18,7 @@ mod lengths;
 mod ranks;
 mod reference;
 mod round_trip;
+mod texture_files;
 
 use std::fs;
 use std::path::{Path, PathBuf};

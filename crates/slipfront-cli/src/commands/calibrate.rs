@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use slipfront_base::number_format::count;
+use slipfront_calibrate::{CalibrationFile, CalibrationFolder};
 use slipfront_study::StudyError;
-use slipfront_study::calibrate::{CalibrationFile, CalibrationFolder};
 
 use crate::failure::Failure;
 use crate::print::print_message;

@@ -6,8 +6,8 @@ use std::time::Instant;
 use clap::Args;
 use jiff::SignedDuration;
 use slipfront_base::number_format::count;
+use slipfront_design::{Bounds, DesignFile, DesignFolder};
 use slipfront_study::StudyError;
-use slipfront_study::design::{Bounds, DesignFile, DesignFolder};
 
 use crate::failure::Failure;
 use crate::print::print_message;

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use slipfront_run::export::{Author, ExportError, Licence, Told, WholeRun, bibtex, cff, write_crate};
+use slipfront_run::export::{Attribution, Author, ExportError, Licence, WholeRun, bibtex, cff, write_crate};
 
 use crate::failure::Failure;
 use crate::print::{print, print_message};
@@ -56,26 +56,26 @@ struct Form {
 
 impl ExportCommand {
     pub(crate) fn execute(self) -> Result<(), Failure> {
-        let told = Told {
+        let by = Attribution {
             author: self.author,
             licence: self.licence,
         };
         let runs = self.folders.iter().map(|folder| WholeRun::read(folder));
         let runs = runs.collect::<Result<Vec<_>, _>>().map_err(failure)?;
         if self.form.bibtex {
-            return print(&bibtex(&runs, &told));
+            return print(&bibtex(&runs, &by));
         }
         if self.form.cff {
-            return print(&cff(&runs, &told).map_err(failure)?);
+            return print(&cff(&runs, &by).map_err(failure)?);
         }
         let signals = Signals::catch().map_err(Failure::running)?;
-        let path = write_crate(&runs, self.out.as_deref(), &told, self.force, &signals.stop);
+        let path = write_crate(&runs, self.out.as_deref(), &by, self.force, &signals.stop);
         let path = path.map_err(|error| match error {
             ExportError::Interrupted => Failure::stopped(&signals, error),
             error => failure(error),
         })?;
         print_message(&format!("{}\n", path.display()));
-        for note in told.notes() {
+        for note in by.notes() {
             print_message(&wrap::note(note));
         }
         Ok(())

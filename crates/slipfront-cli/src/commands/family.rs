@@ -4,7 +4,6 @@ use std::path::PathBuf;
 
 use clap::Args;
 use slipfront_base::number_format::are;
-use slipfront_paper::family;
 
 use crate::failure::Failure;
 use crate::print::print_message;
@@ -28,19 +27,19 @@ pub(crate) struct FamilyCommand {
 impl FamilyCommand {
     pub(crate) fn execute(self) -> Result<(), Failure> {
         set_worker_threads(self.threads, 1)?;
-        if let Some(path) = self.docs.as_deref().and_then(family::foreign_docs) {
+        if let Some(path) = self.docs.as_deref().and_then(slipfront_family::foreign_docs) {
             let remedy = "move it away, or choose another folder with --docs";
             return Err(Failure::input(anyhow::anyhow!(
                 "{} is not of an earlier call: {remedy}",
                 path.display()
             )));
         }
-        let chapters = family::chapters().map_err(Failure::running)?;
-        print_message(&family::summary(&chapters));
+        let chapters = slipfront_family::chapters().map_err(Failure::running)?;
+        print_message(&slipfront_family::summary(&chapters));
         if let Some(docs) = &self.docs {
             // A signal leaves neither half a page nor a hidden file.
             Signals::catch().map_err(Failure::running)?;
-            family::write_docs(&chapters, docs).map_err(Failure::running)?;
+            slipfront_family::write_docs(&chapters, docs).map_err(Failure::running)?;
         }
         let answers = chapters.iter().flat_map(|chapter| &chapter.answers);
         match answers.filter(|answer| !answer.holds()).count() {

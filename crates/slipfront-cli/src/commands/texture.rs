@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use slipfront_base::disk::is_same;
-use slipfront_run::pictures::texture_file;
+use slipfront_case::texture_file;
 
 use crate::case_args::CaseArgs;
 use crate::failure::Failure;

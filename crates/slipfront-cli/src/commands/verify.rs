@@ -8,7 +8,9 @@ use slipfront::Execution;
 use slipfront_base::number_format::count;
 use slipfront_base::text::truncated;
 use slipfront_base::unfinished::TemporaryFolder;
+use slipfront_calibrate::CALIBRATIONS;
 use slipfront_case::case::{Case, Ranks};
+use slipfront_design::DESIGNS;
 use slipfront_paper::verify as verify_paper;
 use slipfront_run::clock;
 use slipfront_run::manifest::Manifest;
@@ -133,7 +135,7 @@ impl VerifyCommand {
             *verdict = if is_of_figures(folder) {
                 verify_paper(folder, extent, &signals.stop).map_err(Failure::input)?
             } else {
-                verify(folder, extent, &signals.stop).map_err(Failure::input)?
+                verify(folder, &[&DESIGNS, &CALIBRATIONS], extent, &signals.stop).map_err(Failure::input)?
             };
             return Ok(());
         }

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use slipfront_study::calibrate::{CalibrationProgress, CalibrationStage};
+use slipfront_calibrate::{CalibrationProgress, CalibrationStage};
 
 use super::display::{ProgressDisplay, time_left};
 

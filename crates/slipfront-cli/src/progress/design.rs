@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use slipfront_base::number_format::four_digits;
-use slipfront_study::design::{DesignStage, SearchProgress};
+use slipfront_design::{DesignStage, SearchProgress};
 
 use super::display::{ProgressDisplay, duration_left};
 
@@ -49,7 +49,7 @@ fn text(now: &SearchProgress, passed: Duration) -> String {
 
 #[cfg(test)]
 mod tests {
-    use slipfront_study::design::Work;
+    use slipfront_design::Work;
 
     use super::*;
 

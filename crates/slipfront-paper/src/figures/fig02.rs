@@ -2,7 +2,7 @@
 
 use statrs::distribution::{ContinuousCDF, Normal};
 
-use crate::drawing::{Drawing, coefficient_maps, formula};
+use crate::drawing::{Drawing, coefficient_maps};
 use crate::error::PaperError;
 use crate::figure_data::FigureData;
 use crate::run::blank_map;
@@ -57,7 +57,7 @@ fn distribution(sigma: f64, mu_static: &[f64], mu_kinetic: &[f64], data: &mut Fi
             curves: vec![
                 histogram("static", &bins, mu_static),
                 histogram("kinetic", &bins, mu_kinetic),
-                formula("Eq. 1", &fine, density),
+                Response::of_formula("Eq. 1", &fine, density),
             ],
             ..Responses::default()
         }),
@@ -88,15 +88,9 @@ fn histogram(label: &str, bins: &[[f64; 2]], values: &[f64]) -> Response {
         let inside = values.iter().filter(|&value| (low..high).contains(value));
         inside.count() as f64 / values.len() as f64 / (high - low)
     };
-    let blank = vec![f64::NAN; bins.len()];
-    Response {
-        label: label.to_owned(),
-        x: bins.iter().map(|[low, high]| 0.5 * (low + high)).collect(),
-        mean: bins.iter().map(share).collect(),
-        low: blank.clone(),
-        high: blank,
-        ..Response::default()
-    }
+    let middles: Vec<f64> = bins.iter().map(|[low, high]| 0.5 * (low + high)).collect();
+    let shares: Vec<f64> = bins.iter().map(share).collect();
+    Response::of_values(label, &middles, &shares)
 }
 
 /// Distance of Kolmogorov and Smirnov between a sample and the standard Gaussian, times sqrt(n): below 1.36 with 95 %

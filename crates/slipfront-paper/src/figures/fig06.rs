@@ -1,13 +1,13 @@
 //! Fig. 6: onset time and number of time steps against speed, and the properties of the material that decide on the onset.
 
-use crate::drawing::{Drawing, formula, measured};
+use crate::drawing::{Drawing, measured};
 use crate::error::PaperError;
 use crate::figure_data::FigureData;
 use crate::number::MeasuredNumber;
 use crate::runner::FigureRunner;
 use crate::statistics::{largest, mean, ratios, smallest};
 use crate::sweep::ParameterSweep;
-use slipfront_plot::Responses;
+use slipfront_plot::{Response, Responses};
 
 pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Result<(), PaperError> {
     let sweep = runner.study("fig06")?;
@@ -30,9 +30,9 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
             y_title: "onset time t\u{209b}*, steps to the onset n\u{209b}*".to_owned(),
             curves: vec![
                 measured("t\u{209b}*", &speeds, &onsets),
-                formula("(5/2)/V*", &speeds, |v| 2.5 / v),
+                Response::of_formula("(5/2)/V*", &speeds, |v| 2.5 / v),
                 measured("n\u{209b}*", &speeds, &steps),
-                formula("(15/4)/V*\u{b2}", &speeds, |v| 3.75 / (v * v)),
+                Response::of_formula("(15/4)/V*\u{b2}", &speeds, |v| 3.75 / (v * v)),
             ],
             ..Responses::default()
         }),

@@ -1,13 +1,13 @@
 //! Fig. 16: elongated cavities, and grooves as their limit; and the generality of the 31 % (D9).
 
-use crate::drawing::{Drawing, formula, measured};
+use crate::drawing::{Drawing, measured};
 use crate::error::PaperError;
 use crate::figure_data::FigureData;
 use crate::number::values;
 use crate::runner::FigureRunner;
 use crate::statistics::{farthest, largest, mean, rises, smallest};
 use crate::sweep::ParameterSweep;
-use slipfront_plot::Responses;
+use slipfront_plot::{Response, Responses};
 use slipfront_study::REDUCTION;
 
 /// Levels of the second axis.
@@ -20,7 +20,8 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
     let [across, along] = [ACROSS, ALONG].map(|direction| sweep.numbers(&[direction], REDUCTION));
     let grooves = runner.study("fig16_grooves")?.numbers(&[], REDUCTION);
     let ends = [elongations[0], elongations[elongations.len() - 1]];
-    let level = |direction: usize, label: &str| formula(label, &ends, |_| grooves[direction].value);
+    let level =
+        |direction: usize, label: &str| Response::of_formula(label, &ends, |_| grooves[direction].value);
     data.panel(
         "fig16",
         "Reduction of static friction by an elliptical cavity under 10 % of the slider against its elongation, across \

@@ -9,5 +9,4 @@ mod write;
 
 pub use markdown::page as docs_page;
 pub use summary::summary;
-pub(crate) use write::write_file;
 pub use write::{foreign_docs, write, write_docs};

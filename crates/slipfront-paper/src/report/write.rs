@@ -11,7 +11,7 @@ use super::{html, markdown};
 use crate::error::PaperError;
 use crate::figure_data::{FigureData, Panel};
 use crate::paper::Paper;
-use slipfront_base::disk::{begins_with, make_folders, write_atomic};
+use slipfront_base::disk::{begins_with, write_with_folders};
 use slipfront_plot::Picture;
 use slipfront_run::folder_error::FolderError;
 use slipfront_study::result_files::{Batch, Others, ResultFiles};
@@ -91,23 +91,15 @@ const PICTURE: &str = "paper-";
 /// # Errors
 /// When a picture cannot be drawn or a file not be written.
 pub fn write_docs(paper: &Paper, folder: &Path) -> Result<(), PaperError> {
+    let write_file =
+        |path: PathBuf, bytes: &[u8]| write_with_folders(&path, bytes).map_err(FolderError::write(&path));
     // First, since it tells that the pictures are of an earlier call.
-    write_file(folder, PAGE, page(paper).as_bytes())?;
+    write_file(folder.join(PAGE), page(paper).as_bytes())?;
     for (_, data) in &paper.figures {
         for (panel, picture) in data.panels.iter().zip(draw(data)?) {
-            write_file(
-                folder,
-                &format!("{IMAGES}/{PICTURE}{}.png", panel.name),
-                &picture.png,
-            )?;
+            let name = format!("{IMAGES}/{PICTURE}{}.png", panel.name);
+            write_file(folder.join(name), &picture.png)?;
         }
     }
     Ok(())
-}
-
-pub(crate) fn write_file(folder: &Path, name: &str, bytes: &[u8]) -> Result<(), PaperError> {
-    let path = folder.join(name);
-    let parent = path.parent().unwrap_or(folder).to_owned();
-    let written = make_folders(&parent).and_then(|()| write_atomic(&path, bytes));
-    written.map_err(|source| FolderError::Write { path, source }.into())
 }

@@ -3,8 +3,6 @@
 // A helper that cannot do its work fails its test.
 #![allow(clippy::unwrap_used)]
 
-mod family;
-
 use std::collections::BTreeMap;
 use std::io::Write;
 use std::path::Path;

@@ -3,7 +3,9 @@
 use jiff::Timestamp;
 use serde_json::json;
 
-use super::{ExportError, Told, WholeRun};
+use super::attribution::Attribution;
+use super::error::ExportError;
+use super::whole_run::WholeRun;
 
 /// Description of slipfront.
 pub(super) const MODEL: &str = "a two-dimensional lattice spring-block model of the transition from static to kinetic friction of \
@@ -20,7 +22,7 @@ pub(super) const ARTICLE_YEAR: u16 = 2023;
 const ARTICLE_NOTE: &str = "The model. The authors' names stand on the publisher's page of this DOI.";
 
 /// Entries of BibTeX: one for each run, one for slipfront and one for the article. Without an author the entries of runs have none.
-pub fn bibtex(runs: &[WholeRun], told: &Told) -> String {
+pub fn bibtex(runs: &[WholeRun], by: &Attribution) -> String {
     let mut text = String::new();
     for run in runs {
         let manifest = &run.manifest;
@@ -40,18 +42,14 @@ pub fn bibtex(runs: &[WholeRun], told: &Told) -> String {
             ),
         ];
         fields.extend(
-            told.author
+            by.author
                 .iter()
                 .map(|author| ("author", format!("{{{}}}", tex(&author.name)))),
         );
         if let Ok(finished) = manifest.finished.parse::<Timestamp>() {
             fields.push(("year", finished.strftime("%Y").to_string()));
         }
-        fields.extend(
-            told.licence
-                .iter()
-                .map(|licence| ("copyright", tex(&licence.name))),
-        );
+        fields.extend(by.licence.iter().map(|licence| ("copyright", tex(&licence.name))));
         let seal = manifest.checksum.get(..16).unwrap_or_default();
         text += &entry("misc", &format!("slipfront-run-{seal}"), &fields);
     }
@@ -127,8 +125,8 @@ fn quoted(text: &str) -> String {
 ///
 /// # Errors
 /// [`ExportError::NeedsAuthor`]: the format demands one.
-pub fn cff(runs: &[WholeRun], told: &Told) -> Result<String, ExportError> {
-    let author = told.author.as_ref().ok_or(ExportError::NeedsAuthor)?;
+pub fn cff(runs: &[WholeRun], by: &Attribution) -> Result<String, ExportError> {
+    let author = by.author.as_ref().ok_or(ExportError::NeedsAuthor)?;
     let names: Vec<&str> = runs.iter().map(|run| run.name.as_str()).collect();
     let mut text = format!(
         "cff-version: 1.2.0\nmessage: \"If you use these results, please cite them, slipfront and the article of its model.\"\n\
@@ -139,7 +137,7 @@ pub fn cff(runs: &[WholeRun], told: &Told) -> Result<String, ExportError> {
     if let Some(orcid) = &author.orcid {
         text += &format!("    orcid: {}\n", quoted(orcid));
     }
-    if let Some(licence) = &told.licence {
+    if let Some(licence) = &by.licence {
         let key = if licence.url == licence.name {
             "license-url"
         } else {

@@ -11,23 +11,23 @@ use slipfront_base::disk::json as json_bytes;
 use slipfront_base::number_format::count;
 use slipfront_base::text::shell_path;
 
+use super::attribution::Attribution;
 use super::citation::{ARTICLE_TITLE, ARTICLE_URL, ARTICLE_YEAR, DEVELOPERS, MODEL};
 use super::parameters::{Parameter, parameters};
-use super::{Told, WholeRun};
+use super::whole_run::WholeRun;
 use crate::manifest::ManifestFile;
-use crate::names::{
-    CASE, FIELDS, KYMOGRAPH, MANIFEST, MOVIE, PRECURSORS, RO_CRATE, RunPicture, SERIES, SUMMARY,
-};
+use crate::names::{CASE, FIELDS, KYMOGRAPH, MANIFEST, MOVIE, RO_CRATE, RunPicture, SERIES, SUMMARY};
+use crate::observers::tables;
 
 const CONTEXT: &str = "https://w3id.org/ro/crate/1.1/context";
 const SPECIFICATION: &str = "https://w3id.org/ro/crate/1.1";
 const PROFILE: &str = "https://w3id.org/ro/wfrun/process/0.5";
 
 /// The file `ro-crate-metadata.json` of runs, each with the path of its folder in the crate: empty, or ending with a slash.
-pub(super) fn metadata(runs: &[(&WholeRun, String)], told: &Told, published: Timestamp) -> Vec<u8> {
+pub(super) fn metadata(runs: &[(&WholeRun, String)], by: &Attribution, published: Timestamp) -> Vec<u8> {
     let mut graph = Graph::default();
     let names: Vec<&str> = runs.iter().map(|(run, _)| run.name.as_str()).collect();
-    let licence = told.licence.as_ref().map_or_else(
+    let licence = by.licence.as_ref().map_or_else(
         || json!("Not told: ask the authors before using the results."),
         |licence| link(&licence.url),
     );
@@ -40,7 +40,7 @@ pub(super) fn metadata(runs: &[(&WholeRun, String)], told: &Told, published: Tim
         "hasPart": one_or_all(runs.iter().flat_map(|(run, at)| parts(run, at)).collect()),
         "mentions": one_or_all(runs.iter().map(|(run, _)| link(&action_id(run))).collect()),
     });
-    let author = told.author.as_ref().map(|author| {
+    let author = by.author.as_ref().map(|author| {
         let id = author.orcid.as_deref().unwrap_or("#author");
         (id, json!({"name": author.name}))
     });
@@ -65,7 +65,7 @@ pub(super) fn metadata(runs: &[(&WholeRun, String)], told: &Told, published: Tim
     if let Some((id, person)) = author {
         graph.add(id, "Person", person);
     }
-    if let Some(licence) = &told.licence {
+    if let Some(licence) = &by.licence {
         let properties = json!({"name": licence.name, "description": "Licence of the results"});
         graph.add(&licence.url, "CreativeWork", properties);
     }
@@ -238,7 +238,6 @@ fn description(name: &str) -> String {
         (CASE, "The case with every default filled in"),
         (SUMMARY, "The numbers of the run"),
         (SERIES, "The curves over time"),
-        (PRECURSORS, "Events of slip of a slider that is driven at an edge"),
         (
             KYMOGRAPH,
             "Share of sliding blocks over place along the drive and time",
@@ -253,8 +252,9 @@ fn description(name: &str) -> String {
             "Provenance of the run; length and BLAKE3 checksum of every other file",
         ),
     ];
-    if let Some((_, meaning)) = known.iter().find(|(known, _)| *known == name) {
-        return (*meaning).to_owned();
+    let tables = tables().map(|table| (table.file, table.description));
+    if let Some((_, meaning)) = known.into_iter().chain(tables).find(|(known, _)| *known == name) {
+        return meaning.to_owned();
     }
     let is_shown = |picture: &RunPicture| picture.files().iter().any(|file| file == name);
     match RunPicture::ALL.into_iter().find(is_shown) {

@@ -4,7 +4,6 @@
 //! files are those that the manifest lists, or the journal of a run that is not complete, with the hash that they have.
 
 mod contents;
-pub mod copy;
 pub mod inspection;
 mod journal;
 pub mod unfinished;
@@ -378,7 +377,7 @@ impl RunFolder {
 
     /// Makes a finished temporary file the manifest. Every other file has its name on the disk before, so that no power failure
     /// leaves a manifest without the files that it lists, and the manifest has its own after.
-    fn place_manifest(&mut self, file: TempPath) -> Result<(), FolderError> {
+    pub(crate) fn place_manifest(&mut self, file: TempPath) -> Result<(), FolderError> {
         self.sync()?;
         self.place(MANIFEST, file)?;
         sync_folder(&self.path).map_err(|error| {
@@ -390,7 +389,7 @@ impl RunFolder {
     }
 
     /// Ends a run that is complete: removes the hidden subfolder.
-    fn close(self) {
+    pub(crate) fn close(self) {
         // Windows removes no folder that holds an open file.
         drop(self.journal);
         // The run is complete whether it can be removed or not.

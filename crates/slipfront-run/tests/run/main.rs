@@ -5,4 +5,3 @@
 mod fields;
 mod lateral_friction;
 mod regression;
-mod texture_files;

@@ -9,7 +9,7 @@ use slipfront_fuzz::Target;
 
 static TARGET: LazyLock<&Target> = LazyLock::new(|| {
     let name = std::env::var("SLIPFRONT_FUZZ").unwrap_or_default();
-    match Target::named(&name) {
+    match slipfront_fuzz::named(&name) {
         Some(target) => target,
         None => panic!("SLIPFRONT_FUZZ = {name:?} names no target"),
     }

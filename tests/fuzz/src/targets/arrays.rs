@@ -9,7 +9,8 @@ use slipfront_case::arrays::{ArrayError, HeightMapUnits, Room, Slab, mask_npy, p
 
 use crate::checks::readable;
 use crate::long::{LONG_BYTES, many, nested};
-use crate::{Memory, Target, Time, scratch};
+use crate::scratch;
+use crate::target::{Memory, Target, Time};
 
 /// The lattice that arrays are read for: not square, so that exchanged rows and columns are noticed.
 const NX: usize = 3;

@@ -6,7 +6,7 @@ use slipfront_case::case_file::CaseFile;
 use crate::checks::readable;
 use crate::long::{many, nested};
 use crate::scratch::repository;
-use crate::{Memory, Target, Time};
+use crate::target::{Memory, Target, Time};
 
 const CASES: &[&str] = &[
     "cases/*.toml",

@@ -18,7 +18,8 @@ use slipfront_run::running::Running;
 
 use super::json::long_objects;
 use crate::checks::readable;
-use crate::{Memory, Target, Time, scratch};
+use crate::scratch;
+use crate::target::{Memory, Target, Time};
 
 /// The first byte chooses one of [`CASES`]. The rest is read as it is, then with the right checksum, then with the right
 /// header as well, but for its columns; a run is resumed if the file can be read.

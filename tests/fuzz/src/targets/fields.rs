@@ -8,7 +8,8 @@ use slipfront_run::fields::{
 
 use crate::checks::readable;
 use crate::long::LONG_BYTES;
-use crate::{Memory, Target, Time, scratch};
+use crate::scratch;
+use crate::target::{Memory, Target, Time};
 
 /// Reads the whole file, then the maps of single fields.
 pub(crate) const FIELDS: Target = Target {

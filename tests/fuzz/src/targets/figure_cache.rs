@@ -5,7 +5,8 @@ use std::cell::OnceCell;
 use slipfront_paper::{Drawing, FigureCache, FigureData, MeasuredNumber, Panel, StepRule, Table};
 use slipfront_plot::{FieldMap, FieldMaps, FrictionCurve, Shape};
 
-use crate::{Memory, Target, Time, scratch};
+use crate::scratch;
+use crate::target::{Memory, Target, Time};
 
 /// The file as it is, then its contents with a valid checksum.
 pub(crate) const FIGURE_CACHE: Target = Target {

@@ -2,6 +2,8 @@
 
 use std::sync::atomic::AtomicBool;
 
+use slipfront_calibrate::CALIBRATIONS;
+use slipfront_design::DESIGNS;
 use slipfront_run::folder_error::FolderError;
 use slipfront_run::manifest::{Manifest, ManifestFile, Random};
 use slipfront_run::run_folder::RunFolder;
@@ -11,7 +13,8 @@ use slipfront_study::verify::{Extent, verify};
 
 use crate::checks::readable;
 use crate::long::{many, nested};
-use crate::{Memory, Target, Time, scratch};
+use crate::scratch;
+use crate::target::{Memory, Target, Time};
 
 /// The summary of a run.
 pub(crate) const SUMMARY: Target = Target {
@@ -259,7 +262,12 @@ fn manifest(bytes: &[u8]) {
             readable(&manifest.program());
         }
     }
-    match verify(&folder, Extent::Derived, &AtomicBool::new(false)) {
+    match verify(
+        &folder,
+        &[&DESIGNS, &CALIBRATIONS],
+        Extent::Derived,
+        &AtomicBool::new(false),
+    ) {
         Err(error) => readable(&error),
         Ok(verdict) => {
             for line in [vec![verdict.what], verdict.differences, verdict.notes].concat() {

@@ -8,7 +8,8 @@ use slipfront_run::running;
 
 use super::fields::long_headers;
 use crate::checks::readable;
-use crate::{Memory, Target, Time, scratch};
+use crate::scratch;
+use crate::target::{Memory, Target, Time};
 
 /// Reads the file.
 pub(crate) const KYMOGRAPH: Target = Target {

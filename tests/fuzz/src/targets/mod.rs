@@ -14,7 +14,7 @@ mod requests;
 mod series;
 mod study;
 
-use crate::Target;
+use crate::target::Target;
 
 /// All targets, in the order in which a run reads and writes their files.
 pub const TARGETS: [Target; 20] = [
@@ -39,3 +39,8 @@ pub const TARGETS: [Target; 20] = [
     plot::PLOT,
     requests::REQUESTS,
 ];
+
+/// The target of a name.
+pub fn named(name: &str) -> Option<&'static Target> {
+    TARGETS.iter().find(|target| target.name == name)
+}

@@ -8,7 +8,8 @@ use slipfront_run::summary::summary_json;
 use super::json::summary;
 use super::{fields, series};
 use crate::checks::readable;
-use crate::{Memory, Target, Time, scratch};
+use crate::scratch;
+use crate::target::{Memory, Target, Time};
 
 /// Summary, series, events of slip and fields of a run in one input, separated by [`END`]; the case is one of two, by the length of the
 /// input.

@@ -6,7 +6,7 @@ use slipfront_study::Shard;
 
 use crate::checks::readable;
 use crate::long::many;
-use crate::{Memory, Target, Time};
+use crate::target::{Memory, Target, Time};
 
 /// The text as a quantity of every dimension, as a shard and as the name of a field.
 pub(crate) const QUANTITY: Target = Target {

@@ -5,7 +5,8 @@ use slipfront_study::{FinishedRun, Outcome, Records};
 use super::json::{long_objects, summary};
 use crate::checks::readable;
 use crate::long::many;
-use crate::{Memory, Target, Time, scratch};
+use crate::scratch;
+use crate::target::{Memory, Target, Time};
 
 /// The file as it is, then with the right checksum in every line.
 pub(crate) const RECORDS: Target = Target {

@@ -13,7 +13,8 @@ use slipfront_lab::OfflineSession;
 
 use crate::checks::readable;
 use crate::long::{many, nested as nest};
-use crate::{Memory, Target, Time, scratch};
+use crate::scratch;
+use crate::target::{Memory, Target, Time};
 
 /// Messages of a page.
 pub(crate) const REQUESTS: Target = Target {

@@ -2,12 +2,13 @@
 
 use slipfront::Scales;
 use slipfront::observe::SlipEvent;
-use slipfront_run::precursors;
+use slipfront_run::observers::precursors;
 use slipfront_run::series::{SeriesRow, read_csv, to_csv};
 
 use crate::checks::readable;
 use crate::long::many;
-use crate::{Memory, Target, Time, scratch};
+use crate::scratch;
+use crate::target::{Memory, Target, Time};
 
 /// Target for `series.csv`.
 pub(crate) const SERIES: Target = Target {

@@ -5,7 +5,8 @@ use slipfront_study::{StudyFile, StudyFolder};
 
 use crate::checks::readable;
 use crate::long::{many, nested};
-use crate::{Memory, Target, Time, scratch};
+use crate::scratch;
+use crate::target::{Memory, Target, Time};
 
 /// The text of a study, its copy in the results folder, and the cases of some of its points.
 pub(crate) const STUDY_FILE: Target = Target {

@@ -1,0 +1,402 @@
+//! Estimates of unknowns from records, by a training.
+
+use rayon::prelude::*;
+use slipfront_regression::{Prediction, Regression};
+
+use crate::grid::Grid;
+use crate::intervals::Distribution;
+use crate::misfit::{Check, Misfit};
+use crate::normals::{Stream, noisy, normals};
+use crate::scaling::{Scaling, summaries_of, units_of_friction};
+use crate::training::Training;
+
+/// Width of an interval of 90 %, as a share of the range, above which the record does not determine the unknown.
+const UNDETERMINED: f64 = 0.8;
+
+/// Correlation from which errors of two unknowns make a pair, and least width of both intervals of a pair.
+const OF_A_PAIR: f64 = 0.8;
+const WIDTH_OF_A_PAIR: f64 = 0.2;
+
+/// A training whose summaries are regressed at one level of noise.
+#[derive(Clone, Debug)]
+pub struct Calibration {
+    /// Units of the friction of the records in their summaries.
+    units: Vec<f64>,
+    scaling: Scaling,
+    /// Shares of the ranges of the training runs: for every unknown the shares of all runs.
+    truths: Vec<Vec<f64>>,
+    regressions: Vec<Regression>,
+    check: Check,
+}
+
+/// Two unknowns that a record determines only together.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pair {
+    /// Numbers of the two unknowns.
+    pub unknowns: [usize; 2],
+    /// Correlation of the errors of both: above 0 where both may be larger than found together, below 0 where one may be
+    /// larger and the other smaller.
+    pub correlation: f64,
+}
+
+/// Estimate from records.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Estimate {
+    /// Distribution of every unknown over its range.
+    pub distributions: Vec<Distribution>,
+    /// Numbers of the unknowns that are not determined.
+    pub undetermined: Vec<usize>,
+    /// Unknowns that are determined only together.
+    pub pairs: Vec<Pair>,
+    /// Whether the model can have made the records.
+    pub misfit: Misfit,
+    /// Likeness of the records to every training run, in the predictions of the unknowns; the sum is 1.
+    likeness: Vec<f64>,
+    predictions: Vec<Prediction>,
+}
+
+/// Least number of training runs that count where records are compared with them.
+const LIKE_AT_LEAST: f64 = 50.0;
+
+/// Tables of all summaries of all runs beside those of the regressions: of the check of a record, and while it is learnt with and without scales,
+/// once as they are and once with a drift.
+const TABLES: usize = 1;
+const TABLES_TO_LEARN: usize = 4;
+
+impl Calibration {
+    /// Number of the regressions for this many unknowns: one for each, and that of the drift of a record.
+    pub(crate) fn n_regressions(unknowns: usize) -> usize {
+        unknowns + 1
+    }
+
+    /// Memory of a calibration from `runs` runs with `summaries` summaries each, in bytes.
+    pub(crate) fn bytes(runs: usize, unknowns: usize, summaries: usize) -> f64 {
+        let numbers = runs * (unknowns + 1 + TABLES * summaries);
+        let regressions = Self::n_regressions(unknowns) as f64;
+        (size_of::<f64>() * numbers) as f64 + regressions * Regression::bytes(runs, summaries)
+    }
+
+    /// Memory of tables while a calibration is learnt, in bytes.
+    pub(crate) fn bytes_to_learn(runs: usize, summaries: usize) -> f64 {
+        (size_of::<f64>() * TABLES_TO_LEARN * runs * summaries) as f64
+    }
+
+    /// Learns from a training the relation between records and unknowns, for records with white noise whose standard
+    /// deviation is the share `noise` of their mean friction. `grids` are those of the set-up.
+    pub fn new(training: &Training, grids: &[Grid], noise: f64) -> Self {
+        let shares: Vec<f64> = grids.iter().map(|grid| noise * grid.noise_share()).collect();
+        let units = units_of_friction(training, grids);
+        let rows: Vec<Vec<f64>> = training
+            .curves
+            .par_iter()
+            .enumerate()
+            .map(|(run, curves)| {
+                let records = curves.iter().zip(&shares).enumerate();
+                let noisy = records.map(|(record, (curve, &noise))| {
+                    noisy(curve, noise, normals(Stream::Noise, run, record))
+                });
+                summaries_of(&noisy.collect::<Vec<_>>(), &units)
+            })
+            .collect();
+        let scaling = Scaling::of(&rows);
+        let table: Vec<f64> = rows.iter().flat_map(|row| scaling.scaled(row)).collect();
+        let unknowns = training.points.first().map_or(0, Vec::len);
+        let truths: Vec<Vec<f64>> = (0..unknowns)
+            .map(|j| training.points.iter().map(|point| point[j]).collect())
+            .collect();
+        let learn = || {
+            truths
+                .par_iter()
+                .with_max_len(1)
+                .map(|truth| Regression::learn(&table, truth))
+                .collect()
+        };
+        let check = || Check::learn(training, [&shares, &units], &scaling, &table);
+        let (regressions, check) = rayon::join(learn, check);
+        Self {
+            units,
+            scaling,
+            truths,
+            regressions,
+            check,
+        }
+    }
+
+    /// Estimate from records, each made by [`Grid::record`].
+    pub fn estimate(&self, records: &[Vec<f64>]) -> Estimate {
+        let summaries = self.scaling.scaled(&summaries_of(records, &self.units));
+        let predictions: Vec<_> = self
+            .regressions
+            .iter()
+            .map(|regression| regression.predict(&summaries))
+            .collect();
+        let all = self.regressions.iter().zip(&self.truths).zip(&predictions);
+        let distributions: Vec<Distribution> = all
+            .map(|((regression, truth), &prediction)| Distribution::of(regression, truth, prediction))
+            .collect();
+        let widths: Vec<f64> = distributions
+            .iter()
+            .map(|one| {
+                let [low, high] = one.interval(0.9);
+                high - low
+            })
+            .collect();
+        let undetermined = (0..widths.len()).filter(|&j| widths[j] > UNDETERMINED).collect();
+        Estimate {
+            pairs: self.pairs(&summaries, &widths),
+            distributions,
+            undetermined,
+            misfit: self.check.misfit(records, &summaries),
+            likeness: self.likeness(&predictions),
+            predictions,
+        }
+    }
+
+    /// Likeness of a record with these predictions to every training run: a product of normal weights, wide enough to leave
+    /// enough runs.
+    fn likeness(&self, predictions: &[Prediction]) -> Vec<f64> {
+        let runs = self.truths.first().map_or(0, Vec::len);
+        let distance = |run: usize| -> f64 {
+            let all = self.regressions.iter().zip(predictions);
+            all.map(|(regression, prediction)| regression.distance(run, prediction))
+                .sum()
+        };
+        let distances: Vec<f64> = (0..runs).map(distance).collect();
+        let nearest = distances.iter().copied().fold(f64::INFINITY, f64::min);
+        let mut width = 1.0;
+        loop {
+            let weights: Vec<f64> = distances
+                .iter()
+                .map(|distance| libm::exp(-0.5 * (distance - nearest) / width))
+                .collect();
+            let sum: f64 = weights.iter().sum();
+            let squares: f64 = weights.iter().map(|weight| weight * weight).sum();
+            if sum * sum / squares >= LIKE_AT_LEAST.min(0.5 * runs as f64) {
+                return weights.iter().map(|weight| weight / sum).collect();
+            }
+            width *= 2.0;
+        }
+    }
+
+    /// Draws `count` points of the ranges from the joint distribution of all unknowns: residuals of whole training runs
+    /// around the predictions from the records.
+    pub fn sample(&self, estimate: &Estimate, count: usize) -> Vec<Vec<f64>> {
+        let mut sum = 0.0;
+        let sums: Vec<f64> = estimate
+            .likeness
+            .iter()
+            .map(|weight| {
+                sum += weight;
+                sum
+            })
+            .collect();
+        let point = |k: usize| {
+            let place = (k as f64 + 0.5) / count as f64;
+            let run = sums.partition_point(|&sum| sum < place).min(sums.len() - 1);
+            let all = self
+                .regressions
+                .iter()
+                .zip(&self.truths)
+                .zip(&estimate.predictions);
+            all.map(|((regression, truth), prediction)| regression.moved(run, truth[run], prediction))
+                .collect()
+        };
+        (0..count).map(point).collect()
+    }
+
+    /// Widths of the intervals of 90 % for records like these, for every unknown, as a share of its range: the mean over
+    /// training runs that are left out.
+    pub(crate) fn widths(&self, of: &Estimate) -> Vec<f64> {
+        let all: Vec<_> = self.regressions.iter().zip(&self.truths).collect();
+        all.par_iter()
+            .map(|(regression, truth)| {
+                let mut alike: Vec<usize> = (0..truth.len()).collect();
+                alike.sort_by(|&a, &b| of.likeness[b].total_cmp(&of.likeness[a]));
+                alike.truncate(LIKE_AT_LEAST as usize);
+                let widths = alike.iter().map(|&run| {
+                    let [low, high] =
+                        Distribution::of(regression, truth, regression.left_out(run)).interval(0.9);
+                    high - low
+                });
+                widths.sum::<f64>() / alike.len() as f64
+            })
+            .collect()
+    }
+
+    /// Pairs of unknowns whose errors go together in training runs like the record.
+    fn pairs(&self, summaries: &[f64], widths: &[f64]) -> Vec<Pair> {
+        let wide: Vec<usize> = (0..widths.len())
+            .filter(|&j| widths[j] > WIDTH_OF_A_PAIR)
+            .collect();
+        let mut pairs = Vec::new();
+        for (k, &one) in wide.iter().enumerate() {
+            for &other in &wide[k + 1..] {
+                let weights = self.regressions[one].likeness(summaries, &self.regressions[other]);
+                let errors = |j: usize| {
+                    let (truths, found) = (&self.truths[j], &self.regressions[j].predictions);
+                    truths.iter().zip(found).map(|(truth, found)| truth - found)
+                };
+                let products = |a: usize, b: usize| -> f64 {
+                    weights
+                        .iter()
+                        .zip(errors(a))
+                        .zip(errors(b))
+                        .map(|((w, a), b)| w * a * b)
+                        .sum()
+                };
+                let correlation = products(one, other) / (products(one, one) * products(other, other)).sqrt();
+                if correlation.abs() >= OF_A_PAIR {
+                    pairs.push(Pair {
+                        unknowns: [one, other],
+                        correlation,
+                    });
+                }
+            }
+        }
+        pairs
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::unknowns::design_point;
+    use slipfront_run::measured::{Measure, MeasuredRecord};
+
+    /// A curve with a slope and a level that the slope leads to, both known, and a number that no curve shows.
+    fn curve(point: &[f64]) -> Vec<f64> {
+        let (slope, level) = (0.02 + 0.03 * point[0], 0.5 + 0.5 * point[1]);
+        (0..100).map(|i| (slope * f64::from(i)).min(level)).collect()
+    }
+
+    fn training(runs: usize) -> Training {
+        let points: Vec<Vec<f64>> = (0..runs).map(|run| design_point(run, 3)).collect();
+        let curves = points.iter().map(|point| vec![curve(point)]).collect();
+        Training { points, curves }
+    }
+
+    fn grid() -> Grid {
+        grid_of(Measure::Coefficient)
+    }
+
+    fn grid_of(of: Measure) -> Grid {
+        let x: Vec<f64> = (0..100).map(f64::from).collect();
+        let record = MeasuredRecord {
+            y: x.clone(),
+            x,
+            along: Measure::Time,
+            of,
+            footer: None,
+        };
+        Grid::of(&record).unwrap()
+    }
+
+    fn calibration() -> Calibration {
+        Calibration::new(&training(300), &[grid()], 0.01)
+    }
+
+    #[test]
+    fn what_a_curve_shows_is_found_and_what_it_does_not_is_told() {
+        let calibration = calibration();
+        let point = [0.3, 0.6, 0.5];
+        let record = |number| noisy(&curve(&point), 0.01, normals(Stream::Noise, 1000, number));
+        let fit = calibration.estimate(&[record(0)]);
+        assert_eq!(fit.undetermined, [2]);
+        for (distribution, truth) in fit.distributions.iter().zip(point).take(2) {
+            // The interval of 99 % of both: a hundredth of the range would be missed by 1 % of noise over 100 values.
+            let [low, high] = distribution.interval(0.99);
+            assert!(
+                low <= truth && truth <= high && high - low < 0.1,
+                "{low} {truth} {high}"
+            );
+        }
+        assert!(fit.pairs.is_empty());
+        // Of good records some 4 % are refused: more than four of twenty would be one time in a thousand.
+        let refused = (0..20).filter(|&number| calibration.estimate(&[record(number)]).misfit.is_refused());
+        assert!(refused.count() <= 4);
+    }
+
+    #[test]
+    fn records_that_drift_or_are_of_another_kind_are_refused() {
+        let calibration = calibration();
+        let plain = curve(&[0.3, 0.6, 0.5]);
+        let noise = || normals(Stream::Noise, 1000, 0);
+        let drifting: Vec<f64> = plain
+            .iter()
+            .zip(0..)
+            .map(|(y, i)| y * (1.0 + 0.1 * f64::from(i) / 99.0))
+            .collect();
+        let drift = calibration.estimate(&[noisy(&drifting, 0.01, noise())]).misfit;
+        assert!(drift.has_drift && drift.drift[0] > 0.0, "{drift:?}");
+        let swings: Vec<f64> = plain
+            .iter()
+            .zip(0..)
+            .map(|(y, i)| y * (1.0 + 0.3 * f64::from(i % 7 - 3) / 3.0))
+            .collect();
+        let foreign = calibration.estimate(&[noisy(&swings, 0.01, noise())]).misfit;
+        assert!(foreign.distance > 1.0, "{foreign:?}");
+    }
+
+    /// A record in other units or of another slider has a friction that no training run has.
+    #[test]
+    fn records_of_another_friction_are_refused() {
+        let calibration = calibration();
+        for factor in [0.1, 5.0] {
+            let plain = curve(&[0.3, 0.6, 0.5]);
+            let other: Vec<f64> = plain.iter().map(|y| factor * y).collect();
+            let found = calibration.estimate(&[noisy(&other, 0.01, normals(Stream::Noise, 1000, 0))]);
+            assert!(found.misfit.is_outside(), "{factor}: {:?}", found.misfit);
+        }
+        let own = calibration.estimate(&[noisy(
+            &curve(&[0.0, 1.0, 0.0]),
+            0.01,
+            normals(Stream::Noise, 1000, 0),
+        )]);
+        assert!(!own.misfit.is_outside(), "{:?}", own.misfit);
+    }
+
+    /// Noise moves a mean that no unknown moves; 20 records of 1 % lie within 5 standard errors of the mean.
+    #[test]
+    fn a_mean_that_is_the_same_in_all_runs_refuses_no_good_record() {
+        let mut training = training(300);
+        training.curves = vec![vec![curve(&[0.3, 0.6, 0.5])]; 300];
+        let calibration = Calibration::new(&training, &[grid()], 0.01);
+        for number in 0..20 {
+            let noise = normals(Stream::Noise, 1000, number);
+            let found = calibration.estimate(&[noisy(&curve(&[0.3, 0.6, 0.5]), 0.01, noise)]);
+            assert!(!found.misfit.is_outside(), "{:?}", found.misfit);
+        }
+    }
+
+    /// Forces of a quintillionth of a newton tell as much as those of a newton: powers of two keep every digit.
+    #[test]
+    fn the_size_of_forces_does_not_matter() {
+        let found = |newtons: f64| {
+            let scale = |curve: &mut Vec<f64>| curve.iter_mut().for_each(|y| *y *= newtons);
+            let mut training = training(300);
+            training.curves.iter_mut().flatten().for_each(scale);
+            let mut record = noisy(&curve(&[0.3, 0.6, 0.5]), 0.01, normals(Stream::Noise, 1000, 0));
+            scale(&mut record);
+            Calibration::new(&training, &[grid_of(Measure::Force)], 0.01).estimate(&[record])
+        };
+        let of_newtons = found(1.0);
+        assert_eq!(of_newtons.undetermined, [2]);
+        for power in [-60, 60] {
+            assert_eq!(found(2.0_f64.powi(power)).distributions, of_newtons.distributions);
+        }
+    }
+
+    #[test]
+    fn threads_do_not_change_a_bit() {
+        let fit = |threads: usize| {
+            let pool = rayon::ThreadPoolBuilder::new()
+                .num_threads(threads)
+                .build()
+                .unwrap();
+            pool.install(|| {
+                Calibration::new(&training(120), &[grid()], 0.05).estimate(&[curve(&[0.2, 0.7, 0.1])])
+            })
+        };
+        assert_eq!(fit(1), fit(3));
+    }
+}

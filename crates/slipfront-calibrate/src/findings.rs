@@ -1,0 +1,123 @@
+//! Results of a calibration, as numbers.
+
+use serde::Serialize;
+
+use crate::calibration::Estimate;
+use crate::intervals::Distribution;
+use crate::misfit::Misfit;
+use crate::unknowns::Unknown;
+
+/// Probability of the intervals.
+pub(crate) const CONFIDENCE: f64 = 0.9;
+
+/// Content of `calibration.json`.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(crate) struct Findings {
+    /// Runs of the training.
+    pub(crate) runs: usize,
+    /// Standard deviation of the noise for which records were estimated, as a share of their mean friction.
+    pub(crate) noise: f64,
+    /// The unknown keys.
+    pub(crate) unknowns: Vec<Told>,
+    /// Pairs of unknowns that are determined only together.
+    pub(crate) pairs: Vec<ToldTogether>,
+    /// Tests of whether the model can have made the records.
+    pub(crate) misfit: Misfit,
+    /// Whether the model cannot have made the records.
+    pub(crate) is_refused: bool,
+    /// Share of the values of each record that lie within the band of the calibrated model, %.
+    pub(crate) within_band_percent: Vec<f64>,
+    /// Results on blocks of half the size.
+    pub(crate) finer: OnFinerBlocks,
+    /// Narrowing of the intervals by further experiments.
+    pub(crate) next: Vec<Further>,
+    pub(crate) version: &'static str,
+}
+
+/// An unknown, as estimated from the records, in its own unit.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(crate) struct Told {
+    pub(crate) key: String,
+    /// Range of the unknown.
+    pub(crate) range: [f64; 2],
+    pub(crate) unit: Option<String>,
+    pub(crate) median: f64,
+    /// Interval that holds the unknown with 90 %.
+    pub(crate) interval: [f64; 2],
+    /// Whether the records determine the unknown: the interval is less than 0.8 of the range.
+    pub(crate) is_determined: bool,
+    /// Median and interval on blocks of half the size.
+    pub(crate) on_finer_blocks: Option<(f64, [f64; 2])>,
+    /// Whether the median on blocks of half the size lies beyond the interval.
+    pub(crate) belongs_to_block: bool,
+}
+
+/// Two unknowns that are determined only together.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(crate) struct ToldTogether {
+    pub(crate) keys: [String; 2],
+    pub(crate) correlation: f64,
+}
+
+/// Runs on blocks of half the size.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum OnFinerBlocks {
+    /// Number of training runs.
+    Runs(usize),
+    /// No runs, because the file asks for none.
+    NotAskedFor,
+    /// No runs, for the given reason.
+    Impossible(String),
+}
+
+/// An experiment that may be made next.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(crate) struct Further {
+    /// The keys in which the experiment differs from the case.
+    pub(crate) set: String,
+    /// Widths of the intervals with it over those without, for every unknown.
+    pub(crate) narrowed_to: Vec<f64>,
+}
+
+impl Told {
+    pub(crate) fn of(unknown: &Unknown, estimate: &Estimate, number: usize) -> Self {
+        let (median, interval) = in_its_unit(unknown, &estimate.distributions[number]);
+        Self {
+            key: unknown.key().to_owned(),
+            range: [0.0, 1.0].map(|share| unknown.at(share)),
+            unit: unknown.unit().map(str::to_owned),
+            median,
+            interval,
+            is_determined: !estimate.undetermined.contains(&number),
+            on_finer_blocks: None,
+            belongs_to_block: false,
+        }
+    }
+
+    /// Adds the results on blocks of half the size.
+    pub(crate) fn hold_against(&mut self, unknown: &Unknown, finer: &Distribution) {
+        let (median, interval) = in_its_unit(unknown, finer);
+        let [low, high] = self.interval;
+        self.belongs_to_block = self.is_determined && !(low..=high).contains(&median);
+        self.on_finer_blocks = Some((median, interval));
+    }
+
+    /// A value of the unknown, as a text with its unit.
+    pub(crate) fn text(&self, value: f64) -> String {
+        let number = slipfront_base::number_format::four_digits(value);
+        match &self.unit {
+            Some(unit) => format!("{number} {unit}"),
+            None => number,
+        }
+    }
+}
+
+/// Median and interval of an unknown.
+fn in_its_unit(unknown: &Unknown, distribution: &Distribution) -> (f64, [f64; 2]) {
+    let interval = distribution.interval(CONFIDENCE);
+    (
+        unknown.at(distribution.quantile(0.5)),
+        interval.map(|share| unknown.at(share)),
+    )
+}

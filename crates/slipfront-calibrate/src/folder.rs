@@ -1,0 +1,482 @@
+//! The results folder of a calibration: its file, copies of the records, the journal of training runs, and the findings.
+
+use std::collections::{BTreeMap, HashMap};
+use std::io::Write;
+use std::path::{Path, PathBuf, absolute};
+use std::sync::atomic::AtomicBool;
+
+use serde::{Deserialize, Serialize};
+use slipfront_base::disk::{TEXT_MAX_BYTES, is_empty, is_same, make_folders, read_limited};
+use slipfront_run::folder_error::FolderError;
+use slipfront_run::manifest::ManifestFile;
+
+use crate::calibration::{Calibration, Estimate};
+use crate::file::{CalibrationFile, CalibrationKeys, GivenRecord};
+use crate::findings::{Findings, Further, OnFinerBlocks, Told, ToldTogether};
+use crate::grid::Grid;
+use crate::predicted::{PREDICTED, bands};
+use crate::report::{FOUND, Report};
+use crate::set_up::{Curves, SetUp};
+use crate::training::{Training, TrainingRun};
+use slipfront_study::journal::Journal;
+use slipfront_study::record::{JournalRecord, to_line};
+use slipfront_study::result_files::{Checksums, Others, ResultFiles};
+use slipfront_study::written_numbers::read_numbers;
+use slipfront_study::{ProjectKind, StudyError};
+
+/// The calibration file in the folder, with the base case as a table in it.
+const CALIBRATION: &str = "calibration.toml";
+
+/// The journal: a line for every training run.
+const TRAINING: &str = "training.jsonl";
+
+/// Beginning of the names of copies of records.
+const RECORD: &str = "record-";
+
+/// Number of points that are drawn from the estimate.
+const SAMPLE: usize = 400;
+
+/// A line of the journal.
+#[derive(Serialize, Deserialize)]
+struct CalibrationRun {
+    /// Identity of the set-up.
+    id: String,
+    #[serde(flatten)]
+    run: TrainingRun,
+}
+
+impl JournalRecord for CalibrationRun {
+    const KEYS: &'static [&'static str] = &["curves"];
+}
+
+/// Stage of a calibration.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CalibrationStage {
+    /// Runs of the case over the ranges.
+    Training,
+    /// Runs on blocks of half the size.
+    FinerBlocks,
+    /// Runs of experiments that may be made next.
+    Further,
+}
+
+/// Progress of a calibration.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct CalibrationProgress {
+    /// Present stage.
+    pub stage: CalibrationStage,
+    /// Number of runs of this call that have ended.
+    pub runs: usize,
+    /// Number of all runs of this call.
+    pub of: usize,
+}
+
+/// Runs of a calibration in progress.
+struct Work<'a> {
+    stop: &'a AtomicBool,
+    watch: &'a mut dyn FnMut(&CalibrationProgress),
+    ended: usize,
+    of: usize,
+}
+
+impl Work<'_> {
+    /// Shows that `runs` more runs have ended.
+    fn show(&mut self, stage: CalibrationStage, runs: usize) {
+        self.ended += runs;
+        (self.watch)(&CalibrationProgress {
+            stage,
+            runs: self.ended,
+            of: self.of,
+        });
+    }
+}
+
+/// Records, and the estimate of a training from them.
+struct Calibrated {
+    curves: Vec<Vec<f64>>,
+    calibration: Calibration,
+    estimate: Estimate,
+}
+
+impl Calibrated {
+    fn of(training: &Training, set_up: &SetUp, records: &[GivenRecord], noise: f64) -> Self {
+        let curves = records.iter().map(|record| record.grid.record(&record.measured));
+        let curves: Vec<Vec<f64>> = curves.collect();
+        let calibration = Calibration::new(training, &set_up.grids(), noise);
+        let estimate = calibration.estimate(&curves);
+        Self {
+            curves,
+            calibration,
+            estimate,
+        }
+    }
+}
+
+/// A results folder, with the runs that were kept in it.
+#[derive(Debug)]
+pub struct CalibrationFolder {
+    path: PathBuf,
+    files: ResultFiles,
+    /// Journal of the folder, which keeps other processes out, and holds training runs unless another folder has them.
+    journal: Journal,
+    /// Training runs that several calibrations share.
+    shared: Option<Journal>,
+    known: HashMap<(String, usize), Curves>,
+    /// Lines of the journals that failed their checksum.
+    pub damaged: usize,
+    file: CalibrationFile,
+    records: Vec<GivenRecord>,
+    set_up: SetUp,
+}
+
+/// Folders of calibrations.
+pub const CALIBRATIONS: ProjectKind = ProjectKind {
+    name: "calibration",
+    file: CALIBRATION,
+    journal: TRAINING,
+    find_again,
+};
+
+/// Calibrates again in another folder from the runs in the journal.
+fn find_again(folder: &Path, other: &Path, stop: &AtomicBool) -> Result<[usize; 2], StudyError> {
+    Journal::copy::<CalibrationRun>(folder, other, TRAINING)?;
+    let mut again = CalibrationFolder::again(folder, other)?;
+    let kept = again.n_kept();
+    again.find(stop, &mut |_| {})?;
+    Ok([kept, again.n_kept()])
+}
+
+/// Whether two paths, which need not exist yet, are those of one folder.
+fn is_same_place(one: &Path, other: &Path) -> bool {
+    let are_equal = || matches!((absolute(one), absolute(other)), (Ok(one), Ok(other)) if one == other);
+    is_same(one, other) || are_equal()
+}
+
+/// Opens the journal of training runs in a folder, which is made where it is missing; returns it, the runs in it, and the number of
+/// its damaged lines.
+fn open_journal(folder: &Path) -> Result<(Journal, Vec<CalibrationRun>, usize), StudyError> {
+    make_folders(folder).map_err(FolderError::unwritable(folder))?;
+    Journal::open(folder, TRAINING).map_err(|error| match error {
+        StudyError::NotRecords { path } => FolderError::Foreign { path }.into(),
+        error => error,
+    })
+}
+
+impl CalibrationFolder {
+    /// Opens a results folder: a new one, an empty one, or one of an earlier call for these records that no other process works in. Training
+    /// runs are kept in it, or in the folder `training`.
+    ///
+    /// # Errors
+    /// When the records cannot be read, or the ranges leave the bounds of the case: then nothing is written. When the folder holds other
+    /// files, or some that were edited since they were written and may not be replaced by `force`; when another process works in it, or
+    /// it cannot be written to.
+    pub fn open(
+        path: &Path,
+        training: Option<&Path>,
+        file: &CalibrationFile,
+        records: &[PathBuf],
+        force: bool,
+    ) -> Result<Self, StudyError> {
+        if let Some(training) = training
+            && is_same_place(path, training)
+        {
+            let path = training.to_owned();
+            return Err(StudyError::TrainingInResults { path });
+        }
+        let given = file.read(records)?;
+        file.set_up(&given)?;
+        let used = path.join(TRAINING).exists();
+        let is_free = || Ok(!path.exists() || is_empty(path)?);
+        if !used && !is_free().map_err(FolderError::unwritable(path))? {
+            return Err(StudyError::OtherThings {
+                what: "calibration",
+                path: path.to_owned(),
+            });
+        }
+        // A folder that another process works in is met before a new one is made.
+        let own = used.then(|| open_journal(path)).transpose()?;
+        let shared = training.map(open_journal).transpose()?;
+        let (journal, mut kept, mut damaged) = match own {
+            Some(own) => own,
+            None => open_journal(path)?,
+        };
+        let (text, copies) = file.portable()?;
+        let contents = contents(records)?;
+        for (name, bytes) in contents
+            .iter()
+            .chain([&(CALIBRATION.to_owned(), text.clone().into_bytes())])
+        {
+            let before = read_limited(&path.join(name), TEXT_MAX_BYTES).ok();
+            if before.is_some_and(|before| before != *bytes) {
+                return Err(StudyError::Changed {
+                    what: "calibration",
+                    path: path.to_owned(),
+                });
+            }
+        }
+        let mut given = ResultFiles::new(path, "calibration", force).begin();
+        given.copy_all(&copies)?;
+        for (name, bytes) in &contents {
+            given.write(name, |to| to.write_all(bytes))?;
+        }
+        given.write(CALIBRATION, |to| to.write_all(text.as_bytes()))?;
+        let files = given.place_given(Others::Stay)?;
+        let shared = shared.map(|(journal, more, more_damaged)| {
+            damaged += more_damaged;
+            kept.extend(more);
+            journal
+        });
+        let name = path.join(CALIBRATION).display().to_string();
+        let file = CalibrationFile::parse(&text, &name, &file.name, path)?;
+        let names: Vec<PathBuf> = contents.iter().map(|(name, _)| path.join(name)).collect();
+        let records = file.read(&names)?;
+        Ok(Self {
+            path: path.to_owned(),
+            files,
+            journal,
+            shared,
+            known: kept
+                .into_iter()
+                .map(|kept| ((kept.id, kept.run.run), kept.run.curves))
+                .collect(),
+            damaged,
+            set_up: file.set_up(&records)?,
+            file,
+            records,
+        })
+    }
+
+    /// The calibration in one folder, to be found again in another.
+    fn again(folder: &Path, other: &Path) -> Result<Self, StudyError> {
+        let file = CalibrationFile::load(&folder.join(CALIBRATION))?;
+        let listed = Checksums::read(folder)?.unwrap_or_default().files;
+        let mut records = BTreeMap::new();
+        for ManifestFile { name, .. } in listed {
+            let number = name
+                .strip_prefix(RECORD)
+                .and_then(|rest| rest.split('.').next()?.parse::<usize>().ok());
+            if let Some(number) = number {
+                records.insert(number, folder.join(name));
+            }
+        }
+        let records: Vec<PathBuf> = records.into_values().collect();
+        file.check_memory(&records, rayon::current_num_threads())?;
+        Self::open(other, None, &file, &records, false)
+    }
+
+    /// Path of the folder.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Number of training runs that are known.
+    pub fn n_kept(&self) -> usize {
+        self.known.len()
+    }
+
+    /// Trains, fits the records, runs blocks of half the size and further experiments, writes the findings, and returns them
+    /// as a text.
+    ///
+    /// # Errors
+    /// When runs cannot be made or kept, after a stop, and when the system refuses to write.
+    pub fn find(
+        &mut self,
+        stop: &AtomicBool,
+        watch: &mut dyn FnMut(&CalibrationProgress),
+    ) -> Result<String, StudyError> {
+        let keys = self.file.keys.clone();
+        let set_up = self.set_up.clone();
+        let (finer, further) = (self.finer(), self.file.further(&set_up)?);
+        let mut work = Work {
+            stop,
+            watch,
+            ended: 0,
+            of: self.n_missing(&finer, &further)?,
+        };
+        let training = self.train(&mut work, CalibrationStage::Training, &set_up, keys.runs)?;
+        let told = Calibrated::of(&training, &set_up, &self.records, keys.noise);
+        let estimate = &told.estimate;
+        let unknowns = set_up.unknowns.iter().enumerate();
+        let mut unknowns: Vec<Told> = unknowns
+            .map(|(number, unknown)| Told::of(unknown, estimate, number))
+            .collect();
+        let finer = match finer {
+            Ok(Some(finer)) => {
+                let training =
+                    self.train(&mut work, CalibrationStage::FinerBlocks, &finer, keys.finer_runs)?;
+                let there = Calibrated::of(&training, &finer, &self.records, keys.noise).estimate;
+                let found = finer.unknowns.iter().zip(&there.distributions);
+                for (told, (unknown, found)) in unknowns.iter_mut().zip(found) {
+                    told.hold_against(unknown, found);
+                }
+                OnFinerBlocks::Runs(keys.finer_runs as usize)
+            }
+            Ok(None) => OnFinerBlocks::NotAskedFor,
+            Err(reason) => OnFinerBlocks::Impossible(reason),
+        };
+        let next = self.weigh(&mut work, further, &training, &told)?;
+        let sample = |points| told.calibration.sample(estimate, points);
+        let bands = bands(&set_up, &sample(PREDICTED), keys.noise, stop)?;
+        let within = bands.iter().zip(&told.curves);
+        let findings = Findings {
+            runs: keys.runs as usize,
+            noise: keys.noise,
+            pairs: pairs(&set_up, estimate),
+            is_refused: estimate.misfit.is_refused(),
+            within_band_percent: within.map(|(band, curve)| band.holds_percent(curve)).collect(),
+            misfit: estimate.misfit.clone(),
+            unknowns,
+            finer,
+            next,
+            version: env!("CARGO_PKG_VERSION"),
+        };
+        let mut batch = self.files.begin();
+        let mut report = Report {
+            batch: &mut batch,
+            set_up: &set_up,
+            findings: &findings,
+        };
+        let text = report.write(&told.curves, &bands, &sample(SAMPLE))?;
+        batch.place(Others::Go)?;
+        Ok(text)
+    }
+
+    /// Trains with each of the further experiments beside the records, and returns how much narrower the intervals are.
+    fn weigh(
+        &mut self,
+        work: &mut Work,
+        further: Vec<(String, SetUp)>,
+        training: &Training,
+        told: &Calibrated,
+    ) -> Result<Vec<Further>, StudyError> {
+        let CalibrationKeys { runs, noise, .. } = self.file.keys;
+        let grids: Vec<Grid> = self.set_up.grids();
+        let widths = told.calibration.widths(&told.estimate);
+        let mut weighed = Vec::new();
+        for (set, further) in further {
+            let more = self.train(work, CalibrationStage::Further, &further, runs)?;
+            let grids = [grids.clone(), further.grids()].concat();
+            let with = Calibration::new(&training.clone().with(more), &grids, noise);
+            let with = with.widths(&told.estimate);
+            weighed.push(Further {
+                set,
+                narrowed_to: with
+                    .iter()
+                    .zip(&widths)
+                    .map(|(with, without)| with / without)
+                    .collect(),
+            });
+        }
+        Ok(weighed)
+    }
+
+    /// The set-up on blocks of half the size; none if the file does not ask for it, or a reason why there is none.
+    fn finer(&self) -> Result<Option<SetUp>, String> {
+        if self.file.keys.finer_runs == 0 {
+            return Ok(None);
+        }
+        self.set_up.finer().map(Some)
+    }
+
+    /// Trains, or goes on from an earlier call.
+    fn train(
+        &mut self,
+        work: &mut Work,
+        stage: CalibrationStage,
+        set_up: &SetUp,
+        runs: u32,
+    ) -> Result<Training, StudyError> {
+        let runs = runs as usize;
+        let id = set_up.identity()?;
+        let of_set_up: HashMap<usize, Curves> = (0..runs)
+            .filter_map(|run| Some((run, self.known.get(&(id.clone(), run))?.clone())))
+            .collect();
+        work.show(stage, 0);
+        let Self {
+            shared,
+            journal,
+            known,
+            ..
+        } = self;
+        let journal = shared.as_mut().unwrap_or(journal);
+        let stop = work.stop;
+        let mut keep = |made: &[TrainingRun]| {
+            let lines: Vec<u8> = made
+                .iter()
+                .flat_map(|run| {
+                    to_line(&CalibrationRun {
+                        id: id.clone(),
+                        run: run.clone(),
+                    })
+                })
+                .collect();
+            journal.append(&lines)?;
+            known.extend(made.iter().map(|run| ((id.clone(), run.run), run.curves.clone())));
+            work.show(stage, made.len());
+            Ok(())
+        };
+        Training::run(set_up, runs, of_set_up, &mut keep, stop)
+    }
+
+    /// Number of runs of all set-ups that are not known yet.
+    fn n_missing(
+        &self,
+        finer: &Result<Option<SetUp>, String>,
+        further: &[(String, SetUp)],
+    ) -> Result<usize, StudyError> {
+        let CalibrationKeys { runs, finer_runs, .. } = self.file.keys;
+        let finer = finer.iter().flatten().map(|finer| (finer, finer_runs));
+        let further = further.iter().map(|(_, further)| (further, runs));
+        let all = std::iter::once((&self.set_up, runs)).chain(finer).chain(further);
+        let missing = all.map(|(set_up, runs)| {
+            let id = set_up.identity()?;
+            let is_missing = |run: &usize| !self.known.contains_key(&(id.clone(), *run));
+            Ok((0..runs as usize).filter(is_missing).count())
+        });
+        missing.sum()
+    }
+}
+
+/// The part of the findings that decides whether they promise anything.
+#[derive(Deserialize)]
+struct Decided {
+    is_refused: bool,
+}
+
+impl CalibrationFolder {
+    /// Refuses findings about records that the model cannot have made.
+    ///
+    /// # Errors
+    /// A sentence that names the findings; when the folder has none.
+    pub fn expect_own_records(&self) -> Result<(), StudyError> {
+        let [numbers, words] = FOUND.map(|name| self.path().join(name));
+        match read_numbers(&numbers)? {
+            Decided { is_refused: false } => Ok(()),
+            Decided { is_refused: true } => Err(StudyError::Refused { path: words }),
+        }
+    }
+}
+
+/// Copies of records: their names in the folder, and their contents.
+fn contents(records: &[PathBuf]) -> Result<Vec<(String, Vec<u8>)>, StudyError> {
+    let copy = |(number, path): (usize, &PathBuf)| {
+        let ending = path
+            .extension()
+            .and_then(|ending| ending.to_str())
+            .unwrap_or("csv");
+        let bytes = read_limited(path, TEXT_MAX_BYTES).map_err(FolderError::read(path))?;
+        Ok((format!("{RECORD}{}.{ending}", number + 1), bytes))
+    };
+    records.iter().enumerate().map(copy).collect()
+}
+
+/// Pairs of unknowns that are determined only together.
+fn pairs(set_up: &SetUp, estimate: &Estimate) -> Vec<ToldTogether> {
+    let of = |pair: &crate::calibration::Pair| ToldTogether {
+        keys: pair
+            .unknowns
+            .map(|number| set_up.unknowns[number].key().to_owned()),
+        correlation: pair.correlation,
+    };
+    estimate.pairs.iter().map(of).collect()
+}

@@ -1,0 +1,193 @@
+//! Equal steps of time or displacement at which a record and the curves of training are compared.
+
+use slipfront_run::measured::{Measure, MeasuredRecord};
+use slipfront_run::run_curve::RunCurve;
+
+use crate::summaries::MIN_VALUES;
+
+/// Largest number of values of a curve from which summaries are made: more values are averaged over neighbours.
+const MAX_VALUES: usize = 400;
+
+/// Places at which friction of a record is known.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Grid {
+    /// Quantity of the places: time or displacement.
+    along: Measure,
+    /// Quantity at the places: force or coefficient.
+    of: Measure,
+    start: f64,
+    step: f64,
+    /// Number of values of the record.
+    count: usize,
+}
+
+impl Grid {
+    /// As many equal steps as a record has values, from its first to its last; none for a record that is too short or stands
+    /// still.
+    pub fn of(record: &MeasuredRecord) -> Option<Self> {
+        let (count, start, end) = (record.x.len(), *record.x.first()?, *record.x.last()?);
+        let step = (end - start) / (count - 1).max(1) as f64;
+        (count >= MIN_VALUES && step > 0.0).then_some(Self {
+            along: record.along,
+            of: record.of,
+            start,
+            step,
+            count,
+        })
+    }
+
+    /// Quantity of the places.
+    pub(crate) fn along(&self) -> Measure {
+        self.along
+    }
+
+    /// Quantity at the places.
+    pub(crate) fn friction(&self) -> Measure {
+        self.of
+    }
+
+    /// The grid over the same path of a drive that takes `times` times as long for it; displacements stay.
+    pub(crate) fn slower(&self, times: f64) -> Self {
+        let times = if self.along == Measure::Time { times } else { 1.0 };
+        Self {
+            start: times * self.start,
+            step: times * self.step,
+            ..self.clone()
+        }
+    }
+
+    /// The last place.
+    pub fn end(&self) -> f64 {
+        self.start + (self.count - 1) as f64 * self.step
+    }
+
+    /// Number of values that are averaged to one.
+    fn merged(&self) -> usize {
+        self.count.div_ceil(MAX_VALUES)
+    }
+
+    /// Number of averages, which are the values of a curve.
+    pub(crate) fn n_values(&self) -> usize {
+        self.count / self.merged()
+    }
+
+    /// Standard deviation of the noise of an average over that of a value.
+    pub(crate) fn noise_share(&self) -> f64 {
+        1.0 / (self.merged() as f64).sqrt()
+    }
+
+    /// Places of the averages.
+    pub fn places(&self) -> Vec<f64> {
+        let merged = self.merged();
+        let middle = 0.5 * (merged - 1) as f64;
+        (0..self.n_values())
+            .map(|k| self.start + ((k * merged) as f64 + middle) * self.step)
+            .collect()
+    }
+
+    /// A record in equal steps, averaged over neighbours.
+    pub fn record(&self, record: &MeasuredRecord) -> Vec<f64> {
+        self.averages(&record.x, &record.y)
+    }
+
+    /// The curve of a run in the form of a record; none if the run ends before, or its friction is a torque.
+    pub(crate) fn curve(&self, curve: &RunCurve) -> Option<Vec<f64>> {
+        let x = curve.along(self.along);
+        // What rounding makes of the end of a run is not missed.
+        if *x.last()? < self.end() - 0.5 * self.step {
+            return None;
+        }
+        let mut values = self.averages(x, &curve.coefficient);
+        if self.of == Measure::Force {
+            let unit = curve.unit_force?;
+            values.iter_mut().for_each(|value| *value *= unit);
+        }
+        Some(values)
+    }
+
+    /// Means over neighbours of y at equal steps, interpolated between the places x, which never fall.
+    fn averages(&self, x: &[f64], y: &[f64]) -> Vec<f64> {
+        let mut after = 0;
+        let values: Vec<f64> = (0..self.count)
+            .map(|k| {
+                let place = self.start + k as f64 * self.step;
+                while after + 1 < x.len() && x[after] < place {
+                    after += 1;
+                }
+                let before = after.saturating_sub(1);
+                if x[after] <= place || x[after] == x[before] {
+                    return y[after];
+                }
+                let share = ((place - x[before]) / (x[after] - x[before])).max(0.0);
+                y[before] + share * (y[after] - y[before])
+            })
+            .collect();
+        let merged = self.merged();
+        let means = values.chunks_exact(merged);
+        means
+            .map(|chunk| chunk.iter().sum::<f64>() / merged as f64)
+            .collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn record(count: usize) -> MeasuredRecord {
+        let x: Vec<f64> = (0..count).map(|k| 0.5 * k as f64).collect();
+        let y = x.iter().map(|x| 3.0 * x).collect();
+        MeasuredRecord {
+            x,
+            y,
+            along: Measure::Time,
+            of: Measure::Coefficient,
+            footer: None,
+        }
+    }
+
+    #[test]
+    fn a_record_in_equal_steps_is_itself() {
+        let record = record(50);
+        let grid = Grid::of(&record).unwrap();
+        assert_eq!((grid.places(), grid.record(&record)), (record.x, record.y));
+    }
+
+    #[test]
+    fn neighbours_of_a_long_record_are_averaged() {
+        let record = record(1000);
+        let grid = Grid::of(&record).unwrap();
+        let (places, values) = (grid.places(), grid.record(&record));
+        assert_eq!((places.len(), places[0], places[1]), (333, 0.5, 2.0));
+        assert!(places.iter().zip(values).all(|(x, y)| (y - 3.0 * x).abs() < 1e-9));
+        assert_eq!(grid.noise_share(), 1.0 / 3.0_f64.sqrt());
+    }
+
+    #[test]
+    fn what_has_no_length_has_no_grid() {
+        let still = MeasuredRecord {
+            x: vec![1.0; 100],
+            y: vec![1.0; 100],
+            along: Measure::Time,
+            of: Measure::Force,
+            footer: None,
+        };
+        assert_eq!(Grid::of(&still), None);
+        assert_eq!(Grid::of(&record(MIN_VALUES - 1)), None);
+    }
+
+    #[test]
+    fn a_run_that_ends_too_soon_has_no_curve() {
+        let record = record(50);
+        let grid = Grid::of(&record).unwrap();
+        let mut run = RunCurve {
+            displacement: record.x.clone(),
+            time: record.x,
+            coefficient: record.y,
+            unit_force: None,
+        };
+        assert!(grid.curve(&run).is_some());
+        run.time.truncate(48);
+        assert_eq!(grid.curve(&run), None);
+    }
+}

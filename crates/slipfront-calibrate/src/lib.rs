@@ -1,0 +1,36 @@
+//! Calibration: unknown keys of a case from measured records, with intervals that hold what they promise.
+//!
+//! ```text
+//! CalibrationFile, records -> SetUp -> Training (curves of runs over the ranges) -> Calibration (what their summaries tell) -> Estimate
+//! ```
+//!
+//! Least squares on the curve fails where friction sticks and slips, since the phases of that are chance. Here every curve becomes
+//! `summaries`, every unknown is predicted from them by `regression`, and `intervals` are those that hold the truth for runs that the
+//! prediction has not seen.
+
+mod calibration;
+mod file;
+mod findings;
+mod folder;
+mod grid;
+mod intervals;
+mod memory;
+mod misfit;
+mod normals;
+mod predicted;
+mod report;
+mod scaling;
+mod set_up;
+mod summaries;
+mod training;
+mod unknowns;
+
+pub use calibration::{Calibration, Estimate, Pair};
+pub use file::{CalibrationFile, CalibrationKeys};
+pub use folder::{CALIBRATIONS, CalibrationFolder, CalibrationProgress, CalibrationStage};
+pub use grid::Grid;
+pub use intervals::Distribution;
+pub use misfit::Misfit;
+pub use set_up::{Conditions, Curves, SetUp};
+pub use training::{KeepRuns, Training, TrainingRun};
+pub use unknowns::{Unknown, UnknownError, design_point};

@@ -1,0 +1,167 @@
+//! Whether the model can have made a record.
+
+use rayon::prelude::*;
+use serde::Serialize;
+use slipfront_regression::{Regression, squared_distances};
+
+use crate::intervals::Distribution;
+use crate::normals::{Stream, draws, noisy, normals};
+use crate::scaling::{Scaling, summaries_of};
+use crate::summaries::level;
+use crate::training::Training;
+
+/// Largest drift in training: friction that rises or falls by this share of itself over the record.
+const MAX_DRIFT: f64 = 0.12;
+
+/// Share of good records that each of the two checks refuses.
+const REFUSED_BY_DRIFT: f64 = 0.02;
+const REFUSED_AS_FOREIGN: f64 = 0.01;
+
+/// Number of the nearest runs over which the distance of a record is averaged.
+const NEAREST: usize = 5;
+
+/// Test that distinguishes records of the model from others.
+#[derive(Clone, Debug)]
+pub(crate) struct Check {
+    drift: Regression,
+    /// The drift of every training run, from 0 for the largest fall to 1 for the largest rise.
+    drifts: Vec<f64>,
+    /// Scaled summaries of the training runs.
+    table: Vec<f64>,
+    /// Distance of a run to the others that few exceed.
+    far: f64,
+    /// The least and the largest mean of the second half in the training, for each record, with noise: where no unknown moves the mean,
+    /// noise alone makes records differ.
+    levels: Vec<[f64; 2]>,
+}
+
+/// Tests of whether the model can have made a record.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Misfit {
+    /// Drift of friction over the record, as a share of friction: an interval that holds it for all records but 20 in 1000.
+    pub drift: [f64; 2],
+    /// Whether the interval leaves out 0.
+    pub has_drift: bool,
+    /// Distance of the summaries from those of the nearest training runs, over the distance that 10 training runs in 1000
+    /// exceed.
+    pub distance: f64,
+    /// Mean of the second half of the record whose mean lies farthest outside of the means of the training runs, and the least and
+    /// the largest of these. Scaled summaries do not tell it, since what is far away is drawn nearer there.
+    pub level: [f64; 3],
+}
+
+/// Part of the width of their range by which a mean may lie outside of the means of the training runs: one more run may well exceed all
+/// others, but hardly by a quarter of what these differ.
+const MAX_OUTSIDE: f64 = 0.25;
+
+/// How far a mean lies outside of a range, over its width; 0 within.
+fn outside([level, low, high]: [f64; 3]) -> f64 {
+    let beyond = (low - level).max(level - high);
+    if beyond > 0.0 { beyond / (high - low) } else { 0.0 }
+}
+
+impl Misfit {
+    /// Whether the records are refused as none of the model; some 4 % of the model's own are.
+    pub fn is_refused(&self) -> bool {
+        self.has_drift || self.distance > 1.0 || self.is_outside()
+    }
+
+    /// Whether friction of a record is of a size that no training run comes near.
+    pub fn is_outside(&self) -> bool {
+        outside(self.level) > MAX_OUTSIDE
+    }
+}
+
+/// A record with a drift: y (1 + drift i/(n - 1)).
+fn drifting(curve: &[f64], drift: f64) -> Vec<f64> {
+    let last = (curve.len() - 1) as f64;
+    let values = curve.iter().enumerate();
+    values.map(|(i, y)| y * (1.0 + drift * i as f64 / last)).collect()
+}
+
+/// The drift at a share of the range of drifts.
+fn drift_at(share: f64) -> f64 {
+    MAX_DRIFT * (2.0 * share - 1.0)
+}
+
+impl Check {
+    /// Learns drift from the training runs, each with a drift of its own; of every record there are the noise, as a share
+    /// of friction, and the unit of friction in its summaries.
+    pub(crate) fn learn(
+        training: &Training,
+        [noise, units]: [&[f64]; 2],
+        scaling: &Scaling,
+        table: &[f64],
+    ) -> Self {
+        let runs = training.curves.len();
+        let drifts: Vec<f64> = (0..runs)
+            .map(|run| draws(Stream::Drift, run, 0).uniform())
+            .collect();
+        let (rows, levels): (Vec<Vec<f64>>, Vec<Vec<f64>>) = training
+            .curves
+            .par_iter()
+            .enumerate()
+            .map(|(run, curves)| {
+                let records = curves.iter().zip(noise).enumerate();
+                let records = records.map(|(record, (curve, &noise))| {
+                    let generated: Vec<f64> = normals(Stream::DriftNoise, run, record)
+                        .take(curve.len())
+                        .collect();
+                    let record_of = |curve: &[f64]| noisy(curve, noise, generated.iter().copied());
+                    let drifting = record_of(&drifting(curve, drift_at(drifts[run])));
+                    (drifting, level(&record_of(curve)))
+                });
+                let (drifting, levels): (Vec<_>, Vec<_>) = records.unzip();
+                (scaling.scaled(&summaries_of(&drifting, units)), levels)
+            })
+            .unzip();
+        let drift = Regression::learn(&rows.concat(), &drifts);
+        let d = table.len() / runs;
+        let distances = squared_distances(table, table, d);
+        let mut nearest: Vec<f64> = distances
+            .chunks_exact(runs)
+            .map(|row| distance(row, NEAREST + 1))
+            .collect();
+        nearest.sort_by(f64::total_cmp);
+        let place = ((1.0 - REFUSED_AS_FOREIGN) * (runs + 1) as f64) as usize;
+        Self {
+            drift,
+            drifts,
+            table: table.to_vec(),
+            far: nearest[place.min(runs - 1)],
+            levels: (0..noise.len())
+                .map(|record| {
+                    let levels = levels.iter().map(|levels| levels[record]);
+                    levels.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], level| {
+                        [low.min(level), high.max(level)]
+                    })
+                })
+                .collect(),
+        }
+    }
+
+    /// Tests of records with these scaled summaries.
+    pub(crate) fn misfit(&self, records: &[Vec<f64>], summaries: &[f64]) -> Misfit {
+        let drift = Distribution::of(&self.drift, &self.drifts, self.drift.predict(summaries));
+        let drift = drift.interval(1.0 - REFUSED_BY_DRIFT).map(drift_at);
+        let row = squared_distances(summaries, &self.table, summaries.len());
+        let levels = records.iter().zip(&self.levels);
+        let levels = levels.map(|(record, &[low, high])| [level(record), low, high]);
+        Misfit {
+            has_drift: drift[0] > 0.0 || drift[1] < 0.0,
+            drift,
+            distance: distance(&row, NEAREST) / self.far,
+            level: levels
+                .max_by(|one, other| outside(*one).total_cmp(&outside(*other)))
+                .unwrap_or_default(),
+        }
+    }
+}
+
+/// Root of the mean of the least squared distances; for a run among all, the first is the distance to itself.
+fn distance(row: &[f64], nearest: usize) -> f64 {
+    let mut row = row.to_vec();
+    let nearest = nearest.min(row.len());
+    row.select_nth_unstable_by(nearest - 1, f64::total_cmp);
+    (row[..nearest].iter().sum::<f64>() / NEAREST as f64).sqrt()
+}

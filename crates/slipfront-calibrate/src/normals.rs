@@ -1,0 +1,38 @@
+//! Noise of synthetic records.
+
+use slipfront_study::draws::Draws;
+
+/// Purpose of random numbers; each purpose has numbers of its own.
+#[derive(Clone, Copy)]
+pub(crate) enum Stream {
+    /// Noise of the curves of training.
+    Noise = 0,
+    /// Drift of the curves from which the test of a record learns.
+    Drift = 1,
+    /// Noise of the curves with a drift.
+    DriftNoise = 2,
+    /// Runs that are drawn from an estimate, and noise of their curves.
+    Predicted = 3,
+}
+
+/// The numbers of one record of one training run.
+pub(crate) fn draws(stream: Stream, run: usize, record: usize) -> Draws {
+    let calibration = u64::from_le_bytes(*b"calibrat");
+    Draws::of([calibration, run as u64, record as u64, stream as u64])
+}
+
+/// Standard normal numbers.
+pub(crate) fn normals(stream: Stream, run: usize, record: usize) -> impl Iterator<Item = f64> {
+    let mut draws = draws(stream, run, record);
+    std::iter::repeat_with(move || draws.normal())
+}
+
+/// Friction with noise of this share of its mean.
+pub(crate) fn noisy(curve: &[f64], noise: f64, normals: impl Iterator<Item = f64>) -> Vec<f64> {
+    let deviation = noise * curve.iter().sum::<f64>().abs() / curve.len() as f64;
+    curve
+        .iter()
+        .zip(normals)
+        .map(|(y, z)| y + deviation * z)
+        .collect()
+}

@@ -1,0 +1,325 @@
+//! Results of a calibration: numbers, tables, a case that runs, pictures, and a text for a person.
+
+use std::io::Write;
+
+use slipfront_base::number_format::{count, four_digits, in_print, si_prefix};
+use slipfront_base::text::{COLUMNS, wrapped};
+use slipfront_plot::{Picture, PictureError, Response, Responses};
+use slipfront_run::measured::Measure;
+use slipfront_run::names::CASE;
+
+use crate::findings::{Findings, OnFinerBlocks, Told};
+use crate::predicted::{Band, PREDICTED};
+use crate::set_up::{Conditions, SetUp};
+use slipfront_study::StudyError;
+use slipfront_study::result_files::Batch;
+use slipfront_study::text_table::table;
+
+/// The findings, as numbers and as a text.
+pub(crate) const FOUND: [&str; 2] = ["calibration.json", "calibration.txt"];
+
+/// Points that are drawn from the joint estimate of all unknowns, a row each.
+const POSTERIOR: &str = "posterior.csv";
+
+/// Writer of the results of a calibration.
+pub(crate) struct Report<'a> {
+    /// Files of the results.
+    pub(crate) batch: &'a mut Batch,
+    pub(crate) set_up: &'a SetUp,
+    pub(crate) findings: &'a Findings,
+}
+
+impl Report<'_> {
+    /// Writes the findings for these records, and returns them as a text.
+    pub(crate) fn write(
+        &mut self,
+        records: &[Vec<f64>],
+        bands: &[Band],
+        sample: &[Vec<f64>],
+    ) -> Result<String, StudyError> {
+        let [numbers, words] = FOUND;
+        let findings = self.findings;
+        self.batch
+            .write(numbers, |to| Ok(serde_json::to_writer_pretty(to, findings)?))?;
+        let set_up = self.set_up;
+        self.batch
+            .write(POSTERIOR, |to| Ok(write_sample(set_up, sample, to)?))?;
+        for (number, ((record, band), conditions)) in
+            records.iter().zip(bands).zip(&self.set_up.conditions).enumerate()
+        {
+            self.write_record(number + 1, record, band, conditions)?;
+        }
+        let case = self.case()?;
+        self.batch.write(CASE, |to| to.write_all(case.as_bytes()))?;
+        let text = in_words(self.findings);
+        self.batch.write(words, |to| to.write_all(text.as_bytes()))?;
+        Ok(text)
+    }
+
+    /// The case with the median of every unknown.
+    fn case(&self) -> Result<String, StudyError> {
+        let medians: Vec<f64> = self
+            .findings
+            .unknowns
+            .iter()
+            .zip(&self.set_up.unknowns)
+            .map(|(told, unknown)| unknown.share_of(told.median))
+            .collect();
+        let set = self.set_up.set_to(&medians);
+        let set: Vec<_> = set.iter().collect();
+        Ok(self.set_up.base.parse()?.with(&set)?.to_toml()?)
+    }
+
+    /// A record and the band of the calibrated model, as a table and as a picture.
+    fn write_record(
+        &mut self,
+        number: usize,
+        record: &[f64],
+        band: &Band,
+        conditions: &Conditions,
+    ) -> Result<(), StudyError> {
+        let grid = &conditions.grid;
+        let places = grid.places();
+        let name = format!("band-{number}");
+        let [x_name, y_name] = [grid.along(), grid.friction()].map(|measure| title(measure, measure.unit()));
+        self.batch.write(&format!("{name}.csv"), |to| {
+            let mut table = csv::Writer::from_writer(to);
+            table.write_record([&x_name, &y_name, "model 5 %", "model median", "model 95 %"])?;
+            for (k, x) in places.iter().enumerate() {
+                let row = [*x, record[k], band.low[k], band.median[k], band.high[k]];
+                table.write_record(row.map(|value| value.to_string()))?;
+            }
+            table.flush()
+        })?;
+        let picture = picture(&places, record, band, [grid.along(), grid.friction()]);
+        self.batch
+            .write_picture(&name, &picture.map_err(StudyError::picture(&name))?)
+    }
+}
+
+/// Writes a row for every point, in the units of the unknowns.
+fn write_sample(set_up: &SetUp, sample: &[Vec<f64>], to: &mut impl Write) -> Result<(), csv::Error> {
+    let unknowns = &set_up.unknowns;
+    let mut table = csv::Writer::from_writer(to);
+    table.write_record(unknowns.iter().map(|unknown| match unknown.unit() {
+        Some(unit) => format!("{} ({unit})", unknown.key()),
+        None => unknown.key().to_owned(),
+    }))?;
+    for point in sample {
+        let values = unknowns.iter().zip(point);
+        table.write_record(values.map(|(unknown, &share)| unknown.at(share).to_string()))?;
+    }
+    Ok(table.flush()?)
+}
+
+/// Title of a column or an axis.
+fn title(measure: Measure, unit: &str) -> String {
+    let quantity = match measure {
+        Measure::Time => "time",
+        Measure::Displacement => "displacement of the drive",
+        Measure::Force => "friction force",
+        Measure::Coefficient => return "friction coefficient \u{3bc}".to_owned(),
+    };
+    format!("{quantity} ({unit})")
+}
+
+/// A record over the band of the calibrated model.
+fn picture(
+    places: &[f64],
+    record: &[f64],
+    band: &Band,
+    measures: [Measure; 2],
+) -> Result<Picture, PictureError> {
+    let prefixes = [places, &band.high].map(|values| {
+        let largest = values.iter().map(|value| value.abs()).fold(0.0, f64::max);
+        si_prefix(largest)
+    });
+    let prefix = |axis: usize| match measures[axis] {
+        Measure::Coefficient => (1.0, ""),
+        _ => prefixes[axis],
+    };
+    let scaled = |values: &[f64], axis: usize| -> Vec<f64> {
+        values.iter().map(|value| value / prefix(axis).0).collect()
+    };
+    let nothing = vec![f64::NAN; places.len()];
+    let curve = |label: &str, mean: &[f64], low: Vec<f64>, high: Vec<f64>| Response {
+        label: label.to_owned(),
+        x: scaled(places, 0),
+        mean: scaled(mean, 1),
+        low,
+        high,
+        line: true,
+        ..Response::default()
+    };
+    let [x_title, y_title] = [0, 1].map(|axis| {
+        title(
+            measures[axis],
+            &format!("{}{}", in_print(prefix(axis).1), measures[axis].unit()),
+        )
+    });
+    slipfront_plot::response(&Responses {
+        x_title,
+        y_title,
+        note: format!("median and 90 % of {PREDICTED} runs"),
+        curves: vec![
+            curve("model", &band.median, scaled(&band.low, 1), scaled(&band.high, 1)),
+            curve("record", record, nothing.clone(), nothing),
+        ],
+        ..Responses::default()
+    })
+}
+
+/// The findings as a text for a person.
+fn in_words(found: &Findings) -> String {
+    let mut text = String::new();
+    if found.is_refused {
+        text += &paragraph(&refusal(found));
+        text.push('\n');
+    }
+    let rows: Vec<Vec<String>> = found.unknowns.iter().map(row).collect();
+    text += &table(&["key", "median", "from", "to", "range"], &rows);
+    text += &paragraph(&format!(
+        "Each interval holds the value with 90 %: so it did for training runs that were left out of {}, with noise of {} % of the mean \
+         friction.",
+        count(found.runs, "run"),
+        four_digits(100.0 * found.noise)
+    ));
+    for told in found.unknowns.iter().filter(|told| !told.is_determined) {
+        text += &paragraph(&format!("The records do not tell {}.", told.key));
+    }
+    for pair in &found.pairs {
+        let [one, other] = &pair.keys;
+        let way = if pair.correlation > 0.0 {
+            "larger"
+        } else {
+            "smaller"
+        };
+        text += &paragraph(&format!(
+            "The records tell {one} and {other} only together: where one is larger, the other is {way} (correlation {:.2}).",
+            pair.correlation
+        ));
+    }
+    if !found.is_refused {
+        let [low, high] = found.misfit.drift.map(|drift| four_digits(100.0 * drift));
+        text += &paragraph(&format!(
+            "Nothing speaks against the model: a drift of friction over the records lies between {low} and {high} %, and they are as near to \
+             training runs as these are to each other."
+        ));
+    }
+    for (number, percent) in found.within_band_percent.iter().enumerate() {
+        text += &paragraph(&format!(
+            "{:.0} % of the values of record {} lie within the band that holds 90 % of the runs of the calibrated model.",
+            percent,
+            number + 1
+        ));
+    }
+    text += &on_finer_blocks(found);
+    text += &further(found);
+    text
+}
+
+/// A sentence in lines, with its line break.
+fn paragraph(sentence: &str) -> String {
+    format!("{}\n", wrapped(sentence, COLUMNS))
+}
+
+fn row(told: &Told) -> Vec<String> {
+    let [low, high] = told.interval;
+    let [from, to] = told.range.map(four_digits);
+    let mut row = vec![
+        told.key.clone(),
+        told.text(told.median),
+        told.text(low),
+        told.text(high),
+        format!("[{from}, {to}]"),
+    ];
+    if !told.is_determined {
+        row.push("not told".to_owned());
+    } else if told.belongs_to_block {
+        row.push("belongs to the block".to_owned());
+    }
+    row
+}
+
+/// Reasons for which the records are none of the model.
+fn refusal(found: &Findings) -> String {
+    let mut reasons = Vec::new();
+    let [low, high] = found.misfit.drift;
+    if found.misfit.has_drift {
+        let [low, high] = [low, high].map(|drift| four_digits(100.0 * drift));
+        reasons.push(format!("friction drifts by {low} to {high} % over the records"));
+    }
+    if found.misfit.distance > 1.0 {
+        reasons.push(format!(
+            "they are {} times as far from the training runs as 99 % of these are from each other",
+            four_digits(found.misfit.distance)
+        ));
+    }
+    if found.misfit.is_outside() {
+        let [level, low, high] = found.misfit.level;
+        let (which, of) = if level > high {
+            ("largest", high)
+        } else {
+            ("least", low)
+        };
+        reasons.push(format!(
+            "mean friction in the second half of a record is {} times the {which} of the training runs",
+            four_digits(level / of)
+        ));
+    }
+    format!(
+        "The model does not make such records: {}. Of its own records it refuses some 4 %. Correct a drift of the sensor, look whether law, \
+         units, mount and noise are those of the experiment, and widen the ranges; the intervals below promise nothing.",
+        reasons.join(", and ")
+    )
+}
+
+fn on_finer_blocks(found: &Findings) -> String {
+    match &found.finer {
+        OnFinerBlocks::NotAskedFor => {
+            paragraph("Blocks of half the size were not looked at: `finer_runs` is 0.")
+        }
+        OnFinerBlocks::Impossible(reason) => {
+            paragraph(&format!("Blocks of half the size were not looked at: {reason}"))
+        }
+        OnFinerBlocks::Runs(runs) => {
+            let moved: Vec<String> = found
+                .unknowns
+                .iter()
+                .filter(|told| told.belongs_to_block)
+                .filter_map(|told| Some(format!("{} ({})", told.key, told.text(told.on_finer_blocks?.0))))
+                .collect();
+            let runs = count(*runs, "run");
+            paragraph(&if moved.is_empty() {
+                format!("On blocks of half the size ({runs}) every median lies within its interval.")
+            } else {
+                format!(
+                    "On blocks of half the size ({runs}) these leave their intervals: {}. They are values of a block of this size, and not of the \
+                     material.",
+                    moved.join(", ")
+                )
+            })
+        }
+    }
+}
+
+/// Narrowing of the intervals by further experiments, in words.
+fn further(found: &Findings) -> String {
+    if found.next.is_empty() {
+        return String::new();
+    }
+    let mut header = vec!["key"];
+    header.extend(found.next.iter().map(|further| further.set.as_str()));
+    let row = |(number, told): (usize, &Told)| {
+        let widths = found
+            .next
+            .iter()
+            .map(|further| format!("{:.2}", further.narrowed_to[number]));
+        std::iter::once(told.key.clone()).chain(widths).collect()
+    };
+    let rows: Vec<Vec<String>> = found.unknowns.iter().enumerate().map(row).collect();
+    format!(
+        "\nWidths of the intervals with a further experiment, over those without:\n{}",
+        table(&header, &rows)
+    )
+}

@@ -1,0 +1,75 @@
+//! Scaling of summaries of records.
+
+use slipfront_run::measured::Measure;
+
+use crate::grid::Grid;
+use crate::summaries::{level, summaries};
+use crate::training::Training;
+
+/// Units of the friction of several records in their summaries: 1 for a coefficient, and for a force the mean of the training. Forces may be
+/// nanonewtons or meganewtons, and the bounds of summaries are small numbers in the unit of friction.
+pub(crate) fn units_of_friction(training: &Training, grids: &[Grid]) -> Vec<f64> {
+    let mean = |record: usize| {
+        let levels = training.curves.iter().map(|curves| level(&curves[record]).abs());
+        levels.sum::<f64>() / training.curves.len() as f64
+    };
+    let units = grids
+        .iter()
+        .enumerate()
+        .map(|(record, grid)| match grid.friction() {
+            Measure::Force => mean(record),
+            _ => 1.0,
+        });
+    // Without any friction there is nothing to divide by.
+    units.map(|unit| if unit > 0.0 { unit } else { 1.0 }).collect()
+}
+
+/// Summaries of several records in a row, of friction in these units.
+pub(crate) fn summaries_of(curves: &[Vec<f64>], units: &[f64]) -> Vec<f64> {
+    let records = curves.iter().zip(units);
+    let in_units = records.map(|(curve, unit)| curve.iter().map(|y| y / unit).collect::<Vec<f64>>());
+    in_units.flat_map(|curve| summaries(&curve)).collect()
+}
+
+/// Means and standard deviations by which summaries are scaled.
+#[derive(Clone, Debug)]
+pub(crate) struct Scaling {
+    means: Vec<f64>,
+    deviations: Vec<f64>,
+}
+
+/// Largest distance of a summary from its mean that counts, in standard deviations: there is no extrapolation to a record
+/// outside of the training.
+const MAX_AWAY: f64 = 4.0;
+
+impl Scaling {
+    pub(crate) fn of(rows: &[Vec<f64>]) -> Self {
+        let n = rows.len() as f64;
+        let d = rows.first().map_or(0, Vec::len);
+        let mean = |f: usize| rows.iter().map(|row| row[f]).sum::<f64>() / n;
+        let means: Vec<f64> = (0..d).map(mean).collect();
+        let deviation = |f: usize| {
+            let squares: f64 = rows
+                .iter()
+                .map(|row| (row[f] - means[f]) * (row[f] - means[f]))
+                .sum();
+            (squares / n).sqrt()
+        };
+        let deviations = (0..d).map(deviation).collect();
+        Self { means, deviations }
+    }
+
+    /// Summaries in standard deviations from their mean; 0 for those that never differ.
+    pub(crate) fn scaled(&self, row: &[f64]) -> Vec<f64> {
+        let columns = row.iter().zip(&self.means).zip(&self.deviations);
+        columns
+            .map(|((value, mean), &deviation)| {
+                if deviation > 0.0 {
+                    ((value - mean) / deviation).clamp(-MAX_AWAY, MAX_AWAY)
+                } else {
+                    0.0
+                }
+            })
+            .collect()
+    }
+}

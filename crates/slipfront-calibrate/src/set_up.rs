@@ -1,0 +1,148 @@
+//! The set-up of a calibration: the case, its unknown keys, and the conditions of each record.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use slipfront_case::case::{Case, Ranks};
+use slipfront_case::case_file::{CaseError, CaseFile, Override};
+use slipfront_run::run_curve::run_curve_unless;
+
+use crate::grid::Grid;
+use crate::unknowns::Unknown;
+use slipfront_study::identity::physics;
+use slipfront_study::study_file::Base;
+use slipfront_study::{StudyError, TrainingError};
+
+/// Conditions of one record.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Conditions {
+    /// Keys in which the record differs from the case, such as its speed.
+    pub overrides: Vec<Override>,
+    /// Places at which friction is known.
+    pub grid: Grid,
+}
+
+/// The set-up of a training.
+#[derive(Clone, Debug)]
+pub struct SetUp {
+    /// The case.
+    pub base: Base,
+    /// The unknown keys.
+    pub unknowns: Vec<Unknown>,
+    /// The records.
+    pub conditions: Vec<Conditions>,
+    /// Whether blocks have half the size of those of the case.
+    pub is_finer: bool,
+}
+
+/// Friction without noise, for every record.
+pub type Curves = Vec<Vec<f64>>;
+
+impl SetUp {
+    /// Settings of the unknown keys at these shares of the ranges.
+    pub(crate) fn set_to(&self, shares: &[f64]) -> Vec<Override> {
+        let values = self.unknowns.iter().zip(shares);
+        values.map(|(unknown, &share)| unknown.set_to(share)).collect()
+    }
+
+    /// The grids of the records.
+    pub(crate) fn grids(&self) -> Vec<Grid> {
+        self.conditions.iter().map(|one| one.grid.clone()).collect()
+    }
+
+    /// The middle of all ranges, as shares.
+    pub(crate) fn middle(&self) -> Vec<f64> {
+        vec![0.5; self.unknowns.len()]
+    }
+
+    /// The set-up on blocks of half the size.
+    ///
+    /// # Errors
+    /// With the reason why there is none.
+    pub(crate) fn finer(&self) -> Result<Self, String> {
+        let finer = Self {
+            is_finer: true,
+            ..self.clone()
+        };
+        let middle = finer.middle();
+        for conditions in &finer.conditions {
+            finer
+                .case(&middle, 0, conditions)
+                .map_err(|error| error.to_string())?;
+        }
+        Ok(finer)
+    }
+
+    /// Values of the unknowns at these shares, for a sentence.
+    fn point(&self, shares: &[f64]) -> String {
+        let set = self.set_to(shares);
+        set.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ")
+    }
+
+    /// The case of a record at these shares of the ranges, over the surface that `friction.seed` draws.
+    ///
+    /// # Errors
+    /// When the case is not valid, or cannot be put on blocks of half the size where they are asked for.
+    pub fn case(&self, shares: &[f64], seed: u64, conditions: &Conditions) -> Result<Case, CaseError> {
+        let mut changes = self.set_to(shares);
+        changes.push(Override::new("friction.seed", &toml::Value::from(seed as i64)));
+        let all: Vec<&Override> = conditions.overrides.iter().chain(&changes).collect();
+        let made =
+            |file: CaseFile| Case::new(file, "training", &self.base.folder, &mut |_| true, Ranks::ALONE);
+        let case = made(self.base.parse()?.with(&all)?)?;
+        if !self.is_finer {
+            return Ok(case);
+        }
+        let finer = case.on_other_blocks(2.0)?;
+        let set: Vec<String> = finer.iter().map(ToString::to_string).collect();
+        made(CaseFile::parse(&case.file.to_toml()?, "training", &set)?)
+    }
+
+    /// The curves of all records at these shares of the ranges, over the surface that `friction.seed` draws; none after a stop.
+    ///
+    /// # Errors
+    /// When the case is not valid there, the run diverges, or it ends before a record.
+    pub fn curves(
+        &self,
+        shares: &[f64],
+        seed: u64,
+        stop: &AtomicBool,
+    ) -> Result<Option<Curves>, TrainingError> {
+        let mut curves = Vec::new();
+        for (number, conditions) in self.conditions.iter().enumerate() {
+            let case = self.case(shares, seed, conditions);
+            let case = case.map_err(|source| TrainingError::Case {
+                point: self.point(shares),
+                source: Box::new(source),
+            })?;
+            let grid = &conditions.grid;
+            let ends = || stop.load(Ordering::Relaxed);
+            let Some(curve) = run_curve_unless(&case, grid.along(), grid.end(), &ends) else {
+                return Ok(None);
+            };
+            let curve = curve.map_err(|source| TrainingError::Run {
+                point: self.point(shares),
+                source,
+            })?;
+            let curve = grid.curve(&curve).ok_or_else(|| TrainingError::Short {
+                point: self.point(shares),
+                record: number + 1,
+            })?;
+            curves.push(curve);
+        }
+        Ok(Some(curves))
+    }
+
+    /// A hash of all that decides the curves, but for the number of runs.
+    pub(crate) fn identity(&self) -> Result<String, StudyError> {
+        let mut hasher = blake3::Hasher::new();
+        // This crate makes the recorded curves of what a run leaves.
+        hasher.update(env!("SLIPFRONT_SOURCE_HASH").as_bytes());
+        let middle = self.middle();
+        for conditions in &self.conditions {
+            hasher.update(physics(&self.case(&middle, 0, conditions)?, None)?.as_bytes());
+            hasher.update(format!("{:?}", conditions.grid).as_bytes());
+        }
+        hasher.update(format!("{:?}", self.unknowns).as_bytes());
+        Ok(hasher.finalize().to_hex()[..16].to_owned())
+    }
+}

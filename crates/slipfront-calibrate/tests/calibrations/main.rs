@@ -1,0 +1,383 @@
+//! Calibrations: their results for records whose truth is known, and that results are equal however the runs
+//! are made.
+
+mod rate_and_state;
+#[path = "../../../slipfront-case/tests/support/reference_page.rs"]
+mod reference_page;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use serde_json::Value;
+use slipfront_calibrate::{CalibrationFile, CalibrationFolder, CalibrationKeys, CalibrationStage};
+use slipfront_case::case::Case;
+use slipfront_design::DesignFile;
+use slipfront_run::measured::Measure;
+use slipfront_run::run_curve::run_curve_unless;
+use slipfront_study::StudyError;
+
+use crate::reference_page::{expect_page, with_keys};
+
+/// A small slider with two unknown keys.
+const BASE: &str = "[base]\nslider.blocks = [6, 6]\ndrive.v_star = 0.1\ntime.step = 0.4\n";
+const KEYS: &str = "[calibrate]\nx = 'time_s'\ny = 'force_n'\nnoise = 0.01\nruns = 200\nfiner_runs = 0\n\
+    unknowns = { 'friction.mu_static' = [0.3, 0.9], 'drive.stiffness_star' = [0.3, 0.9] }\n";
+
+/// True values of the unknowns.
+const TRUTH: [f64; 2] = [0.55, 0.7];
+
+fn file(text: &str) -> CalibrationFile {
+    CalibrationFile::parse(text, "fit.toml", "fit", Path::new("")).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+/// A record of the small slider, with noise of 1 % of its mean.
+fn write_record(path: &Path) {
+    let [mu_static, stiffness] = TRUTH;
+    let text = format!(
+        "slider.blocks = [6, 6]\ntime.step = 0.4\ndrive = {{ v_star = 0.1, stiffness_star = {stiffness} }}\n\
+         friction = {{ mu_static = {mu_static}, seed = 12345 }}\n"
+    );
+    let case = Case::parse(&text, "truth", "", &[]).unwrap();
+    let end = 120.0 * case.scales.time();
+    let curve = run_curve_unless(&case, Measure::Time, end, &|| false)
+        .unwrap()
+        .unwrap();
+    let unit = curve.unit_force.unwrap();
+    let mean = curve.coefficient.iter().sum::<f64>() / curve.coefficient.len() as f64;
+    let lines = curve.time.iter().zip(&curve.coefficient).enumerate();
+    let lines =
+        lines.map(|(step, (time, mu))| format!("{time:e},{:e}\n", unit * (mu + 0.01 * mean * normal(step))));
+    fs::write(path, format!("time_s,force_n\n{}", lines.collect::<String>())).unwrap();
+}
+
+/// A standard normal for every step: twelve parts of multiples of the golden ratio, each uniform, less their
+/// mean.
+fn normal(step: usize) -> f64 {
+    let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
+    let uniform = |k: usize| ((step * 12 + k + 1) as f64 * golden * 1e4).fract();
+    (0..12).map(uniform).sum::<f64>() - 6.0
+}
+
+fn find(folder: &mut CalibrationFolder, threads: usize) -> Result<String, StudyError> {
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(threads)
+        .build()
+        .unwrap();
+    pool.install(|| folder.find(&AtomicBool::new(false), &mut |_| {}))
+}
+
+fn numbers(folder: &Path) -> Value {
+    serde_json::from_slice(&fs::read(folder.join("calibration.json")).unwrap()).unwrap()
+}
+
+/// The median of an unknown, and the ends of its interval.
+fn told(found: &Value, number: usize) -> [f64; 3] {
+    let unknown = &found["unknowns"][number];
+    let value = |value: &Value| value.as_f64().unwrap();
+    [
+        value(&unknown["median"]),
+        value(&unknown["interval"][0]),
+        value(&unknown["interval"][1]),
+    ]
+}
+
+/// The examples of the book and the files of `cases/calibrations` can be used, and every key is explained.
+#[test]
+fn calibration_files_are_true() {
+    let mut seen = 0;
+    for page in ["docs/reference/calibration-file.md", "docs/guide/calibrate.md"] {
+        let text = fs::read_to_string(root().join(page)).unwrap();
+        for rest in text.split("```toml calibration\n").skip(1) {
+            let block = rest.split("```").next().unwrap();
+            CalibrationFile::parse(block, page, "fit", &root().join("cases/calibrations"))
+                .unwrap_or_else(|error| panic!("{page}: {error}\n{block}"));
+            seen += 1;
+        }
+    }
+    assert!(seen >= 3, "only {seen} examples");
+    // The texture that is asked for stands on what a calibration leaves.
+    let folder = tempfile::tempdir().unwrap();
+    let results = folder.path().join("results/sliding");
+    fs::create_dir_all(&results).unwrap();
+    fs::write(
+        results.join("case.toml"),
+        "slider.blocks = [30, 30]\nfriction.mu_static = 0.55\n",
+    )
+    .unwrap();
+    let guide = fs::read_to_string(root().join("docs/guide/calibrate.md")).unwrap();
+    let block = guide
+        .split("```toml design\n")
+        .nth(1)
+        .unwrap()
+        .split("```")
+        .next()
+        .unwrap();
+    let design = DesignFile::parse(block, "texture.toml", "texture", folder.path())
+        .unwrap_or_else(|error| panic!("{error}"));
+    design.design().unwrap_or_else(|error| panic!("{error}"));
+    for name in ["sliding", "basalt", "paper"] {
+        let folder = tempfile::tempdir().unwrap();
+        let example = root().join("cases/calibrations").join(name);
+        let record = example.with_extension("csv");
+        let file =
+            CalibrationFile::load(&example.with_extension("toml")).unwrap_or_else(|error| panic!("{error}"));
+        CalibrationFolder::open(folder.path(), None, &file, &[record], false)
+            .unwrap_or_else(|error| panic!("{error}"));
+    }
+    let text = fs::read_to_string(root().join("docs/reference/calibration-file.md")).unwrap();
+    for key in [
+        "base",
+        "unknowns",
+        "noise",
+        "x",
+        "y",
+        "x_unit",
+        "y_unit",
+        "against",
+        "records",
+        "runs",
+        "finer_runs",
+        "next",
+    ] {
+        assert!(text.contains(&format!("| `{key}` |")), "{key} is not explained");
+    }
+}
+
+/// Every key has a row in the table of its section, as its struct declares it.
+#[test]
+fn the_reference_has_the_keys_of_the_struct() {
+    expect_page("calibration-file.md", |page| {
+        with_keys(page, "`[calibrate]`", CalibrationKeys::KEYS)
+    });
+}
+
+/// The record of the example is the run that its comment describes, with noise of 1 % of its mean.
+#[test]
+fn the_record_of_the_example_is_a_run_with_noise() {
+    let text = fs::read_to_string(root().join("cases/calibrations/sliding.csv")).unwrap();
+    let rows: Vec<[f64; 2]> = text
+        .lines()
+        .filter_map(|line| {
+            let (time, force) = line.split_once(',')?;
+            Some([time.parse().ok()?, force.parse().ok()?])
+        })
+        .collect();
+    let case = "slider = { blocks = [30, 30], omega_star = 0.15 }\ndrive = { v_star = 0.03, stiffness_star = 0.35 }\ntime.step = 0.4\n\
+        friction = { mu_static = 0.55, r_star = 0.6, sigma_static_star = 0.06, sigma_kinetic_star = 0.08, seed = 777 }";
+    let case = Case::parse(case, "truth", "", &[]).unwrap();
+    let end = 1e-9 * rows.last().unwrap()[0];
+    let curve = run_curve_unless(&case, Measure::Time, end, &|| false)
+        .unwrap()
+        .unwrap();
+    let unit = 1e6 * curve.unit_force.unwrap();
+    let (mut squares, mut sum) = (0.0, 0.0);
+    for [time, force] in &rows {
+        // Rows stand at steps of the run.
+        let step = curve
+            .time
+            .iter()
+            .position(|t| (1e9 * t - time).abs() < 1e-3)
+            .unwrap();
+        let exact = unit * curve.coefficient[step];
+        squares += (force - exact).powi(2);
+        sum += exact;
+    }
+    let (n, mean) = (rows.len() as f64, sum / rows.len() as f64);
+    let noise = (squares / n).sqrt() / mean;
+    // A standard deviation of 335 values scatters by 1/sqrt(2 n), 4 %: three times that.
+    assert!((noise / 0.01 - 1.0).abs() < 0.12, "{noise}");
+}
+
+#[test]
+fn the_truth_lies_within_the_intervals() {
+    let folder = tempfile::tempdir().unwrap();
+    let record = folder.path().join("record.csv");
+    write_record(&record);
+    let out = folder.path().join("found");
+    let keys = KEYS.replace("runs = 200", "runs = 400");
+    let mut found =
+        CalibrationFolder::open(&out, None, &file(&format!("{BASE}{keys}")), &[record], false).unwrap();
+    let text = find(&mut found, 2).unwrap();
+    let found = numbers(&out);
+    for (number, truth) in TRUTH.into_iter().enumerate() {
+        let [median, low, high] = told(&found, number);
+        assert!(
+            low <= truth && truth <= high && low < median && median < high,
+            "{text}"
+        );
+    }
+    // The level of some micronewtons tells the coefficient, and the slope of loading the mount, within a
+    // tenth of its range.
+    for number in [0, 1] {
+        let [_, low, high] = told(&found, number);
+        assert!(high - low < 0.06, "{text}");
+    }
+    assert!(!found["is_refused"].as_bool().unwrap(), "{text}");
+    assert!(found["within_band_percent"][0].as_f64().unwrap() > 60.0, "{text}");
+    // The case with the medians can be run.
+    let case = Case::load(
+        &out.join("case.toml"),
+        &[],
+        &mut |_| true,
+        slipfront_case::case::Ranks::ALONE,
+    )
+    .unwrap();
+    assert!((case.scales.mu_static_mean - told(&found, 0)[0]).abs() < 1e-12);
+}
+
+/// A calibration that was stopped, with a journal cut short, on one thread and on three, gives the same
+/// files.
+#[test]
+fn a_calibration_goes_on_to_the_same_bytes() {
+    let folder = tempfile::tempdir().unwrap();
+    let record = folder.path().join("record.csv");
+    write_record(&record);
+    let file = file(
+        &format!("{BASE}{KEYS}next = [{{ drive.v_star = 0.2 }}]\n")
+            .replace("finer_runs = 0", "finer_runs = 200"),
+    );
+    let open = |out: &str, training: Option<&Path>| {
+        CalibrationFolder::open(
+            &folder.path().join(out),
+            training,
+            &file,
+            std::slice::from_ref(&record),
+            false,
+        )
+        .unwrap()
+    };
+    find(&mut open("whole", None), 1).unwrap();
+    let mut stopped = open("stopped", None);
+    let stop = AtomicBool::new(false);
+    let ended = stopped.find(&stop, &mut |now| {
+        if now.stage == CalibrationStage::FinerBlocks {
+            stop.store(true, Ordering::Relaxed);
+        }
+    });
+    assert!(matches!(ended, Err(StudyError::Interrupted)));
+    drop(stopped);
+    let journal = folder.path().join("stopped/training.jsonl");
+    let lines = fs::read(&journal).unwrap();
+    fs::write(&journal, &lines[..lines.len() - 1000]).unwrap();
+    let mut again = open("stopped", None);
+    assert!(again.n_kept() > 190, "{}", again.n_kept());
+    find(&mut again, 3).unwrap();
+    // Runs that another folder keeps are the same ones.
+    let shared = folder.path().join("shared");
+    fs::create_dir(&shared).unwrap();
+    fs::copy(
+        folder.path().join("whole/training.jsonl"),
+        shared.join("training.jsonl"),
+    )
+    .unwrap();
+    let mut sharing = open("sharing", Some(&shared));
+    let known = sharing.n_kept();
+    find(&mut sharing, 2).unwrap();
+    assert_eq!((known, sharing.n_kept()), (600, 600));
+    let mut names: Vec<_> = fs::read_dir(folder.path().join("whole"))
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name())
+        .collect();
+    names.retain(|name| name != "training.jsonl");
+    assert!(names.len() >= 9, "{names:?}");
+    for name in names {
+        let read = |out: &str| fs::read(folder.path().join(out).join(&name)).unwrap();
+        assert!(
+            read("whole") == read("stopped") && read("whole") == read("sharing"),
+            "{name:?}"
+        );
+    }
+}
+
+/// Records of another law are refused and conditions count: several records are fitted at once, and a record
+/// of another speed is none of this model.
+#[test]
+fn records_of_another_law_are_refused_and_conditions_count() {
+    let folder = tempfile::tempdir().unwrap();
+    let (one, other) = (folder.path().join("one.csv"), folder.path().join("other.csv"));
+    write_record(&one);
+    write_record(&other);
+    let out = folder.path().join("found");
+    let keys = format!("{BASE}{KEYS}records = [{{ set = {{}} }}, {{ set = {{ drive.v_star = 0.1 }} }}]\n");
+    let both = [one.clone(), other];
+    let mut two = CalibrationFolder::open(&out, None, &file(&keys), &both, false).unwrap();
+    find(&mut two, 2).unwrap();
+    assert_eq!(numbers(&out)["within_band_percent"].as_array().unwrap().len(), 2);
+    let foreign = folder.path().join("foreign");
+    let keys = format!("{BASE}{KEYS}").replace("v_star = 0.1", "v_star = 0.3");
+    let mut foreign_fit = CalibrationFolder::open(&foreign, None, &file(&keys), &[one], false).unwrap();
+    let text = find(&mut foreign_fit, 2).unwrap();
+    assert!(text.starts_with("The model does not make such records"), "{text}");
+    assert!(numbers(&foreign)["is_refused"].as_bool().unwrap());
+}
+
+/// A file or record that cannot be calibrated is refused with its key.
+#[test]
+fn what_cannot_be_calibrated_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let record = folder.path().join("record.csv");
+    write_record(&record);
+    let whole = format!("{BASE}{KEYS}");
+    let refused = |from: &str, to: &str| {
+        assert!(whole.contains(from), "{from}");
+        let out = folder.path().join("out");
+        let opened = CalibrationFile::parse(&whole.replace(from, to), "fit.toml", "fit", Path::new(""))
+            .and_then(|file| {
+                CalibrationFolder::open(&out, None, &file, std::slice::from_ref(&record), false)
+            });
+        assert!(!out.exists(), "{from}");
+        opened.unwrap_err().to_string()
+    };
+    for (from, to, sentence) in [
+        (
+            "noise = 0.01",
+            "noise = 1",
+            "`noise` = 1 must lie between 0 and 1",
+        ),
+        ("noise = 0.01", "noisy = 0.01", "unknown key `noisy`"),
+        (
+            "runs = 200\n",
+            "runs = 100\n",
+            "`runs` = 100 must lie between 200",
+        ),
+        (
+            "finer_runs = 0",
+            "finer_runs = 300",
+            "`finer_runs` = 300 must be 0, or lie between 200 and `runs` = 200",
+        ),
+        (
+            "[0.3, 0.9] }",
+            "[0.9, 0.3] }",
+            "the range of `drive.stiffness_star` goes from 0.9 to 0.3",
+        ),
+        ("[0.3, 0.9] }", "'x' }", "is written [0.3, 0.9]"),
+        ("[0.3, 0.9] }", "[-1, 0.9] }", "must be more than 0 and at most"),
+        ("'drive.stiffness_star'", "'drive.stifness_star'", "stifness_star"),
+        ("'friction.mu_static'", "'friction.seed'", "no unknown"),
+        ("y = 'force_n'", "y = 'load'", "has no column `load`"),
+        (
+            "y = 'force_n'",
+            "y = 'force_n'\nrecords = [{ set = {} }, { set = {} }]",
+            "one file for each",
+        ),
+        (
+            "x = 'time_s'",
+            "x = 'time_s'\nx_unit = 's'\ny_unit = 'N'\nagainst = 'displacement'",
+            "unit",
+        ),
+        (
+            "time.step = 0.4",
+            "time.step = 1e-6",
+            "more than 10000000: a step lasts",
+        ),
+        ("[calibrate]", "[other]\n[calibrate]", "other"),
+    ] {
+        let error = refused(from, to);
+        assert!(error.contains(sentence), "{from}: {error}");
+    }
+}

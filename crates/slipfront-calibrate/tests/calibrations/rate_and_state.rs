@@ -1,0 +1,218 @@
+//! Rate and state of a block that is pulled at steps of speed: a calibration beside a fit of maximum likelihood, which shares nothing with it.
+//!
+//! Records come from the equations of the laboratory, without inertia, in units in which the normal force is 1:
+//!
+//! ```text
+//! dF/dt = k (V(t) - v),   v = V_0 exp((F - mu_0 - b ln(V_0 theta/D_c))/a),   dtheta/dt = 1 - v theta/D_c
+//! ```
+//!
+//! They are integrated here by Runge and Kutta's method, and fitted by Gauss and Newton's.
+
+use std::collections::HashMap;
+use std::path::Path;
+use std::sync::atomic::AtomicBool;
+
+use chacha20::ChaCha8Rng;
+use chacha20::rand_core::{Rng, SeedableRng};
+use slipfront_calibrate::{Calibration, Conditions, Grid, SetUp, Training, Unknown};
+use slipfront_case::case::Case;
+use slipfront_run::measured::{Measure, MeasuredRecord};
+use slipfront_study::StudyFile;
+
+/// Coefficient of steady sliding at [`V_0`], and coefficient by which slipfront scales forces.
+const MU_0: f64 = 0.6;
+const V_0: f64 = 0.005;
+/// Stiffness of the drive spring: stiff enough for stable sliding anywhere in the ranges, (b - a)/(mu_0 D_c) < 0.14.
+const STIFFNESS: f64 = 1.0;
+/// Speeds of the drive, each until a time t* at which a value of a record stands and a step of a run ends. They are so low that inertia, of
+/// the order of V sqrt(k), is lost in the noise.
+const SPEEDS: [(f64, f64); 5] = [
+    (0.005, 600.0),
+    (0.0015, 1400.0),
+    (0.005, 1800.0),
+    (0.0015, 2600.0),
+    (0.005, 2800.0),
+];
+/// Time t* from one value of a record to the next.
+const SPACING: f64 = 8.0;
+/// Standard deviation of the noise, over the mean of friction.
+const NOISE: f64 = 0.01;
+/// Ranges of a, b and D_c.
+const RANGES: [[f64; 2]; 3] = [[0.005, 0.03], [0.005, 0.03], [0.3, 3.0]];
+
+/// Friction of a block with these a, b and D_c at every [`SPACING`].
+fn friction([a, b, d_c]: [f64; 3]) -> Vec<f64> {
+    // The fastest rate is k V/(a/mu_0) = 0.6 per t*: a step of 1 is off by 0.6^5/120 of what changes, 6e-4.
+    const STEPS: usize = 8;
+    let dt = SPACING / STEPS as f64;
+    let (a, b) = (a / MU_0, b / MU_0);
+    let rates = |[force, state]: [f64; 2], drive: f64| {
+        let v = V_0 * ((force - 1.0 - b * (V_0 * state / d_c).ln()) / a).exp();
+        [STIFFNESS * (drive - v), 1.0 - v * state / d_c]
+    };
+    let moved = |from: [f64; 2], rate: [f64; 2], dt: f64| [from[0] + dt * rate[0], from[1] + dt * rate[1]];
+    let mut now = [0.0, d_c / V_0];
+    let mut values = vec![0.0];
+    for (drive, until) in SPEEDS {
+        while values.len() as f64 * SPACING <= until {
+            for _ in 0..STEPS {
+                let k1 = rates(now, drive);
+                let k2 = rates(moved(now, k1, 0.5 * dt), drive);
+                let k3 = rates(moved(now, k2, 0.5 * dt), drive);
+                let k4 = rates(moved(now, k3, dt), drive);
+                let mean = |i: usize| (k1[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i]) / 6.0;
+                now = moved(now, [mean(0), mean(1)], dt);
+            }
+            values.push(MU_0 * now[0]);
+        }
+    }
+    values
+}
+
+/// Estimate of maximum likelihood from a record with normal noise of this standard deviation, and the half width of each interval of 90 %,
+/// `1.645 sqrt(s^2 (J^T J)^-1)`, both as shares of the ranges.
+fn most_likely(record: &[f64], noise: f64) -> [[f64; 2]; 3] {
+    let curve = |shares: [f64; 3]| {
+        let value = |j: usize| RANGES[j][0] + shares[j] * (RANGES[j][1] - RANGES[j][0]);
+        friction([value(0), value(1), value(2)])
+    };
+    let squares = |curve: &[f64]| -> f64 { curve.iter().zip(record).map(|(f, y)| (y - f).powi(2)).sum() };
+    let mut shares = [0.5; 3];
+    let mut found = curve(shares);
+    for _ in 0..30 {
+        const STEP: f64 = 1e-4;
+        let slopes: [Vec<f64>; 3] = std::array::from_fn(|j| {
+            let mut beside = shares;
+            beside[j] += STEP;
+            let beside = curve(beside);
+            beside.iter().zip(&found).map(|(b, f)| (b - f) / STEP).collect()
+        });
+        let product = |a: &[f64], b: &[f64]| -> f64 { a.iter().zip(b).map(|(a, b)| a * b).sum() };
+        let rest: Vec<f64> = record.iter().zip(&found).map(|(y, f)| y - f).collect();
+        let matrix: [[f64; 3]; 3] =
+            std::array::from_fn(|i| std::array::from_fn(|j| product(&slopes[i], &slopes[j])));
+        let inverse = inverse(&matrix);
+        let right: [f64; 3] = std::array::from_fn(|i| product(&slopes[i], &rest));
+        let step: [f64; 3] = std::array::from_fn(|i| product(&inverse[i], &right));
+        // A step that leaves the range or fits worse is halved.
+        let mut share = 1.0;
+        let (next, there) = loop {
+            let next: [f64; 3] = std::array::from_fn(|j| (shares[j] + share * step[j]).clamp(-0.15, 1.3));
+            let there = curve(next);
+            if squares(&there) <= squares(&found) || share < 1e-3 {
+                break (next, there);
+            }
+            share *= 0.5;
+        };
+        let moved = (0..3).map(|j| (next[j] - shares[j]).abs()).fold(0.0, f64::max);
+        (shares, found) = (next, there);
+        if moved < 1e-5 {
+            return std::array::from_fn(|j| [shares[j], 1.645 * noise * inverse[j][j].sqrt()]);
+        }
+    }
+    panic!("no maximum of the likelihood was found");
+}
+
+/// The inverse of a matrix, by its cofactors.
+fn inverse(m: &[[f64; 3]; 3]) -> [[f64; 3]; 3] {
+    let cofactor = |i: usize, j: usize| {
+        let [a, b] = [(i + 1) % 3, (i + 2) % 3];
+        let [c, d] = [(j + 1) % 3, (j + 2) % 3];
+        m[a][c] * m[b][d] - m[a][d] * m[b][c]
+    };
+    let determinant: f64 = (0..3).map(|j| m[0][j] * cofactor(0, j)).sum();
+    std::array::from_fn(|i| std::array::from_fn(|j| cofactor(j, i) / determinant))
+}
+
+fn set_up() -> SetUp {
+    let mut program: Vec<String> = SPEEDS
+        .iter()
+        .map(|(v, until)| format!("{{ v_star = {v}, until_star = {until} }}"))
+        .collect();
+    program.push(format!("{{ v_star = {} }}", SPEEDS[4].0));
+    let text = format!(
+        "[base]\nslider = {{ blocks = [1, 1], omega_star = 0 }}\n\
+         drive = {{ program = [{}], total_stiffness_star = {STIFFNESS} }}\n\
+         friction = {{ law = 'rate_and_state', mu_static = {MU_0}, a = 0.01, b = 0.01, d_c_star = 1, v_0_star = {V_0} }}\n\
+         time = {{ step = 0.4, duration_star = 2900 }}",
+        program.join(", ")
+    );
+    let base = StudyFile::parse(&text, "base", "base", Path::new(""))
+        .unwrap_or_else(|error| panic!("{error}"))
+        .base;
+    let keys = ["friction.a", "friction.b", "friction.d_c_star"];
+    let unknowns = keys
+        .into_iter()
+        .zip(RANGES)
+        .map(|(key, [from, to])| Unknown::new(key, from, to, false).unwrap());
+    let time = Case::parse("", "unit", "", &[]).unwrap().scales.time();
+    let count = friction([0.01, 0.01, 1.0]).len();
+    let x: Vec<f64> = (0..count).map(|k| time * SPACING * k as f64).collect();
+    let record = MeasuredRecord {
+        y: x.clone(),
+        x,
+        along: Measure::Time,
+        of: Measure::Coefficient,
+        footer: None,
+    };
+    SetUp {
+        base,
+        unknowns: unknowns.collect(),
+        conditions: vec![Conditions {
+            overrides: Vec::new(),
+            grid: Grid::of(&record).unwrap(),
+        }],
+        is_finer: false,
+    }
+}
+
+/// A calibration is held against what no estimate can do better than with many values, maximum likelihood:
+///
+/// - its intervals hold the estimate of maximum likelihood as often as the truth at least;
+/// - they hold the truth with 90 %;
+/// - they are comparable in width: not narrower, which they could not be and hold the truth, but for the tenth by which a width scatters that is
+///   found from some hundred residuals; and at most twice as wide.
+///
+/// Bounds allow for 30 records, three standard deviations of a share of 90 %: 0.9 - 3 sqrt(0.09/30) = 0.74.
+#[test]
+fn rate_and_state_agrees_with_maximum_likelihood() {
+    let set_up = set_up();
+    let go_on = AtomicBool::new(false);
+    let training = Training::run(&set_up, 400, HashMap::new(), &mut |_| Ok(()), &go_on)
+        .unwrap_or_else(|error| panic!("{error}"));
+    let grids = [set_up.conditions[0].grid.clone()];
+    // Values of a record are not averaged, so that it is a curve as it stands.
+    assert_eq!(grids[0].places().len(), friction([0.01, 0.01, 1.0]).len());
+    let calibration = Calibration::new(&training, &grids, NOISE);
+    let mut draws = ChaCha8Rng::from_seed(*b"records of a block at two speeds");
+    let mut uniform = || (draws.next_u64() >> 11) as f64 / (1_u64 << 53) as f64;
+    const RECORDS: usize = 30;
+    let (mut truth_held, mut likely_held) = ([0; 3], [0; 3]);
+    let mut ratios = [const { Vec::new() }; 3];
+    for _ in 0..RECORDS {
+        // Away from the ends of the ranges, where a calibration knows what a likelihood does not.
+        let truth: [f64; 3] = std::array::from_fn(|_| 0.2 + 0.6 * uniform());
+        let value = |j: usize| RANGES[j][0] + truth[j] * (RANGES[j][1] - RANGES[j][0]);
+        let plain = friction([value(0), value(1), value(2)]);
+        let noise = NOISE * plain.iter().sum::<f64>() / plain.len() as f64;
+        let mut normal =
+            || (-2.0 * (1.0 - uniform()).ln()).sqrt() * (std::f64::consts::TAU * uniform()).cos();
+        let record: Vec<f64> = plain.iter().map(|y| y + noise * normal()).collect();
+        let likely = most_likely(&record, noise);
+        let found = calibration.estimate(&[record]);
+        for j in 0..3 {
+            let [low, high] = found.distributions[j].interval(0.9);
+            truth_held[j] += usize::from((low..=high).contains(&truth[j]));
+            likely_held[j] += usize::from((low..=high).contains(&likely[j][0]));
+            ratios[j].push((high - low) / (2.0 * likely[j][1]));
+        }
+    }
+    let told = format!("{truth_held:?} {likely_held:?} {ratios:?}");
+    for j in 0..3 {
+        ratios[j].sort_by(f64::total_cmp);
+        let ratio = ratios[j][RECORDS / 2];
+        assert!(truth_held[j] as f64 >= 0.74 * RECORDS as f64, "{j}: {told}");
+        assert!(likely_held[j] as f64 >= 0.74 * RECORDS as f64, "{j}: {told}");
+        assert!((0.9..=2.0).contains(&ratio), "{j}: {told}");
+    }
+}

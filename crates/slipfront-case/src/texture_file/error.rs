@@ -1,0 +1,43 @@
+//! Reasons for which a file of a texture is not written.
+
+use crate::arrays::ArrayError;
+use crate::case_file::CaseError;
+
+/// Largest number of pixels of a picture along a side, and of all: no program, this one included, reads more.
+pub(super) const MAX_PIXELS: [usize; 2] = [1 << 20, 1 << 28];
+
+/// An error of a file of a texture that was asked for.
+#[derive(Debug, thiserror::Error)]
+#[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
+pub enum TextureFileError {
+    #[error(
+        "cannot tell the format of `{path}`; name a file that ends in .svg or .dxf for outlines, in .png for a picture or in .gsf for a \
+         height field"
+    )]
+    Extension { path: String },
+    #[error(
+        "`--scale` is for pictures, and `{path}` is none: outlines and height fields have their true size"
+    )]
+    Scale { path: String },
+    #[error(
+        "the picture would have {width} x {height} pixels, and at most {} along a side and {} in all are read again: lower `--scale`",
+        MAX_PIXELS[0],
+        MAX_PIXELS[1]
+    )]
+    TooManyPixels { width: usize, height: usize },
+    #[error(
+        "the outlines would have {corners} corners, and at most {most} are written: write a .png or .gsf instead"
+    )]
+    TooManyCorners { corners: usize, most: usize },
+    #[error(transparent)]
+    Case(#[from] CaseError),
+    #[error(transparent)]
+    Write(#[from] ArrayError),
+}
+
+impl TextureFileError {
+    /// Whether the request is to blame, so that another file could be asked for.
+    pub fn is_input(&self) -> bool {
+        !matches!(self, Self::Write(_))
+    }
+}

@@ -1,0 +1,308 @@
+//! A design: a wish with its limits, the search for it, and the verdict on what is found.
+
+use std::cell::Cell;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use slipfront_case::case::Case;
+use slipfront_case::case_file::CaseError;
+
+use crate::evaluate::{Evaluator, Keep, Known, MadeRun};
+use crate::grid::Grid;
+use crate::judge::{Contender, Judge};
+use crate::limits::{Illegal, Limits};
+use crate::named::{GROOVE, Named, named};
+use crate::open_search::OpenSearch;
+use crate::search::Search;
+use crate::stages::{Bounds, DesignStage, Length, SearchProgress, Stages, Tried, Work};
+use crate::subject::{Fidelity, Subject};
+use crate::verdict::Verdict;
+use crate::wish::Wish;
+use slipfront_study::StudyError;
+
+/// A wish with its limits, and the cases in which designs are tried.
+#[derive(Debug)]
+pub struct Design {
+    pub(crate) evaluator: Evaluator,
+    limits: Limits,
+    /// Number from which the random drafts of the search begin.
+    start: u64,
+    /// Masks with which the search also begins, and their names.
+    drawn: Vec<(String, Vec<bool>)>,
+}
+
+/// Result of a search.
+#[derive(Debug)]
+pub struct Outcome {
+    /// Textured blocks of the design.
+    pub texture: Arc<Vec<bool>>,
+    /// Verdict on the design.
+    pub verdict: Verdict,
+    /// Every texture that was judged, by its name, the design first.
+    pub(crate) compared: Vec<(String, Option<Arc<Vec<bool>>>)>,
+    /// Length of the search.
+    pub(crate) length: Length,
+    /// Drafts that were tried, in their order.
+    pub(crate) tried: Vec<Tried>,
+}
+
+impl Design {
+    /// A design for some cases, at least one, all on the same blocks, each with the wish in its own units; `is_worst` asks for the
+    /// worst case, in place of the mean over them.
+    ///
+    /// # Errors
+    /// When a case cannot be run for as long as the search needs, or one of its files has changed since the case
+    /// was made.
+    ///
+    /// # Panics
+    /// Without a case.
+    pub fn new(
+        cases: &[(&Case, Wish)],
+        is_worst: bool,
+        limits: Limits,
+        start: u64,
+    ) -> Result<Self, StudyError> {
+        let subject = |(case, wish): &(&Case, Wish)| Subject::new(case, wish.clone(), limits.coverage[1]);
+        let subjects = cases.iter().map(subject).collect::<Result<Vec<_>, _>>()?;
+        let grid = Grid::of(cases[0].0);
+        Ok(Self {
+            evaluator: Evaluator {
+                subjects,
+                grid,
+                is_worst,
+            },
+            limits,
+            start,
+            drawn: Vec::new(),
+        })
+    }
+
+    /// Lets the search begin with a mask too, or with what is legal of it; it counts as a named pattern, and is judged whether it is
+    /// good or not.
+    pub fn begin_with(&mut self, name: String, textured: Vec<bool>) {
+        self.drawn.push((name, textured));
+    }
+
+    /// Sentences about the masks with which the search begins that break a limit.
+    pub(crate) fn notes(&self) -> Vec<String> {
+        let (grid, limits) = (&self.evaluator.grid, &self.limits);
+        let note = |(name, textured): &(String, Vec<bool>)| {
+            if !textured.contains(&true) {
+                return Some(format!("the {name} covers no block, and was left out"));
+            }
+            let illegal = limits.check(grid, textured).err()?;
+            let named = Named::drawn(grid, name, textured);
+            let made = if limits.texture(grid, &named.draft).is_some() {
+                "the search begins with what is legal of it, which has its name here"
+            } else {
+                "nothing legal is left of it, and it was left out"
+            };
+            Some(format!("the {name} breaks a limit: {illegal}; {made}"))
+        };
+        self.drawn.iter().filter_map(note).collect()
+    }
+
+    /// Searches, and judges the result on fresh surfaces.
+    ///
+    /// # Errors
+    /// When the limits leave no texture, when the slider without texture has nothing to compare with, when runs cannot be
+    /// made or kept, and after a stop.
+    pub fn run(
+        &self,
+        bounds: &Bounds,
+        known: &mut Known,
+        keep: &mut Keep,
+        watch: &mut dyn FnMut(&SearchProgress),
+    ) -> Result<Outcome, StudyError> {
+        let (starts, textures) = self.starts(&|| bounds.stop.load(Ordering::Relaxed));
+        let pairs = starts.iter().zip(textures);
+        let legal: Vec<Contender> = pairs
+            .map(|(named, texture)| Contender {
+                name: named.name.clone(),
+                texture: texture.into(),
+            })
+            .collect();
+        let is_drawn = |named: &Contender| self.drawn.iter().any(|(name, _)| *name == named.name);
+        let groove = legal.iter().filter(|named| named.name == GROOVE);
+        let drawn = legal.iter().filter(|named| is_drawn(named));
+        let beside: Vec<Contender> = groove.chain(drawn).cloned().collect();
+        let mut stages = Stages::new(&self.evaluator, self.limits.clone(), self.start, starts);
+        let (of, of_work) = Judge::most_runs(&self.evaluator, legal.len(), beside.len());
+        let (made, here) = (Cell::new(0), Cell::new(0.0));
+        let mut kept = |runs: &[MadeRun]| {
+            made.set(made.get() + runs.len());
+            here.set(here.get() + runs.iter().map(|run| run.work).sum::<f64>());
+            keep(runs)
+        };
+        let best = stages.run(bounds, known, &mut kept, &mut |now| {
+            watch(&SearchProgress {
+                work: Work {
+                    here: here.get(),
+                    left: now.work.left_within((bounds.share_of_time)(), here.get()) + of_work,
+                },
+                ..now.clone()
+            });
+        })?;
+        let textures = stages.n_textures();
+        let searched: Vec<Contender> = best
+            .into_iter()
+            .map(|texture| Contender {
+                name: "design".to_owned(),
+                texture,
+            })
+            .collect();
+        let (searched_runs, searched_work) = (made.get(), here.get());
+        let mut kept = |runs: &[MadeRun]| {
+            kept(runs)?;
+            let runs = made.get() - searched_runs;
+            watch(&SearchProgress {
+                runs,
+                of,
+                textures,
+                stage: DesignStage::Judging,
+                best: f64::NAN,
+                best_texture: None,
+                work: Work {
+                    here: here.get(),
+                    left: (of_work - (here.get() - searched_work)).max(0.0),
+                },
+            });
+            Ok(())
+        };
+        let judge = Judge {
+            evaluator: &self.evaluator,
+            stop: bounds.stop,
+        };
+        let judged = judge
+            .verdict(&searched, &legal, &beside, known, &mut kept)?
+            .ok_or(StudyError::NoDesign)?;
+        Ok(Outcome {
+            texture: judged.texture,
+            verdict: judged.verdict,
+            compared: judged.compared,
+            length: stages.length(bounds),
+            tried: stages.tried,
+        })
+    }
+
+    /// Searches without a verdict; the best textures on the surfaces of the search, the best first.
+    ///
+    /// # Errors
+    /// When the limits leave no texture, when runs cannot be made, and after a stop.
+    pub fn search(
+        &self,
+        bounds: &Bounds,
+        watch: &mut dyn FnMut(&SearchProgress),
+    ) -> Result<Vec<Arc<Vec<bool>>>, StudyError> {
+        let starts = self.starts(&|| bounds.stop.load(Ordering::Relaxed)).0;
+        let mut stages = Stages::new(&self.evaluator, self.limits.clone(), self.start, starts);
+        let best = stages.run(bounds, &mut Known::new(), &mut |_| Ok(()), watch)?;
+        if best.is_empty() {
+            return Err(StudyError::NoDesign);
+        }
+        Ok(best)
+    }
+
+    /// The legal patterns with which a search begins, and their textures: the named ones, and masks; fewer once `ends`
+    /// returns true.
+    fn starts(&self, ends: &dyn Fn() -> bool) -> (Vec<Named>, Vec<Vec<bool>>) {
+        let (grid, limits) = (&self.evaluator.grid, &self.limits);
+        let drawn = self.drawn.iter().filter_map(|(name, textured)| {
+            let named = Named::drawn(grid, name, textured);
+            let texture = limits.texture(grid, &named.draft)?;
+            Some((named, texture))
+        });
+        named(grid, limits, ends).into_iter().chain(drawn).unzip()
+    }
+
+    /// A search whose runs the caller makes.
+    pub fn open_search(&self) -> OpenSearch {
+        let (grid, limits) = (self.evaluator.grid.clone(), self.limits.clone());
+        OpenSearch::new(Search::new(grid, limits, self.start, self.starts(&|| false).0))
+    }
+
+    /// Checks that a texture is legal.
+    ///
+    /// # Errors
+    /// The first limit that it breaks.
+    pub fn check(&self, textured: &[bool]) -> Result<(), Illegal> {
+        self.limits.check(&self.evaluator.grid, textured)
+    }
+
+    /// Blocks along x and along y.
+    pub fn size(&self) -> [usize; 2] {
+        self.evaluator.grid.size()
+    }
+
+    /// Loss of each texture, a distance from the wish, as a mean over the first `surfaces` surfaces of the search, or the
+    /// reason for which a texture has none; with a coarse step, or that of the case.
+    ///
+    /// # Errors
+    /// When runs cannot be made, and after a stop.
+    pub fn losses(
+        &self,
+        textures: Vec<Vec<bool>>,
+        surfaces: u64,
+        is_coarse: bool,
+        known: &mut Known,
+        stop: &AtomicBool,
+    ) -> Result<Vec<Result<f64, String>>, StudyError> {
+        let fidelity = if is_coarse {
+            Fidelity::Coarse
+        } else {
+            Fidelity::Fine
+        };
+        let textures: Vec<Arc<Vec<bool>>> = textures.into_iter().map(Arc::new).collect();
+        let wanted = self.evaluator.wanted(&textures, 0..surfaces, fidelity);
+        self.evaluator.run(&wanted, known, stop, &mut |_| Ok(()))?;
+        let loss = |texture| {
+            let lost = self.evaluator.lost(texture, 0..surfaces, fidelity, known);
+            let loss = self.evaluator.loss(texture, 0..surfaces, fidelity, known);
+            lost.map_or(Ok(loss), Err)
+        };
+        Ok(textures.iter().map(loss).collect())
+    }
+
+    /// Loss of each texture, a distance from the wish, on each of `surfaces` surfaces that the search has not seen, or on
+    /// one where they do not differ, with the steps and times of a verdict.
+    ///
+    /// # Errors
+    /// When runs cannot be made, and after a stop.
+    pub fn losses_on_fresh(
+        &self,
+        textures: &[Arc<Vec<bool>>],
+        surfaces: u64,
+        stop: &AtomicBool,
+    ) -> Result<Vec<Vec<f64>>, StudyError> {
+        let surfaces = if self.evaluator.scatters() {
+            Stages::UNSEEN..Stages::UNSEEN + surfaces
+        } else {
+            0..1
+        };
+        let mut known = Known::new();
+        let wanted = self
+            .evaluator
+            .wanted(textures, surfaces.clone(), Fidelity::Verdict);
+        self.evaluator.run(&wanted, &mut known, stop, &mut |_| Ok(()))?;
+        let losses = |texture: &Arc<Vec<bool>>| {
+            let loss = |surface| {
+                self.evaluator
+                    .loss(texture, surface..surface + 1, Fidelity::Verdict, &known)
+            };
+            surfaces.clone().map(loss).collect()
+        };
+        Ok(textures.iter().map(losses).collect())
+    }
+
+    /// Block-steps of the first trial of a texture, on one surface with a coarse step.
+    ///
+    /// # Errors
+    /// When a case cannot be made.
+    pub fn block_steps_per_texture(&self) -> Result<f64, StudyError> {
+        let subjects = self.evaluator.subjects.iter();
+        let all: Result<f64, CaseError> = subjects
+            .map(|subject| Ok(subject.case(None, 0, Fidelity::Coarse)?.block_steps()))
+            .sum();
+        Ok(all?)
+    }
+}

@@ -1,0 +1,391 @@
+//! Runs of designs in memory: the wanted and the known runs, and the loss of each design.
+
+use std::collections::{HashMap, HashSet};
+use std::ops::Range;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use slipfront::parallel::*;
+use slipfront_case::case_file::CaseError;
+use slipfront_run::run_summary::run_summary_unless;
+use slipfront_run::running::{Record, run_unless};
+
+use crate::grid::Grid;
+use crate::search::hash;
+use crate::subject::{Fidelity, Subject};
+use crate::wish::{Measured, Wish};
+use slipfront_study::StudyError;
+use slipfront_study::statistics::mean;
+
+/// A run that is wanted.
+#[derive(Clone)]
+pub(crate) struct Wanted {
+    /// Index of the case.
+    pub(crate) subject: usize,
+    /// The texture; none for the slider without.
+    pub(crate) texture: Option<Arc<Vec<bool>>>,
+    /// Number of the surface; 0 is the surface of the search.
+    pub(crate) surface: u64,
+    /// Accuracy of the run.
+    pub(crate) fidelity: Fidelity,
+}
+
+/// Identity of a run: a hash of all that decides its numbers.
+pub type RunId = String;
+
+/// Numbers of a run, or the reason for which it has none, a sentence: it diverged, or never came to rest under a held drive.
+pub type Ended = Result<Measured, String>;
+
+/// Ends of runs by their identities.
+pub type Known = HashMap<RunId, Ended>;
+
+/// A run that was made.
+#[derive(Clone, Debug)]
+pub struct MadeRun {
+    /// Identity of the run.
+    pub id: RunId,
+    /// End of the run.
+    pub ended: Ended,
+    /// Cost of the run, in steps times blocks.
+    pub(crate) work: f64,
+}
+
+/// Takes runs that were made, in their order.
+pub type Keep<'a> = dyn FnMut(&[MadeRun]) -> Result<(), StudyError> + 'a;
+
+/// The cases in which designs are tried, and the rule by which their losses become one.
+#[derive(Debug)]
+pub(crate) struct Evaluator {
+    /// The cases, all with the same blocks.
+    pub(crate) subjects: Vec<Subject>,
+    /// The blocks.
+    pub(crate) grid: Grid,
+    /// Whether the worst case counts, in place of the mean.
+    pub(crate) is_worst: bool,
+}
+
+impl Evaluator {
+    /// The wish, in units of the first case.
+    pub(crate) fn wish(&self) -> &Wish {
+        &self.subjects[0].wish
+    }
+
+    /// Mean cost over the cases of a run, in steps times blocks.
+    pub(crate) fn work(&self, fidelity: Fidelity) -> f64 {
+        let work: f64 = self.subjects.iter().map(|subject| subject.work(fidelity)).sum();
+        work / self.subjects.len() as f64
+    }
+
+    /// An evaluator with other cases for this wish.
+    pub(crate) fn with_subjects(&self, subjects: Vec<Subject>, grid: Grid) -> Self {
+        Self {
+            subjects,
+            grid,
+            is_worst: self.is_worst,
+        }
+    }
+
+    /// Whether surfaces differ by their seeds in any case.
+    pub(crate) fn scatters(&self) -> bool {
+        self.subjects.iter().any(|subject| subject.scatters)
+    }
+
+    /// Identity of a run.
+    pub(crate) fn id(&self, wanted: &Wanted) -> RunId {
+        let subject = &self.subjects[wanted.subject];
+        let mut hasher = blake3::Hasher::new();
+        hasher.update(subject.physics.as_bytes());
+        // This crate makes the recorded numbers of what a run leaves.
+        hasher.update(env!("SLIPFRONT_SOURCE_HASH").as_bytes());
+        if let Some(texture) = &wanted.texture {
+            hasher.update(&hash(texture));
+        }
+        hasher.update(&(subject.seed + wanted.surface).to_le_bytes());
+        for number in subject.step_and_end(wanted.fidelity) {
+            hasher.update(&number.to_le_bytes());
+        }
+        if let Wish::Curve(points) = &subject.wish {
+            for number in points.as_flattened() {
+                hasher.update(&number.to_le_bytes());
+            }
+        }
+        hasher.finalize().to_hex()[..32].to_owned()
+    }
+
+    /// The runs of some textures on some surfaces, each with the run of the slider without texture.
+    pub(crate) fn wanted(
+        &self,
+        textures: &[Arc<Vec<bool>>],
+        surfaces: Range<u64>,
+        fidelity: Fidelity,
+    ) -> Vec<Wanted> {
+        let textures: Vec<Option<&Arc<Vec<bool>>>> =
+            std::iter::once(None).chain(textures.iter().map(Some)).collect();
+        let mut wanted = Vec::new();
+        for surface in surfaces {
+            for texture in &textures {
+                wanted.extend((0..self.subjects.len()).map(|subject| Wanted {
+                    subject,
+                    texture: texture.cloned(),
+                    surface,
+                    fidelity,
+                }));
+            }
+        }
+        wanted
+    }
+
+    /// Makes the runs that are not known yet, on the threads of rayon's pool, and hands them over in the order in which they
+    /// are wanted. After a stop, no run is handed over.
+    pub(crate) fn run(
+        &self,
+        wanted: &[Wanted],
+        known: &mut Known,
+        stop: &AtomicBool,
+        keep: &mut Keep,
+    ) -> Result<(), StudyError> {
+        let mut asked = HashSet::new();
+        let missing: Vec<(RunId, &Wanted)> = wanted
+            .iter()
+            .map(|wanted| (self.id(wanted), wanted))
+            .filter(|(id, _)| !known.contains_key(id) && asked.insert(id.clone()))
+            .collect();
+        let runs = missing.into_par_iter().with_max_len(1);
+        let made: Result<Vec<MadeRun>, StudyError> = runs
+            .map(|(id, wanted)| {
+                Ok(MadeRun {
+                    id,
+                    ended: self.measure(wanted, stop)?.ok_or(StudyError::Interrupted)?,
+                    work: self.subjects[wanted.subject].work(wanted.fidelity),
+                })
+            })
+            .collect();
+        let made = made?;
+        keep(&made)?;
+        known.extend(made.into_iter().map(|made| (made.id, made.ended)));
+        Ok(())
+    }
+
+    /// Makes one run; none after a stop.
+    fn measure(&self, wanted: &Wanted, stop: &AtomicBool) -> Result<Option<Ended>, CaseError> {
+        let ends = || stop.load(Ordering::Relaxed);
+        let texture = wanted.texture.as_ref().map(|texture| texture.as_slice());
+        let subject = &self.subjects[wanted.subject];
+        let case = subject.case(texture, wanted.surface, wanted.fidelity)?;
+        let Wish::Curve(points) = &subject.wish else {
+            let summary = run_summary_unless(&case, &ends);
+            return Ok(summary.map(|summary| {
+                let measured = summary.map(|summary| Measured::of(&summary));
+                measured.map_err(|error| error.to_string())
+            }));
+        };
+        let record = run_unless(&Arc::new(case), &ends);
+        Ok(record.map(|record| {
+            let measured = record.map(|record| Measured {
+                misfit: Some(misfit(points, &record)),
+                ..Measured::of(&record.summary)
+            });
+            measured.map_err(|error| error.to_string())
+        }))
+    }
+
+    /// End of a run.
+    pub(crate) fn ended(&self, wanted: &Wanted, known: &Known) -> Ended {
+        let ended = known.get(&self.id(wanted)).cloned();
+        ended.unwrap_or_else(|| Err("the run was not made".to_owned()))
+    }
+
+    /// Deviation from the wish in a run with a texture, or the reason for which there is none.
+    fn deviation(&self, run: &Wanted, known: &Known) -> Result<f64, String> {
+        let wish = &self.subjects[run.subject].wish;
+        let with = self.ended(run, known)?;
+        if !wish.is_relative() {
+            return wish.deviation(&with, None);
+        }
+        let bare = Wanted {
+            texture: None,
+            ..run.clone()
+        };
+        let without = self
+            .ended(&bare, known)
+            .map_err(|why| format!("without texture: {why}"))?;
+        wish.deviation(&with, Some(&without))
+    }
+
+    /// Deviations of a texture in one case, surface by surface; NaN where there is none.
+    fn deviations(
+        &self,
+        subject: usize,
+        texture: &Arc<Vec<bool>>,
+        surfaces: Range<u64>,
+        fidelity: Fidelity,
+        known: &Known,
+    ) -> Vec<f64> {
+        let run = |surface| Wanted {
+            subject,
+            texture: Some(Arc::clone(texture)),
+            surface,
+            fidelity,
+        };
+        surfaces
+            .map(|surface| self.deviation(&run(surface), known).unwrap_or(f64::NAN))
+            .collect()
+    }
+
+    /// The loss of a texture on some surfaces: the mean over the cases of the mean deviation of each, or the largest;
+    /// infinite if the texture is [lost](Self::lost) on any of them.
+    pub(crate) fn loss(
+        &self,
+        texture: &Arc<Vec<bool>>,
+        surfaces: Range<u64>,
+        fidelity: Fidelity,
+        known: &Known,
+    ) -> f64 {
+        let losses = (0..self.subjects.len()).map(|subject| {
+            let deviations = self.deviations(subject, texture, surfaces.clone(), fidelity, known);
+            let loss = self.wish().loss(mean(&deviations));
+            if loss.is_nan() { f64::INFINITY } else { loss }
+        });
+        if self.is_worst {
+            losses.fold(f64::NEG_INFINITY, f64::max)
+        } else {
+            losses.sum::<f64>() / self.subjects.len() as f64
+        }
+    }
+
+    /// Parts of the [loss](Self::loss) of a texture, surface by surface: their mean is the loss. Where a value is wished for, parts have the
+    /// sign of the mean deviation, and if the worst case counts they are those of this case, so that the scatter of the
+    /// parts is that of the loss.
+    pub(crate) fn loss_by_surface(
+        &self,
+        texture: &Arc<Vec<bool>>,
+        surfaces: Range<u64>,
+        fidelity: Fidelity,
+        known: &Known,
+    ) -> Vec<f64> {
+        let n_surfaces = (surfaces.end - surfaces.start) as usize;
+        let of_case = |subject: usize| -> Vec<f64> {
+            let deviations = self.deviations(subject, texture, surfaces.clone(), fidelity, known);
+            let mean = mean(&deviations);
+            let sign = if self.wish().loss(mean) == mean { 1.0 } else { -1.0 };
+            let part = |deviation: f64| {
+                if deviation.is_nan() {
+                    f64::INFINITY
+                } else {
+                    sign * deviation
+                }
+            };
+            deviations.into_iter().map(part).collect()
+        };
+        let cases: Vec<Vec<f64>> = (0..self.subjects.len()).map(of_case).collect();
+        if self.is_worst {
+            let worst = cases.into_iter().max_by(|a, b| mean(a).total_cmp(&mean(b)));
+            return worst.unwrap_or_default();
+        }
+        let of_surface = |k: usize| mean(&cases.iter().map(|parts| parts[k]).collect::<Vec<_>>());
+        (0..n_surfaces).map(of_surface).collect()
+    }
+
+    /// Reason for which a texture is lost on some surfaces: that of the first run without a deviation from the wish, with its case and
+    /// seed where there are several.
+    pub(crate) fn lost(
+        &self,
+        texture: &Arc<Vec<bool>>,
+        surfaces: Range<u64>,
+        fidelity: Fidelity,
+        known: &Known,
+    ) -> Option<String> {
+        let cases = 0..self.subjects.len();
+        let mut runs = surfaces.flat_map(|surface| cases.clone().map(move |subject| (subject, surface)));
+        runs.find_map(|(subject, surface)| {
+            let run = Wanted {
+                subject,
+                texture: Some(Arc::clone(texture)),
+                surface,
+                fidelity,
+            };
+            let why = self.deviation(&run, known).err()?;
+            let case = (self.subjects.len() > 1).then(|| format!("case {}", subject + 1));
+            let seed =
+                (surface > 0).then(|| format!("`friction.seed` = {}", self.subjects[subject].seed + surface));
+            let mut place = case.into_iter().chain(seed).collect::<Vec<_>>().join(", ");
+            if !place.is_empty() {
+                place += ": ";
+            }
+            Some(place + &why)
+        })
+    }
+
+    /// Refuses a slider without texture that has nothing to compare textures with; makes its runs.
+    ///
+    /// # Errors
+    /// The reason; when runs cannot be made or kept, and after a stop.
+    pub(crate) fn check_reference(
+        &self,
+        known: &mut Known,
+        stop: &AtomicBool,
+        keep: &mut Keep,
+    ) -> Result<(), StudyError> {
+        if !self.wish().is_relative() {
+            return Ok(());
+        }
+        let wanted = self.wanted(&[], 0..1, Fidelity::Coarse);
+        self.run(&wanted, known, stop, keep)?;
+        for run in &wanted {
+            let why = match self.ended(run, known) {
+                Ok(bare) => self.subjects[run.subject]
+                    .wish
+                    .deviation(&bare, Some(&bare))
+                    .err(),
+                Err(why) => Some(why),
+            };
+            if let Some(why) = why {
+                return Err(StudyError::Reference { why });
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Root of the mean square of mu* less the wished values at some times of the drive, with mu* linear between its rows.
+fn misfit(points: &[[f64; 2]], record: &Record) -> f64 {
+    let rows = &record.rows;
+    let mut next = 0;
+    let squares = points.iter().map(|&[time, wanted]| {
+        while next + 1 < rows.len() && rows[next].drive_time_star < time {
+            next += 1;
+        }
+        let [before, after] = [&rows[next.saturating_sub(1)], &rows[next]];
+        let [from, to] = [before, after].map(|row| row.drive_time_star);
+        let share = if to > from {
+            ((time - from) / (to - from)).clamp(0.0, 1.0)
+        } else {
+            1.0
+        };
+        let found = before.point.mu_star + share * (after.point.mu_star - before.point.mu_star);
+        (found - wanted) * (found - wanted)
+    });
+    (squares.sum::<f64>() / points.len() as f64).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use slipfront_case::case::Case;
+
+    use super::*;
+
+    #[test]
+    fn a_curve_is_compared_between_its_rows() {
+        let case = Case::parse("slider.blocks = [4, 4]\noutput.series = 5", "case", "", &[]).unwrap();
+        let record = slipfront_run::running::run(&Arc::new(case), 1).unwrap();
+        let points = record.rows.windows(2).map(|rows| {
+            let [time, mu] = [0, 1].map(|k| [rows[k].drive_time_star, rows[k].point.mu_star]);
+            [0.5 * (time[0] + mu[0]), 0.5 * (time[1] + mu[1])]
+        });
+        let points: Vec<[f64; 2]> = points.collect();
+        // The middle of two rows, rounded.
+        assert!(misfit(&points, &record) < 1e-15);
+        let raised: Vec<[f64; 2]> = points.iter().map(|[time, mu]| [*time, mu + 0.5]).collect();
+        assert!((misfit(&raised, &record) - 0.5).abs() < 1e-15);
+    }
+}

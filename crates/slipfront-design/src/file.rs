@@ -1,0 +1,550 @@
+//! The design file: a base case, the wish, the limits, and the length of the search.
+
+use std::path::Path;
+
+use serde::Deserialize;
+use slipfront_case::case::{Case, Ranks};
+use slipfront_case::case_file::{
+    CaseError, CaseFile, KeyKind, Override, Source, Tables, key, names_of, syntax_error, unknown_key, whole,
+};
+use slipfront_case::key_rows;
+use slipfront_case::quantity::{Force, Length};
+use slipfront_case::texture_file::textured_blocks;
+use slipfront_run::measured::Measure;
+use toml::{Table, Value};
+
+use crate::design::Design;
+use crate::grid::Grid;
+use crate::limits::Limits;
+use crate::wish::{Quantity, Wish};
+use slipfront_study::StudyError;
+use slipfront_study::axis::overrides;
+use slipfront_study::input_copies::Copy;
+use slipfront_study::measured_columns::MeasuredColumns;
+use slipfront_study::study_file::{Base, found_at, parse_noting_places, portable, read_base, read_named};
+
+/// The tables of a design file.
+const TABLES: [&str; 2] = ["base", "design"];
+
+/// Largest number of runs of a search.
+const MAX_RUNS: u32 = 100_000_000;
+
+/// A design file.
+#[derive(Clone, Debug)]
+pub struct DesignFile {
+    /// Name of the design and of its results.
+    pub name: String,
+    /// Keys of the file.
+    pub keys: DesignKeys,
+    base: Base,
+    source: Source,
+    table: Table,
+}
+
+key_rows! {
+    /// The table `[design]`.
+    #[derive(Clone, Debug, PartialEq, Deserialize)]
+    #[serde(deny_unknown_fields)]
+    pub struct DesignKeys {
+        /// Aim of the texture.
+        wish: WishKeys = key("", KeyKind::Special("")).without("needed").note("[See below](#wish)."),
+        /// Least and largest share of the slider that is textured, %.
+        coverage: [f64; 2] = key("", KeyKind::Special("from at least 0 to less than 100")).without("needed"),
+        /// Smallest width of a feature, a length. It becomes a whole number of blocks, rounded up.
+        feature: Option<Length> = key("", KeyKind::Special("more than 0")).without("one block"),
+        /// Smallest width of a feature in blocks, in place of `feature`.
+        feature_blocks: Option<u32> = key("", KeyKind::Special("1 and more")),
+        /// Smallest width of the part in contact between two features, and between a feature and an edge of
+        /// the slider.
+        gap: Option<Length> = key("", KeyKind::Special("more than 0")).without("one block"),
+        /// Smallest gap in blocks, in place of `gap`.
+        gap_blocks: Option<u32> = key("", KeyKind::Special("1 and more")),
+        /// Mirror symmetry of the texture: its left and right halves (`"x"`), its lower and upper halves
+        /// (`"y"`), or both.
+        mirror: Mirror = key("\"none\"", KeyKind::Words(names_of::<Mirror>)),
+        /// `[columns, rows]` of equal cells into which the slider is divided, all with one texture.
+        copies: [u32; 2] = key("[1, 1]", KeyKind::Special("must divide the blocks")),
+        /// Parts that must touch: a list of textures, as in a case file, such as
+        /// `[{ shape = "mask", file = "clamps.png" }]`.
+        forbidden: Option<Value> = key("", KeyKind::Special("")).without("nothing"),
+        /// Largest number of features: pieces without a common edge of a block.
+        max_features: Option<u32> = key("", KeyKind::Special("1 and more")).without("any"),
+        /// Spacing of the lines that a laser writes, and largest length of all lines together. With
+        /// `line_spacing` alone the report gives the length; `max_length` limits the coverage.
+        writing: Option<Writing> =
+            key("", KeyKind::Special("`{ line_spacing = \"10 um\", max_length = \"2 m\" }`; more than 0")),
+        /// Keys of several cases for which the texture is designed, such as
+        /// `[{ drive.v_star = 0.01 }, { drive.v_star = 0.1 }]`, but for `texture`. All have the blocks of the
+        /// base; each has the wish in its own units, so that a force is another share of mu_s under another
+        /// load.
+        cases: Vec<Table> = key("[]", KeyKind::Special("")).without("the base alone"),
+        /// Loss of several cases: the mean, or that of the worst.
+        judge_by: JudgeBy = key("\"mean\"", KeyKind::Words(names_of::<JudgeBy>)),
+        /// Runs of the search. The verdict takes some hundreds more.
+        pub runs: u32 = key("10000", whole(1, MAX_RUNS as u64)),
+        /// Seed of the random drafts: another one is another search.
+        start: u64 = key("1", KeyKind::Special("0 and more")),
+        /// Textures with which the search begins in addition to named patterns: a list of lists, each as
+        /// `[[texture]]` of a case file. They are judged too, however good they are; of one that breaks a
+        /// limit the search takes what is legal, and a note says so.
+        starts: Vec<Value> = key("[]", KeyKind::Special("")).without("none"),
+        /// Coverages, %, such as `[2, 4, 6, 8]`: for each of them a design that covers no more is searched
+        /// for with as many runs, and `front.csv` gives the best friction over coverage.
+        pub front: Vec<f64> = key("[]", KeyKind::Special("rising, within `coverage`")).without("none"),
+    }
+}
+
+/// The key `wish`: exactly one of its forms.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct WishKeys {
+    least: Option<Quantity>,
+    largest: Option<Quantity>,
+    value: Option<Number>,
+    of: Option<String>,
+    curve: Option<CurveKeys>,
+}
+
+/// A coefficient, or a force with its unit.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(untagged)]
+enum Number {
+    Coefficient(f64),
+    Force(String),
+}
+
+/// A curve to follow: two columns of a table, path of the drive and friction.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct CurveKeys {
+    file: String,
+    x: String,
+    y: String,
+    x_unit: Option<String>,
+    y_unit: Option<String>,
+}
+
+/// Limits of a laser's writing: the distance of its lines, and their largest total length.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Writing {
+    line_spacing: Length,
+    max_length: Option<Length>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+enum Mirror {
+    None,
+    X,
+    Y,
+    Both,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+enum JudgeBy {
+    Mean,
+    Worst,
+}
+
+impl DesignFile {
+    /// Loads a design file; a base case that it names stands relative to it.
+    ///
+    /// # Errors
+    /// As [`parse`](Self::parse), and when the file cannot be read.
+    pub fn load(path: &Path) -> Result<Self, StudyError> {
+        let (text, name, folder) = read_named(path, "design")?;
+        Self::parse(&text, &path.display().to_string(), &name, folder)
+    }
+
+    /// Reads a design file called `file` in messages; a base case that it names stands relative to `folder`.
+    ///
+    /// # Errors
+    /// When it is no TOML, has unknown keys, or values out of their bounds.
+    pub fn parse(text: &str, file: &str, name: &str, folder: &Path) -> Result<Self, StudyError> {
+        let mut source = Source::new(file, text);
+        let root = parse_noting_places(&mut source, text)?;
+        let mut tables = Tables {
+            root,
+            source: &source,
+        };
+        let base = read_base(&mut tables, file, folder)?;
+        let keys: DesignKeys = tables.read_with("design", DesignKeys::KEYS)?;
+        if let Some(key) = tables.root.keys().min_by_key(|key| key.span().start) {
+            let sentence = unknown_key(key.get_ref(), "a design file", &TABLES);
+            return Err(source.error_at(key.span(), sentence).into());
+        }
+        keys.check(&source)?;
+        let table = text.parse().map_err(|error| syntax_error(&source, 0, &error))?;
+        Ok(Self {
+            name: name.to_owned(),
+            keys,
+            base,
+            source,
+            table,
+        })
+    }
+
+    /// The design with its base case inside and its files beside it, for the results folder.
+    pub(crate) fn portable(&self) -> Result<(String, Vec<Copy>), StudyError> {
+        portable(&self.base, &self.table)
+    }
+
+    /// The case in which designs are tried first, with its own texture.
+    ///
+    /// # Errors
+    /// When the case is not valid.
+    pub fn case(&self) -> Result<Case, CaseError> {
+        self.case_with(&[])
+    }
+
+    /// The cases for which the texture is designed, with the texture of the base: one for every table of
+    /// `cases`, or the base alone.
+    ///
+    /// # Errors
+    /// When one of them is not valid.
+    pub(crate) fn cases(&self) -> Result<Vec<Case>, CaseError> {
+        if self.keys.cases.is_empty() {
+            return Ok(vec![self.case()?]);
+        }
+        let case = |set: &Table| {
+            let case = self.case_with(&overrides(set));
+            case.map_err(|error| self.found_in("cases", error))
+        };
+        self.keys.cases.iter().map(case).collect()
+    }
+
+    /// Keys of each of several cases, as a text; nothing for the base alone.
+    pub(crate) fn case_keys(&self) -> Vec<String> {
+        let keys = |set: &Table| {
+            let set: Vec<String> = overrides(set).iter().map(ToString::to_string).collect();
+            if set.is_empty() {
+                "the base".to_owned()
+            } else {
+                set.join(", ")
+            }
+        };
+        self.keys.cases.iter().map(keys).collect()
+    }
+
+    fn case_with(&self, set: &[Override]) -> Result<Case, CaseError> {
+        let set: Vec<&Override> = set.iter().collect();
+        let file: CaseFile = self.base.parse()?.with(&set)?;
+        Case::to_run(file, &self.name, &self.base.folder, &mut |_| true, Ranks::ALONE)
+    }
+
+    /// The textured blocks of the base case with other textures, in place of its own.
+    fn textured(&self, key: &str, textures: &Value) -> Result<Vec<bool>, CaseError> {
+        if !textures.is_array() {
+            let sentence = format!(
+                "`{key}` must be a list of textures, each as in a case file, such as [{{ shape = \"mask\", file = \"mask.png\" }}]"
+            );
+            return Err(self.error(key, sentence));
+        }
+        let case = self.case_with(&[Override::new("texture", textures)]);
+        let case = case.map_err(|error| self.found_in(key, error))?;
+        Ok(textured_blocks(&case))
+    }
+
+    /// The design that the file asks for.
+    ///
+    /// # Errors
+    /// When a case of it is not valid, or when its limits do not belong to its blocks.
+    pub fn design(&self) -> Result<Design, StudyError> {
+        self.design_up_to(self.keys.coverage[1])
+    }
+
+    /// Refuses a design that is not valid, that has no memory for `threads` runs at once, or that asks for a
+    /// front although its search `is_timed`; `runs` is the number of runs of its search.
+    ///
+    /// # Errors
+    /// As [`design`](Self::design), and with the number of runs at once that there is memory for.
+    pub fn check(&self, runs: usize, threads: usize, is_timed: bool) -> Result<(), StudyError> {
+        if is_timed && !self.keys.front.is_empty() {
+            let sentence = "a search that is cut short by a time has no time for a front: give a number of runs, or leave out `front`";
+            return Err(self.error("front", sentence.to_owned()).into());
+        }
+        // Every design of a front keeps what it has tried until all are written.
+        let drafts = runs.saturating_mul(1 + self.keys.front.len());
+        self.design()?.check_memory(drafts, threads)
+    }
+
+    /// The designs of a front: every coverage in `front`, with the design of at most this coverage.
+    ///
+    /// # Errors
+    /// As [`design`](Self::design).
+    pub fn designs_of_front(&self) -> Result<Vec<(f64, Design)>, StudyError> {
+        let percents = self.keys.front.iter();
+        percents
+            .map(|&percent| Ok((percent, self.design_up_to(percent)?)))
+            .collect()
+    }
+
+    fn design_up_to(&self, percent: f64) -> Result<Design, StudyError> {
+        let base = self.case()?;
+        let keys = &self.keys;
+        let is_texture = |name: &String| name.split('.').next() == Some("texture");
+        if keys.cases.iter().any(|set| set.keys().any(is_texture)) {
+            let sentence = "`cases` differ in keys other than `texture`: the texture is what is designed; a drawing from which to begin \
+                            belongs to `starts`"
+                .to_owned();
+            return Err(self.error("cases", sentence).into());
+        }
+        let cases = self.cases()?;
+        let grid = Grid::of(&base);
+        if cases
+            .iter()
+            .any(|case| Grid::of(case) != grid || case.scales.block_size != base.scales.block_size)
+        {
+            let sentence = "all cases of a design have the blocks of the base".to_owned();
+            return Err(self.error("cases", sentence).into());
+        }
+        let limits = self.limits(&base, &grid, percent)?;
+        if keys.wish.curve.is_some() && cases.len() > 1 {
+            let sentence = "a curve is that of one case: give `cases` one table, or leave it out".to_owned();
+            return Err(self.error("cases", sentence).into());
+        }
+        let wished = cases.iter().map(|case| Ok((case, self.wish(case, &grid)?)));
+        let wished: Vec<(&Case, Wish)> = wished.collect::<Result<_, StudyError>>()?;
+        let mut design = Design::new(&wished, keys.judge_by == JudgeBy::Worst, limits, keys.start)?;
+        for (k, textures) in keys.starts.iter().enumerate() {
+            let textured = self.textured("starts", textures)?;
+            design.begin_with(format!("start {} of the file", k + 1), textured);
+        }
+        if base.model.surface.texture_percent() > 0.0 {
+            design.begin_with("texture of the case".to_owned(), textured_blocks(&base));
+        }
+        Ok(design)
+    }
+
+    /// An error about a key of `[design]`.
+    fn error(&self, key: &str, sentence: String) -> CaseError {
+        self.source.error(&format!("design.{key}"), sentence)
+    }
+
+    /// An error about a case that a key of `[design]` makes, at the place of the key.
+    fn found_in(&self, key: &str, error: CaseError) -> CaseError {
+        found_at(&self.source, &format!("design.{key}"), error)
+    }
+
+    /// The limits in blocks.
+    fn limits(&self, base: &Case, grid: &Grid, percent: f64) -> Result<Limits, CaseError> {
+        let keys = &self.keys;
+        let narrowest = grid.size()[0].min(grid.size()[1]);
+        let width = |[key, in_blocks]: [&str; 2], length: &Option<Length>, blocks: Option<u32>| {
+            let of_length = |length: &Length| {
+                // A length that is a whole number of blocks up to rounding must not gain one.
+                (length.si() / base.scales.block_size - 1e-6).ceil().max(1.0) as usize
+            };
+            let blocks =
+                blocks.map_or_else(|| length.as_ref().map_or(1, of_length), |blocks| blocks as usize);
+            if blocks > narrowest {
+                let sentence =
+                    format!("`{key}` is {blocks} blocks, more than the slider's {narrowest} across");
+                return Err(self.error(if length.is_some() { key } else { in_blocks }, sentence));
+            }
+            Ok(blocks)
+        };
+        let copies = keys.copies.map(|cells| cells as usize);
+        for (axis, name) in ["columns", "rows"].into_iter().enumerate() {
+            if copies[axis] == 0 || !grid.size()[axis].is_multiple_of(copies[axis]) {
+                let sentence = format!(
+                    "`copies` must divide the slider: it has {} {name} of blocks, which {} does not divide",
+                    grid.size()[axis],
+                    copies[axis]
+                );
+                return Err(self.error("copies", sentence));
+            }
+        }
+        let forbidden = keys.forbidden.as_ref();
+        let forbidden = forbidden
+            .map(|textures| self.textured("forbidden", textures))
+            .transpose()?;
+        Ok(Limits {
+            coverage: [keys.coverage[0], self.largest_coverage(base, grid, percent)],
+            feature: width(["feature", "feature_blocks"], &keys.feature, keys.feature_blocks)?,
+            gap: width(["gap", "gap_blocks"], &keys.gap, keys.gap_blocks)?,
+            mirror: match keys.mirror {
+                Mirror::None => [false, false],
+                Mirror::X => [true, false],
+                Mirror::Y => [false, true],
+                Mirror::Both => [true, true],
+            },
+            copies,
+            forbidden,
+            max_features: keys.max_features.map(|most| most as usize),
+        })
+    }
+
+    /// The largest coverage, %, up to `most`, that the length of a laser's lines allows.
+    fn largest_coverage(&self, base: &Case, grid: &Grid, most: f64) -> f64 {
+        let Some(Writing {
+            line_spacing,
+            max_length: Some(length),
+        }) = &self.keys.writing
+        else {
+            return most;
+        };
+        let area = grid.n_blocks() as f64 * base.scales.block_size * base.scales.block_size;
+        most.min(100.0 * length.si() * line_spacing.si() / area)
+    }
+
+    /// Distance between the lines of a laser, m, if the file gives one.
+    pub(crate) fn line_spacing(&self) -> Option<f64> {
+        self.keys
+            .writing
+            .as_ref()
+            .map(|writing| writing.line_spacing.si())
+    }
+
+    /// The wish in units of mu_s and of t* of a case.
+    fn wish(&self, case: &Case, grid: &Grid) -> Result<Wish, StudyError> {
+        let refuse = |sentence: &str| Err(self.error("wish", sentence.to_owned()).into());
+        let mu_s = case.scales.mu_static_mean;
+        let load = case.scales.pressure * case.scales.block_size.powi(2) * grid.n_blocks() as f64;
+        let keys = &self.keys.wish;
+        match (keys.least, keys.largest, &keys.value, &keys.of, &keys.curve) {
+            (Some(quantity), None, None, None, None) => Ok(Wish::Least(quantity)),
+            (None, Some(quantity), None, None, None) => Ok(Wish::Largest(quantity)),
+            (None, None, Some(value), Some(of), None) => {
+                let (name, is_star) = of
+                    .strip_suffix("_star")
+                    .map_or((of.as_str(), false), |name| (name, true));
+                let quantity = match name {
+                    "static_friction" => Quantity::StaticFriction,
+                    "kinetic_friction" => Quantity::KineticFriction,
+                    "friction_drop" => Quantity::FrictionDrop,
+                    _ => {
+                        return refuse(
+                            "`of` must be static_friction, kinetic_friction or friction_drop, also with _star for a share of mu_s",
+                        );
+                    }
+                };
+                let star = match value {
+                    Number::Coefficient(value) if is_star => *value,
+                    Number::Coefficient(value) => value / mu_s,
+                    Number::Force(_) if is_star => {
+                        return refuse(
+                            "`value` is a force, and `of` with _star asks for a share of mu_s: leave out _star",
+                        );
+                    }
+                    Number::Force(text) => match text.parse::<Force>() {
+                        Ok(force) => force.si() / (load * mu_s),
+                        Err(error) => return refuse(&format!("`value`: {error}")),
+                    },
+                };
+                if !(star > 0.0 && star.is_finite()) {
+                    return refuse("`value` must be a number of more than 0");
+                }
+                Ok(Wish::Value(quantity, star))
+            }
+            (None, None, None, None, Some(curve)) => self.curve(curve, case, load),
+            _ => refuse(
+                "`wish` is one of { least = \"static_friction\" }, { largest = \"static_friction\" }, { value = 0.3, of = \
+                 \"static_friction\" } and { curve = { file = \"wanted.csv\", x = \"X (um)\", y = \"mu (1)\" } }",
+            ),
+        }
+    }
+
+    /// The curve of a table as mu* at times t* of the drive of a case.
+    fn curve(&self, keys: &CurveKeys, case: &Case, load: f64) -> Result<Wish, StudyError> {
+        if case.model.drive.program.is_some() {
+            let sentence =
+                "a curve over the path of the drive asks for a drive of one speed: leave out `drive.program`"
+                    .to_owned();
+            return Err(self.error("wish.curve", sentence).into());
+        }
+        let path = self.base.folder.join(&keys.file);
+        let columns = MeasuredColumns::new([&keys.x, &keys.y], [&keys.x_unit, &keys.y_unit]);
+        let record = columns.read(&path, Measure::Displacement);
+        let record = record.map_err(|sentence| self.error("wish.curve", sentence))?;
+        if let Some(footer) = record.footer {
+            let sentence = format!("{footer}: remove them, or begin them with #");
+            return Err(self.error("wish.curve", sentence).into());
+        }
+        if record.x.last().is_none_or(|&last| last <= 0.0) {
+            let sentence =
+                "the curve ends before the drive has moved: its last path must be more than 0".to_owned();
+            return Err(self.error("wish.curve", sentence).into());
+        }
+        let mu_s = case.scales.mu_static_mean;
+        let unit = if record.of == Measure::Force {
+            load * mu_s
+        } else {
+            mu_s
+        };
+        // The drive has gone X at t* = X/(V* l_x), with one unit l_x of displacement.
+        let path_of_time = case.groups.v_star * case.scales.displacement();
+        let points = record.x.iter().zip(&record.y);
+        Ok(Wish::Curve(
+            points.map(|(x, y)| [x / path_of_time, y / unit]).collect(),
+        ))
+    }
+}
+
+impl DesignKeys {
+    fn check(&self, source: &Source) -> Result<(), CaseError> {
+        let refuse = |key: &str, sentence: String| Err(source.error(&format!("design.{key}"), sentence));
+        let [least, most] = self.coverage;
+        if !(0.0 <= least && least <= most && 0.0 < most && most < 100.0) {
+            let sentence = format!(
+                "`coverage` = [{least}, {most}] must rise from at least 0 to less than 100, in %, such as [0, 10]"
+            );
+            return refuse("coverage", sentence);
+        }
+        for (key, length, blocks) in [
+            ("feature", &self.feature, self.feature_blocks),
+            ("gap", &self.gap, self.gap_blocks),
+        ] {
+            if length.is_some() && blocks.is_some() {
+                let sentence = format!("`{key}` and `{key}_blocks` exclude each other: keep one");
+                return refuse(key, sentence);
+            }
+            if blocks == Some(0) {
+                return refuse(
+                    &format!("{key}_blocks"),
+                    format!("`{key}_blocks` = 0 must be at least 1"),
+                );
+            }
+            if length
+                .as_ref()
+                .is_some_and(|length| length.si().is_nan() || length.si() <= 0.0)
+            {
+                return refuse(key, format!("`{key}` must be more than 0"));
+            }
+        }
+        let rises = self.front.windows(2).all(|pair| pair[0] < pair[1]);
+        if !rises
+            || self
+                .front
+                .iter()
+                .any(|&percent| !(least < percent && percent <= most))
+        {
+            let sentence = format!(
+                "`front` must rise from more than {least} to at most {most}, the largest `coverage`, in %, such as [2, 4, 6, 8, 10]"
+            );
+            return refuse("front", sentence);
+        }
+        if !(1..=MAX_RUNS).contains(&self.runs) {
+            let sentence = format!("`runs` = {} must lie between 1 and {MAX_RUNS}", self.runs);
+            return refuse("runs", sentence);
+        }
+        if self.max_features == Some(0) {
+            return refuse("max_features", "`max_features` must be at least 1".to_owned());
+        }
+        if let Some(writing) = &self.writing {
+            let lengths = std::iter::once(&writing.line_spacing).chain(&writing.max_length);
+            if lengths
+                .into_iter()
+                .any(|length| length.si().is_nan() || length.si() <= 0.0)
+            {
+                return refuse(
+                    "writing",
+                    "the lengths of `writing` must be more than 0".to_owned(),
+                );
+            }
+        }
+        Ok(())
+    }
+}

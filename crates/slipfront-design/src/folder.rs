@@ -1,0 +1,338 @@
+//! The results folder of a design: the design file, the journal of its runs, tables, the mask and a case that reads it.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::AtomicBool;
+
+use serde::{Deserialize, Serialize};
+use slipfront_base::disk::{TEXT_MAX_BYTES, is_empty, make_folders, read_limited};
+use slipfront_run::folder_error::FolderError;
+
+use crate::design::{Design, Outcome};
+use crate::evaluate::{Ended, Known, MadeRun, RunId};
+use crate::file::DesignFile;
+use crate::report::{Report, VERDICT};
+use crate::stages::{Bounds, Length, SearchProgress, Work};
+use crate::wish::Measured;
+use slipfront_study::journal::Journal;
+use slipfront_study::record::{JournalRecord, to_line};
+use slipfront_study::result_files::{Batch, Others, ResultFiles};
+use slipfront_study::written_numbers::read_numbers;
+use slipfront_study::{ProjectKind, StudyError};
+
+/// The design file in the folder, with the base case as a table in it: `slipfront design DIR/design.toml` repeats the design.
+const DESIGN: &str = "design.toml";
+
+/// The journal of a design: a line for every run.
+const JOURNAL: &str = "design.jsonl";
+
+/// A line of the journal: the numbers of a run, or the reason for which it has none.
+#[derive(Serialize, Deserialize)]
+struct DesignRun {
+    id: RunId,
+    #[serde(flatten)]
+    end: RunEnd,
+}
+
+impl JournalRecord for DesignRun {
+    const KEYS: &'static [&'static str] = &["found", "failed"];
+}
+
+/// End of a run in the journal.
+#[derive(Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+enum RunEnd {
+    Found(Measured),
+    Failed(String),
+}
+
+impl DesignRun {
+    fn of(run: &MadeRun) -> Self {
+        Self {
+            id: run.id.clone(),
+            end: match &run.ended {
+                Ok(found) => RunEnd::Found(found.clone()),
+                Err(why) => RunEnd::Failed(why.clone()),
+            },
+        }
+    }
+
+    fn into_entry(self) -> (RunId, Ended) {
+        let ended = match self.end {
+            RunEnd::Found(found) => Ok(found),
+            RunEnd::Failed(why) => Err(why),
+        };
+        (self.id, ended)
+    }
+}
+
+/// A results folder, with the runs that were kept in it.
+#[derive(Debug)]
+pub struct DesignFolder {
+    path: PathBuf,
+    files: ResultFiles,
+    journal: Journal,
+    known: Known,
+    /// Lines of the journal that failed their checksum.
+    pub damaged: usize,
+    /// The design in the folder, which reads copies of its files.
+    pub file: DesignFile,
+}
+
+impl DesignFolder {
+    /// Opens a results folder: a new one, an empty one, or one of an earlier call that no other process works in.
+    ///
+    /// # Errors
+    /// When the folder holds other files, or some that were edited since they were written and may not be replaced by `force`; when
+    /// another process works in it, or it cannot be written to.
+    pub fn open(path: &Path, file: &DesignFile, force: bool) -> Result<Self, StudyError> {
+        make_folders(path).map_err(FolderError::unwritable(path))?;
+        let used = path.join(JOURNAL).exists();
+        if !used && !is_empty(path).map_err(FolderError::unwritable(path))? {
+            return Err(StudyError::OtherThings {
+                what: "design",
+                path: path.to_owned(),
+            });
+        }
+        let (text, copies) = file.portable()?;
+        let before = read_limited(&path.join(DESIGN), TEXT_MAX_BYTES).ok();
+        if before.is_some_and(|before| before != text.as_bytes()) {
+            return Err(StudyError::Changed {
+                what: "design",
+                path: path.to_owned(),
+            });
+        }
+        let (journal, kept, damaged) =
+            Journal::open::<DesignRun>(path, JOURNAL).map_err(|error| match error {
+                StudyError::NotRecords { path } => FolderError::Foreign { path }.into(),
+                error => error,
+            })?;
+        if copies.iter().any(|copy| copy.differs_in(path)) {
+            return Err(StudyError::Changed {
+                what: "design",
+                path: path.to_owned(),
+            });
+        }
+        let mut given = ResultFiles::new(path, "design", force).begin();
+        given.copy_all(&copies)?;
+        given.write(DESIGN, |to| to.write_all(text.as_bytes()))?;
+        let files = given.place_given(Others::Stay)?;
+        let name = path.join(DESIGN).display().to_string();
+        Ok(Self {
+            path: path.to_owned(),
+            files,
+            journal,
+            known: kept.into_iter().map(DesignRun::into_entry).collect(),
+            damaged,
+            file: DesignFile::parse(&text, &name, &file.name, path)?,
+        })
+    }
+
+    /// Path of the folder.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    fn report<'a>(&'a self, batch: &'a mut Batch) -> Report<'a> {
+        Report {
+            path: &self.path,
+            file: &self.file,
+            batch,
+        }
+    }
+
+    /// Number of runs that were kept.
+    pub fn n_kept(&self) -> usize {
+        self.known.len()
+    }
+
+    /// Finds the design, and the designs of a front if the file asks for one, writes their results, and returns the verdict
+    /// as a text.
+    ///
+    /// # Errors
+    /// As [`run`](Self::run), and when the system refuses to write.
+    pub fn find(
+        &mut self,
+        bounds: &Bounds,
+        watch: &mut dyn FnMut(&SearchProgress),
+    ) -> Result<String, StudyError> {
+        let design = self.file.design()?;
+        let mut of_front = WorkOfFront::of(self.file.keys.front.len());
+        let outcome = self.run(&design, bounds, &mut |now| watch(&of_front.with(now)))?;
+        let mut batch = self.files.begin();
+        let mut text = self.report(&mut batch).write(&design, &outcome)?;
+        let designs = self.file.designs_of_front()?;
+        if !designs.is_empty() {
+            // The results of the design stand, whatever becomes of its front.
+            batch.place_so_far(Others::Go)?;
+        }
+        let mut front = Vec::new();
+        for (percent, design) in designs {
+            of_front.go_on();
+            match self.judged(&design, bounds, &mut |now| watch(&of_front.with(now))) {
+                Ok(outcome) => front.push((percent, Some((design, outcome)))),
+                Err(StudyError::NoDesign) => front.push((percent, None)),
+                Err(error) => return Err(error),
+            }
+        }
+        text += &self.report(&mut batch).write_front(&front)?;
+        batch.place(Others::Go)?;
+        Ok(text)
+    }
+
+    /// Searches and judges, or goes on from an earlier call; every run is kept as soon as the runs that were begun with it
+    /// have ended.
+    ///
+    /// # Errors
+    /// As [`Design::run`]. After a stop, the best texture so far stands in the folder without a verdict, unless the folder
+    /// has the verdict of an earlier search.
+    pub fn run(
+        &mut self,
+        design: &Design,
+        bounds: &Bounds,
+        watch: &mut dyn FnMut(&SearchProgress),
+    ) -> Result<Outcome, StudyError> {
+        let mut best = None;
+        let mut watch = |now: &SearchProgress| {
+            best = now.best_texture.clone().or(best.take());
+            watch(now);
+        };
+        let found = self.judged(design, bounds, &mut watch);
+        if let (Err(StudyError::Interrupted), Some(best)) = (&found, best)
+            && !self.has_verdict()
+        {
+            let mut batch = self.files.begin();
+            self.report(&mut batch).write_mask(design, &best)?;
+            batch.place_so_far(Others::Stay)?;
+        }
+        found
+    }
+
+    /// Whether a search in the folder was finished: its results stand there.
+    pub fn has_verdict(&self) -> bool {
+        self.path.join(VERDICT[0]).exists()
+    }
+
+    /// Searches and judges with the runs of the journal, which new runs join.
+    fn judged(
+        &mut self,
+        design: &Design,
+        bounds: &Bounds,
+        watch: &mut dyn FnMut(&SearchProgress),
+    ) -> Result<Outcome, StudyError> {
+        let Self { journal, known, .. } = self;
+        let mut keep = |runs: &[MadeRun]| {
+            let lines: Vec<u8> = runs.iter().flat_map(|run| to_line(&DesignRun::of(run))).collect();
+            if lines.is_empty() {
+                Ok(())
+            } else {
+                journal.append(&lines)
+            }
+        };
+        design.run(bounds, known, &mut keep, watch)
+    }
+}
+
+/// Cost of the designs of a front beside that which is searched for, each of which costs about as much as the first.
+#[derive(Default)]
+struct WorkOfFront {
+    /// Cost of the first design, once it is known.
+    of_each: Option<f64>,
+    /// Number of designs that follow.
+    to_come: usize,
+    /// Cost of the runs that were made for earlier designs.
+    before: f64,
+    /// Cost of the runs that were made for this design.
+    here: f64,
+}
+
+impl WorkOfFront {
+    fn of(to_come: usize) -> Self {
+        Self {
+            to_come,
+            ..Self::default()
+        }
+    }
+
+    /// Goes on to the next design.
+    fn go_on(&mut self) {
+        self.to_come -= 1;
+        self.before += std::mem::take(&mut self.here);
+    }
+
+    /// Progress of a design, with the cost of the others.
+    fn with(&mut self, now: &SearchProgress) -> SearchProgress {
+        let Work { here, left } = now.work;
+        let of_each = *self.of_each.get_or_insert(here + left);
+        self.here = here;
+        SearchProgress {
+            work: Work {
+                here: self.before + here,
+                left: left + self.to_come as f64 * of_each,
+            },
+            ..now.clone()
+        }
+    }
+}
+
+/// The part of the numbers that says whether there is a verdict.
+#[derive(Deserialize)]
+struct Decided {
+    design: Lost,
+}
+
+#[derive(Deserialize)]
+struct Lost {
+    lost: Option<String>,
+}
+
+impl DesignFolder {
+    /// Refuses a verdict on textures that are all lost.
+    ///
+    /// # Errors
+    /// A sentence that names the verdict; when the folder has none.
+    pub fn expect_verdict(&self) -> Result<(), StudyError> {
+        let [numbers, words] = VERDICT.map(|name| self.path().join(name));
+        match read_numbers::<Decided>(&numbers)?.design.lost {
+            None => Ok(()),
+            Some(_) => Err(StudyError::NoVerdict { path: words }),
+        }
+    }
+}
+
+/// Length of the search whose results a folder holds.
+///
+/// # Errors
+/// When the file of the results cannot be read, or does not say.
+fn search_of(folder: &Path) -> Result<Length, StudyError> {
+    #[derive(Deserialize)]
+    struct Found {
+        search: Length,
+    }
+    Ok(read_numbers::<Found>(&folder.join(VERDICT[0]))?.search)
+}
+
+/// Folders of designs.
+pub const DESIGNS: ProjectKind = ProjectKind {
+    name: "design",
+    file: DESIGN,
+    journal: JOURNAL,
+    find_again,
+};
+
+/// Finds a design again in another folder from the runs in its journal.
+fn find_again(folder: &Path, other: &Path, stop: &AtomicBool) -> Result<[usize; 2], StudyError> {
+    let search = search_of(folder)?;
+    Journal::copy::<DesignRun>(folder, other, JOURNAL)?;
+    let file = DesignFile::load(&folder.join(DESIGN))?;
+    let mut again = DesignFolder::open(other, &file, false)?;
+    let kept = again.n_kept();
+    let bounds = Bounds {
+        runs: search.runs,
+        share_of_time: &|| 0.0,
+        stop,
+        cut: search.cut,
+    };
+    again.find(&bounds, &mut |_| {})?;
+    Ok([kept, again.n_kept()])
+}

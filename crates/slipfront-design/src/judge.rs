@@ -1,0 +1,150 @@
+//! Comparison of textures on fresh surfaces: their losses, and differences surface by surface.
+
+use std::ops::Range;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+use serde::Serialize;
+
+use crate::evaluate::{Evaluator, Keep, Known};
+use crate::stages::Stages;
+use crate::subject::Fidelity;
+use slipfront_study::Sample;
+use slipfront_study::StudyError;
+use slipfront_study::study_file::CONFIDENCE;
+
+/// Number of surfaces on which finalists are compared.
+pub(crate) const COMPARED: u64 = 16;
+
+/// Number of surfaces on which the winner is judged.
+pub(crate) const JUDGED: u64 = 64;
+
+/// A texture that is compared with others, under its name.
+#[derive(Clone, Debug)]
+pub(crate) struct Contender {
+    /// Name of the texture.
+    pub(crate) name: String,
+    /// Blocks of the texture.
+    pub(crate) texture: Arc<Vec<bool>>,
+}
+
+/// A mean over surfaces with its uncertainty.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Mean {
+    /// The mean.
+    pub mean: f64,
+    /// Half the width of the 95 % interval of the mean; none where surfaces do not differ.
+    pub half_width: Option<f64>,
+    /// Standard deviation from surface to surface; none where surfaces do not differ.
+    pub deviation: Option<f64>,
+}
+
+impl Mean {
+    /// The mean of values, with its interval if there are several.
+    pub(crate) fn of(values: &[f64]) -> Self {
+        let sample = Sample::of(values, CONFIDENCE);
+        let mean = sample.map_or(f64::NAN, |sample| sample.mean);
+        // What differs by its rounding alone does not scatter.
+        let scatters = |width: &f64| *width > 1e-12 * mean.abs();
+        Self {
+            mean,
+            half_width: sample.and_then(|sample| sample.half_width).filter(scatters),
+            deviation: sample.and_then(|sample| sample.deviation).filter(scatters),
+        }
+    }
+
+    /// Lower end of the interval.
+    pub(crate) fn low(&self) -> f64 {
+        self.mean - self.half_width.unwrap_or(0.0)
+    }
+}
+
+/// Numbers of the surfaces on which finalists are compared and judged.
+pub(crate) struct Surfaces {
+    pub(crate) compared: Range<u64>,
+    pub(crate) judged: Range<u64>,
+}
+
+impl Surfaces {
+    pub(crate) fn of(evaluator: &Evaluator) -> Self {
+        let first = Stages::UNSEEN;
+        if evaluator.scatters() {
+            let judged = first + COMPARED;
+            Self {
+                compared: first..judged,
+                judged: judged..judged + JUDGED,
+            }
+        } else {
+            Self {
+                compared: 0..1,
+                judged: 0..1,
+            }
+        }
+    }
+}
+
+/// Inputs of a verdict.
+pub(crate) struct Judge<'a> {
+    /// Evaluator that makes the runs.
+    pub(crate) evaluator: &'a Evaluator,
+    /// Flag that ends all runs.
+    pub(crate) stop: &'a AtomicBool,
+}
+
+impl Judge<'_> {
+    /// Makes the runs of some textures on some surfaces.
+    pub(crate) fn run(
+        &self,
+        contenders: &[&Contender],
+        surfaces: Range<u64>,
+        known: &mut Known,
+        keep: &mut Keep,
+    ) -> Result<(), StudyError> {
+        let textures: Vec<_> = contenders
+            .iter()
+            .map(|found| Arc::clone(&found.texture))
+            .collect();
+        // One surface after the other, so that no more of them are lost after a stop.
+        for surface in surfaces {
+            let wanted = self
+                .evaluator
+                .wanted(&textures, surface..surface + 1, Fidelity::Verdict);
+            self.evaluator.run(&wanted, known, self.stop, keep)?;
+        }
+        Ok(())
+    }
+
+    pub(crate) fn loss(&self, contender: &Contender, surfaces: Range<u64>, known: &Known) -> f64 {
+        self.evaluator
+            .loss(&contender.texture, surfaces, Fidelity::Verdict, known)
+    }
+
+    /// The loss of a texture with the interval that follows from its scatter over surfaces.
+    pub(crate) fn mean_loss(&self, contender: &Contender, surfaces: Range<u64>, known: &Known) -> Mean {
+        Mean::of(&self.loss_by_surface(contender, surfaces, known))
+    }
+
+    /// The loss of one texture less that of another, surface by surface.
+    pub(crate) fn difference(
+        &self,
+        one: &Contender,
+        other: &Contender,
+        surfaces: Range<u64>,
+        known: &Known,
+    ) -> Mean {
+        let [one, other] = [one, other].map(|found| self.loss_by_surface(found, surfaces.clone(), known));
+        let pairs = one.iter().zip(&other);
+        Mean::of(&pairs.map(|(one, other)| one - other).collect::<Vec<_>>())
+    }
+
+    /// Reason for which a texture has no loss on some surfaces, if it has none.
+    pub(crate) fn lost(&self, contender: &Contender, surfaces: Range<u64>, known: &Known) -> Option<String> {
+        self.evaluator
+            .lost(&contender.texture, surfaces, Fidelity::Verdict, known)
+    }
+
+    fn loss_by_surface(&self, contender: &Contender, surfaces: Range<u64>, known: &Known) -> Vec<f64> {
+        self.evaluator
+            .loss_by_surface(&contender.texture, surfaces, Fidelity::Verdict, known)
+    }
+}

@@ -1,0 +1,346 @@
+//! Limits on the textures of a design, and the texture of a draft: legal as it is made.
+
+use slipfront_base::number_format::{are, count as count_of};
+
+use crate::grid::{Grid, count};
+use crate::patch::Draft;
+
+/// Limits of a design, in blocks.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Limits {
+    /// Least and largest share of the blocks that are textured, %.
+    pub coverage: [f64; 2],
+    /// Smallest width of a feature: every textured block belongs to a textured square of this many blocks along a side.
+    pub feature: usize,
+    /// Smallest width of a gap: every block in contact belongs to a square of this many blocks in contact along a side.
+    pub gap: usize,
+    /// Whether the left half mirrors the right one, and the lower half the upper one.
+    pub mirror: [bool; 2],
+    /// Numbers of equal cells into which the slider is divided along x and along y, all with one texture.
+    pub copies: [usize; 2],
+    /// Blocks that must be in contact, if there are any.
+    pub forbidden: Option<Vec<bool>>,
+    /// Largest number of features.
+    pub max_features: Option<usize>,
+}
+
+impl Default for Limits {
+    /// Limits that every texture keeps.
+    fn default() -> Self {
+        Self {
+            coverage: [0.0, 100.0],
+            feature: 1,
+            gap: 1,
+            mirror: [false; 2],
+            copies: [1; 2],
+            forbidden: None,
+            max_features: None,
+        }
+    }
+}
+
+/// Reason for which a texture is not legal.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
+pub enum Illegal {
+    #[error("the texture covers {found:.2} % of the slider, where {least} to {most} % are allowed")]
+    Coverage { found: f64, least: f64, most: f64 },
+    #[error("a feature is {} wide, where {least} are the least", count_of(*found, "block"))]
+    Feature { found: usize, least: usize },
+    #[error("a gap between features, or between one and an edge, is {} wide, where {least} are the least", count_of(*found, "block"))]
+    Gap { found: usize, least: usize },
+    #[error("the texture is not the mirror image of itself about the middle of {axis}")]
+    Mirror { axis: char },
+    #[error("the {columns} x {rows} cells of the slider have not all one texture")]
+    Copies { columns: usize, rows: usize },
+    #[error("{} textured where texture is forbidden", are(*blocks, "block"))]
+    Forbidden { blocks: usize },
+    #[error("the texture has {found} features, where {most} are allowed")]
+    Features { found: usize, most: usize },
+}
+
+impl Limits {
+    /// Checks that a texture is legal.
+    ///
+    /// # Errors
+    /// The first limit that it breaks.
+    pub fn check(&self, grid: &Grid, textured: &[bool]) -> Result<(), Illegal> {
+        let [least, most] = self.coverage;
+        let found = grid.percent(textured);
+        if !(least..=most).contains(&found) {
+            return Err(Illegal::Coverage { found, least, most });
+        }
+        // Of many drafts, few are too narrow: by how much is looked for then.
+        let narrow = |set: &[bool], least| {
+            if grid.lattice.opened(set, least) == set {
+                None
+            } else {
+                grid.lattice.width(set)
+            }
+        };
+        if let Some(found) = narrow(textured, self.feature) {
+            let least = self.feature;
+            return Err(Illegal::Feature { found, least });
+        }
+        if let Some(found) = narrow(&grid.others(textured), self.gap) {
+            let least = self.gap;
+            return Err(Illegal::Gap { found, least });
+        }
+        for (axis, name) in ['x', 'y'].into_iter().enumerate() {
+            let differs = |block| textured[block] != textured[mirrored(grid, block, axis)];
+            if self.mirror[axis] && (0..textured.len()).any(differs) {
+                return Err(Illegal::Mirror { axis: name });
+            }
+        }
+        if (0..textured.len()).any(|block| textured[block] != textured[self.in_first_cell(grid, block)]) {
+            let [columns, rows] = self.copies;
+            return Err(Illegal::Copies { columns, rows });
+        }
+        let forbidden = self.forbidden.iter().flatten().zip(textured);
+        let blocks = forbidden
+            .filter(|(forbidden, textured)| **forbidden && **textured)
+            .count();
+        if blocks > 0 {
+            return Err(Illegal::Forbidden { blocks });
+        }
+        if let Some(most) = self.max_features {
+            let found = grid.lattice.n_pieces(textured);
+            if found > most {
+                return Err(Illegal::Features { found, most });
+            }
+        }
+        Ok(())
+    }
+
+    /// The texture of a draft: the blocks inside its patches when these have grown, all alike, to the largest legal texture
+    /// within the coverage of the draft; none if there is none.
+    pub(crate) fn texture(&self, grid: &Grid, draft: &Draft) -> Option<Vec<bool>> {
+        let growth = self.growth(grid, draft);
+        let mut levels: Vec<f64> = growth.iter().copied().filter(|level| level.is_finite()).collect();
+        levels.sort_unstable_by(f64::total_cmp);
+        levels.dedup();
+        let share = 0.01 * draft.percent.min(self.coverage[1]);
+        let most = (share * grid.n_blocks() as f64 + 1e-9) as usize;
+        let grown = |level: f64| {
+            let held: Vec<bool> = growth.iter().map(|&growth| growth <= level).collect();
+            self.smoothed(grid, &held)
+        };
+        // What is covered rises with the growth.
+        let (mut low, mut high) = (0, levels.len());
+        let mut largest = None;
+        while low < high {
+            let middle = low + (high - low) / 2;
+            let texture = grown(levels[middle]);
+            if count(&texture) <= most {
+                low = middle + 1;
+                largest = Some(texture);
+            } else {
+                high = middle;
+            }
+        }
+        largest.filter(|texture| texture.contains(&true) && self.check(grid, texture).is_ok())
+    }
+
+    /// Growth by which a draft holds each block, in every cell and half alike; endless where a block must touch.
+    fn growth(&self, grid: &Grid, draft: &Draft) -> Vec<f64> {
+        let of_draft = draft.growth(grid);
+        let mut growth = vec![f64::INFINITY; of_draft.len()];
+        for (block, value) in of_draft.into_iter().enumerate() {
+            let cell = self.in_first_cell(grid, block);
+            growth[cell] = growth[cell].min(value);
+        }
+        for block in 0..growth.len() {
+            growth[block] = growth[self.in_first_cell(grid, block)];
+        }
+        for axis in (0..2).filter(|&axis| self.mirror[axis]) {
+            growth = (0..growth.len())
+                .map(|block| growth[block].min(growth[mirrored(grid, block, axis)]))
+                .collect();
+        }
+        let barred = self.barred(grid);
+        for block in (0..growth.len()).filter(|&block| barred[block]) {
+            growth[block] = f64::INFINITY;
+        }
+        growth
+    }
+
+    /// Blocks that no legal texture has: those that do not exist, those that must touch, and all that cells and mirrors make equal to
+    /// one of these.
+    fn barred(&self, grid: &Grid) -> Vec<bool> {
+        let n = grid.exists.len();
+        let is_own = |block: usize| {
+            !grid.exists[block] || self.forbidden.as_ref().is_some_and(|forbidden| forbidden[block])
+        };
+        let mut in_cell = vec![false; n];
+        for block in (0..n).filter(|&block| is_own(block)) {
+            in_cell[self.in_first_cell(grid, block)] = true;
+        }
+        let mut barred: Vec<bool> = (0..n)
+            .map(|block| in_cell[self.in_first_cell(grid, block)])
+            .collect();
+        for axis in (0..2).filter(|&axis| self.mirror[axis]) {
+            barred = (0..n)
+                .map(|block| barred[block] || barred[mirrored(grid, block, axis)])
+                .collect();
+        }
+        barred
+    }
+
+    /// A set without parts that are too narrow, and without gaps that are.
+    fn smoothed(&self, grid: &Grid, set: &[bool]) -> Vec<bool> {
+        let opened = grid.lattice.opened(set, self.feature);
+        if self.gap <= 1 {
+            return opened;
+        }
+        let contact = grid.lattice.opened(&grid.others(&opened), self.gap);
+        let closed = grid.others(&contact);
+        if closed == opened {
+            return opened;
+        }
+        grid.lattice.opened(&closed, self.feature)
+    }
+
+    /// The block at this place of the first cell.
+    fn in_first_cell(&self, grid: &Grid, block: usize) -> usize {
+        let [nx, ny] = grid.size();
+        let [columns, rows] = self.copies;
+        block / nx % (ny / rows) * nx + block % nx % (nx / columns)
+    }
+}
+
+/// The mirror image of a block about the middle of an axis.
+fn mirrored(grid: &Grid, block: usize, axis: usize) -> usize {
+    let [nx, ny] = grid.size();
+    let [x, y] = [block % nx, block / nx];
+    if axis == 0 {
+        y * nx + nx - 1 - x
+    } else {
+        (ny - 1 - y) * nx + x
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::grid::tests::{drawn, whole};
+    use crate::named::named;
+    use crate::search::Search;
+
+    #[test]
+    fn every_limit_is_told_by_what_breaks_it() {
+        let rows = ["....", ".##.", ".##.", "...#"];
+        let (grid, textured) = drawn(&rows, [false; 2]);
+        let said = |limits: &Limits| limits.check(&grid, &textured);
+        assert_eq!(said(&Limits::default()), Ok(()));
+        let check = |change: &dyn Fn(&mut Limits)| {
+            let mut changed = Limits::default();
+            change(&mut changed);
+            said(&changed).unwrap_err()
+        };
+        assert_eq!(
+            check(&|limits| limits.coverage = [0.0, 30.0]),
+            Illegal::Coverage {
+                found: 31.25,
+                least: 0.0,
+                most: 30.0
+            }
+        );
+        assert_eq!(
+            check(&|limits| limits.feature = 2),
+            Illegal::Feature { found: 1, least: 2 }
+        );
+        assert_eq!(
+            check(&|limits| limits.gap = 2),
+            Illegal::Gap { found: 1, least: 2 }
+        );
+        assert_eq!(
+            check(&|limits| limits.mirror = [true, false]),
+            Illegal::Mirror { axis: 'x' }
+        );
+        assert_eq!(
+            check(&|limits| limits.mirror = [false, true]),
+            Illegal::Mirror { axis: 'y' }
+        );
+        let copies = check(&|limits| limits.copies = [2, 1]);
+        assert_eq!(copies, Illegal::Copies { columns: 2, rows: 1 });
+        let mut forbidden = vec![false; 16];
+        forbidden[3] = true;
+        let found = check(&|limits| limits.forbidden = Some(forbidden.clone()));
+        assert_eq!(found, Illegal::Forbidden { blocks: 1 });
+        let features = check(&|limits| limits.max_features = Some(1));
+        assert_eq!(features, Illegal::Features { found: 2, most: 1 });
+    }
+
+    #[test]
+    fn without_a_feature_nothing_is_asked_for() {
+        let limits = Limits {
+            max_features: Some(0),
+            ..Limits::default()
+        };
+        let mut search = Search::new(whole([8, 8], [false; 2]), limits, 1, Vec::new());
+        assert!(search.ask(8, &|| false).is_empty());
+    }
+
+    /// Textures that a search asks for are legal and new, whatever the limits, and it asks for the same after the same
+    /// losses.
+    #[test]
+    fn what_is_asked_for_is_legal_and_new() {
+        let [nx, ny] = [24, 18];
+        let mut corner = vec![false; nx * ny];
+        corner[..6 * nx].fill(true);
+        let side: Vec<bool> = (0..nx * ny).map(|block| block % nx < 4).collect();
+        for (k, change) in [
+            &(|_: &mut Limits| {}) as &dyn Fn(&mut Limits),
+            &|limits| limits.feature = 4,
+            &|limits| limits.mirror = [true, true],
+            &|limits| limits.copies = [2, 3],
+            &|limits| limits.forbidden = Some(corner.clone()),
+            // The mirror image of what is forbidden, and its place in every cell, are forbidden too.
+            &|limits| (limits.forbidden, limits.mirror) = (Some(corner.clone()), [false, true]),
+            &|limits| (limits.forbidden, limits.copies) = (Some(side.clone()), [2, 1]),
+            &|limits| limits.max_features = Some(1),
+            &|limits| limits.coverage = [12.0, 30.0],
+        ]
+        .into_iter()
+        .enumerate()
+        {
+            let mut limits = Limits {
+                coverage: [0.0, 15.0],
+                feature: 2,
+                gap: 2,
+                ..Limits::default()
+            };
+            change(&mut limits);
+            let grid = whole([nx, ny], [k % 2 == 1, false]);
+            let starts = || {
+                named(&grid, &limits, &|| false)
+                    .into_iter()
+                    .map(|(named, _)| named)
+                    .collect()
+            };
+            let mut twins = [0; 2].map(|_| Search::new(grid.clone(), limits.clone(), 5, starts()));
+            let mut seen = std::collections::HashSet::new();
+            for _ in 0..4 {
+                let [asked, again] = twins.each_mut().map(|search| search.ask(24, &|| false));
+                assert!(!asked.is_empty(), "{limits:?}");
+                for (one, other) in asked.iter().zip(&again) {
+                    assert_eq!(one.texture, other.texture);
+                    assert_eq!(limits.check(&grid, &one.texture), Ok(()), "{limits:?}");
+                    assert!(seen.insert(one.texture.clone()));
+                }
+                // A loss without any meaning: how far the texture lies to the left.
+                let told: Vec<_> = asked
+                    .into_iter()
+                    .map(|proposal| {
+                        let columns = (0..nx * ny).filter(|&block| proposal.texture[block]);
+                        let loss = columns.map(|block| (block % nx) as f64).sum();
+                        crate::search::Found { proposal, loss }
+                    })
+                    .collect();
+                for search in &mut twins {
+                    search.tell(&told);
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,55 @@
+//! A search by asking and telling: the caller measures the loss of each texture.
+
+use std::collections::HashMap;
+use std::sync::Arc;
+
+use crate::search::{Found, Proposal, Search, hash};
+
+/// A search whose runs the caller makes.
+#[derive(Debug)]
+pub struct OpenSearch {
+    search: Search,
+    /// Textures that were asked for and whose losses are not known yet.
+    asked: HashMap<[u8; 32], Proposal>,
+}
+
+impl OpenSearch {
+    pub(crate) fn new(search: Search) -> Self {
+        Self {
+            search,
+            asked: HashMap::new(),
+        }
+    }
+
+    /// Up to `n` textures that were not asked for before; fewer where the limits leave few.
+    pub fn ask(&mut self, n: usize) -> Vec<Arc<Vec<bool>>> {
+        let proposals = self.search.ask(n, &|| false);
+        let textures = proposals
+            .iter()
+            .map(|proposal| Arc::clone(&proposal.texture))
+            .collect();
+        self.asked.extend(
+            proposals
+                .into_iter()
+                .map(|proposal| (hash(&proposal.texture), proposal)),
+        );
+        textures
+    }
+
+    /// Takes textures with their losses, the less the better; the textures may be asked for or others.
+    pub fn tell(&mut self, told: Vec<(Vec<bool>, f64)>) {
+        let found = told.into_iter().map(|(texture, loss)| {
+            let asked = self.asked.remove(&hash(&texture));
+            let proposal = asked.unwrap_or_else(|| self.search.of_other(texture));
+            Found { proposal, loss }
+        });
+        let found: Vec<Found> = found.collect();
+        self.search.tell(&found);
+    }
+
+    /// The best texture with a known loss, and its loss.
+    pub fn best(&self) -> Option<(Arc<Vec<bool>>, f64)> {
+        let best = self.search.best().first()?;
+        Some((Arc::clone(&best.proposal.texture), best.loss))
+    }
+}

@@ -1,0 +1,528 @@
+//! Results of a design: the mask as files for programs and lasers, a case that reads it, tables, pictures, and a text for a
+//! person.
+
+use std::io::Write;
+use std::path::Path;
+use std::sync::Arc;
+
+use serde::Serialize;
+use slipfront_base::number_format::{count, four_digits, with_half_width, with_si_prefix};
+use slipfront_base::text::{COLUMNS, note, wrapped};
+use slipfront_case::arrays::{npy_of_mask, png_of_mask};
+use slipfront_case::case::{Case, Files, FilesInMemory, Ranks};
+use slipfront_case::case_file::CaseFile;
+use slipfront_case::texture_file;
+use slipfront_plot::{FieldMap, FieldMaps, FrictionAxes, FrictionCurve};
+use slipfront_run::names::CASE;
+use slipfront_run::running;
+
+use crate::design::{Design, Outcome};
+use crate::file::DesignFile;
+use crate::judge::Mean;
+use crate::stages::{Length, Tried};
+use crate::subject::{Fidelity, MASK, masked};
+use crate::verdict::{Given, OnFresh, Verdict};
+use crate::wish::{Quantity, Wish};
+use slipfront_study::StudyError;
+use slipfront_study::result_files::Batch;
+use slipfront_study::text_table::table;
+
+/// A table of every draft that was tried.
+const EVALUATIONS: &str = "evaluations.csv";
+
+/// The verdict, as numbers and as a text.
+pub(crate) const VERDICT: [&str; 2] = ["design.json", "design.txt"];
+
+/// Endings of the mask in other formats.
+const MASK_ENDINGS: [&str; 3] = ["svg", "dxf", "gsf"];
+
+/// The mask as a picture, which the case reads.
+const PICTURE: &str = "mask.png";
+
+/// Properties of the texture of a design on its blocks.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(crate) struct AsMeshed {
+    /// Share of the blocks that are textured, %.
+    pub coverage_percent: f64,
+    /// Number of features that touch nowhere along an edge of a block.
+    pub features: usize,
+    /// Smallest width of a feature, m.
+    pub feature_m: Option<f64>,
+    /// Smallest width of a gap, m.
+    pub gap_m: Option<f64>,
+    /// Length of the lines of a laser, m, if their distance is given.
+    pub writing_length_m: Option<f64>,
+}
+
+/// Content of `design.json`.
+#[derive(Serialize)]
+struct Written<'a> {
+    search: Length,
+    as_meshed: &'a AsMeshed,
+    #[serde(flatten)]
+    verdict: &'a Verdict,
+    version: &'static str,
+}
+
+/// A row of `evaluations.csv`.
+#[derive(Serialize)]
+struct Row<'a> {
+    number: usize,
+    stage: &'static str,
+    origin: &'a str,
+    coverage_percent: f64,
+    loss: f64,
+    texture: String,
+    lost: &'a str,
+}
+
+/// Writer of the results of a design.
+pub(crate) struct Report<'a> {
+    /// Path of the results folder.
+    pub(crate) path: &'a Path,
+    /// Design file in the folder.
+    pub(crate) file: &'a DesignFile,
+    /// Files of the results.
+    pub(crate) batch: &'a mut Batch,
+}
+
+impl Report<'_> {
+    /// Writes the results of a design, and returns the text of the verdict.
+    ///
+    /// # Errors
+    /// When the system refuses to write, or a picture cannot be drawn.
+    pub(crate) fn write(&mut self, design: &Design, outcome: &Outcome) -> Result<String, StudyError> {
+        let texture = outcome.texture.as_slice();
+        let case = self.write_mask(design, texture)?;
+        for ending in MASK_ENDINGS {
+            let name = format!("mask.{ending}");
+            let (bytes, _) = texture_file::contents(&case, Path::new(&name), None)?;
+            self.batch.write(&name, |to| to.write_all(&bytes))?;
+        }
+        self.write_pictures(design, outcome)?;
+        self.batch
+            .write(EVALUATIONS, |to| Ok(evaluations(design, outcome, to)?))?;
+        let as_meshed = self.as_meshed(design, texture, &case);
+        let [numbers, words] = VERDICT;
+        let written = Written {
+            search: outcome.length,
+            as_meshed: &as_meshed,
+            verdict: &outcome.verdict,
+            version: env!("CARGO_PKG_VERSION"),
+        };
+        self.batch
+            .write(numbers, |to| Ok(serde_json::to_writer_pretty(to, &written)?))?;
+        let text = self.in_words(design, outcome, &as_meshed, &case);
+        self.batch.write(words, |to| to.write_all(text.as_bytes()))?;
+        Ok(text)
+    }
+
+    /// Writes a mask, and the cases that read it; returns the first of these.
+    pub(crate) fn write_mask(&mut self, design: &Design, texture: &[bool]) -> Result<Case, StudyError> {
+        let [nx, ny] = design.evaluator.grid.size();
+        self.batch
+            .write(MASK, |to| to.write_all(&npy_of_mask(nx, texture)))?;
+        let path = self.path.join(PICTURE);
+        let picture = png_of_mask(nx, ny, texture).map_err(|source| StudyError::Write { path, source })?;
+        self.batch.write(PICTURE, |to| to.write_all(&picture))?;
+        let mut first = None;
+        for (k, Case { mut file, .. }) in self.file.cases()?.into_iter().enumerate() {
+            // A picture is laid over every mesh; an array belongs to its blocks.
+            file.texture = vec![masked(PICTURE)];
+            let text = file.to_toml()?;
+            self.batch
+                .write(&case_name(k), |to| to.write_all(text.as_bytes()))?;
+            first.get_or_insert(text);
+        }
+        // As it will be read from the folder.
+        let in_memory = FilesInMemory::from([(PICTURE.to_owned(), picture.into())]);
+        let files = Files {
+            folder: self.path,
+            in_memory: Some(&in_memory),
+        };
+        let file = CaseFile::parse(&first.unwrap_or_default(), CASE, &[])?;
+        Ok(Case::to_run_with(
+            file,
+            "case",
+            files,
+            &mut |_| true,
+            Ranks::ALONE,
+        )?)
+    }
+
+    fn as_meshed(&self, design: &Design, texture: &[bool], case: &Case) -> AsMeshed {
+        let grid = &design.evaluator.grid;
+        let size = case.scales.block_size;
+        let width = |set: &[bool]| grid.lattice.width(set).map(|blocks| blocks as f64 * size);
+        let area = 0.01 * grid.percent(texture) * grid.n_blocks() as f64 * size * size;
+        AsMeshed {
+            coverage_percent: grid.percent(texture),
+            features: grid.lattice.n_pieces(texture),
+            feature_m: width(texture),
+            gap_m: width(&grid.others(texture)),
+            writing_length_m: self.file.line_spacing().map(|spacing| area / spacing),
+        }
+    }
+
+    /// Writes curves of the design and of the textures in its comparison, on a fresh surface, and maps of their first slips.
+    fn write_pictures(&mut self, design: &Design, outcome: &Outcome) -> Result<(), StudyError> {
+        let subject = &design.evaluator.subjects[0];
+        let [nx, ny] = design.evaluator.grid.size();
+        let (mut curves, mut maps, mut latest) = (Vec::new(), Vec::new(), 0.0_f64);
+        for (name, texture) in &outcome.compared {
+            let texture = texture.as_ref().map(|texture| texture.as_slice());
+            let case = Arc::new(subject.case(texture, outcome.verdict.first_surface, Fidelity::Verdict)?);
+            // Its verdict was found on this surface among others, so that it does not diverge.
+            let Ok(record) = running::run(&case, 1) else {
+                continue;
+            };
+            curves.push(FrictionCurve {
+                label: name.clone(),
+                x: record.rows.iter().map(|row| row.time_star).collect(),
+                friction: record.rows.iter().map(|row| row.point.mu_star).collect(),
+                sliding_percent: record.rows.iter().map(|row| row.point.sliding_percent).collect(),
+                ..FrictionCurve::default()
+            });
+            let slips = record.first_slip_time_star.iter().map(|time| *time as f32);
+            let finite = record
+                .first_slip_time_star
+                .iter()
+                .copied()
+                .filter(|time| time.is_finite());
+            latest = finite.fold(latest, f64::max);
+            maps.push(FieldMap {
+                label: name.clone(),
+                note: format!("largest \u{3bc}* {}", four_digits(record.summary.mu_star_max)),
+                nx,
+                ny,
+                values: slips.collect(),
+                textured: texture.map_or_else(|| vec![false; nx * ny], <[bool]>::to_vec),
+                marks: Vec::new(),
+            });
+        }
+        let maps = FieldMaps {
+            value_title: "t* of the first slip".to_owned(),
+            range: [0.0, latest.max(1.0)],
+            columns: 2,
+            maps,
+        };
+        let pictures = [
+            (
+                "friction",
+                slipfront_plot::friction(&curves, &FrictionAxes::default()),
+            ),
+            ("first_slips", slipfront_plot::field_maps(&maps)),
+        ];
+        for (name, picture) in pictures {
+            self.batch
+                .write_picture(name, &picture.map_err(StudyError::picture(name))?)?;
+        }
+        Ok(())
+    }
+}
+
+impl Report<'_> {
+    /// The verdict as a text for a person.
+    fn in_words(&self, design: &Design, outcome: &Outcome, as_meshed: &AsMeshed, case: &Case) -> String {
+        let (wish, verdict) = (design.evaluator.wish(), &outcome.verdict);
+        let mut text = format!("{}\n\n", wrapped(&headline(wish, verdict), COLUMNS));
+        text += &on_fresh(wish, verdict);
+        text += &if design.evaluator.scatters() {
+            format!(
+                "\nOn {} not seen by the search; intervals of 95 %. {}\n",
+                count(verdict.surfaces as usize, "surface"),
+                optimism(wish, verdict)
+            )
+        } else {
+            "\nCoefficients do not scatter, so that there is one surface, which the search has seen.\n"
+                .to_owned()
+        };
+        text += &scatter(wish, verdict).unwrap_or_default();
+        let length =
+            |length: Option<f64>| length.map_or("none".to_owned(), |length| with_si_prefix(length, "m"));
+        text += &format!(
+            "Texture as meshed: {} % in {}, features at least {} wide, gaps at least {}",
+            four_digits(as_meshed.coverage_percent),
+            count(as_meshed.features, "piece"),
+            length(as_meshed.feature_m),
+            length(as_meshed.gap_m)
+        );
+        if let Some(length) = as_meshed.writing_length_m {
+            text += &format!(", {} of laser lines", with_si_prefix(length, "m"));
+        }
+        text += ".\n";
+        let cases = self.file.case_keys();
+        if !cases.is_empty() {
+            let rows = cases.into_iter().enumerate();
+            let rows: Vec<Vec<String>> = rows
+                .map(|(k, keys)| vec![(k + 1).to_string(), keys, case_name(k)])
+                .collect();
+            text += "\nThe cases, each with this texture:\n";
+            text += &table(&["case", "the base with", "file"], &rows);
+        }
+        text += "\nUnder changes:\n";
+        text += &under_changes(wish, verdict);
+        for left_out in &verdict.sensitivity.left_out {
+            text += &note(
+                &format!("nothing is known of {}: {}", left_out.change, left_out.why),
+                COLUMNS,
+            );
+        }
+        let sentences = losses(&outcome.tried, verdict).into_iter().chain(design.notes());
+        text.extend(sentences.map(|sentence| note(&sentence, COLUMNS)));
+        let lengths = case.file.lengths_of_a_block();
+        if !lengths.is_empty() {
+            let names: Vec<String> = lengths.iter().map(ToString::to_string).collect();
+            let sentence = format!(
+                "the gain belongs to blocks of this size, since a block gives the material {}: give them as lengths of the material, and look \
+                 with `slipfront converge` at what is left",
+                names.join(", ")
+            );
+            text += &note(&sentence, COLUMNS);
+        }
+        text
+    }
+}
+
+/// Name of the file of a case with the texture.
+fn case_name(k: usize) -> String {
+    if k == 0 {
+        CASE.to_owned()
+    } else {
+        format!("case_{}.toml", k + 1)
+    }
+}
+
+/// Writes a row for every draft that was tried.
+fn evaluations(design: &Design, outcome: &Outcome, to: &mut impl Write) -> Result<(), csv::Error> {
+    let mut table = csv::Writer::from_writer(to);
+    for (k, tried) in outcome.tried.iter().enumerate() {
+        let hash = blake3::Hash::from_bytes(crate::search::hash(&tried.texture));
+        table.serialize(Row {
+            number: k + 1,
+            stage: if tried.is_refined {
+                "several surfaces"
+            } else {
+                "one surface"
+            },
+            origin: &tried.origin,
+            coverage_percent: design.evaluator.grid.percent(&tried.texture),
+            loss: tried.loss,
+            texture: hash.to_hex()[..16].to_owned(),
+            lost: tried.lost.as_deref().unwrap_or_default(),
+        })?;
+    }
+    Ok(table.flush()?)
+}
+
+/// Sentences about everything that counts as lost: drafts of the search, textures on fresh surfaces, and the design under changes.
+fn losses(tried: &[Tried], verdict: &Verdict) -> Vec<String> {
+    let drafts = tried
+        .iter()
+        .enumerate()
+        .filter_map(|(k, tried)| Some((k + 1, tried.lost.as_ref()?)));
+    let n_drafts = drafts.clone().count();
+    let of_search = drafts.take(1).map(|(number, why)| {
+        format!(
+            "{} of the {} that the search tried count as lost, as {EVALUATIONS} says of each; the first, number {number}: {why}",
+            n_drafts,
+            count(tried.len(), "draft")
+        )
+    });
+    let judged = std::iter::once(&verdict.design).chain(&verdict.others);
+    let on_fresh = judged.filter_map(|found| {
+        let why = found.lost.as_ref()?;
+        Some(format!("on fresh surfaces the {} is lost: {why}", found.name))
+    });
+    let changed = verdict.sensitivity.changed.iter().filter_map(|changed| {
+        let why = changed.lost.as_ref()?;
+        Some(format!("the design is lost at {}: {why}", changed.change))
+    });
+    of_search.into_iter().chain(on_fresh).chain(changed).collect()
+}
+
+pub(crate) fn unit(wish: &Wish) -> &'static str {
+    match wish {
+        Wish::Curve(_) => "",
+        _ => " %",
+    }
+}
+
+/// Name of the quantity of a loss.
+pub(crate) fn called(wish: &Wish) -> &'static str {
+    match wish {
+        Wish::Least(_) => "reduction",
+        Wish::Largest(_) => "rise",
+        Wish::Value(..) => "distance from the value",
+        Wish::Curve(_) => "RMS distance from the curve",
+    }
+}
+
+fn headline(wish: &Wish, verdict: &Verdict) -> String {
+    if verdict.design.lost.is_some() {
+        return "no verdict: every texture that was judged is lost on fresh surfaces".to_owned();
+    }
+    let loss = wish.told(verdict.design.loss);
+    let of = wish.quantity().name();
+    let mut text = match wish {
+        Wish::Least(_) | Wish::Largest(_) => format!(
+            "{} of {of}: {}{} against the slider without texture",
+            called(wish),
+            with_half_width(
+                loss,
+                verdict
+                    .design
+                    .loss_half_width
+                    .map(|half| wish.difference_told(half))
+            ),
+            unit(wish)
+        ),
+        Wish::Value(..) if verdict.design.cases.len() > 1 => {
+            format!(
+                "value of {of} wished for: {} % from it over the cases",
+                four_digits(loss)
+            )
+        }
+        Wish::Value(_, wanted) => format!(
+            "{of} of {} mu_s wished for: {} mu_s found, {} % from it",
+            four_digits(*wanted),
+            given(wish.quantity(), &verdict.design.cases[0]).map_or("nothing".to_owned(), |mean| {
+                with_half_width(mean.mean, mean.half_width)
+            }),
+            four_digits(loss)
+        ),
+        Wish::Curve(_) => format!(
+            "curve wished for: {} from it, as a root of the mean square of mu*",
+            four_digits(loss)
+        ),
+    };
+    if verdict.is_named {
+        text += &format!(
+            ". It is the {}: nothing that the search found is better on fresh surfaces with 95 % confidence",
+            verdict.design.name
+        );
+    }
+    if let Wish::Value(..) = wish
+        && loss > MISSED_PERCENT
+    {
+        text +=
+            ". The value is out of reach of these limits, or of this search: give more runs, or wider limits";
+    }
+    text
+}
+
+/// Distance from a value above which it is reported as missed, %.
+const MISSED_PERCENT: f64 = 0.5;
+
+fn given(quantity: Quantity, given: &Given) -> Option<Mean> {
+    match quantity {
+        Quantity::StaticFriction => Some(given.static_friction_star),
+        Quantity::KineticFriction => given.kinetic_friction_star,
+        Quantity::FrictionDrop => given.kinetic_friction_star.map(|kinetic| Mean {
+            mean: given.static_friction_star.mean - kinetic.mean,
+            half_width: None,
+            deviation: None,
+        }),
+    }
+}
+
+/// A line on how much one surface differs from another.
+fn scatter(wish: &Wish, verdict: &Verdict) -> Option<String> {
+    let mean = given(wish.quantity(), &verdict.design.cases[0])?;
+    let percent = 100.0 * mean.deviation? / mean.mean;
+    Some(format!(
+        "From surface to surface, {} has a standard deviation of {} %.\n",
+        wish.quantity().name(),
+        four_digits(percent)
+    ))
+}
+
+/// Rows of the table: one for every texture that was judged, and every case.
+fn on_fresh(wish: &Wish, verdict: &Verdict) -> String {
+    let header = [
+        "texture",
+        "covers",
+        "largest mu*",
+        "first peak",
+        "mu_k*",
+        called(wish),
+        "the design is better by",
+    ];
+    let mut rows = Vec::new();
+    for found in std::iter::once(&verdict.design).chain(&verdict.others) {
+        for (k, given) in found.cases.iter().enumerate() {
+            let name = if found.cases.len() == 1 {
+                found.name.clone()
+            } else {
+                format!("{}, case {}", found.name, k + 1)
+            };
+            // A mean over those surfaces alone on which a texture is not lost would flatter it.
+            let is_whole = given.surfaces == verdict.surfaces;
+            let mean = |mean: Mean| {
+                if is_whole {
+                    with_half_width(mean.mean, mean.half_width)
+                } else {
+                    "-".to_owned()
+                }
+            };
+            let is_first = k == 0;
+            rows.push(vec![
+                name,
+                format!("{} %", four_digits(found.coverage_percent)),
+                mean(given.static_friction_star),
+                mean(given.first_peak_star),
+                given.kinetic_friction_star.map_or("-".to_owned(), mean),
+                loss_cell(wish, found, is_first),
+                better_cell(wish, found.design_is_better_by.filter(|_| is_first)),
+            ]);
+        }
+    }
+    table(&header, &rows)
+}
+
+fn loss_cell(wish: &Wish, found: &OnFresh, is_first: bool) -> String {
+    if is_first && found.lost.is_some() {
+        "lost".to_owned()
+    } else if is_first && found.loss.is_finite() {
+        format!("{}{}", four_digits(wish.told(found.loss)), unit(wish))
+    } else {
+        "-".to_owned()
+    }
+}
+
+/// Cell of a difference of losses as reported.
+fn better_cell(wish: &Wish, better: Option<Mean>) -> String {
+    let finite = better.filter(|better| better.mean.is_finite());
+    finite.map_or("-".to_owned(), |better| {
+        let half_width = better.half_width.map(|half| wish.difference_told(half));
+        with_half_width(wish.difference_told(better.mean), half_width)
+    })
+}
+
+fn optimism(wish: &Wish, verdict: &Verdict) -> String {
+    format!(
+        "On the surfaces that it was chosen by, the design looked better by {}.",
+        four_digits(wish.difference_told(verdict.optimism))
+    )
+}
+
+fn under_changes(wish: &Wish, verdict: &Verdict) -> String {
+    let header = ["change", called(wish), "better than the best named by"];
+    let rows: Vec<Vec<String>> = verdict
+        .sensitivity
+        .changed
+        .iter()
+        .map(|changed| {
+            vec![
+                changed.change.clone(),
+                if changed.lost.is_some() {
+                    "lost".to_owned()
+                } else {
+                    format!("{}{}", four_digits(wish.told(changed.loss.mean)), unit(wish))
+                },
+                better_cell(wish, changed.better_by),
+            ]
+        })
+        .collect();
+    table(&header, &rows)
+}

@@ -1,0 +1,276 @@
+//! The search for a texture: starts, one after another or some beside each other.
+//!
+//! ```text
+//! ask: named patterns first, then drafts of the starts -> their textures, legal and none asked for before
+//! tell: their losses -> the drafts of each start move towards its better ones; what has ended makes room for another start
+//! ```
+//!
+//! Starts begin by turns with patches anywhere and with one of the best textures so far. The textures asked for depend only on
+//! the start number and on the losses so far.
+
+use std::collections::HashSet;
+use std::sync::Arc;
+
+use crate::grid::Grid;
+use crate::limits::Limits;
+use crate::named::Named;
+use crate::patch::{Draft, Form};
+use crate::start::{GENERATION, Ranges, Start};
+use slipfront_study::draws::Draws;
+
+/// Number of drafts that are tried for every texture asked for.
+const TRIES: usize = 50;
+
+/// Numbers of patches of starts anywhere, in turn.
+const PATCHES: [usize; 4] = [2, 3, 1, 4];
+
+/// Deviation of drafts of a start anywhere, as a share of the range of every number.
+const WIDE: f64 = 0.2;
+
+/// Deviation of drafts of a start with a good texture.
+const NEAR: f64 = 0.05;
+
+/// A texture that was asked for.
+#[derive(Clone, Debug)]
+pub(crate) struct Proposal {
+    /// Origin of the texture: the name of a pattern, or the number of a start.
+    pub(crate) origin: String,
+    /// Blocks of the texture.
+    pub(crate) texture: Arc<Vec<bool>>,
+    draft: Draft,
+    /// Number of the start that drew the draft, with the standard normal numbers that made it.
+    drawn: Option<(usize, Vec<f64>)>,
+}
+
+/// A texture with its loss.
+#[derive(Clone, Debug)]
+pub(crate) struct Found {
+    /// The texture.
+    pub(crate) proposal: Proposal,
+    /// Loss of the texture: the lower, the better.
+    pub(crate) loss: f64,
+}
+
+/// A search in progress.
+#[derive(Debug)]
+pub(crate) struct Search {
+    grid: Grid,
+    limits: Limits,
+    ranges: Ranges,
+    draws: Draws,
+    /// Patterns that were not proposed yet, the next one last.
+    named: Vec<Named>,
+    /// Every texture that was asked for, as hashes.
+    seen: HashSet<[u8; 32]>,
+    /// The best textures of all starts, the best first.
+    best: Vec<Found>,
+    /// Starts that have not ended.
+    starts: Vec<Start>,
+    /// Number of starts so far.
+    n_starts: usize,
+    /// Number of starts anywhere so far.
+    n_anywhere: usize,
+    /// Whether every start begins with one of the best textures.
+    is_refining: bool,
+}
+
+impl Search {
+    /// A search that begins with named patterns.
+    pub(crate) fn new(grid: Grid, limits: Limits, start: u64, mut named: Vec<Named>) -> Self {
+        named.reverse();
+        Self {
+            ranges: Ranges::new(&grid, &limits),
+            grid,
+            limits,
+            draws: Draws::new(start),
+            named,
+            seen: HashSet::new(),
+            best: Vec::new(),
+            starts: Vec::new(),
+            n_starts: 0,
+            n_anywhere: 0,
+            is_refining: false,
+        }
+    }
+
+    /// Up to `n` textures that were not asked for before, a generation of every start; fewer where the limits leave few or once
+    /// `ends` returns true, and none where the limits leave none.
+    pub(crate) fn ask(&mut self, n: usize, ends: &dyn Fn() -> bool) -> Vec<Proposal> {
+        let mut asked = Vec::new();
+        let mut in_vain = 0;
+        for _ in 0..n * TRIES {
+            if asked.len() == n || ends() {
+                break;
+            }
+            let place = asked.len() / GENERATION;
+            let (origin, draft, drawn) = self.draft(place);
+            let texture = self.limits.texture(&self.grid, &draft);
+            if let Some(texture) = texture.filter(|texture| self.seen.insert(hash(texture))) {
+                in_vain = 0;
+                asked.push(Proposal {
+                    origin,
+                    texture: texture.into(),
+                    draft,
+                    drawn,
+                });
+            } else {
+                in_vain += 1;
+                if in_vain == TRIES && place < self.starts.len() {
+                    self.starts[place] = self.new_start();
+                    in_vain = 0;
+                }
+            }
+        }
+        asked
+    }
+
+    /// Takes the losses of textures that were asked for, in their order.
+    pub(crate) fn tell(&mut self, found: &[Found]) {
+        let finite: Vec<Found> = found
+            .iter()
+            .filter(|found| found.loss.is_finite())
+            .cloned()
+            .collect();
+        merge(&mut self.best, &finite, self.limits.feature);
+        for Found { proposal, loss } in found {
+            let Some((number, normal)) = &proposal.drawn else {
+                continue;
+            };
+            if let Some(start) = self.starts.iter_mut().find(|start| start.number == *number) {
+                start.tell(*loss, normal);
+            }
+        }
+        self.starts.retain(|start| !start.has_ended());
+    }
+
+    /// A proposal for a texture of the caller, whose loss may be told as if it had been asked for.
+    pub(crate) fn of_other(&self, texture: Vec<bool>) -> Proposal {
+        Proposal {
+            origin: "another search".to_owned(),
+            draft: Draft::drawn(&self.grid, &texture),
+            texture: texture.into(),
+            drawn: None,
+        }
+    }
+
+    /// The best textures so far, which differ, the best first.
+    pub(crate) fn best(&self) -> &[Found] {
+        &self.best
+    }
+
+    /// Number of textures that were asked for.
+    pub(crate) fn n_asked(&self) -> usize {
+        self.seen.len()
+    }
+
+    /// Returns the best textures, the best first, and forgets all losses, because later ones are measured otherwise. The start of the
+    /// best texture goes on if it has not ended; others begin with the best textures. What was asked for is not asked for again.
+    pub(crate) fn refine(&mut self) -> Vec<Proposal> {
+        let best = std::mem::take(&mut self.best);
+        let drawn = best.first().and_then(|found| found.proposal.drawn.as_ref());
+        let of_best = drawn.map(|(number, _)| *number);
+        self.named.clear();
+        self.starts.retain(|start| Some(start.number) == of_best);
+        self.starts.iter_mut().for_each(Start::forget_losses);
+        self.is_refining = true;
+        let proposals = best.into_iter().map(|found| Proposal {
+            // The start draws around another mean by now.
+            drawn: None,
+            ..found.proposal
+        });
+        proposals.collect()
+    }
+
+    /// A new draft, the next named one or of the start in this place, its origin, and how the start has drawn it.
+    fn draft(&mut self, place: usize) -> (String, Draft, Option<(usize, Vec<f64>)>) {
+        if let Some(Named { name, draft }) = self.named.pop() {
+            return (name, draft, None);
+        }
+        while self.starts.len() <= place {
+            let start = self.new_start();
+            self.starts.push(start);
+        }
+        let start = &self.starts[place];
+        let (draft, normal) = start.draw(&mut self.draws);
+        (
+            format!("start {}", start.number),
+            draft,
+            Some((start.number, normal)),
+        )
+    }
+
+    fn new_start(&mut self) -> Start {
+        self.n_starts += 1;
+        let n = self.best.len();
+        let (from, spread) = if n > 0 && (self.is_refining || self.n_starts.is_multiple_of(2)) {
+            let draws = &mut self.draws;
+            let index = draws.below(n).min(draws.below(n)).min(draws.below(n));
+            let mut from = self.best[index].proposal.draft.clone();
+            if from.patches.is_empty() {
+                from.patches
+                    .push(self.ranges.random_patch(Form::Rectangle, draws));
+            }
+            (from, NEAR)
+        } else {
+            (self.random_draft(), WIDE)
+        };
+        Start::new(self.n_starts, from, spread, self.ranges)
+    }
+
+    /// Patches anywhere: strips that cover the most the first time, cavities among them and less coverage at times later.
+    fn random_draft(&mut self) -> Draft {
+        let is_first = self.n_anywhere == 0;
+        let most = self.limits.max_features.unwrap_or(usize::MAX);
+        // Limits that allow no feature allow no texture; a draft has numbers all the same.
+        let n = PATCHES[self.n_anywhere % PATCHES.len()].min(most).max(1);
+        self.n_anywhere += 1;
+        let draws = &mut self.draws;
+        let patches = (0..n).map(|_| {
+            let is_strip = is_first || draws.uniform() < 0.8;
+            let form = if is_strip { Form::Rectangle } else { Form::Ellipse };
+            self.ranges.random_patch(form, draws)
+        });
+        let patches = patches.collect();
+        let [least, most] = self.limits.coverage;
+        let is_full = is_first || draws.uniform() < 0.5;
+        Draft {
+            patches,
+            drawn: None,
+            percent: if is_full { most } else { draws.between(least, most) },
+        }
+    }
+}
+
+/// Number of textures that a search hands on.
+const FINALISTS: usize = 24;
+
+/// Adds to the finalists, sorted by loss, and keeps the best that differ from every better one by more than a square of
+/// `feature` blocks.
+fn merge(list: &mut Vec<Found>, found: &[Found], feature: usize) {
+    let mut all = std::mem::take(list);
+    all.extend_from_slice(found);
+    all.sort_by(|a, b| a.loss.total_cmp(&b.loss));
+    let least = (feature * feature).min(9);
+    for candidate in all {
+        if list.len() == FINALISTS {
+            break;
+        }
+        let differs = |kept: &Found| {
+            let pairs = kept
+                .proposal
+                .texture
+                .iter()
+                .zip(candidate.proposal.texture.iter());
+            pairs.filter(|(kept, new)| kept != new).take(least).count() == least
+        };
+        if list.iter().all(differs) {
+            list.push(candidate);
+        }
+    }
+}
+
+/// Hash of a texture.
+pub(crate) fn hash(texture: &[bool]) -> [u8; 32] {
+    let bytes: Vec<u8> = texture.iter().map(|&is_in| is_in.into()).collect();
+    *blake3::hash(&bytes).as_bytes()
+}

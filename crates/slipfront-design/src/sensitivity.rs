@@ -1,0 +1,240 @@
+//! Sensitivity of a design to deviations in making or using it.
+
+use serde::Serialize;
+use slipfront::Lattice;
+use slipfront_case::case_file::{CaseError, DriveSpeed};
+use slipfront_case::quantity::Speed;
+
+use crate::evaluate::{Evaluator, Keep, Known};
+use crate::grid::Grid;
+use crate::judge::{Contender, Judge, Mean, Surfaces};
+use crate::subject::{Fidelity, Subject};
+use slipfront_study::StudyError;
+
+/// Number of surfaces for each change.
+const SURFACES: u64 = 8;
+
+/// A design under a change.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Changed {
+    /// Description of the change.
+    pub change: String,
+    /// Loss of the design under the change, the mean over surfaces; infinite if the design is lost.
+    pub loss: Mean,
+    /// Reason for which the design is lost, if it is: a run of it has not the numbers of the wish.
+    pub lost: Option<String>,
+    /// The loss of the other texture under this change less that of the design, surface by surface: above 0 where the design is better.
+    pub better_by: Option<Mean>,
+}
+
+/// A change under which a design could not be run.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct LeftOut {
+    /// The change.
+    pub change: String,
+    /// Reason, in a sentence without a full stop.
+    pub why: String,
+}
+
+/// A design under changes.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Sensitivity {
+    /// The changes under which the design was run.
+    pub changed: Vec<Changed>,
+    /// The changes under which it could not be run.
+    pub left_out: Vec<LeftOut>,
+}
+
+impl Sensitivity {
+    fn leave_out(&mut self, change: &str, error: &CaseError) {
+        let why = match error {
+            CaseError::Invalid(invalid) => invalid.sentence.clone(),
+            error => error.to_string(),
+        };
+        self.left_out.push(LeftOut {
+            change: change.to_owned(),
+            why,
+        });
+    }
+}
+
+/// Changes of the texture itself: misplaced by one block to every side; parts that leave a slider with edges are lost.
+const SHIFTS: [(&str, [isize; 2]); 4] = [
+    ("one block towards +x", [1, 0]),
+    ("one block towards -x", [-1, 0]),
+    ("one block towards +y", [0, 1]),
+    ("one block towards -y", [0, -1]),
+];
+
+/// Changes of the speed of the drive.
+const SPEEDS: [(&str, f64); 2] = [
+    ("a third of the speed", 1.0 / 3.0),
+    ("three times the speed", 3.0),
+];
+
+impl Judge<'_> {
+    /// Every change, with the design beside another texture.
+    pub(crate) fn sensitivity(
+        &self,
+        design: &Contender,
+        other: Option<&Contender>,
+        known: &mut Known,
+        keep: &mut Keep,
+    ) -> Result<Sensitivity, StudyError> {
+        let mut found = Sensitivity::default();
+        for (change, shift) in SHIFTS {
+            let shifted = Contender {
+                name: design.name.clone(),
+                texture: moved(&self.evaluator.grid, &design.texture, shift).into(),
+            };
+            let changed = self.under(change, &shifted, other, known, keep)?;
+            found.changed.push(changed);
+        }
+        for (change, factor) in SPEEDS {
+            match self.evaluator.at_speed(factor) {
+                Ok(evaluator) => {
+                    let judge = self.with(&evaluator);
+                    let changed = judge.under(change, design, other, known, keep)?;
+                    found.changed.push(changed);
+                }
+                Err(error) => found.leave_out(change, &error),
+            }
+        }
+        let change = "blocks of half the size";
+        match self.evaluator.on_finer_blocks() {
+            Ok(evaluator) => {
+                let size = self.evaluator.grid.size();
+                let finer = |contender: &Contender| Contender {
+                    name: contender.name.clone(),
+                    texture: doubled(size, &contender.texture).into(),
+                };
+                let (design, other) = (finer(design), other.map(finer));
+                let judge = self.with(&evaluator);
+                let changed = judge.under(change, &design, other.as_ref(), known, keep)?;
+                found.changed.push(changed);
+            }
+            Err(error) => found.leave_out(change, &error),
+        }
+        Ok(found)
+    }
+
+    /// A judge of other cases.
+    fn with<'a>(&'a self, evaluator: &'a Evaluator) -> Judge<'a> {
+        Judge { evaluator, ..*self }
+    }
+
+    /// A texture beside another under a change.
+    fn under(
+        &self,
+        change: &str,
+        design: &Contender,
+        other: Option<&Contender>,
+        known: &mut Known,
+        keep: &mut Keep,
+    ) -> Result<Changed, StudyError> {
+        let surfaces = surfaces(self.evaluator);
+        let both: Vec<&Contender> = std::iter::once(design).chain(other).collect();
+        self.run(&both, surfaces.clone(), known, keep)?;
+        Ok(Changed {
+            change: change.to_owned(),
+            loss: self.mean_loss(design, surfaces.clone(), known),
+            lost: self.lost(design, surfaces.clone(), known),
+            better_by: other.map(|other| self.difference(other, design, surfaces, known)),
+        })
+    }
+}
+
+/// Numbers of the surfaces of a change.
+fn surfaces(evaluator: &Evaluator) -> std::ops::Range<u64> {
+    let first = Surfaces::of(evaluator).judged.start;
+    first..first + if evaluator.scatters() { SURFACES } else { 1 }
+}
+
+/// Largest number of runs of all changes, and their cost in steps times blocks.
+pub(crate) fn most_runs(evaluator: &Evaluator) -> (usize, f64) {
+    let surfaces = surfaces(evaluator);
+    let at_once = evaluator.subjects.len() * (surfaces.end - surfaces.start) as usize;
+    // Of a design that is moved, the slider without texture and the other texture have been judged.
+    let moved = SHIFTS.len() * at_once;
+    let changed = SPEEDS.iter().map(|(_, factor)| evaluator.at_speed(*factor));
+    let changed = changed.chain([evaluator.on_finer_blocks()]);
+    let changed = changed.flatten().map(|changed| changed.work(Fidelity::Verdict));
+    let (mut runs, mut work) = (moved, moved as f64 * evaluator.work(Fidelity::Verdict));
+    for work_of_run in changed {
+        // The slider without texture, the design, and the other texture.
+        runs += 3 * at_once;
+        work += (3 * at_once) as f64 * work_of_run;
+    }
+    (runs, work)
+}
+
+impl Evaluator {
+    /// The evaluator with its cases at another speed of the drive.
+    ///
+    /// # Errors
+    /// When a case has a program of speeds, or cannot be run at that speed.
+    fn at_speed(&self, factor: f64) -> Result<Self, CaseError> {
+        let faster = |speed: &DriveSpeed| match speed {
+            DriveSpeed::VStar(v_star) => Ok(DriveSpeed::VStar(v_star * factor)),
+            DriveSpeed::Speed(speed) => Ok(DriveSpeed::Speed(Speed::from_si(speed.si() * factor))),
+            DriveSpeed::Program(_) => Err(CaseError::invalid(None, "the drive has a program of speeds")),
+        };
+        let subjects = self.subjects.iter().map(|subject| {
+            let speed = faster(&subject.file().drive.speed)?;
+            subject.with(|file| file.drive.speed = speed)
+        });
+        Ok(self.with_subjects(subjects.collect::<Result<_, _>>()?, self.grid.clone()))
+    }
+
+    /// The cases on blocks of half the size, as [`Case::on_other_blocks`](slipfront_case::case::Case::on_other_blocks) puts them there.
+    ///
+    /// # Errors
+    /// When a case cannot be put there.
+    pub(crate) fn on_finer_blocks(&self) -> Result<Self, CaseError> {
+        let subjects = self.subjects.iter().map(Subject::on_finer_blocks);
+        let subjects = subjects.collect::<Result<_, _>>()?;
+        let [nx, ny] = self.grid.size();
+        let grid = Grid {
+            lattice: Lattice::with_edges(2 * nx, 2 * ny, self.grid.lattice.edges),
+            exists: doubled([nx, ny], &self.grid.exists),
+        };
+        Ok(self.with_subjects(subjects, grid))
+    }
+}
+
+/// Moves a set; parts that leave a slider with edges are lost.
+fn moved(grid: &Grid, set: &[bool], shift: [isize; 2]) -> Vec<bool> {
+    let at = |block: usize| {
+        let from = grid.neighbour(block, shift.map(|step| -step));
+        grid.exists[block] && from.is_some_and(|from| set[from])
+    };
+    (0..set.len()).map(at).collect()
+}
+
+/// A set on blocks of half the size.
+fn doubled([nx, ny]: [usize; 2], set: &[bool]) -> Vec<bool> {
+    let blocks = (0..2 * ny).flat_map(|y| (0..2 * nx).map(move |x| y / 2 * nx + x / 2));
+    blocks.map(|block| set[block]).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::grid::tests::whole;
+
+    #[test]
+    fn sets_are_moved_and_doubled() {
+        let grid = whole([3, 2], [true, false]);
+        let set = [true, false, false, false, false, true];
+        assert_eq!(
+            moved(&grid, &set, [1, 0]),
+            [false, true, false, true, false, false]
+        );
+        assert_eq!(
+            moved(&grid, &set, [0, 1]),
+            [false, false, false, true, false, false]
+        );
+        let fine = doubled([2, 1], &[true, false]);
+        assert_eq!(fine, [true, true, false, false, true, true, false, false]);
+    }
+}

@@ -1,0 +1,336 @@
+//! The stages of a search: many drafts on one surface with a coarse step, then fewer on several with the step of the case.
+
+use std::ops::Range;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use serde::{Deserialize, Serialize};
+
+use crate::evaluate::{Evaluator, Keep, Known};
+use crate::limits::Limits;
+use crate::named::Named;
+use crate::search::{Found, Proposal, Search};
+use crate::start::GENERATION;
+use crate::subject::Fidelity;
+use slipfront_study::StudyError;
+
+/// Number of runs of a search for each of the starts that go on beside each other, so that many threads have something to do. The drafts depend
+/// on the number of starts, and not on that of threads.
+const RUNS_OF_START: usize = 2500;
+
+/// Largest number of starts that go on beside each other.
+const MAX_STARTS: usize = 4;
+
+/// Share of the runs that go to drafts on one surface.
+const EXPLORED: f64 = 0.7;
+
+/// Number of surfaces of the second stage.
+const REFINED_SURFACES: u64 = 4;
+
+/// A draft that was tried.
+#[derive(Clone, Debug)]
+pub(crate) struct Tried {
+    /// Whether the draft was tried on several surfaces with the step of the case, rather than on one with a coarse step.
+    pub(crate) is_refined: bool,
+    /// Origin of the draft.
+    pub(crate) origin: String,
+    /// Blocks of the draft.
+    pub(crate) texture: Arc<Vec<bool>>,
+    /// Loss of the draft, a mean over surfaces.
+    pub(crate) loss: f64,
+    /// Reason for which the loss is infinite, if it is.
+    pub(crate) lost: Option<String>,
+}
+
+/// Stage of a design.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum DesignStage {
+    /// Drafts are tried on one surface with a coarse step.
+    Exploring,
+    /// Drafts are tried on several surfaces with the step of the case.
+    Refining,
+    /// The best are judged on fresh surfaces.
+    Judging,
+}
+
+/// Progress of a design.
+#[derive(Clone, Debug)]
+pub struct SearchProgress {
+    /// Runs done, of the search or of the verdict.
+    pub runs: usize,
+    /// Number of runs of the search, or largest number of runs of the verdict.
+    pub of: usize,
+    /// Number of textures that the search has tried.
+    pub textures: usize,
+    /// Present stage.
+    pub stage: DesignStage,
+    /// Value of the best draft of this stage, as in the report; NaN if there is none.
+    pub best: f64,
+    /// Blocks of the best draft.
+    pub best_texture: Option<Arc<Vec<bool>>>,
+    /// Cost of the runs of this call, search and verdict.
+    pub work: Work,
+}
+
+/// Cost of runs, in steps times blocks.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Work {
+    /// Cost of the runs that this call has made.
+    pub here: f64,
+    /// Largest cost of the runs that remain.
+    pub left: f64,
+}
+
+impl Work {
+    /// Cost of what remains of a search that has cost `here` in this share of its time, as far as the time allows.
+    pub(crate) fn left_within(self, share_of_time: f64, here: f64) -> f64 {
+        if share_of_time > 0.0 {
+            self.left.min(here * (1.0 / share_of_time - 1.0).max(0.0))
+        } else {
+            self.left
+        }
+    }
+}
+
+/// Bounds on the length of a search.
+pub struct Bounds<'a> {
+    /// Runs of the search, without those of the verdict.
+    pub runs: usize,
+    /// Share of the allowed time that has passed; never 1 without such a bound.
+    pub share_of_time: &'a dyn Fn() -> f64,
+    /// Flag that ends all runs.
+    pub stop: &'a AtomicBool,
+    /// Place at which an earlier search ended for lack of time, to make that search again; none for a new one.
+    pub cut: Option<Cut>,
+}
+
+/// Numbers of runs after which each stage of a search that ran out of time had ended: with them the search can be made again.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Cut {
+    /// Number of runs after the stage on one surface.
+    pub explored: usize,
+    /// Number of runs after both stages.
+    pub refined: usize,
+}
+
+impl Bounds<'_> {
+    /// Share of a time that has passed, in seconds; 1 where the time is no number of more than 0, and 0 without a bound.
+    pub fn share_of(passed: f64, most: Option<f64>) -> f64 {
+        match most {
+            Some(most) if passed < most => passed / most,
+            Some(_) => 1.0,
+            None => 0.0,
+        }
+    }
+}
+
+/// Length of a search.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub(crate) struct Length {
+    /// Number of runs of the search.
+    pub(crate) runs: usize,
+    /// Whether the allowed time was over first, so that the drafts tried depend on the speed of the machine.
+    pub(crate) is_cut_short: bool,
+    /// Place at which the allowed time was over.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) cut: Option<Cut>,
+}
+
+/// A search, with what it has tried.
+pub(crate) struct Stages<'a> {
+    evaluator: &'a Evaluator,
+    search: Search,
+    /// Runs of the search.
+    runs: usize,
+    /// Whether surfaces differ by their seeds.
+    scatters: bool,
+    /// Number of runs after the first stage.
+    explored: usize,
+    /// Whether the allowed time was over before the runs.
+    is_cut_short: bool,
+    /// All drafts that were tried, in their order.
+    pub(crate) tried: Vec<Tried>,
+}
+
+impl<'a> Stages<'a> {
+    /// A search that begins with named patterns.
+    pub(crate) fn new(evaluator: &'a Evaluator, limits: Limits, start: u64, starts: Vec<Named>) -> Self {
+        let search = Search::new(evaluator.grid.clone(), limits, start, starts);
+        Self {
+            evaluator,
+            search,
+            runs: 0,
+            explored: 0,
+            scatters: evaluator.scatters(),
+            is_cut_short: false,
+            tried: Vec::new(),
+        }
+    }
+
+    /// Runs both stages; returns the finalists, the best first.
+    pub(crate) fn run(
+        &mut self,
+        bounds: &Bounds,
+        known: &mut Known,
+        keep: &mut Keep,
+        watch: &mut dyn FnMut(&SearchProgress),
+    ) -> Result<Vec<Arc<Vec<bool>>>, StudyError> {
+        self.evaluator.check_reference(known, bounds.stop, keep)?;
+        let explored = explored(bounds);
+        while self.runs < explored && self.has_time(bounds, false) {
+            let proposals = self.ask(batch(bounds), bounds)?;
+            if !self.try_out(proposals, false, bounds, known, keep, watch)? {
+                break;
+            }
+        }
+        self.explored = self.runs;
+        let best = self.search.refine();
+        let surfaces = self.stage(true).0.count();
+        let refined_batch = (batch(bounds) / surfaces).max(GENERATION);
+        let mut goes_on = self.try_out(best, true, bounds, known, keep, watch)?;
+        while goes_on && self.runs < bounds.runs && self.has_time(bounds, true) {
+            let proposals = self.ask(refined_batch, bounds)?;
+            goes_on = self.try_out(proposals, true, bounds, known, keep, watch)?;
+        }
+        let best = self.search.best().iter();
+        Ok(best.map(|found| Arc::clone(&found.proposal.texture)).collect())
+    }
+
+    /// Textures to try, unless the search ends: on a large lattice they take seconds to be drawn.
+    fn ask(&mut self, n: usize, bounds: &Bounds) -> Result<Vec<Proposal>, StudyError> {
+        let ends = || bounds.stop.load(Ordering::Relaxed);
+        let asked = self.search.ask(n, &ends);
+        if ends() {
+            return Err(StudyError::Interrupted);
+        }
+        Ok(asked)
+    }
+
+    /// Whether there is time for more runs of a stage, or were more of them in the search that is made again.
+    fn has_time(&mut self, bounds: &Bounds, is_refined: bool) -> bool {
+        let has_time = match bounds.cut {
+            Some(cut) if is_refined => self.runs < cut.refined,
+            Some(cut) => self.runs < cut.explored,
+            None => (bounds.share_of_time)() < if is_refined { 1.0 } else { EXPLORED },
+        };
+        self.is_cut_short |= !has_time;
+        has_time
+    }
+
+    /// Textures that were tried.
+    pub(crate) fn n_textures(&self) -> usize {
+        self.search.n_asked()
+    }
+
+    /// The length of the search.
+    pub(crate) fn length(&self, bounds: &Bounds) -> Length {
+        Length {
+            runs: bounds.runs,
+            is_cut_short: self.is_cut_short,
+            cut: self.is_cut_short.then_some(Cut {
+                explored: self.explored,
+                refined: self.runs,
+            }),
+        }
+    }
+
+    /// Makes the runs of some textures, and tells the search their losses; returns whether there were any.
+    fn try_out(
+        &mut self,
+        proposals: Vec<Proposal>,
+        is_refined: bool,
+        bounds: &Bounds,
+        known: &mut Known,
+        keep: &mut Keep,
+        watch: &mut dyn FnMut(&SearchProgress),
+    ) -> Result<bool, StudyError> {
+        let (surfaces, fidelity) = self.stage(is_refined);
+        let textures: Vec<_> = proposals.iter().map(|found| Arc::clone(&found.texture)).collect();
+        let wanted = self.evaluator.wanted(&textures, surfaces.clone(), fidelity);
+        self.evaluator.run(&wanted, known, bounds.stop, keep)?;
+        // Runs that are known already count alike, so that a search that goes on is the one that never stopped.
+        self.runs += wanted.len();
+        let found: Vec<Found> = proposals
+            .into_iter()
+            .map(|proposal| {
+                let loss = self
+                    .evaluator
+                    .loss(&proposal.texture, surfaces.clone(), fidelity, known);
+                Found { proposal, loss }
+            })
+            .collect();
+        for Found { proposal, loss } in &found {
+            let lost = if loss.is_finite() {
+                None
+            } else {
+                self.evaluator
+                    .lost(&proposal.texture, surfaces.clone(), fidelity, known)
+            };
+            self.tried.push(Tried {
+                is_refined,
+                origin: proposal.origin.clone(),
+                texture: Arc::clone(&proposal.texture),
+                loss: *loss,
+                lost,
+            });
+        }
+        let has_any = !found.is_empty();
+        self.search.tell(&found);
+        watch(&self.progress(bounds, is_refined));
+        Ok(has_any)
+    }
+
+    fn progress(&self, bounds: &Bounds, is_refined: bool) -> SearchProgress {
+        let best = self.search.best().first();
+        SearchProgress {
+            runs: self.runs,
+            of: bounds.runs,
+            textures: self.n_textures(),
+            stage: if is_refined {
+                DesignStage::Refining
+            } else {
+                DesignStage::Exploring
+            },
+            best: best.map_or(f64::NAN, |found| self.evaluator.wish().told(found.loss)),
+            best_texture: best.map(|found| Arc::clone(&found.proposal.texture)),
+            work: Work {
+                here: 0.0,
+                left: self.work_left(bounds),
+            },
+        }
+    }
+
+    /// Largest cost of the runs of the search that remain.
+    fn work_left(&self, bounds: &Bounds) -> f64 {
+        let explored = explored(bounds);
+        let coarse = explored.saturating_sub(self.runs);
+        let fine = bounds.runs.saturating_sub(explored.max(self.runs));
+        coarse as f64 * self.evaluator.work(Fidelity::Coarse)
+            + fine as f64 * self.evaluator.work(Fidelity::Fine)
+    }
+
+    /// Surfaces and step of a stage.
+    fn stage(&self, is_refined: bool) -> (Range<u64>, Fidelity) {
+        if is_refined {
+            (
+                0..if self.scatters { REFINED_SURFACES } else { 1 },
+                Fidelity::Fine,
+            )
+        } else {
+            (0..1, Fidelity::Coarse)
+        }
+    }
+
+    /// The first surface that the search has not seen.
+    pub(crate) const UNSEEN: u64 = REFINED_SURFACES;
+}
+
+/// Number of drafts that are asked for at once: a generation of every start.
+fn batch(bounds: &Bounds) -> usize {
+    GENERATION * (bounds.runs / RUNS_OF_START).clamp(1, MAX_STARTS)
+}
+
+/// Number of runs after which drafts are tried on several surfaces.
+fn explored(bounds: &Bounds) -> usize {
+    (EXPLORED * bounds.runs as f64) as usize
+}

@@ -1,0 +1,712 @@
+//! Designs: the results of the search, and that they are equal however it is run.
+
+#[path = "../../slipfront-case/tests/support/reference_page.rs"]
+mod reference_page;
+
+use std::fs;
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use slipfront_design::{
+    Bounds, DESIGNS, Design, DesignFile, DesignFolder, DesignKeys, DesignStage, Known, Outcome, Work,
+};
+use slipfront_study::StudyError;
+use slipfront_study::verify::{Extent, verify};
+
+use crate::reference_page::{expect_page, with_keys};
+
+/// A small slider whose named patterns cover less than the limits allow.
+const BASE: &str = "[base]\nslider.blocks = [16, 16]\ndrive.v_star = 0.1\n[design]\n";
+
+/// Surfaces that do not differ by their seeds, so that a verdict takes one of them.
+const SMOOTH: &str = "[base]\nslider.blocks = [16, 16]\ndrive.v_star = 0.1\n\
+    friction = { sigma_static_star = 0, sigma_kinetic_star = 0 }\n[design]\n";
+
+fn file(keys: &str) -> DesignFile {
+    file_of(BASE, keys)
+}
+
+fn file_of(base: &str, keys: &str) -> DesignFile {
+    let text = format!("{base}{keys}\n");
+    DesignFile::parse(&text, "design.toml", "design", Path::new("")).unwrap_or_else(|error| panic!("{error}"))
+}
+
+const LEAST: &str =
+    "wish = { least = 'static_friction' }\ncoverage = [0, 15]\nfeature_blocks = 2\ngap_blocks = 2";
+
+fn bounds(runs: usize, stop: &AtomicBool) -> Bounds<'_> {
+    Bounds {
+        runs,
+        share_of_time: &|| 0.0,
+        stop,
+        cut: None,
+    }
+}
+
+fn run(design: &Design, runs: usize) -> Outcome {
+    design
+        .run(
+            &bounds(runs, &AtomicBool::new(false)),
+            &mut Known::new(),
+            &mut |_| Ok(()),
+            &mut |_| {},
+        )
+        .unwrap()
+}
+
+fn found(keys: &str, runs: usize) -> Outcome {
+    run(&file_of(SMOOTH, keys).design().unwrap(), runs)
+}
+
+/// The example of the book and the files of `cases/designs` can be run, and every key is explained.
+#[test]
+fn design_files_are_true() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let mut seen = 0;
+    for page in ["docs/reference/design-file.md", "docs/guide/design.md"] {
+        let text = fs::read_to_string(root.join(page)).unwrap();
+        for rest in text.split("```toml design\n").skip(1) {
+            let block = rest.split("```").next().unwrap();
+            let file = DesignFile::parse(block, page, "design", &root.join("cases"))
+                .unwrap_or_else(|error| panic!("{error}"));
+            file.design()
+                .unwrap_or_else(|error| panic!("{page}: {error}\n{block}"));
+            seen += 1;
+        }
+    }
+    assert!(seen >= 3, "only {seen} examples");
+    for entry in fs::read_dir(root.join("cases/designs")).unwrap() {
+        let file = DesignFile::load(&entry.unwrap().path()).unwrap_or_else(|error| panic!("{error}"));
+        file.design()
+            .unwrap_or_else(|error| panic!("{}: {error}", file.name));
+    }
+    let text = fs::read_to_string(root.join("docs/reference/design-file.md")).unwrap();
+    for key in [
+        "base",
+        "wish",
+        "least",
+        "largest",
+        "value",
+        "of",
+        "curve",
+        "coverage",
+        "feature",
+        "feature_blocks",
+        "gap",
+        "gap_blocks",
+        "mirror",
+        "copies",
+        "forbidden",
+        "max_features",
+        "writing",
+        "line_spacing",
+        "max_length",
+        "cases",
+        "judge_by",
+        "runs",
+        "start",
+        "starts",
+    ] {
+        assert!(text.contains(&format!("`{key}`")), "`{key}` is not explained");
+    }
+}
+
+/// Every key has a row in the table of its section, as its struct declares it.
+#[test]
+fn the_reference_has_the_keys_of_the_struct() {
+    expect_page("design-file.md", |page| {
+        with_keys(page, "`[design]`", DesignKeys::KEYS)
+    });
+}
+
+/// The files of a folder, without the journal, whose lines are in the order in which runs were begun.
+fn files(folder: &Path) -> Vec<(String, Vec<u8>)> {
+    let mut files: Vec<_> = fs::read_dir(folder)
+        .unwrap()
+        .flatten()
+        .map(|entry| entry.path())
+        .filter(|path| path.is_file())
+        .map(|path| {
+            (
+                path.file_name().unwrap().to_string_lossy().into_owned(),
+                fs::read(&path).unwrap(),
+            )
+        })
+        .collect();
+    files.sort();
+    files
+}
+
+/// A search to the end on three threads, and one on a single thread that is stopped again and again and whose
+/// journal loses its end.
+#[test]
+fn a_search_that_was_stopped_leaves_the_same_bytes() {
+    let file = file(LEAST);
+    let folders = [0; 2].map(|_| tempfile::tempdir().unwrap());
+    let in_one_go = folders[0].path();
+    let on = |threads: usize| {
+        rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .unwrap()
+    };
+    let mut folder = DesignFolder::open(in_one_go, &file, false).unwrap();
+    let never = AtomicBool::new(false);
+    on(3).install(|| folder.find(&bounds(150, &never), &mut |_| {}).unwrap());
+
+    let stopped = folders[1].path();
+    let mut stages = Vec::new();
+    for round in 0.. {
+        let mut folder = DesignFolder::open(stopped, &file, false).unwrap();
+        assert_eq!(folder.damaged, usize::from(round > 0));
+        let stop = AtomicBool::new(false);
+        let before = folder.n_kept();
+        let found = on(1).install(|| {
+            folder.find(&bounds(150, &stop), &mut |now| {
+                let is_enough = match round {
+                    0 => now.runs > 60,
+                    1 => now.stage == DesignStage::Refining,
+                    2 => now.stage == DesignStage::Judging,
+                    3 => now.stage == DesignStage::Judging && now.runs > 200,
+                    _ => false,
+                };
+                if is_enough {
+                    stages.push(now.stage);
+                    stop.store(true, Ordering::Relaxed);
+                }
+            })
+        });
+        match found {
+            Ok(_) => break,
+            Err(StudyError::Interrupted) => assert!(folder.n_kept() > before),
+            Err(error) => panic!("{error}"),
+        }
+        assert!(round > 3 || stopped.join("mask.npy").exists(), "the best is kept");
+        drop(folder);
+        // What a kill can leave: a line cut short.
+        let journal = stopped.join("design.jsonl");
+        let mut bytes = fs::read(&journal).unwrap();
+        bytes.truncate(bytes.len() - 30);
+        fs::write(&journal, bytes).unwrap();
+    }
+    assert!(
+        stages.len() > 2 && stages.contains(&DesignStage::Judging),
+        "{stages:?}"
+    );
+    assert!(files(in_one_go) == files(stopped), "the folders differ");
+}
+
+/// The design is at least as good as every named pattern, and the gains are those of paired runs.
+#[test]
+fn the_design_is_not_worse_than_named_patterns() {
+    let outcome = run(&file(LEAST).design().unwrap(), 300);
+    let verdict = &outcome.verdict;
+    assert!(verdict.design.loss < 0.9, "{verdict:?}");
+    for other in verdict.others.iter().skip(1) {
+        let better = other.design_is_better_by.unwrap();
+        // The mean of differences is the difference of means, but for rounding.
+        assert!((better.mean - (other.loss - verdict.design.loss)).abs() < 1e-12);
+        assert!(better.mean >= 0.0, "{other:?}");
+    }
+    // Without a search, the best named pattern is what remains.
+    let named = found(LEAST, 1);
+    assert!(named.verdict.is_named, "{:?}", named.verdict);
+    assert!(named.verdict.design.loss >= found(LEAST, 300).verdict.design.loss);
+    assert!(named.verdict.optimism.abs() < 0.05);
+}
+
+/// A search alone finds the texture that a run judges, and on fresh surfaces the texture has the values of
+/// the verdict.
+#[test]
+fn a_search_alone_finds_what_is_judged() {
+    let design = file_of(SMOOTH, LEAST).design().unwrap();
+    let stop = AtomicBool::new(false);
+    let mut tried = 0;
+    let best = design
+        .search(&bounds(150, &stop), &mut |now| tried = now.textures)
+        .unwrap();
+    // Every texture takes a run, and so does the slider without.
+    assert!((50..150).contains(&tried), "{tried}");
+    let outcome = run(&design, 150);
+    let fresh = |design: &Design, texture: &Arc<Vec<bool>>| {
+        let losses = design.losses_on_fresh(std::slice::from_ref(texture), 3, &stop);
+        losses.unwrap().remove(0)
+    };
+    // Surfaces do not differ: there is one.
+    assert_eq!(fresh(&design, &outcome.texture), [outcome.verdict.design.loss]);
+    assert!(best.iter().all(|texture| design.check(texture).is_ok()));
+    // A block is pulled by a drive spring of 3/8, and bears more where 15 % bear nothing; the search looks
+    // 1.2/1.07 times as long, in steps of 0.4, of which there is a whole number.
+    let steps = design.block_steps_per_texture().unwrap() / 256.0;
+    let expected = 1.2 / 1.07 / (0.85 * 0.375 * 0.1) / 0.4;
+    assert!(
+        (steps - expected).abs() < 0.01 * expected + 1.0,
+        "{steps} {expected}"
+    );
+    // Where they differ, each has its own loss.
+    let losses = fresh(&file(LEAST).design().unwrap(), &best[0]);
+    assert!(losses.len() == 3 && losses[0] != losses[1], "{losses:?}");
+    stop.store(true, Ordering::Relaxed);
+    let stopped = design.search(&bounds(150, &stop), &mut |_| {});
+    assert!(matches!(stopped, Err(StudyError::Interrupted)));
+}
+
+#[test]
+fn a_value_is_found_or_told_as_out_of_reach() {
+    let value = |value: f64| {
+        let keys = format!(
+            "wish = {{ value = {value}, of = 'static_friction_star' }}\ncoverage = [0, 15]\nfeature_blocks = 2"
+        );
+        let outcome = found(&keys, 300);
+        (
+            outcome.verdict.design.cases[0].static_friction_star.mean,
+            outcome.verdict,
+        )
+    };
+    let (least, _) = value(0.05);
+    let (reached, verdict) = value(0.78);
+    // Between the smallest and the largest that there is, within the 0.5 % that a report calls found.
+    assert!(
+        least > 0.5 && (reached / 0.78 - 1.0).abs() < 0.005,
+        "{least} {verdict:?}"
+    );
+    assert!(verdict.design.loss < 0.005);
+}
+
+/// A curve of a texture is met by a texture.
+#[test]
+fn a_curve_is_followed() {
+    let folder = tempfile::tempdir().unwrap();
+    let case = slipfront_case::case::Case::parse(
+        "slider.blocks = [16, 16]\ndrive.v_star = 0.1\nfriction = { sigma_static_star = 0, sigma_kinetic_star = 0 }\ntexture = [{ shape = 'groove', coverage = 12.5 }]",
+        "case",
+        "",
+        &[],
+    )
+    .unwrap();
+    let record = slipfront_run::running::run(&std::sync::Arc::new(case), 1).unwrap();
+    let mut table = "X (nm),mu (1)\n".to_owned();
+    for row in record.rows.iter().filter(|row| row.time_star < 30.0) {
+        let path = 0.1 * row.time_star * record.summary.si.as_ref().unwrap().displacement_unit_m * 1e9;
+        table += &format!(
+            "{path},{}\n",
+            row.point.mu_star * record.summary.static_friction / record.summary.static_friction_star
+        );
+    }
+    fs::write(folder.path().join("wanted.csv"), table).unwrap();
+    let text = format!(
+        "{SMOOTH}wish = {{ curve = {{ file = 'wanted.csv', x = 'X', y = 'mu' }} }}\ncoverage = [0, 15]\nfeature_blocks = 2\n"
+    );
+    let file = DesignFile::parse(&text, "design.toml", "design", folder.path()).unwrap();
+    let outcome = run(&file.design().unwrap(), 200);
+    // The groove itself is one of the textures that it begins with; its curve is rounded in the table.
+    assert!(outcome.verdict.design.loss < 1e-9, "{:?}", outcome.verdict);
+}
+
+/// A base that names files is searched from where it stands and from its copies alike; a copy that has
+/// changed is refused.
+#[test]
+fn a_base_may_name_files() {
+    let folder = tempfile::tempdir().unwrap();
+    let field = |value: f64| vec![vec![value.to_string(); 8].join(","); 8].join("\n");
+    fs::write(folder.path().join("mu.csv"), field(0.9)).unwrap();
+    let text = "[base]\nslider.blocks = [8, 8]\ndrive.v_star = 0.1\nfriction.mu_static_field = 'mu.csv'\n\
+                [design]\nwish = { least = 'static_friction' }\ncoverage = [0, 25]\nfeature_blocks = 2";
+    let file = DesignFile::parse(text, "design.toml", "design", folder.path()).unwrap();
+    let found = run(&file.design().unwrap(), 20);
+    let out = folder.path().join("out");
+    let mut opened = DesignFolder::open(&out, &file, false).unwrap();
+    opened
+        .find(&bounds(20, &AtomicBool::new(false)), &mut |_| {})
+        .unwrap();
+    let written: serde_json::Value =
+        serde_json::from_slice(&fs::read(out.join("design.json")).unwrap()).unwrap();
+    assert_eq!(written["design"]["loss"], found.verdict.design.loss);
+    // Finer blocks have no coefficients.
+    let [left_out] = found.verdict.sensitivity.left_out.as_slice() else {
+        panic!("{:?}", found.verdict.sensitivity);
+    };
+    assert_eq!(left_out.change, "blocks of half the size");
+    assert!(
+        left_out.why.starts_with("`friction.mu_static_field`"),
+        "{left_out:?}"
+    );
+    let told = fs::read_to_string(out.join("design.txt")).unwrap();
+    assert!(
+        told.contains("note: nothing is known of blocks of half the size: `friction.mu_static_field`"),
+        "{told}"
+    );
+    drop(opened);
+    let design = file.design().unwrap();
+    fs::write(folder.path().join("mu.csv"), field(0.5)).unwrap();
+    let again = run(&design, 20).verdict;
+    assert_eq!(again.design, found.verdict.design, "it keeps what it was made of");
+}
+
+/// A change that a program of speeds rules out is named.
+#[test]
+fn a_program_of_speeds_has_no_other_speed() {
+    let base = "[base]\nslider.blocks = [8, 8]\ndrive.program = [{ v_star = 0.1, until_star = 40 }, { v_star = 0.05 }]\n\
+                time.duration_star = 80\n[design]\n";
+    let file = file_of(base, "wish = { least = 'static_friction' }\ncoverage = [0, 25]");
+    let sensitivity = run(&file.design().unwrap(), 10).verdict.sensitivity;
+    let left_out: Vec<[&str; 2]> = sensitivity
+        .left_out
+        .iter()
+        .map(|left_out| [left_out.change.as_str(), &left_out.why])
+        .collect();
+    let why = "the drive has a program of speeds";
+    assert_eq!(
+        left_out,
+        [["a third of the speed", why], ["three times the speed", why]]
+    );
+    assert_eq!(sensitivity.changed.len(), 5);
+}
+
+/// A texture that leaves only blocks of next to no friction in contact never comes to rest under a held
+/// drive: it is lost, and told with the reason in the table, the verdict and its text, before and after a
+/// stop. A slider all of whose blocks are such has nothing to compare with.
+#[test]
+fn what_never_comes_to_rest_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let base = "[base]\nslider = { blocks = [2, 1], omega_star = 0 }\ndrive = { v_star = 0.1, loading = 'held' }\n\
+                friction = { mu_kinetic_field = 'mu_k.csv', sigma_static_star = 0, sigma_kinetic_star = 0, \
+                slip_weakening = { length_star = 0.1 } }\n[design]\n\
+                wish = { least = 'static_friction' }\ncoverage = [0, 50]\n\
+                starts = [[{ shape = 'groove', width = '1 um', offset = '-0.5 um' }]]";
+    let of = |row: &str| {
+        fs::write(folder.path().join("mu_k.csv"), row).unwrap();
+        DesignFile::parse(base, "design.toml", "design", folder.path()).unwrap()
+    };
+    // Alone, the second block, once weakened, swings longer than a held drive waits for it; the first takes
+    // its energy where it touches.
+    let file = of("0.5,1e-4");
+    let out = folder.path().join("out");
+    let find = || {
+        let mut opened = DesignFolder::open(&out, &file, false).unwrap();
+        let text = opened
+            .find(&bounds(40, &AtomicBool::new(false)), &mut |_| {})
+            .unwrap();
+        assert_eq!(opened.damaged, 0);
+        text.split_whitespace().collect::<Vec<_>>().join(" ")
+    };
+    let text = find();
+    let remedy = "raise its kinetic friction or damping, or take constant loading";
+    let told = "note: on fresh surfaces the start 1 of the file is lost: ";
+    let after = text.split(told).nth(1).unwrap_or_else(|| panic!("{text}"));
+    assert!(after.contains(remedy), "{text}");
+    assert!(
+        text.contains("count as lost, as evaluations.csv says of each"),
+        "{text}"
+    );
+    assert!(!text.contains("inf") && !text.contains("NaN"), "{text}");
+    let mut table = csv::Reader::from_path(out.join("evaluations.csv")).unwrap();
+    let rows: Vec<csv::StringRecord> = table.records().map(Result::unwrap).collect();
+    let lost: Vec<&csv::StringRecord> = rows.iter().filter(|row| &row[4] == "inf").collect();
+    assert!(!lost.is_empty() && lost.len() < rows.len());
+    assert!(
+        text.contains("note: the design is lost at one block towards -x: "),
+        "{text}"
+    );
+    assert!(lost.iter().all(|row| row[6].contains(remedy)));
+    assert!(rows.iter().all(|row| (&row[4] == "inf") != row[6].is_empty()));
+    assert_eq!(find(), text, "what is lost is kept in the journal");
+
+    let smooth = of("1e-9,1e-9");
+    let error = smooth.design().unwrap().run(
+        &bounds(40, &AtomicBool::new(false)),
+        &mut Known::new(),
+        &mut |_| Ok(()),
+        &mut |_| {},
+    );
+    let said = error.unwrap_err().to_string();
+    assert!(
+        said.starts_with("nothing can be compared with the slider without texture") && said.contains(remedy),
+        "{said}"
+    );
+}
+
+/// Each case has the wish in its own units: a force is another share of mu_s under another load, and a share
+/// of mu_s another force.
+#[test]
+fn every_case_has_the_wish_in_its_own_units() {
+    let least = |of: &str| {
+        let keys = format!(
+            "wish = {{ value = {of} }}\ncoverage = [0, 15]\njudge_by = 'worst'\n\
+             cases = [{{ load.pressure = '1 MPa' }}, {{ load.pressure = '2 MPa' }}]"
+        );
+        let outcome = found(&keys, 1);
+        let stars = outcome.verdict.design.cases.iter();
+        let stars: Vec<f64> = stars.map(|given| given.static_friction_star.mean).collect();
+        (outcome.verdict.design.loss, stars)
+    };
+    // Dimensionless, the two loads are one case. 256 um^2 under 1 MPa with mu_s = 1 hold 256 uN.
+    let newtons = 256.0 * 0.8;
+    let (loss, stars) = least(&format!("'{newtons} uN', of = 'static_friction'"));
+    let distance = |star: f64, wanted: f64| (star / wanted - 1.0).abs();
+    let expected = distance(stars[0], 0.8).max(distance(stars[1], 0.4));
+    assert!((loss - expected).abs() < 1e-9, "{loss} {expected} {stars:?}");
+    let (loss, stars) = least("0.8, of = 'static_friction_star'");
+    let expected = distance(stars[0], 0.8).max(distance(stars[1], 0.8));
+    assert!((loss - expected).abs() < 1e-9, "{loss} {expected} {stars:?}");
+}
+
+/// The files of cases are those of the verdict, not the base; a front that is stopped leaves the design
+/// alone.
+#[test]
+fn the_folder_has_the_cases_of_the_verdict() {
+    let file = file_of(
+        SMOOTH,
+        "wish = { least = 'static_friction' }\ncoverage = [0, 15]\nfront = [0.1, 10]\n\
+         cases = [{ drive.v_star = 0.2 }, { drive.v_star = 0.3, load.pressure = '2 MPa' }]",
+    );
+    let folder = tempfile::tempdir().unwrap();
+    let mut opened = DesignFolder::open(folder.path(), &file, false).unwrap();
+    let stop = AtomicBool::new(false);
+    let (mut is_judged, mut work) = (false, Vec::new());
+    let stopped = opened.find(&bounds(60, &stop), &mut |now| {
+        work.push((now.stage, now.work));
+        is_judged |= now.stage == DesignStage::Judging;
+        // Nothing covers a thousandth of 256 blocks: what follows is the search up to 10 %.
+        stop.store(is_judged && now.best_texture.is_some(), Ordering::Relaxed);
+    });
+    assert!(matches!(stopped, Err(StudyError::Interrupted)), "{stopped:?}");
+    for (name, v_star) in [("case.toml", 0.2), ("case_2.toml", 0.3)] {
+        let case = slipfront_case::case::Case::load(
+            &folder.path().join(name),
+            &[],
+            &mut |_| true,
+            slipfront_case::case::Ranks::ALONE,
+        )
+        .unwrap();
+        assert_eq!(case.groups.v_star, v_star);
+        assert!(
+            case.model.surface.texture_percent() > 10.0,
+            "the design of the largest coverage"
+        );
+    }
+    assert!(!folder.path().join("case_3.toml").exists());
+    let text = fs::read_to_string(folder.path().join("design.txt")).unwrap();
+    let line = text.lines().find(|line| line.contains("case_2.toml")).unwrap();
+    assert!(line.contains("drive.v_star=0.3, load.pressure="), "{text}");
+    let judged = work.iter().filter(|(stage, _)| *stage == DesignStage::Judging);
+    let judged: Vec<Work> = judged.map(|(_, work)| *work).collect();
+    let falls = |pair: &[Work]| pair[0].here <= pair[1].here && pair[0].left >= pair[1].left;
+    assert!(judged.len() > 5 && judged.windows(2).all(falls), "{judged:?}");
+    // The runs of the second design of the front remain, too.
+    assert!(judged.iter().all(|work| work.left > 0.0));
+    let text = opened
+        .find(&bounds(60, &AtomicBool::new(false)), &mut |_| {})
+        .unwrap();
+    assert!(text.contains("no texture keeps the limits"), "{text}");
+}
+
+/// Textures from which the search begins are judged, and told where they break a limit.
+#[test]
+fn drawings_are_judged() {
+    let groove = |percent: f64, offset: i32| {
+        format!(
+            "[{{ shape = 'groove', orientation = 'along', coverage = {percent}, offset = '{offset} um' }}]"
+        )
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let file = file_of(
+        SMOOTH,
+        &format!(
+            "wish = {{ least = 'static_friction' }}\ncoverage = [0, 15]\nfeature_blocks = 2\nstarts = [{}, {}, {}]",
+            groove(12.5, -4),
+            groove(25.0, 4),
+            groove(6.25, 4)
+        ),
+    );
+    let mut opened = DesignFolder::open(folder.path(), &file, false).unwrap();
+    let text = opened
+        .find(&bounds(1, &AtomicBool::new(false)), &mut |_| {})
+        .unwrap();
+    let told = text.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(
+        !told.contains("not seen by the search"),
+        "there is one surface: {text}"
+    );
+    let found: serde_json::Value =
+        serde_json::from_slice(&fs::read(folder.path().join("design.json")).unwrap()).unwrap();
+    let others = found["others"].as_array().unwrap();
+    for (name, percent) in [("start 1 of the file", 12.5), ("start 2 of the file", 12.5)] {
+        let other = others.iter().find(|other| other["name"] == name).unwrap();
+        assert_eq!(other["coverage_percent"], percent, "{text}");
+        assert!(
+            other["design_is_better_by"]["mean"].as_f64().unwrap() > 0.0,
+            "{text}"
+        );
+    }
+    assert!(
+        told.contains("note: the start 2 of the file breaks a limit: the texture covers 25.00 % of the slider, where 0 to 15 % are allowed"),
+        "{text}"
+    );
+    assert!(
+        told.contains("note: the start 3 of the file breaks a limit: a feature is 1 block wide, where 2 are the least; nothing legal"),
+        "{text}"
+    );
+}
+
+/// A folder whose files have changed belongs to another design, and a longer search that is stopped leaves
+/// the results of the shorter one.
+#[test]
+fn results_belong_to_one_search() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    let forbid = |column: usize| {
+        let clamped: Vec<bool> = (0..64).map(|block| block % 8 == column).collect();
+        let mask = slipfront_case::arrays::npy_of_mask(8, &clamped);
+        fs::write(folder.path().join("clamp.npy"), mask).unwrap();
+    };
+    forbid(0);
+    let text = "[base]\nslider.blocks = [8, 8]\ndrive.v_star = 0.1\nfriction = { sigma_static_star = 0, sigma_kinetic_star = 0 }\n\
+                [design]\nwish = { least = 'static_friction' }\ncoverage = [0, 25]\n\
+                forbidden = [{ shape = 'mask', file = 'clamp.npy' }]";
+    let file = DesignFile::parse(text, "design.toml", "design", folder.path()).unwrap();
+    let mut opened = DesignFolder::open(&out, &file, false).unwrap();
+    opened
+        .find(&bounds(20, &AtomicBool::new(false)), &mut |_| {})
+        .unwrap();
+    let before = fs::read(out.join("mask.npy")).unwrap();
+    let stop = AtomicBool::new(false);
+    let stopped = opened.find(&bounds(400, &stop), &mut |now| {
+        stop.store(now.runs > 100, Ordering::Relaxed);
+    });
+    assert!(matches!(stopped, Err(StudyError::Interrupted)));
+    assert_eq!(fs::read(out.join("mask.npy")).unwrap(), before);
+    assert!(
+        verify(&out, &[&DESIGNS], Extent::Derived, &AtomicBool::new(false))
+            .is_ok_and(|verdict| verdict.differences.is_empty())
+    );
+    drop(opened);
+    forbid(7);
+    let file = DesignFile::parse(text, "design.toml", "design", folder.path()).unwrap();
+    assert!(matches!(
+        DesignFolder::open(&out, &file, false),
+        Err(StudyError::Changed { .. })
+    ));
+}
+
+#[test]
+fn limits_are_kept_and_cases_are_all_looked_at() {
+    let keys = "wish = { largest = 'static_friction' }\ncoverage = [5, 12]\nfeature = '2 um'\ngap = '2 um'\nmirror = 'both'\n\
+                max_features = 2\nforbidden = [{ shape = 'cavity', coverage = 20 }]\njudge_by = 'worst'\n\
+                cases = [{ drive.v_star = 0.1 }, { drive.v_star = 0.2 }]\n\
+                starts = [[{ shape = 'groove', orientation = 'along', coverage = 12.5 }]]";
+    let outcome = found(keys, 250);
+    let blocks = outcome.texture.iter().filter(|&&textured| textured).count();
+    assert!((13..=30).contains(&blocks), "{blocks}");
+    for (block, &textured) in outcome.texture.iter().enumerate() {
+        let [x, y] = [block % 16, block / 16];
+        assert_eq!(textured, outcome.texture[y * 16 + 15 - x]);
+        assert_eq!(textured, outcome.texture[(15 - y) * 16 + x]);
+        // The cavity that is forbidden reaches 4.04 blocks from the middle.
+        let from_middle = (x as f64 - 7.5).hypot(y as f64 - 7.5);
+        assert!(!textured || from_middle > 4.0);
+    }
+    assert_eq!(outcome.verdict.design.cases.len(), 2);
+}
+
+#[test]
+fn what_cannot_be_is_told_with_its_place() {
+    let said = |keys: &str| {
+        let text = format!("{BASE}{keys}\n");
+        let file = DesignFile::parse(&text, "design.toml", "design", Path::new(""));
+        match file.and_then(|file| file.design()) {
+            Ok(_) => panic!("{keys} is accepted"),
+            Err(error) => error.to_string(),
+        }
+    };
+    let wish = "wish = { least = 'static_friction' }";
+    for (keys, expected) in [
+        ("coverage = [0, 10]", "wish"),
+        ("wish = { least = 'friction' }\ncoverage = [0, 10]", "friction"),
+        (
+            "wish = { least = 'static_friction', value = 0.3 }\ncoverage = [0, 10]",
+            "`wish` is one of",
+        ),
+        ("wish = { value = 0.3 }\ncoverage = [0, 10]", "`wish` is one of"),
+        (
+            "wish = { value = '3 m', of = 'static_friction' }\ncoverage = [0, 10]",
+            "3 m",
+        ),
+        (
+            "wish = { value = -1, of = 'static_friction' }\ncoverage = [0, 10]",
+            "a number of more than 0",
+        ),
+        (
+            "wish = { value = 1, of = 'work' }\ncoverage = [0, 10]",
+            "`of` must be",
+        ),
+        (&format!("{wish}\ncoverage = [10, 0]"), "`coverage` = [10, 0]"),
+        (&format!("{wish}\ncoverage = [0, 10]\nfeatures = 2"), "feature"),
+        (
+            &format!("{wish}\ncoverage = [0, 10]\nfeature = '1 um'\nfeature_blocks = 1"),
+            "exclude each other",
+        ),
+        (
+            &format!("{wish}\ncoverage = [0, 10]\nfeature = '30 um'"),
+            "30 blocks, more than the slider's 16",
+        ),
+        (
+            &format!("{wish}\ncoverage = [0, 10]\ngap_blocks = 0"),
+            "must be at least 1",
+        ),
+        (
+            &format!("{wish}\ncoverage = [0, 10]\ncopies = [3, 1]"),
+            "which 3 does not divide",
+        ),
+        (
+            &format!("{wish}\ncoverage = [0, 10]\nfront = [5, 12]"),
+            "at most 10, the largest `coverage`",
+        ),
+        (&format!("{wish}\ncoverage = [0, 10]\nruns = 0"), "`runs` = 0"),
+        (
+            &format!("{wish}\ncoverage = [0, 10]\nmax_features = 0"),
+            "at least 1",
+        ),
+        (
+            &format!("{wish}\ncoverage = [0, 10]\nforbidden = 3"),
+            "must be a list of textures",
+        ),
+        (
+            &format!("{wish}\ncoverage = [0, 10]\nstarts = [[{{ shape = 'star' }}]]"),
+            "star",
+        ),
+        (
+            &format!("{wish}\ncoverage = [0, 10]\ncases = [{{ slider.blocks = [8, 8] }}]"),
+            "the blocks of the base",
+        ),
+        (
+            &format!("{wish}\ncoverage = [0, 10]\ncases = [{{ texture = [] }}]"),
+            "belongs to `starts`",
+        ),
+        (
+            "wish = { value = '1 mN', of = 'static_friction_star' }\ncoverage = [0, 10]",
+            "leave out _star",
+        ),
+        (
+            &format!("{wish}\ncoverage = [0, 10]\n[study]\nreplicates = 3"),
+            "study",
+        ),
+    ] {
+        let said = said(keys);
+        assert!(
+            said.contains(expected) && said.contains("design.toml"),
+            "{keys}\n{said}"
+        );
+    }
+    // Limits that no texture keeps.
+    let file = file("wish = { least = 'static_friction' }\ncoverage = [1, 3]\nfeature_blocks = 4");
+    let never = AtomicBool::new(false);
+    let error = file.design().unwrap().run(
+        &bounds(10, &never),
+        &mut Known::new(),
+        &mut |_| Ok(()),
+        &mut |_| {},
+    );
+    assert!(matches!(error, Err(StudyError::NoDesign)));
+}

@@ -1,0 +1,71 @@
+//! Adhesion, which needs no load.
+
+use slipfront::exact_solutions::{Facing, groove_edge_factor};
+use slipfront::scales;
+
+use crate::answer::{Answer, Chapter};
+use crate::error::FamilyError;
+use crate::runs::AnswerRun;
+use slipfront_plot::{Response, Responses};
+
+/// Adhesion over the pressure times mu_s.
+const STRENGTHS: [f64; 4] = [0.0, 0.25, 0.5, 1.0];
+
+pub(crate) fn chapter() -> Result<Chapter, FamilyError> {
+    let mut answers = Vec::new();
+    let mut smooth = Vec::new();
+    for adhesion in STRENGTHS {
+        let text = format!(
+            "friction.sigma_static_star = 0\nfriction.sigma_kinetic_star = 0\nfriction.adhesion = \"{} kPa\"\n\
+             time.step = 0.01",
+            100.0 * adhesion
+        );
+        let found = AnswerRun::of_case("adhesion", &text)?.peak();
+        smooth.push(found);
+        answers.push(Answer::new(
+            format!("μ_s* without texture, τ_a/(P μ̄_s) = {adhesion}"),
+            [1.0 + adhesion, found],
+            (
+                0.375 * (0.03 * 0.01 + 0.03 * 0.03 / (2.0 * (0.5 + adhesion))),
+                "the pull of one step, and of what springs stretch until the slider is as fast as the drive",
+            ),
+        ));
+    }
+    for adhesion in STRENGTHS {
+        // Five columns of twenty are a groove across the drive; nothing is left of the lag of the waves at this speed.
+        let text = format!(
+            "friction.sigma_static_star = 0\nfriction.sigma_kinetic_star = 0\nfriction.adhesion = \"{} kPa\"\n\
+             slider.blocks = [20, 20]\nslider.edges = \"periodic\"\nslider.omega_star = 0.3\ndrive.v_star = 1e-3\n\
+             time.step = 0.5\ntime.duration_star = 5000\n[[texture]]\nshape = \"groove\"\norientation = \"across\"\nwidth = \"5 um\"",
+            100.0 * adhesion
+        );
+        let run = AnswerRun::of_case("adhesion on a groove", &text)?;
+        let exact = (20.0 / 15.0 + adhesion) / groove_edge_factor(Facing::Across, 5);
+        answers.push(Answer::new(
+            format!("pull k_s V t* at the first slip beside a groove, τ_a/(P μ̄_s) = {adhesion}"),
+            [exact, 0.375 * 1e-3 * run.first_slip()],
+            (
+                0.375 * 1e-3 * 0.5 + 2.5 * scales::damping(0.3) * 1e-3 / groove_edge_factor(Facing::Across, 5),
+                "the pull of one step, and the drag of the free rows, Ω V* each, half of which each edge bears",
+            ),
+        ));
+    }
+    Ok(Chapter {
+        title: "Adhesion",
+        name: "adhesion",
+        text: include_str!("text/adhesion.md"),
+        answers,
+        picture: Some((
+            "Static friction of a smooth uniform surface against adhesion: the line is exact, the points are computed.",
+            Responses {
+                x_title: "adhesion \u{3c4}\u{2090}/(P \u{3bc}\u{305}\u{209b})".to_owned(),
+                y_title: "static friction \u{3bc}\u{209b}*".to_owned(),
+                curves: vec![
+                    Response::of_formula("exact", &STRENGTHS, |adhesion| 1.0 + adhesion),
+                    Response::of_values("computed", &STRENGTHS, &smooth),
+                ],
+                ..Responses::default()
+            },
+        )),
+    })
+}

@@ -1,0 +1,98 @@
+//! Heterogeneous sliders: grades, outlines, dampers beside the springs.
+
+use std::sync::Arc;
+
+use slipfront::exact_solutions::{lagged_decay_rate, pair_modes, viscous_decay_rate};
+use slipfront::{Drive, FrictionLaw, Lattice, Model, Slider, State, Surface};
+
+use crate::answer::{Answer, Chapter};
+use crate::error::FamilyError;
+use crate::runs::{AnswerRun, Experiment, growth};
+
+const EQUAL: &str = "friction.sigma_static_star = 0\nfriction.sigma_kinetic_star = 0\n";
+
+pub(crate) fn chapter() -> Result<Chapter, FamilyError> {
+    let mut answers = Vec::new();
+    let text = format!(
+        "{EQUAL}[slider]\nblocks = [50, 4]\nstiffness_grade = {{ along = \"x\", from = 1, to = 0.1 }}\n[time]\nstep = 0.01\nduration_star = 120"
+    );
+    let stiffest = 1.0 - 0.9 * 0.5 / 50.0;
+    answers.push(Answer::new(
+        "first slip of a slider graded from E to E/10, at its stiff edge: t*",
+        [
+            1.0 / (0.375 * 0.03 * stiffest),
+            AnswerRun::of_case("graded", &text)?.first_slip(),
+        ],
+        (0.01 * (1.0 + 1e-9), "it is seen at the next step"),
+    ));
+    let text = format!(
+        "{EQUAL}[slider]\nblocks = [30, 30]\noutline = \"disc\"\n[time]\nstep = 0.01\nstop = \"after_onset\""
+    );
+    answers.push(Answer::new(
+        "μ_s* of a disc of equal blocks",
+        [1.0, AnswerRun::of_case("disc", &text)?.peak()],
+        (
+            0.375 * (0.03 * 0.01 + 0.03 * 0.03),
+            "the pull of one step, and of what springs stretch until the slider is as fast as the drive",
+        ),
+    ));
+    for viscosity_time in [0.05, 0.2] {
+        let dt = 0.01;
+        let rate = decay(viscosity_time, dt);
+        let [_, against] = pair_modes([1.0; 2], [1.0; 2]);
+        answers.push(Answer::new(
+            format!("decay rate of two blocks that swing against each other, τ_v = {viscosity_time}, in steps of {dt}"),
+            [lagged_decay_rate(against.omega_squared, viscosity_time, dt), rate],
+            // Four amplitudes, of which each step rounds the last digit one way or the other.
+            (
+                4.0 * (2.8_f64 / dt).sqrt() * f64::EPSILON,
+                "rounding of four amplitudes, a random walk of 280 steps of ε",
+            ),
+        ));
+        let exact = viscous_decay_rate(against.omega_squared, 0.0, viscosity_time);
+        answers.push(Answer::new(
+            format!("the same without the error of the step, τ_v = {viscosity_time}"),
+            [exact, rate],
+            (
+                0.6 * exact * viscosity_time * 1.5 * dt,
+                "of first order: half of τ_v (ω² - k_s) Δt, relative, and a fifth of that for higher orders",
+            ),
+        ));
+    }
+    Ok(Chapter {
+        title: "Heterogeneous blocks, and dampers between them",
+        name: "blocks",
+        text: include_str!("text/blocks.md"),
+        answers,
+        picture: None,
+    })
+}
+
+/// Decay rate of two equal blocks without friction that swing against each other.
+fn decay(viscosity_time: f64, dt_star: f64) -> f64 {
+    let lattice = Lattice::free(2, 1);
+    let surface = Surface::uniform(&lattice, 0.0, 0.0);
+    let plain = Model::new(
+        lattice,
+        surface,
+        Drive::along_x(0.0),
+        0.0,
+        0.0,
+        FrictionLaw::Projection,
+    );
+    let model = plain.with_slider(Slider {
+        viscosity_time,
+        ..Slider::default()
+    });
+    let mut state = State::at_rest(2);
+    state.displacement.x = vec![0.5, -0.5];
+    let experiment = Experiment {
+        model: Arc::new(model),
+        dt_star,
+        state: Some(state),
+    };
+    let apart = 0.7;
+    let times = [1.0, 2.0, 3.0, 4.0].map(|k| k * apart);
+    let values = experiment.values(&times, |now| now.block(0).displacement[0]);
+    -growth(&values, apart)
+}

@@ -1,0 +1,139 @@
+//! Springs in contact.
+
+use std::sync::Arc;
+
+use slipfront::communicator::Alone;
+use slipfront::exact_solutions::{chain_slip_force, static_over_kinetic_of_springs};
+use slipfront::lattice::{K_DRIVE, K_STRAIGHT};
+use slipfront::surface::{Coefficients, Load};
+use slipfront::{ContactSprings, Drive, Friction, Lattice, Model, Slider, Surface, scales};
+
+use crate::answer::{Answer, Chapter};
+use crate::error::FamilyError;
+use crate::runs::Experiment;
+
+/// Stiffness of the springs in contact over that of the drive.
+const SOFTNESS: f64 = 1e-3;
+/// V* of the rigid slider.
+const V_STAR: f64 = 2.5;
+/// Omega* of the rigid slider.
+const OMEGA_STAR: f64 = 0.5;
+/// Time step of the rigid slider, t*.
+const DT_STAR: f64 = 0.8;
+/// V* of the drive that pulls a chain.
+const CHAIN_V_STAR: f64 = 2e-4;
+/// Omega of the blocks of the chain.
+const CHAIN_DAMPING: f64 = 0.5;
+/// Time step of the chain, t*.
+const CHAIN_DT_STAR: f64 = 0.2;
+
+/// First peak over the mean of sliding of a rigid slider whose thresholds are spread over 1 - w to 1 + w.
+fn ratio(w: f64, redraw: Option<u64>) -> Result<f64, FamilyError> {
+    let lattice = Lattice::free(20, 20);
+    // 7 and 400 have no common factor, so that each of 400 places is taken once.
+    let threshold = |b: usize| 1.0 + w * ((2 * ((2401 * b + 3) % 400) + 1) as f64 / 400.0 - 1.0);
+    let given = Coefficients::given((0..400).map(threshold).collect(), vec![0.0; 400]);
+    let surface = Surface::new(given, vec![false; 400], Load::Redistributed, 1.0)?;
+    let stiffness = SOFTNESS * K_DRIVE;
+    let (v_star, dt_star, damping) = (V_STAR, DT_STAR, scales::damping(OMEGA_STAR));
+    let law = Friction::ContactSprings(ContactSprings { stiffness, redraw });
+    let model = Model::new(lattice, surface, Drive::along_x(v_star), damping, 0.0, law);
+    let experiment = Experiment {
+        model: Arc::new(model),
+        dt_star,
+        state: None,
+    };
+    let length = (1.0 / stiffness / v_star / dt_star) as usize;
+    let run = experiment.run("springs in contact", 50 * length as u64)?;
+    let force = |row: &slipfront::observe::CurveRow| row.point.mu_star - damping * v_star;
+    // The slider begins at rest and is at its speed long before the first spring breaks.
+    let peak = run.rows[length / 2..].iter().map(force).fold(0.0, f64::max);
+    let sliding = &run.rows[10 * length..];
+    Ok(peak / (sliding.iter().map(force).sum::<f64>() / sliding.len() as f64))
+}
+
+/// Largest allowed distance of the ratio from the exact one: the pull lags behind the rise of friction by `Omega/k_s`, and
+/// is read once a step; the weakest of 400 springs lies `w/400` within their range. After ten cycles the phases of springs
+/// that keep their thresholds are spread over `20 w` cycles: the mean of 40 sawteeth, 1/(4 40) off if all were cut at once,
+/// is off by an eighth of that over `20 w`. With thresholds that are drawn anew, 16000 of them scatter, by three standard
+/// deviations at most.
+fn tolerance(w: f64, exact: f64, redrawn: bool) -> (f64, &'static str) {
+    let rise = SOFTNESS * V_STAR;
+    let peak = rise * (scales::damping(OMEGA_STAR) + K_DRIVE * DT_STAR) + w / 400.0;
+    let cut = 1.0 / (160.0 * 8.0 * 20.0 * w);
+    let scatter = 3.0 * w / (3.0_f64 * 16000.0).sqrt();
+    if redrawn {
+        (
+            exact * (peak / (1.0 - w) + cut + scatter),
+            "the pull lags by Ω/k_s and is read once a step; 40 cycles cut off, of thresholds that scatter",
+        )
+    } else {
+        (
+            exact * (peak / (1.0 - w) + cut),
+            "the pull lags by Ω/k_s and is read once a step; 40 cycles cut off",
+        )
+    }
+}
+
+/// Pull at which the first spring of a chain breaks that is driven at its first block.
+fn pull(n: usize, stiffness: f64) -> f64 {
+    let lattice = Lattice::free(n, 1);
+    let law = Friction::ContactSprings(ContactSprings {
+        stiffness,
+        redraw: None,
+    });
+    let surface = Surface::uniform(&lattice, 1.0, 0.0);
+    let mut slider = Slider::default();
+    slider.attach(n, |b| b == 0, &Alone);
+    let model = Model::new(
+        lattice,
+        surface,
+        Drive::along_x(CHAIN_V_STAR),
+        CHAIN_DAMPING,
+        0.0,
+        law,
+    )
+    .with_slider(slider);
+    let experiment = Experiment {
+        model: Arc::new(model),
+        dt_star: CHAIN_DT_STAR,
+        state: None,
+    };
+    let mut simulation = experiment.begin();
+    while simulation.snapshot().totals.n_slipping == 0 {
+        simulation.step();
+    }
+    simulation.snapshot().block(0).force_drive[0]
+}
+
+pub(crate) fn chapter() -> Result<Chapter, FamilyError> {
+    let mut answers = Vec::new();
+    for (redraw, which) in [(None, "kept"), (Some(5), "drawn anew")] {
+        for w in [0.05, 0.1, 0.2] {
+            let exact = static_over_kinetic_of_springs(w, redraw.is_some());
+            answers.push(Answer::new(
+                format!("static over kinetic friction of a rigid slider, w = {w}, thresholds {which}"),
+                [exact, ratio(w, redraw)?],
+                tolerance(w, exact, redraw.is_some()),
+            ));
+        }
+    }
+    for n in [1, 2, 5, 20] {
+        let exact = chain_slip_force(n, K_STRAIGHT, 0.1);
+        answers.push(Answer::new(
+            format!("pull at which the first of {n} springs of a chain breaks, k_t = 0.1"),
+            [exact, pull(n, 0.1)],
+            (
+                CHAIN_V_STAR * (CHAIN_DAMPING * exact + K_DRIVE * CHAIN_DT_STAR),
+                "drag of all blocks, Ω V* times their displacements over that of the first, and the pull of one step",
+            ),
+        ));
+    }
+    Ok(Chapter {
+        title: "Contacts that are springs",
+        name: "contact-springs",
+        text: include_str!("text/contact_springs.md"),
+        answers,
+        picture: None,
+    })
+}

@@ -1,0 +1,209 @@
+//! A slider that is driven at an edge: precursors.
+
+use rayon::prelude::*;
+use slipfront::exact_solutions::precursor_load;
+use slipfront::lattice::K_STRAIGHT;
+use slipfront::observe::{Precursors, Scheduled};
+use slipfront::{Edge, Stop};
+use slipfront_plot::{Response, Responses};
+
+use crate::answer::{Answer, Chapter};
+use crate::error::FamilyError;
+use crate::runs::Experiment;
+
+const STATIC: f64 = 0.7;
+const KINETIC: f64 = 0.45;
+/// Stiffness of the drive times the number of blocks.
+const KAPPA: f64 = 0.242;
+const SLOPES: [f64; 3] = [-0.833, 0.0, 0.833];
+
+/// A chain, and the time steps of its runs, the finest last.
+struct Chain {
+    blocks: u32,
+    v_star: f64,
+    steps: &'static [f64],
+}
+
+const CHAINS: [Chain; 2] = [
+    Chain {
+        blocks: 100,
+        v_star: 1.0,
+        steps: &[0.4, 0.2, 0.1],
+    },
+    Chain {
+        blocks: 400,
+        v_star: 2.0,
+        steps: &[0.6, 0.3],
+    },
+];
+
+/// An event that is longer than all before, and does not cross the chain.
+struct Longer {
+    length: f64,
+    /// Load `F_T/F_N` after the event.
+    load: f64,
+    /// Largest allowed distance of the load from the exact one while the drive adds little during an event.
+    bound: f64,
+    /// Load that the drive has added during the event.
+    added: f64,
+}
+
+impl Longer {
+    /// Relative error of the load, and its largest allowed sizes without and with the load that the drive has added.
+    fn error(&self, slope: f64) -> [f64; 3] {
+        let exact = precursor_load(self.length, KINETIC, slope);
+        [self.load - exact, self.bound, self.bound + self.added].map(|load| load.abs() / exact)
+    }
+}
+
+impl Chain {
+    /// Events that are longer than all before, and the largest load, of a run that ends when an event has crossed the chain.
+    fn precursors(&self, slope: f64, dt_star: f64) -> Result<(Vec<Longer>, f64), FamilyError> {
+        let (n, v_star) = (f64::from(self.blocks), self.v_star);
+        // Until the springs would pull with 1.3 times the kinetic friction of the whole chain, were it at rest.
+        let duration = 1.3 * KINETIC / STATIC * n * n / (KAPPA * v_star);
+        let text = format!(
+            "[slider]\nblocks = [{n}, 1]\nomega_star = 0\nviscosity_time_star = 0.365\n\
+             [load]\nprofile = {{ along = \"x\", relative_slope = {slope} }}\n\
+             [drive]\nv_star = {v_star}\nattach = \"left\"\ntotal_stiffness_star = {}\n\
+             [friction]\nmu_static = {STATIC}\nmu_kinetic = {KINETIC}\nsigma_static_star = 0\nsigma_kinetic_star = 0\n\
+             [time]\nstep = {dt_star}\nduration_star = {duration}",
+            KAPPA / n
+        );
+        let (experiment, last_step) = Experiment::of_case("precursors", &text)?;
+        let mut observer = Precursors::new(Edge::Left);
+        let mut simulation = experiment.begin();
+        let has_crossed =
+            |observer: &Precursors| observer.crossing().is_some_and(|event| event.after.is_some());
+        while !has_crossed(&observer) {
+            let observers = &mut [Scheduled::always(&mut observer)];
+            let ended = simulation.advance(Stop::at_step(last_step), 10_000, observers);
+            let ended = ended.map_err(|source| FamilyError::Run {
+                name: "precursors".to_owned(),
+                source,
+            })?;
+            if ended.is_some() {
+                break;
+            }
+        }
+        let mut longest = 0.0;
+        let mut longer = Vec::new();
+        for event in observer.events() {
+            if let Some((until, mu_star)) = event.after
+                && event.length > longest
+                && event.length < 1.0
+            {
+                longest = event.length;
+                let [at_drive, at_tip] = [0.0, longest].map(|x| 1.0 + slope * (2.0 * x - 1.0));
+                longer.push(Longer {
+                    length: longest,
+                    load: STATIC * mu_star,
+                    bound: (STATIC * at_tip + (STATIC - KINETIC) * at_drive) / n,
+                    added: STATIC * KAPPA * v_star * (until - event.from_star) / (n * n),
+                });
+            }
+        }
+        Ok((longer, STATIC * simulation.peak().largest.mu_star))
+    }
+
+    /// Answers for the chain's runs under one profile of pressure; and the events of the run of the finest step.
+    fn answers(&self, slope: f64) -> Result<(Vec<Answer>, Vec<Longer>), FamilyError> {
+        let runs = self
+            .steps
+            .par_iter()
+            .map(|dt_star| self.precursors(slope, *dt_star));
+        let runs: Vec<_> = runs.collect::<Result<_, _>>()?;
+        let n = self.blocks;
+        let mut answers = Vec::new();
+        let (mut largest, mut highest) = ([0.0; 3], KINETIC);
+        for (dt_star, (longer, peak)) in self.steps.iter().zip(&runs) {
+            let beyond = longer.iter().filter(|event| event.length > 0.2);
+            let errors: Vec<[f64; 3]> = beyond.map(|event| event.error(slope)).collect();
+            let rms = |k: usize| {
+                let squares: f64 = errors.iter().map(|error| error[k] * error[k]).sum();
+                (squares / errors.len() as f64).sqrt()
+            };
+            answers.push(Answer::new(
+                format!(
+                    "{n} blocks, θ = {slope}, steps of {dt_star}: relative error of F_T after {} events, rms",
+                    errors.len()
+                ),
+                [0.0, rms(0)],
+                (
+                    rms(1),
+                    "the threshold of the block ahead of the tip, and what the driven one gains before it slips again",
+                ),
+            ));
+            for error in errors {
+                if error[0] > largest[0] {
+                    largest = error;
+                }
+            }
+            if (peak - KINETIC).abs() > f64::abs(highest - KINETIC) {
+                highest = *peak;
+            }
+        }
+        answers.push(Answer::new(
+            format!("{n} blocks, θ = {slope}: largest of all these errors"),
+            [0.0, largest[0]],
+            (
+                largest[2],
+                "of that event: the same, and what the drive added during it",
+            ),
+        ));
+        let [first, last] = [1.0 - slope, 1.0 + slope];
+        let crossing = 2.0 * KAPPA * self.v_star / K_STRAIGHT.sqrt();
+        answers.push(Answer::new(
+            format!("{n} blocks, θ = {slope}: F_T/F_N, of the largest of each run the farthest from μ_k"),
+            [KINETIC, highest],
+            (
+                (STATIC * (last + crossing) + (STATIC - KINETIC) * first) / f64::from(n),
+                "the same at the far end, and the drive while sound goes there and back",
+            ),
+        ));
+        let finest = runs.into_iter().next_back().map(|(longer, _)| longer);
+        Ok((answers, finest.unwrap_or_default()))
+    }
+}
+
+pub(crate) fn chapter() -> Result<Chapter, FamilyError> {
+    let pairs: Vec<(f64, &Chain)> = SLOPES
+        .into_iter()
+        .flat_map(|slope| CHAINS.iter().map(move |chain| (slope, chain)))
+        .collect();
+    let found = pairs.par_iter().map(|(slope, chain)| chain.answers(*slope));
+    let found: Vec<_> = found.collect::<Result<_, _>>()?;
+    let mut answers = Vec::new();
+    let mut curves = Vec::new();
+    let lengths: Vec<f64> = (1..=50).map(|k| 0.02 * f64::from(k)).collect();
+    for ((slope, chain), (of_chain, events)) in pairs.into_iter().zip(found) {
+        answers.extend(of_chain);
+        // Four times as many points would hide the lines.
+        if chain.blocks != CHAINS[0].blocks {
+            continue;
+        }
+        curves.push(Response::of_formula(
+            &format!("\u{3b8} = {slope}, exact"),
+            &lengths,
+            |length| precursor_load(length, KINETIC, slope),
+        ));
+        let x: Vec<f64> = events.iter().map(|event| event.length).collect();
+        let loads: Vec<f64> = events.iter().map(|event| event.load).collect();
+        curves.push(Response::of_values(&format!("\u{3b8} = {slope}"), &x, &loads));
+    }
+    Ok(Chapter {
+        title: "Driven at an edge: precursors",
+        name: "precursors",
+        text: include_str!("text/edge_drive.md"),
+        answers,
+        picture: Some((
+            "Load after each event that reached farther than all before, against its length, of 100 blocks under three profiles of pressure.",
+            Responses {
+                x_title: "length of the event over that of the chain".to_owned(),
+                y_title: "load F_T/F_N".to_owned(),
+                curves,
+                ..Responses::default()
+            },
+        )),
+    })
+}

@@ -1,0 +1,90 @@
+//! Slip fronts, with and without drive springs.
+
+use std::sync::Arc;
+
+use slipfront::exact_solutions::front_speed;
+use slipfront::lattice::K_STRAIGHT;
+use slipfront::{Drive, FrictionLaw, Lattice, Model, State, Surface};
+use slipfront_plot::{Response, Responses};
+
+use crate::answer::{Answer, Chapter};
+use crate::error::FamilyError;
+use crate::runs::Experiment;
+
+const BLOCKS: usize = 200;
+const KINETIC: f64 = 0.5;
+const DT_STAR: f64 = 5e-3;
+const PRESTRESSES: [f64; 6] = [0.4, 0.5, 0.6, 0.7, 0.8, 0.9];
+
+/// Speed over that of sound of a front in a chain with drive springs of `kappa` times its own stiffness, under a constant force.
+fn speed(kappa: f64, prestress: f64) -> Result<f64, FamilyError> {
+    let lattice = Lattice::free(BLOCKS, 1);
+    let drive = Drive {
+        k_drive: kappa * K_STRAIGHT,
+        constant_force: [KINETIC + prestress * (1.0 - KINETIC), 0.0],
+        ..Drive::along_x(0.0)
+    };
+    let surface = Surface::uniform(&lattice, 1.0, KINETIC);
+    let model = Model::new(lattice, surface, drive, 0.0, 0.0, FrictionLaw::Projection);
+    let sound = K_STRAIGHT.sqrt();
+    let mut state = State::at_rest(BLOCKS);
+    state.velocity.x[..5].fill(0.5 * sound * (1.0 - KINETIC) / K_STRAIGHT);
+    let steps = (1.5 * BLOCKS as f64 / (0.75 * sound) / DT_STAR) as u64;
+    let experiment = Experiment {
+        model: Arc::new(model),
+        dt_star: DT_STAR,
+        state: Some(state),
+    };
+    let run = experiment.run("fronts", steps)?;
+    let first = run.simulation.snapshot().first_slip_time_star();
+    let (from, to) = (BLOCKS / 2, BLOCKS - 20);
+    Ok((to - from) as f64 / (first[to] - first[from]) / sound)
+}
+
+pub(crate) fn chapter() -> Result<Chapter, FamilyError> {
+    let mut answers = Vec::new();
+    let mut curves = vec![Response::of_formula(
+        "no drive springs, exact",
+        &(0..=50).map(|k| 0.4 + 0.01 * f64::from(k)).collect::<Vec<_>>(),
+        |prestress| front_speed(1.0, prestress),
+    )];
+    for (kappa, label) in [
+        (0.0, "no drive springs"),
+        (1.0 / 3.0, "k\u{209b} = K/3"),
+        (1.0, "k\u{209b} = K"),
+    ] {
+        let mut found = Vec::new();
+        for prestress in PRESTRESSES {
+            found.push(speed(kappa, prestress)?);
+        }
+        if kappa == 0.0 {
+            for (prestress, found) in PRESTRESSES.into_iter().zip(&found) {
+                let exact = front_speed(1.0, prestress);
+                answers.push(Answer::new(
+                    format!("v/c at a prestress of {prestress}"),
+                    [exact, *found],
+                    (
+                        0.5 * K_STRAIGHT.sqrt() * DT_STAR * exact * exact,
+                        "a block starts at a whole step, up to half a step from its time l/v after the one before",
+                    ),
+                ));
+            }
+        }
+        curves.push(Response::of_values(label, &PRESTRESSES, &found));
+    }
+    Ok(Chapter {
+        title: "Slip fronts",
+        name: "fronts",
+        text: include_str!("text/fronts.md"),
+        answers,
+        picture: Some((
+            "Speed of slip fronts along a chain, over that of sound. Drive springs slow them down most under a low prestress.",
+            Responses {
+                x_title: "prestress \u{3c4}".to_owned(),
+                y_title: "front speed v/c".to_owned(),
+                curves,
+                ..Responses::default()
+            },
+        )),
+    })
+}

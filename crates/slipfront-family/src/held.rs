@@ -1,0 +1,82 @@
+//! A drive that stands while blocks slide.
+
+use slipfront::lattice::K_DRIVE;
+use slipfront::{Drive, Execution, FrictionLaw, Lattice, Loading, Model, Simulation, Surface};
+
+use crate::answer::{Answer, Chapter};
+use crate::error::FamilyError;
+
+/// Static threshold of a block.
+const STATIC: f64 = 1.0;
+/// Kinetic threshold of a block.
+const KINETIC: f64 = 0.5;
+const DT_STAR: f64 = 0.02;
+
+/// Equal blocks without damping under a held drive.
+fn equal_blocks(blocks: [usize; 2], v_star: f64) -> Simulation {
+    let lattice = Lattice::free(blocks[0], blocks[1]);
+    let surface = Surface::uniform(&lattice, STATIC, KINETIC);
+    let drive = Drive::along_x(v_star);
+    let model = Model::new(lattice, surface, drive, 0.0, 0.0, FrictionLaw::Projection);
+    let loading = Loading::Held {
+        onset_steps: u64::MAX,
+    };
+    Simulation::new(model.with_loading(loading), DT_STAR, None, Execution::default())
+}
+
+/// Path of the drive and mu* at the moment at which blocks begin to slide, or have come to rest.
+fn step_until(simulation: &mut Simulation, slides: bool) -> [f64; 2] {
+    while (simulation.snapshot().totals.n_slipping > 0) != slides {
+        simulation.step();
+    }
+    let now = simulation.snapshot();
+    [now.model.drive.path(now.drive_time_star), now.point.mu_star]
+}
+
+pub(crate) fn chapter() -> Result<Chapter, FamilyError> {
+    let mut answers = Vec::new();
+    for (blocks, v_star) in [([1, 1], 0.001), ([1, 1], 0.1), ([20, 16], 0.01)] {
+        let [nx, ny] = blocks;
+        let name = |what: &str| format!("{what}, {nx} x {ny} blocks at V* = {v_star}");
+        let mut simulation = equal_blocks(blocks, v_star);
+        let [path, peak] = step_until(&mut simulation, true);
+        // Leapfrog swings about K, from rest to a step in which it stops: of the order of (sqrt(k_s) dt)^2 of the fall.
+        let of_the_step = K_DRIVE * DT_STAR * DT_STAR;
+        let step = v_star * DT_STAR;
+        answers.push(Answer::new(
+            name("mu* of the first jump"),
+            [STATIC, peak],
+            (K_DRIVE * step, "the path grows by V dt a step"),
+        ));
+        let [stopped, rest] = step_until(&mut simulation, false);
+        answers.push(Answer::new(
+            name("path of the drive while blocks slide"),
+            [0.0, stopped - path],
+            (0.0, "the path is a count of steps"),
+        ));
+        answers.push(Answer::new(
+            name("mu* where they have come to rest"),
+            [2.0 * KINETIC - peak, rest],
+            (
+                (peak - KINETIC) * 2.0 * of_the_step,
+                "a stop between two steps, of the order of k_s dt^2 of the slip",
+            ),
+        ));
+        let [next, _] = step_until(&mut simulation, true);
+        answers.push(Answer::new(
+            name("path from one jump to the next"),
+            [2.0 * (peak - KINETIC) / K_DRIVE, next - path],
+            (
+                2.0 * (peak - KINETIC) / K_DRIVE * of_the_step + step,
+                "the error of the slip, and V dt of the path",
+            ),
+        ));
+    }
+    Ok(Chapter {
+        title: "Slow loading",
+        name: "held",
+        text: include_str!("text/held.md"),
+        answers,
+        picture: None,
+    })
+}

@@ -1,0 +1,56 @@
+//! Programs of speeds.
+
+use slipfront::observe::CurveRow;
+
+use crate::answer::{Answer, Chapter};
+use crate::error::FamilyError;
+use crate::runs::{AnswerRun, ROUNDING, rounding};
+
+pub(crate) fn chapter() -> Result<Chapter, FamilyError> {
+    let mut answers = Vec::new();
+    let equal = "friction.sigma_static_star = 0\nfriction.sigma_kinetic_star = 0\n";
+    let text = format!(
+        "{equal}slider.omega_star = 1\ntime.duration_star = 700\ntime.step = 0.1\n[drive]\n\
+         program = [{{ v_star = 0.05, until_star = 300 }}, {{ v_star = 0.2, until_star = 450 }}, {{ v_star = 0.05 }}]"
+    );
+    let run = AnswerRun::of_case("speeds", &text)?;
+    for (time, v_star, path) in [(299.0, 0.05, 15.0), (449.0, 0.2, 45.0), (699.0, 0.05, 57.5)] {
+        answers.push(Answer::new(
+            format!("level of steady sliding at V* = {v_star}, t* = {time}"),
+            [0.5 + f64::sqrt(0.75) * v_star, run.mu_star_at(time)],
+            (rounding(path), ROUNDING),
+        ));
+    }
+    let text = format!(
+        "{equal}time.duration_star = 200\ntime.step = 0.01\n[drive]\n\
+         program = [{{ v_star = 0.05, until_star = 20 }}, {{ v_star = 0, until_star = 70 }}, {{ v_star = 0.1 }}]"
+    );
+    let run = AnswerRun::of_case("hold", &text)?;
+    answers.push(Answer::new(
+        "first slip after a hold of 50 at V* = 0.05, 0, 0.1: t*",
+        [70.0 + (1.0 / 0.375 - 1.0) / 0.1, run.first_slip()],
+        (0.01 * (1.0 + 1e-9), "it is seen at the next step"),
+    ));
+    let energies = run.rows.last().map(|row| row.energies).unwrap_or_default();
+    let is_sliding = |row: &CurveRow| row.point.n_sliding > 0;
+    let turns = run
+        .rows
+        .windows(2)
+        .filter(|pair| is_sliding(&pair[0]) != is_sliding(&pair[1]));
+    let missing = (0.5_f64 * 0.01).powi(2) / 2.0 * run.model.n_blocks() as f64;
+    answers.push(Answer::new(
+        "relative error of the balance of energy over the same run",
+        [0.0, energies.error()],
+        (
+            (turns.count() + 1) as f64 * missing / energies.work,
+            "½(μ_k F_n Δt)² of each block, at every start and stop and at the end",
+        ),
+    ));
+    Ok(Chapter {
+        title: "Programs of speeds",
+        name: "program",
+        text: include_str!("text/program.md"),
+        answers,
+        picture: None,
+    })
+}

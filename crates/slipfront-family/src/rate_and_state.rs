@@ -1,0 +1,160 @@
+//! Friction of rate and state.
+
+use std::sync::Arc;
+
+use slipfront::exact_solutions::{friction_after_speed_step, rate_and_state_growth};
+use slipfront::{Drive, Friction, Lattice, Model, RateAndState, State, Surface, VectorField, scales};
+use slipfront_plot::{Response, Responses};
+
+use crate::answer::{Answer, Chapter};
+use crate::error::FamilyError;
+use crate::runs::{Experiment, growth_of_disturbance};
+
+const LAW: RateAndState = RateAndState {
+    a: 0.01,
+    b: 0.02,
+    d_c: 0.5,
+    v_0: 0.03,
+    mu_0: 0.6,
+    theta_0: 0.5 / 0.03,
+    slip_speed: 1e-3,
+};
+const V_STAR: f64 = 0.03;
+const DT_STAR: f64 = 0.05;
+/// Stiffness of the drive over the critical one.
+const RATIOS: [f64; 6] = [0.7, 0.85, 0.95, 1.05, 1.2, 1.5];
+
+/// Growth rate of a small disturbance of steady sliding of blocks that move as one.
+fn computed(k_drive: f64, damping: f64) -> f64 {
+    let lattice = Lattice::free(2, 2);
+    let drive = Drive {
+        k_drive,
+        ..Drive::along_x(V_STAR)
+    };
+    let surface = Surface::uniform(&lattice, 1.0, 0.5);
+    let model = Model::new(lattice, surface, drive, damping, 0.0, Friction::RateAndState(LAW));
+    growth_of_disturbance(model, DT_STAR, 60.0, 36.0)
+}
+
+/// Mass of a block in steps of [`DT_STAR`]: friction is that of the speed half a step later, `mu(v + dt v'/2)`, as if the mass were larger
+/// by `sigma a dt/(2 V)`.
+const MASS: f64 = 1.0 + LAW.a * DT_STAR / (2.0 * V_STAR);
+
+/// The law over this mass.
+const HEAVIER: RateAndState = RateAndState {
+    a: LAW.a / MASS,
+    b: LAW.b / MASS,
+    ..LAW
+};
+
+/// V* before the step of speed.
+const V_1: f64 = 0.01;
+/// Time t* from the step of speed to the reading of friction.
+const AFTER: f64 = 10.0;
+/// Stiffness of the drive springs that hold blocks at the speed of the drive.
+const STIFF: f64 = 2500.0;
+/// Damping Omega, with which the swing about the speed of the drive decays to exp(-Omega t/2) = exp(-50).
+const STIFF_DAMPING: f64 = 10.0;
+
+/// `mu - mu_ss` of blocks that slid steadily at [`V_1`] until a drive took them to `v_2`, a time [`AFTER`] later. Springs
+/// are so stiff that the blocks follow it.
+fn after_step(v_2: f64) -> f64 {
+    let law = RateAndState {
+        theta_0: LAW.d_c / V_1,
+        ..LAW
+    };
+    let lattice = Lattice::free(2, 2);
+    let drive = Drive {
+        k_drive: STIFF,
+        ..Drive::along_x(v_2)
+    };
+    let surface = Surface::uniform(&lattice, 1.0, 0.5);
+    let drag = STIFF_DAMPING * v_2;
+    let extension = (law.coefficient(v_2, law.theta_0) + drag) / STIFF;
+    let along_x = |x: f64| VectorField {
+        x: vec![x; 4],
+        y: vec![0.0; 4],
+    };
+    let model = Model::new(
+        lattice,
+        surface,
+        drive,
+        STIFF_DAMPING,
+        0.0,
+        Friction::RateAndState(law),
+    );
+    let experiment = Experiment {
+        model: Arc::new(model),
+        dt_star: 0.01,
+        state: Some(State {
+            displacement: along_x(-extension),
+            velocity: along_x(v_2),
+        }),
+    };
+    let pulls = experiment.values(&[AFTER], |now| now.point.mu_star);
+    pulls[0] - drag - law.steady_coefficient(v_2)
+}
+
+pub(crate) fn chapter() -> Result<Chapter, FamilyError> {
+    let mut answers = Vec::new();
+    for ratio in [0.1, 10.0] {
+        let v_2 = V_1 * ratio;
+        let slip = v_2 * AFTER;
+        let left = (ratio - 1.0) * libm::exp(-slip / LAW.d_c);
+        // Size of d mu/dx at this slip.
+        let slope = LAW.b * left.abs() / (LAW.d_c * (1.0 + left));
+        answers.push(Answer::new(
+            format!("μ - μ_ss after a step of speed by {ratio} and a slip of {slip}"),
+            [friction_after_speed_step(&LAW, V_1, v_2, slip), after_step(v_2)],
+            (
+                slope / STIFF * (LAW.b * libm::log(ratio).abs() + LAW.a + STIFF_DAMPING * v_2),
+                "the spring yields by Δμ/k, at a speed of V/k dμ/dx, which a and Ω feel",
+            ),
+        ));
+    }
+    let damping = scales::damping(0.1);
+    let critical = LAW.critical_stiffness(1.0, damping, V_STAR);
+    let exact = |ratio: f64| rate_and_state_growth(&LAW, 1.0, V_STAR, ratio * critical, damping);
+    let in_steps =
+        |ratio: f64| rate_and_state_growth(&HEAVIER, 1.0, V_STAR, ratio * critical / MASS, damping / MASS);
+    let found = RATIOS.map(|ratio| computed(ratio * critical, damping));
+    let zero = |[below, above]: [f64; 2]| 0.95 + 0.1 * below / (below - above);
+    let shift = MASS * HEAVIER.critical_stiffness(1.0, damping / MASS, V_STAR) / critical - 1.0;
+    answers.push(Answer::new(
+        "stiffness over k_c at which nothing grows, on the line through the rates at 0.95 and 1.05",
+        [1.0, zero([found[2], found[3]])],
+        (
+            1.2 * shift.abs() + (zero([exact(0.95), exact(1.05)]) - 1.0).abs(),
+            "of first order, and a fifth of that for higher orders: the mass m + σaΔt/2V in k_c; and the line is a chord",
+        ),
+    ));
+    for (ratio, found) in RATIOS.into_iter().zip(found) {
+        answers.push(Answer::new(
+            format!("growth rate on a drive of {ratio} k_c"),
+            [exact(ratio), found],
+            (
+                1.2 * (in_steps(ratio) - exact(ratio)).abs(),
+                "of first order, and a fifth of that for higher orders: the mass m + σaΔt/2V in the cubic",
+            ),
+        ));
+    }
+    let fine: Vec<f64> = (0..=50).map(|k| 0.6 + 0.02 * f64::from(k)).collect();
+    Ok(Chapter {
+        title: "Rate and state",
+        name: "rate-and-state",
+        text: include_str!("text/rate_and_state.md"),
+        answers,
+        picture: Some((
+            "Growth rate of a small disturbance of steady sliding against the stiffness of the drive: softer than k_c it grows into stick-slip.",
+            Responses {
+                x_title: "stiffness of the drive over k_c".to_owned(),
+                y_title: "growth rate".to_owned(),
+                curves: vec![
+                    Response::of_formula("exact", &fine, exact),
+                    Response::of_values("computed", &RATIOS, &found),
+                ],
+                ..Responses::default()
+            },
+        )),
+    })
+}

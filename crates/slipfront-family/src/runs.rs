@@ -1,0 +1,160 @@
+//! Runs of the chapters.
+
+use std::sync::Arc;
+
+use slipfront::communicator::Alone;
+use slipfront::lattice::K_DRIVE;
+use slipfront::observe::{Curve, CurveRow, Scheduled};
+use slipfront::{Execution, Model, Simulation, Snapshot, State, Stop, VectorField, scales};
+use slipfront_case::case::Case;
+
+use crate::error::FamilyError;
+
+/// A run that has ended.
+pub(crate) struct AnswerRun {
+    /// The simulation at the end of the run.
+    pub(crate) simulation: Simulation,
+    /// Rows of every step.
+    pub(crate) rows: Vec<CurveRow>,
+    pub(crate) model: Arc<Model>,
+}
+
+/// A slider that no case describes.
+pub(crate) struct Experiment {
+    pub(crate) model: Arc<Model>,
+    pub(crate) dt_star: f64,
+    /// State at the start; at rest if there is none.
+    pub(crate) state: Option<State>,
+}
+
+impl AnswerRun {
+    /// Runs a case given as a user would write it.
+    pub(crate) fn of_case(name: &str, text: &str) -> Result<Self, FamilyError> {
+        let (experiment, last_step) = Experiment::of_case(name, text)?;
+        experiment.run(name, last_step)
+    }
+
+    /// Time of the first slip of any block; NaN if none has slipped.
+    pub(crate) fn first_slip(&self) -> f64 {
+        self.simulation
+            .snapshot()
+            .earliest_first_slip()
+            .unwrap_or(f64::NAN)
+    }
+
+    /// The row of the first instant at which a block slides.
+    pub(crate) fn first_sliding(&self) -> Option<&CurveRow> {
+        self.rows.iter().find(|row| row.point.n_sliding > 0)
+    }
+
+    /// mu* at the row nearest to a time.
+    pub(crate) fn mu_star_at(&self, time_star: f64) -> f64 {
+        let after = self.rows.partition_point(|row| row.time_star < time_star - 1e-9);
+        self.rows.get(after).map_or(f64::NAN, |row| row.point.mu_star)
+    }
+
+    /// mu* at its first peak.
+    pub(crate) fn peak(&self) -> f64 {
+        self.simulation.peak().mu_star
+    }
+
+    /// The largest mu* of the run.
+    pub(crate) fn largest(&self) -> f64 {
+        self.simulation.peak().largest.mu_star
+    }
+}
+
+impl Experiment {
+    /// The experiment that a case describes, and its last step.
+    pub(crate) fn of_case(name: &str, text: &str) -> Result<(Self, u64), FamilyError> {
+        let case = Case::parse(text, name, "", &[])?;
+        let experiment = Self {
+            model: Arc::clone(&case.model),
+            dt_star: case.time_plan.dt_star,
+            state: None,
+        };
+        Ok((experiment, case.time_plan.last_step))
+    }
+
+    /// Runs the experiment to this step.
+    pub(crate) fn run(self, name: &str, last_step: u64) -> Result<AnswerRun, FamilyError> {
+        let mut simulation = self.begin();
+        let mut curve = Curve::every(1);
+        let done = simulation.run(Stop::at_step(last_step), &mut [Scheduled::always(&mut curve)]);
+        done.map_err(|source| FamilyError::Run {
+            name: name.to_owned(),
+            source,
+        })?;
+        Ok(AnswerRun {
+            simulation,
+            rows: curve.rows,
+            model: self.model,
+        })
+    }
+
+    /// The simulation at the first instant.
+    pub(crate) fn begin(&self) -> Simulation {
+        let execution = Execution::default();
+        Simulation::new(
+            Arc::clone(&self.model),
+            self.dt_star,
+            self.state.clone(),
+            execution,
+        )
+    }
+
+    /// Values of `value` at these times, which follow one another.
+    pub(crate) fn values(&self, times: &[f64], value: impl Fn(&Snapshot) -> f64) -> Vec<f64> {
+        let mut simulation = self.begin();
+        let at = |time: &f64| {
+            let step = (time / self.dt_star).round() as u64;
+            while simulation.snapshot().step < step {
+                simulation.step();
+            }
+            value(&simulation.snapshot())
+        };
+        times.iter().map(at).collect()
+    }
+}
+
+/// Reason for the distance that [`rounding`] allows for the level of steady sliding with Omega* = 1, in steps of 0.1.
+pub(crate) const ROUNDING: &str = "rounding of displacements, ε X/2 a step, which swings forget in 2/Ω; of these exp(-Ω t/2) is left, nothing";
+
+/// Rounding of mu* in steady sliding with Omega* = 1, in steps of 0.1, when the far ends have gone this far: `k_s (eps X/2)` of each of
+/// the last `2/(Omega dt)` steps.
+pub(crate) fn rounding(path: f64) -> f64 {
+    K_DRIVE * f64::EPSILON * path / (scales::damping(1.0) * 0.1)
+}
+
+/// Rate at which an oscillation `x = A exp(s t) cos(w t + p)` grows, from four of its values a time `apart`: `x_2 = p x_1 - q x_0` with
+/// `q = exp(2 s apart)`.
+pub(crate) fn growth(values: &[f64], apart: f64) -> f64 {
+    let &[x0, x1, x2, x3] = values else {
+        return f64::NAN;
+    };
+    let q = (x2 * x2 - x1 * x3) / (x1 * x1 - x0 * x2);
+    libm::log(q) / (2.0 * apart)
+}
+
+/// Growth rate of a small disturbance of steady sliding of blocks that move as one, from `t* = first` on, as for [`growth`].
+pub(crate) fn growth_of_disturbance(model: Model, dt_star: f64, first: f64, apart: f64) -> f64 {
+    let (v_star, n) = (model.drive.v_star, model.lattice.n_blocks());
+    let behind = model.steady_level(&Alone) / model.drive.k_drive;
+    let along_x = |x: f64| VectorField {
+        x: vec![x; n],
+        y: vec![0.0; n],
+    };
+    let experiment = Experiment {
+        model: Arc::new(model),
+        dt_star,
+        state: Some(State {
+            displacement: along_x(1e-6 - behind),
+            velocity: along_x(v_star),
+        }),
+    };
+    let times = [0.0, 1.0, 2.0, 3.0].map(|k| first + k * apart);
+    let values = experiment.values(&times, |now| {
+        now.block(0).displacement[0] + behind - v_star * now.time_star
+    });
+    growth(&values, apart)
+}

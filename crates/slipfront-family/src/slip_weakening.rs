@@ -1,0 +1,101 @@
+//! Strength that falls with slip.
+
+use std::sync::Arc;
+
+use slipfront::lattice::K_DRIVE;
+use slipfront::{
+    Coulomb, Drive, Execution, Friction, FrictionLaw, Lattice, Model, Program, Simulation, SlipWeakening,
+    Surface,
+};
+
+use crate::answer::{Answer, Chapter};
+use crate::error::FamilyError;
+
+/// Difference `S - K` of thresholds 1 and 0.5.
+const DROP: f64 = 0.5;
+/// Speed with which the drive comes to the threshold.
+const FAST: f64 = 1e-3;
+const DT_STAR: f64 = 0.05;
+
+/// One block that weakens by `weakening` per slip.
+fn block(weakening: f64, damping: f64, segments: &[(f64, f64)]) -> Simulation {
+    let lattice = Lattice::free(1, 1);
+    let friction = Friction::Coulomb(Coulomb {
+        slip_weakening: Some(SlipWeakening {
+            length: DROP / weakening,
+            healing_time: None,
+        }),
+        ..FrictionLaw::Projection.into()
+    });
+    let surface = Surface::uniform(&lattice, 1.0, 1.0 - DROP);
+    let drive = Drive {
+        program: Some(Arc::new(Program::new(segments.iter().copied()))),
+        ..Drive::along_x(FAST)
+    };
+    let model = Model::new(lattice, surface, drive, damping, 0.0, friction);
+    Simulation::new(model, DT_STAR, None, Execution::default())
+}
+
+/// Place where a block that has jumped without damping comes to rest, with the drive standing at its threshold, and the
+/// energy of weakening.
+fn jumped(weakening: f64) -> [f64; 2] {
+    let until = (1.0 / K_DRIVE / FAST / DT_STAR).ceil() * DT_STAR + DT_STAR;
+    let mut simulation = block(weakening, 0.0, &[(FAST, until), (0.0, f64::INFINITY)]);
+    while simulation.snapshot().time_star < until + 300.0 {
+        simulation.step();
+    }
+    let now = simulation.snapshot();
+    [now.block(0).displacement[0], now.weakening_energy()]
+}
+
+/// Slip of a block that does not jump, when the drive has gone a path.
+fn followed(weakening: f64, damping: f64, speed: f64, path: f64) -> f64 {
+    let near = (0.97 / K_DRIVE / FAST).round();
+    let mut simulation = block(weakening, damping, &[(FAST, near), (speed, f64::INFINITY)]);
+    let until = near + (path - FAST * near) / speed;
+    while simulation.snapshot().time_star < until - 0.5 * DT_STAR {
+        simulation.step();
+    }
+    simulation.snapshot().block(0).displacement[0]
+}
+
+pub(crate) fn chapter() -> Result<Chapter, FamilyError> {
+    let mut answers = Vec::new();
+    for weakening in [0.6, 1.0, 2.0] {
+        let exact = (DROP + (DROP * DROP - K_DRIVE * DROP * (DROP / weakening)).sqrt()) / K_DRIVE;
+        let [found, energy] = jumped(weakening);
+        answers.push(Answer::new(
+            format!("slip of a jump, W = {weakening}"),
+            [exact, found],
+            (
+                6.0 * FAST * DT_STAR,
+                "the drive stops two steps beyond the threshold at most, which the jump makes up to three times as far",
+            ),
+        ));
+        answers.push(Answer::new(
+            format!("energy that weakening takes of it, W = {weakening}"),
+            [0.5 * DROP * DROP / weakening, energy],
+            (1e-15, "exact, but for rounding"),
+        ));
+    }
+    let (weakening, damping, speed) = (0.25, 0.5, 1e-5);
+    let softness = 1.0 / (K_DRIVE - weakening);
+    for slip in [0.5, 1.0, 1.5] {
+        let path = (1.0 + (K_DRIVE - weakening) * slip) / K_DRIVE;
+        answers.push(Answer::new(
+            format!("slip at X = {path:.4} without a jump, W = {weakening}"),
+            [slip, followed(weakening, damping, speed, path)],
+            (
+                1.2 * damping * speed * K_DRIVE * softness * softness,
+                "damping holds the block back by Ω V k_s/(k_s - W)², and a fifth of that for the steps",
+            ),
+        ));
+    }
+    Ok(Chapter {
+        title: "Strength that falls with slip",
+        name: "slip_weakening",
+        text: include_str!("text/slip_weakening.md"),
+        answers,
+        picture: None,
+    })
+}

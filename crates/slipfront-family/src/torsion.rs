@@ -1,0 +1,134 @@
+//! A drive that rotates.
+
+use std::sync::Arc;
+
+use slipfront::communicator::Alone;
+use slipfront::exact_solutions::{
+    torsion_first_slip, torsion_of_decoupled_blocks, torsion_of_decoupled_disc,
+};
+use slipfront::lattice::K_DRIVE;
+use slipfront::{Drive, FrictionLaw, Lattice, Model, Outline, Rotation, Slider, Surface, scales};
+use slipfront_plot::{Response, Responses};
+
+use crate::answer::{Answer, Chapter};
+use crate::error::FamilyError;
+use crate::runs::{AnswerRun, Experiment};
+
+/// Distances of the blocks that exist from the middle.
+fn radii(model: &Model) -> Vec<f64> {
+    let half = [model.lattice.nx, model.lattice.ny].map(|count| 0.5 * count as f64);
+    let blocks = (0..model.lattice.n_blocks()).filter(|&b| model.slider().exists(b));
+    let radius = |b: usize| {
+        let (i, j) = model.lattice.column_row(b);
+        libm::hypot(i as f64 + 0.5 - half[0], j as f64 + 0.5 - half[1])
+    };
+    blocks.map(radius).collect()
+}
+
+/// Shares of the radius within which blocks still stick.
+const STUCK: [f64; 6] = [0.9, 0.8, 0.7, 0.6, 0.5, 0.4];
+
+const V_STAR: f64 = 1e-3;
+const OMEGA_STAR: f64 = 2.0;
+const DT_STAR: f64 = 0.8;
+
+/// Excess that the torque may have over that of blocks at their kinetic friction while those within `stuck` of the radius
+/// stick: by the drag of sliding blocks, `Omega V* r/r_max` each; by the rest of `1 - R*` of each block a time t after its
+/// slip, which is found up to a step late: at most
+///
+/// ```text
+/// s_2/(s_2 - s_1) exp(-s_1 t),   s_1,2 = Omega/2 -+ sqrt(Omega^2/4 - k_s)
+/// ```
+///
+/// and by the pull of half a step, since the torque is read at whole steps.
+fn excess(radii: &[f64], stuck: f64, r_star: f64) -> f64 {
+    let damping = scales::damping(OMEGA_STAR);
+    let root = (0.25 * damping * damping - K_DRIVE).sqrt();
+    let [slow, fast] = [0.5 * damping - root, 0.5 * damping + root];
+    let largest = radii.iter().copied().fold(0.0, f64::max);
+    let pull = K_DRIVE * V_STAR;
+    let of_block = |r: &f64| {
+        let since = (1.0 / stuck - largest / r) / pull - DT_STAR;
+        let left = fast / (fast - slow) * libm::exp(-slow * since);
+        r * ((1.0 - r_star) * left.min(1.0) + damping * V_STAR * r / largest)
+    };
+    let sliding = radii.iter().filter(|r| **r > stuck * largest);
+    sliding.map(of_block).sum::<f64>() / radii.iter().sum::<f64>() + 0.5 * pull * DT_STAR
+}
+
+/// A disc of 40 blocks across that are driven each on its own: their springs to each other are a million times softer.
+fn decoupled(r_star: f64) -> Experiment {
+    let lattice = Lattice::free(40, 40);
+    let outline = Outline::new(Outline::disc(&lattice, 0..40), &Alone);
+    let mut slider = Slider::new(None, None, Some(outline), &Alone);
+    slider.stiffness = Some(vec![1e-6; 1600]);
+    let surface = Surface::uniform(&lattice, 1.0, r_star);
+    let drive = Drive::along_x(V_STAR);
+    let damping = scales::damping(OMEGA_STAR);
+    let mut model = Model::new(lattice, surface, drive, damping, 0.0, FrictionLaw::Projection);
+    let rotation = Rotation::about_centroid(&lattice, &model.rows, &slider, &Alone);
+    model.drive.rotation = Some(rotation);
+    Experiment {
+        model: Arc::new(model.with_slider(slider)),
+        dt_star: DT_STAR,
+        state: None,
+    }
+}
+
+pub(crate) fn chapter() -> Result<Chapter, FamilyError> {
+    let mut answers = Vec::new();
+    let text = "friction.sigma_static_star = 0\nfriction.sigma_kinetic_star = 0\n\
+                [slider]\nblocks = [20, 20]\noutline = \"disc\"\n[drive]\nmotion = \"rotation\"\n\
+                [time]\nstep = 0.02\nstop = \"after_onset\"";
+    let run = AnswerRun::of_case("torsion", text)?;
+    let exact = torsion_first_slip(&radii(&run.model));
+    let rise = exact * 0.375 * 0.03 * 0.02;
+    answers.push(Answer::new(
+        "torque at the first slip of a disc of 20 blocks across, over that of the whole load",
+        [
+            exact,
+            run.first_sliding().map_or(f64::NAN, |row| row.point.mu_star),
+        ],
+        (rise * (1.0 + 1e-9), "the torque of one step"),
+    ));
+    let mut curves = Vec::new();
+    let shares: Vec<f64> = (30..=100).map(|k| 0.01 * f64::from(k)).collect();
+    for r_star in [0.3, 0.9] {
+        let experiment = decoupled(r_star);
+        let radii = radii(&experiment.model);
+        let first = experiment.model.first_slip_estimate(&Alone);
+        let times = STUCK.map(|stuck| first / stuck);
+        let found = experiment.values(&times, |now| now.point.mu_star);
+        for (stuck, found) in STUCK.into_iter().zip(&found) {
+            answers.push(Answer::new(
+                format!("torque while blocks within {stuck} of the radius stick, R* = {r_star}"),
+                [torsion_of_decoupled_blocks(&radii, stuck, r_star), *found],
+                (
+                    excess(&radii, stuck, r_star),
+                    "drag of blocks that slide, what is left of the swing of those that slipped last, and half a step",
+                ),
+            ));
+        }
+        curves.push(Response::of_formula(
+            &format!("R* = {r_star}, exact"),
+            &shares,
+            |stuck| torsion_of_decoupled_disc(stuck, r_star),
+        ));
+        curves.push(Response::of_values(&format!("R* = {r_star}"), &STUCK, &found));
+    }
+    Ok(Chapter {
+        title: "Torsion",
+        name: "torsion",
+        text: include_str!("text/torsion.md"),
+        answers,
+        picture: Some((
+            "Torque of a disc whose blocks do not pull at each other, while those within a share of its radius still stick: the lines are of a continuous disc, the points of 40 blocks across.",
+            Responses {
+                x_title: "radius of the stuck part over that of the disc".to_owned(),
+                y_title: "torque over that of the whole load".to_owned(),
+                curves,
+                ..Responses::default()
+            },
+        )),
+    })
+}

@@ -1,0 +1,65 @@
+//! Kinetic friction that falls with speed.
+
+use slipfront::exact_solutions::weakening_growth;
+use slipfront::lattice::K_DRIVE;
+use slipfront::{Coulomb, Drive, Friction, FrictionLaw, Lattice, Model, Surface, Weakening};
+use slipfront_plot::{Response, Responses};
+
+use crate::answer::{Answer, Chapter};
+use crate::error::FamilyError;
+use crate::runs::growth_of_disturbance;
+
+const LAW: Weakening = Weakening {
+    critical_speed: 0.1,
+    ratio: 0.4,
+};
+const V_STAR: f64 = 0.2;
+const DT_STAR: f64 = 0.01;
+const DAMPINGS: [f64; 5] = [0.0, 0.2, 0.3, 0.4, 0.6];
+
+/// Growth rate of a small disturbance of steady sliding of blocks that move as one.
+fn computed(damping: f64) -> f64 {
+    let lattice = Lattice::free(2, 2);
+    let friction = Friction::Coulomb(Coulomb {
+        weakening: Some(LAW),
+        ..FrictionLaw::Projection.into()
+    });
+    let surface = Surface::uniform(&lattice, 1.0, 0.5);
+    let model = Model::new(lattice, surface, Drive::along_x(V_STAR), damping, 0.0, friction);
+    growth_of_disturbance(model, DT_STAR, 0.0, 2.4)
+}
+
+pub(crate) fn chapter() -> Result<Chapter, FamilyError> {
+    let exact = |damping: f64| weakening_growth(&LAW, 0.5, V_STAR, K_DRIVE, damping);
+    let found = DAMPINGS.map(computed);
+    let answers = DAMPINGS.into_iter().zip(found).map(|(damping, found)| {
+        Answer::new(
+            format!("growth rate of a disturbance of steady sliding at V* = 0.2, Ω = {damping}"),
+            [exact(damping), found],
+            // Without damping the rate is -(dF/dv)/2.
+            (
+                0.6 * 2.0 * exact(0.0) * DT_STAR * exact(damping).abs(),
+                "of first order: half of -dF/dv Δt, relative, and a fifth of that for higher orders",
+            ),
+        )
+    });
+    let fine: Vec<f64> = (0..=60).map(|k| 0.01 * f64::from(k)).collect();
+    Ok(Chapter {
+        title: "Friction that falls with speed",
+        name: "weakening",
+        text: include_str!("text/weakening.md"),
+        answers: answers.collect(),
+        picture: Some((
+            "Growth rate of a small disturbance of steady sliding against damping: below the zero of the line it grows into stick-slip.",
+            Responses {
+                x_title: "damping \u{3a9}".to_owned(),
+                y_title: "growth rate".to_owned(),
+                curves: vec![
+                    Response::of_formula("exact", &fine, exact),
+                    Response::of_values("computed", &DAMPINGS, &found),
+                ],
+                ..Responses::default()
+            },
+        )),
+    })
+}

@@ -1,0 +1,39 @@
+//! Reasons for which a run is not exported.
+
+use std::path::PathBuf;
+
+use thiserror::Error;
+
+use crate::verify::VerifyError;
+
+/// Reason for which a run is not exported.
+#[derive(Debug, Error)]
+#[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
+pub enum ExportError {
+    #[error(transparent)]
+    Run(#[from] VerifyError),
+    #[error(
+        "{difference}: only results that are as they were written are exported; run the case again to another folder"
+    )]
+    Changed { difference: String },
+    #[error("{path} exists: replace it with --force, or write the crate to a new folder with --out")]
+    Exists { path: PathBuf },
+    #[error("the folder {path} is not empty: choose another with --out")]
+    NotEmpty { path: PathBuf },
+    #[error(
+        "the command works in the folder {path}, which a new one would replace: name one in it with --out"
+    )]
+    WorkedIn { path: PathBuf },
+    #[error("stopped by a signal: nothing is written")]
+    Interrupted,
+    #[error(
+        "two of the runs stand in folders of the name {name}, as which both would be copied: rename one of them"
+    )]
+    SameName { name: String },
+    #[error("several runs make one crate in a folder of its own: name it with --out")]
+    NeedsFolder,
+    #[error("a citation file needs an author: add --author \"NAME\"")]
+    NeedsAuthor,
+    #[error("cannot write {path}: {source}; choose another folder with --out")]
+    Write { path: PathBuf, source: std::io::Error },
+}
