@@ -556,19 +556,20 @@ mod tests {
     /// Memory counts runs as they are on blocks of half the size, and drafts with their blocks.
     #[test]
     fn threads_are_held_against_the_memory() {
-        let memory = |blocks: usize, runs: usize| {
+        let file = |blocks: usize| {
             let text = format!(
                 "[base]\nslider.blocks = [{blocks}, {blocks}]\n[design]\nwish = {{ least = 'static_friction' }}\ncoverage = [0, 10]"
             );
-            let file = DesignFile::parse(&text, "design.toml", "design", Path::new("")).unwrap();
-            file.memory(runs).unwrap()
+            DesignFile::parse(&text, "design.toml", "design", Path::new("")).unwrap()
         };
-        let found = memory(200, 100);
+        let found = file(200).memory(100).unwrap();
         let [(run, _)] = found.pieces[..] else {
             panic!("{found:?}")
         };
-        assert!(memory(400, 100).pieces[0].0 > 3.0 * run);
-        let drafts = memory(200, 300).beside - found.beside;
+        let fine = file(400).design().unwrap().evaluator.bytes_of_run().unwrap();
+        // Of as many blocks, but for the row of a step at which the onset is expected.
+        assert!((run / fine - 1.0).abs() < 0.01);
+        let drafts = file(200).memory(300).unwrap().beside - found.beside;
         assert!((drafts - 200.0 * (2048.0 + 200.0 * 200.0)).abs() < 1.0);
         let available = found.of(2) + 0.5 * run;
         let no_memory = |needed, available| StudyError::DesignMemory { needed, available };

@@ -35,7 +35,10 @@ const MOVIE: f64 = 48.0 * MIB;
 const MOVIE_FILE: f64 = 3e4;
 
 /// Bytes of the files of a run that do not grow with it: pictures, summary and manifest.
-const FILES: f64 = 5e6;
+const FILES: f64 = 2e6;
+
+/// Most blocks of a map that is drawn: larger lattices are averaged.
+const MAP_BLOCKS: f64 = 65_536.0;
 
 /// Bytes of a run in memory and in a checkpoint that do not grow with it.
 const RESULTS: f64 = 1.5 * MIB;
@@ -235,7 +238,11 @@ impl Budget {
     fn total(&self, place: Place) -> f64 {
         let beside = match place {
             Place::Memory => RESULTS + 24.0 * self.kymograph + self.gathered(),
-            Place::Files => FILES + 4.0 * self.kymograph + MOVIE_FILE * self.movie,
+            // Six maps, of six bytes for a block.
+            Place::Files => {
+                let maps = 36.0 * self.cells[1].min(MAP_BLOCKS);
+                FILES + maps + 4.0 * self.kymograph + MOVIE_FILE * self.movie
+            }
             Place::Checkpoint => RESULTS + 8.0 * self.kymograph,
         };
         self.parts()
@@ -461,8 +468,7 @@ impl Budget {
 
 /// Memory for making a movie of this many pictures of at most `cells` blocks, in bytes: maps of larger lattices are averaged.
 pub fn memory_of_movie(pictures: f64, cells: f64) -> f64 {
-    const MAX_CELLS: f64 = 65_536.0;
-    MOVIE + pictures * (1e5 + 4.0 * cells.min(MAX_CELLS))
+    MOVIE + pictures * (1e5 + 4.0 * cells.min(MAP_BLOCKS))
 }
 
 impl Cause {
