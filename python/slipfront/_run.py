@@ -29,7 +29,7 @@ class Source(Protocol):
     def series(self) -> dict[str, Any]: ...
     def fields(self) -> dict[str, Any]: ...
     def kymograph(self) -> dict[str, Any] | None: ...
-    def precursors(self) -> dict[str, Any] | None: ...
+    def tables(self) -> dict[str, dict[str, Any] | None]: ...
     def save(self, folder: Path, force: bool) -> None: ...
 
 
@@ -51,8 +51,8 @@ class FolderSource:
     def kymograph(self) -> dict[str, Any] | None:
         return self._read.get("kymograph")
 
-    def precursors(self) -> dict[str, Any] | None:
-        return self._read.get("precursors")
+    def tables(self) -> dict[str, dict[str, Any] | None]:
+        return dict(self._read["tables"])
 
     def save(self, folder: Path, force: bool) -> None:
         if folder.resolve() == self._folder.resolve():
@@ -73,6 +73,8 @@ class Run:
     """Results of a run: numbers, curve, fields, the slip front.
 
     Numbers with a star are dimensionless (Eq. 11). All that `summary.json` holds is in `summary`; the most asked for are attributes.
+    So is each table that only some runs have, such as `precursors`, the events of slip of a slider driven at an edge: a dataset as
+    `series` is, or None for a run without it.
 
     Examples
     --------
@@ -221,11 +223,6 @@ class Run:
         return None if self._kymograph is None else self._kymograph.copy()
 
     @property
-    def precursors(self) -> xr.Dataset | None:
-        """The events of slip of a slider driven at an edge; None for other sliders."""
-        return None if self._precursors is None else self._precursors.copy()
-
-    @property
     def texture(self) -> npt.NDArray[np.bool_]:
         """Whether each block is textured, (N_y, N_x), the lowest row first."""
         return self._case.textured
@@ -276,6 +273,15 @@ class Run:
 
         return plot(self, kind, ax, **options)
 
+    def __getattr__(self, name: str) -> xr.Dataset | None:
+        if name.startswith("_") or name not in self._tables:
+            raise AttributeError(f"'Run' object has no attribute {name!r}")
+        table = self._tables[name]
+        return None if table is None else table.copy()
+
+    def __dir__(self) -> list[str]:
+        return [*super().__dir__(), *self._tables]
+
     def __repr__(self) -> str:
         return f"Run({self._case.name}: {', '.join(f'{name} = {value}' for name, value in self._told())})"
 
@@ -316,9 +322,9 @@ class Run:
         return None if arrays is None else _dataset.kymograph(arrays, self._arrays["time_unit_s"])
 
     @functools.cached_property
-    def _precursors(self) -> xr.Dataset | None:
-        columns = self._source.precursors()
-        return None if columns is None else _dataset.table(columns)
+    def _tables(self) -> dict[str, xr.Dataset | None]:
+        tables = self._source.tables().items()
+        return {name: None if columns is None else _dataset.table(columns) for name, columns in tables}
 
     def _optional(self, key: str) -> float | None:
         found = self.summary[key]
@@ -330,7 +336,7 @@ class Run:
             "series": self._source.series(),
             "fields": self._arrays,
             "kymograph": self._source.kymograph(),
-            "precursors": self._source.precursors(),
+            "tables": self._source.tables(),
         }
         return sealed(_unpickled, self._case, read)
 

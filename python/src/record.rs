@@ -9,9 +9,10 @@ use pyo3::types::PyDict;
 use slipfront_case::case::Case as SlipfrontCase;
 use slipfront_case::field_info::field_info;
 use slipfront_run::fields::{FieldsData, KymographData};
+use slipfront_run::observers;
 use slipfront_run::pictures;
-use slipfront_run::precursors::{self, PrecursorRow};
 use slipfront_run::results;
+use slipfront_run::run_files::RunFiles;
 use slipfront_run::run_folder::RunFolder;
 use slipfront_run::running;
 use slipfront_run::series::{self, SeriesRow};
@@ -56,11 +57,14 @@ impl Record {
         kymograph(py, KymographData::of(&self.record.kymograph, &self.case))
     }
 
-    /// The columns of `precursors.csv`, for a run that has one.
-    fn precursors<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyDict>>> {
-        let events = self.record.precursors.as_ref();
-        let rows = events.map(|events| precursors::rows(events.events(), &self.case.scales));
-        rows.map(|rows| precursors_of(py, &rows)).transpose()
+    /// The tables of observers that only some runs have.
+    fn tables<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let written = self.record.observers.tables(&self.case.scales);
+        let files = written.map_err(folder_error)?.into_iter();
+        let files: Vec<(String, Vec<u8>)> = files
+            .map(|(table, contents)| (table.file.to_owned(), contents))
+            .collect();
+        tables(py, RunFiles::InMemory(&files))
     }
 
     /// Writes the folder of the run, with the bytes that the command writes.
@@ -88,13 +92,22 @@ pub(crate) fn series<'py>(py: Python<'py>, rows: &[SeriesRow]) -> PyResult<Bound
     Ok(columns)
 }
 
-/// The events of slip of a slider driven at an edge: columns, with NaN for missing numbers.
-pub(crate) fn precursors_of<'py>(py: Python<'py>, rows: &[PrecursorRow]) -> PyResult<Bound<'py, PyDict>> {
-    let columns = PyDict::new(py);
-    for (name, values) in precursors::columns(rows) {
-        columns.set_item(name, values.into_pyarray(py))?;
+/// The tables that a run may have beside its series, by name: columns, with NaN for missing numbers; None for a table that this run
+/// does not have.
+pub(crate) fn tables<'py>(py: Python<'py>, run: RunFiles<'_>) -> PyResult<Bound<'py, PyDict>> {
+    let tables = PyDict::new(py);
+    for table in observers::tables() {
+        tables.set_item(table.name(), None::<()>)?;
+        let Some(file) = run.found(table.file).map_err(folder_error)? else {
+            continue;
+        };
+        let columns = PyDict::new(py);
+        for (name, values) in (table.columns)(&file).map_err(folder_error)? {
+            columns.set_item(name, values.into_pyarray(py))?;
+        }
+        tables.set_item(table.name(), columns)?;
     }
-    Ok(columns)
+    Ok(tables)
 }
 
 /// The arrays of a file of fields.

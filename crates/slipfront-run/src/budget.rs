@@ -13,11 +13,12 @@ use slipfront::observe::{CurveRow, Frame, KineticHistory, Kymograph, Precursors,
 use slipfront_base::machine::{available_memory, free_disk};
 use slipfront_base::number_format::{byte_size, count};
 use slipfront_case::case::{Budget, Case, Cause, Demand, PROGRAM};
-use slipfront_case::case_file::{CaseError, CaseFile};
+use slipfront_case::case_file::{CaseError, CaseFile, names_of};
 
 use crate::fields::{SHARE_BYTES, STATIC_BYTES, WORKING_SHARE_BYTES, record_bytes};
+use crate::observers::precursors::PrecursorRow;
 use crate::series::COLUMN_BYTES;
-use crate::{front, precursors, series};
+use crate::{front, series};
 
 /// Bytes of a number of a block.
 const NUMBER: f64 = size_of::<f64>() as f64;
@@ -132,7 +133,10 @@ impl RunBudget {
         let snapshots =
             |cells: f64| frames * fields * cells * Frame::VALUE_BYTES as f64 + Budget::grown(frames) * frame;
         let row = size_of::<CurveRow>() as f64;
-        let (event, event_columns) = (size_of::<SlipEvent>() as f64, precursors::n_columns() as f64);
+        let (event, event_columns) = (
+            size_of::<SlipEvent>() as f64,
+            names_of::<PrecursorRow>().len() as f64,
+        );
         let event_text = COLUMN_BYTES as f64 * event_columns;
         [
             Part {

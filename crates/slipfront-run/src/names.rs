@@ -8,8 +8,6 @@ pub const MANIFEST: &str = "manifest.json";
 pub const SUMMARY: &str = "summary.json";
 /// The curve of a run, row by row.
 pub const SERIES: &str = "series.csv";
-/// The events of slip of a run that is driven at an edge.
-pub const PRECURSORS: &str = "precursors.csv";
 /// The share of sliding blocks against place and time.
 pub const KYMOGRAPH: &str = "kymograph.nc";
 /// The fields of a run, block by block.

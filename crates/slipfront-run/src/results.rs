@@ -13,8 +13,7 @@ use tempfile::TempPath;
 
 use crate::error::ResultsError;
 use crate::fields::{self, FieldFrame, FieldsData, FieldsError, FieldsFile, StaticFields};
-use crate::names::{CASE, FIELDS, KYMOGRAPH, PRECURSORS, SERIES, SUMMARY};
-use crate::precursors;
+use crate::names::{CASE, FIELDS, KYMOGRAPH, SERIES, SUMMARY};
 use crate::run_folder::RunFolder;
 use crate::run_folder::unfinished::Unfinished;
 use crate::running::Record;
@@ -48,13 +47,10 @@ fn each_table(
         .map(|row| SeriesRow::new(row, &case.scales, &case.model));
     take(SERIES, &series::to_csv(rows)?)?;
     take(KYMOGRAPH, &fields::kymograph_bytes(&record.kymograph, case))?;
-    match &record.precursors {
-        Some(precursors) => take(
-            PRECURSORS,
-            &precursors::to_csv(precursors.events(), &case.scales)?,
-        ),
-        None => Ok(()),
+    for (table, contents) in record.observers.tables(&case.scales)? {
+        take(table.file, &contents)?;
     }
+    Ok(())
 }
 
 /// The files of a run on one rank, by their names in its folder, with the bytes that they have there: the case and the files that it reads,

@@ -8,7 +8,8 @@ use slipfront::{Execution, RunError, Simulation, StopReason};
 use slipfront_case::case::Case;
 
 use crate::running::{add_front, instants_of};
-use crate::summary::{Summary, SummaryObservers};
+use crate::summary::Summary;
+use crate::summary_observers::SummaryObservers;
 
 /// Runs a case on one thread up to the end that its `time.stop` sets, and returns the numbers of `summary.json` with the
 /// bits of [`running::run`](crate::running::run). Neither curve, fields nor kymograph are recorded, and no file is written.

@@ -6,15 +6,15 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 use slipfront::communicator::Communicator;
 use slipfront::observe::frames::{Selection, kept};
-use slipfront::observe::{
-    CurveRow, Field, Frame, Frames, Instants, Kinetic, Kymograph, Precursors, Schedule, Scheduled,
-};
+use slipfront::observe::{CurveRow, Field, Frame, Frames, Instants, Kinetic, Kymograph, Schedule, Scheduled};
 use slipfront::{Checkpoint, Execution, Kernel, RunError, Simulation, Snapshot, State, StopReason};
 
 use crate::columns::Columns;
 use crate::fields::FieldFrame;
 use crate::front;
-use crate::summary::{Summary, SummaryObservers};
+use crate::observers::OptionalObservers;
+use crate::summary::Summary;
+use crate::summary_observers::SummaryObservers;
 use slipfront_case::case::{Case, Output, Snapshots};
 
 /// All results of a run, in memory.
@@ -24,8 +24,8 @@ pub struct Record {
     pub summary: Summary,
     /// The recorded curve.
     pub rows: Vec<CurveRow>,
-    /// Events of slip of a slider driven at an edge.
-    pub precursors: Option<Precursors>,
+    /// The observers that only some runs have.
+    pub observers: OptionalObservers,
     /// Share of sliding blocks against place along the drive and time.
     pub kymograph: Kymograph,
     /// Fields in the order of time, each with the letters of the instants A-F that it shows.
@@ -460,7 +460,7 @@ impl Running {
         Record {
             summary: numbers,
             rows: summary.curve.rows,
-            precursors: summary.precursors,
+            observers: summary.optional,
             kymograph,
             frames: lettered(instants, frames),
             contact_stress_max,

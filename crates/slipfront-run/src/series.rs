@@ -134,19 +134,18 @@ impl SeriesRow {
     }
 }
 
-/// Names the fields of the rows of a table, each with the function that gives its number in a row, if it has one.
-macro_rules! columns_of {
-    ($row:ty: $($name:ident)*) => {
-        [$((stringify!($name), (|row| row.$name.into()) as fn(&$row) -> Option<f64>)),*]
-    };
-}
-pub(crate) use columns_of;
-
 /// A column of a series: its name, and its value in a row, which has none where the column belongs to another option.
 type Column = (&'static str, fn(&SeriesRow) -> Option<f64>);
 
+/// Names the fields of a row, each with the function that gives its number in it, if it has one.
+macro_rules! columns_of {
+    ($($name:ident)*) => {
+        &[$((stringify!($name), |row| row.$name.into())),*]
+    };
+}
+
 /// Every column that a series may have, but the number of the step.
-const COLUMNS: &[Column] = &columns_of! { SeriesRow:
+const COLUMNS: &[Column] = columns_of! {
     time_star time_s drive_time_star drive_displacement_m mu_star friction_coefficient mu_lateral_star friction_force_n lateral_force_n
     torque_n_m sliding_percent work_j kinetic_energy_j lattice_energy_j drive_spring_energy_j friction_loss_j damping_loss_j
     viscous_loss_j contact_spring_energy_j broken_spring_loss_j weakening_loss_j mean_state_star

@@ -4,18 +4,19 @@ use crate::axis::{Axis, Spacing};
 use crate::summary_values::REDUCTION;
 use slipfront_case::case_file::title_of;
 use slipfront_plot::QuantityLabel;
+use slipfront_run::summary::KnownNumber;
 
-/// Titles of the quantities that are drawn: key, words, symbol, unit.
-const QUANTITIES: [(&str, &str, &str, &str); 3] = [
-    ("static_friction_star", "static friction", "\u{3bc}\u{209b}*", ""),
-    (
-        "kinetic_friction_star",
-        "kinetic friction",
-        "\u{3bc}\u{2096}*",
-        "",
-    ),
-    (REDUCTION, "reduction of \u{3bc}\u{209b}*", "", "%"),
-];
+/// Title of the reduction: words, symbol, unit.
+const TITLE_OF_REDUCTION: [&str; 3] = ["reduction of \u{3bc}\u{209b}*", "", "%"];
+
+/// Title of a quantity: words, symbol, unit; none if its name stands for it.
+fn title_of_quantity(name: &str) -> Option<[&'static str; 3]> {
+    if name == REDUCTION {
+        return Some(TITLE_OF_REDUCTION);
+    }
+    let number = KnownNumber::named(name).filter(|number| !number.words.is_empty())?;
+    Some([number.words, number.symbol, ""])
+}
 
 /// The title of a quantity.
 pub(crate) fn title(quantity: &str) -> String {
@@ -24,8 +25,7 @@ pub(crate) fn title(quantity: &str) -> String {
 
 /// The symbol of a quantity; empty if it has none.
 pub(crate) fn quantity_symbol(quantity: &str) -> &'static str {
-    let row = QUANTITIES.iter().find(|row| row.0 == quantity);
-    row.map_or("", |row| row.2)
+    title_of_quantity(quantity).map_or("", |[_, symbol, _]| symbol)
 }
 
 /// The title of an axis, with the unit of its numbers. The second and further textures are numbered. A key without a title is
@@ -78,7 +78,7 @@ fn label(key: &str) -> Option<QuantityLabel<'_>> {
     let (words, symbol, unit, texture) = match title_of(key) {
         Some((title, texture)) => (title.words, title.symbol, title.unit, texture),
         None => {
-            let &(_, words, symbol, unit) = QUANTITIES.iter().find(|row| row.0 == key)?;
+            let [words, symbol, unit] = title_of_quantity(key)?;
             (words, symbol, unit, None)
         }
     };
@@ -95,6 +95,7 @@ fn label(key: &str) -> Option<QuantityLabel<'_>> {
 mod tests {
     use slipfront_case::case_file::SECTIONS;
     use slipfront_plot::has_glyphs;
+    use slipfront_run::summary::KNOWN_NUMBERS;
 
     use super::*;
     use crate::axis::Level;
@@ -161,13 +162,14 @@ mod tests {
 
     #[test]
     fn every_key_has_one_title_that_the_font_can_write() {
-        for (index, row) in QUANTITIES.iter().enumerate() {
-            assert!(
-                QUANTITIES[..index].iter().all(|other| other.0 != row.0),
-                "{}",
-                row.0
-            );
-            assert!(has_glyphs(&title(row.0)), "{}", title(row.0));
+        let names: Vec<&str> = KNOWN_NUMBERS
+            .iter()
+            .map(|number| number.name)
+            .chain([REDUCTION])
+            .collect();
+        for (index, name) in names.iter().enumerate() {
+            assert!(!names[..index].contains(name), "{name}");
+            assert!(has_glyphs(&title(name)), "{}", title(name));
         }
         for section in &SECTIONS {
             for (index, key) in section.keys.iter().enumerate() {

@@ -5,71 +5,31 @@ use std::sync::LazyLock;
 
 use serde_json::Value;
 
-use slipfront_run::summary::{PrecursorSummary, Summary};
+use slipfront_run::observers;
+use slipfront_run::summary::{KnownNumber, Part, Summary};
 
 /// Reduction of mu_s* against the reference of the same seed, % (Eq. 16).
 pub const REDUCTION: &str = "static_reduction_percent";
 
-/// Entries of a summary that are not numbers, and the seed, whose mean has no meaning.
-const NOT_QUANTITIES: [&str; 10] = [
-    "kinetic_window_star",
-    "instants",
-    "si",
-    "nucleations",
-    "motion",
-    "precursors",
-    "cycles",
-    "warnings",
-    "version",
-    "seed",
-];
+/// Numbers of a summary that are no quantities: two in one, and one whose mean has no meaning.
+const NOT_QUANTITIES: [&str; 2] = ["kinetic_window_star", "seed"];
 
-/// Numbers of a slider that is driven at an edge. Tables have them only if one of their runs has them.
-const OF_PRECURSORS: [(&str, NumberOf); 3] = [
-    ("precursor_count", |precursors| {
-        Some(precursors.precursor_count as f64)
-    }),
-    ("precursor_length_max", |precursors| {
-        precursors.precursor_length_max
-    }),
-    ("nucleation_load_ratio", |precursors| {
-        precursors.nucleation_load_ratio
-    }),
-];
-
-/// Numbers that the first peak of mu* defines. A run without a transition has none of these numbers, whatever its summary
-/// says: its largest mu* is its `mu_star_max`.
-const OF_PEAK: [&str; 5] = [
-    "static_friction_star",
-    "static_friction",
-    "static_lateral_friction_star",
-    "onset_time_star",
-    "onset_time_s",
-];
-
-/// Numbers of the kinetic window. A run without a transition has these numbers only if the window begins after its largest
-/// mu*: before that, mu* may still rise to the onset.
-const OF_KINETIC_WINDOW: [&str; 5] = [
-    "kinetic_friction_star",
-    "kinetic_friction_star_uncertainty",
-    "kinetic_friction",
-    "kinetic_lateral_friction_star",
-    "sliding_percent_kinetic",
-];
+fn part_of(name: &str) -> Option<Part> {
+    KnownNumber::named(name).map(|number| number.part)
+}
 
 /// Whether a quantity exists only for runs with a transition.
 pub(crate) fn needs_transition(name: &str) -> bool {
-    name == REDUCTION || OF_PEAK.contains(&name)
+    name == REDUCTION || part_of(name) == Some(Part::Peak)
 }
-
-type NumberOf = fn(&PrecursorSummary) -> Option<f64>;
 
 /// Whether tables have the quantity of this name only if one of their runs has it.
 pub(crate) fn is_optional(name: &str) -> bool {
-    OF_PRECURSORS.iter().any(|(optional, _)| *optional == name)
+    let optional = observers::quantities(&Summary::default());
+    optional.iter().any(|(optional, _)| *optional == name)
 }
 
-/// Names of all numbers, in the order of the summary, then of its precursors; the reduction comes last.
+/// Names of all numbers, in the order of the summary, then of the observers that only some runs have; the reduction comes last.
 pub fn known() -> &'static [String] {
     static KNOWN: LazyLock<Vec<String>> = LazyLock::new(|| {
         let names = named(&Summary::default()).into_iter().map(|(name, _)| name);
@@ -139,7 +99,12 @@ impl SummaryValues {
             .kinetic_window_star
             .is_some_and(|[from, _]| from > summary.onset_time_star);
         let counts = |name: &str| {
-            summary.transition || !(OF_PEAK.contains(&name) || (OF_KINETIC_WINDOW.contains(&name) && !slides))
+            summary.transition
+                || match part_of(name) {
+                    Some(Part::Peak) => false,
+                    Some(Part::KineticWindow) => slides,
+                    None => true,
+                }
         };
         let known = known().iter().map(String::as_str);
         let values = known.map(|name| found.get(name).copied().flatten().filter(|_| counts(name)));
@@ -162,17 +127,18 @@ fn named(summary: &Summary) -> Vec<(String, Option<f64>)> {
         return Vec::new();
     };
     let number = |value: Value| match value {
-        Value::Bool(yes) => Some(f64::from(u8::from(yes))),
-        value => value.as_f64(),
+        Value::Null => Some(None),
+        Value::Bool(yes) => Some(Some(f64::from(u8::from(yes)))),
+        Value::Number(number) => Some(number.as_f64()),
+        Value::String(_) | Value::Array(_) | Value::Object(_) => None,
     };
     let fields = fields.into_iter();
     let kept = fields.filter(|(name, _)| !NOT_QUANTITIES.contains(&name.as_str()));
-    let numbers = kept.map(|(name, value)| (name, number(value)));
-    let precursors = OF_PRECURSORS.map(|(name, number_of)| {
-        let precursors = summary.precursors.as_ref();
-        (name.to_owned(), precursors.and_then(number_of))
-    });
-    numbers.chain(precursors).collect()
+    let numbers = kept.filter_map(|(name, value)| Some((name, number(value)?)));
+    let of_observers = observers::quantities(summary).into_iter();
+    numbers
+        .chain(of_observers.map(|(name, value)| (name.to_owned(), value)))
+        .collect()
 }
 
 /// Reduction of mu_s* in % (Eq. 16), both runs on the same random surface; none unless both have a transition:
@@ -187,6 +153,8 @@ pub(crate) fn reduction_percent(point: &SummaryValues, reference: &SummaryValues
 
 #[cfg(test)]
 mod tests {
+    use slipfront_run::summary::KNOWN_NUMBERS;
+
     use super::*;
 
     #[test]
@@ -233,7 +201,8 @@ mod tests {
     #[test]
     fn what_the_peak_defines_is_empty_without_a_transition() {
         let (with, without) = (values_of(true, 200.0), values_of(false, 200.0));
-        for name in OF_PEAK {
+        let of_peak = KNOWN_NUMBERS.iter().filter(|number| number.part == Part::Peak);
+        for KnownNumber { name, .. } in of_peak {
             assert!(number(&with, name).is_some(), "{name}");
             assert_eq!(number(&without, name), None, "{name}");
         }

@@ -96,7 +96,7 @@ impl MovieCommand {
         let folder = &self.folder;
         expect_results(folder)?;
         let run = inspect(folder).map_err(Failure::input)?;
-        expect_as_written(&run, |name| pictures::DRAWN_FROM.contains(&name)).map_err(Failure::input)?;
+        expect_as_written(&run, pictures::is_drawn_from).map_err(Failure::input)?;
         let out = self.out.clone().unwrap_or_else(|| folder.join(MOVIE));
         let is_mp4 = match extension(&out).as_str() {
             "gif" => false,

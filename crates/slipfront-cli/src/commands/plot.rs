@@ -139,7 +139,7 @@ impl PlotCommand {
         for folder in &self.folders {
             expect_results(folder)?;
             let run = inspect(folder).map_err(Failure::input)?;
-            expect_as_written(&run, |name| pictures::DRAWN_FROM.contains(&name)).map_err(Failure::input)?;
+            expect_as_written(&run, pictures::is_drawn_from).map_err(Failure::input)?;
             runs.push(run);
         }
         self.expect_names()?;

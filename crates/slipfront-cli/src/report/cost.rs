@@ -4,9 +4,10 @@ use slipfront_base::machine::available_memory;
 use slipfront_base::number_format::{byte_size, four_digits, with_half_width, with_si_prefix};
 use slipfront_case::case::Case;
 use slipfront_run::pictures;
+use slipfront_run::times::instant;
 
 use super::summary::notes;
-use super::times::{duration, instant};
+use super::times::duration;
 
 /// The expected onset, the stability of the step, the cost and the warnings; `seconds` is the time that the run takes.
 pub(crate) fn cost(case: &Case, seconds: f64) -> String {

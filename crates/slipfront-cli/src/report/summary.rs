@@ -3,9 +3,10 @@
 use slipfront_base::number_format::{count, four_digits, with_si_prefix, with_uncertainty};
 use slipfront_case::case::Case;
 use slipfront_case::case_file::Motion;
-use slipfront_run::summary::{CycleSummary, PrecursorSummary, Summary};
+use slipfront_run::observers;
+use slipfront_run::summary::Summary;
+use slipfront_run::times::instant;
 
-use super::times::instant;
 use crate::wrap::note;
 
 /// The summary of a run, a line for each number, and its warnings.
@@ -19,12 +20,7 @@ pub(crate) fn summary(case: &Case, summary: &Summary) -> String {
     if let Some(drive_steps) = summary.drive_steps {
         lines.push(("held drive", held_drive(summary.steps, drive_steps)));
     }
-    if let Some(precursors) = &summary.precursors {
-        lines.push(("events of slip", events(case, precursors)));
-    }
-    if let Some(cycles) = &summary.cycles {
-        lines.push(("peaks", peaks(cycles)));
-    }
+    lines.extend(observers::lines(summary, case));
     lines.push(("energy", energy(summary)));
     lines.push(("mesh", case.deciding_length()));
     let mut text = match summary.motion {
@@ -92,32 +88,6 @@ fn held_drive(steps: u64, drive_steps: u64) -> String {
         drive_steps,
         count(steps as usize, "step")
     )
-}
-
-fn events(case: &Case, precursors: &PrecursorSummary) -> String {
-    let crossing = precursors.crossing_time_star.zip(precursors.crossing_mu_star);
-    let crossing = match crossing {
-        Some((time_star, mu_star)) => {
-            let at = instant(time_star, &case.scales);
-            format!("the first across the whole slider at mu* = {mu_star:.4}, {at}")
-        }
-        None => "none across the whole slider".to_owned(),
-    };
-    format!("{}, {crossing}", precursors.events)
-}
-
-/// Largest number of peaks that are printed.
-const MAX_PEAKS: usize = 6;
-
-fn peaks(cycles: &[CycleSummary]) -> String {
-    let shown = cycles.iter().take(MAX_PEAKS);
-    let shown: Vec<String> = shown.map(|cycle| format!("{:.4}", cycle.mu_star_max)).collect();
-    let more = if cycles.len() > MAX_PEAKS {
-        ", and so on"
-    } else {
-        ""
-    };
-    format!("mu* = {}{more}", shown.join(", "))
 }
 
 fn energy(summary: &Summary) -> String {

@@ -1,16 +1,8 @@
-//! Times as they are printed for a reader.
+//! Durations as they are printed for a reader.
 
 use std::time::Duration;
 
 use indicatif::HumanDuration;
-use slipfront::Scales;
-use slipfront_base::number_format::{four_digits, with_si_prefix};
-
-/// An instant, dimensionless and in seconds.
-pub(super) fn instant(time_star: f64, scales: &Scales) -> String {
-    let seconds = with_si_prefix(time_star * scales.time(), "s");
-    format!("t* = {} ({seconds})", four_digits(time_star))
-}
 
 /// Duration of a computation.
 pub(super) fn duration(seconds: f64) -> String {

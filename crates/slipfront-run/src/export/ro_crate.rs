@@ -16,9 +16,8 @@ use super::citation::{ARTICLE_TITLE, ARTICLE_URL, ARTICLE_YEAR, DEVELOPERS, MODE
 use super::parameters::{Parameter, parameters};
 use super::whole_run::WholeRun;
 use crate::manifest::ManifestFile;
-use crate::names::{
-    CASE, FIELDS, KYMOGRAPH, MANIFEST, MOVIE, PRECURSORS, RO_CRATE, RunPicture, SERIES, SUMMARY,
-};
+use crate::names::{CASE, FIELDS, KYMOGRAPH, MANIFEST, MOVIE, RO_CRATE, RunPicture, SERIES, SUMMARY};
+use crate::observers::tables;
 
 const CONTEXT: &str = "https://w3id.org/ro/crate/1.1/context";
 const SPECIFICATION: &str = "https://w3id.org/ro/crate/1.1";
@@ -239,7 +238,6 @@ fn description(name: &str) -> String {
         (CASE, "The case with every default filled in"),
         (SUMMARY, "The numbers of the run"),
         (SERIES, "The curves over time"),
-        (PRECURSORS, "Events of slip of a slider that is driven at an edge"),
         (
             KYMOGRAPH,
             "Share of sliding blocks over place along the drive and time",
@@ -254,8 +252,9 @@ fn description(name: &str) -> String {
             "Provenance of the run; length and BLAKE3 checksum of every other file",
         ),
     ];
-    if let Some((_, meaning)) = known.iter().find(|(known, _)| *known == name) {
-        return (*meaning).to_owned();
+    let tables = tables().map(|table| (table.file, table.description));
+    if let Some((_, meaning)) = known.into_iter().chain(tables).find(|(known, _)| *known == name) {
+        return meaning.to_owned();
     }
     let is_shown = |picture: &RunPicture| picture.files().iter().any(|file| file == name);
     match RunPicture::ALL.into_iter().find(is_shown) {

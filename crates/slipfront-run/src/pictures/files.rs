@@ -8,11 +8,14 @@ use slipfront_case::case_file::{CaseFile, read_text_from};
 
 use super::error::RunPictureError;
 use crate::folder_error::FolderError;
-use crate::names::{CASE, FIELDS, KYMOGRAPH, PRECURSORS, SERIES, SUMMARY};
+use crate::names::{CASE, FIELDS, KYMOGRAPH, SERIES, SUMMARY};
+use crate::observers::tables;
 use crate::run_files::RunFiles;
 
-/// The files from which pictures are drawn.
-pub const DRAWN_FROM: [&str; 6] = [CASE, SUMMARY, SERIES, PRECURSORS, KYMOGRAPH, FIELDS];
+/// Tells whether pictures are drawn from the file of this name.
+pub fn is_drawn_from(name: &str) -> bool {
+    [CASE, SUMMARY, SERIES, KYMOGRAPH, FIELDS].contains(&name) || tables().any(|table| table.file == name)
+}
 
 /// A file of a folder that a run may not have written.
 pub(super) fn found(path: &Path) -> Result<Option<Metadata>, RunPictureError> {

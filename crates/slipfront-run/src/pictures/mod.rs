@@ -19,7 +19,7 @@ use slipfront_plot::{MovieSize, Picture};
 
 pub use self::budget::{memory, run_budget};
 use self::error::RunPictureError;
-pub use self::files::DRAWN_FROM;
+pub use self::files::is_drawn_from;
 pub use self::front::draw_kymograph;
 pub use self::maps::draw_field;
 use self::movie::MoviePace;

@@ -7,14 +7,13 @@ use slipfront_plot::{self as plot, Picture, Response, Responses};
 
 use super::error::RunPictureError;
 use super::files::case_of;
-use crate::names::PRECURSORS;
-use crate::precursors::{self, PrecursorRow};
+use crate::observers::precursors::{FILE, PrecursorRow, read_csv};
 use crate::run_files::RunFiles;
 
 /// Draws the reach of the events of slip of a slider driven at an edge, against the load after them; none for another run.
 /// An event counts if it is longer than all before: a shorter one slips over the part that these have left behind.
 pub(super) fn of_run(run: RunFiles) -> Result<Option<Picture>, RunPictureError> {
-    let Some(file) = run.found(PRECURSORS)? else {
+    let Some(file) = run.found(FILE)? else {
         return Ok(None);
     };
     let mut longest = 0.0;
@@ -23,7 +22,7 @@ pub(super) fn of_run(run: RunFiles) -> Result<Option<Picture>, RunPictureError> 
         longest = row.length.max(longest);
         is_longer
     };
-    let rows = precursors::read_csv(file)?;
+    let rows = read_csv(file)?;
     let longer = rows.into_iter().filter(|row| is_longer(row));
     let points = longer.filter_map(|row| Some((row.friction_coefficient_after?, row.length)));
     let curve = |label: &str, points: Vec<(f64, f64)>, line: bool| {

@@ -2,7 +2,7 @@
 
 use slipfront::Scales;
 use slipfront::observe::SlipEvent;
-use slipfront_run::precursors;
+use slipfront_run::observers::precursors;
 use slipfront_run::series::{SeriesRow, read_csv, to_csv};
 
 use crate::checks::readable;

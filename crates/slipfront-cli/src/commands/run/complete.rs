@@ -6,7 +6,8 @@ use std::sync::Arc;
 use slipfront_case::case::Case;
 use slipfront_run::agree::RankFailure;
 use slipfront_run::checkpoint::Checkpoints;
-use slipfront_run::names::{FIELDS, RunPicture};
+use slipfront_run::names::{CASE, FIELDS, KYMOGRAPH, RunPicture, SERIES, SUMMARY};
+use slipfront_run::observers::tables;
 use slipfront_run::pictures;
 use slipfront_run::pictures::error::RunPictureError;
 use slipfront_run::results;
@@ -82,23 +83,24 @@ pub(super) fn complete(
 }
 
 fn files(case: &Case, out: &Path) -> String {
-    let pictures = RunPicture::ALL
-        .iter()
-        .map(|picture| (picture.name(), ".svg .png", picture.shows()));
-    let files = [
-        ("series", ".csv", "the curve, row by row"),
-        ("precursors", ".csv", "the events of slip, row by row"),
-        ("kymograph", ".nc", "sliding blocks against place and time"),
-        ("fields", ".nc", "the fields, for ParaView, Python, MATLAB"),
-        ("summary", ".json", "the numbers above"),
-        ("case", ".toml", "the case, every default filled in"),
-    ];
+    let pictures = RunPicture::ALL.map(|picture| (format!("{}.svg .png", picture.name()), picture.shows()));
+    let tables = tables().map(|table| (table.file, table.shows));
+    let files = [(SERIES, "the curve, row by row")]
+        .into_iter()
+        .chain(tables)
+        .chain([
+            (KYMOGRAPH, "sliding blocks against place and time"),
+            (FIELDS, "the fields, for ParaView, Python, MATLAB"),
+            (SUMMARY, "the numbers above"),
+            (CASE, "the case, every default filled in"),
+        ]);
+    let files = files.map(|(name, shows)| (name.to_owned(), shows));
     let mut text = format!("files in {}\n", out.display());
-    for (name, endings, what) in pictures.chain(files) {
-        let ending = endings.split(' ').next().unwrap_or(endings);
+    for (name, what) in pictures.into_iter().chain(files) {
         // A look that fails does not say that a file is missing.
-        if out.join(format!("{name}{ending}")).try_exists().unwrap_or(true) {
-            text += &format!("  {:<18} {what}\n", format!("{name}{endings}"));
+        let first = name.split(' ').next().unwrap_or(&name);
+        if out.join(first).try_exists().unwrap_or(true) {
+            text += &format!("  {name:<18} {what}\n");
         }
     }
     if !case.inputs.is_empty() {
