@@ -6,7 +6,8 @@ use serde::Deserialize;
 use slipfront_base::disk::{TEXT_MAX_BYTES, read_limited};
 use slipfront_base::number_format::{are, with_si_prefix};
 use slipfront_case::case::Case;
-use slipfront_case::case_file::{CaseError, Override};
+use slipfront_case::case_file::{CaseError, KeyKind, Override, key, names_of, whole};
+use slipfront_case::key_rows;
 use slipfront_run::folder_error::FolderError;
 use slipfront_run::measured::{Measure, MeasuredRecord};
 use slipfront_run::run_curve::steps_to;
@@ -30,8 +31,8 @@ pub(crate) static CALIBRATION: ProjectKind = ProjectKind {
     journal: "training.jsonl",
 };
 
-/// Smallest and largest number of runs of a training: intervals of 90 % from 100 runs hold three values of four, more are a system of
-/// equations that memory is too small for.
+/// Smallest and largest number of runs of a training: intervals of 90 % from 100 runs hold three values of
+/// four, more are a system of equations that memory is too small for.
 const RUNS: [u32; 2] = [200, 5000];
 
 /// Largest number of steps of a run for a record: a thousand such runs take days.
@@ -45,37 +46,48 @@ pub struct CalibrationFile {
     pub(crate) project: ProjectFile,
 }
 
-/// The table `[calibrate]`.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct CalibrationKeys {
-    unknowns: Table,
-    /// Standard deviation of the noise of a record, as a share of its mean friction.
-    pub noise: f64,
-    x: String,
-    y: String,
-    x_unit: Option<String>,
-    y_unit: Option<String>,
-    #[serde(default)]
-    against: Against,
-    #[serde(default)]
-    records: Vec<RecordKeys>,
-    /// Runs of the training.
-    #[serde(default = "default_runs")]
-    pub runs: u32,
-    /// Runs of the training on blocks of half the size; 0 for none.
-    #[serde(default = "default_finer_runs")]
-    pub finer_runs: u32,
-    /// Experiments that may be made next, each as the keys in which it differs from the case.
-    #[serde(default)]
-    pub next: Vec<Table>,
+key_rows! {
+    /// The table `[calibrate]`.
+    #[derive(Clone, Debug, PartialEq, Deserialize)]
+    #[serde(deny_unknown_fields)]
+    pub struct CalibrationKeys {
+        /// The unknown keys, each with its range: `[0.3, 0.9]`, `["1 um", "5 um"]`, or
+        /// `{ from = 0.03, to = 0.5, scale = "log" }`. Before there is a record all values within it, or
+        /// their logarithms, are equally likely.
+        unknowns: Table = key("", KeyKind::Special("")).without("needed"),
+        /// Standard deviation of the noise of a record, as a share of its mean friction.
+        pub noise: f64 = key("", KeyKind::Special("more than 0, less than 1")).without("needed"),
+        /// Column of times or displacements: its name, with or without the unit in the header, or its number
+        /// from 1.
+        x: String = key("", KeyKind::Special("")).without("needed"),
+        /// Column of friction forces, or of coefficients if its unit is 1.
+        y: String = key("", KeyKind::Special("")).without("needed"),
+        /// Unit of `x`.
+        x_unit: Option<String> = key("", KeyKind::Special("")).without("that in the header"),
+        /// Unit of `y`.
+        y_unit: Option<String> = key("", KeyKind::Special("")).without("that in the header"),
+        /// Quantity of the first column: time, or displacement of the drive. Both begin at 0 where the drive
+        /// does.
+        against: Against = key("\"time\"", KeyKind::Words(names_of::<Against>)),
+        /// A list of tables `{ set = { ... } }`, one for each record, with the keys whose values differ from
+        /// those of the case, such as `{ set = { drive.speed = "2 um/s" } }`.
+        records: Vec<RecordKeys> = key("[]", KeyKind::Special("")),
+        /// Runs of the training. Of six unknowns, intervals of 90 % hold 88 to 92 % of the values with 2500
+        /// runs and 85 to 92 % with 200 or 400; with 100, which are refused, 75 to 91 %.
+        pub runs: u32 = key("2500", whole(RUNS[0] as u64, RUNS[1] as u64)),
+        /// Runs of the training on blocks of half the size; 0 for none. One takes some eight times as long as
+        /// one on the blocks of the case.
+        pub finer_runs: u32 = key("300", KeyKind::Special("0, or 200 to `runs`")),
+        /// A list of tables of keys, such as `{ drive.v_star = 0.01 }`: possible next experiments. The report
+        /// predicts how much each would narrow the intervals. Each costs as many runs as the training.
+        pub next: Vec<Table> = key("[]", KeyKind::Special("")),
+    }
 }
 
 /// Quantity of the first column of a record.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 enum Against {
-    #[default]
     Time,
     Displacement,
 }
@@ -118,14 +130,6 @@ enum Number {
     WithUnit(String),
 }
 
-fn default_runs() -> u32 {
-    2500
-}
-
-fn default_finer_runs() -> u32 {
-    300
-}
-
 /// A record as measured, and the steps in which it is compared.
 #[derive(Clone, Debug)]
 pub struct GivenRecord {
@@ -161,12 +165,14 @@ impl CalibrationFile {
         CALIBRATION.load(path, Self::parse)
     }
 
-    /// Reads a calibration file called `file` in messages; a base case that it names stands relative to `folder`.
+    /// Reads a calibration file called `file` in messages; a base case that it names stands relative to
+    /// `folder`.
     ///
     /// # Errors
     /// When it is no TOML, has unknown keys, or values out of their bounds.
     pub fn parse(text: &str, file: &str, name: &str, folder: &Path) -> Result<Self, StudyError> {
-        let (project, keys) = ProjectFile::parse(&CALIBRATION, text, file, name, folder)?;
+        let (project, keys) =
+            ProjectFile::parse(&CALIBRATION, CalibrationKeys::KEYS, text, file, name, folder)?;
         let file = Self { keys, project };
         file.check()?;
         Ok(file)
@@ -294,7 +300,8 @@ impl CalibrationFile {
         })
     }
 
-    /// The set-up of the runs for records, on the blocks of the case. Both ends of every range are checked with the case.
+    /// The set-up of the runs for records, on the blocks of the case. Both ends of every range are checked
+    /// with the case.
     pub(crate) fn set_up(&self, records: &[GivenRecord]) -> Result<SetUp, StudyError> {
         let conditions = records.iter().enumerate().map(|(number, record)| Conditions {
             overrides: self.overrides_of(number),
@@ -324,7 +331,8 @@ impl CalibrationFile {
         Ok(set_up)
     }
 
-    /// The set-ups of the experiments that may be made next, over the path of the first record of `set_up`, and their names.
+    /// The set-ups of the experiments that may be made next, over the path of the first record of `set_up`,
+    /// and their names.
     pub(crate) fn further(&self, set_up: &SetUp) -> Result<Vec<(String, SetUp)>, StudyError> {
         let middle = set_up.middle();
         let first = &set_up.conditions[0];

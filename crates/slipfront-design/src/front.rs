@@ -6,7 +6,7 @@ use slipfront_base::text::{COLUMNS, note};
 use slipfront_plot::{Response, Responses};
 
 use crate::design::{Design, Outcome};
-use crate::report::{Report, called, unit};
+use crate::report::Report;
 use slipfront_study::StudyError;
 use slipfront_study::text_table::table;
 
@@ -86,7 +86,7 @@ impl Report<'_> {
             rows.push(vec![
                 format!("{} %", four_digits(*limit)),
                 format!("{} %", four_digits(design.coverage_percent)),
-                format!("{}{}", four_digits(wish.told(design.loss)), unit(wish)),
+                format!("{}{}", four_digits(wish.told(design.loss)), wish.loss_unit()),
                 design.name.clone(),
             ]);
         }
@@ -94,8 +94,8 @@ impl Report<'_> {
             x_title: "textured area (%)".to_owned(),
             y_title: format!(
                 "{}{}",
-                called(wish),
-                if unit(wish).is_empty() { "" } else { " (%)" }
+                wish.loss_name(),
+                if wish.loss_unit().is_empty() { "" } else { " (%)" }
             ),
             note: format!("95 % of {surfaces} fresh surfaces"),
             curves: vec![curve],
@@ -105,7 +105,7 @@ impl Report<'_> {
             .write_picture(FRONT, &picture.map_err(StudyError::picture(FRONT))?)?;
         Ok(format!(
             "\nWith less texture:\n{}",
-            table(&["at most", "covers", called(wish), "texture"], &rows)
+            table(&["at most", "covers", wish.loss_name(), "texture"], &rows)
         ))
     }
 }

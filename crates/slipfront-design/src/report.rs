@@ -341,78 +341,28 @@ fn losses(tried: &[Tried], verdict: &Verdict) -> Vec<String> {
     of_search.into_iter().chain(on_fresh).chain(changed).collect()
 }
 
-pub(crate) fn unit(wish: &Wish) -> &'static str {
-    match wish {
-        Wish::Curve(_) => "",
-        _ => " %",
-    }
-}
-
-/// Name of the quantity of a loss.
-pub(crate) fn called(wish: &Wish) -> &'static str {
-    match wish {
-        Wish::Least(_) => "reduction",
-        Wish::Largest(_) => "rise",
-        Wish::Value(..) => "distance from the value",
-        Wish::Curve(_) => "RMS distance from the curve",
-    }
-}
-
 fn headline(wish: &Wish, verdict: &Verdict) -> String {
     if verdict.design.lost.is_some() {
         return "no verdict: every texture that was judged is lost on fresh surfaces".to_owned();
     }
-    let loss = wish.told(verdict.design.loss);
-    let of = wish.quantity().name();
-    let mut text = match wish {
-        Wish::Least(_) | Wish::Largest(_) => format!(
-            "{} of {of}: {}{} against the slider without texture",
-            called(wish),
-            with_half_width(
-                loss,
-                verdict
-                    .design
-                    .loss_half_width
-                    .map(|half| wish.difference_told(half))
-            ),
-            unit(wish)
-        ),
-        Wish::Value(..) if verdict.design.cases.len() > 1 => {
-            format!(
-                "value of {of} wished for: {} % from it over the cases",
-                four_digits(loss)
-            )
-        }
-        Wish::Value(_, wanted) => format!(
-            "{of} of {} mu_s wished for: {} mu_s found, {} % from it",
-            four_digits(*wanted),
-            given(wish.quantity(), &verdict.design.cases[0]).map_or("nothing".to_owned(), |mean| {
-                with_half_width(mean.mean, mean.half_width)
-            }),
-            four_digits(loss)
-        ),
-        Wish::Curve(_) => format!(
-            "curve wished for: {} from it, as a root of the mean square of mu*",
-            four_digits(loss)
-        ),
+    let design = &verdict.design;
+    let loss = wish.told(design.loss);
+    let half_width = design.loss_half_width.map(|half| wish.difference_told(half));
+    let found = match design.cases.as_slice() {
+        [one] => given(wish.quantity(), one).map_or("nothing".to_owned(), |mean| {
+            with_half_width(mean.mean, mean.half_width)
+        }),
+        _ => String::new(),
     };
+    let mut text = wish.headline(loss, half_width, &found);
     if verdict.is_named {
         text += &format!(
             ". It is the {}: nothing that the search found is better on fresh surfaces with 95 % confidence",
             verdict.design.name
         );
     }
-    if let Wish::Value(..) = wish
-        && loss > MISSED_PERCENT
-    {
-        text +=
-            ". The value is out of reach of these limits, or of this search: give more runs, or wider limits";
-    }
-    text
+    text + wish.missed(loss)
 }
-
-/// Distance from a value above which it is reported as missed, %.
-const MISSED_PERCENT: f64 = 0.5;
 
 fn given(quantity: Quantity, given: &Given) -> Option<Mean> {
     match quantity {
@@ -445,7 +395,7 @@ fn on_fresh(wish: &Wish, verdict: &Verdict) -> String {
         "largest mu*",
         "first peak",
         "mu_k*",
-        called(wish),
+        wish.loss_name(),
         "the design is better by",
     ];
     let mut rows = Vec::new();
@@ -484,7 +434,7 @@ fn loss_cell(wish: &Wish, found: &OnFresh, is_first: bool) -> String {
     if is_first && found.lost.is_some() {
         "lost".to_owned()
     } else if is_first && found.loss.is_finite() {
-        format!("{}{}", four_digits(wish.told(found.loss)), unit(wish))
+        format!("{}{}", four_digits(wish.told(found.loss)), wish.loss_unit())
     } else {
         "-".to_owned()
     }
@@ -507,7 +457,7 @@ fn optimism(wish: &Wish, verdict: &Verdict) -> String {
 }
 
 fn under_changes(wish: &Wish, verdict: &Verdict) -> String {
-    let header = ["change", called(wish), "better than the best named by"];
+    let header = ["change", wish.loss_name(), "better than the best named by"];
     let rows: Vec<Vec<String>> = verdict
         .sensitivity
         .changed
@@ -518,7 +468,11 @@ fn under_changes(wish: &Wish, verdict: &Verdict) -> String {
                 if changed.lost.is_some() {
                     "lost".to_owned()
                 } else {
-                    format!("{}{}", four_digits(wish.told(changed.loss.mean)), unit(wish))
+                    format!(
+                        "{}{}",
+                        four_digits(wish.told(changed.loss.mean)),
+                        wish.loss_unit()
+                    )
                 },
                 better_cell(wish, changed.better_by),
             ]

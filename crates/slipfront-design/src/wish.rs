@@ -1,7 +1,14 @@
 //! The wish of a design, and the distance of a texture from it.
 
+use serde::de::IntoDeserializer;
+use serde::de::value::Error as ValueError;
 use serde::{Deserialize, Serialize};
+use slipfront_base::number_format::{four_digits, with_half_width};
+use slipfront_case::case_file::names_of;
 use slipfront_run::summary::Summary;
+
+/// Distance from a value above which it is reported as missed, %.
+const MISSED_PERCENT: f64 = 0.5;
 
 /// A number of a run that a wish is about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -64,6 +71,18 @@ impl Measured {
 }
 
 impl Quantity {
+    /// The quantity of this name in a design file, such as `static_friction`.
+    ///
+    /// # Errors
+    /// The names that there are, as the end of a sentence.
+    pub(crate) fn of_name(name: &str) -> Result<Self, String> {
+        let found: Result<Self, ValueError> = Self::deserialize(name.into_deserializer());
+        found.map_err(|_| match names_of::<Self>() {
+            [others @ .., last] => format!("{} or {last}", others.join(", ")),
+            [] => String::new(),
+        })
+    }
+
     /// Name of the quantity in a sentence.
     pub(crate) fn name(self) -> &'static str {
         match self {
@@ -149,6 +168,63 @@ impl Wish {
             Self::Least(_) => self.difference_told(1.0 - loss),
             Self::Largest(_) => self.difference_told(-loss - 1.0),
             Self::Value(..) | Self::Curve(_) => self.difference_told(loss),
+        }
+    }
+
+    /// Name of the loss as reported.
+    pub(crate) fn loss_name(&self) -> &'static str {
+        match self {
+            Self::Least(_) => "reduction",
+            Self::Largest(_) => "rise",
+            Self::Value(..) => "distance from the value",
+            Self::Curve(_) => "RMS distance from the curve",
+        }
+    }
+
+    /// Unit of the loss as reported.
+    pub(crate) fn loss_unit(&self) -> &'static str {
+        match self {
+            Self::Curve(_) => "",
+            _ => " %",
+        }
+    }
+
+    /// A sentence on the loss of a design as reported, with half the width of its interval; `found` is the quantity of the design if there is
+    /// one case, and empty over several.
+    pub(crate) fn headline(&self, loss: f64, half_width: Option<f64>, found: &str) -> String {
+        let of = self.quantity().name();
+        match self {
+            Self::Least(_) | Self::Largest(_) => format!(
+                "{} of {of}: {}{} against the slider without texture",
+                self.loss_name(),
+                with_half_width(loss, half_width),
+                self.loss_unit()
+            ),
+            Self::Value(..) if found.is_empty() => {
+                format!(
+                    "value of {of} wished for: {} % from it over the cases",
+                    four_digits(loss)
+                )
+            }
+            Self::Value(_, wanted) => format!(
+                "{of} of {} mu_s wished for: {found} mu_s found, {} % from it",
+                four_digits(*wanted),
+                four_digits(loss)
+            ),
+            Self::Curve(_) => format!(
+                "curve wished for: {} from it, as a root of the mean square of mu*",
+                four_digits(loss)
+            ),
+        }
+    }
+
+    /// An end of the headline for a design that misses its wish.
+    pub(crate) fn missed(&self, loss: f64) -> &'static str {
+        match self {
+            Self::Value(..) if loss > MISSED_PERCENT => {
+                ". The value is out of reach of these limits, or of this search: give more runs, or wider limits"
+            }
+            _ => "",
         }
     }
 

@@ -10,7 +10,7 @@ use super::files::Watch;
 use super::groups::{Groups, within};
 use super::inputs::Inputs;
 use crate::case_file::{
-    Attached, CaseError, CaseFile, DEFAULT_THRESHOLD, DriveSpeed, DriveStiffness, Motion,
+    Attached, AutoOrStiffness, CaseError, CaseFile, DEFAULT_THRESHOLD, DriveSpeed, DriveStiffness, Motion,
 };
 
 /// Largest angle, in rad, by which a drive may turn: the far ends move along tangents, not along circles.
@@ -38,7 +38,8 @@ pub(super) fn attached(
     attached.map(Some)
 }
 
-/// Removes the drive springs of all blocks of these rows but those that the case attaches. All ranks call this at once.
+/// Removes the drive springs of all blocks of these rows but those that the case attaches. All ranks call
+/// this at once.
 pub(super) fn attach(
     slider: &mut Slider,
     file: &CaseFile,
@@ -69,7 +70,7 @@ pub(super) fn drive(
     ranks: &dyn Communicator,
 ) -> Result<Drive, CaseError> {
     let key = match file.drive.stiffness {
-        DriveStiffness::Auto | DriveStiffness::Each(_) => "drive.stiffness",
+        DriveStiffness::Each(_) => "drive.stiffness",
         DriveStiffness::EachStar(_) => "drive.stiffness_star",
         DriveStiffness::PerArea(_) => "drive.stiffness_per_area",
         DriveStiffness::Total(_) => "drive.total_stiffness",
@@ -113,7 +114,7 @@ fn total(file: &CaseFile, scales: &Scales) -> Option<f64> {
 /// Stiffness of each drive spring, unless the case states their total stiffness.
 fn each(file: &CaseFile, scales: &Scales) -> f64 {
     match &file.drive.stiffness {
-        DriveStiffness::Each(each) => each.si() / scales.stiffness(),
+        DriveStiffness::Each(AutoOrStiffness::Stiffness(each)) => each.si() / scales.stiffness(),
         DriveStiffness::EachStar(each) => *each,
         DriveStiffness::PerArea(per_area) => scales.stiffness_of_area(per_area.si()),
         _ => K_DRIVE,
