@@ -26,15 +26,17 @@ pub struct Answer {
     pub exact: f64,
     /// The computed value.
     pub found: f64,
-    /// Largest allowed distance.
+    /// Largest allowed distances.
     pub tolerance: Tolerance,
 }
 
-/// Largest allowed distance of a computed value from the exact one, and its reason.
+/// Largest allowed distances of a computed value from the exact one, and their reason.
 #[derive(Clone, Copy, Debug)]
 pub struct Tolerance {
     /// The largest distance.
     pub distance: f64,
+    /// The largest distance of a value that is too small: less than the other where errors only add.
+    pub below: f64,
     /// Reason for the distance, in one clause.
     pub reason: &'static str,
 }
@@ -50,12 +52,64 @@ impl Answer {
             quantity: quantity.into(),
             exact,
             found,
-            tolerance: Tolerance { distance, reason },
+            tolerance: Tolerance {
+                distance,
+                below: distance,
+                reason,
+            },
+        }
+    }
+
+    /// An answer that is exact but for being seen up to a `step` late, or with what one step adds.
+    pub fn seen_late(
+        quantity: impl Into<String>,
+        [exact, found]: [f64; 2],
+        (step, reason): (f64, &'static str),
+    ) -> Self {
+        Self::new(quantity, [exact, found], (step * (1.0 + 1e-9), reason)).at_most_below(rounding(exact))
+    }
+
+    /// The answer with a smaller distance that is allowed for a value below the exact one.
+    pub fn at_most_below(mut self, distance: f64) -> Self {
+        self.tolerance.below = distance;
+        self
+    }
+
+    /// The distance that is allowed on the side of the exact value on which the computed one lies.
+    pub fn most(&self) -> f64 {
+        if self.found < self.exact {
+            self.tolerance.below
+        } else {
+            self.tolerance.distance
         }
     }
 
     /// Whether the two values agree; false for NaN.
     pub fn holds(&self) -> bool {
-        (self.found - self.exact).abs() <= self.tolerance.distance
+        (self.found - self.exact).abs() <= self.most()
+    }
+}
+
+/// Distance by which rounding may take a value below the exact one that errors only raise.
+pub(crate) fn rounding(exact: f64) -> f64 {
+    1e-12 * exact.abs().max(1.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_answer_holds_within_its_distances_alone() {
+        let holds = |found: f64| Answer::new("", [1.0, found], (0.25, "")).holds();
+        assert_eq!(
+            [0.7, 0.75, 1.25, 1.3, f64::NAN, f64::INFINITY].map(holds),
+            [false, true, true, false, false, false]
+        );
+        let holds = |found: f64| Answer::seen_late("", [1.0, found], (0.25, "")).holds();
+        assert_eq!(
+            [0.99, 1.0 - 1e-13, 1.25, 1.26, f64::NAN].map(holds),
+            [false, true, true, false, false]
+        );
     }
 }

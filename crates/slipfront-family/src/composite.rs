@@ -8,7 +8,7 @@ use slipfront::surface::{Coefficients, Contact, Load};
 use slipfront::{Drive, FrictionLaw, Lattice, Model, Outline, Slider, Surface, scales};
 use slipfront_plot::{Response, Responses};
 
-use crate::answer::{Answer, Chapter};
+use crate::answer::{Answer, Chapter, rounding};
 use crate::error::FamilyError;
 use crate::runs::Experiment;
 
@@ -64,11 +64,8 @@ pub(crate) fn chapter() -> Result<Chapter, FamilyError> {
         } else {
             (rise, "the pull of one step: it is the weak zone that slips")
         };
-        answers.push(Answer::new(
-            format!("largest μ* of {weak_rows} tenths at 0.5 and the rest at 1"),
-            [exact, peak],
-            tolerance,
-        ));
+        let quantity = format!("largest μ* of {weak_rows} tenths at 0.5 and the rest at 1");
+        answers.push(Answer::new(quantity, [exact, peak], tolerance).at_most_below(rounding(exact)));
         shares.push(share);
         found.push(peak);
     }

@@ -75,7 +75,7 @@ fn tolerance(w: f64, exact: f64, redrawn: bool) -> (f64, &'static str) {
     }
 }
 
-/// Pull at which the first spring of a chain breaks that is driven at its first block.
+/// Pull at which the first spring of a chain breaks that is driven at its first block; NaN if another one breaks.
 fn pull(n: usize, stiffness: f64) -> f64 {
     let lattice = Lattice::free(n, 1);
     let law = Friction::ContactSprings(ContactSprings {
@@ -103,7 +103,13 @@ fn pull(n: usize, stiffness: f64) -> f64 {
     while simulation.snapshot().totals.n_slipping == 0 {
         simulation.step();
     }
-    simulation.snapshot().block(0).force_drive[0]
+    let now = simulation.snapshot();
+    let times = now.first_slip_time_star();
+    if (0..n).all(|b| times[b].is_nan() == (b > 0)) {
+        now.block(0).force_drive[0]
+    } else {
+        f64::NAN
+    }
 }
 
 pub(crate) fn chapter() -> Result<Chapter, FamilyError> {

@@ -57,7 +57,8 @@ impl Longer {
 }
 
 impl Chain {
-    /// Events that are longer than all before, and the largest load, of a run that ends when an event has crossed the chain.
+    /// Events that are longer than all before, and the largest load, of a run that ends when an event has crossed the chain; the load is
+    /// infinite if none crosses it.
     fn precursors(&self, slope: f64, dt_star: f64) -> Result<(Vec<Longer>, f64), FamilyError> {
         let (n, v_star) = (f64::from(self.blocks), self.v_star);
         // Until the springs would pull with 1.3 times the kinetic friction of the whole chain, were it at rest.
@@ -103,7 +104,13 @@ impl Chain {
                 });
             }
         }
-        Ok((longer, STATIC * simulation.peak().largest.mu_star))
+        let crosses = observer.crossing().is_some();
+        let largest = if crosses {
+            STATIC * simulation.peak().largest.mu_star
+        } else {
+            f64::INFINITY
+        };
+        Ok((longer, largest))
     }
 
     /// Answers for the chain's runs under one profile of pressure; and the events of the run of the finest step.
@@ -135,7 +142,8 @@ impl Chain {
                 ),
             ));
             for error in errors {
-                if error[0] > largest[0] {
+                // An error beyond its own bound is shown in place of the largest.
+                if (error[0] > error[2], error[0]) > (largest[0] > largest[2], largest[0]) {
                     largest = error;
                 }
             }

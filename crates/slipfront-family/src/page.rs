@@ -97,7 +97,8 @@ pub fn summary(chapters: &[Chapter]) -> String {
             let _ = writeln!(
                 text,
                 "  {quantity}: {found}, exactly {exact}, farther than {}: {}",
-                tolerance.distance, tolerance.reason
+                answer.most(),
+                tolerance.reason
             );
         }
     }

@@ -91,8 +91,8 @@ fn after_step(v_2: f64) -> f64 {
             velocity: along_x(v_2),
         }),
     };
-    let pulls = experiment.values(&[AFTER], |now| now.point.mu_star);
-    pulls[0] - drag - law.steady_coefficient(v_2)
+    let [pull] = experiment.values([AFTER], |now| now.point.mu_star);
+    pull - drag - law.steady_coefficient(v_2)
 }
 
 pub(crate) fn chapter() -> Result<Chapter, FamilyError> {

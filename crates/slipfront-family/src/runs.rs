@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use slipfront::communicator::Alone;
+use slipfront::exact_solutions::oscillation_growth;
 use slipfront::lattice::K_DRIVE;
 use slipfront::observe::{Curve, CurveRow, Scheduled};
 use slipfront::{Execution, Model, Simulation, Snapshot, State, Stop, VectorField, scales};
@@ -104,16 +105,19 @@ impl Experiment {
     }
 
     /// Values of `value` at these times, which follow one another.
-    pub(crate) fn values(&self, times: &[f64], value: impl Fn(&Snapshot) -> f64) -> Vec<f64> {
+    pub(crate) fn values<const N: usize>(
+        &self,
+        times: [f64; N],
+        value: impl Fn(&Snapshot) -> f64,
+    ) -> [f64; N] {
         let mut simulation = self.begin();
-        let at = |time: &f64| {
+        times.map(|time| {
             let step = (time / self.dt_star).round() as u64;
             while simulation.snapshot().step < step {
                 simulation.step();
             }
             value(&simulation.snapshot())
-        };
-        times.iter().map(at).collect()
+        })
     }
 }
 
@@ -126,17 +130,7 @@ pub(crate) fn rounding(path: f64) -> f64 {
     K_DRIVE * f64::EPSILON * path / (scales::damping(1.0) * 0.1)
 }
 
-/// Rate at which an oscillation `x = A exp(s t) cos(w t + p)` grows, from four of its values a time `apart`: `x_2 = p x_1 - q x_0` with
-/// `q = exp(2 s apart)`.
-pub(crate) fn growth(values: &[f64], apart: f64) -> f64 {
-    let &[x0, x1, x2, x3] = values else {
-        return f64::NAN;
-    };
-    let q = (x2 * x2 - x1 * x3) / (x1 * x1 - x0 * x2);
-    libm::log(q) / (2.0 * apart)
-}
-
-/// Growth rate of a small disturbance of steady sliding of blocks that move as one, from `t* = first` on, as for [`growth`].
+/// Growth rate of a small disturbance of steady sliding of blocks that move as one, from `t* = first` on, as for [`oscillation_growth`].
 pub(crate) fn growth_of_disturbance(model: Model, dt_star: f64, first: f64, apart: f64) -> f64 {
     let (v_star, n) = (model.drive.v_star, model.lattice.n_blocks());
     let behind = model.steady_level(&Alone) / model.drive.k_drive;
@@ -153,8 +147,8 @@ pub(crate) fn growth_of_disturbance(model: Model, dt_star: f64, first: f64, apar
         }),
     };
     let times = [0.0, 1.0, 2.0, 3.0].map(|k| first + k * apart);
-    let values = experiment.values(&times, |now| {
+    let values = experiment.values(times, |now| {
         now.block(0).displacement[0] + behind - v_star * now.time_star
     });
-    growth(&values, apart)
+    oscillation_growth(values, apart)
 }

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use slipfront::exact_solutions::slip_of_jump;
 use slipfront::lattice::K_DRIVE;
 use slipfront::{
     Coulomb, Drive, Execution, Friction, FrictionLaw, Lattice, Model, Program, Simulation, SlipWeakening,
@@ -37,7 +38,7 @@ fn block(weakening: f64, damping: f64, segments: &[(f64, f64)]) -> Simulation {
 }
 
 /// Place where a block that has jumped without damping comes to rest, with the drive standing at its threshold, and the
-/// energy of weakening.
+/// energy of weakening; NaN if it still slides.
 fn jumped(weakening: f64) -> [f64; 2] {
     let until = (1.0 / K_DRIVE / FAST / DT_STAR).ceil() * DT_STAR + DT_STAR;
     let mut simulation = block(weakening, 0.0, &[(FAST, until), (0.0, f64::INFINITY)]);
@@ -45,6 +46,9 @@ fn jumped(weakening: f64) -> [f64; 2] {
         simulation.step();
     }
     let now = simulation.snapshot();
+    if now.totals.n_sliding > 0 {
+        return [f64::NAN; 2];
+    }
     [now.block(0).displacement[0], now.weakening_energy()]
 }
 
@@ -62,7 +66,7 @@ fn followed(weakening: f64, damping: f64, speed: f64, path: f64) -> f64 {
 pub(crate) fn chapter() -> Result<Chapter, FamilyError> {
     let mut answers = Vec::new();
     for weakening in [0.6, 1.0, 2.0] {
-        let exact = (DROP + (DROP * DROP - K_DRIVE * DROP * (DROP / weakening)).sqrt()) / K_DRIVE;
+        let exact = slip_of_jump(DROP, weakening, K_DRIVE);
         let [found, energy] = jumped(weakening);
         answers.push(Answer::new(
             format!("slip of a jump, W = {weakening}"),

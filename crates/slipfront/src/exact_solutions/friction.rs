@@ -165,6 +165,26 @@ pub fn rate_and_state_growth(law: &RateAndState, sigma: f64, v: f64, k: f64, dam
     root.max(half + discriminant.sqrt())
 }
 
+/// Slip of a block without damping that weakens faster than its drive spring unloads, and jumps while the drive stands at its threshold.
+/// It comes to rest beyond the length `D_c = D/W` of weakening, where the spring has done as much work as friction:
+///
+/// ```text
+/// s = [D + sqrt(D^2 - k_s D D_c)]/k_s
+/// ```
+///
+/// `drop`: difference `D` of the thresholds; `weakening`: `W > k_s`, loss of strength per slip; `k`: `k_s`.
+///
+/// ```
+/// # use slipfront::exact_solutions::slip_of_jump;
+/// assert_eq!(slip_of_jump(0.5, 0.5, 0.375), 2.0);
+/// for weakening in [0.6, 2.0] {
+///     assert!(slip_of_jump(0.5, weakening, 0.375) > 0.5 / weakening);
+/// }
+/// ```
+pub fn slip_of_jump(drop: f64, weakening: f64, k: f64) -> f64 {
+    (drop + (drop * drop - k * drop * (drop / weakening)).sqrt()) / k
+}
+
 /// First peak of friction over its mean in sliding of a rigid slider that is moved slowly, on springs whose thresholds are spread
 /// evenly over 1 - w to 1 + w, w <= 1/3. All springs are stretched alike until the weakest breaks, at 1 - w; later each is at all
 /// extensions alike, and bears half its threshold on average. A spring that keeps its threshold x breaks as often as 1/x:

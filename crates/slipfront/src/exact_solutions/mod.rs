@@ -1,7 +1,8 @@
 //! Problems with exact solutions, shared by tests and benches.
 //!
 //! In the units of this crate (lengths in blocks, times in `l sqrt(rho/E)`, forces in
-//! `P mu_s l^2`). The tests under `tests/physics` hold the kernels against them.
+//! `P mu_s l^2`). The chapters of slipfront-family and the tests under
+//! `tests/physics` hold the kernels against them.
 
 mod edge_drive;
 mod friction;
@@ -284,6 +285,23 @@ pub fn lattice_waves(a: f64, b: f64, k_drive: f64) -> [LatticeWave; 2] {
 /// ```
 pub fn leapfrog_frequency(omega: f64, dt: f64) -> f64 {
     2.0 / dt * libm::asin(0.5 * omega * dt)
+}
+
+/// Growth rate `s` of an oscillation `x = A exp(s t) cos(w t + p)` from four of its values, each a time `apart` after the one before, about
+/// a quarter of a period; NaN of values that are no oscillation.
+///
+/// ```text
+/// q = (x_2^2 - x_1 x_3)/(x_1^2 - x_0 x_2) = exp(2 s apart),   since x_2 = p x_1 - q x_0
+/// ```
+///
+/// ```
+/// use slipfront::exact_solutions::oscillation_growth;
+/// let x = |t: f64| (-0.2 * t).exp() * (1.5 * t + 0.3).cos();
+/// assert!((oscillation_growth([0.0, 1.0, 2.0, 3.0].map(x), 1.0) + 0.2).abs() < 1e-14);
+/// ```
+pub fn oscillation_growth([x0, x1, x2, x3]: [f64; 4], apart: f64) -> f64 {
+    let q = (x2 * x2 - x1 * x3) / (x1 * x1 - x0 * x2);
+    libm::log(q) / (2.0 * apart)
 }
 
 /// Which way a groove or a front faces the sliding direction.

@@ -63,11 +63,5 @@ fn soft_drive_springs_change_little(tau: f64) {
         let first = simulation.snapshot().first_slip_time_star();
         80.0 / (first[180] - first[100]) / K_STRAIGHT.sqrt()
     });
-    let exact = 1.0 / (1.0 - tau * tau).sqrt();
-    // Half a step per block.
-    assert!(
-        (speeds[1] / exact - 1.0).abs() < 5e-3 * exact,
-        "{speeds:?}, exactly {exact}"
-    );
     assert!((speeds[0] / speeds[1] - 1.0).abs() < 1e-2, "{speeds:?}");
 }

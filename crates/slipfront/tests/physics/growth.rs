@@ -1,24 +1,32 @@
-//! The rate at which a disturbance grows.
+//! The rate at which a disturbance of steady sliding grows.
 
-use slipfront::{Simulation, Snapshot};
+use slipfront::communicator::Alone;
+use slipfront::exact_solutions::oscillation_growth;
+use slipfront::{Model, State, VectorField};
 
-/// Growth rate of an oscillation `x(t) = A exp(s t) cos(w t + p)`, from four of its values from the time `from` on, `apart` from each
-/// other, about a quarter of a period: of three of them in a row `x_2 = p x_1 - q x_0`, with `q = exp(2 s apart)`.
-pub(crate) fn growth_rate(
-    simulation: &mut Simulation,
-    dt: f64,
-    [from, apart]: [f64; 2],
-    value: impl Fn(&Snapshot) -> f64,
-) -> f64 {
-    let [from, apart] = [from, apart].map(|time| (time / dt).round() as u64);
-    let mut values = Vec::new();
-    for step in 0..=from + 3 * apart {
-        if step >= from && (step - from).is_multiple_of(apart) {
-            values.push(value(&simulation.snapshot()));
+use crate::common::from_state;
+
+/// Growth rate of a small disturbance of steady sliding of blocks that move as one, from four displacements from the time `from` on,
+/// `apart` from each other. The disturbance is so small that laws are linear to a millionth, and so large that rounding is less.
+pub(crate) fn growth_of_disturbance(model: &Model, dt: f64, [from, apart]: [f64; 2]) -> f64 {
+    let (v, n) = (model.drive.v_star, model.lattice.n_blocks());
+    let behind = model.steady_level(&Alone) / model.drive.k_drive;
+    let along_x = |x: f64| VectorField {
+        x: vec![x; n],
+        y: vec![0.0; n],
+    };
+    let state = State {
+        displacement: along_x(1e-6 - behind),
+        velocity: along_x(v),
+    };
+    let mut simulation = from_state(model, dt, state);
+    let [first, pitch] = [from, apart].map(|time| (time / dt).round() as u64);
+    let values = [0, 1, 2, 3].map(|k| {
+        while simulation.snapshot().step < first + k * pitch {
+            simulation.step();
         }
-        simulation.step();
-    }
-    let [x0, x1, x2, x3] = [values[0], values[1], values[2], values[3]];
-    let q = (x2 * x2 - x1 * x3) / (x1 * x1 - x0 * x2);
-    q.ln() / (2.0 * apart as f64 * dt)
+        let now = simulation.snapshot();
+        now.block(0).displacement[0] + behind - v * now.time_star
+    });
+    oscillation_growth(values, pitch as f64 * dt)
 }

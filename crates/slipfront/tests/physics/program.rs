@@ -19,39 +19,6 @@ fn programmed(slider: &Slider, segments: &[(f64, f64)]) -> Model {
     model
 }
 
-/// A slider that is overdamped, so that it slides steadily.
-fn steady() -> Slider {
-    Slider {
-        blocks: [9, 8],
-        omega_star: 1.5,
-        ..Slider::default()
-    }
-}
-
-/// The level of steady sliding moves by `Omega dV` when the speed does. Deviations decay at `k_s/Omega` or faster, by exp(-20) from
-/// step to step.
-#[test]
-fn velocity_steps_move_the_level_by_damping() {
-    let slider = steady();
-    let decay = slider.model().damping / 0.375;
-    let (first, then) = (100.0 + 20.0 * decay, 40.0 * decay);
-    let ends = [first, first + then, first + 2.0 * then].map(|t| (t / 0.1).round() * 0.1);
-    let speeds = [0.05, 0.2, 0.05];
-    let model = programmed(&slider, &[(0.05, ends[0]), (0.2, ends[1]), (0.05, END)]);
-    let mut simulation = at_rest(&model, 0.1);
-    for (end, speed) in ends.into_iter().zip(speeds) {
-        simulation
-            .run(Stop::at_step((end / 0.1).round() as u64), &mut [])
-            .unwrap();
-        let level = model.surface.mean_kinetic_force() + model.damping * speed;
-        let mu_star = simulation.snapshot().point.mu_star;
-        assert!(
-            (mu_star - level).abs() < 1e-7,
-            "{mu_star} after {speed}, exactly {level}"
-        );
-    }
-}
-
 /// After a hold from the start the drive takes as long to the first slip as without it: `k_s V (t - t_h) = min_i threshold_i`, seen at
 /// most a step late.
 #[test_matrix([0.0, 12.5, 400.0])]

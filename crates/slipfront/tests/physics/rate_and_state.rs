@@ -4,11 +4,11 @@ use slipfront::communicator::Alone;
 use slipfront::exact_solutions::{friction_after_speed_step, rate_and_state_growth};
 use slipfront::observe::Curve;
 use slipfront::surface::Load;
-use slipfront::{Drive, Friction, Lattice, Model, RateAndState, State, Surface, VectorField, scales};
+use slipfront::{Drive, Friction, Lattice, Model, RateAndState, Surface, scales};
 use test_case::{test_case, test_matrix};
 
-use crate::common::{Slider, at_rest, cavity, from_state};
-use crate::growth::growth_rate;
+use crate::common::{Slider, at_rest, cavity};
+use crate::growth::growth_of_disturbance;
 
 const LAW: RateAndState = RateAndState {
     a: 0.01,
@@ -49,22 +49,8 @@ fn measured_growth(v: f64, k: f64, damping: f64, dt: f64, apart: f64) -> f64 {
     };
     let surface = Surface::uniform(&lattice, 1.0, 0.5);
     let model = Model::new(lattice, surface, drive, damping, 0.0, Friction::RateAndState(law));
-    let behind = model.steady_level(&Alone) / k;
-    let state = State {
-        displacement: VectorField {
-            x: vec![-behind + 1e-6; 4],
-            y: vec![0.0; 4],
-        },
-        velocity: VectorField {
-            x: vec![v; 4],
-            y: vec![0.0; 4],
-        },
-    };
-    let mut simulation = from_state(&model, dt, state);
     // By then the third root, -0.3 or less, has died away.
-    growth_rate(&mut simulation, dt, [60.0, apart], |now| {
-        now.block(0).displacement[0] + behind - v * now.time_star
-    })
+    growth_of_disturbance(&model, dt, [60.0, apart])
 }
 
 /// Disturbances grow below and decay above the critical stiffness. Friction is taken at the speed half a step after the

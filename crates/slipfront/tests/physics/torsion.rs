@@ -1,11 +1,11 @@
 //! A drive that rotates: the torsion of a disc.
 
 use slipfront::communicator::Alone;
-use slipfront::exact_solutions::{torsion_first_slip, torsion_of_decoupled_blocks};
+use slipfront::exact_solutions::torsion_first_slip;
 use slipfront::observe::{Curve, Scheduled};
 use slipfront::surface::{Coefficients, Contact, Load};
 use slipfront::{Lattice, Model, Outline, Rotation, Stop, Surface};
-use test_case::{test_case, test_matrix};
+use test_case::test_case;
 
 use crate::common::{Slider, at_rest};
 
@@ -115,52 +115,6 @@ fn a_disc_of_thresholds_in_proportion_to_the_radius_slips_at_once() {
     }
     simulation.step();
     assert_eq!(simulation.snapshot().totals.n_slipping, model.surface.n_contact());
-}
-
-/// Blocks that are driven each on its own, their springs to each other a million times softer, slip from the rim inwards:
-/// `T/T_full = [sum_stuck r^2/(rho r_max) + R* sum_sliding r]/sum r` while those within rho stick; largest at the first slip for R* < 3/4, else at
-/// the end. Overdamped, so that a block that has slipped slides on. Its drag is `Omega V r/r_max`, at most `Omega V` in all; and a block that
-/// slips comes down to kinetic friction in some Omega/k_s = 4.6, in which the edge of the stuck part moves by `rho^2 V Omega` of the radius:
-/// the blocks there, `3 rho^2` of the torque for each of the radius, and at least the eight of one radius, may still bear 1 - R* more.
-#[test_matrix([0.3, 0.9])]
-fn a_disc_of_blocks_on_their_own_slips_from_the_rim(r_star: f64) {
-    let mut body = disc(40);
-    body.stiffness = Some(vec![1e-6; 1600]);
-    let slider = Slider {
-        blocks: [40, 40],
-        body,
-        r_star,
-        omega_star: 2.0,
-        v_star: 1e-3,
-        dt_star: 0.8,
-        ..Slider::default().uniform()
-    };
-    let model = turned(&slider);
-    let radii = radii(&model);
-    let largest = radii.iter().copied().fold(0.0, f64::max);
-    let drag = model.damping * slider.v_star;
-    let excess = |stuck: f64| {
-        let group = 8.0 * stuck * largest / radii.iter().sum::<f64>();
-        drag + (1.0 - r_star) * (3.0 * drag * stuck.powi(4) + group)
-    };
-    // The torque is read, and a slip seen, up to a step late.
-    let rise = 0.375 * slider.v_star * slider.dt_star;
-    let mut simulation = at_rest(&model, 0.8);
-    for stuck in [0.9, 0.7, 0.5, 0.35] {
-        let time_star = model.first_slip_estimate(&Alone) / stuck;
-        simulation
-            .run(Stop::at_step((time_star / 0.8) as u64), &mut [])
-            .unwrap();
-        let mu_star = simulation.snapshot().point.mu_star;
-        let above = mu_star - torsion_of_decoupled_blocks(&radii, stuck, r_star);
-        assert!(
-            -rise < above && above < excess(stuck) + rise,
-            "{above} above the exact torque at {stuck}"
-        );
-    }
-    let at_the_end = torsion_of_decoupled_blocks(&radii, 0.35, r_star);
-    let above = simulation.peak().largest.mu_star - at_the_end.max(torsion_first_slip(&radii));
-    assert!(-rise < above && above < excess(1.0) + rise, "{above}");
 }
 
 /// Steady rotation: kinetic friction along the circles and damping, `[sum mu_k F_n r + Omega V sum r^2/r_max]/sum r`. All motions

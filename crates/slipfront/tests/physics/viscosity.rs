@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use slipfront::exact_solutions::{lagged_decay_rate, lattice_waves, viscous_decay_rate};
+use slipfront::exact_solutions::{lagged_decay_rate, lattice_waves, oscillation_growth, viscous_decay_rate};
 use slipfront::lattice::K_DRIVE;
 use slipfront::observe::{Curve, Scheduled};
 use slipfront::{
@@ -83,13 +83,6 @@ fn a_mode_obeys_the_scheme(mode: (u32, u32), branch: usize, omega_star: f64, tim
     }
 }
 
-/// Decay rate of an oscillation u+ = p u - q u-, which q = e^(-2 rate dt) tells. Of amplitudes a time `apart`,
-/// q = (u1 u3 - u2^2)/(u0 u2 - u1^2).
-fn decay_rate([u0, u1, u2, u3]: [f64; 4], apart: f64) -> f64 {
-    let q = (u1 * u3 - u2 * u2) / (u0 * u2 - u1 * u1);
-    -q.ln() / (2.0 * apart)
-}
-
 /// Exactly the rate of the lagged force, which is of first order in the step. It is read off amplitudes about a radian apart, so
 /// that it is as exact as they are: 1e-12.
 #[test_matrix([(1, 0), (2, 1), (6, 4)], [0, 1])]
@@ -98,7 +91,7 @@ fn modes_decay_at_their_rate(mode: (u32, u32), branch: usize) {
     let error = |dt: f64| {
         let apart = (0.5 / dt) as usize;
         let (omega_squared, found) = amplitudes(mode, branch, 0.0, time, dt, 3 * apart + 1);
-        let rate = decay_rate([0, 1, 2, 3].map(|k| found[k * apart]), apart as f64 * dt);
+        let rate = -oscillation_growth([0, 1, 2, 3].map(|k| found[k * apart]), apart as f64 * dt);
         let lagged = lagged_decay_rate(omega_squared, time, dt);
         assert!((rate - lagged).abs() < 1e-11, "{rate}, exactly {lagged}");
         rate / viscous_decay_rate(omega_squared, 0.0, time) - 1.0
@@ -114,7 +107,7 @@ fn modes_decay_at_their_rate(mode: (u32, u32), branch: usize) {
 fn both_dampings_add() {
     let (dt, time, omega_star) = (1e-3, 0.05, 0.2);
     let (omega_squared, found) = amplitudes((2, 1), 1, omega_star, time, dt, 4000);
-    let rate = decay_rate([999, 1999, 2999, 3999].map(|k| found[k]), 1000.0 * dt);
+    let rate = -oscillation_growth([999, 1999, 2999, 3999].map(|k| found[k]), 1000.0 * dt);
     let exact = viscous_decay_rate(omega_squared, scales::damping(omega_star), time);
     assert!((rate / exact - 1.0).abs() < 2e-4, "{rate}, exactly {exact}");
 }

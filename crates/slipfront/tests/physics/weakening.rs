@@ -3,13 +3,11 @@
 use slipfront::communicator::Alone;
 use slipfront::exact_solutions::weakening_growth;
 use slipfront::lattice::K_DRIVE;
-use slipfront::{
-    Coulomb, Drive, Friction, FrictionLaw, Lattice, Model, State, Surface, VectorField, Weakening, scales,
-};
+use slipfront::{Coulomb, Drive, Friction, FrictionLaw, Lattice, Model, Surface, Weakening, scales};
 use test_case::{test_case, test_matrix};
 
-use crate::common::{Slider, from_state};
-use crate::growth::growth_rate;
+use crate::common::Slider;
+use crate::growth::growth_of_disturbance;
 
 fn weakening(law: Weakening) -> Friction {
     Friction::Coulomb(Coulomb {
@@ -28,23 +26,7 @@ fn measured_growth(v: f64, damping: f64, dt: f64) -> f64 {
     let lattice = Lattice::free(2, 2);
     let surface = Surface::uniform(&lattice, 1.0, 0.5);
     let model = Model::new(lattice, surface, Drive::along_x(v), damping, 0.0, weakening(LAW));
-    let behind = (model.steady_level(&Alone)) / K_DRIVE;
-    // So small that the law is linear to a millionth, so large that rounding is less.
-    let amplitude = 1e-6;
-    let state = State {
-        displacement: VectorField {
-            x: vec![-behind + amplitude; 4],
-            y: vec![0.0; 4],
-        },
-        velocity: VectorField {
-            x: vec![v; 4],
-            y: vec![0.0; 4],
-        },
-    };
-    let mut simulation = from_state(&model, dt, state);
-    growth_rate(&mut simulation, dt, [0.0, 2.4], |now| {
-        now.block(0).displacement[0] + behind - v * now.time_star
-    })
+    growth_of_disturbance(&model, dt, [0.0, 2.4])
 }
 
 /// Friction is taken at the speed half a step before, F(v - dt v'/2), as if the mass were m - (dF/dv) dt/2: the rate is
