@@ -140,7 +140,7 @@ pub(crate) fn chapter() -> Result<Chapter, FamilyError> {
 mod tests {
     use super::*;
 
-    /// Of blocks on their own the torque is largest at the first slip where R* < 3/4, else at the end.
+    /// The torque of blocks on their own is largest at the first slip where R* < 3/4, else at the end.
     #[test]
     fn the_largest_torque_is_that_of_the_first_slip_or_of_the_end() {
         for r_star in [0.3, 0.9] {
