@@ -5,7 +5,7 @@ use std::sync::atomic::AtomicBool;
 use std::sync::{Mutex, PoisonError};
 
 use pyo3::prelude::*;
-use slipfront_calibrate::{CalibrationFile, CalibrationFolder, CalibrationProgress};
+use slipfront_calibrate::{CalibrationFile, CalibrationFolder, CalibrationProgress, GivenRecord};
 use slipfront_study::StudyError;
 
 use crate::errors::study_error;
@@ -32,7 +32,7 @@ impl Calibration {
 
     #[getter]
     fn name(&self) -> &str {
-        &self.file.name
+        self.file.name()
     }
 
     /// The columns of records.
@@ -54,9 +54,11 @@ impl Calibration {
     ) -> PyResult<Vec<String>> {
         let (folder, force) = folder;
         let opened = detached(py, || {
+            let records = self.file.read(&records)?;
             self.file.check_memory(&records, threads)?;
-            let folder = CalibrationFolder::open(&folder, training.as_deref(), &self.file, &records, force)?;
-            Ok((folder, self.file.notes(&records)?))
+            let notes = records.iter().filter_map(GivenRecord::note).collect();
+            let folder = CalibrationFolder::open(&folder, training.as_deref(), &self.file, records, force)?;
+            Ok((folder, notes))
         })?;
         let (mut opened, notes) = opened.map_err(|error| study_error(py, &error))?;
         let progress: Mutex<Option<CalibrationProgress>> = Mutex::new(None);

@@ -55,7 +55,7 @@ impl Design {
 
     #[getter]
     fn name(&self) -> &str {
-        &self.file.name
+        self.file.name()
     }
 
     /// Blocks along x and along y.

@@ -22,8 +22,9 @@ use slipfront_run::running::Running;
 use slipfront_run::verify::inspect;
 use slipfront_run::{fields, series, summary};
 use slipfront_study::converge::is_written;
+use slipfront_study::project_folder::Extent;
 use slipfront_study::study_of;
-use slipfront_study::verify::{Extent, has_records, verify as verify_folder};
+use slipfront_study::verify::{has_records, verify as verify_folder};
 
 use crate::case::{Case, make};
 use crate::errors::{FolderError, folder_error};
@@ -56,10 +57,10 @@ pub(crate) fn kind_of(folder: PathBuf) -> PyResult<Option<&'static str>> {
         let is_of_meshes = study_of(&folder).is_ok_and(|study| is_written(&folder, &study.axes));
         return Ok(Some(if is_of_meshes { "meshes" } else { "study" }));
     }
-    if DESIGNS.is_in(&folder) && folder.join("design.json").exists() {
+    if DESIGNS.kind.is_in(&folder) && folder.join("design.json").exists() {
         return Ok(Some("design"));
     }
-    if CALIBRATIONS.is_in(&folder) && folder.join("calibration.json").exists() {
+    if CALIBRATIONS.kind.is_in(&folder) && folder.join("calibration.json").exists() {
         return Ok(Some("calibration"));
     }
     if folder.join(FIGURE_CACHE).is_dir() {
@@ -79,7 +80,7 @@ pub(crate) fn verify(py: Python<'_>, folder: PathBuf) -> PyResult<()> {
     let verdict = detached(py, || {
         verify_folder(
             &folder,
-            &[&DESIGNS, &CALIBRATIONS],
+            &[DESIGNS, CALIBRATIONS],
             Extent::Derived,
             &AtomicBool::new(false),
         )

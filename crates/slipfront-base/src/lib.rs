@@ -1,4 +1,4 @@
-//! What every crate of slipfront needs below a case: files that are whole or not there at all, numbers and texts for people, and
+//! Everything that crates of slipfront need below a case: files that are whole or not there at all, numbers and texts for people, and
 //! the memory and the disk of the machine.
 
 pub mod disk;

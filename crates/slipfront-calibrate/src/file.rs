@@ -3,10 +3,10 @@
 use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
-use slipfront_base::disk::{TEXT_MAX_BYTES, open_limited};
+use slipfront_base::disk::{TEXT_MAX_BYTES, read_limited};
 use slipfront_base::number_format::{are, with_si_prefix};
 use slipfront_case::case::Case;
-use slipfront_case::case_file::{CaseError, Override, Source, Tables, syntax_error, unknown_key};
+use slipfront_case::case_file::{CaseError, Override};
 use slipfront_run::folder_error::FolderError;
 use slipfront_run::measured::{Measure, MeasuredRecord};
 use slipfront_run::run_curve::steps_to;
@@ -18,12 +18,17 @@ use crate::summaries::MIN_VALUES;
 use crate::unknowns::Unknown;
 use slipfront_study::StudyError;
 use slipfront_study::axis::overrides;
-use slipfront_study::input_copies::Copy;
 use slipfront_study::measured_columns::MeasuredColumns;
-use slipfront_study::study_file::{Base, found_at, parse_noting_places, portable, read_base, read_named};
+use slipfront_study::project_file::ProjectFile;
+use slipfront_study::project_folder::ProjectKind;
 
-/// The tables of a calibration file.
-const TABLES: [&str; 2] = ["base", "calibrate"];
+/// Folders of calibrations. Their calibration file has the base case as a table in it.
+pub(crate) static CALIBRATION: ProjectKind = ProjectKind {
+    name: "calibration",
+    table: "calibrate",
+    file: "calibration.toml",
+    journal: "training.jsonl",
+};
 
 /// Smallest and largest number of runs of a training: intervals of 90 % from 100 runs hold three values of four, more are a system of
 /// equations that memory is too small for.
@@ -35,14 +40,9 @@ const MAX_STEPS: u64 = 10_000_000;
 /// A calibration file.
 #[derive(Clone, Debug)]
 pub struct CalibrationFile {
-    /// Name of the calibration and of its results.
-    pub name: String,
     /// Keys of the file.
     pub keys: CalibrationKeys,
-    /// The case.
-    pub(crate) base: Base,
-    source: Source,
-    table: Table,
+    pub(crate) project: ProjectFile,
 }
 
 /// The table `[calibrate]`.
@@ -128,9 +128,21 @@ fn default_finer_runs() -> u32 {
 
 /// A record as measured, and the steps in which it is compared.
 #[derive(Clone, Debug)]
-pub(crate) struct GivenRecord {
+pub struct GivenRecord {
     pub(crate) measured: MeasuredRecord,
     pub(crate) grid: Grid,
+    /// Ending of the name of its file.
+    pub(crate) ending: String,
+    /// Content of its file.
+    pub(crate) bytes: Vec<u8>,
+}
+
+impl GivenRecord {
+    /// A sentence about lines of the record that were passed over, if there are some.
+    pub fn note(&self) -> Option<String> {
+        let footer = self.measured.footer.as_ref()?;
+        Some(format!("{footer}: passed over"))
+    }
 }
 
 impl CalibrationKeys {
@@ -146,8 +158,7 @@ impl CalibrationFile {
     /// # Errors
     /// As [`parse`](Self::parse), and when the file cannot be read.
     pub fn load(path: &Path) -> Result<Self, StudyError> {
-        let (text, name, folder) = read_named(path, "calibration")?;
-        Self::parse(&text, &path.display().to_string(), &name, folder)
+        CALIBRATION.load(path, Self::parse)
     }
 
     /// Reads a calibration file called `file` in messages; a base case that it names stands relative to `folder`.
@@ -155,33 +166,20 @@ impl CalibrationFile {
     /// # Errors
     /// When it is no TOML, has unknown keys, or values out of their bounds.
     pub fn parse(text: &str, file: &str, name: &str, folder: &Path) -> Result<Self, StudyError> {
-        let mut source = Source::new(file, text);
-        let root = parse_noting_places(&mut source, text)?;
-        let mut tables = Tables {
-            root,
-            source: &source,
-        };
-        let base = read_base(&mut tables, file, folder)?;
-        let keys: CalibrationKeys = tables.read("calibrate")?;
-        if let Some(key) = tables.root.keys().min_by_key(|key| key.span().start) {
-            let sentence = unknown_key(key.get_ref(), "a calibration file", &TABLES);
-            return Err(source.error_at(key.span(), sentence).into());
-        }
-        let table = text.parse().map_err(|error| syntax_error(&source, 0, &error))?;
-        let file = Self {
-            name: name.to_owned(),
-            keys,
-            base,
-            source,
-            table,
-        };
+        let (project, keys) = ProjectFile::parse(&CALIBRATION, text, file, name, folder)?;
+        let file = Self { keys, project };
         file.check()?;
         Ok(file)
     }
 
+    /// Name of the calibration and of its results.
+    pub fn name(&self) -> &str {
+        &self.project.name
+    }
+
     fn check(&self) -> Result<(), CaseError> {
         let keys = &self.keys;
-        let refuse = |key: &str, sentence: String| Err(self.error(key, sentence));
+        let refuse = |key: &str, sentence: String| Err(self.project.error(key, sentence));
         if !(keys.noise > 0.0 && keys.noise < 1.0) {
             let sentence = format!(
                 "`noise` = {} must lie between 0 and 1: it is the standard deviation of the noise as a share of the mean \
@@ -220,7 +218,7 @@ impl CalibrationFile {
     }
 
     fn unknown(&self, key: &str, range: &Value) -> Result<Unknown, CaseError> {
-        let refuse = |sentence: String| self.error("unknowns", sentence);
+        let refuse = |sentence: String| self.project.error("unknowns", sentence);
         let Ok(keys) = range.clone().try_into::<RangeKeys>() else {
             return Err(refuse(format!(
                 "the range of `{key}` is written [0.3, 0.9], [\"1 um\", \"5 um\"] or {{ from = 0.03, to = 0.5, scale = \"log\" }}"
@@ -249,18 +247,11 @@ impl CalibrationFile {
         })
     }
 
-    /// An error about a key of `[calibrate]`.
-    fn error(&self, key: &str, sentence: String) -> CaseError {
-        self.source.error(&format!("calibrate.{key}"), sentence)
-    }
-
-    /// The calibration with its base case inside and its files beside it, for the results folder.
-    pub(crate) fn portable(&self) -> Result<(String, Vec<Copy>), StudyError> {
-        portable(&self.base, &self.table)
-    }
-
     /// Reads records, one for each of `records` in the file, or any number if it has none.
-    pub(crate) fn read(&self, paths: &[PathBuf]) -> Result<Vec<GivenRecord>, StudyError> {
+    ///
+    /// # Errors
+    /// When their number is another one, when one cannot be read, or when it is no record of these columns.
+    pub fn read(&self, paths: &[PathBuf]) -> Result<Vec<GivenRecord>, StudyError> {
         let expected = self.keys.records.len();
         if paths.is_empty() || (expected > 0 && expected != paths.len()) {
             let sentence = format!(
@@ -268,45 +259,39 @@ impl CalibrationFile {
                 are(expected.max(1), "record"),
                 are(paths.len(), "record"),
             );
-            return Err(self.error("records", sentence).into());
+            return Err(self.project.error("records", sentence).into());
         }
-        // The folder keeps copies, which are read as a whole.
-        for path in paths {
-            open_limited(path, TEXT_MAX_BYTES).map_err(FolderError::read(path))?;
-        }
+        paths.iter().map(|path| self.read_record(path)).collect()
+    }
+
+    fn read_record(&self, path: &Path) -> Result<GivenRecord, StudyError> {
         let keys = &self.keys;
         let columns = MeasuredColumns::new(keys.columns(), [&keys.x_unit, &keys.y_unit]);
         let along = match keys.against {
             Against::Time => Measure::Time,
             Against::Displacement => Measure::Displacement,
         };
-        let read = |path: &PathBuf| {
-            let measured = columns.read(path, along);
-            let measured = measured.map_err(|sentence| self.error("x", sentence))?;
-            let grid = Grid::of(&measured).ok_or_else(|| {
-                let sentence = format!(
-                    "{} has {} values: a record needs {MIN_VALUES} at the least, which do not all stand at one place",
-                    path.display(),
-                    measured.x.len()
-                );
-                self.error("x", sentence)
-            })?;
-            if grid.end() <= 0.0 {
-                return Err(self.before_the_drive(path, &grid).into());
-            }
-            Ok(GivenRecord { measured, grid })
-        };
-        paths.iter().map(read).collect()
-    }
-
-    /// Sentences about lines of records that were passed over.
-    ///
-    /// # Errors
-    /// When a record cannot be read.
-    pub fn notes(&self, paths: &[PathBuf]) -> Result<Vec<String>, StudyError> {
-        let records = self.read(paths)?.into_iter();
-        let footers = records.filter_map(|record| record.measured.footer);
-        Ok(footers.map(|footer| format!("{footer}: passed over")).collect())
+        let bytes = read_limited(path, TEXT_MAX_BYTES).map_err(FolderError::read(path))?;
+        let measured = columns.parse(&bytes, path, along);
+        let measured = measured.map_err(|sentence| self.project.error("x", sentence))?;
+        let grid = Grid::of(&measured).ok_or_else(|| {
+            let sentence = format!(
+                "{} has {} values: a record needs {MIN_VALUES} at the least, which do not all stand at one place",
+                path.display(),
+                measured.x.len()
+            );
+            self.project.error("x", sentence)
+        })?;
+        if grid.end() <= 0.0 {
+            return Err(self.before_the_drive(path, &grid).into());
+        }
+        let ending = path.extension().and_then(|ending| ending.to_str());
+        Ok(GivenRecord {
+            measured,
+            grid,
+            ending: ending.unwrap_or("csv").to_owned(),
+            bytes,
+        })
     }
 
     /// The set-up of the runs for records, on the blocks of the case. Both ends of every range are checked with the case.
@@ -316,7 +301,7 @@ impl CalibrationFile {
             grid: record.grid.clone(),
         });
         let set_up = SetUp {
-            base: self.base.clone(),
+            base: self.project.base.clone(),
             unknowns: self.unknowns()?,
             conditions: conditions.collect(),
             is_finer: false,
@@ -328,7 +313,7 @@ impl CalibrationFile {
                     let mut shares = middle.clone();
                     shares[unknown] = end;
                     let case = set_up.case(&shares, 0, conditions);
-                    let case = case.map_err(|error| self.found_in("unknowns", error))?;
+                    let case = case.map_err(|error| self.project.found_in("unknowns", error))?;
                     let steps = steps_to(&case, conditions.grid.along(), conditions.grid.end());
                     if steps > MAX_STEPS {
                         return Err(self.too_long(&case, steps).into());
@@ -345,7 +330,7 @@ impl CalibrationFile {
         let first = &set_up.conditions[0];
         let speed = |conditions: &Conditions| {
             let case = set_up.case(&middle, 0, conditions);
-            let case = case.map_err(|error| self.found_in("next", error))?;
+            let case = case.map_err(|error| self.project.found_in("next", error))?;
             Ok::<f64, StudyError>(case.model.drive.v_star * case.scales.displacement() / case.scales.time())
         };
         let further = |set: &Table| {
@@ -376,7 +361,7 @@ impl CalibrationFile {
             path.display(),
             with_si_prefix(grid.end(), grid.along().unit())
         );
-        self.error("x", sentence)
+        self.project.error("x", sentence)
     }
 
     /// The error of a record that takes too many steps.
@@ -386,7 +371,7 @@ impl CalibrationFile {
              against displacement, with a drive that is held while blocks slide: `against = \"displacement\"` and `drive.loading = \"held\"`",
             with_si_prefix(case.time_plan.dt_star * case.scales.time(), "s")
         );
-        self.error("x", sentence)
+        self.project.error("x", sentence)
     }
 
     /// Keys in which a record differs from the case.
@@ -395,11 +380,6 @@ impl CalibrationFile {
             .records
             .get(record)
             .map_or_else(Vec::new, |record| overrides(&record.set))
-    }
-
-    /// An error about a case that the keys of `[calibrate]` make, at their place.
-    pub(crate) fn found_in(&self, key: &str, error: CaseError) -> CaseError {
-        found_at(&self.source, &format!("calibrate.{key}"), error)
     }
 }
 

@@ -1,34 +1,25 @@
 //! The results folder of a calibration: its file, copies of the records, the journal of training runs, and the findings.
 
 use std::collections::{BTreeMap, HashMap};
-use std::io::Write;
 use std::path::{Path, PathBuf, absolute};
 use std::sync::atomic::AtomicBool;
 
 use serde::{Deserialize, Serialize};
-use slipfront_base::disk::{TEXT_MAX_BYTES, is_empty, is_same, make_folders, read_limited};
-use slipfront_run::folder_error::FolderError;
+use slipfront_base::disk::is_same;
 use slipfront_run::manifest::ManifestFile;
 
 use crate::calibration::{Calibration, Estimate};
-use crate::file::{CalibrationFile, CalibrationKeys, GivenRecord};
+use crate::file::{CALIBRATION, CalibrationFile, CalibrationKeys, GivenRecord};
 use crate::findings::{Findings, Further, OnFinerBlocks, Told, ToldTogether};
 use crate::grid::Grid;
 use crate::predicted::{PREDICTED, bands};
 use crate::report::{FOUND, Report};
 use crate::set_up::{Curves, SetUp};
 use crate::training::{Training, TrainingRun};
-use slipfront_study::journal::Journal;
-use slipfront_study::record::{JournalRecord, to_line};
-use slipfront_study::result_files::{Checksums, Others, ResultFiles};
-use slipfront_study::written_numbers::read_numbers;
-use slipfront_study::{ProjectKind, StudyError};
-
-/// The calibration file in the folder, with the base case as a table in it.
-const CALIBRATION: &str = "calibration.toml";
-
-/// The journal: a line for every training run.
-const TRAINING: &str = "training.jsonl";
+use slipfront_study::StudyError;
+use slipfront_study::project_folder::{
+    Checksums, Derivation, Given, Journal, JournalRecord, Others, ResultFiles, notes_of_use, read_numbers,
+};
 
 /// Beginning of the names of copies of records.
 const RECORD: &str = "record-";
@@ -130,16 +121,14 @@ pub struct CalibrationFolder {
 }
 
 /// Folders of calibrations.
-pub const CALIBRATIONS: ProjectKind = ProjectKind {
-    name: "calibration",
-    file: CALIBRATION,
-    journal: TRAINING,
+pub const CALIBRATIONS: Derivation = Derivation {
+    kind: &CALIBRATION,
     find_again,
 };
 
 /// Calibrates again in another folder from the runs in the journal.
 fn find_again(folder: &Path, other: &Path, stop: &AtomicBool) -> Result<[usize; 2], StudyError> {
-    Journal::copy::<CalibrationRun>(folder, other, TRAINING)?;
+    Journal::copy::<CalibrationRun>(folder, other, CALIBRATION.journal)?;
     let mut again = CalibrationFolder::again(folder, other)?;
     let kept = again.n_kept();
     again.find(stop, &mut |_| {})?;
@@ -152,29 +141,19 @@ fn is_same_place(one: &Path, other: &Path) -> bool {
     is_same(one, other) || are_equal()
 }
 
-/// Opens the journal of training runs in a folder, which is made where it is missing; returns it, the runs in it, and the number of
-/// its damaged lines.
-fn open_journal(folder: &Path) -> Result<(Journal, Vec<CalibrationRun>, usize), StudyError> {
-    make_folders(folder).map_err(FolderError::unwritable(folder))?;
-    Journal::open(folder, TRAINING).map_err(|error| match error {
-        StudyError::NotRecords { path } => FolderError::Foreign { path }.into(),
-        error => error,
-    })
-}
-
 impl CalibrationFolder {
     /// Opens a results folder: a new one, an empty one, or one of an earlier call for these records that no other process works in. Training
     /// runs are kept in it, or in the folder `training`.
     ///
     /// # Errors
-    /// When the records cannot be read, or the ranges leave the bounds of the case: then nothing is written. When the folder holds other
+    /// When the ranges leave the bounds of the case: then nothing is written. When the folder holds other
     /// files, or some that were edited since they were written and may not be replaced by `force`; when another process works in it, or
     /// it cannot be written to.
     pub fn open(
         path: &Path,
         training: Option<&Path>,
         file: &CalibrationFile,
-        records: &[PathBuf],
+        records: Vec<GivenRecord>,
         force: bool,
     ) -> Result<Self, StudyError> {
         if let Some(training) = training
@@ -183,53 +162,28 @@ impl CalibrationFolder {
             let path = training.to_owned();
             return Err(StudyError::TrainingInResults { path });
         }
-        let given = file.read(records)?;
-        file.set_up(&given)?;
-        let used = path.join(TRAINING).exists();
-        let is_free = || Ok(!path.exists() || is_empty(path)?);
-        if !used && !is_free().map_err(FolderError::unwritable(path))? {
-            return Err(StudyError::OtherThings {
-                what: "calibration",
-                path: path.to_owned(),
-            });
-        }
+        file.set_up(&records)?;
+        let is_used = CALIBRATION.is_used(path)?;
         // A folder that another process works in is met before a new one is made.
-        let own = used.then(|| open_journal(path)).transpose()?;
-        let shared = training.map(open_journal).transpose()?;
+        let own = is_used.then(|| CALIBRATION.open_journal(path)).transpose()?;
+        let shared = training.map(|folder| CALIBRATION.open_journal::<CalibrationRun>(folder));
+        let shared = shared.transpose()?;
         let (journal, mut kept, mut damaged) = match own {
             Some(own) => own,
-            None => open_journal(path)?,
+            None => CALIBRATION.open_journal::<CalibrationRun>(path)?,
         };
-        let (text, copies) = file.portable()?;
-        let contents = contents(records)?;
-        for (name, bytes) in contents
-            .iter()
-            .chain([&(CALIBRATION.to_owned(), text.clone().into_bytes())])
-        {
-            let before = read_limited(&path.join(name), TEXT_MAX_BYTES).ok();
-            if before.is_some_and(|before| before != *bytes) {
-                return Err(StudyError::Changed {
-                    what: "calibration",
-                    path: path.to_owned(),
-                });
-            }
-        }
-        let mut given = ResultFiles::new(path, "calibration", force).begin();
-        given.copy_all(&copies)?;
-        for (name, bytes) in &contents {
-            given.write(name, |to| to.write_all(bytes))?;
-        }
-        given.write(CALIBRATION, |to| to.write_all(text.as_bytes()))?;
-        let files = given.place_given(Others::Stay)?;
+        let given = Given {
+            others: contents(&records),
+            ..file.project.given()?
+        };
+        let files = given.place(&CALIBRATION, path, force)?;
         let shared = shared.map(|(journal, more, more_damaged)| {
             damaged += more_damaged;
             kept.extend(more);
             journal
         });
-        let name = path.join(CALIBRATION).display().to_string();
-        let file = CalibrationFile::parse(&text, &name, &file.name, path)?;
-        let names: Vec<PathBuf> = contents.iter().map(|(name, _)| path.join(name)).collect();
-        let records = file.read(&names)?;
+        let name = path.join(CALIBRATION.file).display().to_string();
+        let file = CalibrationFile::parse(&given.text, &name, file.name(), path)?;
         Ok(Self {
             path: path.to_owned(),
             files,
@@ -248,7 +202,7 @@ impl CalibrationFolder {
 
     /// The calibration in one folder, to be found again in another.
     fn again(folder: &Path, other: &Path) -> Result<Self, StudyError> {
-        let file = CalibrationFile::load(&folder.join(CALIBRATION))?;
+        let file = CalibrationFile::load(&folder.join(CALIBRATION.file))?;
         let listed = Checksums::read(folder)?.unwrap_or_default().files;
         let mut records = BTreeMap::new();
         for ManifestFile { name, .. } in listed {
@@ -260,13 +214,19 @@ impl CalibrationFolder {
             }
         }
         let records: Vec<PathBuf> = records.into_values().collect();
+        let records = file.read(&records)?;
         file.check_memory(&records, rayon::current_num_threads())?;
-        Self::open(other, None, &file, &records, false)
+        Self::open(other, None, &file, records, false)
     }
 
     /// Path of the folder.
     pub fn path(&self) -> &Path {
         &self.path
+    }
+
+    /// Sentences about a folder that has been used before.
+    pub fn notes(&self) -> Vec<String> {
+        notes_of_use(self.damaged, self.n_kept())
     }
 
     /// Number of training runs that are known.
@@ -401,16 +361,10 @@ impl CalibrationFolder {
         let journal = shared.as_mut().unwrap_or(journal);
         let stop = work.stop;
         let mut keep = |made: &[TrainingRun]| {
-            let lines: Vec<u8> = made
-                .iter()
-                .flat_map(|run| {
-                    to_line(&CalibrationRun {
-                        id: id.clone(),
-                        run: run.clone(),
-                    })
-                })
-                .collect();
-            journal.append(&lines)?;
+            journal.append(made.iter().map(|run| CalibrationRun {
+                id: id.clone(),
+                run: run.clone(),
+            }))?;
             known.extend(made.iter().map(|run| ((id.clone(), run.run), run.curves.clone())));
             work.show(stage, made.len());
             Ok(())
@@ -458,14 +412,10 @@ impl CalibrationFolder {
 }
 
 /// Copies of records: their names in the folder, and their contents.
-fn contents(records: &[PathBuf]) -> Result<Vec<(String, Vec<u8>)>, StudyError> {
-    let copy = |(number, path): (usize, &PathBuf)| {
-        let ending = path
-            .extension()
-            .and_then(|ending| ending.to_str())
-            .unwrap_or("csv");
-        let bytes = read_limited(path, TEXT_MAX_BYTES).map_err(FolderError::read(path))?;
-        Ok((format!("{RECORD}{}.{ending}", number + 1), bytes))
+fn contents(records: &[GivenRecord]) -> Vec<(String, Vec<u8>)> {
+    let copy = |(number, record): (usize, &GivenRecord)| {
+        let name = format!("{RECORD}{}.{}", number + 1, record.ending);
+        (name, record.bytes.clone())
     };
     records.iter().enumerate().map(copy).collect()
 }

@@ -26,7 +26,7 @@ mod training;
 mod unknowns;
 
 pub use calibration::{Calibration, Estimate, Pair};
-pub use file::{CalibrationFile, CalibrationKeys};
+pub use file::{CalibrationFile, CalibrationKeys, GivenRecord};
 pub use folder::{CALIBRATIONS, CalibrationFolder, CalibrationProgress, CalibrationStage};
 pub use grid::Grid;
 pub use intervals::Distribution;

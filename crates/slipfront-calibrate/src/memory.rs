@@ -1,7 +1,5 @@
 //! Memory of a calibration, compared with the memory of the machine before the first run.
 
-use std::path::PathBuf;
-
 use slipfront_base::machine::available_of;
 use slipfront_base::number_format::byte_size;
 use slipfront_case::case::{Budget, PROGRAM};
@@ -9,7 +7,7 @@ use slipfront_regression::Regression;
 use slipfront_run::run_curve::{RunCurve, steps_to};
 
 use crate::calibration::Calibration;
-use crate::file::CalibrationFile;
+use crate::file::{CalibrationFile, GivenRecord};
 use crate::set_up::SetUp;
 use crate::summaries::n_summaries;
 use slipfront_study::StudyError;
@@ -33,14 +31,14 @@ impl CalibrationFile {
     /// how many there is memory for.
     ///
     /// # Errors
-    /// When the records cannot be read or the ranges leave the bounds of the case, and with both figures of memory.
-    pub fn check_memory(&self, records: &[PathBuf], threads: usize) -> Result<(), StudyError> {
+    /// When the ranges leave the bounds of the case, and with both figures of memory.
+    pub fn check_memory(&self, records: &[GivenRecord], threads: usize) -> Result<(), StudyError> {
         let memory = self.memory(records)?;
         memory.compare(threads, available_of(memory.of(threads)))
     }
 
-    fn memory(&self, records: &[PathBuf]) -> Result<CalibrationMemory, StudyError> {
-        let set_up = self.set_up(&self.read(records)?)?;
+    fn memory(&self, records: &[GivenRecord]) -> Result<CalibrationMemory, StudyError> {
+        let set_up = self.set_up(records)?;
         let [runs, finer_runs] = [self.keys.runs, self.keys.finer_runs].map(|runs| runs as usize);
         let further = self.further(&set_up)?;
         // Blocks of half the size that are not possible are left out of a calibration.
@@ -135,7 +133,7 @@ mod tests {
              unknowns = {{ 'friction.r_star' = [0.3, 0.9], 'friction.mu_static' = [0.3, 0.9] }}"
         );
         let file = CalibrationFile::parse(&text, "fit.toml", "fit", Path::new("")).unwrap();
-        file.memory(&[record]).unwrap()
+        file.memory(&file.read(&[record]).unwrap()).unwrap()
     }
 
     #[test]

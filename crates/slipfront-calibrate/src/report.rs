@@ -12,7 +12,7 @@ use crate::findings::{Findings, OnFinerBlocks, Told};
 use crate::predicted::{Band, PREDICTED};
 use crate::set_up::{Conditions, SetUp};
 use slipfront_study::StudyError;
-use slipfront_study::result_files::Batch;
+use slipfront_study::project_folder::Batch;
 use slipfront_study::text_table::table;
 
 /// The findings, as numbers and as a text.

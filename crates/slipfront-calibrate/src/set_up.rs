@@ -8,8 +8,8 @@ use slipfront_run::run_curve::run_curve_unless;
 
 use crate::grid::Grid;
 use crate::unknowns::Unknown;
+use slipfront_study::Base;
 use slipfront_study::identity::physics;
-use slipfront_study::study_file::Base;
 use slipfront_study::{StudyError, TrainingError};
 
 /// Conditions of one record.

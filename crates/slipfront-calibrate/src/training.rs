@@ -90,7 +90,7 @@ mod tests {
     use crate::grid::Grid;
     use crate::set_up::Conditions;
     use crate::unknowns::Unknown;
-    use slipfront_study::study_file::StudyFile;
+    use slipfront_study::StudyFile;
 
     /// A set-up with two speeds of a small slider, along a path of the drive in units of length.
     fn set_up(range: [f64; 2], path: f64) -> SetUp {

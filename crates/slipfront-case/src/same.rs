@@ -24,7 +24,7 @@ pub struct Difference {
 }
 
 /// Names of inputs that all ranks must have alike, each with its value on this rank.
-pub type Given = Vec<(String, String)>;
+pub type NamedInputs = Vec<(String, String)>;
 
 /// Fails on all ranks, with the same words, unless all have been `given` the same inputs. Every rank must ask.
 ///
@@ -43,7 +43,10 @@ pub type Given = Vec<(String, String)>;
 ///
 /// # Errors
 /// The first [`Difference`] of the lowest rank that has one.
-pub fn expect_same(communicator: &dyn Communicator, given: impl FnOnce() -> Given) -> Result<(), Difference> {
+pub fn expect_same(
+    communicator: &dyn Communicator,
+    given: impl FnOnce() -> NamedInputs,
+) -> Result<(), Difference> {
     if communicator.size() == 1 {
         return Ok(());
     }
@@ -58,11 +61,11 @@ pub fn expect_same(communicator: &dyn Communicator, given: impl FnOnce() -> Give
         return Ok(());
     };
     let [expected, found] = [0, rank].map(|rank| read_given(&text_of(communicator, rank, &own)));
-    let is_missing = |given: &Given, name: &str| given.iter().all(|(known, _)| known != name);
+    let is_missing = |given: &NamedInputs, name: &str| given.iter().all(|(known, _)| known != name);
     let differs = expected.iter().find(|entry| !found.contains(entry));
     let differs = differs.or_else(|| found.iter().find(|(name, _)| is_missing(&expected, name)));
     let name = differs.map_or("the order of what it was given", |(name, _)| name);
-    let value = |given: &Given| {
+    let value = |given: &NamedInputs| {
         let entry = given.iter().find(|(known, _)| known == name);
         entry.map_or("not given".to_owned(), |(_, value)| truncated(value))
     };
@@ -75,7 +78,7 @@ pub fn expect_same(communicator: &dyn Communicator, given: impl FnOnce() -> Give
 }
 
 /// Inputs of a rank, from the text of them; the text itself if another version has written it otherwise.
-fn read_given(text: &str) -> Given {
+fn read_given(text: &str) -> NamedInputs {
     serde_json::from_str(text).unwrap_or_else(|_| vec![("what it was given".to_owned(), text.to_owned())])
 }
 

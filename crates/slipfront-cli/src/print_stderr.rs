@@ -3,6 +3,8 @@
 use std::io::Write;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use crate::wrap::for_stderr;
+
 /// Flag set where another process of the same command prints for all.
 static IS_SILENT: AtomicBool = AtomicBool::new(false);
 
@@ -14,6 +16,13 @@ pub(crate) fn silence() {
 /// Whether another process prints for this one.
 pub(crate) fn is_silent() -> bool {
     IS_SILENT.load(Ordering::Relaxed)
+}
+
+/// Prints notes to stderr, each wrapped to the terminal.
+pub(crate) fn print_notes(sentences: impl IntoIterator<Item = String>) {
+    for sentence in sentences {
+        print_stderr(&for_stderr(&format!("note: {sentence}")));
+    }
 }
 
 /// Prints a line to stderr. A line that cannot be printed, since the terminal is closed or the disk is full, is lost: the

@@ -69,6 +69,7 @@ impl Adaptation {
     pub(crate) fn adapt(&mut self, drafts: &[&[f64]]) {
         let size = self.mean.len();
         let n = size as f64;
+        // are for.
         let parents = &drafts[..drafts.len() / 2];
         let raw = |i: usize| libm::log(parents.len() as f64 + 0.5) - libm::log((i + 1) as f64);
         let sum: f64 = (0..parents.len()).map(raw).sum();

@@ -144,12 +144,14 @@ impl Evaluator {
         stop: &AtomicBool,
         keep: &mut Keep,
     ) -> Result<(), StudyError> {
+        // Textures and cases may share runs, above all that of the slider without texture.
         let mut asked = HashSet::new();
         let missing: Vec<(RunId, &Wanted)> = wanted
             .iter()
             .map(|wanted| (self.id(wanted), wanted))
             .filter(|(id, _)| !known.contains_key(id) && asked.insert(id.clone()))
             .collect();
+        // One run is a task: some end early, and threads must not be left with a share of long ones.
         let runs = missing.into_par_iter().with_max_len(1);
         let made: Result<Vec<MadeRun>, StudyError> = runs
             .map(|(id, wanted)| {
@@ -160,6 +162,8 @@ impl Evaluator {
                 })
             })
             .collect();
+        // In the order in which they were wanted, whichever thread was first: the journal is the same for any
+        // number of them.
         let made = made?;
         keep(&made)?;
         known.extend(made.into_iter().map(|made| (made.id, made.ended)));

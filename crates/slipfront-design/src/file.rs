@@ -4,7 +4,7 @@ use std::path::Path;
 
 use serde::Deserialize;
 use slipfront_case::case::{Case, Ranks};
-use slipfront_case::case_file::{CaseError, CaseFile, Override, Source, Tables, syntax_error, unknown_key};
+use slipfront_case::case_file::{CaseError, CaseFile, Override};
 use slipfront_case::quantity::{Force, Length};
 use slipfront_case::texture_file::textured_blocks;
 use slipfront_run::measured::Measure;
@@ -16,12 +16,17 @@ use crate::limits::Limits;
 use crate::wish::{Quantity, Wish};
 use slipfront_study::StudyError;
 use slipfront_study::axis::overrides;
-use slipfront_study::input_copies::Copy;
 use slipfront_study::measured_columns::MeasuredColumns;
-use slipfront_study::study_file::{Base, found_at, parse_noting_places, portable, read_base, read_named};
+use slipfront_study::project_file::ProjectFile;
+use slipfront_study::project_folder::ProjectKind;
 
-/// The tables of a design file.
-const TABLES: [&str; 2] = ["base", "design"];
+/// Folders of designs. Their design file has the base case as a table in it: `slipfront design DIR/design.toml` repeats the design.
+pub(crate) static DESIGN: ProjectKind = ProjectKind {
+    name: "design",
+    table: "design",
+    file: "design.toml",
+    journal: "design.jsonl",
+};
 
 /// Runs of a search, unless the file says otherwise.
 const DEFAULT_RUNS: u32 = 10_000;
@@ -32,13 +37,9 @@ const MAX_RUNS: u32 = 100_000_000;
 /// A design file.
 #[derive(Clone, Debug)]
 pub struct DesignFile {
-    /// Name of the design and of its results.
-    pub name: String,
     /// Keys of the file.
     pub keys: DesignKeys,
-    base: Base,
-    source: Source,
-    table: Table,
+    pub(crate) project: ProjectFile,
 }
 
 /// The table `[design]`.
@@ -149,8 +150,7 @@ impl DesignFile {
     /// # Errors
     /// As [`parse`](Self::parse), and when the file cannot be read.
     pub fn load(path: &Path) -> Result<Self, StudyError> {
-        let (text, name, folder) = read_named(path, "design")?;
-        Self::parse(&text, &path.display().to_string(), &name, folder)
+        DESIGN.load(path, Self::parse)
     }
 
     /// Reads a design file called `file` in messages; a base case that it names stands relative to `folder`.
@@ -158,32 +158,14 @@ impl DesignFile {
     /// # Errors
     /// When it is no TOML, has unknown keys, or values out of their bounds.
     pub fn parse(text: &str, file: &str, name: &str, folder: &Path) -> Result<Self, StudyError> {
-        let mut source = Source::new(file, text);
-        let root = parse_noting_places(&mut source, text)?;
-        let mut tables = Tables {
-            root,
-            source: &source,
-        };
-        let base = read_base(&mut tables, file, folder)?;
-        let keys: DesignKeys = tables.read("design")?;
-        if let Some(key) = tables.root.keys().min_by_key(|key| key.span().start) {
-            let sentence = unknown_key(key.get_ref(), "a design file", &TABLES);
-            return Err(source.error_at(key.span(), sentence).into());
-        }
-        keys.check(&source)?;
-        let table = text.parse().map_err(|error| syntax_error(&source, 0, &error))?;
-        Ok(Self {
-            name: name.to_owned(),
-            keys,
-            base,
-            source,
-            table,
-        })
+        let (project, keys): (_, DesignKeys) = ProjectFile::parse(&DESIGN, text, file, name, folder)?;
+        keys.check(&project)?;
+        Ok(Self { keys, project })
     }
 
-    /// The design with its base case inside and its files beside it, for the results folder.
-    pub(crate) fn portable(&self) -> Result<(String, Vec<Copy>), StudyError> {
-        portable(&self.base, &self.table)
+    /// Name of the design and of its results.
+    pub fn name(&self) -> &str {
+        &self.project.name
     }
 
     /// The case in which designs are tried first, with its own texture.
@@ -204,7 +186,7 @@ impl DesignFile {
         }
         let case = |set: &Table| {
             let case = self.case_with(&overrides(set));
-            case.map_err(|error| self.found_in("cases", error))
+            case.map_err(|error| self.project.found_in("cases", error))
         };
         self.keys.cases.iter().map(case).collect()
     }
@@ -224,8 +206,14 @@ impl DesignFile {
 
     fn case_with(&self, set: &[Override]) -> Result<Case, CaseError> {
         let set: Vec<&Override> = set.iter().collect();
-        let file: CaseFile = self.base.parse()?.with(&set)?;
-        Case::to_run(file, &self.name, &self.base.folder, &mut |_| true, Ranks::ALONE)
+        let file: CaseFile = self.project.base.parse()?.with(&set)?;
+        Case::to_run(
+            file,
+            &self.project.name,
+            &self.project.base.folder,
+            &mut |_| true,
+            Ranks::ALONE,
+        )
     }
 
     /// The textured blocks of the base case with other textures, in place of its own.
@@ -234,10 +222,10 @@ impl DesignFile {
             let sentence = format!(
                 "`{key}` must be a list of textures, each as in a case file, such as [{{ shape = \"mask\", file = \"mask.png\" }}]"
             );
-            return Err(self.error(key, sentence));
+            return Err(self.project.error(key, sentence));
         }
         let case = self.case_with(&[Override::new("texture", textures)]);
-        let case = case.map_err(|error| self.found_in(key, error))?;
+        let case = case.map_err(|error| self.project.found_in(key, error))?;
         Ok(textured_blocks(&case))
     }
 
@@ -257,7 +245,7 @@ impl DesignFile {
     pub fn check(&self, runs: usize, threads: usize, is_timed: bool) -> Result<(), StudyError> {
         if is_timed && !self.keys.front.is_empty() {
             let sentence = "a search that is cut short by a time has no time for a front: give a number of runs, or leave out `front`";
-            return Err(self.error("front", sentence.to_owned()).into());
+            return Err(self.project.error("front", sentence.to_owned()).into());
         }
         // Every design of a front keeps what it has tried until all are written.
         let drafts = runs.saturating_mul(1 + self.keys.front.len());
@@ -283,7 +271,7 @@ impl DesignFile {
             let sentence = "`cases` differ in keys other than `texture`: the texture is what is designed; a drawing from which to begin \
                             belongs to `starts`"
                 .to_owned();
-            return Err(self.error("cases", sentence).into());
+            return Err(self.project.error("cases", sentence).into());
         }
         let cases = self.cases()?;
         let grid = Grid::of(&base);
@@ -292,12 +280,12 @@ impl DesignFile {
             .any(|case| Grid::of(case) != grid || case.scales.block_size != base.scales.block_size)
         {
             let sentence = "all cases of a design have the blocks of the base".to_owned();
-            return Err(self.error("cases", sentence).into());
+            return Err(self.project.error("cases", sentence).into());
         }
         let limits = self.limits(&base, &grid, percent)?;
         if keys.wish.curve.is_some() && cases.len() > 1 {
             let sentence = "a curve is that of one case: give `cases` one table, or leave it out".to_owned();
-            return Err(self.error("cases", sentence).into());
+            return Err(self.project.error("cases", sentence).into());
         }
         let wished = cases.iter().map(|case| Ok((case, self.wish(case, &grid)?)));
         let wished: Vec<(&Case, Wish)> = wished.collect::<Result<_, StudyError>>()?;
@@ -310,16 +298,6 @@ impl DesignFile {
             design.begin_with("texture of the case".to_owned(), textured_blocks(&base));
         }
         Ok(design)
-    }
-
-    /// An error about a key of `[design]`.
-    fn error(&self, key: &str, sentence: String) -> CaseError {
-        self.source.error(&format!("design.{key}"), sentence)
-    }
-
-    /// An error about a case that a key of `[design]` makes, at the place of the key.
-    fn found_in(&self, key: &str, error: CaseError) -> CaseError {
-        found_at(&self.source, &format!("design.{key}"), error)
     }
 
     /// The limits in blocks.
@@ -336,7 +314,9 @@ impl DesignFile {
             if blocks > narrowest {
                 let sentence =
                     format!("`{key}` is {blocks} blocks, more than the slider's {narrowest} across");
-                return Err(self.error(if length.is_some() { key } else { in_blocks }, sentence));
+                return Err(self
+                    .project
+                    .error(if length.is_some() { key } else { in_blocks }, sentence));
             }
             Ok(blocks)
         };
@@ -348,7 +328,7 @@ impl DesignFile {
                     grid.size()[axis],
                     copies[axis]
                 );
-                return Err(self.error("copies", sentence));
+                return Err(self.project.error("copies", sentence));
             }
         }
         let forbidden = keys.forbidden.as_ref();
@@ -394,7 +374,7 @@ impl DesignFile {
 
     /// The wish in units of mu_s and of t* of a case.
     fn wish(&self, case: &Case, grid: &Grid) -> Result<Wish, StudyError> {
-        let refuse = |sentence: &str| Err(self.error("wish", sentence.to_owned()).into());
+        let refuse = |sentence: &str| Err(self.project.error("wish", sentence.to_owned()).into());
         let mu_s = case.scales.mu_static_mean;
         let load = case.scales.pressure * case.scales.block_size.powi(2) * grid.n_blocks() as f64;
         let keys = &self.keys.wish;
@@ -445,20 +425,20 @@ impl DesignFile {
             let sentence =
                 "a curve over the path of the drive asks for a drive of one speed: leave out `drive.program`"
                     .to_owned();
-            return Err(self.error("wish.curve", sentence).into());
+            return Err(self.project.error("wish.curve", sentence).into());
         }
-        let path = self.base.folder.join(&keys.file);
+        let path = self.project.base.folder.join(&keys.file);
         let columns = MeasuredColumns::new([&keys.x, &keys.y], [&keys.x_unit, &keys.y_unit]);
         let record = columns.read(&path, Measure::Displacement);
-        let record = record.map_err(|sentence| self.error("wish.curve", sentence))?;
+        let record = record.map_err(|sentence| self.project.error("wish.curve", sentence))?;
         if let Some(footer) = record.footer {
             let sentence = format!("{footer}: remove them, or begin them with #");
-            return Err(self.error("wish.curve", sentence).into());
+            return Err(self.project.error("wish.curve", sentence).into());
         }
         if record.x.last().is_none_or(|&last| last <= 0.0) {
             let sentence =
                 "the curve ends before the drive has moved: its last path must be more than 0".to_owned();
-            return Err(self.error("wish.curve", sentence).into());
+            return Err(self.project.error("wish.curve", sentence).into());
         }
         let mu_s = case.scales.mu_static_mean;
         let unit = if record.of == Measure::Force {
@@ -476,8 +456,8 @@ impl DesignFile {
 }
 
 impl DesignKeys {
-    fn check(&self, source: &Source) -> Result<(), CaseError> {
-        let refuse = |key: &str, sentence: String| Err(source.error(&format!("design.{key}"), sentence));
+    fn check(&self, project: &ProjectFile) -> Result<(), CaseError> {
+        let refuse = |key: &str, sentence: String| Err(project.error(key, sentence));
         let [least, most] = self.coverage;
         if !(0.0 <= least && least <= most && 0.0 < most && most < 100.0) {
             let sentence = format!(

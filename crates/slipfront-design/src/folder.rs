@@ -1,30 +1,20 @@
 //! The results folder of a design: the design file, the journal of its runs, tables, the mask and a case that reads it.
 
-use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
 use serde::{Deserialize, Serialize};
-use slipfront_base::disk::{TEXT_MAX_BYTES, is_empty, make_folders, read_limited};
-use slipfront_run::folder_error::FolderError;
 
 use crate::design::{Design, Outcome};
 use crate::evaluate::{Ended, Known, MadeRun, RunId};
-use crate::file::DesignFile;
+use crate::file::{DESIGN, DesignFile};
 use crate::report::{Report, VERDICT};
 use crate::stages::{Bounds, Length, SearchProgress, Work};
 use crate::wish::Measured;
-use slipfront_study::journal::Journal;
-use slipfront_study::record::{JournalRecord, to_line};
-use slipfront_study::result_files::{Batch, Others, ResultFiles};
-use slipfront_study::written_numbers::read_numbers;
-use slipfront_study::{ProjectKind, StudyError};
-
-/// The design file in the folder, with the base case as a table in it: `slipfront design DIR/design.toml` repeats the design.
-const DESIGN: &str = "design.toml";
-
-/// The journal of a design: a line for every run.
-const JOURNAL: &str = "design.jsonl";
+use slipfront_study::StudyError;
+use slipfront_study::project_folder::{
+    Batch, Derivation, Journal, JournalRecord, Others, ResultFiles, notes_of_use, read_numbers,
+};
 
 /// A line of the journal: the numbers of a run, or the reason for which it has none.
 #[derive(Serialize, Deserialize)]
@@ -86,45 +76,18 @@ impl DesignFolder {
     /// When the folder holds other files, or some that were edited since they were written and may not be replaced by `force`; when
     /// another process works in it, or it cannot be written to.
     pub fn open(path: &Path, file: &DesignFile, force: bool) -> Result<Self, StudyError> {
-        make_folders(path).map_err(FolderError::unwritable(path))?;
-        let used = path.join(JOURNAL).exists();
-        if !used && !is_empty(path).map_err(FolderError::unwritable(path))? {
-            return Err(StudyError::OtherThings {
-                what: "design",
-                path: path.to_owned(),
-            });
-        }
-        let (text, copies) = file.portable()?;
-        let before = read_limited(&path.join(DESIGN), TEXT_MAX_BYTES).ok();
-        if before.is_some_and(|before| before != text.as_bytes()) {
-            return Err(StudyError::Changed {
-                what: "design",
-                path: path.to_owned(),
-            });
-        }
-        let (journal, kept, damaged) =
-            Journal::open::<DesignRun>(path, JOURNAL).map_err(|error| match error {
-                StudyError::NotRecords { path } => FolderError::Foreign { path }.into(),
-                error => error,
-            })?;
-        if copies.iter().any(|copy| copy.differs_in(path)) {
-            return Err(StudyError::Changed {
-                what: "design",
-                path: path.to_owned(),
-            });
-        }
-        let mut given = ResultFiles::new(path, "design", force).begin();
-        given.copy_all(&copies)?;
-        given.write(DESIGN, |to| to.write_all(text.as_bytes()))?;
-        let files = given.place_given(Others::Stay)?;
-        let name = path.join(DESIGN).display().to_string();
+        DESIGN.is_used(path)?;
+        let (journal, kept, damaged) = DESIGN.open_journal(path)?;
+        let given = file.project.given()?;
+        let files = given.place(&DESIGN, path, force)?;
+        let name = path.join(DESIGN.file).display().to_string();
         Ok(Self {
             path: path.to_owned(),
             files,
             journal,
             known: kept.into_iter().map(DesignRun::into_entry).collect(),
             damaged,
-            file: DesignFile::parse(&text, &name, &file.name, path)?,
+            file: DesignFile::parse(&given.text, &name, file.name(), path)?,
         })
     }
 
@@ -139,6 +102,11 @@ impl DesignFolder {
             file: &self.file,
             batch,
         }
+    }
+
+    /// Sentences about a folder that has been used before.
+    pub fn notes(&self) -> Vec<String> {
+        notes_of_use(self.damaged, self.n_kept())
     }
 
     /// Number of runs that were kept.
@@ -221,14 +189,7 @@ impl DesignFolder {
         watch: &mut dyn FnMut(&SearchProgress),
     ) -> Result<Outcome, StudyError> {
         let Self { journal, known, .. } = self;
-        let mut keep = |runs: &[MadeRun]| {
-            let lines: Vec<u8> = runs.iter().flat_map(|run| to_line(&DesignRun::of(run))).collect();
-            if lines.is_empty() {
-                Ok(())
-            } else {
-                journal.append(&lines)
-            }
-        };
+        let mut keep = |runs: &[MadeRun]| journal.append(runs.iter().map(DesignRun::of));
         design.run(bounds, known, &mut keep, watch)
     }
 }
@@ -313,18 +274,16 @@ fn search_of(folder: &Path) -> Result<Length, StudyError> {
 }
 
 /// Folders of designs.
-pub const DESIGNS: ProjectKind = ProjectKind {
-    name: "design",
-    file: DESIGN,
-    journal: JOURNAL,
+pub const DESIGNS: Derivation = Derivation {
+    kind: &DESIGN,
     find_again,
 };
 
 /// Finds a design again in another folder from the runs in its journal.
 fn find_again(folder: &Path, other: &Path, stop: &AtomicBool) -> Result<[usize; 2], StudyError> {
     let search = search_of(folder)?;
-    Journal::copy::<DesignRun>(folder, other, JOURNAL)?;
-    let file = DesignFile::load(&folder.join(DESIGN))?;
+    Journal::copy::<DesignRun>(folder, other, DESIGN.journal)?;
+    let file = DesignFile::load(&folder.join(DESIGN.file))?;
     let mut again = DesignFolder::open(other, &file, false)?;
     let kept = again.n_kept();
     let bounds = Bounds {

@@ -9,9 +9,9 @@ use serde::Serialize;
 use crate::evaluate::{Evaluator, Keep, Known};
 use crate::stages::Stages;
 use crate::subject::Fidelity;
+use slipfront_study::CONFIDENCE;
 use slipfront_study::Sample;
 use slipfront_study::StudyError;
-use slipfront_study::study_file::CONFIDENCE;
 
 /// Number of surfaces on which finalists are compared.
 pub(crate) const COMPARED: u64 = 16;

@@ -24,7 +24,7 @@ use crate::subject::{Fidelity, MASK, masked};
 use crate::verdict::{Given, OnFresh, Verdict};
 use crate::wish::{Quantity, Wish};
 use slipfront_study::StudyError;
-use slipfront_study::result_files::Batch;
+use slipfront_study::project_folder::Batch;
 use slipfront_study::text_table::table;
 
 /// A table of every draft that was tried.

@@ -77,6 +77,7 @@ pub(crate) struct Search {
 impl Search {
     /// A search that begins with named patterns.
     pub(crate) fn new(grid: Grid, limits: Limits, start: u64, mut named: Vec<Named>) -> Self {
+        // Taken from the end.
         named.reverse();
         Self {
             ranges: Ranges::new(&grid, &limits),
@@ -98,6 +99,7 @@ impl Search {
     pub(crate) fn ask(&mut self, n: usize, ends: &dyn Fn() -> bool) -> Vec<Proposal> {
         let mut asked = Vec::new();
         let mut in_vain = 0;
+        // Bounded, since limits may leave fewer textures than are asked for.
         for _ in 0..n * TRIES {
             if asked.len() == n || ends() {
                 break;
@@ -114,6 +116,8 @@ impl Search {
                     drawn,
                 });
             } else {
+                // A start whose drafts are all illegal or known has narrowed down on what there is: another
+                // takes its place.
                 in_vain += 1;
                 if in_vain == TRIES && place < self.starts.len() {
                     self.starts[place] = self.new_start();
@@ -131,6 +135,7 @@ impl Search {
             .filter(|found| found.loss.is_finite())
             .cloned()
             .collect();
+        // Lost textures teach a start where not to go, but no start begins with one.
         merge(&mut self.best, &finite, self.limits.feature);
         for Found { proposal, loss } in found {
             let Some((number, normal)) = &proposal.drawn else {
@@ -204,6 +209,7 @@ impl Search {
         let n = self.best.len();
         let (from, spread) = if n > 0 && (self.is_refining || self.n_starts.is_multiple_of(2)) {
             let draws = &mut self.draws;
+            // The best of three places: good textures more often, and every one at times.
             let index = draws.below(n).min(draws.below(n)).min(draws.below(n));
             let mut from = self.best[index].proposal.draft.clone();
             if from.patches.is_empty() {

@@ -184,8 +184,11 @@ impl<'a> Stages<'a> {
             }
         }
         self.explored = self.runs;
+        // Losses on one surface with a coarse step say which drafts are good, and not how good: they are
+        // measured again.
         let best = self.search.refine();
         let surfaces = self.stage(true).0.count();
+        // Each draft takes as many runs as there are surfaces: about as many runs at once as before.
         let refined_batch = (batch(bounds) / surfaces).max(GENERATION);
         let mut goes_on = self.try_out(best, true, bounds, known, keep, watch)?;
         while goes_on && self.runs < bounds.runs && self.has_time(bounds, true) {
@@ -209,6 +212,8 @@ impl<'a> Stages<'a> {
     /// Whether there is time for more runs of a stage, or were more of them in the search that is made again.
     fn has_time(&mut self, bounds: &Bounds, is_refined: bool) -> bool {
         let has_time = match bounds.cut {
+            // A search that is made again must end where the clock ended it, which the clock would not do
+            // twice.
             Some(cut) if is_refined => self.runs < cut.refined,
             Some(cut) => self.runs < cut.explored,
             None => (bounds.share_of_time)() < if is_refined { 1.0 } else { EXPLORED },
@@ -274,6 +279,7 @@ impl<'a> Stages<'a> {
                 lost,
             });
         }
+        // Limits may leave no texture that was not tried: then no later batch has one.
         let has_any = !found.is_empty();
         self.search.tell(&found);
         watch(&self.progress(bounds, is_refined));

@@ -73,6 +73,8 @@ impl Start {
     /// Takes the loss of a draft of this start.
     pub(crate) fn tell(&mut self, loss: f64, normal: &[f64]) {
         self.told.push((loss, normal.to_vec()));
+        // Adaptation compares drafts of one distribution, so that it stays until all of a generation are
+        // told.
         if self.told.len() < GENERATION {
             return;
         }
@@ -95,6 +97,7 @@ impl Start {
 
     /// Whether there is little more to find.
     pub(crate) fn has_ended(&self) -> bool {
+        // Steps are shares of ranges, of which that of the longer side is the largest in blocks.
         let side = self.ranges.size[0].max(self.ranges.size[1]);
         self.idle > PATIENCE || self.adaptation.step() * side < NARROW
     }

@@ -1,5 +1,7 @@
 //! Designs: the results of the search, and that they are equal however it is run.
 
+#![allow(clippy::unwrap_used)] // A helper that cannot do its work fails its test.
+
 use std::fs;
 use std::path::Path;
 use std::sync::Arc;
@@ -9,7 +11,8 @@ use slipfront_design::{
     Bounds, DESIGNS, Design, DesignFile, DesignFolder, DesignStage, Known, Outcome, Work,
 };
 use slipfront_study::StudyError;
-use slipfront_study::verify::{Extent, verify};
+use slipfront_study::project_folder::Extent;
+use slipfront_study::verify::verify;
 
 /// A small slider whose named patterns cover less than the limits allow.
 const BASE: &str = "[base]\nslider.blocks = [16, 16]\ndrive.v_star = 0.1\n[design]\n";
@@ -74,7 +77,7 @@ fn design_files_are_true() {
     for entry in fs::read_dir(root.join("cases/designs")).unwrap() {
         let file = DesignFile::load(&entry.unwrap().path()).unwrap_or_else(|error| panic!("{error}"));
         file.design()
-            .unwrap_or_else(|error| panic!("{}: {error}", file.name));
+            .unwrap_or_else(|error| panic!("{}: {error}", file.name()));
     }
     let text = fs::read_to_string(root.join("docs/reference/design-file.md")).unwrap();
     for key in [
@@ -557,7 +560,7 @@ fn results_belong_to_one_search() {
     assert!(matches!(stopped, Err(StudyError::Interrupted)));
     assert_eq!(fs::read(out.join("mask.npy")).unwrap(), before);
     assert!(
-        verify(&out, &[&DESIGNS], Extent::Derived, &AtomicBool::new(false))
+        verify(&out, &[DESIGNS], Extent::Derived, &AtomicBool::new(false))
             .is_ok_and(|verdict| verdict.differences.is_empty())
     );
     drop(opened);

@@ -1,4 +1,4 @@
-//! Work beside a session, in a thread of its own.
+//! Jobs beside a session, each in a thread of its own.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -6,9 +6,9 @@ use std::sync::mpsc::{Receiver, Sender, TryRecvError, channel};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use slipfront_session::{Event, Task, Work, Worker};
+use slipfront_session::{Event, Job, Task, Worker};
 
-/// Work in a thread of its own. Dropping the task asks the work to stop.
+/// A job in a thread of its own. Dropping the task asks the job to stop.
 pub(crate) struct BackgroundTask {
     stop: Arc<AtomicBool>,
     /// Events that the work sends; the channel closes once the work has ended.
@@ -17,11 +17,11 @@ pub(crate) struct BackgroundTask {
 }
 
 impl BackgroundTask {
-    /// Begins work in a thread, which holds `working`, on so many threads.
+    /// Begins a job in a thread, which holds `working`, on so many threads.
     ///
     /// # Errors
     /// A sentence, if the system refuses threads.
-    pub(crate) fn begin(work: Work, threads: usize, working: &Sender<()>) -> Result<Self, String> {
+    pub(crate) fn begin(job: Job, threads: usize, working: &Sender<()>) -> Result<Self, String> {
         // A pool of its own: steps of the run that is shown would wait in that of all others until whole runs have ended.
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
         let pool = pool.map_err(|error| format!("the system refuses threads for the work: {error}"))?;
@@ -34,7 +34,7 @@ impl BackgroundTask {
         };
         let working = working.clone();
         let begun = thread::Builder::new().spawn(move || {
-            pool.install(|| work.run(&worker));
+            pool.install(|| job.run(&worker));
             drop((pool, working));
         });
         begun.map_err(|error| format!("the system refuses a thread for the work: {error}"))?;

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::mpsc::Sender;
 
-use slipfront_session::{Document, Host, Opened, Presets, Task, Work};
+use slipfront_session::{Document, Host, Job, OpenedCase, Presets, Task};
 
 use crate::background::BackgroundTask;
 use crate::opening::{Start, StartSource};
@@ -62,9 +62,9 @@ impl Host for PageHost {
         1
     }
 
-    fn opening(&self) -> Result<Opened, String> {
+    fn opening(&self) -> Result<OpenedCase, String> {
         match &self.setting.start.0 {
-            StartSource::Preset => presets::opening(&self.setting.presets).map(Opened::from),
+            StartSource::Preset => presets::opening(&self.setting.presets).map(OpenedCase::from),
             StartSource::Case(document) => Ok(Document::clone(document).into()),
             StartSource::Folder(path) => replay::read(path, &self.setting.allow_files),
         }
@@ -74,13 +74,13 @@ impl Host for PageHost {
         self.setting.presets.document(name)
     }
 
-    fn recorded_run(&self, name: &str) -> Result<Opened, String> {
+    fn recorded_run(&self, name: &str) -> Result<OpenedCase, String> {
         let allowed = &self.setting.allow_files;
         replay::read(&replay::folder(&self.setting.results, name, allowed)?, allowed)
     }
 
-    fn begin(&self, work: Work) -> Result<Box<dyn Task>, String> {
-        let task = BackgroundTask::begin(work, self.setting.threads, &self.working)?;
+    fn begin(&self, job: Job) -> Result<Box<dyn Task>, String> {
+        let task = BackgroundTask::begin(job, self.setting.threads, &self.working)?;
         Ok(Box::new(task))
     }
 

@@ -63,7 +63,7 @@ impl OfflineSession {
         let until = self.began.elapsed() + MESSAGE_TIME;
         loop {
             let now = self.began.elapsed();
-            let due = self.session.work(now);
+            let due = self.session.advance(now);
             if now >= until || due.is_none_or(|due| due > now) {
                 return Ok(self.outbox.take_replies());
             }

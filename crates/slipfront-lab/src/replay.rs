@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use slipfront_base::text::{display_path, truncated};
 use slipfront_run::names::{FIELDS, MANIFEST, SERIES};
-use slipfront_session::{MAX_FILES, Opened, is_plain_name, recorded_run};
+use slipfront_session::{MAX_FILES, OpenedCase, is_plain_name, recorded_run};
 
 use crate::files::ReadableFolders;
 
@@ -42,7 +42,7 @@ pub(crate) fn folder(results: &Path, name: &str, allowed: &[PathBuf]) -> Result<
 ///
 /// # Errors
 /// A sentence, if it is none, or was changed since it was written, or one of its files lies elsewhere and not where it is `allowed`.
-pub(crate) fn read(folder: &Path, allowed: &[PathBuf]) -> Result<Opened, String> {
+pub(crate) fn read(folder: &Path, allowed: &[PathBuf]) -> Result<OpenedCase, String> {
     let reach = ReadableFolders::new(folder, "the run", allowed)?;
     let canonical = folder.canonicalize().unwrap_or_else(|_| folder.to_owned());
     let name = canonical.file_name().unwrap_or_default().to_string_lossy();

@@ -46,7 +46,7 @@ fn converse(mut session: Session, outbox: &Outbox, messages: &Receiver<Message>)
             Err(RecvTimeoutError::Timeout) => {}
             Err(RecvTimeoutError::Disconnected) => return,
         }
-        due = session.work(began.elapsed());
+        due = session.advance(began.elapsed());
     }
 }
 
@@ -55,7 +55,7 @@ mod tests {
     use std::sync::Arc;
     use std::sync::mpsc::{channel, sync_channel};
 
-    use slipfront_session::{Document, Opened, Task, Work};
+    use slipfront_session::{Document, Job, OpenedCase, Task};
 
     use super::*;
     use crate::host::{PageHost, Setting};
@@ -96,7 +96,7 @@ mod tests {
             self.0.workers()
         }
 
-        fn opening(&self) -> Result<Opened, String> {
+        fn opening(&self) -> Result<OpenedCase, String> {
             self.0.opening()
         }
 
@@ -105,12 +105,12 @@ mod tests {
             self.0.preset(name)
         }
 
-        fn recorded_run(&self, name: &str) -> Result<Opened, String> {
+        fn recorded_run(&self, name: &str) -> Result<OpenedCase, String> {
             self.0.recorded_run(name)
         }
 
-        fn begin(&self, work: Work) -> Result<Box<dyn Task>, String> {
-            self.0.begin(work)
+        fn begin(&self, job: Job) -> Result<Box<dyn Task>, String> {
+            self.0.begin(job)
         }
 
         fn save(&self, document: Document, name: &str) -> Result<(), String> {

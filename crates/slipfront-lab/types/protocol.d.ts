@@ -1,5 +1,5 @@
-// What the page and the server say to each other, as `src/protocol.rs` has it: `src/page_types/` holds the two against each other,
-// and reads plain interfaces and unions alone. A number that is not finite is sent as null. Browsers are not given this file.
+// What the page and the server say to each other, as `protocol.rs` of slipfront-session has it: `samples.ts` holds the two against
+// each other. A number that is not finite is sent as null. Browsers are not given this file.
 
 /** A value of a key of the case, as in TOML. */
 export type CaseValue = string | number | boolean | CaseValue[] | { [key: string]: CaseValue };
@@ -35,7 +35,7 @@ export interface Texture {
   invert?: boolean;
 }
 
-/** A field of all blocks, in the order of the numbers that pictures have for them. */
+/** A field of all blocks. */
 export type Field = 'contact_stress' | 'traction' | 'displacement' | 'speed' | 'sliding' | 'first_slip';
 
 /** How the run goes on after the case was changed. */

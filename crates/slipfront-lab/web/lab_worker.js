@@ -6,7 +6,7 @@
 /** @import { Asked, Begin, BytesSaying, Module, PicturesModule, SessionModule, TextSaying } from '../types/worker' */
 
 /** Names of the messages of the module, by their numbers: `Saying` in imports.rs of slipfront-wasm. */
-const SAYINGS = ['reply', 'picture', 'kymograph', 'work', 'end', 'event', 'save', 'stop_saving', 'share', 'archive', 'bits', 'refusal', 'defect', 'pictures'];
+const SAYINGS = ['reply', 'picture', 'kymograph', 'job', 'end', 'event', 'save', 'stop_saving', 'share', 'archive', 'bits', 'refusal', 'defect', 'pictures'];
 /** Sayings that are bytes; all others are texts. */
 const BYTES = ['picture', 'kymograph', 'archive'];
 /** Pictures that the page may not have read yet before the newest alone is kept. */
@@ -83,22 +83,22 @@ function draw(at, length) {
 }
 
 /** Works for some milliseconds, and comes back when there is more to do. */
-function work() {
+function advance() {
   clearTimeout(timer);
   const end = performance.now() + SLICE_MS;
   for (;;) {
     const now = performance.now();
-    const due = module.work(now, unread);
+    const due = module.advance(now, unread);
     if (due < 0) return;
     if (due > performance.now()) {
-      timer = setTimeout(work, due - performance.now());
+      timer = setTimeout(advance, due - performance.now());
       return;
     }
     if (now >= end) break;
   }
   soon.postMessage(null);
 }
-later.onmessage = () => work();
+later.onmessage = () => advance();
 
 /** Does what the page asks for. @param {Asked} asked */
 function carryOut(asked) {
@@ -128,7 +128,7 @@ function answer(asked) {
     carryOut(asked);
     if (asked.do !== 'run' && asked.do !== 'save') {
       clearTimeout(timer);
-      timer = setTimeout(work, 0);
+      timer = setTimeout(advance, 0);
     }
   } catch (error) {
     post('defect', 0, String(error));

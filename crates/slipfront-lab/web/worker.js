@@ -102,7 +102,7 @@ function endSave(name) {
 function hear({ is, number, data }, worker) {
   if (worker !== session) return;
   if (is === 'reply' || is === 'picture' || is === 'kymograph') receive(data);
-  else if (is === 'work') beginTask(number, data);
+  else if (is === 'job') beginTask(number, data);
   else if (is === 'end') endTask(number);
   else if (is === 'save') beginSave(data);
   else if (is === 'stop_saving') endSave(data);

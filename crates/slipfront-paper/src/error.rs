@@ -8,7 +8,7 @@ use slipfront_plot::PictureError;
 use slipfront_run::folder_error::FolderError;
 use slipfront_run::verify::VerifyError;
 use slipfront_study::StudyError;
-use slipfront_study::verify::VerifyStudyError;
+use slipfront_study::project_folder::VerifyStudyError;
 
 /// Reason for which the figures could not be run or the report not be written.
 #[derive(Debug, Error)]

@@ -10,8 +10,8 @@ use slipfront_run::folder_error::FolderError;
 use slipfront_run::manifest::ManifestFile;
 use slipfront_run::names::FIGURE_CACHE;
 use slipfront_run::verify::{Verdict, VerifyError, differences};
-use slipfront_study::result_files::{Checksums, ResultFiles};
-use slipfront_study::verify::{Extent, VerifyStudyError, verify_checksums};
+use slipfront_study::project_folder::{Checksums, ResultFiles};
+use slipfront_study::project_folder::{Extent, VerifyStudyError, verify_checksums};
 use slipfront_study::{Records, StudyError};
 
 use crate::cache::MAX_BYTES;

@@ -7,6 +7,7 @@ use fearless_simd::{Level, Simd, SimdBase, dispatch, f64x8};
 /// Number of columns that are computed together: two vectors of AVX2, one of AVX-512.
 const PANEL: usize = 8;
 
+// The 32 sums of a tile stay in registers: every number that is loaded serves four or eight of them.
 /// Number of rows that are computed together.
 const ROWS: usize = 4;
 
@@ -79,6 +80,8 @@ impl Factor {
     fn factorize<S: Simd>(&mut self, simd: S) -> bool {
         let n = self.n;
         let mut panel = Vec::with_capacity(n);
+        // Panel by panel, each less the product of all columns before it: nearly all of the work is that
+        // product, in `tile`.
         for first in (0..n).step_by(PANEL) {
             let width = PANEL.min(n - first);
             panel.clear();
@@ -117,6 +120,8 @@ impl Factor {
                     own[row - first][..values.len()].copy_from_slice(values);
                 }
             }
+            // Rows below are multiplied by the inverse of the panel's triangle: solving for each would divide
+            // number by number.
             let inverse = inverse_of_triangle(&own, width).map(|row| f64x8::load_array(simd, row));
             for group in (below..n).step_by(ROWS) {
                 let sums = tile(simd, rows_from(&self.rows, n, group, 0), &panel);
@@ -141,6 +146,7 @@ impl Factor {
             let sum: f64 = row.iter().zip(&*y).map(|(l, y)| l * y).sum();
             y[i] = (y[i] - sum) / self.rows[i * n + i];
         }
+        // Of L^T, too, one row of L after the other: its columns would be read across the memory.
         for i in (0..n).rev() {
             y[i] /= self.rows[i * n + i];
             let (before, value) = (&self.rows[i * n..i * n + i], y[i]);
@@ -205,6 +211,8 @@ impl Factor {
                     all[column * n + k] = *value;
                 }
             }
+            // Columns of L^-1 are zero above `first`, so that sums begin there. The other half follows by
+            // symmetry.
             let last = first + width;
             for group in (0..last).step_by(ROWS) {
                 let sums = tile(simd, rows_from(&all, n, group, first), &columns);
@@ -253,6 +261,8 @@ pub(crate) fn differences(matrix: &[f64], points: &[f64], d: usize) -> Vec<f64> 
 #[inline(always)]
 fn sums_of_differences<S: Simd>(simd: S, matrix: &[f64], points: &[f64], d: usize) -> Vec<f64> {
     let n = points.len() / d;
+    // The sum is a product of matrices less the sums of rows times a point, in place of a difference for
+    // every pair.
     let rows: Vec<f64> = matrix.chunks_exact(n).map(|row| row.iter().sum()).collect();
     let mut found = vec![0.0; n * d];
     for first in (0..d).step_by(PANEL) {

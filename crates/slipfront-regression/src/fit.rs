@@ -19,6 +19,7 @@ impl Fit {
         let factor = Factor::of(kernel, noise)?;
         let mut coefficients = values.to_vec();
         factor.solve(&mut coefficients);
+        // Residuals as if each run were left out, from one factor: `n` regressions would give the same.
         let inverse = factor.inverse_diagonal();
         let residuals = coefficients.iter().zip(inverse).map(|(a, d)| a / d).collect();
         Some(Self {
@@ -75,6 +76,8 @@ pub(crate) fn kernel_of_all(points: &[f64], d: usize) -> Vec<f64> {
     let mut kernel = squared_distances(points, points, d);
     for i in 0..n {
         kernel[i * n + i] = 1.0;
+        // One half, copied to the other: half the exponentials, and a matrix that is symmetric to the last
+        // bit.
         for j in 0..i {
             let value = libm::exp(-0.5 * kernel[i * n + j]);
             kernel[i * n + j] = value;

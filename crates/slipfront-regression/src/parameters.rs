@@ -65,6 +65,7 @@ impl Parameters {
     /// The likeliest parameters for values, whose mean is 0, at rows of summaries; none if no summary depends on the unknown.
     pub(crate) fn likeliest(summaries: &[f64], values: &[f64], noise: Noise) -> Option<Self> {
         let (n, d) = (values.len(), summaries.len() / values.len());
+        // The work grows with the cube of the number of runs, and two numbers are found from few.
         let some = n.min(MAX_OF_COMMON_WEIGHT);
         let mut first = Sample::of(&summaries[..some * d], &values[..some]);
         let spread = median(&squared_distances(first.summaries, first.summaries, d));
@@ -193,6 +194,7 @@ impl<'a> Sample<'a> {
         let product: f64 = self.values.iter().zip(&coefficients).map(|(u, a)| u * a).sum();
         let scale = product / n as f64;
         let value = 0.5 * n as f64 * libm::log(scale) + 0.5 * factor.log_determinant();
+        // In place of the inverse, element by element: matrices of all pairs of runs are what takes memory.
         let mut g = factor.inverse();
         let mut of_ridge = 0.0;
         for (i, row) in g.chunks_exact_mut(n).enumerate() {
@@ -280,10 +282,12 @@ const LONGEST: f64 = 2.0;
 /// Networks 1993, p. 586): the units of parameters do not matter, and no value has to be sought along a line.
 fn descend(start: Vec<f64>, f: &dyn Fn(&[f64]) -> Option<Slope>) -> Vec<f64> {
     let mut place = start.clone();
+    // Steps by signs alone may lead upwards, so that the best place is kept and not the last.
     let (mut least, mut best) = (f64::INFINITY, start);
     let mut steps = vec![FIRST_STEP; place.len()];
     let mut before = vec![0.0; place.len()];
     for _ in 0..STEPS {
+        // Where rounding leaves a matrix that is not positive, no step leads further.
         let Some(Slope { value, mut slopes }) = f(&place) else {
             break;
         };

@@ -115,6 +115,7 @@ impl Regression {
         let least = LEAST_SIZE * median(&sizes);
         let logs: Vec<f64> = sizes
             .iter()
+            // All residuals may be zero, as of an unknown that the summaries tell exactly.
             .map(|size| libm::log(size + least + f64::MIN_POSITIVE))
             .collect();
         let (log_scale, of_logs) = Function::learn(summaries, &logs, Noise::Normal);
@@ -160,6 +161,7 @@ impl Function {
             points: Vec::new(),
             coefficients: Vec::new(),
         };
+        // Weights need some hundred runs, coefficients all: only the former take many factors.
         let searched = n.min(MAX_SEARCHED);
         let Some(parameters) = Parameters::likeliest(&summaries[..searched * d], &targets[..searched], noise)
         else {
@@ -173,6 +175,7 @@ impl Function {
         let Some(mut found) = fit(vec![1.0; n]) else {
             return (nothing, targets);
         };
+        // A first regression shows which runs are far off; the second learns less from them.
         if let Some(better) = noise.variances(&found.residuals).and_then(fit) {
             found = better;
         }

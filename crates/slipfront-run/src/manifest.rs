@@ -16,7 +16,7 @@ use thiserror::Error;
 use crate::names::{CASE, MANIFEST, RunPicture};
 use crate::resume_command::resume_command;
 use crate::{clock, program};
-use slipfront_base::disk::{TEXT_MAX_BYTES, json, open_regular, read_limited};
+use slipfront_base::disk::{TEXT_MAX_BYTES, found_at, json, open_regular, read_limited};
 use slipfront_base::machine::host_name;
 use slipfront_base::ordered::map_of;
 use slipfront_base::text::{single_line, truncated};
@@ -25,7 +25,7 @@ use slipfront_case::case::{Case, Input};
 /// The last key of a manifest in its file. The checksum, its value, is the hash of all bytes before it.
 const CHECKSUM_KEY: &[u8] = b"\"seal\"";
 
-/// The files that were written, and their origin. Keys that an earlier version did not write are empty.
+/// The files that were written, and their origin. Keys that its file lacks are empty.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Manifest {
     /// Version of slipfront.
@@ -266,6 +266,28 @@ impl<R: Read> Read for Until<'_, R> {
         }
         self.file.read(bytes)
     }
+}
+
+/// Whether the entry of this name in a folder is a file that equals one of those listed; none if there is no such entry. A file of another
+/// length is not read: it may be huge.
+///
+/// # Errors
+/// When the system does not say what the entry is, or does not read it.
+pub fn is_one_of<'a>(
+    folder: &Path,
+    name: &str,
+    listed: impl IntoIterator<Item = &'a ManifestFile>,
+) -> std::io::Result<Option<bool>> {
+    let Some(found) = found_at(&folder.join(name))? else {
+        return Ok(None);
+    };
+    let is_alike = |file: &&ManifestFile| file.name == name && file.bytes == found.len();
+    let alike: Vec<&ManifestFile> = listed.into_iter().filter(is_alike).collect();
+    if !found.is_file() || alike.is_empty() {
+        return Ok(Some(false));
+    }
+    let found = ManifestFile::of(folder, name)?;
+    Ok(Some(alike.contains(&&found)))
 }
 
 impl ManifestFile {

@@ -156,16 +156,38 @@ impl MeasuredRecord {
     /// When the table cannot be read, has not these columns, or lacks numbers in them before its end; when no
     /// unit is known.
     pub fn read(path: &Path, columns: [&Column; 2], along: Measure) -> Result<Self, MeasuredError> {
+        Self::read_from(&|| open_limited(path, u64::MAX), path, columns, along)
+    }
+
+    /// Reads two columns of a table that is in memory, as [`read`](Self::read) does those of a file; messages name its path.
+    ///
+    /// # Errors
+    /// As [`read`](Self::read).
+    pub fn parse(
+        bytes: &[u8],
+        path: &Path,
+        columns: [&Column; 2],
+        along: Measure,
+    ) -> Result<Self, MeasuredError> {
+        Self::read_from(&|| Ok(bytes), path, columns, along)
+    }
+
+    /// Reads two columns of the table that `open` opens from its beginning, each time that it is called.
+    fn read_from<R: Read>(
+        open: &impl Fn() -> std::io::Result<R>,
+        path: &Path,
+        columns: [&Column; 2],
+        along: Measure,
+    ) -> Result<Self, MeasuredError> {
         let failed = |source: csv::Error| MeasuredError::Read {
             path: path.to_owned(),
             source,
         };
-        let open = || open_limited(path, u64::MAX).map_err(|source| failed(source.into()));
         let mut head = Vec::new();
-        let read = open()?.take(HEAD_BYTES).read_to_end(&mut head);
+        let read = open().and_then(|table| table.take(HEAD_BYTES).read_to_end(&mut head));
         read.map_err(|source| failed(source.into()))?;
         let separator = separator(&head);
-        let mut table = table_reader(open()?, separator);
+        let mut table = table_reader(open().map_err(|source| failed(source.into()))?, separator);
         let (mut places, mut factors) = ([0; 2], [1.0; 2]);
         let mut record = Self {
             x: Vec::new(),
@@ -211,7 +233,7 @@ impl MeasuredRecord {
             }
             let end = table.position().byte();
             if row.as_slice().contains(&b'\n') {
-                let (path, line) = (path.to_owned(), line_at(path, end).map_err(failed)?);
+                let (path, line) = (path.to_owned(), line_at(open, end).map_err(failed)?);
                 return Err(MeasuredError::Lines { path, line });
             }
             if fields.iter().all(String::is_empty) {
@@ -229,12 +251,12 @@ impl MeasuredRecord {
                 continue;
             };
             if let Some((line, _)) = footer {
-                return Err(line.error(path));
+                return Err(line.error(open, path));
             }
             if let Some(&before) = record.x.last().filter(|before| x < **before) {
                 return Err(MeasuredError::Falls {
                     path: path.to_owned(),
-                    line: line_at(path, end).map_err(failed)?,
+                    line: line_at(open, end).map_err(failed)?,
                     before,
                     value: x,
                 });
@@ -243,7 +265,7 @@ impl MeasuredRecord {
             record.y.push(y);
         }
         match (record.x.len(), footer) {
-            (0..2, Some((line, _))) => return Err(line.error(path)),
+            (0..2, Some((line, _))) => return Err(line.error(open, path)),
             (found @ 0..2, None) => {
                 let path = path.to_owned();
                 return Err(MeasuredError::TooShort { path, found });
@@ -254,7 +276,7 @@ impl MeasuredRecord {
                     "{} ends with {} without numbers, from line {} on",
                     display_path(path),
                     count(lines, "line"),
-                    line_at(path, first.end).map_err(failed)?
+                    line_at(open, first.end).map_err(failed)?
                 ));
             }
         }
@@ -264,8 +286,8 @@ impl MeasuredRecord {
 
 impl NoNumber {
     /// The error about this line of a table.
-    fn error(self, path: &Path) -> MeasuredError {
-        match line_at(path, self.end) {
+    fn error<R: Read>(self, open: &impl Fn() -> std::io::Result<R>, path: &Path) -> MeasuredError {
+        match line_at(open, self.end) {
             Ok(line) => MeasuredError::NoNumber {
                 path: path.to_owned(),
                 line,
@@ -280,10 +302,10 @@ impl NoNumber {
     }
 }
 
-/// Number of the line that ends, with its terminator if it has one, at the byte `end` of a file. The reader of tables counts no lines that
+/// Number of the line that ends, with its terminator if it has one, at the byte `end` of a table. The reader of tables counts no lines that
 /// are empty, comments or end as those of Windows.
-fn line_at(path: &Path, end: u64) -> csv::Result<u64> {
-    let mut before = BufReader::new(open_limited(path, u64::MAX)?.take(end.saturating_sub(1)));
+fn line_at<R: Read>(open: &impl Fn() -> std::io::Result<R>, end: u64) -> csv::Result<u64> {
+    let mut before = BufReader::new(open()?.take(end.saturating_sub(1)));
     let mut line = 1;
     loop {
         let bytes = before.fill_buf()?;

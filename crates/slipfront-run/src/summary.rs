@@ -58,7 +58,7 @@ pub struct Summary {
     pub transition: bool,
     /// The instants A-F that were found.
     pub instants: Vec<InstantSummary>,
-    /// Units of the starred quantities and laboratory values; none in summaries of older versions.
+    /// Units of the starred quantities and laboratory values.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub si: Option<SiSummary>,
     /// Number of sites at which slip has nucleated. Like all values of the front, it belongs to a run with a transition, or

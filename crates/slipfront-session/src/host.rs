@@ -2,8 +2,8 @@
 
 use crate::document::Document;
 use crate::event::Event;
+use crate::job::Job;
 use crate::recorded::RecordedRun;
-use crate::work::Work;
 
 /// Whoever holds a session: it passes on what the session says, and does what the session may not.
 pub trait Host {
@@ -32,7 +32,7 @@ pub trait Host {
     ///
     /// # Errors
     /// A sentence, if it cannot be read any more.
-    fn opening(&self) -> Result<Opened, String>;
+    fn opening(&self) -> Result<OpenedCase, String>;
 
     /// Gives a case to choose by its name.
     ///
@@ -44,13 +44,13 @@ pub trait Host {
     ///
     /// # Errors
     /// A sentence, if there is none of that name, or it cannot be read.
-    fn recorded_run(&self, name: &str) -> Result<Opened, String>;
+    fn recorded_run(&self, name: &str) -> Result<OpenedCase, String>;
 
     /// Begins work beside the session.
     ///
     /// # Errors
     /// A sentence, if the system refuses.
-    fn begin(&self, work: Work) -> Result<Box<dyn Task>, String>;
+    fn begin(&self, job: Job) -> Result<Box<dyn Task>, String>;
 
     /// Begins to save a run of a case from rest under this name.
     ///
@@ -62,21 +62,21 @@ pub trait Host {
     fn stop_saving(&self, name: &str);
 }
 
-/// Work that was begun beside the session. Dropping the task ends the work.
+/// A job that was begun beside the session. Dropping the task ends the job.
 pub trait Task {
     /// Gives the next thing that the work tells; none if it has told nothing new.
     fn next_event(&mut self) -> Option<Event>;
 }
 
 /// A case that is opened.
-pub struct Opened {
+pub struct OpenedCase {
     /// The case as a document.
     pub document: Document,
     /// The recorded run of the case, if there is one.
     pub recorded: Option<RecordedRun>,
 }
 
-impl From<Document> for Opened {
+impl From<Document> for OpenedCase {
     fn from(document: Document) -> Self {
         Self {
             document,

@@ -15,6 +15,7 @@ mod document;
 mod event;
 mod history;
 mod host;
+mod job;
 mod live;
 mod names;
 #[cfg(test)]
@@ -32,13 +33,13 @@ mod shapes;
 #[cfg(test)]
 mod testing;
 mod view;
-mod work;
 mod zip;
 
 pub use archive::{Draw, NamedFiles, run_archive};
 pub use document::{Document, MAX_BLOCKS};
 pub use event::{Event, Worker};
-pub use host::{Host, Opened, Task};
+pub use host::{Host, OpenedCase, Task};
+pub use job::Job;
 pub use names::{MAX_FILES, is_plain_name};
 pub use presets::{Preset, Presets};
 pub use protocol::{MAX_MESSAGE, Message};
@@ -46,4 +47,3 @@ pub use recorded::RecordedRun;
 pub use replies::{failed, hello, refused, saved, saving};
 pub use run_files::recorded_run;
 pub use session::Session;
-pub use work::Work;

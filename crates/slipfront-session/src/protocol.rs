@@ -1,6 +1,7 @@
 //! Messages between the page and a session: requests as JSON, replies as JSON, pictures as bytes.
 //!
-//! The page is written against the types of `types/protocol.d.ts`; a test holds them against the types of this module.
+//! The page is written against the types of `types/protocol.d.ts`: samples of all messages hold them against
+//! the types of this module.
 
 use std::collections::BTreeMap;
 
@@ -15,7 +16,8 @@ use crate::view::ViewChange;
 /// Longest message of the page, in bytes: an image of the texture.
 pub const MAX_MESSAGE: usize = 8 << 20;
 
-/// Most values of a request, those within lists and tables too: one takes some 30 times the memory of its text.
+/// Most values of a request, those within lists and tables too: one takes some 30 times the memory of its
+/// text.
 const MAX_VALUES: usize = 20_000;
 
 /// A message of the page, which holds one request.
@@ -38,7 +40,8 @@ impl Message {
     }
 }
 
-/// A number of values that a text of JSON cannot exceed: every value but the first is behind a comma or an opening bracket.
+/// A number of values that a text of JSON cannot exceed: every value but the first is behind a comma or an
+/// opening bracket.
 fn most_values(text: &str) -> usize {
     let (mut is_quoted, mut is_escaped, mut values) = (false, false, 1);
     for byte in text.bytes() {
@@ -347,11 +350,14 @@ pub(crate) struct FindingReply {
     pub(crate) of_seconds: f64,
     /// Textures that were tried.
     pub(crate) textures: usize,
-    /// Whether the best texture is being compared with the painted one, on surfaces that the search has not seen.
+    /// Whether the best texture is being compared with the painted one, on surfaces that the search has not
+    /// seen.
     pub(crate) compares: bool,
-    /// Change of static friction by the best texture so far against no texture, %, on the surfaces of the search.
+    /// Change of static friction by the best texture so far against no texture, %, on the surfaces of the
+    /// search.
     pub(crate) best_percent: Option<f64>,
-    /// Strips of textured blocks of the best texture so far: the row, the first column and the column after the last.
+    /// Strips of textured blocks of the best texture so far: the row, the first column and the column after
+    /// the last.
     pub(crate) best_texture: Vec<[usize; 3]>,
 }
 

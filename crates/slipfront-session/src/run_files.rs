@@ -11,7 +11,7 @@ use slipfront_run::series;
 use slipfront_run::summary::contact_stress_max_of;
 
 use crate::document::Document;
-use crate::host::Opened;
+use crate::host::OpenedCase;
 use crate::recorded::RecordedRun;
 
 /// Any error as its sentence.
@@ -29,7 +29,7 @@ pub fn recorded_run(
     name: &str,
     place: &Path,
     read: impl Fn(&str) -> Result<Option<Vec<u8>>, String>,
-) -> Result<Opened, String> {
+) -> Result<OpenedCase, String> {
     let manifest = read(MANIFEST)?
         .map(|bytes| Manifest::of_bytes(&place.join(MANIFEST), &bytes))
         .transpose()
@@ -81,7 +81,7 @@ pub fn recorded_run(
         mu_star: rows.iter().map(|row| row.mu_star).collect(),
         snapshots: fields.filter(|fields| fields.stride == 1 && !fields.frames.is_empty()),
     };
-    Ok(Opened {
+    Ok(OpenedCase {
         document,
         recorded: Some(recorded),
     })

@@ -10,11 +10,11 @@ use serde_json::Value;
 
 use crate::document::Document;
 use crate::event::{Event, EventKind, Worker};
-use crate::host::{Host, Opened, Task};
+use crate::host::{Host, OpenedCase, Task};
+use crate::job::Job;
 use crate::presets::Presets;
 use crate::protocol::Message;
 use crate::session::Session;
-use crate::work::Work;
 
 /// Time that passes for work between two looks at its clock.
 const TICK: Duration = Duration::from_secs(3);
@@ -62,22 +62,22 @@ impl Host for TestHost {
         2
     }
 
-    fn opening(&self) -> Result<Opened, String> {
+    fn opening(&self) -> Result<OpenedCase, String> {
         let document = Document::new("opening", "", |_| Err("there is none".to_owned()));
-        document.map(Opened::from).map_err(|error| error.to_string())
+        document.map(OpenedCase::from).map_err(|error| error.to_string())
     }
 
     fn preset(&self, name: &str) -> Result<Document, String> {
         Presets::default().document(name)
     }
 
-    fn recorded_run(&self, name: &str) -> Result<Opened, String> {
+    fn recorded_run(&self, name: &str) -> Result<OpenedCase, String> {
         Err(format!("{name} is not here"))
     }
 
-    fn begin(&self, work: Work) -> Result<Box<dyn Task>, String> {
+    fn begin(&self, job: Job) -> Result<Box<dyn Task>, String> {
         let worker = TestWorker::default();
-        work.run(&worker);
+        job.run(&worker);
         let mut events = worker.events.into_inner();
         if self.is_endless.get() {
             events.retain(|event| !matches!(event.0, EventKind::Searched(_)));
@@ -163,18 +163,18 @@ impl Tried {
     pub(crate) fn ask(&mut self, request: Value) -> Vec<Value> {
         self.session
             .handle(Message(serde_json::from_value(request).unwrap()));
-        self.work();
+        self.advance();
         self.replies()
     }
 
     /// Works once, and gives the time at which there is something to do next.
-    pub(crate) fn work(&mut self) -> Option<Duration> {
-        self.session.work(self.now)
+    pub(crate) fn advance(&mut self) -> Option<Duration> {
+        self.session.advance(self.now)
     }
 
     /// Works up to a time, on each call for so long.
-    pub(crate) fn work_until(&mut self, end: Duration, each: Duration) {
-        while let Some(due) = self.work()
+    pub(crate) fn advance_until(&mut self, end: Duration, each: Duration) {
+        while let Some(due) = self.advance()
             && due <= end
         {
             self.now = if due > self.now { due } else { self.now + each };

@@ -6,7 +6,7 @@ use std::ops::Bound;
 use serde::Deserialize;
 use toml::Value;
 
-use crate::input_copies::plain_name;
+use crate::project_folder::plain_name;
 use slipfront_base::number_format::{exact, si_prefix};
 use slipfront_base::text::truncated;
 use slipfront_case::case_file::{Override, exclude_each_other, names_a_file, partners_of};

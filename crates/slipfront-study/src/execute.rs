@@ -8,9 +8,9 @@ use std::sync::mpsc::{self, Sender};
 use std::time::Instant;
 
 use crate::error::StudyError;
-use crate::journal::Records;
 use crate::plan::{Plan, RunKey};
 use crate::record::{FinishedRun, Outcome};
+use crate::records::Records;
 use crate::scheduler::{Ended, Scheduler, Task};
 use crate::study_file::RetainRuns;
 use crate::study_results::{Progress, StudyResults};
@@ -75,12 +75,14 @@ fn execute_with(
     let (to_scheduler, finished) = mpsc::channel::<Ended>();
     let abandon = AtomicBool::new(false);
     let is_stopped = || stop.load(Ordering::Relaxed) || abandon.load(Ordering::Relaxed);
+    // The scheduler stays on the thread of the caller: it waits, and would take a run's place in the pool.
     rayon::in_place_scope(|scope| {
         let _abandon = SetOnDrop(&abandon);
         let start = |task| {
             let (is_stopped, to_scheduler) = (&is_stopped, to_scheduler.clone());
             scope.spawn(move |_| work(run_case, task, &to_scheduler, is_stopped));
         };
+        // Of the pool that works, so that idle threads get replicates ahead of need.
         let threads = rayon::current_num_threads();
         Scheduler::new(plan, records, &start, threads).run(&finished, stop, watch)
     })
@@ -89,6 +91,7 @@ fn execute_with(
 /// Does a run.
 fn work(run_case: &RunCase, Task { run, id }: Task, finished: &Sender<Ended>, is_stopped: &IsStopped) {
     let began = Instant::now();
+    // The pool may hold many tasks that wait: after a stop they end here.
     let outcome = if is_stopped() {
         Ok(None)
     } else {

@@ -1,27 +1,25 @@
 //! The results folder of a study: study file, journal, tables, pictures and run folders.
 
-use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::anisotropy::anisotropies;
 use crate::error::StudyError;
-use crate::journal::Records;
 use crate::plan::{Plan, RunKey};
-use crate::result_files::{Batch, Others, ResultFiles};
-use crate::study_file::StudyFile;
+use crate::project_folder::{Batch, Others, ResultFiles};
+use crate::records::Records;
+use crate::study_file::{STUDIES, StudyFile};
 use crate::study_results::StudyResults;
 use crate::{pictures, tables};
-use slipfront_base::disk::{TEXT_MAX_BYTES, is_empty, make_folders, open_limited, read_limited};
+use slipfront_base::disk::{TEXT_MAX_BYTES, open_limited, read_limited};
 use slipfront_base::machine::free_disk;
-use slipfront_base::number_format::byte_size;
+use slipfront_base::number_format::{byte_size, count};
 use slipfront_run::folder_error::FolderError;
 use slipfront_run::manifest::Manifest;
-use slipfront_run::names::{CASE, FIGURE_CACHE, RECORDS, RUNS, TABLES};
+use slipfront_run::names::{CASE, FIGURE_CACHE, RUNS, TABLES};
 use slipfront_run::run_copy::copy_run;
 
-/// The study file in the folder, with the base case as a table in it: `slipfront study DIR/study.toml` repeats the study.
-const STUDY: &str = "study.toml";
+const STUDY: &str = STUDIES.file;
 
 /// A study folder with its records open.
 #[derive(Debug)]
@@ -45,51 +43,54 @@ impl StudyFolder {
     /// When the folder holds other things, or files that were edited since they were written and may not be replaced by `force`; when
     /// another process works in it, or it cannot be written to.
     pub fn open(path: &Path, study: &StudyFile, force: bool) -> Result<Self, StudyError> {
-        make_folders(path).map_err(FolderError::unwritable(path))?;
-        let used = path.join(RECORDS).exists();
-        let empty = is_empty(path).map_err(FolderError::unwritable(path))?;
-        if (!used && !empty) || is_of_figures(path) {
-            return Err(StudyError::OtherThings {
-                what: "study",
-                path: path.to_owned(),
-            });
+        STUDIES.is_used(path)?;
+        if is_of_figures(path) {
+            return Err(STUDIES.other_things(path));
         }
-        let records = Records::open(path).map_err(|error| match error {
-            StudyError::NotRecords { path } => FolderError::Foreign { path }.into(),
-            error => error,
-        })?;
-        let (text, copies) = study.portable()?;
+        let records = Records::of(STUDIES.open_journal(path)?);
+        let given = study.given()?;
         let parse = |text: &str| {
             let name = path.join(STUDY).display().to_string();
             StudyFile::parse(text, &name, &study.name, path)
         };
         let before = read_limited(&path.join(STUDY), TEXT_MAX_BYTES).ok();
-        let is_other = before.as_ref().is_some_and(|before| before != text.as_bytes());
-        let changed = is_other || copies.iter().any(|copy| copy.differs_in(path));
+        let changed = given.differs_in(&STUDIES, path);
         // A user may change the study in the folder, and run that.
         let is_this = |before: &Vec<u8>| {
             let there = parse(&String::from_utf8_lossy(before)).ok();
-            there.is_some_and(|there| there.portable().is_ok_and(|(there, _)| there == text))
+            there.is_some_and(|there| there.given().is_ok_and(|there| there.text == given.text))
         };
-        let mut given = ResultFiles::new(path, "study", force).begin();
-        given.write(STUDY, |file| file.write_all(text.as_bytes()))?;
+        let mut batch = given.stage(&STUDIES, path, force)?;
         if before.is_some_and(|before| is_this(&before)) {
-            given.may_replace(STUDY);
+            batch.may_replace(STUDY);
         }
-        given.copy_all(&copies)?;
-        let files = given.place_given(if changed { Others::Go } else { Others::Stay })?;
+        let files = batch.place_given(if changed { Others::Go } else { Others::Stay })?;
         Ok(Self {
             path: path.to_owned(),
             records,
             files,
             changed,
-            study: parse(&text)?,
+            study: parse(&given.text)?,
         })
     }
 
     /// Path of the folder.
     pub fn path(&self) -> &Path {
         &self.path
+    }
+
+    /// Sentences about a folder that has been used before.
+    pub fn notes(&self) -> Vec<String> {
+        let damaged = (self.records.damaged > 0).then(|| {
+            let lines = count(self.records.damaged, "damaged line");
+            format!("the record file has {lines}, passed over: its runs count as not run")
+        });
+        let changed =
+            "the study has changed since this folder was last used; runs that still belong to it are kept";
+        damaged
+            .into_iter()
+            .chain(self.changed.then(|| changed.to_owned()))
+            .collect()
     }
 
     /// Copies complete run folders, and the cases of failed runs, from the folder of a shard, where this folder lacks them.

@@ -32,14 +32,31 @@ impl MeasuredColumns {
     /// A sentence on why the table is no record.
     pub fn read(&self, path: &Path, along: Measure) -> Result<MeasuredRecord, String> {
         let read = MeasuredRecord::read(path, [&self.x, &self.y], along);
-        read.map_err(|error| match error {
+        read.map_err(|error| Self::sentence(error, path))
+    }
+
+    /// The record in these bytes of a table, of which messages name the path.
+    ///
+    /// # Errors
+    /// A sentence on why the table is no record.
+    pub fn parse(&self, bytes: &[u8], path: &Path, along: Measure) -> Result<MeasuredRecord, String> {
+        let read = MeasuredRecord::parse(bytes, path, [&self.x, &self.y], along);
+        read.map_err(|error| Self::sentence(error, path))
+    }
+
+    /// The sentence of an error, with keys in place of options.
+    fn sentence(error: MeasuredError, path: &Path) -> String {
+        match error {
             MeasuredError::NoUnit {
-                column, axis, example, ..
+                column,
+                axis,
+                example,
+                ..
             } => format!(
                 "nothing tells the unit of column `{column}` of {}: give it as a key, such as {axis}_unit = \"{example}\"",
                 path.display()
             ),
             error => error.to_string(),
-        })
+        }
     }
 }

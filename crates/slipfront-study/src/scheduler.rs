@@ -9,9 +9,9 @@ use std::sync::mpsc::Receiver;
 use std::time::Duration;
 
 use crate::error::StudyError;
-use crate::journal::Records;
 use crate::plan::{Plan, RunKey};
 use crate::record::{FinishedRun, RunResult};
+use crate::records::Records;
 use crate::statistics::Sample;
 use crate::study_results::{PointResult, Progress, StudyResults};
 use crate::summary_values::RunQuantity;
@@ -100,6 +100,7 @@ impl<'a> Scheduler<'a> {
         self.begin();
         self.report(watch);
         while !self.waiting.is_empty() {
+            // Before waiting: what has finished by the stop is still recorded.
             let stopped = stop.load(Ordering::Relaxed);
             let first = finished.recv_timeout(Duration::from_millis(100)).ok();
             // All that has finished meanwhile is written at once, since every write waits for the disk.
@@ -129,6 +130,8 @@ impl<'a> Scheduler<'a> {
                 Err(error) => failure = Some(error),
             }
         }
+        // On the disk before anything is decided by it. Runs that finished beside one that ends the study are
+        // kept too.
         self.records.append(&records)?;
         self.progress.here += records.len();
         for record in records {
@@ -160,6 +163,7 @@ impl<'a> Scheduler<'a> {
         self.points[run.point].missing += 1;
         let waiting = self.waiting.entry(id.clone()).or_default();
         waiting.push(run);
+        // Other points that need the same run wait for the one that is under way.
         if waiting.len() == 1 {
             self.progress.total += 1;
             (self.start)(Task { run, id });
@@ -179,6 +183,8 @@ impl<'a> Scheduler<'a> {
         };
         let runs = self.waiting.remove(&id).unwrap_or_default();
         self.count(id, &result);
+        // All points know of the run before one of them decides, which may ask for runs that are recorded by
+        // now.
         for run in &runs {
             self.results.runs.insert(*run, result.clone());
             self.points[run.point].missing -= 1;
@@ -191,6 +197,7 @@ impl<'a> Scheduler<'a> {
     /// Decides on the number of replicates of a point once all that were requested are finished, and requests more where they
     /// are not enough.
     fn decide(&mut self, point: usize) {
+        // Again where all that was asked for is recorded already, as when a study goes on.
         while self.points[point].missing == 0 && self.points[point].result.is_none() {
             self.points[point].result = self.evaluate_stopping(point);
             if self.points[point].result.is_none() {
@@ -224,6 +231,8 @@ impl<'a> Scheduler<'a> {
             if enough && state.half_width.is_some_and(|half| half <= until.half_width) {
                 return decided(replicates, Some(true));
             }
+            // Where the fewest replicates never show the quantity, such as a front that no run has, no more
+            // are tried.
             if values.is_empty() {
                 return decided(replicates, Some(false));
             }
@@ -258,6 +267,7 @@ impl<'a> Scheduler<'a> {
 
     /// Number of recorded runs that no point could request, even with the most replicates.
     fn orphaned_runs(&self) -> usize {
+        // Mostly so, which spares the identities of all runs that might have been asked for.
         if self.records.len() == self.belonging.len() {
             return 0;
         }

@@ -1,19 +1,28 @@
 //! The study file: a base case, the axes that vary it, and the number of replicates.
 
 use std::collections::{BTreeSet, HashSet};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use serde::Deserialize;
-use toml::Spanned;
-use toml::de::{DeTable, DeValue};
+use toml::de::DeValue;
 
 use crate::axis::{self, Axis, AxisKeys};
 use crate::error::StudyError;
-use crate::input_copies::{self, Copy};
+use crate::project_file::{Base, given, parse_noting_places, read_base};
+use crate::project_folder::{Given, ProjectKind};
 use crate::summary_values::{REDUCTION, is_column, known};
 use slipfront_case::case_file::{
-    CASE_TABLES, CaseError, Override, ParsedCase, Place, STUDY_TABLES, Source, Tables, header_below,
-    limit_nesting, names_of, read_text, syntax_error, unknown_case_table, unknown_key,
+    CASE_TABLES, CaseError, Override, STUDY_TABLES, Source, Tables, header_below, names_of, syntax_error,
+    unknown_case_table, unknown_key,
+};
+use slipfront_run::names::RECORDS;
+
+/// Folders of studies. Their study file has the base case as a table in it: `slipfront study DIR/study.toml` repeats the study.
+pub(crate) static STUDIES: ProjectKind = ProjectKind {
+    name: "study",
+    table: "study",
+    file: "study.toml",
+    journal: RECORDS,
 };
 
 /// A study file.
@@ -29,43 +38,6 @@ pub struct StudyFile {
     pub axes: Vec<Axis>,
     /// The file as a table, for the copy in the results folder.
     pub(crate) table: toml::Table,
-}
-
-/// The case that a study varies.
-#[derive(Clone, Debug)]
-pub struct Base {
-    /// Text of the case file.
-    pub text: String,
-    /// Name of the case in messages.
-    pub name: String,
-    /// The folder to which the files of the case are relative.
-    pub folder: PathBuf,
-    /// Keys that are set beside the file, as by `--set`.
-    pub(crate) overrides: Vec<Override>,
-    /// The file that holds the case as its table `base`, in which errors name their places.
-    pub(crate) whole: Option<Source>,
-}
-
-impl Base {
-    /// The case file, parsed.
-    pub fn parse(&self) -> Result<ParsedCase<'_>, CaseError> {
-        let mut source = Source::new(&self.name, &self.text);
-        if let Some(whole) = &self.whole {
-            source = source.of_table(whole.clone(), "base");
-        }
-        ParsedCase::parse_from(&self.text, source)?.set(&self.overrides)
-    }
-
-    /// A base case of this text.
-    fn new(text: String, name: String, folder: PathBuf) -> Self {
-        Self {
-            text,
-            name,
-            folder,
-            overrides: Vec::new(),
-            whole: None,
-        }
-    }
 }
 
 /// The table `[study]`: repetition, reference and kept folders.
@@ -213,8 +185,8 @@ impl Settings {
 
 impl StudyFile {
     /// The study with its base case inside and its files beside it, for the results folder.
-    pub(crate) fn portable(&self) -> Result<(String, Vec<Copy>), StudyError> {
-        portable(&self.base, &self.table)
+    pub(crate) fn given(&self) -> Result<Given, StudyError> {
+        given(&self.base, &self.table)
     }
 
     /// Sets keys of the base case, each by a text such as `drive.v_star=0.05`.
@@ -264,8 +236,7 @@ impl StudyFile {
 
     /// Loads a study file; a base case that it names stands relative to it.
     pub fn load(path: &Path) -> Result<Self, StudyError> {
-        let (text, name, folder) = read_named(path, "study")?;
-        Self::parse(&text, &path.display().to_string(), &name, folder)
+        STUDIES.load(path, Self::parse)
     }
 
     /// Reads a study file called `file` in messages; a base case that it names stands relative to `folder`.
@@ -312,104 +283,6 @@ fn refuse_rest(tables: &Tables) -> Result<(), CaseError> {
         unknown_key(name, "a study file", &STUDY_TABLES)
     };
     Err(tables.source.error_at(key.span(), sentence))
-}
-
-/// The text of a file, its name without the ending, or else `default`, and its folder.
-pub fn read_named<'p>(path: &'p Path, default: &str) -> Result<(String, String, &'p Path), CaseError> {
-    let text = read_text(path)?;
-    let stem = path.file_stem();
-    let name = stem.map_or_else(|| default.into(), |stem| stem.to_string_lossy());
-    let folder = path.parent().unwrap_or(Path::new(""));
-    Ok((text, name.into_owned(), folder))
-}
-
-/// Parses a text, and notes the places of its keys in the source.
-pub fn parse_noting_places<'t>(source: &mut Source, text: &'t str) -> Result<DeTable<'t>, CaseError> {
-    let root = DeTable::parse(limit_nesting(source, 0, text)?);
-    let root = root
-        .map_err(|error| syntax_error(source, 0, &error))?
-        .into_inner();
-    source.note_places(&root);
-    Ok(root)
-}
-
-/// An error about a case that a key of a file makes, at the place of the key.
-pub fn found_at(source: &Source, key: &str, error: CaseError) -> CaseError {
-    match error {
-        CaseError::Invalid(invalid) => match invalid.place {
-            Some(Place::Override(given)) => source.error(key, format!("`{given}`: {}", invalid.sentence)),
-            _ => CaseError::Invalid(invalid),
-        },
-        error => error,
-    }
-}
-
-/// The text of a file with its base case inside, and the copies of files that it names beside it.
-pub fn portable(base: &Base, table: &toml::Table) -> Result<(String, Vec<Copy>), StudyError> {
-    let mut portable = toml::Table::from_iter([("base".to_owned(), base_table(base)?.into())]);
-    portable.extend(table.clone().into_iter().filter(|(key, _)| key != "base"));
-    let copies = input_copies::copy(&mut portable, &base.folder)?;
-    Ok((portable_text(portable)?, copies))
-}
-
-/// The keys of a base case.
-fn base_table(base: &Base) -> Result<toml::Table, CaseError> {
-    base.parse()?.to_table()
-}
-
-/// The text of a study. Keys in an axis or under `[study]` keep their order, which is that of columns and points: a table in
-/// full would have its lists of tables behind all else.
-pub(crate) fn portable_text(mut study: toml::Table) -> Result<String, CaseError> {
-    let mut text = String::new();
-    if let Some(base) = study.remove("base") {
-        text += &toml::to_string(&toml::Table::from_iter([("base".to_owned(), base)]))?;
-    }
-    for (name, value) in study {
-        let (header, tables) = match value {
-            toml::Value::Array(tables) => (format!("[[{name}]]"), tables),
-            table => (format!("[{name}]"), vec![table]),
-        };
-        for table in tables {
-            text += &format!("\n{header}\n");
-            for (key, value) in table.as_table().into_iter().flatten() {
-                text += &format!("{key} = {value}\n");
-            }
-        }
-    }
-    Ok(text)
-}
-
-/// The base case of a file called `file`: a table of it, a case file that it names relative to `folder`, or the baseline.
-pub fn read_base(tables: &mut Tables, file: &str, folder: &Path) -> Result<Base, StudyError> {
-    let folder = folder.to_owned();
-    let Some(value) = tables.root.remove("base") else {
-        // Without a base the baseline is varied.
-        let (text, name) = (String::new(), format!("{file} [base]"));
-        return Ok(Base::new(text, name, folder));
-    };
-    let span = value.span();
-    match value.into_inner() {
-        DeValue::String(path) => {
-            let path = folder.join(path.as_ref());
-            let text = read_text(&path).map_err(|error| tables.source.error_at(span, error.to_string()))?;
-            let folder = path.parent().unwrap_or(Path::new("")).to_owned();
-            let name = path.display().to_string();
-            Ok(Base::new(text, name, folder))
-        }
-        table @ DeValue::Table(_) => {
-            let table: toml::Table = tables.read_table(Spanned::new(span, table), "[base]")?;
-            let text = toml::to_string(&table).map_err(CaseError::from)?;
-            let name = format!("[base] of {file}");
-            Ok(Base {
-                whole: Some(tables.source.clone()),
-                ..Base::new(text, name, folder)
-            })
-        }
-        _ => {
-            let sentence = "`base` must be the path of a case file, or a table [base] that holds its keys";
-            Err(tables.source.error_at(span, sentence))?
-        }
-    }
 }
 
 /// Largest number of axes: 20 of two levels are as many points as a study may have.

@@ -1,85 +1,48 @@
-//! Compares the folder of a study or of another project with the list of its files, then with the tables, pictures and other
-//! results that its recorded runs give; and the run folders that a study has kept with their manifests.
+//! Compares the folder of a study with the list of its files, then with the tables and pictures that its recorded runs give, and the run
+//! folders that it has kept with their manifests; other folders as what they are.
 
 use std::collections::HashSet;
 use std::io::ErrorKind;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use slipfront_base::disk::{TEXT_MAX_BYTES, open_limited};
 use slipfront_base::number_format::{are, count};
-use slipfront_base::unfinished::{TemporaryFolder, is_unfinished};
+use slipfront_base::unfinished::TemporaryFolder;
 use slipfront_run::folder_error::FolderError;
 use slipfront_run::names::{FIGURE_CACHE, RUNS};
-use slipfront_run::program;
-use slipfront_run::verify::{
-    Verdict, VerifyError, differences, first_line, inspect, unlisted_files, verify_run,
-};
-use thiserror::Error;
+use slipfront_run::verify::{Verdict, VerifyError, first_line, inspect, verify_run};
 
 use crate::converge;
-use crate::error::{StudyError, of_others};
+use crate::error::StudyError;
 use crate::execute::collect;
 use crate::folder::{StudyFolder, is_of_figures, stage, study_of};
-use crate::journal::Records;
+
 use crate::plan::Plan;
-use crate::project_kind::ProjectKind;
-use crate::result_files::{CHECKSUMS, Checksums, Others};
+use crate::project_folder::verify::{differences_from, verify_project};
+use crate::project_folder::{Derivation, Extent, Others, VerifyStudyError, verify_checksums};
+use crate::records::Records;
 use crate::study_file::RetainRuns;
 use crate::study_results::StudyResults;
-
-/// The folder of a study that cannot be verified.
-#[derive(Debug, Error)]
-#[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
-pub enum VerifyStudyError {
-    #[error(
-        "the study in {path} lacks {}{}: finish it, or merge it with its other shards, and verify it then",
-        count(*runs, "run"),
-        of_others(*others)
-    )]
-    Unfinished {
-        path: PathBuf,
-        runs: usize,
-        others: usize,
-    },
-    #[error("the {what} in {path} was not finished: run it again to go on with it, and verify it then")]
-    UnfinishedSearch { what: &'static str, path: PathBuf },
-    #[error(transparent)]
-    Study(#[from] StudyError),
-    #[error(transparent)]
-    Run(#[from] VerifyError),
-    #[error(transparent)]
-    Folder(#[from] FolderError),
-}
 
 /// Whether a study has been run in the folder.
 pub fn has_records(folder: &Path) -> bool {
     crate::folder::is_study(folder) && folder.join(Records::FILE).exists()
 }
 
-/// Extent of a comparison.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Extent {
-    /// Files are compared with their checksums.
-    Checksums,
-    /// Results of recorded runs are derived from these again, too.
-    Derived,
-}
-
-/// Verifies the folder of a run, of a study, or of a project of one of these kinds that was finished.
+/// Verifies the folder of a run, of a study, or of a project of one of these `others` that was finished.
 ///
 /// # Errors
 /// When it is no such folder, was not finished, or cannot be read; after a stop.
 pub fn verify(
     folder: &Path,
-    kinds: &[&ProjectKind],
+    others: &[Derivation],
     extent: Extent,
     stop: &AtomicBool,
 ) -> Result<Verdict, VerifyStudyError> {
     let verdict = if has_records(folder) {
         verify_study(folder, extent, stop)?
-    } else if let Some(kind) = kinds.iter().find(|kind| kind.is_in(folder)) {
-        verify_project(folder, kind, extent, stop)?
+    } else if let Some(derivation) = others.iter().find(|other| other.kind.is_in(folder)) {
+        verify_project(folder, derivation, extent, stop)?
     } else if is_of_figures(folder) {
         let (verdict, _) = verify_checksums(folder, &[Records::FILE, FIGURE_CACHE], stop)?;
         Verdict {
@@ -96,111 +59,6 @@ pub fn verify(
         return Err(StudyError::Interrupted.into());
     }
     Ok(verdict)
-}
-
-/// Compares the files of a folder with its list, and notes entries that are neither in the list nor among the `others`; the results are
-/// complete if the second value is true.
-///
-/// # Errors
-/// When the system does not say what the folder holds.
-pub fn verify_checksums(
-    folder: &Path,
-    others: &[&str],
-    stop: &AtomicBool,
-) -> Result<(Verdict, bool), StudyError> {
-    let mut verdict = Verdict::default();
-    let path = folder.join(CHECKSUMS);
-    let list = match Checksums::read(folder) {
-        Ok(Some(list)) => list,
-        Ok(None) => {
-            let sentence = format!(
-                "{} is missing: the command that made the folder writes it when it is run again",
-                path.display()
-            );
-            verdict.differences.push(sentence);
-            return Ok((verdict, false));
-        }
-        Err(StudyError::Checksums { why, .. }) => {
-            verdict
-                .differences
-                .push(format!("{} is damaged: {why}", path.display()));
-            return Ok((verdict, false));
-        }
-        Err(error) => return Err(error),
-    };
-    verdict.differences = differences(&list.files, folder, "were written", stop);
-    if !list.replaced.is_empty() {
-        let sentence = format!(
-            "{}: the results were not written to their end; the command that made the folder ends it when it is run again",
-            path.display()
-        );
-        verdict.differences.push(sentence);
-    }
-    let by = program::in_words(&list.version, list.revision.as_deref());
-    verdict.what = format!("{} as {by} wrote them", count(list.files.len(), "file"));
-    let is_left = |name: &str| name.rsplit('/').next().is_some_and(is_unfinished);
-    let known = list.files.iter().map(|file| file.name.as_str());
-    let known = known.chain([CHECKSUMS]).chain(others.iter().copied()).collect();
-    verdict.notes = unlisted_files(folder, &known, is_left);
-    Ok((verdict, list.is_complete))
-}
-
-/// Compares the folder of a project with its list, then with the results that follow from the runs in its journal.
-fn verify_project(
-    folder: &Path,
-    kind: &ProjectKind,
-    extent: Extent,
-    stop: &AtomicBool,
-) -> Result<Verdict, VerifyStudyError> {
-    let (mut verdict, is_complete) = verify_checksums(folder, &[kind.journal], stop)?;
-    if !verdict.differences.is_empty() {
-        return Ok(verdict);
-    }
-    if !is_complete {
-        let (what, path) = (kind.name, folder.to_owned());
-        return Err(VerifyStudyError::UnfinishedSearch { what, path });
-    }
-    if extent == Extent::Derived {
-        derive_from_runs(folder, kind, &mut verdict, stop)?;
-    }
-    Ok(verdict)
-}
-
-/// Compares the folder of a project with the results that are found in another folder from the runs in its journal.
-fn derive_from_runs(
-    folder: &Path,
-    kind: &ProjectKind,
-    verdict: &mut Verdict,
-    stop: &AtomicBool,
-) -> Result<(), VerifyStudyError> {
-    let temporary = TemporaryFolder::new(folder).map_err(VerifyError::Temporary)?;
-    // Opening a pipe would wait without end.
-    let file = folder.join(kind.file);
-    open_limited(&file, TEXT_MAX_BYTES).map_err(FolderError::read(&file))?;
-    let [kept, all] = (kind.find_again)(folder, temporary.path(), stop)?;
-    if all > kept {
-        let sentence = format!("{} not in the journal, and made again", are(all - kept, "run"));
-        verdict.notes.push(sentence);
-    }
-    verdict.differences = differences_from(temporary.path(), folder, "follow from its runs", stop)?;
-    verdict.what = format!(
-        "{}, a {} as its {} give it",
-        verdict.what,
-        kind.name,
-        count(kept, "recorded run")
-    );
-    Ok(())
-}
-
-/// Differences of a folder from the results that were made again in a temporary one.
-fn differences_from(
-    temporary: &Path,
-    folder: &Path,
-    how: &str,
-    stop: &AtomicBool,
-) -> Result<Vec<String>, StudyError> {
-    let again = Checksums::read(temporary)?.unwrap_or_default();
-    Ok(differences(&again.files, folder, how, stop))
 }
 
 /// Compares a study with its list, makes its tables and pictures again from its records, and compares its run folders with their

@@ -6,7 +6,7 @@ use crate::converge;
 use crate::error::StudyError;
 use crate::folder::{StudyFolder, stage};
 use crate::plan::Plan;
-use crate::result_files::Others;
+use crate::project_folder::Others;
 use crate::study_results::StudyResults;
 
 /// Writes the tables and pictures of a study to its folder, and removes those of earlier results. If the folder has a comparison of

@@ -8,7 +8,7 @@ use std::time::Duration;
 
 use serde::Deserialize;
 use slipfront_session::{
-    Document, Event, Host, Message, NamedFiles, Presets, Session, Work, Worker, failed, hello, run_archive,
+    Document, Event, Host, Job, Message, NamedFiles, Presets, Session, Worker, failed, hello, run_archive,
 };
 
 use crate::bits::bits_of_run;
@@ -67,11 +67,11 @@ pub(crate) fn handle() {
 
 /// Does what is due at a time of the Worker, ms, when the page has so many messages still to read; gives the time at which to call again, ms,
 /// which is negative if there is nothing to do before a message.
-pub(crate) fn work(now: f64, unread: u32) -> f64 {
+pub(crate) fn advance(now: f64, unread: u32) -> f64 {
     PAGE.with_borrow_mut(|page| {
         let Some((session, host)) = page else { return -1.0 };
         host.unread.set(unread);
-        let due = session.work(duration(now));
+        let due = session.advance(duration(now));
         due.map_or(-1.0, |due| 1000.0 * due.as_secs_f64())
     })
 }
@@ -115,9 +115,9 @@ impl Worker for OtherWorker {
     }
 }
 
-/// Does work beside a session, and tells what it finds.
+/// Does a job beside a session, and reports what it finds.
 pub(crate) fn run() {
-    refuse(read().map(|work: Work| work.run(&OtherWorker(AtomicBool::new(false)))));
+    refuse(read().map(|job: Job| job.run(&OtherWorker(AtomicBool::new(false)))));
 }
 
 /// Draws the pictures of a run of these files by the other module.

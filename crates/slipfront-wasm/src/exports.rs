@@ -31,7 +31,7 @@ mod of_session {
     exported! {
         calls::open(workers: u32);
         calls::handle();
-        calls::work(now: f64, unread: u32) -> f64;
+        calls::advance(now: f64, unread: u32) -> f64;
         calls::hear(task: u32);
         calls::hear_lost(task: u32);
         calls::run();

@@ -5,7 +5,7 @@ use std::collections::{HashMap, VecDeque};
 use std::rc::Rc;
 
 use serde::Serialize;
-use slipfront_session::{Document, Event, Host, Opened, Presets, Task, Work};
+use slipfront_session::{Document, Event, Host, Job, OpenedCase, Presets, Task};
 
 use crate::imports::{Saying, tell};
 
@@ -13,13 +13,13 @@ use crate::imports::{Saying, tell};
 const MAX_UNREAD: u32 = 64;
 
 /// Events of all work that the session has not read yet, by the number of the work.
-type Told = Rc<RefCell<HashMap<u32, VecDeque<Event>>>>;
+type EventQueues = Rc<RefCell<HashMap<u32, VecDeque<Event>>>>;
 
 /// The host of a session in a Worker.
 pub(crate) struct WorkerHost {
     presets: Presets,
     opening: Document,
-    told: Told,
+    told: EventQueues,
     /// How many Workers beside the session share the parts of one computation.
     workers: u32,
     n_tasks: Cell<u32>,
@@ -39,7 +39,7 @@ impl WorkerHost {
         Self {
             presets,
             opening,
-            told: Told::default(),
+            told: EventQueues::default(),
             workers,
             n_tasks: Cell::new(0),
             unread: Cell::new(0),
@@ -94,7 +94,7 @@ impl Host for WorkerHost {
         self.workers as usize
     }
 
-    fn opening(&self) -> Result<Opened, String> {
+    fn opening(&self) -> Result<OpenedCase, String> {
         Ok(self.opening.clone().into())
     }
 
@@ -102,15 +102,15 @@ impl Host for WorkerHost {
         self.presets.document(name)
     }
 
-    fn recorded_run(&self, _name: &str) -> Result<Opened, String> {
+    fn recorded_run(&self, _name: &str) -> Result<OpenedCase, String> {
         Err("this page has no folder of results".to_owned())
     }
 
-    fn begin(&self, work: Work) -> Result<Box<dyn Task>, String> {
+    fn begin(&self, job: Job) -> Result<Box<dyn Task>, String> {
         let number = self.n_tasks.get() + 1;
         self.n_tasks.set(number);
         self.told.borrow_mut().insert(number, VecDeque::new());
-        tell(Saying::Work, number, &json(&work));
+        tell(Saying::Job, number, &json(&job));
         let told = Rc::clone(&self.told);
         Ok(Box::new(WorkerTask { number, told }))
     }
@@ -134,7 +134,7 @@ impl Host for WorkerHost {
 /// Work that another Worker does.
 struct WorkerTask {
     number: u32,
-    told: Told,
+    told: EventQueues,
 }
 
 impl Task for WorkerTask {

@@ -12,7 +12,7 @@ pub(crate) enum Saying {
     /// A kymograph.
     Kymograph,
     /// Work that is to be begun, with its number.
-    Work,
+    Job,
     /// The number of work that is to be ended.
     End,
     /// An event of work beside a session, as JSON.

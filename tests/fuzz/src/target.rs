@@ -1,4 +1,4 @@
-//! What a fuzz target is, and how it is run within its bounds of memory and time.
+//! A fuzz target, and its run within bounds of memory and time.
 
 use std::time::Duration;
 

@@ -7,7 +7,8 @@
 //! mean of an eighth/m          the third to the eighth eighth of the record
 //! ```
 
-use super::{Curve, log, mean};
+use super::curve::{Curve, log};
+use slipfront_study::statistics::mean;
 
 pub(super) fn summaries(curve: &Curve) -> Vec<f64> {
     let (y, m) = (curve.y, curve.level);
@@ -30,7 +31,7 @@ pub(super) fn summaries(curve: &Curve) -> Vec<f64> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::tests::ramp_and_fall;
+    use super::super::curve::tests::ramp_and_fall;
     use super::*;
 
     #[test]

@@ -9,7 +9,7 @@
 //! b_0.4 p/s5_p - 1             bend: how much higher the first slope would have led
 //! ```
 
-use super::{Curve, log};
+use super::curve::{Curve, log};
 
 pub(super) fn summaries(curve: &Curve) -> Vec<f64> {
     let (n, height, peak) = (curve.y.len() as f64, curve.height(), curve.peak as f64);
@@ -46,7 +46,7 @@ fn slope(y: &[f64]) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::tests::ramp_and_fall;
+    use super::super::curve::tests::ramp_and_fall;
     use super::*;
 
     #[test]

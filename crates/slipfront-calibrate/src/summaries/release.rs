@@ -13,7 +13,7 @@
 //! quantiles of z/m             at 0.1, 0.25, 0.5, 0.75, 0.9
 //! ```
 
-use super::{Curve, log, quantiles};
+use super::curve::{Curve, log, quantiles};
 
 pub(super) fn summaries(curve: &Curve) -> Vec<f64> {
     let (n, m, height) = (curve.y.len() as f64, curve.level, curve.height());
@@ -57,7 +57,7 @@ fn position_of_largest(values: &[f64], by: impl Fn(f64) -> f64) -> usize {
 
 #[cfg(test)]
 mod tests {
-    use super::super::tests::ramp_and_fall;
+    use super::super::curve::tests::ramp_and_fall;
     use super::*;
 
     #[test]
@@ -72,7 +72,7 @@ mod tests {
         // The middle, (0.983 + 0.5)/2, is 1 - 10.34/40.
         near(3, (13.0_f64 / 400.0).ln());
         near(4, 10.0_f64.ln());
-        near(5, super::super::LEAST.ln());
+        near(5, super::super::curve::LEAST.ln());
         near(6, 1.0);
         near(8, 1.0);
     }

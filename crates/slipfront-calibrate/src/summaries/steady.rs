@@ -13,7 +13,8 @@
 //! quantiles of s3/m            at 0.02, 0.1, 0.9, 0.98
 //! ```
 
-use super::{Curve, LEAST, deviation, log, mean, quantiles, running_mean};
+use super::curve::{Curve, LEAST, deviation, log, quantiles, running_mean};
+use slipfront_study::statistics::mean;
 
 pub(super) fn summaries(curve: &Curve) -> Vec<f64> {
     let m = curve.level;
@@ -109,7 +110,7 @@ mod tests {
         // Differences over 1 have the size 0.2, those over 2 and 4 vanish; their mean over 199 is one of them.
         let size = 0.2 * (1.0 - 1.0 / f64::from(199 * 199)).sqrt();
         near(5, size.ln());
-        near(7, super::super::LEAST.ln());
+        near(7, super::super::curve::LEAST.ln());
         // A mean over three values is a third of the way from 1; edges aside, differences are 0.2/3.
         near(11, (0.2_f64 / 3.0).ln());
         near(12, (0.2_f64 / 3.0).ln());
@@ -118,7 +119,7 @@ mod tests {
         near(24, 0.0);
         near(25, 0.0);
         // Hann's window takes nothing of so fast an alternation to slow periods.
-        (26..36).for_each(|k| near(k, 2.0 * super::super::LEAST.ln()));
+        (26..36).for_each(|k| near(k, 2.0 * super::super::curve::LEAST.ln()));
     }
 
     /// A swing of 8 periods over the half of the record, of amplitude 0.1: three Fourier coefficients, n/4 and n/8 twice, of its amplitude.

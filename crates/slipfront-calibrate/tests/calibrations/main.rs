@@ -1,5 +1,7 @@
 //! Calibrations: their results for records whose truth is known, and that results are equal however the runs are made.
 
+#![allow(clippy::unwrap_used)] // A helper that cannot do its work fails its test.
+
 mod rate_and_state;
 
 use std::fs;
@@ -55,6 +57,17 @@ fn normal(step: usize) -> f64 {
     let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
     let uniform = |k: usize| ((step * 12 + k + 1) as f64 * golden * 1e4).fract();
     (0..12).map(uniform).sum::<f64>() - 6.0
+}
+
+/// Reads records, and opens a folder for them; training runs are kept in it, or in another one.
+fn open(
+    path: &Path,
+    training: Option<&Path>,
+    file: &CalibrationFile,
+    records: &[PathBuf],
+    force: bool,
+) -> Result<CalibrationFolder, StudyError> {
+    CalibrationFolder::open(path, training, file, file.read(records)?, force)
 }
 
 fn find(folder: &mut CalibrationFolder, threads: usize) -> Result<String, StudyError> {
@@ -120,8 +133,7 @@ fn calibration_files_are_true() {
         let record = example.with_extension("csv");
         let file =
             CalibrationFile::load(&example.with_extension("toml")).unwrap_or_else(|error| panic!("{error}"));
-        CalibrationFolder::open(folder.path(), None, &file, &[record], false)
-            .unwrap_or_else(|error| panic!("{error}"));
+        open(folder.path(), None, &file, &[record], false).unwrap_or_else(|error| panic!("{error}"));
     }
     let text = fs::read_to_string(root().join("docs/reference/calibration-file.md")).unwrap();
     for key in [
@@ -186,8 +198,7 @@ fn the_truth_lies_within_the_intervals() {
     write_record(&record);
     let out = folder.path().join("found");
     let keys = KEYS.replace("runs = 200", "runs = 400");
-    let mut found =
-        CalibrationFolder::open(&out, None, &file(&format!("{BASE}{keys}")), &[record], false).unwrap();
+    let mut found = open(&out, None, &file(&format!("{BASE}{keys}")), &[record], false).unwrap();
     let text = find(&mut found, 2).unwrap();
     let found = numbers(&out);
     for (number, truth) in TRUTH.into_iter().enumerate() {
@@ -226,7 +237,7 @@ fn a_calibration_goes_on_to_the_same_bytes() {
             .replace("finer_runs = 0", "finer_runs = 200"),
     );
     let open = |out: &str, training: Option<&Path>| {
-        CalibrationFolder::open(
+        open(
             &folder.path().join(out),
             training,
             &file,
@@ -289,12 +300,12 @@ fn records_of_another_law_are_refused_and_conditions_count() {
     let out = folder.path().join("found");
     let keys = format!("{BASE}{KEYS}records = [{{ set = {{}} }}, {{ set = {{ drive.v_star = 0.1 }} }}]\n");
     let both = [one.clone(), other];
-    let mut two = CalibrationFolder::open(&out, None, &file(&keys), &both, false).unwrap();
+    let mut two = open(&out, None, &file(&keys), &both, false).unwrap();
     find(&mut two, 2).unwrap();
     assert_eq!(numbers(&out)["within_band_percent"].as_array().unwrap().len(), 2);
     let foreign = folder.path().join("foreign");
     let keys = format!("{BASE}{KEYS}").replace("v_star = 0.1", "v_star = 0.3");
-    let mut foreign_fit = CalibrationFolder::open(&foreign, None, &file(&keys), &[one], false).unwrap();
+    let mut foreign_fit = open(&foreign, None, &file(&keys), &[one], false).unwrap();
     let text = find(&mut foreign_fit, 2).unwrap();
     assert!(text.starts_with("The model does not make such records"), "{text}");
     assert!(numbers(&foreign)["is_refused"].as_bool().unwrap());
@@ -311,9 +322,7 @@ fn what_cannot_be_calibrated_is_refused() {
         assert!(whole.contains(from), "{from}");
         let out = folder.path().join("out");
         let opened = CalibrationFile::parse(&whole.replace(from, to), "fit.toml", "fit", Path::new(""))
-            .and_then(|file| {
-                CalibrationFolder::open(&out, None, &file, std::slice::from_ref(&record), false)
-            });
+            .and_then(|file| open(&out, None, &file, std::slice::from_ref(&record), false));
         assert!(!out.exists(), "{from}");
         opened.unwrap_err().to_string()
     };

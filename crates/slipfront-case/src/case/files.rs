@@ -33,21 +33,21 @@ impl<'a> From<&'a Path> for Files<'a> {
 
 /// A file that was opened.
 #[derive(Debug)]
-pub enum Opened {
+pub enum OpenFile {
     /// A file on the disk.
     OnDisk(File),
     /// A file in memory.
     InMemory(Cursor<Arc<[u8]>>),
 }
 
-impl Opened {
+impl OpenFile {
     /// Opens contents that are in memory.
     pub(super) fn in_memory(contents: &Arc<[u8]>) -> Self {
         Self::InMemory(Cursor::new(Arc::clone(contents)))
     }
 }
 
-impl Read for Opened {
+impl Read for OpenFile {
     fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
         match self {
             Self::OnDisk(file) => file.read(bytes),
@@ -56,7 +56,7 @@ impl Read for Opened {
     }
 }
 
-impl Seek for Opened {
+impl Seek for OpenFile {
     fn seek(&mut self, place: SeekFrom) -> io::Result<u64> {
         match self {
             Self::OnDisk(file) => file.seek(place),
@@ -68,7 +68,7 @@ impl Seek for Opened {
 /// A file that is read until somebody ends it: every read first asks whether to go on, whatever the format of the file. It ends where it did
 /// when it was opened, since one that grows meanwhile may have no end.
 pub(super) struct Watched<'a, 'w> {
-    file: Opened,
+    file: OpenFile,
     /// Length of the file, and the place of the next read.
     length: u64,
     place: u64,
@@ -79,7 +79,7 @@ pub(super) struct Watched<'a, 'w> {
 
 impl<'a, 'w> Watched<'a, 'w> {
     /// Begins to read a file of this length.
-    pub(super) fn new(file: Opened, length: u64, watch: &'a mut Watch<'w>) -> Self {
+    pub(super) fn new(file: OpenFile, length: u64, watch: &'a mut Watch<'w>) -> Self {
         Self {
             file,
             length,

@@ -8,11 +8,11 @@ use std::sync::Arc;
 use blake3::Hasher;
 use slipfront::{Communicator, Lattice};
 
-use super::files::{Files, Opened, Watch, Watched};
+use super::files::{Files, OpenFile, Watch, Watched};
 use super::ranks::Ranks;
 use crate::arrays::{self, ArrayError, Slab};
 use crate::case_file::{CaseError, CaseFile, FileUse};
-use crate::same::{Given, expect_same, of_all, words_of};
+use crate::same::{NamedInputs, expect_same, of_all, words_of};
 use slipfront_base::disk::open_regular;
 use slipfront_base::machine::machine_number;
 use slipfront_base::text::{display_path, single_line};
@@ -60,10 +60,10 @@ impl Input {
     ///
     /// # Errors
     /// When the file is on the disk and is no regular file that can be read.
-    pub fn open(&self) -> io::Result<Opened> {
+    pub fn open(&self) -> io::Result<OpenFile> {
         match &self.contents {
-            Some(contents) => Ok(Opened::in_memory(contents)),
-            None => open_regular(&self.original).map(Opened::OnDisk),
+            Some(contents) => Ok(OpenFile::in_memory(contents)),
+            None => open_regular(&self.original).map(OpenFile::OnDisk),
         }
     }
 }
@@ -203,7 +203,7 @@ impl NamedFiles {
     }
 
     /// Names of the files and their contents, for the comparison of ranks.
-    fn given(&self, digests: &[Digest]) -> Given {
+    fn given(&self, digests: &[Digest]) -> NamedInputs {
         let named = self.0.iter().zip(digests).map(|(found, (length, hash))| {
             let name = format!("{} (`{}`)", single_line(&found.plain_name()), found.key);
             let contents = format!("a file of {length} bytes with the hash {hash}");
@@ -295,12 +295,12 @@ fn open(
     contents: Option<&Arc<[u8]>>,
     holds: FileUse,
     [nx, ny]: [usize; 2],
-) -> Result<(Opened, u64), ArrayError> {
+) -> Result<(OpenFile, u64), ArrayError> {
     let (opened, length) = match contents {
-        Some(contents) => (Opened::in_memory(contents), contents.len() as u64),
+        Some(contents) => (OpenFile::in_memory(contents), contents.len() as u64),
         None => {
             let (file, length) = arrays::open(original)?;
-            (Opened::OnDisk(file), length)
+            (OpenFile::OnDisk(file), length)
         }
     };
     match holds {
@@ -312,7 +312,7 @@ fn open(
 
 /// Reads a file of this length with `read`, as long as `watch` lets it.
 fn read_watched<T>(
-    (file, length): (Opened, u64),
+    (file, length): (OpenFile, u64),
     watch: &mut Watch,
     read: impl FnOnce(&mut BufReader<Watched>) -> Result<T, ArrayError>,
 ) -> Result<T, ArrayError> {

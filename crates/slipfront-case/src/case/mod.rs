@@ -24,7 +24,7 @@ mod whole_slider;
 
 pub use self::budget::{Budget, Cause, Demand, PROGRAM};
 pub use self::derived::scales;
-pub use self::files::{Files, FilesInMemory, Opened, Watch};
+pub use self::files::{Files, FilesInMemory, OpenFile, Watch};
 pub use self::groups::Groups;
 pub use self::inputs::{Input, name_of_copy};
 pub use self::lengths::CaseLength;

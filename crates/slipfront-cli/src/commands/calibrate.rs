@@ -3,17 +3,15 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use slipfront_base::number_format::count;
-use slipfront_calibrate::{CalibrationFile, CalibrationFolder};
+use slipfront_calibrate::{CalibrationFile, CalibrationFolder, GivenRecord};
 use slipfront_study::StudyError;
 
 use crate::failure::Failure;
 use crate::print::print_message;
-use crate::print_stderr::print_stderr;
+use crate::print_stderr::print_notes;
 use crate::progress::calibrate::CalibrateProgress;
 use crate::signals::Signals;
 use crate::threads::{count_from_one, set_threads};
-use crate::wrap::for_stderr;
 
 /// Find the values of keys that measured records of friction tell, with intervals that hold them
 #[derive(Args)]
@@ -51,17 +49,19 @@ impl CalibrateCommand {
     pub(crate) fn execute(self) -> Result<(), Failure> {
         let threads = set_threads(self.threads)?;
         let file = CalibrationFile::load(&self.calibration).map_err(Failure::input)?;
+        let records = file.read(&self.records).map_err(Failure::input)?;
         // A calibration that is invalid, or has no memory, leaves no folder.
-        file.check_memory(&self.records, threads)
-            .map_err(Failure::input)?;
-        let out = self.out.unwrap_or_else(|| Path::new("results").join(&file.name));
+        file.check_memory(&records, threads).map_err(Failure::input)?;
+        let out = self.out.unwrap_or_else(|| Path::new("results").join(file.name()));
         let training = self.training.as_deref();
+        let notes: Vec<String> = records.iter().filter_map(GivenRecord::note).collect();
         // A signal leaves nothing of what is copied to the folder.
         let signals = Signals::catch().map_err(Failure::running)?;
-        let folder = CalibrationFolder::open(&out, training, &file, &self.records, self.force);
+        let folder = CalibrationFolder::open(&out, training, &file, records, self.force);
         let mut folder = folder.map_err(Failure::of_folder)?;
         if !self.quiet {
-            print_notes(&file.notes(&self.records).map_err(Failure::input)?, &folder);
+            print_notes(notes);
+            print_notes(folder.notes());
         }
         let mut progress = CalibrateProgress::new(self.quiet);
         let found = folder.find(&signals.stop, &mut |now| progress.show(now));
@@ -78,23 +78,5 @@ impl CalibrateCommand {
             print_message(&format!("{text}\n{}\n", folder.path().display()));
         }
         folder.expect_own_records().map_err(Failure::running)
-    }
-}
-
-/// Prints notes about the records, and about a folder that has been used before.
-fn print_notes(notes: &[String], folder: &CalibrationFolder) {
-    let note = |sentence: &str| print_stderr(&for_stderr(&format!("note: {sentence}")));
-    notes.iter().for_each(|sentence| note(sentence));
-    if folder.damaged > 0 {
-        note(&format!(
-            "the journal has {}, passed over: its runs count as not made",
-            count(folder.damaged, "damaged line")
-        ));
-    }
-    if folder.n_kept() > 0 {
-        note(&format!(
-            "the folder holds {} of an earlier call, which are not repeated",
-            count(folder.n_kept(), "run")
-        ));
     }
 }

@@ -5,17 +5,15 @@ use std::time::Instant;
 
 use clap::Args;
 use jiff::SignedDuration;
-use slipfront_base::number_format::count;
 use slipfront_design::{Bounds, DesignFile, DesignFolder};
 use slipfront_study::StudyError;
 
 use crate::failure::Failure;
 use crate::print::print_message;
-use crate::print_stderr::print_stderr;
+use crate::print_stderr::print_notes;
 use crate::progress::design::DesignProgress;
 use crate::signals::Signals;
 use crate::threads::{count_from_one, set_threads};
-use crate::wrap::for_stderr;
 
 /// Search for the texture that gives the friction that is wished for, and judge it on surfaces that the search has not seen
 #[derive(Args)]
@@ -58,7 +56,7 @@ impl DesignCommand {
         // A design that is invalid, or has no memory, leaves no folder.
         file.check(runs, threads, self.time.is_some())
             .map_err(Failure::input)?;
-        let out = self.out.unwrap_or_else(|| Path::new("results").join(&file.name));
+        let out = self.out.unwrap_or_else(|| Path::new("results").join(file.name()));
         // A signal leaves nothing of what is copied to the folder.
         let signals = Signals::catch().map_err(Failure::running)?;
         let mut folder = DesignFolder::open(&out, &file, self.force).map_err(Failure::of_folder)?;
@@ -72,7 +70,7 @@ impl DesignCommand {
             cut: None,
         };
         if !self.quiet {
-            print_notes(&folder);
+            print_notes(folder.notes());
         }
         let mut progress = DesignProgress::new(self.quiet);
         let found = folder.find(&bounds, &mut |now| progress.show(now));
@@ -103,22 +101,5 @@ impl DesignCommand {
             print_message(&format!("{text}\n{}\n", folder.path().display()));
         }
         folder.expect_verdict().map_err(Failure::running)
-    }
-}
-
-/// Prints notes about a folder that has been used before.
-fn print_notes(folder: &DesignFolder) {
-    let note = |sentence: &str| print_stderr(&for_stderr(&format!("note: {sentence}")));
-    if folder.damaged > 0 {
-        note(&format!(
-            "the journal has {}, passed over: its runs count as not made",
-            count(folder.damaged, "damaged line")
-        ));
-    }
-    if folder.n_kept() > 0 {
-        note(&format!(
-            "the folder holds {} of an earlier call, which are not repeated",
-            count(folder.n_kept(), "run")
-        ));
     }
 }

@@ -6,7 +6,7 @@ use clap::Args;
 use slipfront_base::disk::{is_empty, make_folders};
 use slipfront_base::number_format::are;
 use slipfront_paper::{PaperError, PaperOptions};
-use slipfront_study::result_files::ResultFiles;
+use slipfront_study::project_folder::ResultFiles;
 use slipfront_study::{Records, is_study};
 
 use crate::failure::Failure;

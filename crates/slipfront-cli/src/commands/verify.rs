@@ -23,7 +23,8 @@ use slipfront_run::run_folder::inspection::{CaseDefect, Inspection};
 use slipfront_run::running::Running;
 use slipfront_run::verify::{Verdict, VerifyError, differences, inspect, verify_run};
 use slipfront_study::is_of_figures;
-use slipfront_study::verify::{Extent, has_records, verify};
+use slipfront_study::project_folder::Extent;
+use slipfront_study::verify::{has_records, verify};
 
 use crate::failure::Failure;
 use crate::make_case::make_case;
@@ -135,7 +136,7 @@ impl VerifyCommand {
             *verdict = if is_of_figures(folder) {
                 verify_paper(folder, extent, &signals.stop).map_err(Failure::input)?
             } else {
-                verify(folder, &[&DESIGNS, &CALIBRATIONS], extent, &signals.stop).map_err(Failure::input)?
+                verify(folder, &[DESIGNS, CALIBRATIONS], extent, &signals.stop).map_err(Failure::input)?
             };
             return Ok(());
         }

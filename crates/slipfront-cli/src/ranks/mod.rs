@@ -8,7 +8,7 @@ use std::sync::Arc;
 use slipfront::Communicator;
 use slipfront::communicator::Alone;
 use slipfront_base::machine::machine_number;
-use slipfront_case::same::{Given, expect_same, of_all};
+use slipfront_case::same::{NamedInputs, expect_same, of_all};
 use slipfront_run::agree::{RankFailure, agree};
 use slipfront_run::resume_command::resume_command;
 
@@ -68,7 +68,7 @@ impl CommandRanks {
     }
 
     /// Fails unless all ranks were given the same inputs.
-    pub(crate) fn expect_same(&self, given: impl FnOnce() -> Given) -> Result<(), RankFailure> {
+    pub(crate) fn expect_same(&self, given: impl FnOnce() -> NamedInputs) -> Result<(), RankFailure> {
         let same = expect_same(&*self.communicator, given);
         same.map_err(|difference| Failure::input(difference).into())
     }

@@ -2,7 +2,7 @@
 
 use std::io::Write;
 
-use slipfront_study::result_files::{Others, ResultFiles};
+use slipfront_study::project_folder::{Others, ResultFiles};
 
 use crate::support::workspace::{Files, Workspace};
 

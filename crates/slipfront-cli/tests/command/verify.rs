@@ -295,7 +295,7 @@ fn a_manifest_of_another_version_is_understood() {
         ),
         "{said}"
     );
-    // What an early version wrote has no seal.
+    // It may lack its seal.
     reseal(&workspace, |manifest| {
         manifest["seal"] = "".into();
     });

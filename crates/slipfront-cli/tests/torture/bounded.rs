@@ -15,7 +15,7 @@ const MAX_MEMORY_KIB: u64 = 1 << 20;
 
 /// End of a command.
 #[derive(Debug)]
-pub(crate) struct Ended {
+pub(crate) struct ExitedProcess {
     pub(crate) status: i32,
     pub(crate) stdout: String,
     pub(crate) stderr: String,
@@ -24,12 +24,12 @@ pub(crate) struct Ended {
 impl Workspace {
     /// Runs a line. A hang, a crash, a panic, too much memory, an unknown status and a failure without a sentence are
     /// findings.
-    pub(crate) fn run_bounded(&self, line: &str) -> Result<Ended, String> {
+    pub(crate) fn run_bounded(&self, line: &str) -> Result<ExitedProcess, String> {
         inspect(line, &self.bounded(&[], line))
     }
 
     /// Runs a line under a watcher, which may let it be killed: then there is no end.
-    pub(crate) fn run_watched(&self, watcher: &[&str], line: &str) -> Result<Option<Ended>, String> {
+    pub(crate) fn run_watched(&self, watcher: &[&str], line: &str) -> Result<Option<ExitedProcess>, String> {
         let output = self.bounded(watcher, line);
         match output.status.code() {
             None if output.stderr.is_empty() => Ok(None),
@@ -38,7 +38,7 @@ impl Workspace {
     }
 
     /// Runs a line that must succeed.
-    pub(crate) fn succeed_bounded(&self, line: &str) -> Result<Ended, String> {
+    pub(crate) fn succeed_bounded(&self, line: &str) -> Result<ExitedProcess, String> {
         let ended = self.run_bounded(line)?;
         match ended.status {
             0 => Ok(ended),
@@ -93,7 +93,7 @@ impl Workspace {
     }
 }
 
-fn inspect(line: &str, output: &Output) -> Result<Ended, String> {
+fn inspect(line: &str, output: &Output) -> Result<ExitedProcess, String> {
     let (stdout, stderr) = (stdout(output), stderr(output));
     let Some(status) = output.status.code() else {
         return Err(format!("`{line}` ends by {}: {stderr}", output.status));
@@ -116,7 +116,7 @@ fn inspect(line: &str, output: &Output) -> Result<Ended, String> {
     {
         return Err(format!("`{line}` ends with status {status}: {stdout}{stderr}"));
     }
-    Ok(Ended {
+    Ok(ExitedProcess {
         status,
         stdout,
         stderr,

@@ -6,7 +6,7 @@
 use std::process::Command;
 use std::sync::OnceLock;
 
-use crate::bounded::Ended;
+use crate::bounded::ExitedProcess;
 use crate::jobs::{JOBS, Job, expect_all, workspace};
 use crate::support::process::{try_send, wait_for};
 use crate::support::workspace::{Files, Workspace};
@@ -199,7 +199,7 @@ fn with_results(job: &Job) -> (Workspace, Files) {
     (workspace, whole)
 }
 
-fn refused(ended: &Ended) -> Result<&'static str, String> {
+fn refused(ended: &ExitedProcess) -> Result<&'static str, String> {
     match ended.status {
         2 => Ok("refused"),
         _ => Err(format!("{ended:?}")),

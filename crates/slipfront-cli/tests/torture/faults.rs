@@ -1,6 +1,6 @@
 //! Every file-system call that a command makes fails in turn.
 
-use crate::bounded::Ended;
+use crate::bounded::ExitedProcess;
 use crate::jobs::{JOBS, Job, expect_all, expect_nothing_unfinished, workspace};
 use crate::support::workspace::Workspace;
 use crate::tally::{Chance, Tally, cases, long};
@@ -94,7 +94,7 @@ impl Fault {
 /// Outcome of a line with a fault.
 struct Hit {
     /// End of the command; none if it was killed.
-    ended: Result<Option<Ended>, String>,
+    ended: Result<Option<ExitedProcess>, String>,
     /// The first call that failed, if one did.
     call: Option<Call>,
     calls: Vec<Call>,
@@ -129,7 +129,7 @@ fn hit(workspace: &Workspace, line: &str, fault: Fault, number: usize) -> Hit {
 }
 
 /// Function that describes the outcome of a fault at a call, or finds an error.
-type Judge<'a> = dyn Fn(Fault, Option<Ended>, &Call) -> Result<&'static str, String> + 'a;
+type Judge<'a> = dyn Fn(Fault, Option<ExitedProcess>, &Call) -> Result<&'static str, String> + 'a;
 
 /// The words of an error of the system.
 fn cause(action: &str) -> &'static str {
@@ -210,7 +210,7 @@ fn torture(job: &Job, short: usize) {
     let workspace = workspace();
     let mut tally = Tally::new("faults");
     let whole = job.undisturbed();
-    let judge = |fault: Fault, ended: Option<Ended>, call: &Call| {
+    let judge = |fault: Fault, ended: Option<ExitedProcess>, call: &Call| {
         let outcome = match &ended {
             None if fault.kills() => "killed",
             None => return Err("it was killed".to_owned()),
@@ -351,7 +351,7 @@ fn of_those_who_read() {
         ("verify damaged", 1, 8),
         ("verify kept", 1, 3),
     ] {
-        let judge = |fault: Fault, ended: Option<Ended>, _: &Call| match ended {
+        let judge = |fault: Fault, ended: Option<ExitedProcess>, _: &Call| match ended {
             None if fault.kills() => Ok("killed"),
             Some(ended) if ended.status == status => Ok("harmless"),
             Some(ended) if ended.status != 0 => Ok("refused"),

@@ -14,7 +14,7 @@ use crate::paper::Paper;
 use slipfront_base::disk::{begins_with, write_with_folders};
 use slipfront_plot::Picture;
 use slipfront_run::folder_error::FolderError;
-use slipfront_study::result_files::{Batch, Others, ResultFiles};
+use slipfront_study::project_folder::{Batch, Others, ResultFiles};
 
 /// Writes pictures, tables and the report to a folder.
 ///
@@ -35,7 +35,7 @@ pub fn write(paper: &Paper, files: &ResultFiles) -> Result<(), PaperError> {
     ] {
         batch.write(name, |to| to.write_all(&bytes))?;
     }
-    // Figures that an earlier program has left there take hours.
+    // Figures that an earlier call has left there took hours.
     Ok(batch.place(Others::Stay)?)
 }
 

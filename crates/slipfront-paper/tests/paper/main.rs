@@ -9,8 +9,8 @@ use std::path::Path;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use slipfront_paper::{ClaimVerdict, FIGURES, Paper, PaperOptions};
-use slipfront_study::result_files::{Others, ResultFiles};
-use slipfront_study::verify::Extent;
+use slipfront_study::project_folder::Extent;
+use slipfront_study::project_folder::{Others, ResultFiles};
 use slipfront_study::{Records, StudyError};
 
 fn options<'a>(folder: &'a Path, stop: &'a AtomicBool) -> PaperOptions<'a> {

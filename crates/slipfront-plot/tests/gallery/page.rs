@@ -16,7 +16,7 @@ pub(crate) type Sides = [f64; 4];
 
 /// A text and the rectangle that it fills.
 #[derive(Clone, Debug)]
-pub(crate) struct Written {
+pub(crate) struct TypesetLine {
     pub(crate) text: String,
     pub(crate) sides: Sides,
 }
@@ -25,7 +25,7 @@ pub(crate) struct Written {
 pub(crate) struct Page {
     pub(crate) width: f64,
     pub(crate) height: f64,
-    pub(crate) texts: Vec<Written>,
+    pub(crate) texts: Vec<TypesetLine>,
     /// The corners of the lines that are as thick as curves.
     pub(crate) curves: Vec<Vec<[f64; 2]>>,
 }
@@ -55,7 +55,7 @@ impl Page {
     pub(crate) fn faults(&self) -> Vec<String> {
         let mut faults = Vec::new();
         for (index, written) in self.texts.iter().enumerate() {
-            let Written { text, sides } = written;
+            let TypesetLine { text, sides } = written;
             let [from, top, to, bottom] = *sides;
             if from < 0.0 || top < 0.0 || to > self.width || bottom > self.height {
                 faults.push(format!("`{text}` leaves the page: {sides:.0?}"));
@@ -69,7 +69,7 @@ impl Page {
 
     /// The texts that a curve runs through.
     pub(crate) fn crossed(&self) -> Vec<&str> {
-        let is_crossed = |written: &&Written| {
+        let is_crossed = |written: &&TypesetLine| {
             let segments = self.curves.iter().flat_map(|points| points.windows(2));
             segments
                 .into_iter()
@@ -106,7 +106,7 @@ fn corners(line: &str) -> Vec<[f64; 2]> {
         .collect()
 }
 
-fn written(line: &str, advance: &impl Fn(char) -> f64) -> Written {
+fn written(line: &str, advance: &impl Fn(char) -> f64) -> TypesetLine {
     let number = |name: &str| -> f64 { attribute(line, name).unwrap().parse().unwrap() };
     let (_, rest) = line.split_once('>').unwrap();
     let text = rest.strip_suffix("</text>").unwrap();
@@ -125,7 +125,7 @@ fn written(line: &str, advance: &impl Fn(char) -> f64) -> Written {
         None => [x, y - ABOVE * size, x + length, y + below],
         Some(_) => [x - ABOVE * size, y - length, x + below, y],
     };
-    Written { text, sides }
+    TypesetLine { text, sides }
 }
 
 fn overlap(a: &Sides, b: &Sides) -> bool {

@@ -167,7 +167,7 @@ pub(super) fn read(
     };
     let damaged = |why| CheckpointError::Damaged { path: owned(), why };
     let opened = agree_on_io(communicator, open(path)).map_err(unreadable)?;
-    let Opened {
+    let OpenCheckpoint {
         mut file,
         line,
         length,
@@ -224,7 +224,7 @@ pub(super) fn read(
 }
 
 /// A file that was opened to be read.
-struct Opened {
+struct OpenCheckpoint {
     file: File,
     /// The first line; empty if it is no text.
     line: String,
@@ -233,7 +233,7 @@ struct Opened {
     checksum: Vec<u8>,
 }
 
-fn open(path: &Path) -> std::io::Result<Opened> {
+fn open(path: &Path) -> std::io::Result<OpenCheckpoint> {
     let mut file = open_regular(path)?;
     let length = file.metadata()?.len();
     let mut line = Vec::new();
@@ -241,7 +241,7 @@ fn open(path: &Path) -> std::io::Result<Opened> {
     let mut checksum = Vec::new();
     file.seek(SeekFrom::Start(length.saturating_sub(OUT_LEN as u64)))?;
     (&file).take(OUT_LEN as u64).read_to_end(&mut checksum)?;
-    Ok(Opened {
+    Ok(OpenCheckpoint {
         line: String::from_utf8(line).unwrap_or_default(),
         file,
         length,
@@ -252,7 +252,7 @@ fn open(path: &Path) -> std::io::Result<Opened> {
 /// Reads the state, which takes all bytes from `begin` to `end`; an error of [`ErrorKind::InvalidData`] if there is none.
 fn read_state(mut file: &File, begin: u64, end: u64) -> std::io::Result<RunState> {
     file.seek(SeekFrom::Start(begin))?;
-    let file = Told { file, error: None };
+    let file = ErrorKeepingReader { file, error: None };
     let mut body = BufReader::with_capacity(1 << 16, file).take(end - begin);
     // Room for one number at a time.
     let mut number = [0; 16];
@@ -263,12 +263,12 @@ fn read_state(mut file: &File, begin: u64, end: u64) -> std::io::Result<RunState
 }
 
 /// A file that is read, and the error of the last read: postcard keeps none.
-struct Told<'a> {
+struct ErrorKeepingReader<'a> {
     file: &'a File,
     error: Option<std::io::Error>,
 }
 
-impl Read for Told<'_> {
+impl Read for ErrorKeepingReader<'_> {
     fn read(&mut self, bytes: &mut [u8]) -> std::io::Result<usize> {
         self.file.read(bytes).map_err(|error| {
             let told = error.kind().into();

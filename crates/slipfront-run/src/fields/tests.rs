@@ -405,11 +405,11 @@ fn folders_that_take_no_file_are_reported() {
 
 #[cfg(unix)]
 #[test]
-fn the_file_is_as_readable_as_any_other_and_replaces_an_older_one() {
+fn the_file_is_as_readable_as_any_other_and_replaces_one_that_is_there() {
     use std::os::unix::fs::PermissionsExt;
     let lattice = lattice();
     let (folder, path) = folder();
-    fs::write(&path, "older").unwrap();
+    fs::write(&path, "before").unwrap();
     let other = folder.path().join("other");
     fs::write(&other, "").unwrap();
     write(&path, &lattice.file(1, &[], &[])).unwrap();

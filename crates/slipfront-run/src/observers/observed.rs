@@ -1,4 +1,4 @@
-//! What an observer that only some runs have says of itself.
+//! Statements of an observer that only some runs have about itself.
 
 use serde::Serialize;
 use serde::de::DeserializeOwned;

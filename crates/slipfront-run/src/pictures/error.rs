@@ -25,9 +25,7 @@ pub enum RunPictureError {
     Fields(#[from] FieldsError),
     #[error(transparent)]
     Series(#[from] SeriesError),
-    #[error(
-        "{0} has no units in its summary and series: it was written by an older version; run its case.toml again"
-    )]
+    #[error("{0} has no units in its summary and series: run its case.toml again")]
     NoUnits(PathBuf),
     #[error(
         "forces and torques have no axis in common: {0} is a rotation or not, other than the runs beside it"

@@ -336,7 +336,7 @@ impl DrawnRun {
         self.summary.motion == Some(Motion::Rotation)
     }
 
-    /// Units of the run, which older versions did not write.
+    /// Units of the run, which its summary may lack.
     fn si(&self) -> Result<&SiSummary, RunPictureError> {
         let found = self.summary.si.as_ref();
         found.ok_or_else(|| RunPictureError::NoUnits(self.folder.clone()))

@@ -6,7 +6,7 @@ use slipfront_base::disk::{found_at, is_folder, remove_if_there};
 
 use super::unfinished::Unfinished;
 use crate::folder_error::FolderError;
-use crate::manifest::ManifestFile;
+use crate::manifest::{ManifestFile, is_one_of};
 use crate::names::{CASE, FIELDS, KYMOGRAPH, MANIFEST, MOVIE, RunPicture, SERIES, SUMMARY};
 use crate::observers::tables;
 
@@ -57,19 +57,9 @@ fn listed_names(folder: &Path, listed: &[ManifestFile]) -> Result<Vec<String>, F
     Ok(names)
 }
 
-/// Whether a file exists and is unchanged since it was listed. A file of another length is not read: it may be huge.
+/// Whether a file exists and is unchanged since it was listed.
 pub(super) fn is_as_listed(folder: &Path, name: &str, listed: &[ManifestFile]) -> std::io::Result<bool> {
-    let Some(found) = found_at(&folder.join(name))? else {
-        return Ok(false);
-    };
-    let mut alike = listed
-        .iter()
-        .filter(|file| file.name == name && file.bytes == found.len());
-    if !found.is_file() || alike.clone().next().is_none() {
-        return Ok(false);
-    }
-    let found = ManifestFile::of(folder, name)?;
-    Ok(alike.any(|file| *file == found))
+    Ok(is_one_of(folder, name, listed)?.unwrap_or(false))
 }
 
 /// Whether a name is that of a file, without a folder, that a file system can hold.

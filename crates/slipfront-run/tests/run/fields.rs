@@ -46,15 +46,15 @@ fn array(instant: usize, field: usize) -> usize {
 const FIELDS: [Field; 2] = [Field::ContactStress, Field::Traction];
 
 /// A lattice of known values, some rows of which are written.
-struct Known {
+struct ExpectedFields {
     nx: usize,
     ny: usize,
     /// Ranges of rows, which one process after the other writes.
     written: Vec<Range<usize>>,
 }
 
-fn small() -> Known {
-    Known {
+fn small() -> ExpectedFields {
+    ExpectedFields {
         nx: 7,
         ny: 5,
         written: vec![2..5, 0..2],
@@ -64,18 +64,18 @@ fn small() -> Known {
 /// A field of floats takes more than 2 GiB, an array of doubles more than 4 GiB, and the number of flags is odd. Rows in
 /// the middle and at the end lie behind both limits; the others are holes.
 #[cfg(unix)]
-fn large() -> Known {
+fn large() -> ExpectedFields {
     let (nx, ny) = (30_001, 17_999);
     let blocks = nx * ny;
     assert!(4 * blocks > 1 << 31 && 8 * blocks > 1 << 32 && blocks % 2 == 1);
-    Known {
+    ExpectedFields {
         nx,
         ny,
         written: vec![ny - 2..ny, 9_000..9_003, 0..1],
     }
 }
 
-impl Known {
+impl ExpectedFields {
     fn blocks<T>(&self, rows: &Range<usize>, value: impl Fn(usize, usize) -> T) -> Vec<T> {
         let blocks = rows
             .clone()
@@ -168,7 +168,7 @@ fn a_kymograph_is_read_back() {
 }
 
 /// Reads rows of a file and compares all that was read with the values that were written.
-fn assert_known(path: &Path, known: &Known, rows: Range<usize>) {
+fn assert_known(path: &Path, known: &ExpectedFields, rows: Range<usize>) {
     let data = read_rows(path, rows.clone()).unwrap();
     assert_eq!((data.nx, data.ny, data.stride), (known.nx, known.ny, 1));
     assert_eq!((data.block_size, data.time_unit_s), (0.25, 0.5));

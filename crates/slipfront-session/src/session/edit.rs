@@ -10,7 +10,7 @@ use super::state::{PendingEdit, Session};
 use crate::base64;
 use crate::document::Document;
 use crate::history::History;
-use crate::host::Opened;
+use crate::host::OpenedCase;
 use crate::names::is_plain_name;
 use crate::protocol::{Reply, Source};
 use crate::run_files::recorded_run;
@@ -18,7 +18,7 @@ use crate::view::AfterChange;
 
 impl Session {
     pub(super) fn open(&mut self, source: Source) -> Result<(), String> {
-        let Opened { document, recorded } = self.opened(source)?;
+        let OpenedCase { document, recorded } = self.opened(source)?;
         // Whether it can be run is known before anything is given up.
         let case = self.case_of(&document)?;
         self.give_up_work();
@@ -40,9 +40,9 @@ impl Session {
     }
 
     /// The case that a source names.
-    fn opened(&self, source: Source) -> Result<Opened, String> {
+    fn opened(&self, source: Source) -> Result<OpenedCase, String> {
         if let Some(name) = source.preset {
-            return self.host.preset(&name).map(Opened::from);
+            return self.host.preset(&name).map(OpenedCase::from);
         }
         if let Some(name) = source.folder {
             return self.host.recorded_run(&name);
@@ -56,7 +56,7 @@ impl Session {
         if source.toml.is_none() {
             return self.host.opening();
         }
-        Document::try_from(source).map(Opened::from)
+        Document::try_from(source).map(OpenedCase::from)
     }
 
     pub(super) fn set(

@@ -5,9 +5,9 @@ use std::time::Duration;
 use super::clock::is_due;
 use super::state::{Session, TextureSearch};
 use crate::event::{Comparison, EventKind, Mask, Tried};
+use crate::job::Job;
 use crate::protocol::{FindingReply, FoundOutcome, FoundReply, Reply};
 use crate::search::{self, NOTHING_TRIED, SEARCH_TIME};
-use crate::work::Work;
 
 /// Time between two reports of how far a search is.
 const REPORT_INTERVAL: Duration = Duration::from_millis(250);
@@ -32,7 +32,7 @@ impl Session {
             began: None,
             elapsed: Duration::ZERO,
             is_enough: false,
-            task: self.host.begin(Work::search(document))?,
+            task: self.host.begin(Job::search(document))?,
             tried: Tried::default(),
             compared: None,
         });
@@ -118,7 +118,7 @@ impl Session {
     fn compare(&mut self, searched: Result<Mask, String>) -> Result<(), String> {
         let best = searched?;
         let document = self.document()?.clone();
-        let task = self.host.begin(Work::compare(document, best.clone()))?;
+        let task = self.host.begin(Job::compare(document, best.clone()))?;
         if let Some(search) = &mut self.search {
             search.task = task;
             search.compared = Some(best);

@@ -1,5 +1,6 @@
 //! A session: a case that is edited, and its run, which goes on only while somebody looks.
 
+mod advance;
 mod brush;
 mod clock;
 mod edit;
@@ -14,6 +15,5 @@ mod steps;
 #[cfg(test)]
 mod tests;
 mod updates;
-mod work;
 
 pub use state::Session;

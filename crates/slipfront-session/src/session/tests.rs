@@ -24,7 +24,7 @@ impl Tried {
         let mut all = Vec::new();
         for _ in 0..MOST_LOOKS {
             self.now += Duration::from_millis(250);
-            self.work();
+            self.advance();
             all.extend(self.replies());
             if let Some(end) = all.iter().position(|reply| reply["is"] == is && holds(reply)) {
                 all.truncate(end + 1);
@@ -61,32 +61,32 @@ fn count(replies: &[Value], is: &str) -> usize {
 #[test]
 fn nothing_is_due_before_a_case_is_open_and_while_nothing_moves() {
     let mut tried = Tried::new();
-    assert_eq!(tried.work(), None);
+    assert_eq!(tried.advance(), None);
     // A page sends its view first: there is nothing to draw yet.
     tried.ask(json!({ "do": "view", "field": "speed" }));
-    assert_eq!(tried.work(), None);
+    assert_eq!(tried.advance(), None);
     tried.ask(json!({ "do": "open", "source": { "toml": PLAIN } }));
-    assert!(tried.work().is_some());
+    assert!(tried.advance().is_some());
     tried.ask(json!({ "do": "view", "paused": true }));
-    tried.work();
-    assert_eq!(tried.work(), None);
+    tried.advance();
+    assert_eq!(tried.advance(), None);
     let step = tried.step();
     tried.ask(json!({ "do": "step", "count": 7 }));
-    assert_eq!((tried.step(), tried.work()), (step + 7, None));
+    assert_eq!((tried.step(), tried.advance()), (step + 7, None));
     // Asking again changes nothing.
     let pictures = tried.host.pictures.take().len();
     tried.now += Duration::from_secs(1);
     assert_eq!(
-        (tried.work(), tried.host.pictures.take().len()),
+        (tried.advance(), tried.host.pictures.take().len()),
         (None, 0),
         "after {pictures}"
     );
     // A page that nobody looks at does not go on, and one that reads nothing gets nothing.
     tried.ask(json!({ "do": "view", "paused": false, "visible": false }));
-    assert_eq!(tried.work(), None);
+    assert_eq!(tried.advance(), None);
     tried.host.is_full.set(true);
     tried.ask(json!({ "do": "view", "visible": true }));
-    let due = tried.work().unwrap();
+    let due = tried.advance().unwrap();
     assert!(due > tried.now, "it asks at once, for ever");
     assert_eq!(tried.step(), step + 7);
 }
@@ -98,10 +98,10 @@ fn steps_keep_the_pace_and_pictures_their_rate() {
     tried.ask(json!({ "do": "open", "source": { "toml": PLAIN } }));
     let dt_star = tried.session.live.as_ref().unwrap().case().time_plan.dt_star;
     let began = Duration::from_secs(1);
-    tried.work_until(began, Duration::from_millis(1));
+    tried.advance_until(began, Duration::from_millis(1));
     let (before, pictures) = (tried.step(), tried.host.pictures.take().len());
     assert!(pictures > 30, "{pictures}");
-    tried.work_until(2 * began, Duration::from_millis(1));
+    tried.advance_until(2 * began, Duration::from_millis(1));
     let steps = tried.step() - before;
     // A picture's worth more or less at either end.
     let due = 25.0 / dt_star;
@@ -124,7 +124,7 @@ fn a_run_is_loaded_at_a_pace_of_its_own() {
         (live.has_slipped(), live.time_star())
     };
     let after = |tried: &mut Tried, milliseconds| {
-        tried.work_until(
+        tried.advance_until(
             tried.now + Duration::from_millis(milliseconds),
             Duration::from_millis(1),
         );
@@ -155,7 +155,7 @@ fn changes_between_two_pictures_are_run_once() {
     }
     let cases = count(&replies, "case");
     assert!((5..=8).contains(&cases), "{cases} cases in 100 ms");
-    tried.work_until(tried.now + Duration::from_millis(40), Duration::from_millis(1));
+    tried.advance_until(tried.now + Duration::from_millis(40), Duration::from_millis(1));
     let live = tried.session.live.as_ref().unwrap();
     assert_eq!(live.case().groups.r_star, 0.3 + 0.001 * 99.0);
     // One gesture is undone at once.
@@ -171,11 +171,11 @@ fn a_run_and_its_twin_go_to_their_ends() {
     tried.ask(json!({ "do": "view", "pace": 0 }));
     let toml = "slider.blocks = [6, 6]\ndrive.v_star = 0.1\n[[texture]]\nshape = 'cavity'\ncoverage = 10\n";
     tried.ask(json!({ "do": "open", "source": { "toml": toml } }));
-    tried.work_until(Duration::from_secs(600), Duration::from_millis(2));
-    assert_eq!(tried.work(), None);
+    tried.advance_until(Duration::from_secs(600), Duration::from_millis(2));
+    assert_eq!(tried.advance(), None);
     tried.host.pictures.take();
     tried.now += Duration::from_secs(1);
-    assert_eq!((tried.work(), tried.host.pictures.take().len()), (None, 0));
+    assert_eq!((tried.advance(), tried.host.pictures.take().len()), (None, 0));
     let replies = tried.replies();
     let last = replies
         .iter()

@@ -9,7 +9,8 @@ use toml::{Table, Value};
 use super::on_meshes::meshes;
 use crate::error::StudyError;
 use crate::plan::Plan;
-use crate::study_file::{StudyFile, portable_text};
+use crate::project_file::portable_text;
+use crate::study_file::StudyFile;
 
 /// Smallest number of meshes: differences of two meshes show no order.
 pub const MIN_LEVELS: u8 = 3;

@@ -31,7 +31,7 @@ use crate::axis::Axis;
 use crate::error::StudyError;
 use crate::folder::{self, StudyFolder};
 use crate::plan::Plan;
-use crate::result_files::{Batch, Others};
+use crate::project_folder::{Batch, Others};
 use crate::study_results::StudyResults;
 
 /// Whether the only axis of a study is the size of the blocks, on enough meshes.

@@ -2,6 +2,9 @@
 
 use std::slice::{ChunksMut, Iter, IterMut};
 
+// The names of rayon that this project uses, and no others: what is missing here does not compile for
+// WebAssembly.
+
 /// Number of threads that share out a loop.
 pub fn current_num_threads() -> usize {
     1

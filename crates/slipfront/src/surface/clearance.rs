@@ -55,7 +55,7 @@ fn measure(lattice: &Lattice, textures: &[Texture], effort: &mut Effort) -> Resu
     for texture in textures {
         let drawn = match &texture.shape {
             Shape::Tile(tile) => Some((runs(tile), None)),
-            _ => Drawn::of(lattice, texture, all, effort)?.map(|(widths, drawn)| (widths, Some(drawn))),
+            _ => PlacedShape::of(lattice, texture, all, effort)?.map(|(widths, drawn)| (widths, Some(drawn))),
         };
         let Some(([mut inside, mut outside], drawn)) = drawn else {
             continue;
@@ -67,7 +67,8 @@ fn measure(lattice: &Lattice, textures: &[Texture], effort: &mut Effort) -> Resu
         least(&mut found.gap, outside);
         shapes.extend(drawn);
     }
-    let (pillars, dimples): (Vec<Drawn>, Vec<Drawn>) = shapes.into_iter().partition(|shape| shape.inverted);
+    let (pillars, dimples): (Vec<PlacedShape>, Vec<PlacedShape>) =
+        shapes.into_iter().partition(|shape| shape.inverted);
     let dimples = Copies::of(lattice, &dimples, effort)?;
     let groups = pillars.chunks(1).map(|one| Copies::of(lattice, one, effort));
     let pillars = groups.collect::<Result<Vec<_>, _>>()?;
@@ -112,16 +113,16 @@ fn runs(tile: &Tile) -> [Option<f64>; 2] {
 }
 
 /// The widths of a shape inside and outside, and the shape.
-type Measured = ([Option<f64>; 2], Drawn);
+type Measured = ([Option<f64>; 2], PlacedShape);
 
 /// A shape of a texture, and the places at which it stands on the slider.
-struct Drawn {
+struct PlacedShape {
     form: Form,
     places: Vec<[f64; 2]>,
     inverted: bool,
 }
 
-impl Drawn {
+impl PlacedShape {
     /// A shape other than a mask, with its widths inside and outside; none if no copy lies on the slider.
     fn of(
         lattice: &Lattice,
@@ -227,10 +228,10 @@ fn places(arrays: &[Array], all: bool) -> Vec<[f64; 2]> {
 /// Copies of some shapes, from left to right.
 struct Copies<'a> {
     forms: Vec<&'a Form>,
-    copies: Vec<Placed>,
+    copies: Vec<PlacedCopy>,
 }
 
-struct Placed {
+struct PlacedCopy {
     form: usize,
     at: [f64; 2],
     /// The smallest and the largest coordinate along each axis.
@@ -241,7 +242,7 @@ struct Placed {
 
 impl<'a> Copies<'a> {
     /// The copies of shapes on the slider, and those beyond its periodic edges, up to half the slider away.
-    fn of(lattice: &Lattice, shapes: &'a [Drawn], effort: &mut Effort) -> Result<Self, TooMuch> {
+    fn of(lattice: &Lattice, shapes: &'a [PlacedShape], effort: &mut Effort) -> Result<Self, TooMuch> {
         let size = [lattice.nx as f64, lattice.ny as f64];
         let mut copies = Vec::new();
         for (form, shape) in shapes.iter().enumerate() {
@@ -256,7 +257,7 @@ impl<'a> Copies<'a> {
                         bounds[axis][1] > -0.5 * size[axis] && bounds[axis][0] < 1.5 * size[axis]
                     };
                     if !is_image || is_near(0) && is_near(1) {
-                        copies.push(Placed {
+                        copies.push(PlacedCopy {
                             form,
                             at,
                             bounds,

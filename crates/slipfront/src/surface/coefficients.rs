@@ -128,11 +128,11 @@ const MAX_KEPT: usize = 10_000;
 pub(super) const PART: usize = 1 << 13;
 
 /// Standard normals, with the seed and the blocks that they are drawn for.
-type Kept = (u64, Range<usize>, Vec<f64>);
+type CachedNormals = (u64, Range<usize>, Vec<f64>);
 
 thread_local! {
     /// The standard normals drawn last from each stream, which most of the cases of a study share.
-    static LAST_NORMALS: RefCell<[Kept; STREAMS.len()]> =
+    static LAST_NORMALS: RefCell<[CachedNormals; STREAMS.len()]> =
         const { RefCell::new([(0, 0..0, Vec::new()), (0, 0..0, Vec::new())]) };
 }
 

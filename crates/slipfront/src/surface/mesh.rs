@@ -5,7 +5,7 @@ use std::convert::Infallible;
 use std::ops::Range;
 
 use super::outline::{Crossing, Outlines, Sweep};
-use super::pattern::{Grid, grids, n_rows};
+use super::pattern::{Crossings, grids, n_rows};
 use super::texture::{Groove, Shape, Texture, Tile};
 use crate::lattice::{Edges, Lattice};
 
@@ -111,7 +111,7 @@ impl<'a> Mask<'a> {
     fn cover_copies<E>(
         &mut self,
         shape: &Shape,
-        grids: &[Grid],
+        grids: &[Crossings],
         watch: &mut dyn FnMut(f64) -> Result<(), E>,
     ) -> Result<bool, E> {
         self.covers = false;
@@ -232,7 +232,7 @@ impl<'a> Mask<'a> {
     }
 
     /// Marks the blocks of the copies of a groove; returns whether a copy extends beyond a free edge.
-    fn cover_strips(&mut self, groove: &Groove, grids: &[Grid]) -> bool {
+    fn cover_strips(&mut self, groove: &Groove, grids: &[Crossings]) -> bool {
         let Lattice { nx, ny, edges } = *self.lattice;
         let mut is_clipped = false;
         for shift in groove.shifts(grids) {
@@ -251,7 +251,7 @@ impl<'a> Mask<'a> {
     fn cover_tiles<E>(
         &mut self,
         tile: &Tile,
-        grids: &[Grid],
+        grids: &[Crossings],
         watch: &mut dyn FnMut(f64) -> Result<(), E>,
     ) -> Result<bool, E> {
         let Lattice { nx, ny, edges } = *self.lattice;

@@ -4,13 +4,13 @@
 //! once for all outlines of a row of a grid, and each of its ends is placed with the rounding of an outline that stands
 //! there alone.
 
-use super::pattern::Grid;
+use super::pattern::Crossings;
 
 /// Outlines of one curve, around every crossing of some grids of lines.
 pub(super) struct Outlines {
     pub(super) curve: Curve,
     /// The grids of the outlines' centres.
-    pub(super) centers: Vec<Grid>,
+    pub(super) centers: Vec<Crossings>,
 }
 
 /// An outline around (0, 0).
@@ -43,8 +43,8 @@ impl Vertex {
 
 impl Outlines {
     /// A curve around the middle of `grids`, which give the shifts of its copies from there.
-    pub(super) fn at(curve: Curve, middle: [f64; 2], grids: &[Grid]) -> Self {
-        let centers = |grid: &Grid| {
+    pub(super) fn at(curve: Curve, middle: [f64; 2], grids: &[Crossings]) -> Self {
+        let centers = |grid: &Crossings| {
             let along = |axis: usize| grid[axis].iter().map(|shift| middle[axis] + shift).collect();
             [along(0), along(1)]
         };
@@ -55,7 +55,7 @@ impl Outlines {
     }
 
     /// The copies of a polygon that stands in the middle of `grids`.
-    pub(super) fn polygon(points: &[[f64; 2]], grids: &[Grid]) -> Self {
+    pub(super) fn polygon(points: &[[f64; 2]], grids: &[Crossings]) -> Self {
         let vertex = |&[x, y]: &[f64; 2]| Vertex {
             x: [x, 0.0],
             y: [y, 0.0],

@@ -56,7 +56,7 @@ impl Array {
     }
 
     /// Places of the array as rectangular grids: one, or one of even rows and one of odd rows.
-    fn grids(&self) -> Vec<Grid> {
+    fn grids(&self) -> Vec<Crossings> {
         let [columns, rows] = self.count;
         let grid = |first_row: usize, rows: &mut dyn Iterator<Item = usize>| {
             let x = |column| self.place(column, first_row)[0];
@@ -77,10 +77,10 @@ impl Array {
 
 /// Places at every crossing of vertical lines, whose x come first, and horizontal ones, whose y follow; both in rising order, and
 /// none empty.
-pub(super) type Grid = [Vec<f64>; 2];
+pub(super) type Crossings = [Vec<f64>; 2];
 
 /// The places of arrays of arrays, as shifts from the middle of all places.
-pub(super) fn grids(arrays: &[Array]) -> Vec<Grid> {
+pub(super) fn grids(arrays: &[Array]) -> Vec<Crossings> {
     let alone = vec![[vec![0.0], vec![0.0]]];
     arrays.iter().fold(alone, |outer, array| {
         let inner = array.grids();
@@ -104,7 +104,7 @@ fn sums(outer: &[f64], inner: &[f64]) -> Vec<f64> {
 }
 
 /// Rows of places of all grids.
-pub(super) fn n_rows(grids: &[Grid]) -> usize {
+pub(super) fn n_rows(grids: &[Crossings]) -> usize {
     grids.iter().map(|[_, rows]| rows.len()).sum()
 }
 
@@ -128,7 +128,7 @@ mod tests {
 
     fn places(arrays: &[Array]) -> Vec<[f64; 2]> {
         let grids = grids(arrays);
-        let pairs = |[x, y]: &Grid| -> Vec<[f64; 2]> {
+        let pairs = |[x, y]: &Crossings| -> Vec<[f64; 2]> {
             y.iter().flat_map(|&y| x.iter().map(move |&x| [x, y])).collect()
         };
         grids.iter().flat_map(pairs).collect()

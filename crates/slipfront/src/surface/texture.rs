@@ -7,7 +7,7 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use super::outline::{Curve, Outlines, Vertex};
-use super::pattern::{Array, Grid, grids, n_copies};
+use super::pattern::{Array, Crossings, grids, n_copies};
 use crate::lattice::Lattice;
 use crate::vector_field::unit_vector;
 
@@ -93,7 +93,7 @@ pub struct Tile {
 impl Tile {
     /// First blocks of the copies of a mask of this size: blocks of the lattice, which may lie beyond its edges.
     pub fn starts(lattice: &Lattice, size: [usize; 2], arrays: &[Array]) -> Vec<[isize; 2]> {
-        let places = |[columns, heights]: &Grid| -> Vec<[f64; 2]> {
+        let places = |[columns, heights]: &Crossings| -> Vec<[f64; 2]> {
             let rows = heights.iter();
             rows.flat_map(|&y| columns.iter().map(move |&x| [x, y])).collect()
         };
@@ -183,7 +183,7 @@ impl Groove {
     }
 
     /// Shifts of the copies across the groove, each once for every grid.
-    pub(super) fn shifts(&self, grids: &[Grid]) -> Vec<f64> {
+    pub(super) fn shifts(&self, grids: &[Crossings]) -> Vec<f64> {
         let across = grids.iter().flat_map(|grid| &grid[self.axis()]);
         across.copied().collect()
     }
@@ -215,7 +215,7 @@ impl Groove {
 const OUTLINE_VERTICES: usize = 4096;
 
 impl Cavity {
-    pub(super) fn outlines(&self, grids: &[Grid]) -> Outlines {
+    pub(super) fn outlines(&self, grids: &[Crossings]) -> Outlines {
         Outlines::at(self.curve(), self.center, grids)
     }
 

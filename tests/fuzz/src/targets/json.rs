@@ -9,7 +9,8 @@ use slipfront_run::manifest::{Manifest, ManifestFile, Random};
 use slipfront_run::run_folder::RunFolder;
 use slipfront_run::run_folder::inspection::Inspection;
 use slipfront_run::summary::{InstantSummary, Summary, read_summary, summary_json};
-use slipfront_study::verify::{Extent, verify};
+use slipfront_study::project_folder::Extent;
+use slipfront_study::verify::verify;
 
 use crate::checks::readable;
 use crate::long::{many, nested};
@@ -264,7 +265,7 @@ fn manifest(bytes: &[u8]) {
     }
     match verify(
         &folder,
-        &[&DESIGNS, &CALIBRATIONS],
+        &[DESIGNS, CALIBRATIONS],
         Extent::Derived,
         &AtomicBool::new(false),
     ) {

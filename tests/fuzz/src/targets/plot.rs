@@ -104,7 +104,7 @@ fn plot(input: &[u8]) {
                 overlay(&two, AxisUnits::Star, None, &FrictionLook::default()).unwrap();
                 for against in [Against::Time, Against::Displacement] {
                     for units in [AxisUnits::Star, AxisUnits::Si] {
-                        // A summary of an older version has no units.
+                        // A summary may lack its units.
                         if let Err(error) = overlay(&one, units, Some(against), &FrictionLook::default()) {
                             readable(&error);
                         }

@@ -11,7 +11,7 @@ use clap::Args;
 use slipfront::Execution;
 use slipfront_base::text::shell_path;
 use slipfront_case::case::Case;
-use slipfront_case::same::Given;
+use slipfront_case::same::NamedInputs;
 use slipfront_run::agree::RankFailure;
 use slipfront_run::checkpoint::Checkpoints;
 use slipfront_run::clock;
@@ -110,7 +110,7 @@ impl RunCommand {
 
     /// The options that all ranks must share. Each rank may have its own threads and folder, and the options on printing
     /// count on the first rank.
-    fn shared_options(&self) -> Given {
+    fn shared_options(&self) -> NamedInputs {
         let flag = |is_given: bool| if is_given { "given" } else { "not given" }.to_owned();
         let options = [
             ("--resume", flag(self.resume.is_some())),

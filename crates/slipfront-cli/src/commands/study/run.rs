@@ -4,19 +4,17 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use slipfront_base::disk::is_same;
-use slipfront_base::number_format::count;
 use slipfront_study as study;
 use slipfront_study::{Plan, Shard, StudyError, StudyFile, StudyFolder, StudyResults};
 
 use crate::failure::Failure;
 use crate::print::{print, print_message};
-use crate::print_stderr::print_stderr;
+use crate::print_stderr::print_notes;
 use crate::progress::study::StudyProgress;
 use crate::report;
 use crate::report::text_of;
 use crate::signals::Signals;
 use crate::threads::{count_from_one, set_threads, set_worker_threads};
-use crate::wrap::for_stderr;
 
 #[derive(Args)]
 pub(crate) struct StudyRun {
@@ -140,7 +138,7 @@ pub(in crate::commands) fn run_all(
 ) -> Result<StudyResults, Failure> {
     let mut progress = StudyProgress::new(quiet);
     if !quiet {
-        print_notes(plan, folder);
+        note_before_runs(plan, folder);
     }
     let path = folder.path().to_owned();
     let done = study::execute(plan, &folder.records, &path, &signals.stop, &mut |now| {
@@ -151,20 +149,9 @@ pub(in crate::commands) fn run_all(
 }
 
 /// Prints notes before the runs: on axes that change nothing, and on a folder that has been used before.
-fn print_notes(plan: &Plan, folder: &StudyFolder) {
-    let note = |sentence: &str| print_stderr(&for_stderr(&format!("note: {sentence}")));
-    for axis in study::idle_axes(plan) {
-        note(&axis);
-    }
-    if folder.records.damaged > 0 {
-        note(&format!(
-            "the record file has {}, passed over: its runs count as not run",
-            count(folder.records.damaged, "damaged line")
-        ));
-    }
-    if folder.changed {
-        note("the study has changed since this folder was last used; runs that still belong to it are kept");
-    }
+fn note_before_runs(plan: &Plan, folder: &StudyFolder) {
+    print_notes(study::idle_axes(plan));
+    print_notes(folder.notes());
 }
 
 /// Form in which the answer of a study is printed.

@@ -18,7 +18,6 @@ use super::step::Step;
 use super::thresholds::Thresholds;
 use super::variations::{Variation, Variations, present};
 use super::vector::{Chunks, ChunksMut, LANES, Vec2x8, lane_max, load, load_vec2, splat, subtract};
-use crate::checkpoint::BlockColumn;
 use crate::friction::Integrator;
 use crate::lattice::Bond;
 use crate::model::Model;
@@ -84,6 +83,8 @@ pub(super) struct Band {
     pub(super) difference: [f64; 2],
     /// Number of elements before and after the band whose displacements it keeps, see [`halo`].
     pub(super) halo: usize,
+    // Of equal blocks, two arrays of two numbers and two thresholds are all that a step takes through memory
+    // for each. What else it needs is a bit, or lives in the scratch arrays, which stay in the cache.
     /// Displacements at t_n, with halos.
     pub(super) displacement: Vectors,
     /// Velocities at t_n + dt/2.
@@ -94,6 +95,7 @@ pub(super) struct Band {
     kinetic_impulses: Aligned,
     /// The step of the first slip in contact, or [`NEVER`].
     pub(super) first_slip: Vec<u32>,
+    // A byte for each vector says at once whether all eight elements have a spring, or none moves.
     /// Masks of the elements that have a spring to the east, north, north-east and north-west; with the front halo.
     pub(super) masks: [Vec<u8>; 4],
     /// Mask of the elements that are blocks.
@@ -102,8 +104,12 @@ pub(super) struct Band {
     in_contact: Vec<u8>,
     /// Mask of the elements that move, ghosts included.
     pub(super) moving: Vec<u8>,
+    // It repeats what `first_slip` says, such that the 32 bytes of a vector there are touched only when a
+    // block slips for the first time.
     /// Mask of the blocks in contact that have ever slid.
-    slipped: Vec<u8>,
+    pub(super) slipped: Vec<u8>,
+    // Two numbers by which a settled tile needs no look at its resting vectors: when each must be swept, and
+    // what it has given to the tile's sum of energies, which is taken away when it moves.
     /// The first step at which a block of each vector may slip; 0 for a touched vector. Known in settled tiles.
     pub(super) active_from_step: Vec<u64>,
     /// Energy of the springs of each vector, as in [`Sums`]. Known in settled tiles.
@@ -111,7 +117,7 @@ pub(super) struct Band {
     /// Springs, drive springs and masses of a heterogeneous slider.
     pub(super) variations: Option<Variations>,
     /// Thresholds of a law of friction under which they change.
-    thresholds: Option<Thresholds>,
+    pub(super) thresholds: Option<Thresholds>,
     /// Arrays of intermediate results. The lock is held while fields are read; a sweep, which runs alone, takes the arrays
     /// without it.
     scratch: Mutex<Scratch>,
@@ -127,6 +133,19 @@ pub(super) const BYTES_PER_ELEMENT: f64 = {
     element as f64 + vector as f64 / LANES as f64 + tile as f64 / TILE as f64
 };
 
+// A spring to the next row acts on the block at its lower end now, and on the one at its upper end a row later. It is
+// computed once, and waits in between in a ring buffer, the only intermediate result that is longer than a tile:
+//
+//   elements    k-stride-1 k-stride k-stride+1 ........... k ........... k+stride-1 k+stride k+stride+1
+//               springs from here to k, computed           its own, to   the row above, which has moved
+//               with the row below                         the north     before
+//
+//   ring      | 0 .. 15 ........ behind .................. own ..................... | 0 .. 15 |
+//                                read from here            written, then read        mirror of the beginning
+//
+// Element k has the place k modulo the length of the ring. That is a row and a block, a tile, and a vector for what is
+// rounded to whole vectors: a tile writes over nothing that it reads. Own places are whole vectors, so that none of
+// them wraps around. Those behind begin anywhere, and may extend over the end: the mirror repeats the beginning there.
 /// Intermediate results on the way through the tiles, which are not needed later.
 #[derive(Debug, Default)]
 pub(super) struct Scratch {
@@ -267,7 +286,7 @@ impl Band {
     }
 
     /// Finds thresholds that change before the first sweep.
-    fn begin_thresholds(&mut self) {
+    pub(super) fn begin_thresholds(&mut self) {
         if let Some(thresholds) = &mut self.thresholds {
             thresholds.begin(&self.kinetic_impulses);
         }
@@ -280,132 +299,6 @@ impl Band {
 
     fn scratch(&mut self) -> &mut Scratch {
         self.scratch.get_mut().unwrap_or_else(PoisonError::into_inner)
-    }
-
-    /// Takes over the values of a column of a checkpoint from block `first` on, as far as these blocks belong to the band.
-    pub(super) fn set_column(
-        &mut self,
-        layout: &Layout,
-        dt_star: f64,
-        column: BlockColumn,
-        first: usize,
-        values: &[f64],
-    ) {
-        for [of_values, own] in self.common(layout, first, values.len()) {
-            let values = &values[of_values];
-            let with_halo = self.halo + own.start..self.halo + own.end;
-            match column {
-                BlockColumn::DisplacementX => self.displacement.x[with_halo].copy_from_slice(values),
-                BlockColumn::DisplacementY => self.displacement.y[with_halo].copy_from_slice(values),
-                BlockColumn::VelocityX => self.velocity.x[own].copy_from_slice(values),
-                BlockColumn::VelocityY => self.velocity.y[own].copy_from_slice(values),
-                BlockColumn::FirstSlip => {
-                    for (step, time_star) in self.first_slip[own].iter_mut().zip(values) {
-                        let number = (time_star / dt_star).round();
-                        *step = if number.is_nan() { NEVER } else { number as u32 };
-                    }
-                }
-            }
-        }
-    }
-
-    /// Writes to `values` a column of a checkpoint from block `first` on, as far as these blocks belong to the band.
-    pub(super) fn read_column(
-        &self,
-        layout: &Layout,
-        dt_star: f64,
-        column: BlockColumn,
-        first: usize,
-        values: &mut [f64],
-    ) {
-        for [of_values, own] in self.common(layout, first, values.len()) {
-            let values = &mut values[of_values];
-            let with_halo = self.halo + own.start..self.halo + own.end;
-            match column {
-                BlockColumn::DisplacementX => values.copy_from_slice(&self.displacement.x[with_halo]),
-                BlockColumn::DisplacementY => values.copy_from_slice(&self.displacement.y[with_halo]),
-                BlockColumn::VelocityX => values.copy_from_slice(&self.velocity.x[own]),
-                BlockColumn::VelocityY => values.copy_from_slice(&self.velocity.y[own]),
-                BlockColumn::FirstSlip => {
-                    for (time_star, &step) in values.iter_mut().zip(&self.first_slip[own]) {
-                        *time_star = if step == NEVER {
-                            f64::NAN
-                        } else {
-                            f64::from(step) * dt_star
-                        };
-                    }
-                }
-            }
-        }
-    }
-
-    /// Takes over a column of the memory of the law of friction from block `first` on, as far as these blocks belong to the
-    /// band.
-    pub(super) fn set_memory(&mut self, layout: &Layout, column: usize, first: usize, values: &[f64]) {
-        for [of_values, own] in self.common(layout, first, values.len()) {
-            let memory = self
-                .thresholds
-                .as_mut()
-                .and_then(|thresholds| thresholds.column_mut(column));
-            if let Some(memory) = memory {
-                memory[own].copy_from_slice(&values[of_values]);
-            }
-        }
-    }
-
-    /// Writes to `values` a column of the memory of the law of friction at t*, from block `first` on, as far as these blocks
-    /// belong to the band.
-    pub(super) fn read_memory(
-        &self,
-        layout: &Layout,
-        time_star: f64,
-        column: usize,
-        first: usize,
-        values: &mut [f64],
-    ) {
-        let Some(thresholds) = &self.thresholds else {
-            return;
-        };
-        for [of_values, own] in self.common(layout, first, values.len()) {
-            for (value, k) in values[of_values].iter_mut().zip(own) {
-                let is_moving = self.velocity.at(k) != [0.0, 0.0];
-                *value = thresholds.memory(column, k, is_moving, time_star);
-            }
-        }
-    }
-
-    /// Blocks of the band among the `count` from `first` on, and the elements that hold them, row after row.
-    fn common(
-        &self,
-        layout: &Layout,
-        first: usize,
-        count: usize,
-    ) -> impl Iterator<Item = [Range<usize>; 2]> + use<> {
-        let (layout, begin) = (*layout, self.first);
-        let from = layout.element_of(first).max(begin);
-        let to = (layout.element_of(first + count - 1) + 1).min(begin + self.len);
-        layout.rows_among(from..to).filter_map(move |(_, _, part)| {
-            let element = from + part.start;
-            let b = layout.block(element)? - first;
-            let own = element - begin;
-            Some([b..b + part.len(), own..own + part.len()])
-        })
-    }
-
-    /// Continues from a checkpoint of which all columns are set, as if every tile had just been swept: the largest contact
-    /// stress of a checkpoint includes the skipped tiles.
-    pub(super) fn resume(&mut self) {
-        for task in &mut self.tasks {
-            task.active = u32::MAX;
-        }
-        for k in 0..self.len {
-            let v = self.velocity.at(k);
-            self.set_moving(k, v != [0.0, 0.0]);
-            let speed_square = &mut self.tiles[k / TILE].sums.speed_square;
-            *speed_square = speed_square.max(v[0] * v[0] + v[1] * v[1]);
-            self.slipped[k / LANES] |= u8::from(self.first_slip[k] != NEVER) << (k % LANES);
-        }
-        self.begin_thresholds();
     }
 
     /// The elements before the band and after it whose displacements it keeps. Its last vector may extend beyond the last
@@ -488,11 +381,16 @@ impl Band {
         for t in 0..ahead {
             self.advance_tile(simd, &step, quanta, t);
         }
+        // Taken out, so that the band and its scratch arrays can be changed side by side.
         let mut scratch = std::mem::take(self.scratch());
         if self.tasks[..ahead].iter().any(|task| task.needs_springs) {
+            // They are the springs of another band, or of the other end of this one, as well: computed twice,
+            // they need no thread to wait for another.
             self.upward(simd, geometry, &mut scratch, self.below(self.halo), self.halo);
         }
         for t in 0..n_tiles {
+            // No earlier than springs need it, so that the tile is still in the cache when its own turn
+            // comes. Until then its velocity is that of the step before: friction replaces it last.
             if t + ahead < n_tiles {
                 self.advance_tile(simd, &step, quanta, t + ahead);
             }
@@ -511,6 +409,8 @@ impl Band {
                     simd,
                     geometry,
                     (&step, quanta),
+                    // Once it is settled, the energy of a tile changes by differences of single vectors,
+                    // which need the energy of each.
                     energies || task.settles,
                     t,
                     &mut scratch,
@@ -533,6 +433,8 @@ impl Band {
 
     /// Adds up the sums over the tiles; tiles that were skipped keep theirs.
     fn add_up(&mut self) {
+        // From all tiles at every step, and not by differences as within a tile: the largest stress may have
+        // fallen.
         (self.sums, self.next_active_step) = (Sums::default(), u64::MAX);
         for tile in &self.tiles {
             self.sums.include(&tile.sums);
@@ -634,6 +536,7 @@ impl Band {
                 chunks_mut(north_west_f, own, n),
             ];
             upward_springs(simd, geometry, here, there, (masks, factors), force);
+            // What extends over the end is read a row later, by when the mirror is up to date.
             if own < MIRROR {
                 let ring = scratch.ring();
                 for force in &mut scratch.upward {
@@ -684,6 +587,7 @@ impl Band {
             #[inline(always)]
             || {
                 let ahead = self.tiles_ahead();
+                // Tiles that are skipped lie in between, so that what is read next does not follow in memory.
                 let next = [t, t + ahead].map(|t| TILE * self.next_whole_tile(t).unwrap_or(t + 1));
                 let elements = self.elements(t);
                 let arrays = self.friction_loop::<S, DIFFER>(simd, *step, (elements, next), scratch, 0);
@@ -693,6 +597,7 @@ impl Band {
                 let tile = &mut self.tiles[t];
                 tile.sums = sums.totals::<ENERGY>(quanta, vectors);
                 tile.moving = tile.sums.sliding > 0;
+                // What is known of its single vectors was so before this sweep.
                 tile.settled = false;
                 tile.active_from_step = 0;
             },
@@ -724,6 +629,7 @@ impl Band {
     ) {
         let elements = self.elements(t);
         let start = self.halo + elements.start;
+        // The eight elements before may be of a tile that is skipped, and has left no springs.
         let mut west = self.east_springs(simd, geometry, start - LANES);
         for (first, end, own, behind) in scratch.ring_segments(self.stride, start, self.halo + elements.end) {
             let n = end - first;
@@ -765,6 +671,7 @@ impl Band {
             let own = here % scratch.ring();
             let upward = |k: usize| load_vec2(simd, chunks(&scratch.upward[k], own, LANES), 0);
             let east = self.east_springs(simd, geometry, here);
+            // Every block has the energy of the four springs that begin at it, so that each is counted once.
             let springs = [east, upward(0), upward(1), upward(2)];
             let factors = self.factors_of::<G>(v);
             let energy = vector_energy::<S, G>(simd, springs, self.blocks[v], factors, quanta.lattice_energy);
@@ -800,6 +707,8 @@ impl Band {
         if let Some(variations) = self.variations.as_ref().filter(|_| DIFFER) {
             variation = variations.of(elements.clone());
         }
+        // Here and not in a pass of its own: the velocities are about to be read anyway, and blocks that are
+        // skipped do not slip.
         if let Some(thresholds) = &mut self.thresholds {
             let velocity = chunks(&self.velocity, elements.start, n);
             let at_rest = (kinetic_impulses, variation.inverse_mass);
@@ -869,6 +778,8 @@ impl Band {
         place: usize,
     ) -> u64 {
         let k = v * LANES;
+        // At rest, friction that falls with speed is that of no speed, `kinetic_impulses`; what has fallen
+        // with slip stays so.
         let strengths = self
             .thresholds
             .as_ref()
@@ -956,6 +867,8 @@ impl Band {
 
     /// Largest `tau_c^2` of the blocks in contact of those vectors of a tile in which nothing moves.
     pub(super) fn resting_stress_square(&self, t: usize, vectors: u32, step: &Step) -> f64 {
+        // Block by block: a vector is asked once after a rest of many steps. The contact of a block that is
+        // stuck bears all of its drive force, so that its springs need not be known.
         let mut most = 0.0_f64;
         for (bit, v) in self.vectors(t).enumerate() {
             if vectors >> bit & 1 == 0 {
@@ -999,6 +912,7 @@ impl Scratch {
             }
             let own = first % ring;
             let behind = (first + ring - stride - 1) % ring;
+            // The row below is read from `behind` on, and from one and two elements after it.
             let room = (ring - own).min((ring + MIRROR - 2 - behind) / LANES * LANES);
             let end = to.min(first + room);
             Some((std::mem::replace(&mut first, end), end, own, behind))

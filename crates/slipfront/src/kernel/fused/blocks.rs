@@ -93,6 +93,7 @@ pub(super) fn upward_springs<S: Simd, G: Geometry>(
     (masks, factors): ([&[u8]; 3], [Chunks; 3]),
     force: Upward<ChunksMut>,
 ) {
+    // All slices get one length here, so that the loop below needs no check of bounds.
     let [[nx, ny], [nex, ney], [nwx, nwy]] = force;
     let n = nx.len();
     let (ny, nex, ney) = (&mut ny[..n], &mut nex[..n], &mut ney[..n]);
@@ -148,6 +149,8 @@ pub(super) fn lattice_forces<S: Simd, G: Geometry>(
     let (south, south_west, south_east) = (first_n(south, n), first_n(south_west, n), first_n(south_east, n));
     let has_east = &arrays.has_east[..n];
     let to_east = &arrays.to_east[..if G::BLOCKS_DIFFER { n } else { 0 }];
+    // The spring to the west of a block is that to the east of its neighbour: the last of the eight before
+    // and the first seven of these, which are in registers.
     let mut before = *west;
     for c in 0..n {
         let u = load_vec2(simd, here, c);
@@ -237,6 +240,7 @@ pub(super) fn displacement_sums<S: Simd, const DIFFER: bool>(
 ) -> ([i64; 2], i64) {
     let [x, y] = quanta.displacement;
     let centres = [splat(simd, x.centre()), splat(simd, y.centre())];
+    // What is no block stands at the centre of the window, and adds nothing.
     let u = or_else(simd, blocks, u, centres);
     let differences = subtract(u, centres);
     let mut squares = square(differences);
@@ -431,6 +435,8 @@ impl<S: Simd> Sums<i64x8<S>, f64x8<S>> {
     /// Adds the zeros that `vectors` vectors at rest contribute to the sums over moving blocks.
     #[inline(always)]
     fn add_zeros<const ENERGY: bool>(&mut self, simd: S, quanta: &Quanta, vectors: i64) {
+        // A term is the bits of a shift plus a multiple, and [`totals`](Self::totals) takes away the shift of
+        // every vector, also of those that are skipped here.
         let zeros =
             |quantum: FixedPoint| i64x8::splat(simd, vectors.wrapping_mul(quantum.shift().to_bits() as i64));
         self.velocity[0] += zeros(quanta.velocity);
@@ -507,6 +513,7 @@ impl Sums<i128, f64, u64> {
             &mut self.velocity_squares,
             &mut self.displacement_square,
         ];
+        // All in one message, since ranks wait for each other at every one.
         let mut words = [[0; 2]; 10];
         for (words, sum) in words.iter_mut().zip(&sums) {
             *words = split(**sum);
@@ -517,6 +524,7 @@ impl Sums<i128, f64, u64> {
             **sum = join(words);
         }
         [self.sliding, self.slipping] = words[9].map(|count| count as u64);
+        // The soonest step is the largest of the negative ones, and goes along with the other maxima.
         // Steps beyond 2^53 are none of a run.
         let mut largest = [self.stress_square, self.speed_square, -(*step as f64)];
         communicator.largest(&mut largest);
@@ -558,6 +566,8 @@ fn rest<S: Simd>(
     force: Vec2x8<S>,
     static_limit_squares: &[f64; LANES],
 ) -> bool {
+    // Squares spare the root of a magnitude, and where all eight are stuck the test spares the root and the
+    // division of what follows.
     // Ghosts have the velocity of their blocks, and do not count as moving.
     moving == 0
         && bits(
@@ -651,10 +661,13 @@ pub(super) fn friction<S: Simd, const ENERGY: bool, const DIFFER: bool>(
             if ENERGY {
                 sums.add_stretch::<DIFFER>(simd, quanta, &shifts, displacement, variation.drive_springs, c);
             }
+            // Velocities, power and motion are zero: their sums get all these zeros at the end, at once.
             resting += 1;
             continue;
         }
         let free = load_vec2(simd, free_velocity, c);
+        // Friction against the free velocity takes this share of it. From 1 on it stops the block instead of
+        // turning it around; of no block it is infinite, and of 0/0 NaN, which compares as no motion.
         let removed_fraction = load(simd, &kinetic_impulses[c]) / load(simd, &free_speed[c]);
         let sticks = is_zero(simd, before) & square(force).simd_le(load(simd, &static_limit_squares[c]));
         let remaining = splat(simd, 1.0) - removed_fraction;
@@ -673,6 +686,7 @@ pub(super) fn friction<S: Simd, const ENERGY: bool, const DIFFER: bool>(
         let velocity_to_force = weighted::<S, DIFFER>(simd, velocity_to_force, variation.mass, c);
         let kinetic = scale(removed_fraction * velocity_to_force, free);
         let against = select(slides, kinetic, force);
+        // Ghosts have velocities too, and count with their blocks alone.
         let both = zero_missing(simd, blocks[c], add(before, after));
         let displacement = or_else(simd, blocks[c], load_vec2(simd, u, c), shifts.centres);
         let motion_square = weighted::<S, DIFFER>(simd, square(both), variation.mass, c);

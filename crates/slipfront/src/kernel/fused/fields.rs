@@ -66,6 +66,7 @@ fn friction(kinetic_force: f64, velocity: [f64; 2], drive: [f64; 2], lattice: [f
     if velocity == [0.0, 0.0] {
         return [-(drive[0] + lattice[0]), -(drive[1] + lattice[1])];
     }
+    // The velocity after the step has the direction of that without friction, along which friction acts.
     let per_velocity = kinetic_force / length(velocity);
     [-per_velocity * velocity[0], -per_velocity * velocity[1]]
 }
@@ -95,6 +96,7 @@ pub(super) fn read_rows<S: Simd, G: Geometry>(
             let displaced = band.halo + elements.start..band.halo + elements.end;
             match field {
                 Field::ContactStress | Field::Traction => {
+                    // Of tiles that follow one another, the springs in between are in the ring already.
                     let from = band.below(displaced.start).max(springs_end);
                     springs_end = displaced.end;
                     band.upward(simd, geometry, &mut scratch, from, springs_end);

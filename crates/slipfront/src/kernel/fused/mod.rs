@@ -17,6 +17,7 @@
 mod aligned;
 mod band;
 mod blocks;
+mod columns;
 mod fields;
 #[cfg(feature = "testing")]
 pub(crate) mod for_tests;
@@ -177,6 +178,7 @@ impl Fused {
             blocks_differ: differ,
             neighbours,
         };
+        // From then on ghosts and halos follow those that move: at rest they must be right once.
         kernel.copy_ghosts(true);
         kernel.fill_halos(0.0, true);
         kernel
@@ -247,6 +249,8 @@ impl Fused {
             (bounds.extent, bounds.difference) = ([right, left, up, down], [along_x, along_y]);
             bounds.growth = 0.0;
         }
+        // Between measurements both ends of a spring move by the highest speed at most, apart from each
+        // other.
         bounds.growth += 2.0 * step.move_dt * bounds.speed;
         let strain = self.motion_bounds.max_strain(model.epsilon);
         let springs = if strain <= self.strain_limits[0] {
@@ -275,6 +279,7 @@ impl Fused {
         for_each_band(threads, &mut self.bands, &|band| {
             band.mark_touched(&layout, touched);
         });
+        // With the displacements that are to come: no band of the sweep then reads what another writes.
         self.fill_halos(step.move_dt, false);
         self.write_own_rows(step.move_dt);
 
@@ -290,6 +295,8 @@ impl Fused {
                 energies,
             );
         };
+        // Bands at the ends of the rank wait for the rows of other ranks; what moves there is marked when it
+        // is known, which touches tiles of these bands alone.
         let (first, others) = self.bands.split_at_mut(self.inner.start);
         let (inner, last) = others.split_at_mut(self.inner.len());
         self.neighbours
@@ -370,6 +377,7 @@ impl Fused {
         while element < elements.end {
             let (other, at) = self.locate(element);
             let n = (LANES - at % LANES).min(elements.end - element);
+            // What rests has been copied with its last move.
             if all || self.bands[other].moving[at / LANES] != 0 {
                 for offset in 0..n {
                     let u = self.bands[other].advanced(at + offset, move_dt);
@@ -433,6 +441,8 @@ impl Fused {
             self.totals.velocity_after,
             sums.velocity.map(|sum| quanta.velocity.value(sum)),
         );
+        // Sums are of differences from the centre of the window, so that a slider that has gone far keeps its
+        // digits.
         let displacement = |axis: usize| {
             let differences = quanta.weighted_displacement[axis].value(sums.displacement[axis]);
             self.drive_springs * quanta.displacement[axis].centre() + differences
@@ -533,6 +543,7 @@ impl Engine for Fused {
             }
             return;
         }
+        // Each band counts in bins of its own, of which threads share none.
         let of_band = |band: &Band| {
             let mut counts = vec![0; bins.count];
             band.count_in_contact(layout, bins, sliding, &mut counts);
@@ -639,6 +650,7 @@ fn bands_of(layout: &Layout, threads: usize) -> (Vec<Range<usize>>, Range<usize>
         Some(1..) => (first..n_tiles - last, true),
         _ => (0..n_tiles, false),
     };
+    // More bands than threads, as far as they stay large: a thread that comes late leaves work to the others.
     let most = if threads == 1 { 1 } else { 4 * threads };
     let n = (inner.len() / MIN_BAND_TILES)
         .clamp(threads, most)

@@ -42,6 +42,7 @@ impl Neighbours {
 
     /// Sends the rows in `own` to the neighbours and receives theirs, while `meanwhile` runs.
     pub(super) fn exchange(&mut self, layout: &Layout, meanwhile: &mut dyn FnMut()) {
+        // The exchange before the latest gives its memory to this one.
         std::mem::swap(&mut self.rows, &mut self.before);
         let [below, above] = &mut self.rows;
         self.communicator.exchange(
@@ -53,6 +54,8 @@ impl Neighbours {
         let firsts = [-(layout.stride as isize), layout.len() as isize];
         for (first, (row, before)) in firsts.into_iter().zip(self.rows.iter().zip(&self.before)) {
             for (element, (u, before)) in (first..).zip(row.iter().zip(before)) {
+                // Compared with the exchange before, and not with what the other rank says of itself: nothing
+                // more has to be sent.
                 if u != before {
                     self.moved.push(element);
                 }

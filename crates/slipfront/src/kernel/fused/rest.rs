@@ -31,8 +31,10 @@ pub(super) struct RestingVector<S: Simd> {
 /// contact stress of a skipped block is always largest at the first or at the last skipped step.
 #[inline(always)]
 pub(super) fn steps_until_slip<S: Simd>(simd: S, step: &Step, blocks: &RestingVector<S>) -> u64 {
+    // The growth is that until the speed of the drive changes next; who calls this looks no further.
     let [bx, by] = step.force_growth;
     let growth_square = bx * bx + by * by;
+    // Without a moving drive nothing changes until a neighbour moves, which touches the vector.
     if growth_square == 0.0 {
         return u64::MAX;
     }
@@ -45,6 +47,7 @@ pub(super) fn steps_until_slip<S: Simd>(simd: S, step: &Step, blocks: &RestingVe
     let force = add(drive, blocks.lattice);
     let velocity_to_force = mass * splat(simd, step.integrator.velocity_to_force);
     let kinetic_force = blocks.kinetic_impulse * velocity_to_force;
+    // Where kinetic friction is the larger of the two, it holds the block beyond its static threshold.
     let threshold_square = blocks.static_limit_square.max(kinetic_force * kinetic_force);
     let a = dot(force, growth);
     let room = threshold_square - square(force);

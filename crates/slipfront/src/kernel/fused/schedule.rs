@@ -37,6 +37,8 @@ impl Band {
         let mark = |from: usize, to: usize| {
             layout.mark_around((self.first + from) as isize, (self.first + to) as isize, touched);
         };
+        // Bands mark tiles of each other at the same time. That only sets bits, in any order, and no band
+        // reads them before all have marked.
         for t in (0..self.tiles.len()).filter(|&t| self.tiles[t].moving) {
             let moving = self.vectors(t).filter(|&v| self.moving[v] != 0);
             if moving.clone().count() > MAX_MARKED_VECTORS {
@@ -64,6 +66,8 @@ impl Band {
                 touched: touched[self.first_tile + t].swap(0, Ordering::Relaxed) & all,
                 ..TileTask::default()
             };
+            // Differences along springs change on both sides of a block that moves, also in a tile in which
+            // all rest.
             if task.touched != 0 {
                 self.tiles[t].displacements_are_old = true;
             }
@@ -72,12 +76,15 @@ impl Band {
                 if tile.active_from_step <= sweep.number {
                     task.active |= self.vectors_that_may_slip(t, sweep.number);
                 }
+                // Of no vector at all, too: then the tile is skipped.
                 task.sparse = task.active.count_ones() <= MAX_SPARSE_VECTORS;
             }
             if !task.sparse {
                 task.active = all;
                 task.settles = sweep.skips && task.touched.count_ones() <= MAX_SETTLING_VECTORS;
             }
+            // What was skipped at the step before has its stress there looked at. If the whole sweep was left
+            // out then, all was.
             task.was_skipped = match (sweep.is_first, sweep.is_next) {
                 (true, _) => 0,
                 (_, true) => task.active & !before,
@@ -85,6 +92,8 @@ impl Band {
             };
             self.tasks[t] = task;
         }
+        // After all tasks are known: a whole tile also needs the springs that lead up to it, from tiles
+        // before it that may be skipped themselves. A sparse one computes all of its springs alone.
         for t in 0..self.tiles.len() {
             if self.tasks[t].sparse {
                 continue;

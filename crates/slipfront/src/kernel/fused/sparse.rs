@@ -44,6 +44,8 @@ impl Band {
             let after = [before[0] + dt * velocity[0], before[1] + dt * velocity[1]];
             after[0].store_array(&mut x[0]);
             after[1].store_array(&mut y[0]);
+            // The old integers leave the sums and the new ones enter: exact, and without a look at the blocks
+            // at rest.
             let blocks = self.blocks[v];
             let [(old, old_square), (new, new_square)] = match &self.variations {
                 Some(variations) => {
@@ -74,6 +76,8 @@ impl Band {
         t: usize,
         scratch: &mut Scratch,
     ) {
+        // With energies at every step, whether they are needed or not: at any of them a vector may come to
+        // rest, and keeps its part of the sum from then on.
         let mut lattice_energy = self.tiles[t].sums.lattice_energy;
         for (place, v) in self.active_vectors(t).enumerate() {
             let energy = self.vector_forces(simd, geometry, quanta, v, (scratch, place * LANES));
@@ -124,6 +128,8 @@ impl Band {
                 }
                 let soonest = self.soonest_active_step(t);
                 let tile = &mut self.tiles[t];
+                // Skipped vectors rest, and add nothing to sums over velocities; their displacements are in
+                // the sums that the moves have changed. Their stress is looked at when they are swept again.
                 tile.sums = Sums {
                     displacement: tile.sums.displacement,
                     displacement_square: tile.sums.displacement_square,
@@ -235,6 +241,8 @@ impl Band {
         let here = self.halo + v * LANES;
         let below = here - self.stride;
         let [east, north, north_east, north_west] = &self.masks;
+        // The springs from below and from the west belong to other vectors, at places that are no whole
+        // vectors. They are computed again here, since neighbours that are skipped have left none.
         let (west, south) = (bits_from(east, here - 1), bits_from(north, below));
         let (south_west, south_east) = (bits_from(north_east, below - 1), bits_from(north_west, below + 1));
         let west = self.springs_between(simd, geometry, EAST, (west, here), here - 1);
@@ -242,6 +250,7 @@ impl Band {
         let south_west = self.springs_between(simd, geometry, NORTH_EAST, (south_west, here), below - 1);
         let south_east = self.springs_between(simd, geometry, NORTH_WEST, (south_east, here), below + 1);
         let [east, north, north_east, north_west] = own;
+        // In the order of [`lattice_forces`](super::blocks::lattice_forces), for the same bits.
         let [x, y] = add(
             add(subtract(east, west), subtract(north, south)),
             add(subtract(north_east, south_west), subtract(north_west, south_east)),

@@ -43,6 +43,8 @@ impl Geometry for SquareRoot {
             splat(simd, bond.rest[1]) + epsilon * e[1],
         ];
         let length = square(r).sqrt();
+        // The extension r - d is small against both lengths: as (r^2 - d^2)/(r + d), with the squares
+        // multiplied out, it keeps its digits.
         let along = splat(simd, bond.rest[0]) * e[0] + splat(simd, bond.rest[1]) * e[1];
         let stretch = splat(simd, 2.0) * along + epsilon * square(e);
         let tension =
@@ -113,6 +115,7 @@ impl<const DEGREE: usize> Geometry for Series<DEGREE> {
         let epsilon = splat(simd, self.epsilon);
         let s = (along + along) + epsilon * square(e);
         let coefficients = self.coefficients(bond);
+        // Horner's rule: one multiplication and one addition for each degree, without root or division.
         let mut tension = splat(simd, coefficients[DEGREE]);
         for m in (0..DEGREE).rev() {
             tension = tension * s + splat(simd, coefficients[m]);

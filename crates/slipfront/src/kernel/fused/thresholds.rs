@@ -141,6 +141,8 @@ impl Thresholds {
         let Some([moved_at, lost_before]) = healing else {
             return slip;
         };
+        // Blocks at rest are not swept, and heal without being asked: what their next sweep will find is
+        // found here.
         let heals = !is_moving && law.heals(moved_at[k], time_star);
         match column {
             0 if heals => 0.0,
@@ -187,11 +189,14 @@ impl Slipped {
                 moved.store_array(&mut moved_at[c]);
                 let heals = is_stuck & (now - moved).simd_ge(healing_time);
                 let left = (one - load(simd, &slip[c]) * per_length).max(zero);
+                // Strength falls linearly with slip, so that the work that is left goes with the square of
+                // the fall that is left.
                 let lost = heals.select(one - left * left, zero);
                 (load(simd, &lost_before[c]) + lost).store_array(&mut lost_before[c]);
                 heals.select(zero, load(simd, &slip[c])).store_array(&mut slip[c]);
             }
         }
+        // After healing, which may have set the slip to zero.
         for c in 0..n {
             let left = (one - load(simd, &slip[c]) * per_length).max(zero);
             (load(simd, &at_rest[c]) + load(simd, &drops[c]) * left).store_array(&mut weakened[c]);

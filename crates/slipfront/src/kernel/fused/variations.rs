@@ -25,6 +25,7 @@ pub(super) struct Variations {
     /// Stiffness of the drive springs over `k_s`.
     pub(super) drive_springs: Aligned,
     pub(super) mass: Aligned,
+    // Beside the mass, in place of a division for every block in every step.
     pub(super) inverse_mass: Aligned,
 }
 
@@ -165,6 +166,7 @@ impl Variations {
 pub(super) fn present(moduli: &Moduli, model: &Model, layout: &Layout, element: isize) -> [bool; 4] {
     match &model.slider.outline {
         None => layout.springs(element),
+        // A spring to a place without a block has no stiffness.
         Some(_) => springs(moduli, layout, element).map(|factor| factor > 0.0),
     }
 }

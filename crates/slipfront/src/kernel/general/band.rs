@@ -20,6 +20,7 @@ use crate::slider::SliderOptions;
 use crate::state::State;
 use crate::vector_field::VectorField;
 
+// So many that what one pass has found for them is still in the cache when the next asks for it.
 /// Blocks of a part, unless a row has more.
 const PART: usize = 512;
 
@@ -192,6 +193,7 @@ impl Band {
     #[inline(always)]
     pub(super) fn begin_step(&mut self, model: &Model, moves: bool) {
         for blocks in parts(model) {
+            // The first instant is seen as it was given.
             if moves {
                 self.move_blocks(model, &blocks);
             }
@@ -207,6 +209,8 @@ impl Band {
             self.counts = [0; 2];
         }
         for blocks in parts(model) {
+            // Sums alone may be asked for a second time, when a term has outgrown its bound: forces and
+            // memory stay as they are.
             if !is_known {
                 self.find_forces(model, &blocks, clock);
                 self.count(model, &blocks, clock.time_star());
@@ -249,6 +253,7 @@ impl Band {
 
     /// Makes the velocities of this step those of the step before, for the next step.
     pub(super) fn end_step(&mut self) {
+        // Not earlier: sums and energies take the velocities on both sides of the instant.
         std::mem::swap(&mut self.state.velocity, &mut self.forces.velocity);
     }
 
@@ -267,6 +272,7 @@ impl Band {
     #[inline(always)]
     fn move_blocks(&mut self, model: &Model, blocks: &Range<usize>) {
         let (state, limit) = (&self.state, &mut self.static_limit);
+        // Before displacements change: the law is shown the state of the step that ends here.
         self.contact
             .remember(&model.surface, blocks, state, &self.forces, limit, self.dt_star);
         let State {
@@ -292,6 +298,7 @@ impl Band {
             damper_forces(model, rows, blocks, state, relative, force, bonds);
             add_to(lattice, force, blocks);
         }
+        // Decided outside of the loop: equal masses have one integrator, which no block divides anew.
         let integrator = Integrator::new(model.damping, self.dt_star);
         match masses(model, blocks) {
             None => self.apply_friction(blocks, |_| integrator, time_star, model),
@@ -349,6 +356,7 @@ impl Band {
             part(&self.forces.velocity, blocks),
         );
         let (bx, by, ax, ay) = (&bx[..n], &by[..n], &ax[..n], &ay[..n]);
+        // Taken out while sums are given the rest of the scratch arrays.
         let mut velocity = std::mem::take(&mut scratch.velocity);
         let (vx, vy) = (&mut velocity.x[..n], &mut velocity.y[..n]);
         for k in 0..n {

@@ -48,6 +48,7 @@ impl DrivenBlocks {
         let n = blocks.len();
         let ([fx, fy], [ux, uy]) = (part_mut(force, blocks), part(u, blocks));
         let (fx, fy, ux, uy) = (&mut fx[..n], &mut fy[..n], &ux[..n], &uy[..n]);
+        // Told apart outside of the loops, which then have no branch and become vectors.
         match &self.direction {
             None => {
                 let [x, y] = model.drive.position(drive_time_star);

@@ -107,6 +107,7 @@ impl General {
                 let state = state.unwrap_or_else(|| State::at_rest(blocks.len()));
                 let band = Band::new(model, &moduli, dt_star, state);
                 vec![BandOfRank {
+                    // A single band needs no copy of the model for its rows.
                     blocks,
                     model: None,
                     band,
@@ -270,6 +271,8 @@ impl General {
     /// Sum over all rows of the whole lattice, given the numbers of the rows of every band. The order is equal for any
     /// number of bands and ranks, and so are the bits.
     fn sum_rows<'a>(&self, model: &Model, of_bands: impl Iterator<Item = &'a [f64]>) -> f64 {
+        // Every rank knows the numbers of its rows and has zeros elsewhere, so that integer sums of the bits
+        // bring them together; then all add the same numbers in the same order.
         let mut bits = vec![0; model.lattice.ny];
         for (bits, number) in bits[model.rows.clone()].iter_mut().zip(of_bands.flatten()) {
             *bits = number.to_bits() as i64;
@@ -287,6 +290,8 @@ impl Engine for General {
             let (model, band) = one.with_model(model);
             dispatch!(level, _ => band.begin_step(model, moves));
         });
+        // Springs join blocks of different bands: all must have moved, and told so, before any of them finds
+        // forces.
         self.exchange();
         let mut is_known = false;
         let found = Summed::from(loop {
@@ -301,6 +306,7 @@ impl Engine for General {
             if let Some(found) = RunningSum::finish(&*self.ranks, &mut self.sums) {
                 break found;
             }
+            // A term was larger than all before, or all have become smaller: once more with the right bound.
             is_known = true;
         });
         let mut counts = [0; 2];
@@ -310,6 +316,7 @@ impl Engine for General {
         }
         self.ranks.sum(&mut counts);
         let [n_sliding, n_slipping] = counts.map(|count| count as usize);
+        // Not negated: without dampers that would write a zero with a sign.
         self.viscous_power = 0.0 - found.viscous_power;
         self.contact_totals = ContactTotals::of(found.contact, &model.surface);
         let stored_energy = energies.then(|| self.stored_energy(model, clock.drive_time_star()));
@@ -447,6 +454,8 @@ pub(crate) fn bytes_per_block_of_bands(options: &ModelOptions) -> f64 {
 fn bands_of(model: &Model, threads: usize) -> Vec<Range<usize>> {
     let (rows, n_blocks) = (&model.rows, model.surface.n_blocks());
     let is_one = threads == 1 || model.friction.lends_thresholds();
+    // More bands than threads: a thread that comes late leaves work to the others. A law by which a block
+    // takes the threshold of any other has all blocks in one band.
     let most = if is_one { 1 } else { 4 * threads };
     let n = most
         .min(n_blocks / MIN_BAND_BLOCKS)

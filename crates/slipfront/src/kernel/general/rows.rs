@@ -76,6 +76,8 @@ impl Rows {
     /// Takes over the motion of some blocks of this band.
     #[inline(always)]
     pub(super) fn take_over(&mut self, own: &State, blocks: &Range<usize>) {
+        // Copied beside the rows of others, so that springs find both ends in one array; a single band reads
+        // its own state.
         let among_all = self.among_all(blocks);
         if let Some(Beside {
             state, has_dampers, ..

@@ -137,6 +137,7 @@ fn sum_all(
 ) {
     let (lattice, [force_x, force_y]) = (&rows.lattice, part_mut(force, blocks));
     let (is_first, blocks) = (blocks.start == 0, &rows.among_all(blocks));
+    // The springs that lead up from the row below are those of another band too: each finds them for itself.
     let behind = is_first.then(|| rows.behind());
     for blocks in behind.iter().chain([blocks]) {
         for (number, along) in bonds.iter_mut().enumerate() {
@@ -212,6 +213,8 @@ fn replace(
     force: &mut VectorField,
 ) {
     match lattice.edges[axis] {
+        // The loop over all rows took a block at the other end of a row for the neighbour, which is as far
+        // away in memory.
         Edges::Free => {
             for b in blocks {
                 [force.x[b], force.y[b]] = [0.0, 0.0];

@@ -12,7 +12,7 @@ impl Session {
     /// to be done at once, and none if there is nothing to do before the page asks for something.
     ///
     /// All times count from the same instant. The messages that have come are to be [handled](Self::handle) before.
-    pub fn work(&mut self, now: Duration) -> Option<Duration> {
+    pub fn advance(&mut self, now: Duration) -> Option<Duration> {
         self.clock.end_slice(now);
         // Changes that come while steps are taken wait for the picture, so that of many the case is made once.
         let is_changed = !self.is_stepping && self.has_edits();

@@ -7,100 +7,20 @@
 
 use std::fs::File;
 use std::io::Write;
-use std::path::{Component, Path, PathBuf};
+use std::path::{Path, PathBuf};
 
-use serde::{Deserialize, Serialize};
 use slipfront_base::disk::{
-    TEXT_MAX_BYTES, folder_of, found_at, is_same, json, make_folders, open_regular, read_limited,
-    remove_if_there, sync_folder, write_atomic, write_beside,
+    folder_of, found_at, is_same, make_folders, open_regular, remove_if_there, sync_folder, write_beside,
 };
-use slipfront_base::text::single_line;
 use slipfront_plot::Picture;
 use slipfront_run::folder_error::FolderError;
-use slipfront_run::manifest::{ManifestFile, seal};
+use slipfront_run::manifest::{ManifestFile, is_one_of};
 use slipfront_run::program;
 use tempfile::TempPath;
 
+use super::checksums::Checksums;
+use super::input_copies::Copy;
 use crate::error::StudyError;
-use crate::input_copies::Copy;
-
-/// Name of the list of result files and their checksums.
-pub const CHECKSUMS: &str = "checksums.json";
-
-/// Content of a list: the result files, with the program that made them.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Checksums {
-    /// Content of the folder, such as `study`.
-    pub of: String,
-    /// Version of slipfront.
-    pub version: String,
-    /// The git commit from which the program was built; null outside of git.
-    pub revision: Option<String>,
-    /// The identity of the build.
-    pub build: String,
-    /// The result files, in the order of their names.
-    pub files: Vec<ManifestFile>,
-    /// Whether the results are complete, and not those of work that goes on.
-    pub is_complete: bool,
-    /// Files that were still to be replaced or removed when the list was written.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub replaced: Vec<ManifestFile>,
-    /// BLAKE3 hash of the list up to this key.
-    pub seal: String,
-}
-
-impl Checksums {
-    /// Reads the list of a folder; none if there is none.
-    ///
-    /// # Errors
-    /// When the list cannot be read, or was changed since it was written.
-    pub fn read(folder: &Path) -> Result<Option<Self>, StudyError> {
-        let path = folder.join(CHECKSUMS);
-        if found_at(&path).map_err(FolderError::read(&path))?.is_none() {
-            return Ok(None);
-        }
-        let damaged = |why: &str| StudyError::Checksums {
-            path: path.clone(),
-            why: single_line(why),
-        };
-        let bytes = read_limited(&path, TEXT_MAX_BYTES).map_err(|error| damaged(&error.to_string()))?;
-        let list: Self = serde_json::from_slice(&bytes).map_err(|error| damaged(&error.to_string()))?;
-        if seal(&bytes).as_ref() != Some(&list.seal) {
-            return Err(damaged(
-                "its seal does not fit, so that it was changed afterwards",
-            ));
-        }
-        // A list of somebody else must lead to no file outside of its folder.
-        let is_inside = |file: &ManifestFile| {
-            let mut parts = Path::new(&file.name).components();
-            parts.all(|part| matches!(part, Component::Normal(_)))
-        };
-        match list
-            .files
-            .iter()
-            .chain(&list.replaced)
-            .find(|file| !is_inside(file))
-        {
-            Some(file) => Err(damaged(&format!(
-                "it names {}, which lies outside of the folder",
-                file.name
-            ))),
-            None => Ok(Some(list)),
-        }
-    }
-
-    /// Whether slipfront has written a file of this name with these contents.
-    fn has(&self, file: &ManifestFile) -> bool {
-        self.files.contains(file) || self.replaced.contains(file)
-    }
-
-    fn write(mut self, folder: &Path) -> Result<(), StudyError> {
-        self.seal = String::new();
-        self.seal = seal(&json(&self)).unwrap_or_default();
-        let path = folder.join(CHECKSUMS);
-        write_atomic(&path, &json(&self)).map_err(|source| StudyError::Write { path, source })
-    }
-}
 
 /// Result files of a folder that one process alone works in.
 #[derive(Clone, Debug)]
@@ -171,25 +91,14 @@ impl ResultFiles {
                 return Ok(false);
             }
         }
-        let Some(found) = found_at(&path).map_err(FolderError::read(&path))? else {
-            return Ok(true);
-        };
-        let is_of_name = |file: &ManifestFile| file.name == name && file.bytes == found.len();
-        let mut known = list.files.iter().chain(&list.replaced).chain(new);
-        // A file of another length is not read: it may be huge.
-        if !found.is_file() || !known.any(is_of_name) {
-            return Ok(false);
-        }
-        let found = ManifestFile::of(&self.folder, name).map_err(FolderError::read(&path))?;
-        Ok(list.has(&found) || new == Some(&found))
+        let known = list.files.iter().chain(&list.replaced).chain(new);
+        let is_known = is_one_of(&self.folder, name, known).map_err(FolderError::read(&path))?;
+        Ok(is_known.unwrap_or(true))
     }
 
     /// Whether this file is there already.
     fn is_there(&self, file: &ManifestFile) -> bool {
-        let found = found_at(&self.folder.join(&file.name));
-        let is_alike =
-            found.is_ok_and(|found| found.is_some_and(|found| found.is_file() && found.len() == file.bytes));
-        is_alike && ManifestFile::of(&self.folder, &file.name).is_ok_and(|found| found == *file)
+        matches!(is_one_of(&self.folder, &file.name, [file]), Ok(Some(true)))
     }
 
     /// Gives hidden files their names, and removes others.
@@ -463,6 +372,7 @@ impl Batch {
 
 #[cfg(test)]
 mod tests {
+    use super::super::checksums::CHECKSUMS;
     use super::*;
 
     fn batch_of(files: &ResultFiles, contents: &[(&str, &str)]) -> Batch {
@@ -620,7 +530,7 @@ mod tests {
         let mut study: toml::Table = "base.texture = [{ shape = 'mask', file = 'inputs/mine.png' }]"
             .parse()
             .unwrap();
-        let copies = crate::input_copies::copy(&mut study, path).unwrap();
+        let copies = super::super::input_copies::copy(&mut study, path).unwrap();
         let mut given = ResultFiles::new(path, "study", false).begin();
         given.copy_all(&copies).unwrap();
         let files = given.place_given(Others::Go).unwrap();

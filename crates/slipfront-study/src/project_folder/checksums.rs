@@ -1,0 +1,84 @@
+//! The list of the result files of a folder with their checksums, `checksums.json`.
+
+use std::path::{Component, Path};
+
+use serde::{Deserialize, Serialize};
+use slipfront_base::disk::{TEXT_MAX_BYTES, found_at, json, read_limited, write_atomic};
+use slipfront_base::text::single_line;
+use slipfront_run::folder_error::FolderError;
+use slipfront_run::manifest::{ManifestFile, seal};
+
+use crate::error::StudyError;
+
+/// Name of the list of result files and their checksums.
+pub const CHECKSUMS: &str = "checksums.json";
+
+/// Content of a list: the result files, with the program that made them.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Checksums {
+    /// Content of the folder, such as `study`.
+    pub of: String,
+    /// Version of slipfront.
+    pub version: String,
+    /// The git commit from which the program was built; null outside of git.
+    pub revision: Option<String>,
+    /// The identity of the build.
+    pub build: String,
+    /// The result files, in the order of their names.
+    pub files: Vec<ManifestFile>,
+    /// Whether the results are complete, and not those of work that goes on.
+    pub is_complete: bool,
+    /// Files that were still to be replaced or removed when the list was written.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub replaced: Vec<ManifestFile>,
+    /// BLAKE3 hash of the list up to this key.
+    pub seal: String,
+}
+
+impl Checksums {
+    /// Reads the list of a folder; none if there is none.
+    ///
+    /// # Errors
+    /// When the list cannot be read, or was changed since it was written.
+    pub fn read(folder: &Path) -> Result<Option<Self>, StudyError> {
+        let path = folder.join(CHECKSUMS);
+        if found_at(&path).map_err(FolderError::read(&path))?.is_none() {
+            return Ok(None);
+        }
+        let damaged = |why: &str| StudyError::Checksums {
+            path: path.clone(),
+            why: single_line(why),
+        };
+        let bytes = read_limited(&path, TEXT_MAX_BYTES).map_err(|error| damaged(&error.to_string()))?;
+        let list: Self = serde_json::from_slice(&bytes).map_err(|error| damaged(&error.to_string()))?;
+        if seal(&bytes).as_ref() != Some(&list.seal) {
+            return Err(damaged(
+                "its seal does not fit, so that it was changed afterwards",
+            ));
+        }
+        // A list of somebody else must lead to no file outside of its folder.
+        let is_inside = |file: &ManifestFile| {
+            let mut parts = Path::new(&file.name).components();
+            parts.all(|part| matches!(part, Component::Normal(_)))
+        };
+        match list
+            .files
+            .iter()
+            .chain(&list.replaced)
+            .find(|file| !is_inside(file))
+        {
+            Some(file) => Err(damaged(&format!(
+                "it names {}, which lies outside of the folder",
+                file.name
+            ))),
+            None => Ok(Some(list)),
+        }
+    }
+
+    pub(super) fn write(mut self, folder: &Path) -> Result<(), StudyError> {
+        self.seal = String::new();
+        self.seal = seal(&json(&self)).unwrap_or_default();
+        let path = folder.join(CHECKSUMS);
+        write_atomic(&path, &json(&self)).map_err(|source| StudyError::Write { path, source })
+    }
+}

@@ -1,0 +1,60 @@
+//! What a project is made of, kept in its folder so that it can be repeated from there.
+
+use std::io::Write;
+use std::path::Path;
+
+use slipfront_base::disk::{TEXT_MAX_BYTES, read_limited};
+
+use super::input_copies::Copy;
+use super::kind::ProjectKind;
+use super::result_files::{Batch, Others, ResultFiles};
+use crate::error::StudyError;
+
+/// The files from which a project is repeated.
+pub struct Given {
+    /// The text of the project's file, with its base case inside.
+    pub text: String,
+    /// Copies of the files that the text names.
+    pub copies: Vec<Copy>,
+    /// Other files, by their names in the folder.
+    pub others: Vec<(String, Vec<u8>)>,
+}
+
+impl Given {
+    /// Whether a folder has other files of these names.
+    pub(crate) fn differs_in(&self, kind: &ProjectKind, folder: &Path) -> bool {
+        let differs = |name: &str, bytes: &[u8]| {
+            let before = read_limited(&folder.join(name), TEXT_MAX_BYTES);
+            before.is_ok_and(|before| before != bytes)
+        };
+        differs(kind.file, self.text.as_bytes())
+            || self.others.iter().any(|(name, bytes)| differs(name, bytes))
+            || self.copies.iter().any(|copy| copy.differs_in(folder))
+    }
+
+    /// Writes the files to a batch of a folder, in which `force` replaces files of others.
+    pub(crate) fn stage(&self, kind: &ProjectKind, folder: &Path, force: bool) -> Result<Batch, StudyError> {
+        let mut batch = ResultFiles::new(folder, kind.name, force).begin();
+        batch.copy_all(&self.copies)?;
+        for (name, bytes) in &self.others {
+            batch.write(name, |to| to.write_all(bytes))?;
+        }
+        batch.write(kind.file, |to| to.write_all(self.text.as_bytes()))?;
+        Ok(batch)
+    }
+
+    /// Writes the files to a folder, in which `force` replaces files of others; results join them there.
+    ///
+    /// # Errors
+    /// When the folder holds another project, or files in their places that were edited or are not slipfront's; when the system refuses
+    /// to write.
+    pub fn place(&self, kind: &ProjectKind, folder: &Path, force: bool) -> Result<ResultFiles, StudyError> {
+        if self.differs_in(kind, folder) {
+            return Err(StudyError::Changed {
+                what: kind.name,
+                path: folder.to_owned(),
+            });
+        }
+        self.stage(kind, folder, force)?.place_given(Others::Stay)
+    }
+}

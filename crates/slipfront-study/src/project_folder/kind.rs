@@ -1,0 +1,85 @@
+//! Kinds of projects, such as studies and designs: the names that each has for the files of its folder.
+
+use std::path::Path;
+
+use slipfront_base::disk::{is_empty, make_folders};
+use slipfront_case::case_file::read_text;
+use slipfront_run::folder_error::FolderError;
+
+use super::journal::Journal;
+use super::line::JournalRecord;
+use crate::error::StudyError;
+
+/// A kind of projects, each of which has its results in a folder.
+#[derive(Debug)]
+pub struct ProjectKind {
+    /// Name of the kind in messages, such as `design`.
+    pub name: &'static str,
+    /// Name of the kind's own table in its files.
+    pub table: &'static str,
+    /// Name of the file in the folder from which the project is repeated.
+    pub file: &'static str,
+    /// Name of the journal of runs.
+    pub journal: &'static str,
+}
+
+impl ProjectKind {
+    /// Whether the folder is one of this kind.
+    pub fn is_in(&self, folder: &Path) -> bool {
+        folder.join(self.file).exists() && folder.join(self.journal).exists()
+    }
+
+    /// Loads a file of this kind by `parse`, which takes its text, its path, its name without the ending, and its folder.
+    ///
+    /// # Errors
+    /// Those of `parse`, and when the file cannot be read.
+    pub fn load<T>(
+        &self,
+        path: &Path,
+        parse: impl FnOnce(&str, &str, &str, &Path) -> Result<T, StudyError>,
+    ) -> Result<T, StudyError> {
+        let text = read_text(path)?;
+        let stem = path.file_stem();
+        let name = stem.map_or_else(|| self.name.into(), |stem| stem.to_string_lossy());
+        let folder = path.parent().unwrap_or(Path::new(""));
+        parse(&text, &path.display().to_string(), &name, folder)
+    }
+
+    /// Whether the folder has a journal of this kind. One that has none must be new or empty.
+    ///
+    /// # Errors
+    /// When the folder holds other things, or cannot be read.
+    pub fn is_used(&self, folder: &Path) -> Result<bool, StudyError> {
+        let is_used = folder.join(self.journal).exists();
+        let is_free = || Ok(!folder.is_dir() || is_empty(folder)?);
+        if is_used || is_free().map_err(FolderError::unwritable(folder))? {
+            Ok(is_used)
+        } else {
+            Err(self.other_things(folder))
+        }
+    }
+
+    /// The error of a folder that holds other things than a project of this kind.
+    pub fn other_things(&self, folder: &Path) -> StudyError {
+        StudyError::OtherThings {
+            what: self.name,
+            path: folder.to_owned(),
+        }
+    }
+
+    /// Opens the journal in a folder, which is made where it is missing, unless another process works there; returns it, the runs in
+    /// it, and the number of its damaged lines.
+    ///
+    /// # Errors
+    /// When another process has it open, when it is no journal of this kind, or when the system refuses.
+    pub fn open_journal<T: JournalRecord>(
+        &self,
+        folder: &Path,
+    ) -> Result<(Journal, Vec<T>, usize), StudyError> {
+        make_folders(folder).map_err(FolderError::unwritable(folder))?;
+        Journal::open(folder, self.journal).map_err(|error| match error {
+            StudyError::NotRecords { path } => FolderError::Foreign { path }.into(),
+            error => error,
+        })
+    }
+}

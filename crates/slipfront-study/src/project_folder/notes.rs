@@ -1,0 +1,21 @@
+//! Notes about a folder that has been used before.
+
+use slipfront_base::number_format::count;
+
+/// Sentences about a journal with some `damaged` lines, and about the runs in it, which were `kept`.
+pub fn notes_of_use(damaged: usize, kept: usize) -> Vec<String> {
+    let mut notes = Vec::new();
+    if damaged > 0 {
+        let lines = count(damaged, "damaged line");
+        notes.push(format!(
+            "the journal has {lines}, passed over: its runs count as not made"
+        ));
+    }
+    if kept > 0 {
+        let runs = count(kept, "run");
+        notes.push(format!(
+            "the folder holds {runs} of an earlier call, which are not repeated"
+        ));
+    }
+    notes
+}

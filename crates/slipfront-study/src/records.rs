@@ -1,0 +1,238 @@
+//! The records of a study: its journal, and what its tables need of each run in memory.
+
+use std::collections::HashMap;
+use std::path::Path;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+use slipfront_run::names::RECORDS;
+
+use crate::error::StudyError;
+use crate::project_folder::Journal;
+use crate::record::{FinishedRun, RunResult};
+
+/// The record file of a study folder, open for one process alone, whose threads may share it.
+#[derive(Debug)]
+pub struct Records {
+    written: Mutex<Written>,
+    /// Lines that failed their checksum.
+    pub damaged: usize,
+}
+
+/// The file, and the results in it.
+#[derive(Debug)]
+struct Written {
+    journal: Journal,
+    results: HashMap<String, RunResult>,
+}
+
+impl Records {
+    /// Name of the record file in its folder.
+    pub const FILE: &str = RECORDS;
+
+    /// Opens the records of a study folder, unless another process has them open; a folder without them gets an empty file.
+    pub fn open(folder: &Path) -> Result<Self, StudyError> {
+        Journal::open(folder, RECORDS).map(Self::of)
+    }
+
+    /// The records of a journal that was opened.
+    pub(crate) fn of((journal, records, damaged): (Journal, Vec<FinishedRun>, usize)) -> Self {
+        // Each record is dropped before the next is looked at.
+        let results = records.into_iter().map(|record| entry(&record));
+        Self {
+            written: Mutex::new(Written {
+                journal,
+                results: results.collect(),
+            }),
+            damaged,
+        }
+    }
+
+    /// The file and results, locked for this thread. A thread that panicked has left them whole: results are added last.
+    fn written(&self) -> MutexGuard<'_, Written> {
+        self.written.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// The result of the run with this identity, if it is recorded.
+    pub fn get(&self, id: &str) -> Option<RunResult> {
+        self.written().results.get(id).cloned()
+    }
+
+    /// Number of runs recorded.
+    pub fn len(&self) -> usize {
+        self.written().results.len()
+    }
+
+    /// Whether the file has no records.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Appends finished runs that are not recorded yet and waits until they are on the disk; earlier records stay whole.
+    pub fn append(&self, records: &[FinishedRun]) -> Result<(), StudyError> {
+        let Written { journal, results } = &mut *self.written();
+        // Studies that share the file may have made the same run at the same time.
+        let unknown = records.iter().filter(|record| !results.contains_key(&record.id));
+        journal.append(unknown)?;
+        results.extend(records.iter().map(entry));
+        Ok(())
+    }
+
+    /// Appends the records of another folder that are not here yet, and returns their number.
+    pub fn merge(&mut self, folder: &Path) -> Result<usize, StudyError> {
+        let (mut records, damaged) = Journal::read::<FinishedRun>(folder, RECORDS)?;
+        self.damaged += damaged;
+        records.retain(|record| self.get(&record.id).is_none());
+        // Their lines need not be in memory all at once.
+        for some in records.chunks(LINES_AT_ONCE) {
+            self.append(some)?;
+        }
+        Ok(records.len())
+    }
+}
+
+/// The part of a record that is kept in memory.
+fn entry(record: &FinishedRun) -> (String, RunResult) {
+    (record.id.clone(), record.outcome.result())
+}
+
+/// Number of records whose lines are written at once: each time waits for the disk.
+const LINES_AT_ONCE: usize = 1000;
+
+#[cfg(test)]
+mod tests {
+    use std::fs::File;
+
+    use super::*;
+    use crate::error::StudyError;
+    use crate::project_folder::to_line;
+    use crate::record::Outcome;
+
+    fn record(id: &str) -> FinishedRun {
+        FinishedRun {
+            id: id.to_owned(),
+            wall_time_s: 0.5,
+            outcome: Outcome::Done(Box::default()),
+        }
+    }
+
+    /// A line that lacks its line break alone is whole.
+    #[test]
+    fn a_line_cut_short_anywhere_is_not_run_and_does_not_harm_the_next() {
+        let whole = to_line(&record("a"));
+        let next = to_line(&record("b"));
+        // Every place would be a thousand waits for the disk.
+        for cut in (0..40)
+            .chain((40..next.len() - 1).step_by(97))
+            .chain([next.len() - 2, next.len() - 1])
+        {
+            let left = usize::from(cut == next.len() - 1);
+            let folder = tempfile::tempdir().unwrap();
+            std::fs::write(folder.path().join(RECORDS), [&whole[..], &next[..cut]].concat()).unwrap();
+            let records = Records::open(folder.path()).unwrap();
+            assert_eq!(
+                (records.len(), records.get("b").is_some()),
+                (1 + left, left == 1),
+                "cut at {cut}"
+            );
+            records.append(&[record("c")]).unwrap();
+            drop(records);
+            let records = Records::open(folder.path()).unwrap();
+            assert_eq!((records.len(), records.damaged), (2 + left, 0), "cut at {cut}");
+            // The first line of all may be cut as well.
+            std::fs::write(folder.path().join(RECORDS), &next[..cut]).unwrap();
+            drop(records);
+            let records = Records::open(folder.path()).unwrap();
+            assert_eq!(records.len(), left, "cut at {cut}");
+        }
+    }
+
+    #[test]
+    fn a_flipped_bit_spoils_its_own_line_only() {
+        let lines = [
+            to_line(&record("a")),
+            to_line(&record("b")),
+            to_line(&record("c")),
+        ]
+        .concat();
+        let middle = lines.len() / 2;
+        for bit in 0..8 {
+            let mut damaged = lines.clone();
+            damaged[middle] ^= 1 << bit;
+            let folder = tempfile::tempdir().unwrap();
+            std::fs::write(folder.path().join(RECORDS), damaged).unwrap();
+            let (records, damaged) = Journal::read::<FinishedRun>(folder.path(), RECORDS).unwrap();
+            let ids: Vec<&str> = records.iter().map(|record| record.id.as_str()).collect();
+            assert_eq!(ids, ["a", "c"]);
+            assert!(damaged >= 1);
+        }
+    }
+
+    #[test]
+    fn one_process_at_a_time_and_no_foreign_file() {
+        let folder = tempfile::tempdir().unwrap();
+        let first = Records::open(folder.path()).unwrap();
+        assert!(matches!(
+            Records::open(folder.path()),
+            Err(StudyError::Busy { .. })
+        ));
+        drop(first);
+        // Whatever it is called, and whether or not its last line ends.
+        let path = folder.path().join(RECORDS);
+        for mine in [
+            "some notes\nof mine\n",
+            "{\"my\": \"notes\"}",
+            "deadbeef, and more",
+        ] {
+            std::fs::write(&path, mine).unwrap();
+            let opened = Records::open(folder.path());
+            assert!(matches!(opened, Err(StudyError::NotRecords { .. })), "{mine}");
+            assert_eq!(std::fs::read(&path).unwrap(), mine.as_bytes());
+        }
+    }
+
+    /// A file without end, and an entry that is no file, are refused: they are neither read nor waited for.
+    #[cfg(unix)]
+    #[test]
+    fn what_never_ends_is_refused() {
+        let (folder, other) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+        let mut records = Records::open(other.path()).unwrap();
+        let path = folder.path().join(RECORDS);
+        let refused = |records: &mut Records| {
+            let opened = Records::open(folder.path());
+            assert!(matches!(opened, Err(StudyError::NotRecords { .. })), "{opened:?}");
+            assert!(records.merge(folder.path()).is_err());
+        };
+        File::create(&path).unwrap().set_len(1 << 40).unwrap();
+        refused(&mut records);
+        std::fs::remove_file(&path).unwrap();
+        std::os::unix::fs::symlink("/dev/zero", &path).unwrap();
+        refused(&mut records);
+    }
+
+    /// Studies that share the records may make the same run at the same time.
+    #[test]
+    fn a_run_is_recorded_once() {
+        let folder = tempfile::tempdir().unwrap();
+        let records = Records::open(folder.path()).unwrap();
+        std::thread::scope(|scope| {
+            for other in ["b", "c"] {
+                let records = &records;
+                scope.spawn(move || records.append(&[record("a"), record(other)]).unwrap());
+            }
+        });
+        assert_eq!(records.len(), 3);
+        let lines = std::fs::read_to_string(folder.path().join(RECORDS)).unwrap();
+        assert_eq!(lines.lines().count(), 3);
+    }
+
+    #[test]
+    fn merging_twice_is_merging_once() {
+        let (one, other) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+        Records::open(one.path()).unwrap().append(&[record("a")]).unwrap();
+        let mut records = Records::open(other.path()).unwrap();
+        records.append(&[record("b")]).unwrap();
+        assert_eq!(records.merge(one.path()).unwrap(), 1);
+        assert_eq!(records.merge(one.path()).unwrap(), 0);
+        assert_eq!(records.len(), 2);
+    }
+}

@@ -1,0 +1,139 @@
+//! Columns of a checkpoint, taken from the arrays of a band and written to them.
+
+use std::ops::Range;
+
+use super::band::{Band, NEVER};
+use super::layout::{Layout, TILE};
+use super::vector::LANES;
+use crate::checkpoint::BlockColumn;
+
+impl Band {
+    /// Takes over the values of a column of a checkpoint from block `first` on, as far as these blocks belong
+    /// to the band.
+    pub(super) fn set_column(
+        &mut self,
+        layout: &Layout,
+        dt_star: f64,
+        column: BlockColumn,
+        first: usize,
+        values: &[f64],
+    ) {
+        for [of_values, own] in self.common(layout, first, values.len()) {
+            let values = &values[of_values];
+            let with_halo = self.halo + own.start..self.halo + own.end;
+            match column {
+                BlockColumn::DisplacementX => self.displacement.x[with_halo].copy_from_slice(values),
+                BlockColumn::DisplacementY => self.displacement.y[with_halo].copy_from_slice(values),
+                BlockColumn::VelocityX => self.velocity.x[own].copy_from_slice(values),
+                BlockColumn::VelocityY => self.velocity.y[own].copy_from_slice(values),
+                BlockColumn::FirstSlip => {
+                    for (step, time_star) in self.first_slip[own].iter_mut().zip(values) {
+                        // Whole but for the rounding of the product in the checkpoint and of this quotient.
+                        let number = (time_star / dt_star).round();
+                        *step = if number.is_nan() { NEVER } else { number as u32 };
+                    }
+                }
+            }
+        }
+    }
+
+    /// Writes to `values` a column of a checkpoint from block `first` on, as far as these blocks belong to
+    /// the band.
+    pub(super) fn read_column(
+        &self,
+        layout: &Layout,
+        dt_star: f64,
+        column: BlockColumn,
+        first: usize,
+        values: &mut [f64],
+    ) {
+        for [of_values, own] in self.common(layout, first, values.len()) {
+            let values = &mut values[of_values];
+            let with_halo = self.halo + own.start..self.halo + own.end;
+            match column {
+                BlockColumn::DisplacementX => values.copy_from_slice(&self.displacement.x[with_halo]),
+                BlockColumn::DisplacementY => values.copy_from_slice(&self.displacement.y[with_halo]),
+                BlockColumn::VelocityX => values.copy_from_slice(&self.velocity.x[own]),
+                BlockColumn::VelocityY => values.copy_from_slice(&self.velocity.y[own]),
+                BlockColumn::FirstSlip => {
+                    for (time_star, &step) in values.iter_mut().zip(&self.first_slip[own]) {
+                        *time_star = if step == NEVER {
+                            f64::NAN
+                        } else {
+                            f64::from(step) * dt_star
+                        };
+                    }
+                }
+            }
+        }
+    }
+
+    /// Takes over a column of the memory of the law of friction from block `first` on, as far as these blocks
+    /// belong to the band.
+    pub(super) fn set_memory(&mut self, layout: &Layout, column: usize, first: usize, values: &[f64]) {
+        for [of_values, own] in self.common(layout, first, values.len()) {
+            let memory = self
+                .thresholds
+                .as_mut()
+                .and_then(|thresholds| thresholds.column_mut(column));
+            if let Some(memory) = memory {
+                memory[own].copy_from_slice(&values[of_values]);
+            }
+        }
+    }
+
+    /// Writes to `values` a column of the memory of the law of friction at t*, from block `first` on, as far
+    /// as these blocks belong to the band.
+    pub(super) fn read_memory(
+        &self,
+        layout: &Layout,
+        time_star: f64,
+        column: usize,
+        first: usize,
+        values: &mut [f64],
+    ) {
+        let Some(thresholds) = &self.thresholds else {
+            return;
+        };
+        for [of_values, own] in self.common(layout, first, values.len()) {
+            for (value, k) in values[of_values].iter_mut().zip(own) {
+                let is_moving = self.velocity.at(k) != [0.0, 0.0];
+                *value = thresholds.memory(column, k, is_moving, time_star);
+            }
+        }
+    }
+
+    /// Blocks of the band among the `count` from `first` on, and the elements that hold them, row after row.
+    fn common(
+        &self,
+        layout: &Layout,
+        first: usize,
+        count: usize,
+    ) -> impl Iterator<Item = [Range<usize>; 2]> + use<> {
+        let (layout, begin) = (*layout, self.first);
+        let from = layout.element_of(first).max(begin);
+        let to = (layout.element_of(first + count - 1) + 1).min(begin + self.len);
+        layout.rows_among(from..to).filter_map(move |(_, _, part)| {
+            let element = from + part.start;
+            let b = layout.block(element)? - first;
+            let own = element - begin;
+            Some([b..b + part.len(), own..own + part.len()])
+        })
+    }
+
+    /// Continues from a checkpoint of which all columns are set, as if every tile had just been swept: the
+    /// largest contact stress of a checkpoint includes the skipped tiles.
+    pub(super) fn resume(&mut self) {
+        for task in &mut self.tasks {
+            task.active = u32::MAX;
+        }
+        for k in 0..self.len {
+            let v = self.velocity.at(k);
+            self.set_moving(k, v != [0.0, 0.0]);
+            let speed_square = &mut self.tiles[k / TILE].sums.speed_square;
+            *speed_square = speed_square.max(v[0] * v[0] + v[1] * v[1]);
+            self.slipped[k / LANES] |= u8::from(self.first_slip[k] != NEVER) << (k % LANES);
+        }
+        self.begin_thresholds();
+    }
+}
