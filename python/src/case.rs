@@ -12,7 +12,6 @@ use pyo3::types::{PyBytes, PyDict};
 use slipfront::Surface;
 use slipfront_case::case::{Budget, Case as SlipfrontCase, Files, FilesInMemory, Ranks};
 use slipfront_case::case_file::{CaseError as Error, CaseFile};
-use slipfront_run::pictures;
 
 use crate::arrays::borrowed;
 use crate::errors::{CaseError, case_error};
@@ -38,9 +37,8 @@ pub(crate) fn make(
             }
             signal.is_none()
         })?;
-        let budget = pictures::run_budget(&case);
-        if budget.memory() >= Budget::SMALL {
-            budget.check_memory(&case.file)?;
+        if case.budget.memory() >= Budget::SMALL {
+            case.budget.check_memory(&case.file, false)?;
         }
         Ok(case)
     })?;

@@ -58,29 +58,7 @@ pub struct Estimate {
 /// Least number of training runs that count where records are compared with them.
 const LIKE_AT_LEAST: f64 = 50.0;
 
-/// Tables of all summaries of all runs beside those of the regressions: of the check of a record, and while it is learnt with and without scales,
-/// once as they are and once with a drift.
-const TABLES: usize = 1;
-const TABLES_TO_LEARN: usize = 4;
-
 impl Calibration {
-    /// Number of the regressions for this many unknowns: one for each, and that of the drift of a record.
-    pub(crate) fn n_regressions(unknowns: usize) -> usize {
-        unknowns + 1
-    }
-
-    /// Memory of a calibration from `runs` runs with `summaries` summaries each, in bytes.
-    pub(crate) fn bytes(runs: usize, unknowns: usize, summaries: usize) -> f64 {
-        let numbers = runs * (unknowns + 1 + TABLES * summaries);
-        let regressions = Self::n_regressions(unknowns) as f64;
-        (size_of::<f64>() * numbers) as f64 + regressions * Regression::bytes(runs, summaries)
-    }
-
-    /// Memory of tables while a calibration is learnt, in bytes.
-    pub(crate) fn bytes_to_learn(runs: usize, summaries: usize) -> f64 {
-        (size_of::<f64>() * TABLES_TO_LEARN * runs * summaries) as f64
-    }
-
     /// Learns from a training the relation between records and unknowns, for records with white noise whose standard
     /// deviation is the share `noise` of their mean friction. `grids` are those of the set-up.
     pub fn new(training: &Training, grids: &[Grid], noise: f64) -> Self {

@@ -5,8 +5,9 @@ use std::path::{Path, PathBuf};
 use serde::Deserialize;
 use slipfront_base::disk::{TEXT_MAX_BYTES, read_limited};
 use slipfront_base::number_format::{are, with_si_prefix};
-use slipfront_case::case::Case;
-use slipfront_case::case_file::{CaseError, Override};
+use slipfront_case::case::{Case, PROGRAM};
+use slipfront_case::case_file::{CaseError, KeyKind, Override, key, names_of, whole};
+use slipfront_case::key_rows;
 use slipfront_run::folder_error::FolderError;
 use slipfront_run::measured::{Measure, MeasuredRecord};
 use slipfront_run::run_curve::steps_to;
@@ -14,13 +15,14 @@ use toml::{Table, Value};
 
 use crate::grid::Grid;
 use crate::set_up::{Conditions, SetUp};
-use crate::summaries::MIN_VALUES;
+use crate::summaries::{MIN_VALUES, n_summaries};
 use crate::unknowns::Unknown;
 use slipfront_study::StudyError;
 use slipfront_study::axis::overrides;
 use slipfront_study::measured_columns::MeasuredColumns;
 use slipfront_study::project_file::ProjectFile;
 use slipfront_study::project_folder::ProjectKind;
+use slipfront_study::room::WorkMemory;
 
 /// Folders of calibrations. Their calibration file has the base case as a table in it.
 pub(crate) static CALIBRATION: ProjectKind = ProjectKind {
@@ -30,8 +32,8 @@ pub(crate) static CALIBRATION: ProjectKind = ProjectKind {
     journal: "training.jsonl",
 };
 
-/// Smallest and largest number of runs of a training: intervals of 90 % from 100 runs hold three values of four, more are a system of
-/// equations that memory is too small for.
+/// Smallest and largest number of runs of a training: intervals of 90 % from 100 runs hold three values of
+/// four, more are a system of equations that memory is too small for.
 const RUNS: [u32; 2] = [200, 5000];
 
 /// Largest number of steps of a run for a record: a thousand such runs take days.
@@ -45,37 +47,48 @@ pub struct CalibrationFile {
     pub(crate) project: ProjectFile,
 }
 
-/// The table `[calibrate]`.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct CalibrationKeys {
-    unknowns: Table,
-    /// Standard deviation of the noise of a record, as a share of its mean friction.
-    pub noise: f64,
-    x: String,
-    y: String,
-    x_unit: Option<String>,
-    y_unit: Option<String>,
-    #[serde(default)]
-    against: Against,
-    #[serde(default)]
-    records: Vec<RecordKeys>,
-    /// Runs of the training.
-    #[serde(default = "default_runs")]
-    pub runs: u32,
-    /// Runs of the training on blocks of half the size; 0 for none.
-    #[serde(default = "default_finer_runs")]
-    pub finer_runs: u32,
-    /// Experiments that may be made next, each as the keys in which it differs from the case.
-    #[serde(default)]
-    pub next: Vec<Table>,
+key_rows! {
+    /// The table `[calibrate]`.
+    #[derive(Clone, Debug, PartialEq, Deserialize)]
+    #[serde(deny_unknown_fields)]
+    pub struct CalibrationKeys {
+        /// The unknown keys, each with its range: `[0.3, 0.9]`, `["1 um", "5 um"]`, or
+        /// `{ from = 0.03, to = 0.5, scale = "log" }`. Before there is a record all values within it, or
+        /// their logarithms, are equally likely.
+        unknowns: Table = key("", KeyKind::Special("")).without("needed"),
+        /// Standard deviation of the noise of a record, as a share of its mean friction.
+        pub noise: f64 = key("", KeyKind::Special("more than 0, less than 1")).without("needed"),
+        /// Column of times or displacements: its name, with or without the unit in the header, or its number
+        /// from 1.
+        x: String = key("", KeyKind::Special("")).without("needed"),
+        /// Column of friction forces, or of coefficients if its unit is 1.
+        y: String = key("", KeyKind::Special("")).without("needed"),
+        /// Unit of `x`.
+        x_unit: Option<String> = key("", KeyKind::Special("")).without("that in the header"),
+        /// Unit of `y`.
+        y_unit: Option<String> = key("", KeyKind::Special("")).without("that in the header"),
+        /// Quantity of the first column: time, or displacement of the drive. Both begin at 0 where the drive
+        /// does.
+        against: Against = key("\"time\"", KeyKind::Words(names_of::<Against>)),
+        /// A list of tables `{ set = { ... } }`, one for each record, with the keys whose values differ from
+        /// those of the case, such as `{ set = { drive.speed = "2 um/s" } }`.
+        records: Vec<RecordKeys> = key("[]", KeyKind::Special("")),
+        /// Runs of the training. Of six unknowns, intervals of 90 % hold 88 to 92 % of the values with 2500
+        /// runs and 85 to 92 % with 200 or 400; with 100, which are refused, 75 to 91 %.
+        pub runs: u32 = key("2500", whole(RUNS[0] as u64, RUNS[1] as u64)),
+        /// Runs of the training on blocks of half the size; 0 for none. One takes some eight times as long as
+        /// one on the blocks of the case.
+        pub finer_runs: u32 = key("300", KeyKind::Special("0, or 200 to `runs`")),
+        /// A list of tables of keys, such as `{ drive.v_star = 0.01 }`: possible next experiments. The report
+        /// predicts how much each would narrow the intervals. Each costs as many runs as the training.
+        pub next: Vec<Table> = key("[]", KeyKind::Special("")),
+    }
 }
 
 /// Quantity of the first column of a record.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 enum Against {
-    #[default]
     Time,
     Displacement,
 }
@@ -118,14 +131,6 @@ enum Number {
     WithUnit(String),
 }
 
-fn default_runs() -> u32 {
-    2500
-}
-
-fn default_finer_runs() -> u32 {
-    300
-}
-
 /// A record as measured, and the steps in which it is compared.
 #[derive(Clone, Debug)]
 pub struct GivenRecord {
@@ -161,12 +166,14 @@ impl CalibrationFile {
         CALIBRATION.load(path, Self::parse)
     }
 
-    /// Reads a calibration file called `file` in messages; a base case that it names stands relative to `folder`.
+    /// Reads a calibration file called `file` in messages; a base case that it names stands relative to
+    /// `folder`.
     ///
     /// # Errors
     /// When it is no TOML, has unknown keys, or values out of their bounds.
     pub fn parse(text: &str, file: &str, name: &str, folder: &Path) -> Result<Self, StudyError> {
-        let (project, keys) = ProjectFile::parse(&CALIBRATION, text, file, name, folder)?;
+        let (project, keys) =
+            ProjectFile::parse(&CALIBRATION, CalibrationKeys::KEYS, text, file, name, folder)?;
         let file = Self { keys, project };
         file.check()?;
         Ok(file)
@@ -294,7 +301,8 @@ impl CalibrationFile {
         })
     }
 
-    /// The set-up of the runs for records, on the blocks of the case. Both ends of every range are checked with the case.
+    /// The set-up of the runs for records, on the blocks of the case. Both ends of every range are checked
+    /// with the case.
     pub(crate) fn set_up(&self, records: &[GivenRecord]) -> Result<SetUp, StudyError> {
         let conditions = records.iter().enumerate().map(|(number, record)| Conditions {
             overrides: self.overrides_of(number),
@@ -324,7 +332,57 @@ impl CalibrationFile {
         Ok(set_up)
     }
 
-    /// The set-ups of the experiments that may be made next, over the path of the first record of `set_up`, and their names.
+    /// Refuses a calibration from these records if there is no memory for `threads` runs at once and the regressions behind them, and says
+    /// how many there is memory for.
+    ///
+    /// # Errors
+    /// When the ranges leave the bounds of the case, and with both figures of memory.
+    pub fn check_memory(&self, records: &[GivenRecord], threads: usize) -> Result<(), StudyError> {
+        let no_memory = |needed, available| StudyError::CalibrationMemory { needed, available };
+        self.memory(records)?.check(threads, no_memory)
+    }
+
+    /// Memory of the calibration from these records.
+    ///
+    /// # Errors
+    /// When the ranges leave the bounds of the case.
+    pub fn memory(&self, records: &[GivenRecord]) -> Result<WorkMemory, StudyError> {
+        const NUMBER: f64 = size_of::<f64>() as f64;
+        // Runs from which a regression finds its weights, with four numbers of a pair: it takes no less.
+        const LEAST: usize = 2 * 900;
+        let set_up = self.set_up(records)?;
+        let [runs, finer_runs] = [self.keys.runs, self.keys.finer_runs].map(|runs| runs as usize);
+        let further = self.further(&set_up)?;
+        // Blocks of half the size that are not possible are left out of a calibration.
+        let finer = set_up.finer().ok().filter(|_| finer_runs > 0);
+        let mut trainings = vec![(&set_up, runs)];
+        trainings.extend(finer.iter().map(|finer| (finer, finer_runs)));
+        trainings.extend(further.iter().map(|(_, further)| (further, runs)));
+        let (mut values, mut run) = (0, 0.0_f64);
+        for (set_up, runs) in trainings {
+            values += runs
+                * set_up
+                    .conditions
+                    .iter()
+                    .map(|one| one.grid.n_values())
+                    .sum::<usize>();
+            run = run.max(set_up.bytes_of_run()?);
+        }
+        // One for each unknown, and that of the drift of a record; with a further experiment and without.
+        let regressions = 1 + set_up.unknowns.len();
+        let records = set_up.conditions.len() + usize::from(!further.is_empty());
+        let kept = 10 * (regressions + 1) * runs * records * n_summaries();
+        // Curves are in the journal, in a training and in copies of both.
+        let numbers = (4 * values + kept) as f64;
+        let regression = NUMBER * (runs.max(LEAST) as f64).powi(2);
+        Ok(WorkMemory {
+            beside: PROGRAM + NUMBER * numbers,
+            pieces: vec![(run, usize::MAX), (regression, regressions)],
+        })
+    }
+
+    /// The set-ups of the experiments that may be made next, over the path of the first record of `set_up`,
+    /// and their names.
     pub(crate) fn further(&self, set_up: &SetUp) -> Result<Vec<(String, SetUp)>, StudyError> {
         let middle = set_up.middle();
         let first = &set_up.conditions[0];
@@ -393,5 +451,61 @@ impl Number {
                 None => (text.trim().parse().ok(), None),
             },
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The memory of a calibration of a small slider from a record of 50 values.
+    fn memory(keys: &str) -> WorkMemory {
+        let folder = tempfile::tempdir().unwrap();
+        let record = folder.path().join("record.csv");
+        let rows: String = (0..50).map(|k| format!("{k}e-9,{k}\n")).collect();
+        std::fs::write(&record, format!("t_s,f_n\n{rows}")).unwrap();
+        let text = format!(
+            "[base]\nslider.blocks = [8, 8]\n[calibrate]\nx = 't_s'\ny = 'f_n'\nnoise = 0.01\n{keys}\n\
+             unknowns = {{ 'friction.r_star' = [0.3, 0.9], 'friction.mu_static' = [0.3, 0.9] }}"
+        );
+        let file = CalibrationFile::parse(&text, "fit.toml", "fit", Path::new("")).unwrap();
+        file.memory(&file.read(&[record]).unwrap()).unwrap()
+    }
+
+    #[test]
+    fn threads_are_held_against_the_memory() {
+        let found = memory("runs = 2000\nfiner_runs = 0");
+        // A kernel of all runs, which becomes its factor; of a regression for each unknown and one more.
+        assert_eq!(found.pieces[1], (8.0 * 2000.0 * 2000.0, 3));
+        let no_memory = |needed, available| StudyError::CalibrationMemory { needed, available };
+        assert!(found.compare(2, found.of(2), no_memory).is_ok());
+        assert!(matches!(
+            found.compare(8, found.of(2), no_memory),
+            Err(StudyError::Memory {
+                threads: 8,
+                fit: 2,
+                ..
+            })
+        ));
+        let said = found
+            .compare(2, found.of(1) - 1.0, no_memory)
+            .unwrap_err()
+            .to_string();
+        assert!(
+            said.starts_with("the calibration takes") && said.contains("or `calibrate.runs`"),
+            "{said}"
+        );
+    }
+
+    /// Blocks of half the size have runs of four times the blocks and twice the steps, and curves of their own.
+    #[test]
+    fn all_trainings_count() {
+        let plain = memory("runs = 200\nfiner_runs = 0");
+        let finer = memory("runs = 200\nfiner_runs = 200");
+        let further = memory("runs = 200\nfiner_runs = 0\nnext = [{ drive.v_star = 0.01 }]");
+        let curve = 8.0 * 50.0;
+        assert!(finer.pieces[0].0 > 1.9 * plain.pieces[0].0);
+        assert!(finer.beside - plain.beside >= 2.0 * 200.0 * curve);
+        assert!(further.beside - plain.beside > 3.0 * 200.0 * curve);
     }
 }

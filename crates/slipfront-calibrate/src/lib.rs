@@ -14,7 +14,6 @@ mod findings;
 mod folder;
 mod grid;
 mod intervals;
-mod memory;
 mod misfit;
 mod normals;
 mod predicted;

@@ -4,7 +4,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use slipfront_case::case::{Case, Ranks};
 use slipfront_case::case_file::{CaseError, CaseFile, Override};
-use slipfront_run::run_curve::run_curve_unless;
+use slipfront_run::run_curve::{run_curve_unless, steps_to};
 
 use crate::grid::Grid;
 use crate::unknowns::Unknown;
@@ -95,6 +95,20 @@ impl SetUp {
         let finer = case.on_other_blocks(2.0)?;
         let set: Vec<String> = finer.iter().map(ToString::to_string).collect();
         made(CaseFile::parse(&case.file.to_toml()?, "training", &set)?)
+    }
+
+    /// Memory of the largest run, in bytes.
+    pub(crate) fn bytes_of_run(&self) -> Result<f64, CaseError> {
+        // Time, path and friction of every step, and a fourth number to spare.
+        const STEP: f64 = 4.0 * size_of::<f64>() as f64;
+        let middle = self.middle();
+        let mut largest = 0.0_f64;
+        for conditions in &self.conditions {
+            let case = self.case(&middle, 0, conditions)?;
+            let steps = steps_to(&case, conditions.grid.along(), conditions.grid.end());
+            largest = largest.max(case.budget.stepping() + STEP * steps as f64);
+        }
+        Ok(largest)
     }
 
     /// The curves of all records at these shares of the ranges, over the surface that `friction.seed` draws; none after a stop.

@@ -1,5 +1,6 @@
-//! The command `slipfront` as a library, for its program and for other packages that contain the command: one file per
-//! subcommand under `commands/`, each thin. `run` is the same code for one process and for the ranks of `slipfront-mpi`.
+//! The command `slipfront` as a library, for its program and for other packages that contain the command: one
+//! file per subcommand under `commands/`, each thin. `run` is the same code for one process and for the ranks
+//! of `slipfront-mpi`.
 //!
 //! Errors go to stderr as sentences, results to stdout. `failure.rs` says what each exit status means.
 
@@ -43,8 +44,8 @@ use crate::print_stderr::silence;
 use crate::ranks::CommandRanks;
 pub use crate::report::physics;
 
-/// Friction of micro-textured surfaces: the lattice spring-block model of the transition from static to kinetic
-/// friction.
+/// Friction of micro-textured surfaces: the lattice spring-block model of the transition from static to
+/// kinetic friction.
 #[derive(Parser)]
 #[command(name = "slipfront", version, long_version = version_lines(), max_term_width = 100)]
 #[command(after_help = "Examples:
@@ -91,8 +92,8 @@ enum Command {
     Licences(commands::licences::LicencesCommand),
 }
 
-/// Friction of micro-textured surfaces, with one lattice divided over many processes, on one machine or many: what `slipfront
-/// run` does, byte for byte.
+/// Friction of micro-textured surfaces, with one lattice divided over many processes, on one machine or many:
+/// what `slipfront run` does, byte for byte.
 #[derive(Parser)]
 #[command(name = "slipfront-mpi", version, long_version = version_lines(), max_term_width = 100)]
 struct RanksCli {
@@ -121,10 +122,12 @@ Examples:
     Licences(commands::licences::LicencesCommand),
 }
 
-/// Runs the command with these arguments, the first of which is the name of the program; returns its exit status. The session of the
-/// laboratory as WebAssembly is looked for in `module_folder`, or beside the program if there is none.
+/// Runs the command with these arguments, the first of which is the name of the program; returns its exit
+/// status. The session of the laboratory as WebAssembly is looked for in `module_folder`, or beside the
+/// program if there is none.
 ///
-/// The command needs a process of its own: signals are caught and the number of threads is set for the whole process, once.
+/// The command needs a process of its own: signals are caught and the number of threads is set for the whole
+/// process, once.
 pub fn main(args: impl IntoIterator<Item = OsString>, module_folder: Option<&Path>) -> u8 {
     let args: Vec<OsString> = args.into_iter().collect();
     if let Some(sentence) = divided_override(&args) {
@@ -159,7 +162,7 @@ pub fn main(args: impl IntoIterator<Item = OsString>, module_folder: Option<&Pat
             Command::Verify(verify) => verify.execute(),
             Command::Export(export) => export.execute(),
             Command::Completions(completions) => completions.execute(Cli::command()),
-            Command::Man(man) => man.execute(with_statuses(Cli::command())),
+            Command::Man(man) => man.execute(command_line()),
             Command::Licences(licences) => licences.execute(),
         };
         done.map_err(RankFailure::from)
@@ -173,6 +176,12 @@ fn parse<T: CommandFactory + FromArgMatches>(args: Vec<OsString>) -> Result<T, c
     T::from_arg_matches(&matches).map_err(|error| error.format(&mut command))
 }
 
+/// The subcommands and options of `slipfront`, from which help, manual pages and the page of the book are
+/// made.
+pub fn command_line() -> clap::Command {
+    with_statuses(Cli::command())
+}
+
 fn with_statuses(command: clap::Command) -> clap::Command {
     let help = match command.get_after_help() {
         Some(help) => format!("{help}\n\n{STATUSES}"),
@@ -181,8 +190,8 @@ fn with_statuses(command: clap::Command) -> clap::Command {
     command.after_help(help).mut_subcommands(with_statuses)
 }
 
-/// Runs the command `slipfront-mpi`, of which there is a process for every rank of the communicator; arguments and exit
-/// status as for [`main`].
+/// Runs the command `slipfront-mpi`, of which there is a process for every rank of the communicator;
+/// arguments and exit status as for [`main`].
 pub fn main_on_ranks(args: impl IntoIterator<Item = OsString>, communicator: Arc<dyn Communicator>) -> u8 {
     let ranks = CommandRanks::new("slipfront-mpi", communicator);
     if !ranks.is_first() {

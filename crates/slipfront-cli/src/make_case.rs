@@ -2,7 +2,6 @@
 
 use slipfront_case::case::{self, Case, Watch};
 use slipfront_case::case_file::CaseError;
-use slipfront_run::pictures;
 
 use crate::failure::Failure;
 use crate::progress::mesh::MeshProgress;
@@ -28,7 +27,7 @@ pub(crate) fn make_case(
         signals.stopped().is_none()
     };
     let made = make(watch, of_case).and_then(|case| {
-        of_case.agree(pictures::run_budget(&case).check_memory(&case.file))?;
+        of_case.agree(case.budget.check_memory(&case.file, false))?;
         Ok(case)
     });
     progress.finish();

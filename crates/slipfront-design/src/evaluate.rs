@@ -5,6 +5,7 @@ use std::ops::Range;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use serde::{Deserialize, Serialize};
 use slipfront::parallel::*;
 use slipfront_case::case_file::CaseError;
 use slipfront_run::run_summary::run_summary_unless;
@@ -39,14 +40,15 @@ pub type Ended = Result<Measured, String>;
 /// Ends of runs by their identities.
 pub type Known = HashMap<RunId, Ended>;
 
-/// A run that was made.
-#[derive(Clone, Debug)]
+/// A run that was made, a line of the journal.
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct MadeRun {
     /// Identity of the run.
     pub id: RunId,
     /// End of the run.
     pub ended: Ended,
-    /// Cost of the run, in steps times blocks.
+    /// Cost of the run in this process, in steps times blocks; 0 for a run that the journal had.
+    #[serde(skip)]
     pub(crate) work: f64,
 }
 
@@ -68,6 +70,14 @@ impl Evaluator {
     /// The wish, in units of the first case.
     pub(crate) fn wish(&self) -> &Wish {
         &self.subjects[0].wish
+    }
+
+    /// Memory of the largest run, in bytes.
+    pub(crate) fn bytes_of_run(&self) -> Result<f64, CaseError> {
+        self.subjects.iter().try_fold(0.0, |largest: f64, subject| {
+            let case = subject.case(None, 0, Fidelity::Verdict)?;
+            Ok(largest.max(case.budget.beside_others(false)))
+        })
     }
 
     /// Mean cost over the cases of a run, in steps times blocks.

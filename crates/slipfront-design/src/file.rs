@@ -3,8 +3,9 @@
 use std::path::Path;
 
 use serde::Deserialize;
-use slipfront_case::case::{Case, Ranks};
-use slipfront_case::case_file::{CaseError, CaseFile, Override};
+use slipfront_case::case::{Case, PROGRAM, Ranks};
+use slipfront_case::case_file::{CaseError, CaseFile, KeyKind, Override, key, names_of, whole};
+use slipfront_case::key_rows;
 use slipfront_case::quantity::{Force, Length};
 use slipfront_case::texture_file::textured_blocks;
 use slipfront_run::measured::Measure;
@@ -19,6 +20,7 @@ use slipfront_study::axis::overrides;
 use slipfront_study::measured_columns::MeasuredColumns;
 use slipfront_study::project_file::ProjectFile;
 use slipfront_study::project_folder::ProjectKind;
+use slipfront_study::room::WorkMemory;
 
 /// Folders of designs. Their design file has the base case as a table in it: `slipfront design DIR/design.toml` repeats the design.
 pub(crate) static DESIGN: ProjectKind = ProjectKind {
@@ -27,9 +29,6 @@ pub(crate) static DESIGN: ProjectKind = ProjectKind {
     file: "design.toml",
     journal: "design.jsonl",
 };
-
-/// Runs of a search, unless the file says otherwise.
-const DEFAULT_RUNS: u32 = 10_000;
 
 /// Largest number of runs of a search.
 const MAX_RUNS: u32 = 100_000_000;
@@ -42,50 +41,57 @@ pub struct DesignFile {
     pub(crate) project: ProjectFile,
 }
 
-/// The table `[design]`.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct DesignKeys {
-    wish: WishKeys,
-    /// Least and largest share of the slider that is textured, %.
-    coverage: [f64; 2],
-    feature: Option<Length>,
-    feature_blocks: Option<u32>,
-    gap: Option<Length>,
-    gap_blocks: Option<u32>,
-    #[serde(default)]
-    mirror: Mirror,
-    #[serde(default = "one_cell")]
-    copies: [u32; 2],
-    forbidden: Option<Value>,
-    max_features: Option<u32>,
-    writing: Option<Writing>,
-    #[serde(default)]
-    cases: Vec<Table>,
-    #[serde(default)]
-    judge_by: JudgeBy,
-    /// Runs of the search.
-    #[serde(default = "default_runs")]
-    pub runs: u32,
-    #[serde(default = "first_start")]
-    start: u64,
-    #[serde(default)]
-    starts: Vec<Value>,
-    /// Coverages, %, up to which further designs are asked for.
-    #[serde(default)]
-    pub front: Vec<f64>,
-}
-
-fn one_cell() -> [u32; 2] {
-    [1, 1]
-}
-
-fn default_runs() -> u32 {
-    DEFAULT_RUNS
-}
-
-fn first_start() -> u64 {
-    1
+key_rows! {
+    /// The table `[design]`.
+    #[derive(Clone, Debug, PartialEq, Deserialize)]
+    #[serde(deny_unknown_fields)]
+    pub struct DesignKeys {
+        /// Aim of the texture.
+        wish: WishKeys = key("", KeyKind::Special("")).without("needed").note("[See below](#wish)."),
+        /// Least and largest share of the slider that is textured, %.
+        coverage: [f64; 2] = key("", KeyKind::Special("from at least 0 to less than 100")).without("needed"),
+        /// Smallest width of a feature, a length. It becomes a whole number of blocks, rounded up.
+        feature: Option<Length> = key("", KeyKind::Special("more than 0")).without("one block"),
+        /// Smallest width of a feature in blocks, in place of `feature`.
+        feature_blocks: Option<u32> = key("", KeyKind::Special("1 and more")),
+        /// Smallest width of the part in contact between two features, and between a feature and an edge of
+        /// the slider.
+        gap: Option<Length> = key("", KeyKind::Special("more than 0")).without("one block"),
+        /// Smallest gap in blocks, in place of `gap`.
+        gap_blocks: Option<u32> = key("", KeyKind::Special("1 and more")),
+        /// Mirror symmetry of the texture: its left and right halves (`"x"`), its lower and upper halves
+        /// (`"y"`), or both.
+        mirror: Mirror = key("\"none\"", KeyKind::Words(names_of::<Mirror>)),
+        /// `[columns, rows]` of equal cells into which the slider is divided, all with one texture.
+        copies: [u32; 2] = key("[1, 1]", KeyKind::Special("must divide the blocks")),
+        /// Parts that must touch: a list of textures, as in a case file, such as
+        /// `[{ shape = "mask", file = "clamps.png" }]`.
+        forbidden: Option<Value> = key("", KeyKind::Special("")).without("nothing"),
+        /// Largest number of features: pieces without a common edge of a block.
+        max_features: Option<u32> = key("", KeyKind::Special("1 and more")).without("any"),
+        /// Spacing of the lines that a laser writes, and largest length of all lines together. With
+        /// `line_spacing` alone the report gives the length; `max_length` limits the coverage.
+        writing: Option<Writing> =
+            key("", KeyKind::Special("`{ line_spacing = \"10 um\", max_length = \"2 m\" }`; more than 0")),
+        /// Keys of several cases for which the texture is designed, such as
+        /// `[{ drive.v_star = 0.01 }, { drive.v_star = 0.1 }]`, but for `texture`. All have the blocks of the
+        /// base; each has the wish in its own units, so that a force is another share of mu_s under another
+        /// load.
+        cases: Vec<Table> = key("[]", KeyKind::Special("")).without("the base alone"),
+        /// Loss of several cases: the mean, or that of the worst.
+        judge_by: JudgeBy = key("\"mean\"", KeyKind::Words(names_of::<JudgeBy>)),
+        /// Runs of the search. The verdict takes some hundreds more.
+        pub runs: u32 = key("10000", whole(1, MAX_RUNS as u64)),
+        /// Seed of the random drafts: another one is another search.
+        start: u64 = key("1", KeyKind::Special("0 and more")),
+        /// Textures with which the search begins in addition to named patterns: a list of lists, each as
+        /// `[[texture]]` of a case file. They are judged too, however good they are; of one that breaks a
+        /// limit the search takes what is legal, and a note says so.
+        starts: Vec<Value> = key("[]", KeyKind::Special("")).without("none"),
+        /// Coverages, %, such as `[2, 4, 6, 8]`: for each of them a design that covers no more is searched
+        /// for with as many runs, and `front.csv` gives the best friction over coverage.
+        pub front: Vec<f64> = key("[]", KeyKind::Special("rising, within `coverage`")).without("none"),
+    }
 }
 
 /// The key `wish`: exactly one of its forms.
@@ -126,20 +132,18 @@ struct Writing {
     max_length: Option<Length>,
 }
 
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 enum Mirror {
-    #[default]
     None,
     X,
     Y,
     Both,
 }
 
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 enum JudgeBy {
-    #[default]
     Mean,
     Worst,
 }
@@ -158,7 +162,8 @@ impl DesignFile {
     /// # Errors
     /// When it is no TOML, has unknown keys, or values out of their bounds.
     pub fn parse(text: &str, file: &str, name: &str, folder: &Path) -> Result<Self, StudyError> {
-        let (project, keys): (_, DesignKeys) = ProjectFile::parse(&DESIGN, text, file, name, folder)?;
+        let (project, keys): (_, DesignKeys) =
+            ProjectFile::parse(&DESIGN, DesignKeys::KEYS, text, file, name, folder)?;
         keys.check(&project)?;
         Ok(Self { keys, project })
     }
@@ -176,7 +181,8 @@ impl DesignFile {
         self.case_with(&[])
     }
 
-    /// The cases for which the texture is designed, with the texture of the base: one for every table of `cases`, or the base alone.
+    /// The cases for which the texture is designed, with the texture of the base: one for every table of
+    /// `cases`, or the base alone.
     ///
     /// # Errors
     /// When one of them is not valid.
@@ -237,8 +243,8 @@ impl DesignFile {
         self.design_up_to(self.keys.coverage[1])
     }
 
-    /// Refuses a design that is not valid, that has no memory for `threads` runs at once, or that asks for a front although its search
-    /// `is_timed`; `runs` is the number of runs of its search.
+    /// Refuses a design that is not valid, that has no memory for `threads` runs at once, or that asks for a
+    /// front although its search `is_timed`; `runs` is the number of runs of its search.
     ///
     /// # Errors
     /// As [`design`](Self::design), and with the number of runs at once that there is memory for.
@@ -247,9 +253,31 @@ impl DesignFile {
             let sentence = "a search that is cut short by a time has no time for a front: give a number of runs, or leave out `front`";
             return Err(self.project.error("front", sentence.to_owned()).into());
         }
+        let no_memory = |needed, available| StudyError::DesignMemory { needed, available };
+        self.memory(runs)?.check(threads, no_memory)
+    }
+
+    /// Memory of the design with a search of this many runs.
+    ///
+    /// # Errors
+    /// As [`design`](Self::design).
+    pub fn memory(&self, runs: usize) -> Result<WorkMemory, StudyError> {
+        // A draft keeps its blocks, its patches, and its line of the table.
+        const DRAFT: f64 = 2048.0;
+        let evaluator = self.design()?.evaluator;
+        // A mesh that has no room for a single run is left out of the verdict.
+        let finer = evaluator.on_finer_blocks().ok();
+        let mut run = evaluator.bytes_of_run()?;
+        if let Some(finer) = finer {
+            run = run.max(finer.bytes_of_run()?);
+        }
         // Every design of a front keeps what it has tried until all are written.
         let drafts = runs.saturating_mul(1 + self.keys.front.len());
-        self.design()?.check_memory(drafts, threads)
+        Ok(WorkMemory {
+            // Masks, and cases that are made of them, take as much as 1.2 runs (measured).
+            beside: PROGRAM + 1.25 * run + drafts as f64 * (DRAFT + evaluator.grid.n_blocks() as f64),
+            pieces: vec![(run, usize::MAX)],
+        })
     }
 
     /// The designs of a front: every coverage in `front`, with the design of at most this coverage.
@@ -518,5 +546,49 @@ impl DesignKeys {
             }
         }
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Memory counts runs as they are on blocks of half the size, and drafts with their blocks.
+    #[test]
+    fn threads_are_held_against_the_memory() {
+        let file = |blocks: usize| {
+            let text = format!(
+                "[base]\nslider.blocks = [{blocks}, {blocks}]\n[design]\nwish = {{ least = 'static_friction' }}\ncoverage = [0, 10]"
+            );
+            DesignFile::parse(&text, "design.toml", "design", Path::new("")).unwrap()
+        };
+        let found = file(200).memory(100).unwrap();
+        let [(run, _)] = found.pieces[..] else {
+            panic!("{found:?}")
+        };
+        let fine = file(400).design().unwrap().evaluator.bytes_of_run().unwrap();
+        // Of as many blocks, but for the row of a step at which the onset is expected.
+        assert!((run / fine - 1.0).abs() < 0.01);
+        let drafts = file(200).memory(300).unwrap().beside - found.beside;
+        assert!((drafts - 200.0 * (2048.0 + 200.0 * 200.0)).abs() < 1.0);
+        let available = found.of(2) + 0.5 * run;
+        let no_memory = |needed, available| StudyError::DesignMemory { needed, available };
+        assert!(found.compare(2, available, no_memory).is_ok());
+        assert!(matches!(
+            found.compare(3, available, no_memory),
+            Err(StudyError::Memory {
+                threads: 3,
+                fit: 2,
+                ..
+            })
+        ));
+        let said = found
+            .compare(2, found.of(1) - 1.0, no_memory)
+            .unwrap_err()
+            .to_string();
+        assert!(
+            said.starts_with("the design takes") && said.contains("lower `slider.blocks` or `design.runs`"),
+            "{said}"
+        );
     }
 }

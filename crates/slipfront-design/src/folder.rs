@@ -3,57 +3,20 @@
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
-use serde::{Deserialize, Serialize};
+use serde::Deserialize;
 
 use crate::design::{Design, Outcome};
-use crate::evaluate::{Ended, Known, MadeRun, RunId};
+use crate::evaluate::{Known, MadeRun};
 use crate::file::{DESIGN, DesignFile};
 use crate::report::{Report, VERDICT};
 use crate::stages::{Bounds, Length, SearchProgress, Work};
-use crate::wish::Measured;
 use slipfront_study::StudyError;
 use slipfront_study::project_folder::{
     Batch, Derivation, Journal, JournalRecord, Others, ResultFiles, notes_of_use, read_numbers,
 };
 
-/// A line of the journal: the numbers of a run, or the reason for which it has none.
-#[derive(Serialize, Deserialize)]
-struct DesignRun {
-    id: RunId,
-    #[serde(flatten)]
-    end: RunEnd,
-}
-
-impl JournalRecord for DesignRun {
-    const KEYS: &'static [&'static str] = &["found", "failed"];
-}
-
-/// End of a run in the journal.
-#[derive(Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-enum RunEnd {
-    Found(Measured),
-    Failed(String),
-}
-
-impl DesignRun {
-    fn of(run: &MadeRun) -> Self {
-        Self {
-            id: run.id.clone(),
-            end: match &run.ended {
-                Ok(found) => RunEnd::Found(found.clone()),
-                Err(why) => RunEnd::Failed(why.clone()),
-            },
-        }
-    }
-
-    fn into_entry(self) -> (RunId, Ended) {
-        let ended = match self.end {
-            RunEnd::Found(found) => Ok(found),
-            RunEnd::Failed(why) => Err(why),
-        };
-        (self.id, ended)
-    }
+impl JournalRecord for MadeRun {
+    const KEYS: &'static [&'static str] = &["ended"];
 }
 
 /// A results folder, with the runs that were kept in it.
@@ -77,15 +40,15 @@ impl DesignFolder {
     /// another process works in it, or it cannot be written to.
     pub fn open(path: &Path, file: &DesignFile, force: bool) -> Result<Self, StudyError> {
         DESIGN.is_used(path)?;
-        let (journal, kept, damaged) = DESIGN.open_journal(path)?;
         let given = file.project.given()?;
+        let (journal, kept, damaged) = DESIGN.open_journal(path)?;
         let files = given.place(&DESIGN, path, force)?;
         let name = path.join(DESIGN.file).display().to_string();
         Ok(Self {
             path: path.to_owned(),
             files,
             journal,
-            known: kept.into_iter().map(DesignRun::into_entry).collect(),
+            known: kept.into_iter().map(|run: MadeRun| (run.id, run.ended)).collect(),
             damaged,
             file: DesignFile::parse(&given.text, &name, file.name(), path)?,
         })
@@ -189,7 +152,7 @@ impl DesignFolder {
         watch: &mut dyn FnMut(&SearchProgress),
     ) -> Result<Outcome, StudyError> {
         let Self { journal, known, .. } = self;
-        let mut keep = |runs: &[MadeRun]| journal.append(runs.iter().map(DesignRun::of));
+        let mut keep = |runs: &[MadeRun]| journal.append(runs);
         design.run(bounds, known, &mut keep, watch)
     }
 }
@@ -282,7 +245,7 @@ pub const DESIGNS: Derivation = Derivation {
 /// Finds a design again in another folder from the runs in its journal.
 fn find_again(folder: &Path, other: &Path, stop: &AtomicBool) -> Result<[usize; 2], StudyError> {
     let search = search_of(folder)?;
-    Journal::copy::<DesignRun>(folder, other, DESIGN.journal)?;
+    Journal::copy::<MadeRun>(folder, other, DESIGN.journal)?;
     let file = DesignFile::load(&folder.join(DESIGN.file))?;
     let mut again = DesignFolder::open(other, &file, false)?;
     let kept = again.n_kept();

@@ -15,7 +15,6 @@ mod front;
 mod grid;
 mod judge;
 mod limits;
-mod memory;
 mod named;
 mod open_search;
 mod patch;

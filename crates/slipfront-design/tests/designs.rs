@@ -2,17 +2,22 @@
 
 #![allow(clippy::unwrap_used)] // A helper that cannot do its work fails its test.
 
+#[path = "../../slipfront-case/tests/support/reference_page.rs"]
+mod reference_page;
+
 use std::fs;
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use slipfront_design::{
-    Bounds, DESIGNS, Design, DesignFile, DesignFolder, DesignStage, Known, Outcome, Work,
+    Bounds, DESIGNS, Design, DesignFile, DesignFolder, DesignKeys, DesignStage, Known, Outcome, Work,
 };
 use slipfront_study::StudyError;
 use slipfront_study::project_folder::Extent;
 use slipfront_study::verify::verify;
+
+use crate::reference_page::{expect_page, with_keys};
 
 /// A small slider whose named patterns cover less than the limits allow.
 const BASE: &str = "[base]\nslider.blocks = [16, 16]\ndrive.v_star = 0.1\n[design]\n";
@@ -110,6 +115,14 @@ fn design_files_are_true() {
     }
 }
 
+/// Every key has a row in the table of its section, as its struct declares it.
+#[test]
+fn the_reference_has_the_keys_of_the_struct() {
+    expect_page("design-file.md", |page| {
+        with_keys(page, "`[design]`", DesignKeys::KEYS)
+    });
+}
+
 /// The files of a folder, without the journal, whose lines are in the order in which runs were begun.
 fn files(folder: &Path) -> Vec<(String, Vec<u8>)> {
     let mut files: Vec<_> = fs::read_dir(folder)
@@ -128,7 +141,8 @@ fn files(folder: &Path) -> Vec<(String, Vec<u8>)> {
     files
 }
 
-/// A search to the end on three threads, and one on a single thread that is stopped again and again and whose journal loses its end.
+/// A search to the end on three threads, and one on a single thread that is stopped again and again and whose
+/// journal loses its end.
 #[test]
 fn a_search_that_was_stopped_leaves_the_same_bytes() {
     let file = file(LEAST);
@@ -205,7 +219,8 @@ fn the_design_is_not_worse_than_named_patterns() {
     assert!(named.verdict.optimism.abs() < 0.05);
 }
 
-/// A search alone finds the texture that a run judges, and on fresh surfaces the texture has the values of the verdict.
+/// A search alone finds the texture that a run judges, and on fresh surfaces the texture has the values of
+/// the verdict.
 #[test]
 fn a_search_alone_finds_what_is_judged() {
     let design = file_of(SMOOTH, LEAST).design().unwrap();
@@ -224,8 +239,8 @@ fn a_search_alone_finds_what_is_judged() {
     // Surfaces do not differ: there is one.
     assert_eq!(fresh(&design, &outcome.texture), [outcome.verdict.design.loss]);
     assert!(best.iter().all(|texture| design.check(texture).is_ok()));
-    // A block is pulled by a drive spring of 3/8, and bears more where 15 % bear nothing; the search looks 1.2/1.07 times as long, in steps
-    // of 0.4, of which there is a whole number.
+    // A block is pulled by a drive spring of 3/8, and bears more where 15 % bear nothing; the search looks
+    // 1.2/1.07 times as long, in steps of 0.4, of which there is a whole number.
     let steps = design.block_steps_per_texture().unwrap() / 256.0;
     let expected = 1.2 / 1.07 / (0.85 * 0.375 * 0.1) / 0.4;
     assert!(
@@ -292,7 +307,8 @@ fn a_curve_is_followed() {
     assert!(outcome.verdict.design.loss < 1e-9, "{:?}", outcome.verdict);
 }
 
-/// A base that names files is searched from where it stands and from its copies alike; a copy that has changed is refused.
+/// A base that names files is searched from where it stands and from its copies alike; a copy that has
+/// changed is refused.
 #[test]
 fn a_base_may_name_files() {
     let folder = tempfile::tempdir().unwrap();
@@ -351,8 +367,9 @@ fn a_program_of_speeds_has_no_other_speed() {
     assert_eq!(sensitivity.changed.len(), 5);
 }
 
-/// A texture that leaves only blocks of next to no friction in contact never comes to rest under a held drive: it is lost, and told with
-/// the reason in the table, the verdict and its text, before and after a stop. A slider all of whose blocks are such has nothing to compare with.
+/// A texture that leaves only blocks of next to no friction in contact never comes to rest under a held
+/// drive: it is lost, and told with the reason in the table, the verdict and its text, before and after a
+/// stop. A slider all of whose blocks are such has nothing to compare with.
 #[test]
 fn what_never_comes_to_rest_is_told() {
     let folder = tempfile::tempdir().unwrap();
@@ -365,7 +382,8 @@ fn what_never_comes_to_rest_is_told() {
         fs::write(folder.path().join("mu_k.csv"), row).unwrap();
         DesignFile::parse(base, "design.toml", "design", folder.path()).unwrap()
     };
-    // Alone, the second block, once weakened, swings longer than a held drive waits for it; the first takes its energy where it touches.
+    // Alone, the second block, once weakened, swings longer than a held drive waits for it; the first takes
+    // its energy where it touches.
     let file = of("0.5,1e-4");
     let out = folder.path().join("out");
     let find = || {
@@ -412,7 +430,8 @@ fn what_never_comes_to_rest_is_told() {
     );
 }
 
-/// Each case has the wish in its own units: a force is another share of mu_s under another load, and a share of mu_s another force.
+/// Each case has the wish in its own units: a force is another share of mu_s under another load, and a share
+/// of mu_s another force.
 #[test]
 fn every_case_has_the_wish_in_its_own_units() {
     let least = |of: &str| {
@@ -436,7 +455,8 @@ fn every_case_has_the_wish_in_its_own_units() {
     assert!((loss - expected).abs() < 1e-9, "{loss} {expected} {stars:?}");
 }
 
-/// The files of cases are those of the verdict, not the base; a front that is stopped leaves the design alone.
+/// The files of cases are those of the verdict, not the base; a front that is stopped leaves the design
+/// alone.
 #[test]
 fn the_folder_has_the_cases_of_the_verdict() {
     let file = file_of(
@@ -533,7 +553,8 @@ fn drawings_are_judged() {
     );
 }
 
-/// A folder whose files have changed belongs to another design, and a longer search that is stopped leaves the results of the shorter one.
+/// A folder whose files have changed belongs to another design, and a longer search that is stopped leaves
+/// the results of the shorter one.
 #[test]
 fn results_belong_to_one_search() {
     let folder = tempfile::tempdir().unwrap();

@@ -75,9 +75,10 @@ pub(crate) fn save(
         Err(CaseError::Stopped) => return Ok(false),
         case => Arc::new(case.map_err(sentence)?),
     };
-    let budget = pictures::run_budget(&case);
-    budget.check_memory(&case.file).map_err(sentence)?;
-    budget.check_disk(&case.file, out, 0, false).map_err(sentence)?;
+    case.budget.check_memory(&case.file, false).map_err(sentence)?;
+    case.budget
+        .check_disk(&case.file, out, 0, false)
+        .map_err(sentence)?;
     make_folder(out)?;
     let prepared = RunFolder::prepare(out, false, &case.inputs);
     let mut folder = prepared.map_err(|error| {

@@ -18,7 +18,7 @@ export interface SessionModule extends Module {
   open(workers: number): void;
   handle(): void;
   /** Works for some time, and returns the time at which it is to be called again; below 0 for never. */
-  work(now: number, unread: number): number;
+  advance(now: number, unread: number): number;
   hear(task: number): void;
   hear_lost(task: number): void;
   run(): void;
@@ -41,7 +41,7 @@ export interface Begin {
 }
 
 /** Names of the messages that the module sends as text, and of those that it sends as bytes. */
-export type TextSaying = 'reply' | 'work' | 'end' | 'event' | 'save' | 'stop_saving' | 'share' | 'bits' | 'refusal' | 'defect';
+export type TextSaying = 'reply' | 'job' | 'end' | 'event' | 'save' | 'stop_saving' | 'share' | 'bits' | 'refusal' | 'defect';
 export type BytesSaying = 'picture' | 'kymograph' | 'archive';
 
 /** A message of a Worker to the page. */

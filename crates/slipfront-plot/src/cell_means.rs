@@ -21,11 +21,6 @@ pub struct CellMeans {
 }
 
 impl CellMeans {
-    /// Largest number of cells.
-    pub const MAX_CELLS: usize = MAX_CELLS * MAX_CELLS;
-    /// Bytes per cell while values come in.
-    pub const BYTES_PER_CELL: usize = size_of::<f64>() + size_of::<u32>();
-
     /// Means without values yet, for a lattice with `nx` blocks along x and `ny` along y.
     pub fn new(nx: usize, ny: usize) -> Self {
         let [columns, rows] = Self::cells(nx, ny);

@@ -26,10 +26,6 @@ const APART: f64 = 24.0;
 /// Colour of the kinetic window.
 const SHADE: Rgb = [0x9a, 0xa5, 0xb1];
 
-/// Largest number of bytes while [`friction`] draws the curve of one run: four for each of 0.9 million pixels, and
-/// primitives.
-pub const FRICTION_BYTES: usize = 6 << 20;
-
 /// Draws friction and, below it, N* against time or path, as wide as a journal's column (85 mm).
 ///
 /// One curve is drawn with all its marks: first slip, peak, kinetic window, lettered instants. The names of lines and

@@ -74,16 +74,6 @@ pub struct SpaceTime {
     pub shares: Vec<f32>,
 }
 
-/// Largest number of bytes while [`front`] draws a lattice, in pixels and primitives: at most 1.8 million pixels with the
-/// panels beside each other, and 2.6 million with the map above.
-pub fn front_bytes(nx: usize, ny: usize) -> usize {
-    if is_above(ny as f64 / nx as f64) {
-        12 << 20
-    } else {
-        8 << 20
-    }
-}
-
 /// Whether the map of a slider stands above the other panel, given its height over its length.
 fn is_above(ratio: f64) -> bool {
     ratio * MAX_RATIO < 1.0
@@ -107,9 +97,6 @@ pub fn front(map: &FrontMap, space_time: &SpaceTime) -> Result<Picture, PictureE
     note.draw(&mut canvas);
     canvas.finish()
 }
-
-/// Largest number of bytes while [`kymograph`] draws, in pixels and primitives.
-pub const KYMOGRAPH_BYTES: usize = 12 << 20;
 
 /// Draws the share of the sliding blocks against place and time alone, as wide as a journal's text (175 mm).
 ///

@@ -47,17 +47,6 @@ impl MovieSize {
             Self::Large => 1,
         }
     }
-
-    /// Bytes while a picture is drawn: four for each pixel that is drawn, and one for each that is kept.
-    pub const fn picture_bytes(self) -> usize {
-        let [width, height] = self.pixels();
-        4 * DRAWN_PIXELS[0] * DRAWN_PIXELS[1] + width * height
-    }
-
-    /// Bytes of a picture in its file (measured: 25 kB where all of a map of the usual size changes).
-    pub const fn file_bytes(self) -> usize {
-        100_000 / (self.drawn() * self.drawn())
-    }
 }
 
 const DRAWN_PIXELS: [usize; 2] = [1600, 800];

@@ -9,11 +9,6 @@ pub struct Picture {
     pub png: Vec<u8>,
 }
 
-impl Picture {
-    /// Largest number of bytes while a picture as wide as a column is drawn, pixels and primitives, whatever it shows.
-    pub const COLUMN_BYTES: usize = 7 << 20;
-}
-
 /// Error of a picture that could not be made.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[expect(missing_docs, reason = "the sentence of each variant tells what it is")]

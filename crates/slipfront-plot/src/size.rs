@@ -25,12 +25,6 @@ impl PictureSize {
     /// Largest width and height, mm.
     pub const MAX_MM: f64 = 400.0;
 
-    /// Bytes of the pixels while a picture of this size is drawn, beyond those of the usual size.
-    pub fn bytes(self) -> f64 {
-        let side = |mm: Option<f64>| mm.unwrap_or_default().max(100.0) * MM;
-        4.0 * side(self.width_mm) * side(self.height_mm)
-    }
-
     /// Factor of letters, lines and marks.
     pub(crate) fn scale(self) -> f64 {
         self.font_pt.map_or(1.0, |pt| pt / LABEL_PT)

@@ -62,11 +62,6 @@ pub struct StressMaps {
     pub is_torque: bool,
 }
 
-/// Largest number of bytes while [`stress`] draws: four for each of at most 3.6 million pixels, whatever the lattice.
-pub const STRESS_BYTES: usize = 14 << 20;
-/// Bytes of both files of maps for each cell of a map (measured: 5.4 where every cell has a colour of its own).
-pub const STRESS_FILE_BYTES: usize = 6;
-
 /// Draws the maps, three in a row, at most as wide as a journal's text (175 mm), all on one colour scale, the textured area
 /// outlined. A slider that is long along x has two maps in a row, or one; a slider that is long along y has all in one row.
 ///

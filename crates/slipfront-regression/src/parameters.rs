@@ -20,9 +20,6 @@ use crate::fit::{Fit, Noise, kernel_of_all, median, multiplied};
 /// Largest number of runs from which weights and ridge are found.
 pub(crate) const MAX_SEARCHED: usize = 900;
 
-/// Numbers of a pair of runs that are kept meanwhile: its elements of the kernel, of the factor, and of the inverses of both.
-pub(crate) const NUMBERS_OF_A_PAIR: usize = 4;
-
 /// Largest number of runs from which the common weight and the first slopes are found.
 const MAX_OF_COMMON_WEIGHT: usize = 450;
 

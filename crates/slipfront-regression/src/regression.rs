@@ -14,7 +14,7 @@
 //! f_without_i(x_i) = a_i/[A^-1]_ii`.
 
 use crate::fit::{Fit, Noise, kernel, kernel_of_all, median, multiplied};
-use crate::parameters::{MAX_SEARCHED, NUMBERS_OF_A_PAIR, Parameters};
+use crate::parameters::{MAX_SEARCHED, Parameters};
 
 /// Size that is added to residuals before their logarithm is taken, over their median: a residual near 0 is chance.
 const LEAST_SIZE: f64 = 0.1;
@@ -63,25 +63,7 @@ impl Prediction {
     }
 }
 
-/// Numbers that a regression keeps of every run beside its summaries, which both functions keep: two coefficients, prediction and scale.
-const NUMBERS_OF_A_RUN: usize = 4;
-
-/// Numbers of a pair of runs in the end: the kernel, which becomes its factor.
-const NUMBERS_IN_THE_END: usize = 1;
-
 impl Regression {
-    /// Memory of a regression of `runs` runs with `summaries` summaries each, in bytes.
-    pub fn bytes(runs: usize, summaries: usize) -> f64 {
-        (size_of::<f64>() * runs * (2 * summaries + NUMBERS_OF_A_RUN)) as f64
-    }
-
-    /// Memory of [`learn`](Self::learn) beside its result, in bytes.
-    pub fn bytes_to_learn(runs: usize) -> f64 {
-        let searched = runs.min(MAX_SEARCHED);
-        let numbers = (NUMBERS_OF_A_PAIR * searched * searched).max(NUMBERS_IN_THE_END * runs * runs);
-        (size_of::<f64>() * numbers) as f64
-    }
-
     /// Prediction of a training run by all others.
     pub fn left_out(&self, run: usize) -> Prediction {
         Prediction {

@@ -12,12 +12,6 @@ use slipfront_case::case::Case;
 /// rank holds the times of all of them.
 const MAX_BLOCKS: usize = 1 << 22;
 
-/// Bytes that the first of several ranks takes to find the front of a lattice of `n_blocks` blocks.
-pub(crate) fn bytes_of_shared(n_blocks: f64) -> f64 {
-    let per_block = size_of::<f64>() + Front::BYTES_PER_BLOCK;
-    n_blocks.min(MAX_BLOCKS as f64) * per_block as f64
-}
-
 /// Number of values that ranks exchange at once.
 const PART: usize = 1 << 17;
 

@@ -8,7 +8,6 @@
 //! [`results::write`], `pictures::complete` (with the feature `plot`), which also writes the manifest.
 
 pub mod agree;
-pub mod budget;
 pub mod checkpoint;
 pub mod checksum;
 pub mod clock;

@@ -24,12 +24,6 @@ pub struct RunCurve {
 }
 
 impl RunCurve {
-    /// Memory of the curve of a run of `steps` steps, in bytes.
-    pub fn bytes(steps: u64) -> f64 {
-        const COLUMNS: usize = 3;
-        (COLUMNS * size_of::<f64>()) as f64 * (steps as f64 + 1.0)
-    }
-
     /// Times or displacements, according to the abscissa of a record.
     pub fn along(&self, x: Measure) -> &[f64] {
         if x == Measure::Displacement {

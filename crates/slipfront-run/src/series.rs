@@ -1,7 +1,7 @@
 //! The file `series.csv`: the curve of a run, one row per recorded step, names with units in the header.
 
 use std::io::Read;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Deserializer, Serialize};
@@ -12,7 +12,6 @@ use thiserror::Error;
 use crate::friction_unit::FrictionUnit;
 use crate::names::SERIES;
 use crate::run_files::RunFile;
-use slipfront_base::disk::open_limited;
 use slipfront_base::text;
 
 /// One row of `series.csv`.
@@ -159,14 +158,7 @@ pub fn columns(rows: &[SeriesRow]) -> Vec<(&'static str, Vec<f64>)> {
 }
 
 /// Largest number of bytes of a column of a row as CSV: 24 characters, and the separator.
-pub const COLUMN_BYTES: usize = 25;
-
-/// Columns of the series of a run of this model.
-pub fn n_columns(scales: &Scales, model: &Model) -> usize {
-    let row = SeriesRow::new(&CurveRow::default(), scales, model);
-    // With the number of the step.
-    1 + COLUMNS.iter().filter(|(_, value)| value(&row).is_some()).count()
-}
+const COLUMN_BYTES: usize = 25;
 
 /// The rows as CSV. Numbers are the shortest that read back as the same bits.
 pub fn to_csv(rows: impl Iterator<Item = SeriesRow>) -> Result<Vec<u8>, csv::Error> {
@@ -186,25 +178,6 @@ pub fn to_csv(rows: impl Iterator<Item = SeriesRow>) -> Result<Vec<u8>, csv::Err
 /// The bytes of a table.
 pub(crate) fn finish(table: csv::Writer<Vec<u8>>) -> Result<Vec<u8>, csv::Error> {
     table.into_inner().map_err(|error| error.into_error().into())
-}
-
-/// The number of rows of a series by its length, if all are as long as the first: later ones have more digits, so that it is
-/// an upper bound.
-pub fn estimate_rows(path: &Path) -> Result<f64, SeriesError> {
-    const BEGINNING_BYTES: u64 = 1 << 16;
-    let estimate = || {
-        let file = open_limited(path, u64::MAX)?;
-        let length = file.get_ref().metadata()?.len();
-        let mut beginning = Vec::new();
-        file.take(BEGINNING_BYTES).read_to_end(&mut beginning)?;
-        let rows = beginning.iter().filter(|byte| **byte == b'\n').count();
-        Ok(length as f64 * rows as f64 / beginning.len().max(1) as f64)
-    };
-    estimate().map_err(|error: std::io::Error| SeriesError {
-        path: path.to_owned(),
-        name: SERIES,
-        source: error.into(),
-    })
 }
 
 /// Reads a series back.

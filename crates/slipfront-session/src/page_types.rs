@@ -388,7 +388,7 @@ fn texture_values(key: &Key) -> Vec<Value> {
         KeyKind::Number { .. } | KeyKind::Whole { .. } => vec![json!(1)],
         KeyKind::Quantity { .. } | KeyKind::Words(_) | KeyKind::File(_) => vec![json!("text")],
         KeyKind::Switch => vec![json!(true)],
-        KeyKind::Special(_) => match key.name {
+        KeyKind::Table(..) | KeyKind::Special(_) => match key.name {
             "w" => vec![json!(0.1)],
             "center" | "pitch" | "pixel_size" => vec![json!("1 um"), json!(["1 um", "1 um"])],
             "array" => vec![json!("auto"), json!([3, 3])],

@@ -9,7 +9,8 @@ use toml::Value;
 use crate::project_folder::plain_name;
 use slipfront_base::number_format::{exact, si_prefix};
 use slipfront_base::text::truncated;
-use slipfront_case::case_file::{Override, exclude_each_other, names_a_file, partners_of};
+use slipfront_case::case_file::{KeyKind, Override, exclude_each_other, key, names_a_file, partners_of};
+use slipfront_case::key_rows;
 use slipfront_case::quantity::WrittenQuantity;
 
 /// An axis and its levels.
@@ -21,8 +22,8 @@ pub struct Axis {
     pub levels: Vec<Level>,
     /// Spacing of the levels.
     pub spacing: Spacing,
-    /// Unit of the axis's numbers, where they are written with one: that of the first level. Empty where levels are named
-    /// with their units, none where the unit is that of the key.
+    /// Unit of the axis's numbers, where they are written with one: that of the first level. Empty where
+    /// levels are named with their units, none where the unit is that of the key.
     pub unit: Option<String>,
 }
 
@@ -38,8 +39,8 @@ pub struct Level {
 }
 
 impl Level {
-    /// Name of the level in pictures: a pair of equal numbers, such as the blocks of a square slider, is named by one
-    /// number.
+    /// Name of the level in pictures: a pair of equal numbers, such as the blocks of a square slider, is
+    /// named by one number.
     pub fn shown(&self) -> String {
         match (self.labels.as_slice(), self.number) {
             ([_], Some(number)) => exact(number),
@@ -59,18 +60,27 @@ pub enum Spacing {
     Logarithmic,
 }
 
-/// `[[axes]]` as it stands in the file.
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(crate) struct AxisKeys {
-    key: Option<String>,
-    list: Option<Vec<Value>>,
-    /// Values `[from, to, count]`, as for `logspace`.
-    linspace: Option<Vec<Value>>,
-    logspace: Option<Vec<Value>>,
-    zip: Option<toml::Table>,
-    name: Option<String>,
-    variants: Option<toml::Table>,
+key_rows! {
+    /// `[[axes]]` as it stands in the file.
+    #[derive(Deserialize)]
+    #[serde(deny_unknown_fields)]
+    pub struct AxisKeys {
+        /// A key of the case as for `--set`, such as `"drive.v_star"` or `"texture.0.coverage"`.
+        key: Option<String> = key("", KeyKind::Special("")),
+        /// Values of the key, of any kind: numbers, quantities such as `"50 kPa"`, words, pairs, files.
+        list: Option<Vec<Value>> = key("", KeyKind::Special("none twice")),
+        /// `[from, to, count]`: values at equal distances, both ends included.
+        linspace: Option<Vec<Value>> = key("", KeyKind::Special(
+            "two numbers, or two quantities such as `\"50 kPa\"` and `\"1 MPa\"`; count 2 to 100 000")),
+        /// `[from, to, count]`: values in equal ratios, both ends included.
+        logspace: Option<Vec<Value>> = key("", KeyKind::Special("the same, ends above 0")),
+        /// A table of lists, equally long; keys with a dot stand in quotes.
+        zip: Option<toml::Table> = key("", KeyKind::Special("")),
+        /// Name of the axis, which is the name of its column in the tables.
+        name: Option<String> = key("", KeyKind::Special("not the name of another column")),
+        /// A table of sets of keys, in the order of the pictures. `{}` is the base as it is.
+        variants: Option<toml::Table> = key("", KeyKind::Special("")),
+    }
 }
 
 /// Largest number of levels of one axis.
@@ -79,7 +89,8 @@ const MAX_LEVELS: usize = 100_000;
 /// The longest key of an axis, in bytes: all keys of a case are shorter. A key is repeated in every level.
 const MAX_KEY: usize = 100;
 
-/// Largest number of keys that a level sets: a case without textures has fewer. Every one is compared with all others.
+/// Largest number of keys that a level sets: a case without textures has fewer. Every one is compared with
+/// all others.
 const MAX_KEYS: usize = 300;
 
 impl Axis {
@@ -208,8 +219,8 @@ impl Axis {
         Ok(())
     }
 
-    /// Sets the spacing. An axis is one of numbers only if all its levels are different numbers: zipped keys may repeat the
-    /// first.
+    /// Sets the spacing. An axis is one of numbers only if all its levels are different numbers: zipped keys
+    /// may repeat the first.
     fn set_spacing(&mut self) {
         let mut seen = HashSet::new();
         let mut differs = |level: &Level| level.number.is_some_and(|number| seen.insert(number.to_bits()));
@@ -223,8 +234,8 @@ impl Axis {
         }
     }
 
-    /// Whether the numbers of a list, such as 0.01, 0.03, 0.1, are better shown in equal ratios: they span a decade,
-    /// and their median lies nearer to the geometric mean of their ends than to the arithmetic one.
+    /// Whether the numbers of a list, such as 0.01, 0.03, 0.1, are better shown in equal ratios: they span a
+    /// decade, and their median lies nearer to the geometric mean of their ends than to the arithmetic one.
     fn is_nearer_to_ratios(&self) -> bool {
         let mut numbers: Vec<f64> = self.levels.iter().filter_map(|level| level.number).collect();
         numbers.sort_by(f64::total_cmp);
@@ -315,7 +326,8 @@ fn variant((variant, keys): (String, Value)) -> Result<Level, String> {
 /// Sizes of numbers that an axis shows without a power of ten.
 const PLAIN_NUMBERS: std::ops::Range<f64> = 1e-4..1e6;
 
-/// A quantity of one unit, that of the first of these values with an SI prefix, where the values would not be plain numbers without.
+/// A quantity of one unit, that of the first of these values with an SI prefix, where the values would not be
+/// plain numbers without.
 fn with_prefix(first: &WrittenQuantity, values: &[Value]) -> Option<Value> {
     let numbers = values
         .iter()
@@ -375,8 +387,8 @@ pub fn overrides(keys: &toml::Table) -> Vec<Override> {
 }
 
 fn flatten(key: &str, value: &Value, list: &mut Vec<Override>) {
-    // Tables of the case, `drive`, and elements of its lists, `texture.0`, lead to keys; anything else is a value, and so
-    // is a texture that names its shape.
+    // Tables of the case, `drive`, and elements of its lists, `texture.0`, lead to keys; anything else is a
+    // value, and so is a texture that names its shape.
     let is_number = |part: &str| part.bytes().all(|byte| byte.is_ascii_digit());
     let leads_on = !key.contains('.') || key.rsplit('.').next().is_some_and(is_number);
     // A key that no case has is refused as it stands, not once for everything in it.
@@ -391,8 +403,8 @@ fn flatten(key: &str, value: &Value, list: &mut Vec<Override>) {
     }
 }
 
-/// Whether setting `key` replaces a setting of `earlier`: the keys are equal or partners, or one is a table or list around
-/// the other.
+/// Whether setting `key` replaces a setting of `earlier`: the keys are equal or partners, or one is a table
+/// or list around the other.
 pub(crate) fn replaces_key(key: &str, earlier: &str) -> bool {
     let rest = earlier.strip_prefix(key);
     rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('.')) || exclude_each_other(key, earlier)
@@ -498,7 +510,8 @@ fn twelve_digits(value: f64) -> f64 {
     format!("{value:.11e}").parse().unwrap_or(value)
 }
 
-/// A whole number where the value is one: keys that count, such as a seed, take only those, and all others take them too.
+/// A whole number where the value is one: keys that count, such as a seed, take only those, and all others
+/// take them too.
 fn whole_or_not(value: f64) -> Value {
     const LARGEST: f64 = 9e15;
     if value.fract() == 0.0 && value.abs() < LARGEST {

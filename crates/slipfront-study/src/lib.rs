@@ -1,5 +1,5 @@
-//! Studies: a case is varied along axes and repeated on several random surfaces; the results are tables and pictures with error
-//! bars.
+//! Studies: a case is varied along axes and repeated on several random surfaces; the results are tables and
+//! pictures with error bars.
 //!
 //! ```text
 //! text -> StudyFile -> Plan (every point a valid case) -> StudyResults -> tables -> pictures
@@ -47,7 +47,7 @@ mod write;
 
 pub use anisotropy::{Anisotropy, OverDirections, anisotropies};
 pub use answer::answer;
-pub use axis::{Axis, Level, Spacing};
+pub use axis::{Axis, AxisKeys, Level, Spacing};
 pub use error::{StudyError, TrainingError};
 pub use estimate_cost::{CostLimits, estimated_seconds};
 pub use execute::{LookAtRun, collect, execute, execute_and_look};

@@ -9,17 +9,15 @@ use crate::error::StudyError;
 use crate::identity::{Prepared, physics};
 use crate::plan_warnings::{Warning, Warnings, note_on_replicates};
 use crate::project_file::Base;
-use crate::room::check_room;
+use crate::room::WorkMemory;
 use crate::shard::Shard;
 use crate::study_file::{RetainRuns, Settings, StudyFile};
 use crate::summary_values::REDUCTION;
 use slipfront_base::machine::available_of;
 use slipfront_base::number_format::byte_size;
 use slipfront_base::text::display_path;
-use slipfront_case::case::{Case, PROGRAM, Ranks, Watch};
+use slipfront_case::case::{Case, PICTURES, PROGRAM, Ranks, Watch};
 use slipfront_case::case_file::{AutoOr, CaseError, CaseFile, Override, ParsedCase, Snapshots};
-use slipfront_plot::Picture;
-use slipfront_run::pictures;
 
 /// Every run that a study may need.
 #[derive(Clone, Debug)]
@@ -302,16 +300,15 @@ impl Plan {
     fn spec(&self, base: &Prepared, file: CaseFile, role: Role) -> Spec {
         let case = self.trimmed(file, "point", &mut |_| true)?;
         let writes = self.settings.keep == RetainRuns::All;
-        let budget = pictures::run_budget(&case);
         let spec = RunSpec {
             seed: case.file.friction.seed,
             physics: physics(&case, base.known())?,
             block_steps: case.block_steps(),
             n_blocks: case.model.lattice.n_blocks(),
             is_held: case.model.drive.is_held(),
-            memory: budget.memory_beside_others(writes),
+            memory: case.budget.beside_others(writes),
             memory_of_case: case.budget.making(),
-            disk: if writes { budget.disk() } else { 0.0 },
+            disk: if writes { case.budget.disk() } else { 0.0 },
             texture_percent: case.texture.meshed_percent,
             meshed_coverage: meshed_coverage(&case),
         };
@@ -422,25 +419,21 @@ impl Plan {
         self.runs(1).any(|run| self.spec_of(run).is_held)
     }
 
-    /// Memory of `threads` runs at once, if they are the largest, or of the pictures of the study if these take more, beside
-    /// the results of all runs, in bytes.
+    /// Memory of `threads` runs at once, if they are the largest, with the results of all runs and the pictures of the study,
+    /// in bytes.
     pub fn memory(&self, threads: usize) -> f64 {
-        let runs = self.runs(self.settings.max_replicates()).take(threads).count();
-        let largest = self.largest_run().map_or(0.0, |(_, bytes)| bytes);
-        let pictures = (PICTURES_AT_ONCE * Picture::COLUMN_BYTES) as f64;
-        PROGRAM + self.planning() + self.results() + pictures.max(runs as f64 * largest)
+        self.work().of(threads)
     }
 
-    /// Memory of the results of all runs, with the fewest replicates, in bytes.
-    fn results(&self) -> f64 {
+    fn work(&self) -> WorkMemory {
         let runs = self.points.len() * self.settings.min_replicates() * self.roles().count();
-        runs as f64 * RESULT_BYTES
-    }
-
-    /// Memory in which cases were tried, and which the allocator keeps for others of their size, in bytes.
-    fn planning(&self) -> f64 {
+        // Cases were tried in memory that the allocator keeps for others of their size.
         let made = self.specs.iter().map(|spec| spec.memory_of_case);
-        made.fold(0.0, f64::max)
+        let largest = self.largest_run().map_or(0.0, |(_, bytes)| bytes);
+        WorkMemory {
+            beside: PROGRAM + PICTURES + runs as f64 * RESULT_BYTES + made.fold(0.0, f64::max),
+            pieces: vec![(largest, self.runs(self.settings.max_replicates()).count())],
+        }
     }
 
     /// The run that takes the most memory, and this memory in bytes.
@@ -461,26 +454,20 @@ impl Plan {
             return Ok(());
         };
         let results = self.memory(0);
-        let has_results = results <= available;
-        check_room(
-            |threads| self.memory(threads),
-            threads,
-            available,
-            |available| {
-                if has_results {
-                    StudyError::PointMemory {
-                        point: self.describe(&self.points[run.point]),
-                        needed: byte_size(largest),
-                        available,
-                    }
-                } else {
-                    StudyError::ResultsMemory {
-                        needed: byte_size(results),
-                        available,
-                    }
+        self.work().compare(threads, available, |_, left| {
+            if results <= available {
+                StudyError::PointMemory {
+                    point: self.describe(&self.points[run.point]),
+                    needed: byte_size(largest),
+                    available: left,
                 }
-            },
-        )
+            } else {
+                StudyError::ResultsMemory {
+                    needed: byte_size(results),
+                    available: left,
+                }
+            }
+        })
     }
 
     /// Disk space for these runs, in bytes.

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use serde::de::DeserializeOwned;
 use slipfront_case::case_file::{
-    CaseError, Override, ParsedCase, Place, Source, Tables, limit_nesting, read_text, syntax_error,
+    CaseError, Key, Override, ParsedCase, Place, Source, Tables, limit_nesting, read_text, syntax_error,
     unknown_key,
 };
 use toml::Spanned;
@@ -63,12 +63,14 @@ pub struct ProjectFile {
 }
 
 impl ProjectFile {
-    /// Reads a file called `file` in messages, and the keys of its own table; a base case that it names stands relative to `folder`.
+    /// Reads a file called `file` in messages, whose own table has the keys `own`; a base case that it names
+    /// stands relative to `folder`.
     ///
     /// # Errors
     /// When it is no TOML, or has unknown keys.
     pub fn parse<Keys: DeserializeOwned>(
         kind: &'static ProjectKind,
+        own: &[Key],
         text: &str,
         file: &str,
         name: &str,
@@ -81,7 +83,7 @@ impl ProjectFile {
             source: &source,
         };
         let base = read_base(&mut tables, file, folder)?;
-        let keys = tables.read(kind.table)?;
+        let keys = tables.read_with(kind.table, own)?;
         if let Some(key) = tables.root.keys().min_by_key(|key| key.span().start) {
             let sentence = unknown_key(
                 key.get_ref(),

@@ -1,33 +1,64 @@
 //! Memory of work on several threads, compared with the memory that is available.
 
+use slipfront_base::machine::available_of;
 use slipfront_base::number_format::byte_size;
 
 use crate::error::StudyError;
 
-/// Refuses `threads` runs at once if there is no memory for them, and says how many there is memory for. `of` tells the memory of this
-/// many at once, in bytes; `none` gives the error where there is no memory for a single one, from the text of the memory that is `available`.
-///
-/// # Errors
-/// With both figures.
-pub fn check_room(
-    of: impl Fn(usize) -> f64,
-    threads: usize,
-    available: f64,
-    none: impl FnOnce(String) -> StudyError,
-) -> Result<(), StudyError> {
-    let needed = of(threads);
-    if needed <= available {
-        return Ok(());
+/// Memory of work on several threads, in bytes.
+#[derive(Clone, Debug)]
+pub struct WorkMemory {
+    /// Bytes that are taken whatever the number of threads.
+    pub beside: f64,
+    /// Bytes of a piece of each kind of work, and how many of them there are. Kinds follow one after the other.
+    pub pieces: Vec<(f64, usize)>,
+}
+
+impl WorkMemory {
+    /// Memory on this many threads.
+    pub fn of(&self, threads: usize) -> f64 {
+        let pieces = self.pieces.iter();
+        let at_once = pieces.map(|&(bytes, number)| threads.min(number) as f64 * bytes);
+        self.beside + at_once.fold(0.0, f64::max)
     }
-    let fit = (1..threads).rev().find(|&fewer| of(fewer) <= available);
-    let available = byte_size(available);
-    Err(match fit {
-        None => none(available),
-        Some(fit) => StudyError::Memory {
-            threads,
-            needed: byte_size(needed),
-            available,
-            fit,
-        },
-    })
+
+    /// Refuses work on `threads` threads if there is no memory for it, and says for how many threads there is. `none` gives the
+    /// error where there is no memory for a single one, from the texts of the memory that it needs and that is available.
+    ///
+    /// # Errors
+    /// With both figures.
+    pub fn check(
+        &self,
+        threads: usize,
+        none: impl FnOnce(String, String) -> StudyError,
+    ) -> Result<(), StudyError> {
+        self.compare(threads, available_of(self.of(threads)), none)
+    }
+
+    /// Refuses work as [`check`](Self::check) does, on a machine with `available` bytes.
+    ///
+    /// # Errors
+    /// With both figures.
+    pub fn compare(
+        &self,
+        threads: usize,
+        available: f64,
+        none: impl FnOnce(String, String) -> StudyError,
+    ) -> Result<(), StudyError> {
+        let needed = self.of(threads);
+        if needed <= available {
+            return Ok(());
+        }
+        let fit = (1..threads).rev().find(|&fewer| self.of(fewer) <= available);
+        let available = byte_size(available);
+        Err(match fit {
+            None => none(byte_size(self.of(1)), available),
+            Some(fit) => StudyError::Memory {
+                threads,
+                needed: byte_size(needed),
+                available,
+                fit,
+            },
+        })
+    }
 }

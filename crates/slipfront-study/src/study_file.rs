@@ -12,9 +12,10 @@ use crate::project_file::{Base, given, parse_noting_places, read_base};
 use crate::project_folder::{Given, ProjectKind};
 use crate::summary_values::{REDUCTION, is_column, known};
 use slipfront_case::case_file::{
-    CASE_TABLES, CaseError, Override, STUDY_TABLES, Source, Tables, header_below, names_of, syntax_error,
-    unknown_case_table, unknown_key,
+    CASE_TABLES, CaseError, KeyKind, Override, STUDY_TABLES, Source, Tables, header_below, key, names_of,
+    syntax_error, unknown_case_table, unknown_key, whole,
 };
+use slipfront_case::key_rows;
 use slipfront_run::names::RECORDS;
 
 /// Folders of studies. Their study file has the base case as a table in it: `slipfront study DIR/study.toml` repeats the study.
@@ -40,28 +41,21 @@ pub struct StudyFile {
     pub(crate) table: toml::Table,
 }
 
-/// The table `[study]`: repetition, reference and kept folders.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct Settings {
-    /// Runs per point; replicate r uses the seed of the case + r.
-    pub replicates: u32,
-    /// Keys of the case that reductions are measured against, at the same seed (Eq. 16).
-    pub reference: Option<toml::Table>,
-    /// Run folders that are kept.
-    pub keep: RetainRuns,
-    /// Adaptive replication, in place of `replicates`.
-    pub until: Option<StoppingRule>,
-}
-
-impl Default for Settings {
-    fn default() -> Self {
-        Self {
-            replicates: 1,
-            reference: None,
-            keep: RetainRuns::None,
-            until: None,
-        }
+key_rows! {
+    /// The table `[study]`: repetition, reference and kept folders.
+    #[derive(Clone, Debug, Deserialize)]
+    #[serde(deny_unknown_fields)]
+    pub struct Settings {
+        /// Runs per point. Replicate r = 0, 1, ... uses the seed `friction.seed` + r, at most 2^63 - 1.
+        pub replicates: u32 = key("1", whole(1, MAX_REPLICATES as u64)),
+        /// Keys of the case that make of every point what its reduction is measured against (Eq. 16), at the
+        /// same seed. They come after those of the axes.
+        pub reference: Option<toml::Table> =
+            key("", KeyKind::Special("a valid case at every point")).without("none: no reductions"),
+        /// Run folders that are kept in `runs/`: all, none, or of failed runs the case file.
+        pub keep: RetainRuns = key("\"none\"", KeyKind::Words(names_of::<RetainRuns>)),
+        /// Adaptive replication, in place of `replicates`.
+        pub until: Option<StoppingRule> = key("", KeyKind::Table("", StoppingRule::KEYS)).without("none"),
     }
 }
 
@@ -77,30 +71,22 @@ pub enum RetainRuns {
     Failed,
 }
 
-/// Replication until a confidence interval is narrow enough.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct StoppingRule {
-    /// Quantity of the summary, or `static_reduction_percent`.
-    pub key: String,
-    /// Half width that the interval must not exceed.
-    pub half_width: f64,
-    /// Confidence of the interval.
-    #[serde(default = "default_confidence")]
-    pub confidence: f64,
-    /// Fewest replicates.
-    #[serde(default = "default_min")]
-    pub min: u32,
-    /// Most replicates.
-    pub max: u32,
-}
-
-fn default_confidence() -> f64 {
-    CONFIDENCE
-}
-
-fn default_min() -> u32 {
-    3
+key_rows! {
+    /// Replication until a confidence interval is narrow enough.
+    #[derive(Clone, Debug, PartialEq, Deserialize)]
+    #[serde(deny_unknown_fields)]
+    pub struct StoppingRule {
+        /// Name of a number of `summary.json`, or `static_reduction_percent`.
+        pub key: String = key("", KeyKind::Special("the reduction needs a `reference`")).without("needed"),
+        /// Half width that the interval must not exceed.
+        pub half_width: f64 = key("", KeyKind::Special("more than 0")).without("needed"),
+        /// Confidence of the interval; also of all intervals in tables and pictures (0.95 without `until`).
+        pub confidence: f64 = key("0.95", KeyKind::Special("between 0 and 1")),
+        /// Fewest replicates.
+        pub min: u32 = key("3", KeyKind::Special("2 to `max`")),
+        /// Most replicates.
+        pub max: u32 = key("", KeyKind::Special("up to 100 000")).without("needed"),
+    }
 }
 
 /// Confidence of intervals where the study asks for no other.
@@ -248,7 +234,7 @@ impl StudyFile {
             source: &source,
         };
         let base = read_base(&mut tables, file, folder)?;
-        let settings: Settings = tables.read("study")?;
+        let settings: Settings = tables.read_with("study", Settings::KEYS)?;
         settings.check(&source)?;
         let axes = read_axes(&mut tables)?;
         refuse_rest(&tables)?;

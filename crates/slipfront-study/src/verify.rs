@@ -21,12 +21,12 @@ use crate::plan::Plan;
 use crate::project_folder::verify::{differences_from, verify_project};
 use crate::project_folder::{Derivation, Extent, Others, VerifyStudyError, verify_checksums};
 use crate::records::Records;
-use crate::study_file::RetainRuns;
+use crate::study_file::{RetainRuns, STUDIES};
 use crate::study_results::StudyResults;
 
 /// Whether a study has been run in the folder.
 pub fn has_records(folder: &Path) -> bool {
-    crate::folder::is_study(folder) && folder.join(Records::FILE).exists()
+    STUDIES.is_in(folder)
 }
 
 /// Verifies the folder of a run, of a study, or of a project of one of these `others` that was finished.

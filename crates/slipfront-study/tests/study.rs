@@ -2,11 +2,19 @@
 
 #![allow(clippy::unwrap_used)] // A helper that cannot do its work fails its test.
 
+#[path = "../../slipfront-case/tests/support/reference_page.rs"]
+mod reference_page;
+
 use std::fs;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
-use slipfront_study::{self as study, Plan, Records, RunQuantity, StudyFile, StudyResults, anisotropies};
+use slipfront_study::{
+    self as study, AxisKeys, Plan, Records, RunQuantity, Settings, StoppingRule, StudyFile, StudyResults,
+    anisotropies,
+};
+
+use crate::reference_page::{expect_page, with_keys};
 
 /// The studies of the documentation and of `cases/studies` can be run, and every key of a study is explained.
 #[test]
@@ -59,8 +67,18 @@ fn studies_are_true() {
     }
 }
 
-/// A few grooves lower static friction as one does, many weaken the effect. Measured before by another build; the digits given are
-/// those of the figures.
+/// Every key has a row in the table of its section, as its struct declares it.
+#[test]
+fn the_reference_has_the_keys_of_the_structs() {
+    expect_page("study-file.md", |page| {
+        let page = with_keys(page, "`[study]`", Settings::KEYS);
+        let page = with_keys(&page, "`until`", StoppingRule::KEYS);
+        with_keys(&page, "`[[axes]]`", AxisKeys::KEYS)
+    });
+}
+
+/// A few grooves lower static friction as one does, many weaken the effect. Measured before by another build;
+/// the digits given are those of the figures.
 #[test]
 fn many_grooves_weaken_the_effect() {
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases/studies/grooves.toml");
@@ -89,7 +107,8 @@ fn results(text: &str) -> (Plan, StudyResults) {
     (plan, results)
 }
 
-/// Bits of static and kinetic friction at a point, and of both across the drive, of which a mirror turns the sign.
+/// Bits of static and kinetic friction at a point, and of both across the drive, of which a mirror turns the
+/// sign.
 fn friction_at(results: &StudyResults, point: usize, handed: f64) -> [u64; 4] {
     let value = |name: &str| {
         let value = results.value(point, 0, RunQuantity::named(name).unwrap());
@@ -108,7 +127,8 @@ fn friction_at(results: &StudyResults, point: usize, handed: f64) -> [u64; 4] {
 /// The replicates are the same run, as many as a test of chance needs.
 const SMOOTH: &str = "study.replicates = 3\nbase.friction = { sigma_static_star = 0, sigma_kinetic_star = 0 }\nbase.drive.v_star = 0.1\n";
 
-/// Every quarter turn and mirror of the drive on a texture that has all symmetries of the square gives the same bits.
+/// Every quarter turn and mirror of the drive on a texture that has all symmetries of the square gives the
+/// same bits.
 #[test]
 fn a_symmetric_texture_has_the_friction_of_its_symmetry() {
     for texture in [
@@ -132,7 +152,8 @@ fn a_symmetric_texture_has_the_friction_of_its_symmetry() {
                 assert_eq!(found, first, "{texture}: {}", plan.describe(&plan.points[point]));
             }
         }
-        // Along an axis of symmetry nothing pulls across; between them something does, or the signs above would be tried on nothing.
+        // Along an axis of symmetry nothing pulls across; between them something does, or the signs above
+        // would be tried on nothing.
         assert_eq!(friction_at(&results, 9, 1.0)[2..], [0, 0], "{texture}");
         assert!(
             friction_at(&results, 0, 1.0)[2..].iter().all(|bits| *bits != 0),
@@ -153,7 +174,8 @@ fn a_symmetric_texture_has_the_friction_of_its_symmetry() {
     }
 }
 
-/// A groove across x is one along x that is turned: so is friction, and its principal axes are along and across it.
+/// A groove across x is one along x that is turned: so is friction, and its principal axes are along and
+/// across it.
 #[test]
 fn grooves_turn_their_friction_with_them() {
     let (plan, results) = results(&format!(

@@ -47,36 +47,6 @@ pub struct Outline {
     pub n_blocks: usize,
 }
 
-/// Options of a slider that decide which arrays it has, and whether it has dampers; known before the arrays are made.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct SliderOptions {
-    /// Whether Young's modulus is given block by block.
-    pub has_moduli: bool,
-    /// Whether the density is given block by block.
-    pub has_densities: bool,
-    /// Whether some blocks do not exist.
-    pub has_outline: bool,
-    /// Whether some blocks have no drive spring.
-    pub drives_some: bool,
-    /// Whether there are dampers beside the springs between blocks.
-    pub has_dampers: bool,
-}
-
-impl SliderOptions {
-    /// Whether all springs between blocks are those of the paper.
-    pub(crate) fn has_equal_springs(self) -> bool {
-        !self.has_moduli && !self.has_outline
-    }
-
-    /// Bytes of a [`Slider`] per block. Drive springs follow moduli and outline.
-    pub fn bytes_per_block(self) -> usize {
-        let has_drive_springs = self.drives_some || !self.has_equal_springs();
-        let numbers = [self.has_moduli, self.has_densities, has_drive_springs];
-        numbers.map(usize::from).iter().sum::<usize>() * size_of::<f64>()
-            + usize::from(self.has_outline) * size_of::<bool>()
-    }
-}
-
 impl Default for Slider {
     fn default() -> Self {
         Self {

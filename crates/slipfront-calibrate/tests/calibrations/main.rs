@@ -1,20 +1,25 @@
-//! Calibrations: their results for records whose truth is known, and that results are equal however the runs are made.
+//! Calibrations: their results for records whose truth is known, and that results are equal however the runs
+//! are made.
 
 #![allow(clippy::unwrap_used)] // A helper that cannot do its work fails its test.
 
 mod rate_and_state;
+#[path = "../../../slipfront-case/tests/support/reference_page.rs"]
+mod reference_page;
 
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use serde_json::Value;
-use slipfront_calibrate::{CalibrationFile, CalibrationFolder, CalibrationStage};
+use slipfront_calibrate::{CalibrationFile, CalibrationFolder, CalibrationKeys, CalibrationStage};
 use slipfront_case::case::Case;
 use slipfront_design::DesignFile;
 use slipfront_run::measured::Measure;
 use slipfront_run::run_curve::run_curve_unless;
 use slipfront_study::StudyError;
+
+use crate::reference_page::{expect_page, with_keys};
 
 /// A small slider with two unknown keys.
 const BASE: &str = "[base]\nslider.blocks = [6, 6]\ndrive.v_star = 0.1\ntime.step = 0.4\n";
@@ -52,7 +57,8 @@ fn write_record(path: &Path) {
     fs::write(path, format!("time_s,force_n\n{}", lines.collect::<String>())).unwrap();
 }
 
-/// A standard normal for every step: twelve parts of multiples of the golden ratio, each uniform, less their mean.
+/// A standard normal for every step: twelve parts of multiples of the golden ratio, each uniform, less their
+/// mean.
 fn normal(step: usize) -> f64 {
     let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
     let uniform = |k: usize| ((step * 12 + k + 1) as f64 * golden * 1e4).fract();
@@ -154,6 +160,14 @@ fn calibration_files_are_true() {
     }
 }
 
+/// Every key has a row in the table of its section, as its struct declares it.
+#[test]
+fn the_reference_has_the_keys_of_the_struct() {
+    expect_page("calibration-file.md", |page| {
+        with_keys(page, "`[calibrate]`", CalibrationKeys::KEYS)
+    });
+}
+
 /// The record of the example is the run that its comment describes, with noise of 1 % of its mean.
 #[test]
 fn the_record_of_the_example_is_a_run_with_noise() {
@@ -208,7 +222,8 @@ fn the_truth_lies_within_the_intervals() {
             "{text}"
         );
     }
-    // The level of some micronewtons tells the coefficient, and the slope of loading the mount, within a tenth of its range.
+    // The level of some micronewtons tells the coefficient, and the slope of loading the mount, within a
+    // tenth of its range.
     for number in [0, 1] {
         let [_, low, high] = told(&found, number);
         assert!(high - low < 0.06, "{text}");
@@ -226,7 +241,8 @@ fn the_truth_lies_within_the_intervals() {
     assert!((case.scales.mu_static_mean - told(&found, 0)[0]).abs() < 1e-12);
 }
 
-/// A calibration that was stopped, with a journal cut short, on one thread and on three, gives the same files.
+/// A calibration that was stopped, with a journal cut short, on one thread and on three, gives the same
+/// files.
 #[test]
 fn a_calibration_goes_on_to_the_same_bytes() {
     let folder = tempfile::tempdir().unwrap();
@@ -289,8 +305,8 @@ fn a_calibration_goes_on_to_the_same_bytes() {
     }
 }
 
-/// Records of another law are refused and conditions count: several records are fitted at once, and a record of another
-/// speed is none of this model.
+/// Records of another law are refused and conditions count: several records are fitted at once, and a record
+/// of another speed is none of this model.
 #[test]
 fn records_of_another_law_are_refused_and_conditions_count() {
     let folder = tempfile::tempdir().unwrap();

@@ -1,210 +1,387 @@
-//! Memory that a case takes while it is made and stepped, compared with the free memory of the machine before any of it is
-//! taken.
+//! Memory and disk space of a run, estimated from the blocks, snapshots and rows that it keeps and compared with the machine
+//! before any of it is taken.
 //!
-//! The modules that own the arrays state their sizes. The modules of slipfront-run that write the results of a run add the
-//! memory and disk space of these.
+//! The estimate is an upper bound with one margin: every figure of this file is the most that was measured over all options,
+//! rounded up. `tests/budget` of slipfront-cli holds it against the memory that runs take.
 
 use std::ops::Range;
+use std::path::Path;
 
-use slipfront::{Kernel, Lattice, ModelOptions, Surface};
-
-use super::ranks::Ranks;
-use super::{drive, textures};
-use crate::case_file::{CaseError, CaseFile};
-use slipfront_base::machine::{available_memory, can_be_had};
+use slipfront::observe::{Kymograph, frames};
+use slipfront::{Friction, Kernel, Lattice, Model};
+use slipfront_base::machine::{available_memory, can_be_had, free_disk};
 use slipfront_base::number_format::{byte_size, count};
 
-/// Largest ratio of resident to allocated memory: the allocator keeps memory that has been given back, and cannot use gaps
-/// between pieces that have not. The ratio was up to 1.04.
-const HEAP: f64 = 1.05;
+use super::inputs::Input;
+use super::output::Output;
+use super::ranks::Ranks;
+use crate::case_file::{Attached, AttachedEdge, CaseError, CaseFile, Motion, Outline, Shape};
+
+/// Bytes of a number.
+const NUMBER: f64 = size_of::<f64>() as f64;
+
+const MIB: f64 = 1024.0 * 1024.0;
 
 /// Memory of the program itself.
-pub const PROGRAM: f64 = 8.0 * 1024.0 * 1024.0;
+pub const PROGRAM: f64 = 12.0 * MIB;
 
-/// Memory that a case takes while it is made and stepped.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// Memory while pictures of the usual size are drawn, two at once, whatever they show.
+pub const PICTURES: f64 = 28.0 * MIB;
+
+/// Memory while pictures of a movie are drawn, some at once.
+const MOVIE: f64 = 48.0 * MIB;
+
+/// Bytes of the file of a movie for each of its pictures.
+const MOVIE_FILE: f64 = 3e4;
+
+/// Bytes of the files of a run that do not grow with it: pictures, summary and manifest.
+const FILES: f64 = 2e6;
+
+/// Most blocks of a map that is drawn: larger lattices are averaged.
+const MAP_BLOCKS: f64 = 65_536.0;
+
+/// Bytes of a run in memory and in a checkpoint that do not grow with it.
+const RESULTS: f64 = 1.5 * MIB;
+
+/// Numbers of blocks that the first of several ranks takes to find the slip front, and the most blocks of which it does.
+const GATHERED: [f64; 2] = [5.0, (1 << 22) as f64];
+
+/// Steps from one slip event of a slider that is driven at an edge to the next, at the least. Measured were 175 and more.
+const STEPS_OF_EVENT: u64 = 50;
+
+/// The numbers of blocks, snapshots, rows and the like on which memory and disk space of a run depend.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Budget {
     /// Blocks of the rows that this process holds.
-    pub blocks: f64,
-    /// Bytes of the surface and of the slider per block.
-    pub surface: f64,
-    /// Bytes of the kernel per block, on one thread.
-    pub kernel: f64,
-    /// Bytes per block that the kernel adds on several threads.
-    pub bands: f64,
-    /// Bytes of masks and heights until they are laid over the lattice.
-    pub laid: f64,
-    /// Bytes of the files that the case reads.
-    pub inputs: f64,
+    blocks: f64,
+    /// Numbers of such a block in the model, and with the kernel that steps it on one thread.
+    numbers: [f64; 2],
+    /// Ratio of the memory of the kernel to that on one thread.
+    bands: f64,
+    /// Bytes of masks and heights while they are laid over the lattice.
+    laid: f64,
     /// Whether the lattice is shared by several ranks.
-    pub is_shared: bool,
+    is_shared: bool,
     /// Ranks on this machine.
-    pub ranks_on_node: f64,
+    ranks_on_node: f64,
+    /// Blocks of the whole lattice, and numbers of such a block in a checkpoint.
+    all_blocks: f64,
+    columns: f64,
+    /// Blocks whose fields are kept: of this process, and of the whole lattice.
+    cells: [f64; 2],
+    frames: f64,
+    fields: f64,
+    rows: f64,
+    /// Events of slip of a slider that is driven at an edge.
+    events: f64,
+    /// Places times instants of the kymograph.
+    kymograph: f64,
+    /// Pictures of the movie.
+    movie: f64,
+    /// Bytes of the files that the case reads.
+    inputs: f64,
 }
 
 /// A cause of memory or disk use.
-#[derive(Clone, Debug)]
-pub struct Cause {
+struct Cause {
     /// The key of the case to which the use is due.
-    pub key: &'static str,
+    key: &'static str,
     /// Number and kind of the things that take the memory.
-    pub what: String,
+    what: String,
     /// Remedy by which less is taken.
-    pub remedy: &'static str,
+    remedy: &'static str,
 }
 
-/// Memory that is needed for a purpose.
-#[derive(Debug)]
-pub struct Demand<'a> {
-    /// The case whose key a refusal names.
-    pub file: &'a CaseFile,
-    /// Purpose for which the memory is needed.
-    pub whose: &'a str,
-    /// Cause of the largest part of the demand, and its bytes.
-    pub most: (Cause, f64),
-    /// Bytes of this rank, with the program.
-    pub of_rank: f64,
-    /// Bytes of all ranks of this machine.
-    pub on_node: f64,
-    /// Bytes of the demand that each rank has taken already.
-    pub had: f64,
+/// A part of the memory and disk space of a run.
+struct Part {
+    /// Function that makes the words of the cause, called for a refusal alone because many small cases are judged.
+    cause: fn(&Budget) -> Cause,
+    /// Bytes in memory, in files, and in a checkpoint.
+    bytes: [f64; 3],
 }
 
-impl Cause {
-    /// The cause and its bytes, in words.
-    pub fn in_words(&self, bytes: f64) -> String {
-        format!("{} of it for {}", byte_size(bytes), self.what)
-    }
+/// Places in which a run takes bytes, in the order of [`Part::bytes`].
+#[derive(Clone, Copy)]
+enum Place {
+    Memory,
+    Files,
+    Checkpoint,
 }
 
 impl Budget {
     /// Memory of cases that are too small to be compared with the machine, nor in Python their runs: asking for its free
     /// memory takes longer than making a small case. Commands compare the whole memory of a run.
-    pub const SMALL: f64 = 64.0 * 1024.0 * 1024.0;
+    pub const SMALL: f64 = 64.0 * MIB;
 
-    /// The budget of a case with a model of these options, for a process that holds these rows.
-    pub(super) fn new(
+    /// The budget of a model, without results, for a process that holds these rows.
+    pub(super) fn of_model(
         lattice: &Lattice,
         rows: &Range<usize>,
         ranks: &Ranks,
         file: &CaseFile,
-        options: &ModelOptions,
+        friction: &Friction,
     ) -> Self {
-        let blocks = lattice.nx * rows.len();
-        let surface = Surface::bytes_per_block(options.has_pressures) + options.slider.bytes_per_block();
-        let kernel = Kernel::default().for_options(options);
-        let masks = textures::bytes_to_lay(file, blocks, lattice.n_blocks());
+        let blocks = (lattice.nx * rows.len()) as f64;
+        let shapes = || file.texture.iter().map(|texture| &texture.shape);
+        let masks = shapes().filter(|shape| !shape.has_outline()).count();
+        let has_heights = shapes().any(|shape| matches!(shape, Shape::HeightMap(_)));
+        // Means of heights are found over the whole lattice.
+        let heights = if has_heights { 3.0 * NUMBER } else { 0.0 };
         Self {
-            blocks: blocks as f64,
-            surface: surface as f64,
-            kernel: kernel.bytes_per_block(options),
-            bands: kernel.bytes_per_block_of_bands(options),
-            laid: (masks + drive::bytes_of_attached(file, blocks)) as f64,
-            inputs: 0.0,
+            blocks,
+            numbers: numbers_of_block(file, friction),
+            bands: match kernel(file, friction) {
+                Kernel::Fused => 1.0,
+                Kernel::General => BANDS,
+            },
+            laid: blocks * masks as f64 + lattice.n_blocks() as f64 * heights,
             is_shared: ranks.communicator.size() > 1,
             ranks_on_node: ranks.on_node as f64,
+            ..Self::default()
         }
     }
 
-    /// Bytes that are resident where `allocated` bytes are allocated.
-    pub fn resident(allocated: f64) -> f64 {
-        HEAP * allocated
+    /// The budget with the results of a run of `last_step` steps, and with the files that the case reads.
+    pub(super) fn with_results(
+        self,
+        file: &CaseFile,
+        model: &Model,
+        output: &Output,
+        last_step: u64,
+        inputs: &[Input],
+    ) -> Self {
+        let lattice = &model.lattice;
+        // How often a held drive stands is not known before.
+        let most_steps = if model.drive.is_held() {
+            u64::MAX
+        } else {
+            last_step
+        };
+        let kept = |indices: Range<usize>| frames::kept(indices, output.stride).len() as f64;
+        let columns = kept(0..lattice.nx);
+        let frames = output.max_snapshots(last_step) as f64;
+        Self {
+            all_blocks: lattice.n_blocks() as f64,
+            columns: model.n_columns() as f64,
+            cells: [columns * kept(model.rows.clone()), columns * kept(0..lattice.ny)],
+            frames,
+            fields: output.fields.len() as f64,
+            rows: (last_step / output.series_stride) as f64 + 2.0,
+            events: match file.drive.edge() {
+                Some(_) => last_step.div_ceil(STEPS_OF_EVENT) as f64,
+                None => 0.0,
+            },
+            kymograph: Kymograph::max_counts(lattice, most_steps) as f64,
+            movie: if output.movie { frames } else { 0.0 },
+            inputs: inputs.iter().map(|input| input.length as f64).sum(),
+            ..self
+        }
     }
 
-    /// Elements for which a vector has room that grew to `length` by doubling.
-    pub fn grown(length: f64) -> f64 {
-        libm::exp2(libm::log2(length.max(4.0)).ceil())
+    /// Parts of the memory and disk space.
+    fn parts(&self) -> [Part; 5] {
+        let [cells, all_cells] = self.cells;
+        let snapshots = |cells: f64| self.frames * (256.0 + self.fields * (64.0 + 4.0 * cells));
+        [
+            Part {
+                cause: |budget| Cause {
+                    key: "slider.blocks",
+                    what: count(budget.blocks as usize, "block"),
+                    remedy: "lower `slider.blocks`",
+                },
+                bytes: [
+                    self.blocks * NUMBER * self.numbers[1] * self.bands,
+                    26.0 * all_cells,
+                    self.all_blocks * NUMBER * self.columns,
+                ],
+            },
+            Part {
+                cause: |budget| Cause {
+                    key: "output.snapshots",
+                    what: format!(
+                        "{} of {}",
+                        count(budget.frames as usize, "snapshot"),
+                        count(budget.fields as usize, "field")
+                    ),
+                    remedy: "take fewer `output.snapshots`, name fewer `output.fields`, or raise `output.stride`",
+                },
+                bytes: [snapshots(cells), snapshots(all_cells), snapshots(all_cells)],
+            },
+            Part {
+                cause: |budget| Cause {
+                    key: "output.series",
+                    what: format!("{} of the series", count(budget.rows as usize, "row")),
+                    remedy: "raise `output.series`",
+                },
+                bytes: [750.0, 400.0, 200.0].map(|bytes| bytes * self.rows),
+            },
+            Part {
+                cause: |budget| Cause {
+                    key: "drive.attach",
+                    what: count(budget.events as usize, "slip event"),
+                    remedy: "shorten the run",
+                },
+                bytes: [500.0, 250.0, 250.0].map(|bytes| bytes * self.events),
+            },
+            Part {
+                cause: |_| Cause {
+                    key: "texture",
+                    what: "the files that it reads".to_owned(),
+                    remedy: "scale them down, or name fewer",
+                },
+                bytes: [self.laid, self.inputs, 0.0],
+            },
+        ]
     }
 
-    /// Bytes while the case is made.
+    /// Bytes in a place, including those that no key of a case changes.
+    fn total(&self, place: Place) -> f64 {
+        let beside = match place {
+            Place::Memory => RESULTS + 24.0 * self.kymograph + self.gathered(),
+            // Six maps, of six bytes for a block.
+            Place::Files => {
+                let maps = 36.0 * self.cells[1].min(MAP_BLOCKS);
+                FILES + maps + 4.0 * self.kymograph + MOVIE_FILE * self.movie
+            }
+            Place::Checkpoint => RESULTS + 8.0 * self.kymograph,
+        };
+        self.parts()
+            .iter()
+            .map(|part| part.bytes[place as usize])
+            .sum::<f64>()
+            + beside
+    }
+
+    /// Bytes of the numbers of other ranks' blocks.
+    fn gathered(&self) -> f64 {
+        let [numbers, most] = GATHERED;
+        if self.is_shared {
+            NUMBER * numbers * self.all_blocks.min(most)
+        } else {
+            0.0
+        }
+    }
+
+    /// Bytes while pictures and movie are drawn, beside those of the run; its snapshots are in memory no more.
+    fn drawing(&self) -> f64 {
+        if self.movie == 0.0 {
+            return PICTURES;
+        }
+        let ([_, cells], [_, snapshots, ..]) = (self.cells, self.parts());
+        let more = memory_of_movie(self.movie, cells) - snapshots.bytes[Place::Memory as usize];
+        PICTURES + more.max(0.0)
+    }
+
+    /// Memory in which the case is made, in bytes.
     pub fn making(&self) -> f64 {
-        self.blocks * self.surface + self.laid
+        self.blocks * NUMBER * self.numbers[0] + self.laid
     }
 
-    /// Bytes while the model is stepped.
+    /// Memory in which the model is stepped on one thread, without results, in bytes.
     pub fn stepping(&self) -> f64 {
-        self.blocks * (self.surface + self.kernel + self.bands)
+        self.blocks * NUMBER * self.numbers[1] + self.laid
     }
 
-    /// The blocks that this process holds, as a cause of memory use.
-    pub fn cause_of_blocks(&self) -> Cause {
-        Cause {
-            key: "slider.blocks",
-            what: count(self.blocks as usize, "block"),
-            remedy: "lower `slider.blocks`",
-        }
+    /// Memory of one of several runs at once beside the program, each on one thread, in bytes; `writes` tells whether it
+    /// writes files and draws pictures.
+    pub fn beside_others(&self, writes: bool) -> f64 {
+        let on_one_thread = Self { bands: 1.0, ..*self };
+        on_one_thread.of_run(writes)
     }
 
-    /// The files that the case reads, as a cause of memory use.
-    pub fn cause_of_inputs() -> Cause {
-        Cause {
-            key: "texture",
-            what: "the files that it reads".to_owned(),
-            remedy: "scale them down, or name fewer",
-        }
+    /// Memory of a run beside the program, in bytes.
+    fn of_run(&self, writes: bool) -> f64 {
+        self.total(Place::Memory) + if writes { self.drawing() } else { 0.0 }
     }
 
-    /// Refuses a case that has no memory to be made.
-    pub(super) fn check_making(&self, file: &CaseFile) -> Result<(), CaseError> {
-        if self.making() < Self::SMALL {
+    /// Memory of a run with its files and pictures, in bytes; memory of each rank if there are several.
+    pub fn memory(&self) -> f64 {
+        PROGRAM + self.of_run(true)
+    }
+
+    /// Bytes of all ranks of this machine, of which the first draws.
+    fn on_node(&self) -> f64 {
+        self.memory() + (self.ranks_on_node - 1.0) * (PROGRAM + self.of_run(false))
+    }
+
+    /// Disk space for the files of a run, in bytes.
+    pub fn disk(&self) -> f64 {
+        self.total(Place::Files)
+    }
+
+    /// Disk space for the snapshots alone, in bytes.
+    pub fn disk_of_snapshots(&self) -> f64 {
+        let [_, snapshots, ..] = self.parts();
+        snapshots.bytes[Place::Files as usize]
+    }
+
+    /// Disk space for checkpoints while the run goes on, in bytes: the latest one, the one before it, and one that is being
+    /// written.
+    pub fn disk_of_checkpoints(&self) -> f64 {
+        3.0 * self.total(Place::Checkpoint)
+    }
+
+    /// Refuses a case that has no memory to be made, or to be run if it is made for that. No array is there yet.
+    pub(super) fn check_case(&self, file: &CaseFile, to_run: bool) -> Result<(), CaseError> {
+        let (whose, budget) = if to_run {
+            ("a run of this case", *self)
+        } else {
+            let [made, _] = self.numbers;
+            let numbers = [made, made];
+            let bands = 1.0;
+            (
+                "this case",
+                Self {
+                    numbers,
+                    bands,
+                    ..*self
+                },
+            )
+        };
+        if self.ranks_on_node * budget.of_run(false) < Self::SMALL {
             return Ok(());
         }
-        let of_blocks = self.blocks * self.surface;
-        let most = if self.laid >= of_blocks {
-            (Self::cause_of_inputs(), self.laid)
-        } else {
-            (self.cause_of_blocks(), of_blocks)
-        };
-        self.compare(
-            self.demand(file, "this case", most, self.making()),
-            available_memory(),
-        )
+        budget.compare(file, whose, None, 0.0, available_memory())
     }
 
-    /// Refuses a case that has no memory to be made or stepped.
-    pub(super) fn check_running(&self, file: &CaseFile) -> Result<(), CaseError> {
-        let stepping = self.stepping();
-        if self.ranks_on_node * stepping >= Self::SMALL {
-            let demand = self.demand(
-                file,
-                "a run of this case",
-                (self.cause_of_blocks(), stepping),
-                stepping,
-            );
-            self.compare(demand, available_memory())?;
-        }
-        self.check_making(file)
-    }
-
-    fn demand<'a>(
-        &self,
-        file: &'a CaseFile,
-        whose: &'a str,
-        most: (Cause, f64),
-        allocated: f64,
-    ) -> Demand<'a> {
-        let of_rank = PROGRAM + Self::resident(allocated);
-        Demand {
-            file,
-            whose,
-            most,
-            of_rank,
-            on_node: self.ranks_on_node * of_rank,
-            had: 0.0,
-        }
-    }
-
-    /// Refuses a demand for more memory than there is, with `available` bytes beside those that each rank has taken.
+    /// Refuses a run, or one that goes on from a checkpoint if it `is_resumed`, that needs more memory than there is; the
+    /// models of all ranks are in memory already.
     ///
     /// # Errors
-    /// A sentence with both figures, and the key to change.
-    pub fn compare(&self, demand: Demand, available: Option<f64>) -> Result<(), CaseError> {
-        let Demand {
-            of_rank,
-            on_node,
-            had,
-            ..
-        } = demand;
+    /// A sentence with both figures, the cause of the largest part, and the key to change.
+    pub fn check_memory(&self, file: &CaseFile, is_resumed: bool) -> Result<(), CaseError> {
+        let made = self.blocks * NUMBER * self.numbers[0];
+        self.compare_run(file, is_resumed, made, available_memory())
+    }
+
+    fn compare_run(
+        &self,
+        file: &CaseFile,
+        is_resumed: bool,
+        had: f64,
+        available: Option<f64>,
+    ) -> Result<(), CaseError> {
+        let (whose, remedy) = if is_resumed {
+            // The case of a run that resumes can be changed no more.
+            let remedy = "give it more, in a queue for example with `--mem`";
+            ("going on with this run", Some(remedy))
+        } else {
+            ("a run of this case", None)
+        };
+        self.compare(file, whose, remedy, had, available)
+    }
+
+    /// Refuses a demand for more memory than there is: `had` bytes were taken by each rank already, `available` bytes are free
+    /// beside them. `whose` memory it is and the `remedy`, if not that of its largest part, are words of the refusal.
+    fn compare(
+        &self,
+        file: &CaseFile,
+        whose: &str,
+        remedy: Option<&'static str>,
+        had: f64,
+        available: Option<f64>,
+    ) -> Result<(), CaseError> {
+        let (of_rank, on_node) = (self.memory(), self.on_node());
         let available = available.map(|available| available + self.ranks_on_node * had);
         let bound = match available {
             Some(available) if on_node > available => {
@@ -222,20 +399,265 @@ impl Budget {
             1.0 => String::new(),
             ranks => format!(", {} for the {ranks} ranks of this machine,", byte_size(on_node)),
         };
-        let (whose, needed) = (demand.whose, byte_size(of_rank));
-        let (cause, bytes) = demand.most;
-        let (most, remedy) = (cause.in_words(bytes), cause.remedy);
+        let (cause, bytes) = self.most(Place::Memory);
+        let (needed, most) = (byte_size(of_rank), cause.in_words(bytes));
+        let remedy = remedy.unwrap_or(cause.remedy);
         let sentence = format!(
             "{whose} takes about {needed} of memory{each} ({most}){together} where {bound}: {remedy}{or}"
         );
-        Err(demand.file.source.error(cause.key, sentence))
+        Err(file.source.error(cause.key, sentence))
     }
+
+    /// Refuses a run whose files, and checkpoints if it saves any, have no room in `folder`, which need not exist yet.
+    /// `replaced` is what goes from there before.
+    ///
+    /// # Errors
+    /// A sentence with both figures, what most of it is for, and the key to change.
+    pub fn check_disk(
+        &self,
+        file: &CaseFile,
+        folder: &Path,
+        replaced: u64,
+        checkpoints: bool,
+    ) -> Result<(), CaseError> {
+        let Some(free) = free_disk(folder).map(|free| free + replaced as f64) else {
+            return Ok(());
+        };
+        let beside = if checkpoints {
+            self.disk_of_checkpoints()
+        } else {
+            0.0
+        };
+        if self.disk() + beside <= free {
+            return Ok(());
+        }
+        let (beside, without) = if checkpoints {
+            (
+                format!(" and its checkpoints {}", byte_size(beside)),
+                ", run without checkpoints (--checkpoint off)",
+            )
+        } else {
+            (String::new(), "")
+        };
+        let (cause, bytes) = self.most(Place::Files);
+        let sentence = format!(
+            "the files of this run take about {} ({}){beside} where {} are free in {}: free some, {}{without}, \
+             or choose another folder",
+            byte_size(self.disk()),
+            cause.in_words(bytes),
+            byte_size(free),
+            folder.display(),
+            cause.remedy
+        );
+        Err(file.source.error(cause.key, sentence))
+    }
+
+    /// Cause of the largest part of the bytes in a place, and its bytes.
+    fn most(&self, place: Place) -> (Cause, f64) {
+        let bytes_of = |part: &Part| part.bytes[place as usize];
+        let [mut most, others @ ..] = self.parts();
+        for part in others {
+            if bytes_of(&part) >= bytes_of(&most) {
+                most = part;
+            }
+        }
+        let bytes = bytes_of(&most);
+        ((most.cause)(self), bytes)
+    }
+}
+
+/// Memory for making a movie of this many pictures of at most `cells` blocks, in bytes: maps of larger lattices are averaged.
+pub fn memory_of_movie(pictures: f64, cells: f64) -> f64 {
+    MOVIE + pictures * (1e5 + 4.0 * cells.min(MAP_BLOCKS))
+}
+
+impl Cause {
+    /// The cause and its bytes, in words.
+    fn in_words(&self, bytes: f64) -> String {
+        format!("{} of it for {}", byte_size(bytes), self.what)
+    }
+}
+
+/// Numbers of a block in the model of a case file, and with the kernel that steps it on one thread.
+fn numbers_of_block(file: &CaseFile, friction: &Friction) -> [f64; 2] {
+    let (slider, load, needs) = (&file.slider, &file.load, friction.needs());
+    let has_outline = slider.outline != Outline::Rectangle;
+    let has_pressures = load.profile.is_some() || load.pressure_field.is_some();
+    let varies = [
+        slider.stiffness_field.is_some() || slider.stiffness_grade.is_some(),
+        slider.density_field.is_some() || slider.density_grade.is_some(),
+        file.drive.attached != Attached::At(AttachedEdge::All),
+    ];
+    let many = |options: &[bool]| options.iter().filter(|is_used| **is_used).count() as f64;
+    let own = 2.0 * many(&varies) + 2.0 * many(&[has_outline, has_pressures]);
+    let blocks_differ = own > 0.0;
+    let stepped = match kernel(file, friction) {
+        Kernel::Fused if varies.contains(&true) || needs.varies => 22.0,
+        Kernel::Fused => 10.0 + own,
+        Kernel::General => {
+            29.0 + if blocks_differ { 9.0 } else { 0.0 } + if is_viscous(file) { 12.0 } else { 0.0 }
+        }
+    };
+    [3.0 + own, stepped + 2.0 * needs.columns as f64]
+}
+
+/// Ratio of the memory of the general kernel on several threads, each of which has the rows beside its own, to that on one.
+const BANDS: f64 = 1.3;
+
+fn is_viscous(file: &CaseFile) -> bool {
+    file.slider.viscosity_time_star > 0.0
+}
+
+/// The kernel that computes the model of a case file.
+fn kernel(file: &CaseFile, friction: &Friction) -> Kernel {
+    Kernel::default().for_law(friction, is_viscous(file), file.drive.motion == Motion::Rotation)
 }
 
 #[cfg(test)]
 mod tests {
+    use slipfront::testing::Threads;
+
     use super::*;
-    use slipfront_base::machine::free_disk;
+    use crate::case::Case;
+
+    fn case(sets: &[&str]) -> Case {
+        let overrides: Vec<String> = sets.iter().map(|&set| set.to_owned()).collect();
+        Case::parse("", "case", "", &overrides).unwrap()
+    }
+
+    /// Reason for which a new run with this budget is refused, if it is.
+    fn refusal(case: &Case, budget: &Budget, had: f64, available: Option<f64>) -> Option<String> {
+        let compared = budget.compare_run(&case.file, false, had, available);
+        compared.err().map(|error| error.to_string())
+    }
+
+    #[test]
+    fn what_takes_the_most_is_named_with_its_remedy() {
+        for (sets, key, words) in [
+            (
+                vec!["slider.blocks=[2000,2000]", "output.snapshots=[]"],
+                "slider.blocks",
+                ["MiB of it for 4000000 blocks", "lower `slider.blocks`"],
+            ),
+            (
+                vec!["slider.blocks=[100,100]", "output.snapshots={every=0.1}"],
+                "output.snapshots",
+                ["for 2674 snapshots of 5 fields", "raise `output.stride`"],
+            ),
+            (
+                vec!["output.series=0.1", "time.duration_star=1e6"],
+                "output.series",
+                ["for 10000002 rows of the series", "raise `output.series`"],
+            ),
+        ] {
+            let case = case(&sets);
+            let refused = refusal(&case, &case.budget, 0.0, Some(2e8)).unwrap();
+            // The place is the override of the key.
+            assert!(refused.starts_with(&format!("--set {key}=")), "{key}: {refused}");
+            for word in ["where 190.7 MiB are available"].iter().chain(&words) {
+                assert!(refused.contains(word), "{word}: {refused}");
+            }
+            assert!(!refused.contains("rank"), "{refused}");
+        }
+    }
+
+    /// Ranks share the memory of a run: four ranks, two of them on this machine.
+    #[test]
+    fn ranks_share_what_a_run_takes() {
+        let overrides = ["slider.blocks=[2000,2000]", "output.snapshots={every=20}"].map(str::to_owned);
+        let made = |communicator: &Threads, on_node| {
+            let ranks = Ranks {
+                communicator,
+                on_node,
+            };
+            let file = CaseFile::parse("", "case", &overrides).unwrap();
+            Case::to_run(file, "case", Path::new(""), &mut |_| true, ranks).unwrap()
+        };
+        let alone = case(&["slider.blocks=[2000,2000]", "output.snapshots={every=20}"]).budget;
+        let cases = Threads::run(4, |communicator| made(communicator, 2));
+        // What is there once for every process: the numbers that do not belong to blocks.
+        let mut none = alone;
+        (none.blocks, none.cells) = (0.0, [0.0; 2]);
+        let beside = none.of_run(false);
+        let shared = cases
+            .iter()
+            .map(|case| case.budget.of_run(false) - case.budget.gathered() - beside);
+        assert_eq!(shared.sum::<f64>(), alone.of_run(false) - beside);
+        for case in &cases {
+            assert_eq!(case.budget.disk(), alone.disk());
+            assert_eq!(case.budget.disk_of_checkpoints(), alone.disk_of_checkpoints());
+        }
+        // While one draws, the other one has what it ran with.
+        let budget = cases[0].budget;
+        let needed = budget.on_node();
+        assert_eq!(needed, 2.0 * budget.memory() - budget.drawing());
+        assert_eq!(refusal(&cases[0], &budget, 0.0, Some(needed)), None);
+        assert_eq!(refusal(&cases[0], &budget, 1e6, Some(needed - 2e6)), None);
+        let refused = refusal(&cases[0], &budget, 1e6, Some(needed - 3e6)).unwrap();
+        for word in [
+            " of memory per rank (",
+            &format!(", {} for the 2 ranks of this machine, where ", byte_size(needed)),
+            ", or share it among more machines",
+        ] {
+            assert!(refused.contains(word), "{word}: {refused}");
+        }
+        let spread = Threads::run(4, |communicator| made(communicator, 1));
+        let refused = refusal(&spread[3], &spread[3].budget, 0.0, Some(1e6)).unwrap();
+        assert!(
+            refused.contains(" of memory per rank (") && !refused.contains("ranks"),
+            "{refused}"
+        );
+    }
+
+    /// Memory that has been taken already counts as available: the case itself is in memory when its run is judged.
+    #[test]
+    fn what_has_been_taken_already_counts_as_available() {
+        let case = case(&["slider.blocks=[2000,1000]", "output.snapshots=[]"]);
+        let budget = case.budget;
+        let made = budget.making();
+        let enough = budget.memory() - made;
+        assert_eq!(refusal(&case, &budget, made, Some(enough)), None);
+        assert!(refusal(&case, &budget, made, Some(0.99 * enough)).is_some());
+        // A system that does not say what it has is asked for all of it.
+        assert_eq!(refusal(&case, &budget, made, None), None);
+        let mut huge = budget;
+        huge.blocks = 1e16;
+        let refused = refusal(&case, &huge, 0.0, None).unwrap();
+        assert!(refused.contains("ulimit -v"), "{refused}");
+        // Of a run that has begun no key can be changed.
+        let refused = budget.compare_run(&case.file, true, made, Some(0.0));
+        let refused = refused.unwrap_err().to_string();
+        assert!(
+            refused.contains("give it more") && !refused.contains("lower"),
+            "{refused}"
+        );
+    }
+
+    /// The kernel for which memory is counted before there is a model is the one that computes it.
+    #[test]
+    fn the_kernel_is_that_of_the_model() {
+        for set in [
+            "friction.mu_static=0.5",
+            "friction.law='reversal'",
+            "friction={velocity={law='weakening',v_c_star=0.1,ratio=0.5}}",
+            "friction={ageing={law='logarithmic',beta=0.1,time_star=1}}",
+            "friction={contact='springs',contact_stiffness_star=0.1}",
+            "friction={law='rate_and_state',a=0.01,b=0.02,d_c_star=0.5,v_0_star=0.03}",
+            "slider.viscosity_time_star=0.1",
+            "slider.outline='disc'",
+            "slider.stiffness_grade={along='x',from=1,to=2}",
+            "slider.density_grade={along='y',from=1,to=2}",
+            "drive.attach='left'",
+            "drive.motion='rotation'",
+            "load.profile={along='x',relative_slope=0.5}",
+        ] {
+            let case = case(&[set]);
+            let friction = case.file.friction.in_model(case.groups.v_star, &case.scales);
+            assert_eq!(friction, case.model.friction, "{set}");
+            let kernel = kernel(&case.file, &friction);
+            assert_eq!(Kernel::default().for_model(&case.model), kernel, "{set}");
+        }
+    }
 
     #[test]
     fn the_machine_says_what_it_has() {

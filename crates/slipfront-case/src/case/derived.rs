@@ -7,7 +7,6 @@ use slipfront::{Friction, Lattice, Scales};
 use super::budget::Budget;
 use super::coefficients::check_correlation;
 use super::groups::Groups;
-use super::options::options;
 use super::ranks::Ranks;
 use crate::case_file::{CaseError, CaseFile};
 use crate::quantity::Length;
@@ -45,12 +44,8 @@ impl Derived {
             return Err(file.source.error(key, why));
         }
         let friction = file.friction.in_model(groups.v_star, &scales);
-        let budget = Budget::new(lattice, rows, ranks, file, &options(file, friction));
-        if to_run {
-            budget.check_running(file)?;
-        } else {
-            budget.check_making(file)?;
-        }
+        let budget = Budget::of_model(lattice, rows, ranks, file, &friction);
+        budget.check_case(file, to_run)?;
         Ok(Self {
             scales,
             groups,

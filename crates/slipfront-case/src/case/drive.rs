@@ -10,19 +10,11 @@ use super::files::Watch;
 use super::groups::{Groups, within};
 use super::inputs::Inputs;
 use crate::case_file::{
-    Attached, CaseError, CaseFile, DEFAULT_THRESHOLD, DriveSpeed, DriveStiffness, Motion,
+    Attached, AutoOrStiffness, CaseError, CaseFile, DEFAULT_THRESHOLD, DriveSpeed, DriveStiffness, Motion,
 };
 
 /// Largest angle, in rad, by which a drive may turn: the far ends move along tangents, not along circles.
 const MAX_ANGLE: f64 = 1e-3;
-
-/// Bytes of the blocks that [`attached`] returns.
-pub(super) fn bytes_of_attached(file: &CaseFile, n_blocks: usize) -> usize {
-    match file.drive.attached {
-        Attached::File(_) => n_blocks * size_of::<bool>(),
-        Attached::At(_) => 0,
-    }
-}
 
 /// The blocks of these rows that have a drive spring, if a file names them.
 pub(super) fn attached(
@@ -38,7 +30,8 @@ pub(super) fn attached(
     attached.map(Some)
 }
 
-/// Removes the drive springs of all blocks of these rows but those that the case attaches. All ranks call this at once.
+/// Removes the drive springs of all blocks of these rows but those that the case attaches. All ranks call
+/// this at once.
 pub(super) fn attach(
     slider: &mut Slider,
     file: &CaseFile,
@@ -69,7 +62,7 @@ pub(super) fn drive(
     ranks: &dyn Communicator,
 ) -> Result<Drive, CaseError> {
     let key = match file.drive.stiffness {
-        DriveStiffness::Auto | DriveStiffness::Each(_) => "drive.stiffness",
+        DriveStiffness::Each(_) => "drive.stiffness",
         DriveStiffness::EachStar(_) => "drive.stiffness_star",
         DriveStiffness::PerArea(_) => "drive.stiffness_per_area",
         DriveStiffness::Total(_) => "drive.total_stiffness",
@@ -113,7 +106,7 @@ fn total(file: &CaseFile, scales: &Scales) -> Option<f64> {
 /// Stiffness of each drive spring, unless the case states their total stiffness.
 fn each(file: &CaseFile, scales: &Scales) -> f64 {
     match &file.drive.stiffness {
-        DriveStiffness::Each(each) => each.si() / scales.stiffness(),
+        DriveStiffness::Each(AutoOrStiffness::Stiffness(each)) => each.si() / scales.stiffness(),
         DriveStiffness::EachStar(each) => *each,
         DriveStiffness::PerArea(per_area) => scales.stiffness_of_area(per_area.si()),
         _ => K_DRIVE,

@@ -1,28 +1,30 @@
 //! The lengths of a case in blocks, and the one that decides the mesh error of an answer.
 //!
-//! The number of blocks that is enough for each was measured on a sheet of 1 mm with square and round cavities of 50 to 400
-//! um, on 20 to 320 blocks along a side with everything else held in metres, seconds and pascals: from this number of blocks
-//! on the reduction of static friction by the cavity is within 2 % of that on the finest mesh (`docs/model.md`, "How many
-//! blocks a length needs").
+//! The number of blocks that is enough for each was measured on a sheet of 1 mm with square and round
+//! cavities of 50 to 400 um, on 20 to 320 blocks along a side with everything else held in metres, seconds
+//! and pascals: from this number of blocks on the reduction of static friction by the cavity is within 2 % of
+//! that on the finest mesh (`docs/model.md`, "How many blocks a length needs").
 
 use slipfront::surface::{Clearance, clearance};
 
 use super::runnable::Case;
 use super::textures::outlines_in_blocks;
-use crate::case_file::{Attached, AttachedEdge, CaseFile, DriveStiffness, LengthOfABlock, Motion, Texture};
+use crate::case_file::{
+    Attached, AttachedEdge, AutoOrStiffness, CaseFile, DriveStiffness, LengthOfABlock, Motion, Texture,
+};
 use slipfront_base::number_format::{four_digits, with_si_prefix};
 
 /// Number of blocks in the critical size of slip that is enough.
 const OF_CRITICAL_SIZE: f64 = 5.0;
 /// Number of blocks in the screening length along the drive that is enough, where it is the shorter one.
 const OF_SCREENING: f64 = 3.0;
-/// Ratio of critical size to screening length above which slip is stable or nearly so on this mount, and the screening
-/// length counts.
+/// Ratio of critical size to screening length above which slip is stable or nearly so on this mount, and the
+/// screening length counts.
 const NEARLY_STABLE: f64 = 4.0;
 /// Number of blocks in the correlation length that is enough: coefficients are exact means over blocks.
 const OF_CORRELATION: f64 = 0.5;
-/// Number of blocks across the smallest feature that is enough: its area is then meshed within 2 % in root mean square over
-/// its place on the mesh.
+/// Number of blocks across the smallest feature that is enough: its area is then meshed within 2 % in root
+/// mean square over its place on the mesh.
 const ACROSS_A_FEATURE: f64 = 5.0;
 /// Number of blocks across the smallest gap that is enough: one of them is in contact wherever the mesh lies.
 const ACROSS_A_GAP: f64 = 2.0;
@@ -36,30 +38,32 @@ pub struct CaseLength {
     pub blocks: f64,
     /// The length in m.
     pub metres: f64,
-    /// Number of blocks from which on a reduction of static friction is within 2 % of its limit; none where the length sets
-    /// no bound.
+    /// Number of blocks from which on a reduction of static friction is within 2 % of its limit; none where
+    /// the length sets no bound.
     pub enough: Option<f64>,
 }
 
 impl CaseFile {
-    /// Lengths of the material that equal the length of a block because no key gives them; they change with the blocks.
+    /// Lengths of the material that equal the length of a block because no key gives them; they change with
+    /// the blocks.
     pub fn lengths_of_a_block(&self) -> Vec<LengthOfABlock> {
         let thickness = self.slider.thickness.is_none().then_some(LengthOfABlock {
             length: "the thickness of the sheet",
             key: "slider.thickness",
         });
-        let mount = (self.drive.stiffness == DriveStiffness::Auto).then_some(LengthOfABlock {
-            length: "the screening length of the mount",
-            key: "drive.stiffness_per_area",
-        });
+        let mount =
+            (self.drive.stiffness == DriveStiffness::Each(AutoOrStiffness::Auto)).then_some(LengthOfABlock {
+                length: "the screening length of the mount",
+                key: "drive.stiffness_per_area",
+            });
         let of_friction = self.friction.lengths_of_a_block();
         thickness.into_iter().chain(mount).chain(of_friction).collect()
     }
 }
 
 impl Case {
-    /// The block, the screening lengths of the mount, the critical size of slip, the correlation length of the coefficients, and the smallest
-    /// feature and gap of the texture, as far as the case has them.
+    /// The block, the screening lengths of the mount, the critical size of slip, the correlation length of
+    /// the coefficients, and the smallest feature and gap of the texture, as far as the case has them.
     pub fn lengths(&self) -> Vec<CaseLength> {
         let mut lengths = self.material_lengths();
         lengths.extend(self.smallest_lengths());
@@ -86,7 +90,8 @@ impl Case {
         lengths
     }
 
-    /// The smallest feature and gap of the textures; none for masks and height maps, whose outlines are not known.
+    /// The smallest feature and gap of the textures; none for masks and height maps, whose outlines are not
+    /// known.
     pub(super) fn smallest_lengths(&self) -> Vec<CaseLength> {
         let lattice = &self.model.lattice;
         let outlines = outlines_in_blocks(&self.file, &self.scales, lattice, self.model.n_blocks());

@@ -10,7 +10,6 @@ mod groups;
 mod inputs;
 mod lengths;
 mod model;
-mod options;
 mod other_blocks;
 mod output;
 mod ranks;
@@ -22,7 +21,7 @@ mod topography;
 mod warnings;
 mod whole_slider;
 
-pub use self::budget::{Budget, Cause, Demand, PROGRAM};
+pub use self::budget::{Budget, PICTURES, PROGRAM, memory_of_movie};
 pub use self::derived::scales;
 pub use self::files::{Files, FilesInMemory, OpenFile, Watch};
 pub use self::groups::Groups;

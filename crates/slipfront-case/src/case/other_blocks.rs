@@ -1,11 +1,12 @@
-//! One slider on other blocks: the keys of a case with finer or coarser blocks whose slider, load, mount, friction and time
-//! stay.
+//! One slider on other blocks: the keys of a case with finer or coarser blocks whose slider, load, mount,
+//! friction and time stay.
 //!
-//! A key with a star counts in units that depend on the edge `l` of a block and on the thickness `h` of the sheet. It is converted by the
-//! ratio of the two units, so that metres, seconds and pascals are held:
+//! A key with a star counts in units that depend on the edge `l` of a block and on the thickness `h` of the
+//! sheet. It is converted by the ratio of the two units, so that metres, seconds and pascals are held:
 //!
 //! ```text
-//! speed P mu_s l/(h sqrt(E rho)),  time l sqrt(rho/E),  displacement P mu_s l^2/(E h),  spring on each block E h for K l^2
+//! speed P mu_s l/(h sqrt(E rho)),  time l sqrt(rho/E),  displacement P mu_s l^2/(E h),  spring on each block
+//! E h for K l^2
 //! ```
 
 use slipfront::Scales;
@@ -15,71 +16,29 @@ use super::coarse::ten_digits;
 use super::runnable::Case;
 use super::time_plan::auto_onset_end;
 use crate::case_file::{
-    Attached, AttachedEdge, AutoOr, CaseError, CaseFile, DriveSpeed, DriveStiffness, MAX_BLOCKS, Override,
-    RunTime,
+    Attached, AttachedEdge, AutoOr, AutoOrStiffness, CaseError, CaseFile, DriveSpeed, DriveStiffness,
+    MAX_BLOCKS, Override, RunTime, StarUnit, star_unit,
 };
 use crate::quantity::Length;
 
-/// Unit of a key with a star.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum StarUnit {
-    Speed,
-    Time,
-    /// One over a time.
-    Rate,
-    Displacement,
-    /// The stiffness of the spring of a block, whose value per area is held: `K = k* E h/l^2`.
-    SpringOfBlock,
-    /// The stiffness of all springs together.
-    Stiffness,
-    /// No unit: a ratio, or a spread of coefficients.
-    None,
-}
-
-/// The units of all keys with a star, within the tables in which they stand too.
-const UNITS: &[(&str, StarUnit)] = &[
-    ("v_star", StarUnit::Speed),
-    ("v_c_star", StarUnit::Speed),
-    ("v_0_star", StarUnit::Speed),
-    ("slip_speed_star", StarUnit::Speed),
-    ("until_star", StarUnit::Time),
-    ("time_star", StarUnit::Time),
-    ("duration_star", StarUnit::Time),
-    ("kinetic_from_star", StarUnit::Time),
-    ("healing_time_star", StarUnit::Time),
-    ("viscosity_time_star", StarUnit::Time),
-    ("theta_0_star", StarUnit::Time),
-    ("omega_star", StarUnit::Rate),
-    ("d_c_star", StarUnit::Displacement),
-    ("length_star", StarUnit::Displacement),
-    ("stiffness_star", StarUnit::SpringOfBlock),
-    ("contact_stiffness_star", StarUnit::SpringOfBlock),
-    ("total_stiffness_star", StarUnit::Stiffness),
-    ("r_star", StarUnit::None),
-    ("sigma_static_star", StarUnit::None),
-    ("sigma_kinetic_star", StarUnit::None),
-];
-
-impl StarUnit {
-    /// The unit in SI, up to a factor that does not depend on the blocks.
-    fn size(self, scales: &Scales) -> f64 {
-        match self {
-            Self::Speed => scales.speed(),
-            Self::Time => scales.time(),
-            Self::Rate => 1.0 / scales.time(),
-            Self::Displacement => scales.displacement(),
-            Self::SpringOfBlock => scales.stiffness() / (scales.block_size * scales.block_size),
-            Self::Stiffness => scales.stiffness(),
-            Self::None => 1.0,
-        }
+/// A unit in SI, up to a factor that does not depend on the blocks.
+fn size(unit: StarUnit, scales: &Scales) -> f64 {
+    match unit {
+        StarUnit::Speed => scales.speed(),
+        StarUnit::Time => scales.time(),
+        StarUnit::Rate => 1.0 / scales.time(),
+        StarUnit::Displacement => scales.displacement(),
+        StarUnit::SpringOfBlock => scales.stiffness() / (scales.block_size * scales.block_size),
+        StarUnit::Stiffness => scales.stiffness(),
+        StarUnit::One => 1.0,
     }
 }
 
 impl Case {
-    /// The keys that put this slider on blocks that are `finer` times as fine, a power of two, and keep in metres, seconds
-    /// and pascals: dimensions, textures, load, mount, damping, lengths of friction, speed and duration. The step keeps its
-    /// share of the time that sound takes across a block. Spreads of coefficients stay; they are spreads over blocks,
-    /// whatever the size of these.
+    /// The keys that put this slider on blocks that are `finer` times as fine, a power of two, and keep in
+    /// metres, seconds and pascals: dimensions, textures, load, mount, damping, lengths of friction, speed
+    /// and duration. The step keeps its share of the time that sound takes across a block. Spreads of
+    /// coefficients stay; they are spreads over blocks, whatever the size of these.
     ///
     /// # Errors
     /// When the blocks cannot be divided so, or when the case has values that belong to its blocks.
@@ -116,7 +75,7 @@ impl Case {
                 conversion.convert(name, table, &mut set);
             }
         }
-        if let DriveStiffness::Each(stiffness) = &self.file.drive.stiffness {
+        if let DriveStiffness::Each(AutoOrStiffness::Stiffness(stiffness)) = &self.file.drive.stiffness {
             let area = (scales.block_size / self.scales.block_size).powi(2);
             set.push((
                 "drive.stiffness".to_owned(),
@@ -261,28 +220,34 @@ impl Conversion<'_> {
 
     /// The number in the other units, if its key has units.
     fn converted(&self, name: &str, value: &Value) -> Option<Value> {
-        let (_, unit) = UNITS.iter().find(|(key, _)| *key == name)?;
+        let unit = star_unit(name)?;
         let number = value
             .as_float()
             .or_else(|| value.as_integer().map(|number| number as f64))?;
-        if *unit == StarUnit::None || number == 0.0 {
+        if unit == StarUnit::One || number == 0.0 {
             return None;
         }
-        Some(Value::from(number * (unit.size(self.from) / unit.size(self.to))))
+        Some(Value::from(
+            number * (size(unit, self.from) / size(unit, self.to)),
+        ))
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::case_file::SECTIONS;
+    use crate::case_file::{KeyKind, SECTIONS};
 
-    /// Every key with a star is in the table of units: one that is missing would keep its number and change its meaning.
+    /// Every key with a star has a unit: one without would keep its number and change its meaning.
     #[test]
     fn every_key_with_a_star_has_a_unit() {
         let keys = SECTIONS.iter().flat_map(|section| section.keys);
-        for key in keys.filter(|key| key.name.ends_with("_star")) {
-            assert!(UNITS.iter().any(|(name, _)| *name == key.name), "{}", key.name);
+        let inner = keys.clone().flat_map(|key| match key.kind {
+            KeyKind::Table(_, inner) => inner,
+            _ => &[],
+        });
+        for key in keys.chain(inner) {
+            assert_eq!(key.name.ends_with("_star"), key.star.is_some(), "{}", key.name);
         }
     }
 
@@ -305,7 +270,8 @@ mod tests {
         ]
     }
 
-    /// Half and twice as many blocks along a side are one slider: every number is converted by powers of two alone, and rounds once.
+    /// Half and twice as many blocks along a side are one slider: every number is converted by powers of two
+    /// alone, and rounds once.
     #[test]
     fn other_blocks_are_the_same_slider() {
         let text = "[slider]\nblocks = [20, 40]\nblock_size = '20 um'\nthickness = '20 um'\nviscosity_time_star = 0.2\n\

@@ -45,7 +45,7 @@ pub struct Case {
     pub time_plan: TimePlan,
     /// The results that are written.
     pub output: Output,
-    /// Memory for making and stepping the case. The memory of its results is added in slipfront-run.
+    /// Memory and disk space of a run of the case.
     pub budget: Budget,
 }
 
@@ -185,7 +185,7 @@ impl Case {
         // Nothing is allocated before all ranks have looked at the memory that they share.
         let derived = Derived::of(&file, &lattice, &rows, &ranks, to_run)
             .and_then(|derived| Ok((derived, NamedFiles::find(&mut file, files)?)));
-        let (mut derived, named) = ranks.agree(derived)?;
+        let (derived, named) = ranks.agree(derived)?;
         let inputs = Inputs {
             files: named.read(&mut file, &lattice, watch, &ranks)?,
             slab: Slab {
@@ -194,7 +194,6 @@ impl Case {
                 rows: rows.clone(),
             },
         };
-        derived.budget.inputs = inputs.files.iter().map(|input| input.length as f64).sum();
 
         let (model, texture) =
             model::make(&file, &derived, (lattice, rows), (&named, &inputs), watch, &ranks)?;
@@ -214,7 +213,7 @@ impl Case {
         refuse_large_angles(&file, &model.drive, groups.epsilon, time_plan.end_star())?;
         Ok(Self {
             name: name.to_owned(),
-            budget,
+            budget: budget.with_results(&file, &model, &output, time_plan.last_step, &inputs.files),
             inputs: inputs.files,
             scales,
             groups,

@@ -10,11 +10,10 @@ use slipfront::{Lattice, Scales, surface};
 use super::files::Watch;
 use super::inputs::Inputs;
 use super::slider::outline;
-use super::topography::{self, Ground, Topography};
+use super::topography::{Ground, Topography};
 use crate::arrays::Slab;
 use crate::case_file::{
-    Arrangement, Blocks, CaseError, CaseFile, Count, Inside, MAX_COUNT, Mask, Outline, Pattern, Pitch, Shape,
-    Texture,
+    Arrangement, Blocks, CaseError, CaseFile, Count, Inside, MAX_COUNT, Mask, Pattern, Pitch, Shape, Texture,
 };
 use crate::quantity::Length;
 
@@ -217,34 +216,6 @@ fn cell(arrays: &[surface::Array], lattice: &Lattice) -> Result<[usize; 2], Stri
         ));
     }
     Ok(size)
-}
-
-/// Bytes while textures are laid over the blocks of some rows: for every mask bytes of these blocks, and for a height map
-/// bytes of all `n_blocks` of the lattice.
-pub(super) fn bytes_to_lay(file: &CaseFile, n_own: usize, n_blocks: usize) -> usize {
-    let of_heights = match count_height_maps(file) {
-        0 => 0,
-        _ => topography::bytes_per_block(file.slider.outline != Outline::Rectangle),
-    };
-    n_own * count_masks(file) * size_of::<bool>() + n_blocks * of_heights
-}
-
-/// Number of masks that a case has in memory at once, including those of height maps, and of inverted textures while they
-/// are laid over the blocks.
-fn count_masks(file: &CaseFile) -> usize {
-    let mut masks = Vec::new();
-    for texture in &file.texture {
-        if let Shape::Mask(mask) = &texture.shape {
-            let arrays: Vec<_> = texture.pattern.arrays().collect();
-            let found = (&mask.file, mask.threshold, arrays);
-            if !masks.contains(&found) {
-                masks.push(found);
-            }
-        }
-    }
-    masks.len()
-        + count_height_maps(file)
-        + usize::from(file.texture.iter().any(|texture| texture.pattern.invert))
 }
 
 /// Number of height maps of a case. Their heights are in memory one after the other.

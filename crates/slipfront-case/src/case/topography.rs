@@ -30,12 +30,6 @@ pub struct Topography {
     pub contact_height: f64,
 }
 
-/// Bytes for every block of the lattice while a height map is laid over it: the means of the blocks, before them their sums
-/// in two numbers, and the heights in order; within an outline whether each block exists.
-pub(super) fn bytes_per_block(has_outline: bool) -> usize {
-    2 * size_of::<f64>() + usize::from(has_outline) * size_of::<bool>()
-}
-
 /// The blocks over which a height map is laid.
 pub(super) struct Ground<'a> {
     pub(super) lattice: &'a Lattice,

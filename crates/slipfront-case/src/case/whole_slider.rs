@@ -4,7 +4,7 @@ use slipfront::{FrictionLaw, Slider};
 
 use super::groups::Groups;
 use super::runnable::Case;
-use crate::case_file::{Attached, AttachedEdge, DriveStiffness, Motion};
+use crate::case_file::{Attached, AttachedEdge, AutoOrStiffness, DriveStiffness, Motion};
 
 /// An estimate of the static friction of a heterogeneous slider as a whole.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -13,8 +13,8 @@ pub struct WholeSlider {
     pub mu_static: f64,
     /// Half the width of the range about the estimate in which a run is expected.
     pub half_width: f64,
-    /// Value of `friction.mu_static` of the blocks for which the slider as a whole would have the given coefficient, at the
-    /// same V*.
+    /// Value of `friction.mu_static` of the blocks for which the slider as a whole would have the given
+    /// coefficient, at the same V*.
     pub for_given: f64,
 }
 
@@ -53,8 +53,8 @@ const MEASURED: [[[f64; 5]; 4]; 4] = [
     ],
 ];
 
-/// How far a run may be from the estimate, in units of `mu_static`: between the entries of the table the mean of surfaces is
-/// off by up to 0.020, and a single surface scatters about the mean by up to 0.015.
+/// How far a run may be from the estimate, in units of `mu_static`: between the entries of the table the mean
+/// of surfaces is off by up to 0.020, and a single surface scatters about the mean by up to 0.015.
 const ACCURACY: f64 = 0.03;
 
 /// Smallest and largest number of blocks along an axis for which the table was tried.
@@ -64,9 +64,9 @@ const MAX_SIGMA_KINETIC: f64 = 0.1;
 const MAX_OMEGA_STAR: f64 = 0.5;
 
 impl Case {
-    /// Estimate of the static friction of the slider as a whole. None where there is no ground for an estimate: with a
-    /// texture, a slider that is heterogeneous by design, another law of friction or drive, or groups outside of the
-    /// measured ones.
+    /// Estimate of the static friction of the slider as a whole. None where there is no ground for an
+    /// estimate: with a texture, a slider that is heterogeneous by design, another law of friction or drive,
+    /// or groups outside of the measured ones.
     pub fn whole_slider(&self) -> Option<WholeSlider> {
         let share = self.has_measured_kind().then(|| interpolated(&self.groups))??;
         let mu_static = self.scales.mu_static_mean;
@@ -95,7 +95,7 @@ impl Case {
             && !model.drive.is_held()
             && drive.motion == Motion::Translation
             && matches!(drive.attached, Attached::At(AttachedEdge::All))
-            && drive.stiffness == DriveStiffness::Auto
+            && drive.stiffness == DriveStiffness::Each(AutoOrStiffness::Auto)
             && [model.lattice.nx, model.lattice.ny]
                 .iter()
                 .all(|blocks| (BLOCKS[0]..=BLOCKS[1]).contains(blocks))
@@ -119,8 +119,8 @@ fn interpolated(groups: &Groups) -> Option<f64> {
     Some(between([along_v(table), along_v(table + 1)], at_r))
 }
 
-/// The interval between neighbours of a rising grid in which a number lies, and its position there; none outside of the
-/// grid.
+/// The interval between neighbours of a rising grid in which a number lies, and its position there; none
+/// outside of the grid.
 fn place(grid: &[f64], number: f64) -> Option<(usize, f64)> {
     let within = |pair: &[f64]| (pair[0]..=pair[1]).contains(&number);
     let first = grid.windows(2).position(within)?;

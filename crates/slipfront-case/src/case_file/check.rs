@@ -75,8 +75,11 @@ impl<'a> Check<'a> {
 
 /// A value that is checked against the kind of its key.
 pub(super) trait Checked {
-    /// A complaint about a value that is not of this kind: the value, and the values allowed.
-    fn complaint(&self, kind: &KeyKind) -> Option<String>;
+    /// A complaint about a value that is not of this kind: the value, and the values allowed. There is none
+    /// about values whose type says all.
+    fn complaint(&self, _kind: &KeyKind) -> Option<String> {
+        None
+    }
 }
 
 impl Checked for f64 {

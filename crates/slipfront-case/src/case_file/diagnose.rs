@@ -59,8 +59,8 @@ const PRINTED_QUOTES: [char; 8] = [
     '\u{201c}', '\u{201d}', '\u{201e}', '\u{2018}', '\u{2019}', '\u{201a}', '\u{ab}', '\u{bb}',
 ];
 
-/// Advice on the words at a span that is not TOML, where they show what was meant: the message of the parser is about what it
-/// takes them for.
+/// Advice on the words at a span that is not TOML, where they show what was meant: the message of the parser
+/// is about what it takes them for.
 fn advice_on_words(source: &Source, span: &Range<usize>, message: &str) -> Option<String> {
     let (before, after) = source.line_around(span.start);
     let marked = source.slice(span.clone());
@@ -99,8 +99,8 @@ fn advice_on_words(source: &Source, span: &Range<usize>, message: &str) -> Optio
     })
 }
 
-/// An error of serde at `span`, while the table under `header` is read, whose keys are `known`; they are the keys of
-/// `section` if the table is one of a case.
+/// An error of serde at `span`, while the table under `header` is read, whose keys are `known`; they are the
+/// keys of `section` if the table is one of a case.
 pub(super) fn value_error(
     source: &Source,
     span: Range<usize>,
@@ -150,7 +150,8 @@ pub(super) fn value_error(
     source.error_at(span, sentence)
 }
 
-/// The unknown name and the expected names in a message of serde: "unknown field `name`, expected one of `a`, `b`".
+/// The unknown name and the expected names in a message of serde: "unknown field `name`, expected one of `a`,
+/// `b`".
 fn name_and_expected<'m>(message: &'m str, start: &str) -> Option<(&'m str, Vec<&'m str>)> {
     let (name, expected) = message.strip_prefix(start)?.rsplit_once("`, expected ")?;
     Some((name, expected.split('`').skip(1).step_by(2).collect()))
@@ -217,12 +218,13 @@ fn takes(key: &Key, message: &str) -> Option<String> {
         }
         KeyKind::Switch => "true or false".to_owned(),
         KeyKind::File(formats) => format!("the path of a .{} file, in quotes", formats.join(" or .")),
-        KeyKind::Quantity { .. } | KeyKind::Special(_) => return None,
+        KeyKind::Quantity { .. } | KeyKind::Table(..) | KeyKind::Special(_) => return None,
     })
 }
 
-/// Further advice about a value as it was `written`: a number needs no quotes and a point, not a comma, and a key with a
-/// unit may have a partner without, and the other way round. In other cases a number has its remark.
+/// Further advice about a value as it was `written`: a number needs no quotes and a point, not a comma, and a
+/// key with a unit may have a partner without, and the other way round. In other cases a number has its
+/// remark.
 fn hint(key: &Key, section: Option<&Section>, written: &str) -> String {
     let quantity = |key: &Key| matches!(key.kind, KeyKind::Quantity { .. });
     // The same thing with a unit, or without.
@@ -246,7 +248,8 @@ fn hint(key: &Key, section: Option<&Section>, written: &str) -> String {
         {
             format!("; with a unit, the key is `{}`", partner.name)
         }
-        // Its partner is the same thing without a unit, as `v_star` of `speed`, or another one, as `coverage` of `lambda`.
+        // Its partner is the same thing without a unit, as `v_star` of `speed`, or another one, as `coverage`
+        // of `lambda`.
         (KeyKind::Quantity { .. }, Some(partner))
             if partner.name.ends_with("_star") && written.is_empty() =>
         {

@@ -3,79 +3,119 @@
 use serde::{Deserialize, Deserializer, Serialize};
 use slipfront::{Edge, Edges};
 
-use super::check::Check;
+use super::check::{Check, Checked};
 use super::error::CaseError;
-use super::key_table::{PROGRAM_SPEED, STIFFNESS, UNTIL};
+use super::key::{
+    DEGREES, Key, KeyKind, STIFFNESS_PER_AREA, StarUnit, TIME_STAR, above, key, number, quantity, within,
+};
+use super::probe::names_of;
 use super::slider::Slider;
 use super::values::word;
 use super::words::{AttachedEdge, Loading, Motion, Outline};
+use crate::key_rows;
 use crate::quantity::{QuantityError, Speed, Stiffness, StiffnessPerArea};
 
-/// The table `[drive]`: the pull on the slider.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(try_from = "DriveKeys", into = "DriveKeys")]
-pub struct Drive {
-    /// Speed of the drive: `v_star`, `speed` or `program`.
-    pub speed: DriveSpeed,
-    /// Direction of the drive (theta), degrees from x towards y, -360 to 360.
-    pub direction: f64,
-    /// Motion of the far ends of the drive springs.
-    pub motion: Motion,
-    /// Whether the drive stands still while a block in contact slides.
-    pub loading: Loading,
-    /// Blocks that have a drive spring: `attach` or `attach_file`.
-    pub attached: Attached,
-    /// Stiffness of the drive springs: `stiffness`, `stiffness_star`, `stiffness_per_area`, `total_stiffness` or `total_stiffness_star`.
-    pub stiffness: DriveStiffness,
+key_rows! {
+    /// The table `[drive]`: the pull on the slider.
+    #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+    #[serde(try_from = "DriveKeys", into = "DriveKeys")]
+    pub struct Drive from DriveKeys {
+        [
+            /// Speed of the drive: `v_star`, `speed` or `program`.
+            pub speed: DriveSpeed or "the drive needs `v_star`, `speed` or `program`" {
+                /// Speed of the drive.
+                v_star: f64 => VStar = key("0.03", number(above(0.0, 10.0), "the paper's runs have 0.01 to 0.2"))
+                    .star(StarUnit::Speed)
+                    .or("speed").or("program").paper("V* = sqrt(E rho) V h/(P mu_s l), Eq. 11 with h = l")
+                    .title("drive speed", "V*", "")
+                    .further_bounds("; V* not below 1e-9"),
+                /// Speed of the drive with its unit, in place of `v_star`.
+                speed: Speed => Speed = key("", quantity("m/s", within(1e-18, 1e6))).or("v_star")
+                    .or("program").paper("V")
+                    .title("drive speed", "V", "m/s"),
+                /// Speeds that follow one another, in place of `v_star`: each until its t*, rounded to a
+                /// step, the last without end; one of them at least is above 0. What counts as V* is the
+                /// largest, whatever its sign.
+                program: Vec<SpeedSegment> => Program = key("",
+                    KeyKind::Table("[{ v_star = 0.03, until_star = 200 }, { v_star = 0 }]", SpeedSegment::KEYS))
+                    .or("v_star").or("speed").further_bounds(", rising"),
+            }
+        ]
+        /// Direction of the drive, degrees from x towards y.
+        pub direction: f64 = key("0", DEGREES).paper("theta")
+            .title("direction of the drive", "\u{3b8}", "\u{b0}"),
+        /// Motion of the drive: it pulls along the direction, or turns counterclockwise about the middle of
+        /// all blocks, with the speed at the largest radius.
+        #[serde(deserialize_with = "word")]
+        pub motion: Motion = key("\"translation\"", KeyKind::Words(names_of::<Motion>)),
+        /// Loading of the slider: the drive moves all the time, or stands while a block in contact slides.
+        #[serde(deserialize_with = "word")]
+        pub loading: Loading = key("\"constant\"", KeyKind::Words(names_of::<Loading>))
+            .note("See [slow loading](#slow-loading)."),
+        [
+            /// Blocks that have a drive spring: `attach` or `attach_file`.
+            pub attached: Attached or "the drive needs `attach` or `attach_file`" {
+                /// Blocks that have a drive spring: all, or those of an edge, which must be a free one.
+                #[serde(default, deserialize_with = "some_word")]
+                attach: AttachedEdge => At = key("\"all\"", KeyKind::Words(names_of::<AttachedEdge>))
+                    .or("attach_file"),
+                /// An image or array of the blocks that have a drive spring, in place of `attach`: dark
+                /// pixels, or ones.
+                attach_file: String => File = key("", KeyKind::File(&["png", "npy"])).or("attach")
+                    .note("It is stretched as a [mask](#shape--mask) is."),
+            }
+        ]
+        [
+            /// Stiffness of the drive springs: `stiffness`, `stiffness_star`, `stiffness_per_area`,
+            /// `total_stiffness` or `total_stiffness_star`.
+            pub stiffness: DriveStiffness or "the drive needs a `stiffness`" {
+                /// Stiffness of each drive spring; `"auto"` is k_2 = 0.375 E h, with the thickness h. A
+                /// graded slider multiplies it by the modulus of each block.
+                stiffness: AutoOrStiffness => Each = key("\"auto\"", KeyKind::Special("`\"auto\"`, or 1e-30 to 1e30 N/m")).paper("k_s")
+                    .or("stiffness_star").or("stiffness_per_area").or("total_stiffness")
+                    .or("total_stiffness_star"),
+                /// Stiffness of each drive spring over E h, with the thickness h.
+                stiffness_star: f64 => EachStar = key("", DRIVE_STIFFNESS).star(StarUnit::SpringOfBlock)
+                    .or("stiffness").or("stiffness_per_area").or("total_stiffness").or("total_stiffness_star")
+                    .title("drive stiffness", "k\u{209b}*", ""),
+                /// Stiffness of the mount, which the drive springs are, per area: that of a slider on any
+                /// blocks. Each spring has K l^2.
+                stiffness_per_area: StiffnessPerArea => PerArea = key("", STIFFNESS_PER_AREA)
+                    .or("stiffness").or("stiffness_star").or("total_stiffness").or("total_stiffness_star")
+                    .title("stiffness of the mount", "K", "N/m\u{b3}"),
+                /// Stiffness of all drive springs together, shared in proportion to the modulus of each
+                /// block: equally by equal blocks.
+                total_stiffness: Stiffness => Total = key("", STIFFNESS)
+                    .or("stiffness").or("stiffness_star").or("stiffness_per_area").or("total_stiffness_star")
+                    .title("total drive stiffness", "K\u{209b}", "N/m"),
+                /// Stiffness of all drive springs together over E h, with the thickness h. A file has one of
+                /// the five, or none.
+                total_stiffness_star: f64 => TotalStar = key("", DRIVE_STIFFNESS).star(StarUnit::Stiffness)
+                    .or("stiffness").or("stiffness_star").or("stiffness_per_area").or("total_stiffness")
+                    .title("total drive stiffness", "K\u{209b}*", ""),
+            }
+        ]
+    }
 }
 
-/// The speed of the drive.
-#[derive(Clone, Debug, PartialEq)]
-pub enum DriveSpeed {
-    /// `v_star`: V* = sqrt(E rho) V/(P `mu_static`) (Eq. 11), more than 0, at most 10.
-    VStar(f64),
-    /// `speed`: V, m/s.
-    Speed(Speed),
-    /// `program`: speeds that follow one another.
-    Program(Vec<SpeedSegment>),
+key_rows! {
+    /// A part of a program in which the speed is constant.
+    #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+    #[serde(deny_unknown_fields)]
+    pub struct SpeedSegment {
+        /// Speed of the drive in the segment, V*.
+        pub v_star: f64 = key("", PROGRAM_SPEED).star(StarUnit::Speed),
+        /// End of the segment, t*; none for the last segment.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        pub until_star: Option<f64> = key("", TIME_STAR).star(StarUnit::Time),
+    }
 }
 
-/// A part of a program in which the speed is constant.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct SpeedSegment {
-    /// V*, -10 to 10.
-    pub v_star: f64,
-    /// t* at which the segment ends; none for the last segment.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub until_star: Option<f64>,
-}
-
-/// The blocks that have a drive spring.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Attached {
-    /// The key `attach`: the blocks of an edge, or all.
-    At(AttachedEdge),
-    /// `attach_file`: a `.png` (dark pixels are driven) or a `.npy` of shape (ny, nx) of 0 and 1 (driven), relative to the case file.
-    File(String),
-}
-
-/// The stiffness of the drive springs.
-#[derive(Clone, Debug, PartialEq)]
-pub enum DriveStiffness {
-    /// The value `stiffness = "auto"`: k_2 for each spring.
-    Auto,
-    /// The key `stiffness`: of each spring, N/m.
-    Each(Stiffness),
-    /// The key `stiffness_star`: of each spring over E h, more than 0.
-    EachStar(f64),
-    /// The key `stiffness_per_area`: of each spring over the area of a block, N/m^3.
-    PerArea(StiffnessPerArea),
-    /// The key `total_stiffness`: of all springs together, N/m.
-    Total(Stiffness),
-    /// The key `total_stiffness_star`: of all springs together over E h, more than 0.
-    TotalStar(f64),
-}
+/// A stiffness with its unit.
+const STIFFNESS: KeyKind = quantity("N/m", within(1e-30, 1e30));
+const DRIVE_STIFFNESS: KeyKind = number(above(0.0, 1e6), "that of the paper is 0.375 on each block");
+/// A speed of a program.
+const PROGRAM_SPEED: KeyKind = number(within(-10.0, 10.0), "the paper's runs have 0.01 to 0.2");
 
 /// Largest number of segments of a program.
 const MAX_SEGMENTS: usize = 10_000;
@@ -93,10 +133,9 @@ impl Drive {
     }
 
     pub(super) fn check(&self, check: &Check, slider: &Slider) -> Result<(), CaseError> {
-        match &self.speed {
-            DriveSpeed::VStar(v_star) => check.value("v_star", v_star)?,
-            DriveSpeed::Speed(speed) => check.value("speed", speed)?,
-            DriveSpeed::Program(segments) => check_program(segments, check)?,
+        self.speed.check(check)?;
+        if let DriveSpeed::Program(segments) = &self.speed {
+            check_program(segments, check)?;
         }
         check.value("direction", &self.direction)?;
         if self.motion == Motion::Rotation && self.direction != 0.0 {
@@ -122,18 +161,8 @@ impl Drive {
                 format!("`{key}` names an edge that is none: the slider is periodic along {axis}; take free edges, or `attach_file`")
             });
         }
-        match &self.stiffness {
-            DriveStiffness::Auto => {}
-            DriveStiffness::Each(stiffness) => check.value_of(&STIFFNESS, "stiffness", stiffness)?,
-            DriveStiffness::EachStar(stiffness) => check.value("stiffness_star", stiffness)?,
-            DriveStiffness::PerArea(stiffness) => check.value("stiffness_per_area", stiffness)?,
-            DriveStiffness::Total(stiffness) => check.value("total_stiffness", stiffness)?,
-            DriveStiffness::TotalStar(stiffness) => check.value("total_stiffness_star", stiffness)?,
-        }
-        match &self.attached {
-            Attached::At(_) => Ok(()),
-            Attached::File(file) => check.value("attach_file", file),
-        }
+        self.stiffness.check(check)?;
+        self.attached.check(check)
     }
 }
 
@@ -148,7 +177,7 @@ fn check_program(segments: &[SpeedSegment], check: &Check) -> Result<(), CaseErr
     for segment in segments {
         check.value_of(&PROGRAM_SPEED, "program", &segment.v_star)?;
         if let Some(until) = segment.until_star {
-            check.value_of(&UNTIL, "program", &until)?;
+            check.value_of(&TIME_STAR, "program", &until)?;
         }
     }
     if let Some(number) = others.iter().position(|segment| segment.until_star.is_none()) {
@@ -183,35 +212,30 @@ fn check_program(segments: &[SpeedSegment], check: &Check) -> Result<(), CaseErr
     Ok(())
 }
 
-/// The table `[drive]` as it stands in the file.
-#[derive(Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct DriveKeys {
-    v_star: Option<f64>,
-    speed: Option<Speed>,
-    program: Option<Vec<SpeedSegment>>,
-    direction: f64,
-    #[serde(deserialize_with = "word")]
-    motion: Motion,
-    #[serde(deserialize_with = "word")]
-    loading: Loading,
-    #[serde(default, deserialize_with = "some_word")]
-    attach: Option<AttachedEdge>,
-    attach_file: Option<String>,
-    stiffness: Option<AutoOrStiffness>,
-    stiffness_star: Option<f64>,
-    stiffness_per_area: Option<StiffnessPerArea>,
-    total_stiffness: Option<Stiffness>,
-    total_stiffness_star: Option<f64>,
-}
-
-/// The key `stiffness` as it stands in the file.
-#[derive(Clone, Serialize, Deserialize)]
+/// The stiffness of a drive spring, unless the program chooses it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "String", into = "String")]
-enum AutoOrStiffness {
+pub enum AutoOrStiffness {
+    /// The value `"auto"`: k_2 for each spring.
     Auto,
+    /// The user's stiffness, N/m.
     Stiffness(Stiffness),
 }
+
+impl Checked for AutoOrStiffness {
+    fn complaint(&self, _: &KeyKind) -> Option<String> {
+        match self {
+            Self::Auto => None,
+            Self::Stiffness(stiffness) => stiffness.complaint(&STIFFNESS),
+        }
+    }
+}
+
+/// An edge is one of the words.
+impl Checked for AttachedEdge {}
+
+/// The segments of a program are checked one by one.
+impl Checked for Vec<SpeedSegment> {}
 
 impl TryFrom<String> for AutoOrStiffness {
     type Error = String;
@@ -241,79 +265,4 @@ impl From<AutoOrStiffness> for String {
 
 fn some_word<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<AttachedEdge>, D::Error> {
     word(deserializer).map(Some)
-}
-
-impl TryFrom<DriveKeys> for Drive {
-    type Error = &'static str;
-
-    fn try_from(keys: DriveKeys) -> Result<Self, Self::Error> {
-        let speed = match (keys.program, keys.speed, keys.v_star) {
-            (Some(program), ..) => DriveSpeed::Program(program),
-            (_, Some(speed), _) => DriveSpeed::Speed(speed),
-            (.., Some(v_star)) => DriveSpeed::VStar(v_star),
-            _ => return Err("the drive needs `v_star`, `speed` or `program`"),
-        };
-        let attached = match (keys.attach_file, keys.attach) {
-            (Some(file), _) => Attached::File(file),
-            (None, Some(edge)) => Attached::At(edge),
-            (None, None) => return Err("the drive needs `attach` or `attach_file`"),
-        };
-        let stars = (keys.stiffness_star, keys.total_stiffness_star);
-        let with_units = (keys.stiffness, keys.stiffness_per_area, keys.total_stiffness);
-        let stiffness = match (with_units, stars) {
-            ((Some(AutoOrStiffness::Auto), ..), _) => DriveStiffness::Auto,
-            ((Some(AutoOrStiffness::Stiffness(each)), ..), _) => DriveStiffness::Each(each),
-            ((_, Some(per_area), _), _) => DriveStiffness::PerArea(per_area),
-            ((.., Some(total)), _) => DriveStiffness::Total(total),
-            (_, (Some(each), _)) => DriveStiffness::EachStar(each),
-            (_, (_, Some(total))) => DriveStiffness::TotalStar(total),
-            _ => return Err("the drive needs a `stiffness`"),
-        };
-        Ok(Self {
-            speed,
-            direction: keys.direction,
-            motion: keys.motion,
-            loading: keys.loading,
-            attached,
-            stiffness,
-        })
-    }
-}
-
-impl From<Drive> for DriveKeys {
-    fn from(drive: Drive) -> Self {
-        let mut keys = Self {
-            v_star: None,
-            speed: None,
-            program: None,
-            direction: drive.direction,
-            motion: drive.motion,
-            loading: drive.loading,
-            attach: None,
-            attach_file: None,
-            stiffness: None,
-            stiffness_star: None,
-            stiffness_per_area: None,
-            total_stiffness: None,
-            total_stiffness_star: None,
-        };
-        match drive.speed {
-            DriveSpeed::VStar(v_star) => keys.v_star = Some(v_star),
-            DriveSpeed::Speed(speed) => keys.speed = Some(speed),
-            DriveSpeed::Program(program) => keys.program = Some(program),
-        }
-        match drive.attached {
-            Attached::At(edge) => keys.attach = Some(edge),
-            Attached::File(file) => keys.attach_file = Some(file),
-        }
-        match drive.stiffness {
-            DriveStiffness::Auto => keys.stiffness = Some(AutoOrStiffness::Auto),
-            DriveStiffness::Each(each) => keys.stiffness = Some(AutoOrStiffness::Stiffness(each)),
-            DriveStiffness::EachStar(each) => keys.stiffness_star = Some(each),
-            DriveStiffness::PerArea(per_area) => keys.stiffness_per_area = Some(per_area),
-            DriveStiffness::Total(total) => keys.total_stiffness = Some(total),
-            DriveStiffness::TotalStar(total) => keys.total_stiffness_star = Some(total),
-        }
-        keys
-    }
 }

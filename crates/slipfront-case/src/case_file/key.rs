@@ -1,4 +1,5 @@
-//! Keys of a case file: kind, bounds, default and title of each, and the functions by which rows of the table are written.
+//! Keys of a case file: kind, bounds, default and title of each, and the functions by which rows of the table
+//! are written.
 //!
 //! Bounds on quantities are generous: they refuse typing errors (a block of 1000 km), not unusual materials.
 
@@ -14,7 +15,8 @@ pub type Bounds = (Bound<f64>, Bound<f64>);
     reason = "the sentence of each variant tells what its fields are"
 )]
 pub enum KeyKind {
-    /// A number, or one of the given words in its place. The remark ends the sentence about a number out of bounds.
+    /// A number, or one of the given words in its place. The remark ends the sentence about a number out of
+    /// bounds.
     Number {
         bounds: Bounds,
         remark: &'static str,
@@ -22,8 +24,8 @@ pub enum KeyKind {
     },
     /// A string of number and unit; the bounds are in the SI unit `unit`.
     Quantity { unit: &'static str, bounds: Bounds },
-    /// A whole number, or a pair of them. The noun names the value where "from 1 to 64" does not say enough; the remark ends
-    /// the sentence about a number out of bounds.
+    /// A whole number, or a pair of them. The noun names the value where "from 1 to 64" does not say enough;
+    /// the remark ends the sentence about a number out of bounds.
     Whole {
         least: u64,
         most: u64,
@@ -36,6 +38,8 @@ pub enum KeyKind {
     Switch,
     /// The path of a file of one of the given formats.
     File(&'static [&'static str]),
+    /// A table of keys of its own, or a list of such tables, with an example.
+    Table(&'static str, &'static [Key]),
     /// A value whose bounds depend on others, or that has a form of its own, with its bounds in words.
     Special(&'static str),
 }
@@ -51,21 +55,52 @@ pub struct Title {
     pub unit: &'static str,
 }
 
-/// A key of a case file.
+/// Unit in which a dimensionless key counts, whose name ends in `_star`. It depends on the edge of a block
+/// and on the thickness.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum StarUnit {
+    /// The unit of V*.
+    Speed,
+    /// The unit of t*.
+    Time,
+    /// One over the unit of t*.
+    Rate,
+    /// The unit of displacement.
+    Displacement,
+    /// The stiffness E h of the spring of a block, whose value per area is held on other blocks:
+    /// `K = k* E h/l^2`.
+    SpringOfBlock,
+    /// The stiffness E h of all springs together.
+    Stiffness,
+    /// No unit: a ratio, or a spread of coefficients.
+    One,
+}
+
+/// A key of a file.
 #[derive(Clone, Copy, Debug)]
 pub struct Key {
     /// Name of the key within its table.
     pub name: &'static str,
+    /// Meaning of the key: a sentence or more.
+    pub doc: &'static str,
     /// Kind of the values that the key takes.
     pub kind: KeyKind,
     /// Default of the key as TOML; empty if it has none.
     pub default: &'static str,
     /// The keys that set the same quantity: a table has one of them.
     partners: [Option<&'static str>; 4],
+    /// Unit in which a key with a star counts; none for other keys.
+    pub star: Option<StarUnit>,
     /// Title of the key; none for keys that no picture has along an axis.
     pub title: Option<Title>,
-    /// Meaning of the key, in one line.
-    pub doc: &'static str,
+    /// Symbol or equation of the paper; empty if it has none.
+    pub paper: &'static str,
+    /// Words that follow the bounds of the kind in the reference; empty if these say all.
+    pub further_bounds: &'static str,
+    /// Sentences that follow the meaning in the reference, with its links.
+    pub note: &'static str,
+    /// Words in place of the default; empty where the default or the meaning says all.
+    pub without: &'static str,
 }
 
 impl Key {
@@ -83,6 +118,11 @@ impl Key {
         self
     }
 
+    pub(super) const fn star(mut self, unit: StarUnit) -> Self {
+        self.star = Some(unit);
+        self
+    }
+
     pub(super) const fn title(
         mut self,
         words: &'static str,
@@ -92,16 +132,52 @@ impl Key {
         self.title = Some(Title { words, symbol, unit });
         self
     }
+
+    pub(super) const fn paper(mut self, symbol: &'static str) -> Self {
+        self.paper = symbol;
+        self
+    }
+
+    /// The key with words that follow the bounds of its kind in the reference.
+    pub const fn further_bounds(mut self, words: &'static str) -> Self {
+        self.further_bounds = words;
+        self
+    }
+
+    /// The key with sentences that follow its meaning in the reference.
+    pub const fn note(mut self, sentences: &'static str) -> Self {
+        self.note = sentences;
+        self
+    }
+
+    /// The key with words for what a file without it has, in place of a default.
+    pub const fn without(mut self, words: &'static str) -> Self {
+        self.without = words;
+        self
+    }
+
+    /// The key with its name, and its meaning as a doc comment has it.
+    pub const fn named(mut self, name: &'static str, doc: &'static str) -> Self {
+        self.name = name;
+        self.doc = doc.trim_ascii();
+        self
+    }
 }
 
-pub(super) const fn key(name: &'static str, default: &'static str, kind: KeyKind, doc: &'static str) -> Key {
+/// A key with a default as TOML, or an empty one, that takes values of a kind.
+pub const fn key(default: &'static str, kind: KeyKind) -> Key {
     Key {
-        name,
+        name: "",
+        doc: "",
         kind,
         default,
         partners: [None; 4],
+        star: None,
         title: None,
-        doc,
+        paper: "",
+        further_bounds: "",
+        note: "",
+        without: "",
     }
 }
 
@@ -121,7 +197,8 @@ pub(super) const fn quantity(unit: &'static str, bounds: Bounds) -> KeyKind {
     KeyKind::Quantity { unit, bounds }
 }
 
-pub(super) const fn whole(least: u64, most: u64) -> KeyKind {
+/// The kind of a whole number within bounds.
+pub const fn whole(least: u64, most: u64) -> KeyKind {
     KeyKind::Whole {
         least,
         most,
@@ -167,31 +244,22 @@ pub(super) const ARRAY: KeyKind = KeyKind::File(&["npy", "csv"]);
 pub(super) const SPEED_STAR: KeyKind = number(above(0.0, 10.0), "it is in the unit of V*");
 /// A time in t*.
 pub(super) const TIME_STAR: KeyKind = number(POSITIVE_TIME, "it is a time t*");
+/// A slip.
+pub(super) const SLIP_STAR: KeyKind = number(above(0.0, 1e9), "it is in units of P mu_s l^2/(E h)");
 /// The word that stands for a number which the case decides.
 pub(super) const AUTO: &[&str] = &["auto"];
 
-/// Number of keys in some lists of them.
-pub(super) const fn count(lists: &[&[Key]]) -> usize {
-    let (mut sum, mut list) = (0, 0);
-    while list < lists.len() {
-        sum += lists[list].len();
-        list += 1;
-    }
-    sum
-}
-
-/// Some lists of keys joined to one, of [`count`] keys.
-pub(super) const fn joined<const COUNT: usize>(lists: &[&[Key]]) -> [Key; COUNT] {
-    let mut keys = [lists[0][0]; COUNT];
-    let (mut place, mut list) = (0, 0);
-    while list < lists.len() {
-        let mut of_list = 0;
-        while of_list < lists[list].len() {
-            keys[place] = lists[list][of_list];
-            of_list += 1;
-            place += 1;
-        }
-        list += 1;
+/// Two lists of keys joined to one.
+pub(super) const fn joined<const COUNT: usize>(first: &[Key], second: &[Key]) -> [Key; COUNT] {
+    let mut keys = [first[0]; COUNT];
+    let mut place = 0;
+    while place < COUNT {
+        keys[place] = if place < first.len() {
+            first[place]
+        } else {
+            second[place - first.len()]
+        };
+        place += 1;
     }
     keys
 }

@@ -1,24 +1,20 @@
-//! The table of keys: kind, bounds, default and title of every key of a case file.
+//! The keys of a case file by their sections: the tables, and the shapes of textures.
 
 use std::borrow::Cow;
 use std::collections::HashMap;
-use std::ops::Bound::{Included, Unbounded};
 use std::sync::LazyLock;
 
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use slipfront::observe::Field;
-use slipfront::{Edges, StopReason};
-
-use super::friction;
-use super::key::{
-    ARRAY, AUTO, DEGREES, Key, KeyKind, MAX_TIME_STAR, POSITIVE_TIME, STIFFNESS_PER_AREA, Title, above,
-    between, key, number, or_word, quantity, whole, within,
-};
-use super::probe::names_of;
+use super::drive::Drive;
+use super::friction::Friction;
+use super::key::{Key, KeyKind, StarUnit, Title};
+use super::motion::Load;
+use super::output::Output;
 use super::shapes;
-use super::words::{AttachedEdge, Loading, Motion, Outline};
+use super::slider::Slider;
+use super::time::Time;
 
 /// The keys that stand together: those of a table, or of a shape of texture.
 #[derive(Clone, Copy, Debug)]
@@ -27,7 +23,8 @@ pub struct Section {
     pub name: &'static str,
     /// Whether the section is a shape of `[[texture]]`.
     pub is_shape: bool,
-    /// Keys of the section, in the order of the documentation. `shape` itself is not among the keys of a texture.
+    /// Keys of the section, in the order of the documentation. `shape` itself is not among the keys of a
+    /// texture.
     pub keys: &'static [Key],
 }
 
@@ -44,68 +41,68 @@ impl Section {
 
     /// Gives a table the defaults of the keys that it lacks, unless their partner stands there.
     pub(super) fn fill_in(&self, table: &mut DeTable<'_>) {
-        let defaults = DEFAULTS.get(self.name).map_or(&[][..], Vec::as_slice);
-        for (key, value) in self.keys.iter().zip(defaults) {
-            let Some(value) = value else { continue };
-            if !key
-                .partners()
-                .chain([key.name])
-                .any(|name| table.contains_key(name))
-            {
-                table.insert(Spanned::new(0..0, Cow::Borrowed(key.name)), value.clone());
-            }
+        fill_in(
+            table,
+            self.keys,
+            DEFAULTS.get(self.name).map_or(&[], Vec::as_slice),
+        );
+    }
+}
+
+/// The default of a key, parsed; none if it has none.
+type ParsedDefault = Option<Spanned<DeValue<'static>>>;
+
+/// The defaults of all sections by their names. They are parsed once, since a study makes many cases.
+static DEFAULTS: LazyLock<HashMap<&str, Vec<ParsedDefault>>> = LazyLock::new(|| {
+    let sections = SECTIONS.iter();
+    sections
+        .map(|section| (section.name, defaults(section.keys)))
+        .collect()
+});
+
+/// The defaults of keys, in their order.
+fn defaults(keys: &[Key]) -> Vec<ParsedDefault> {
+    // A key without a default has an empty text, which is no value.
+    keys.iter().map(|key| DeValue::parse(key.default).ok()).collect()
+}
+
+/// Gives a table the defaults of the keys that it lacks, unless their partner stands there.
+fn fill_in(table: &mut DeTable<'_>, keys: &[Key], defaults: &[ParsedDefault]) {
+    for (key, value) in keys.iter().zip(defaults) {
+        let Some(value) = value else { continue };
+        if !key
+            .partners()
+            .chain([key.name])
+            .any(|name| table.contains_key(name))
+        {
+            table.insert(Spanned::new(0..0, Cow::Borrowed(key.name)), value.clone());
         }
     }
 }
 
-/// The defaults of the keys of a section, in their order.
-type Defaults = Vec<Option<Spanned<DeValue<'static>>>>;
-
-/// The defaults of all sections by their names. They are parsed once, since a study makes many cases.
-static DEFAULTS: LazyLock<HashMap<&str, Defaults>> = LazyLock::new(|| {
-    // A key without a default has an empty text, which is no value.
-    let default = |key: &Key| DeValue::parse(key.default).ok();
-    let defaults = |section: &Section| section.keys.iter().map(default).collect();
-    let sections = SECTIONS.iter();
-    sections
-        .map(|section| (section.name, defaults(section)))
-        .collect()
-});
+/// Gives a table that is none of a case the defaults of the keys that it and the tables in it lack.
+pub(super) fn fill_in_all(table: &mut DeTable<'_>, keys: &[Key]) {
+    fill_in(table, keys, &defaults(keys));
+    for key in keys {
+        if let KeyKind::Table(_, inner) = key.kind
+            && let Some(DeValue::Table(table)) = table.get_mut(key.name).map(Spanned::get_mut)
+        {
+            fill_in_all(table, inner);
+        }
+    }
+}
 
 /// The table of the textures.
 pub(super) const TEXTURE: &str = "texture";
 
-/// Largest number of blocks along an axis.
-pub(crate) const MAX_BLOCKS: u64 = 100_000;
-/// dt* at which the scheme becomes unstable: 2/sqrt(6.5 x 0.75) = 0.9058.
-pub(super) const UNSTABLE_STEP: f64 = 0.9058;
-/// Least and largest property of a block over that of the whole slider.
-pub(crate) const MIN_RELATIVE: f64 = 1e-6;
-pub(crate) const MAX_RELATIVE: f64 = 1e6;
-
-/// A slope of a profile.
-pub(super) const RELATIVE_SLOPE: KeyKind = number(between(-1.0, 1.0), "1 would leave no load on an edge");
-/// A stiffness with its unit.
-pub(super) const STIFFNESS: KeyKind = quantity("N/m", within(1e-30, 1e30));
-const DRIVE_STIFFNESS: KeyKind = number(above(0.0, 1e6), "that of the paper is 0.375 on each block");
-/// A speed of a program.
-pub(super) const PROGRAM_SPEED: KeyKind = number(within(-10.0, 10.0), "the paper's runs have 0.01 to 0.2");
-/// The end of a segment of a program.
-pub(super) const UNTIL: KeyKind = number(POSITIVE_TIME, "it is a time t*");
-/// A property of a block over that of the whole slider.
-pub(super) const RELATIVE_PROPERTY: KeyKind = number(
-    within(MIN_RELATIVE, MAX_RELATIVE),
-    "it is relative, so that 1 changes nothing",
-);
-const GRADE: KeyKind = KeyKind::Special("`{ along = \"x\", from = 1, to = 0.1 }`; 1e-6 to 1e6");
 /// The sections that are tables.
 const TABLES: [Section; 6] = [
-    section(false, "slider", SLIDER),
-    section(false, "load", LOAD),
-    section(false, "drive", DRIVE),
-    section(false, "friction", friction::KEYS),
-    section(false, "time", TIME),
-    section(false, "output", OUTPUT),
+    section(false, "slider", Slider::KEYS),
+    section(false, "load", Load::KEYS),
+    section(false, "drive", Drive::KEYS),
+    section(false, "friction", Friction::KEYS),
+    section(false, "time", Time::KEYS),
+    section(false, "output", Output::KEYS),
 ];
 
 /// Every section of a case file: the tables, and the shapes of textures.
@@ -124,104 +121,6 @@ pub const SECTIONS: [Section; TABLES.len() + shapes::ALL.len()] = {
     sections
 };
 
-#[rustfmt::skip]
-const SLIDER: &[Key] = &[
-    key("blocks", "[25, 25]", whole(1, MAX_BLOCKS), "blocks along x and along y").title("blocks along a side", "", ""),
-    key("block_size", "\"1 um\"", quantity("m", within(1e-12, 1e3)), "edge of a block").title("block size", "l", "m"),
-    key("thickness", "", quantity("m", within(1e-12, 1e3)), "thickness of the sheet that the slider is; `block_size` if not given")
-        .title("thickness", "h", "m"),
-    key("young_modulus", "\"100 GPa\"", quantity("Pa", within(1e-3, 1e15)), "Young's modulus")
-        .title("Young's modulus", "E", "Pa"),
-    key("density", "\"10 g/cm^3\"", quantity("kg/m^3", within(1e-6, 1e9)), "density")
-        .title("density", "\u{3c1}", "kg/m\u{b3}"),
-    key("omega_star", "0.1", number(within(0.0, 1e3), "a slider that rings little has 1"), "damping of the blocks' motion")
-        .or("damping_rate").title("damping", "\u{3a9}*", ""),
-    key("damping_rate", "", quantity("1/s", within(0.0, 1e24)), "damping with its unit")
-        .or("omega_star").title("damping", "\u{3a9}", "1/s"),
-    key("edges", "\"free\"", KeyKind::Words(names_of::<Edges>), "what lies beyond the edges that bound x and those that bound y"),
-    key("outline", "\"rectangle\"", KeyKind::Words(names_of::<Outline>), "shape of the slider: blocks outside do not exist"),
-    key("outline_file", "", KeyKind::File(&["png", "npy"]), "the shape as a mask: dark pixels, or 1 in an array, are blocks"),
-    key("viscosity_time_star", "0", number(within(0.0, 1e3), "it is a time in t*, of the order of 0.1 where it matters"),
-        "damping constant of a damper beside every spring between blocks over the spring's stiffness")
-        .title("viscosity", "\u{3c4}\u{1d65}*", ""),
-    key("stiffness_field", "", ARRAY, "Young's modulus over `young_modulus`, block by block").or("stiffness_grade"),
-    key("stiffness_grade", "", GRADE, "the same, from one edge to the other").or("stiffness_field"),
-    key("density_field", "", ARRAY, "density over `density`, block by block").or("density_grade"),
-    key("density_grade", "", GRADE, "the same, from one edge to the other").or("density_field"),
-];
-
-#[rustfmt::skip]
-const LOAD: &[Key] = &[
-    key("pressure", "\"100 kPa\"", quantity("Pa", within(1e-9, 1e15)), "normal load over the whole area, textured or not")
-        .title("pressure", "P", "Pa"),
-    key("redistribute", "true", KeyKind::Switch, "whether the blocks in contact carry the load of the textured ones"),
-    key("profile", "", KeyKind::Special("`{ along = \"x\", relative_slope = 0.5 }`; more than -1, less than 1"),
-        "a pressure that rises along x or y, with the mean `pressure`").or("pressure_field"),
-    key("pressure_field", "", ARRAY, "local pressure over `pressure`, block by block").or("profile"),
-];
-
-#[rustfmt::skip]
-const DRIVE: &[Key] = &[
-    key("v_star", "0.03", number(above(0.0, 10.0), "the paper's runs have 0.01 to 0.2"), "speed of the drive")
-        .or("speed").or("program").title("drive speed", "V*", ""),
-    key("speed", "", quantity("m/s", within(1e-18, 1e6)), "speed of the drive with its unit")
-        .or("v_star").or("program").title("drive speed", "V", "m/s"),
-    key("program", "", KeyKind::Special("`[{ v_star = 0.03, until_star = 200 }, { v_star = 0 }]`; -10 to 10, times rising"),
-        "speeds that follow one another").or("v_star").or("speed"),
-    key("direction", "0", DEGREES, "direction of the drive, degrees from x towards y")
-        .title("direction of the drive", "\u{3b8}", "\u{b0}"),
-    key("motion", "\"translation\"", KeyKind::Words(names_of::<Motion>), "whether the drive pulls along the direction or turns"),
-    key("loading", "\"constant\"", KeyKind::Words(names_of::<Loading>), "whether the drive moves all the time or stands while a block in contact slides"),
-    key("attach", "\"all\"", KeyKind::Words(names_of::<AttachedEdge>), "which blocks have a drive spring: all, or those of an edge")
-        .or("attach_file"),
-    key("attach_file", "", KeyKind::File(&["png", "npy"]), "an image or array of the blocks that have a drive spring").or("attach"),
-    key("stiffness", "\"auto\"", KeyKind::Special("`\"auto\"`, or 1e-30 to 1e30 N/m"), "stiffness of each drive spring")
-        .or("stiffness_star").or("stiffness_per_area").or("total_stiffness").or("total_stiffness_star"),
-    key("stiffness_star", "", DRIVE_STIFFNESS, "stiffness of each drive spring over E h, with the thickness h")
-        .or("stiffness").or("stiffness_per_area").or("total_stiffness").or("total_stiffness_star")
-        .title("drive stiffness", "k\u{209b}*", ""),
-    key("stiffness_per_area", "", STIFFNESS_PER_AREA, "stiffness of the mount, which the drive springs are, per area: that of a slider on any blocks")
-        .or("stiffness").or("stiffness_star").or("total_stiffness").or("total_stiffness_star")
-        .title("stiffness of the mount", "K", "N/m\u{b3}"),
-    key("total_stiffness", "", STIFFNESS, "stiffness of all drive springs together, shared in proportion to the modulus of each block")
-        .or("stiffness").or("stiffness_star").or("stiffness_per_area").or("total_stiffness_star")
-        .title("total drive stiffness", "K\u{209b}", "N/m"),
-    key("total_stiffness_star", "", DRIVE_STIFFNESS, "stiffness of all drive springs together over E h, with the thickness h")
-        .or("stiffness").or("stiffness_star").or("stiffness_per_area").or("total_stiffness")
-        .title("total drive stiffness", "K\u{209b}*", ""),
-];
-
-#[rustfmt::skip]
-const TIME: &[Key] = &[
-    key("duration_star", "\"auto\"", or_word(POSITIVE_TIME, "8/V* shows onset and sliding", AUTO), "length of the run")
-        .or("duration").title("duration", "t*", ""),
-    key("duration", "", quantity("s", within(1e-24, 1e12)), "length of the run with its unit")
-        .or("duration_star").title("duration", "t", "s"),
-    key("step", "\"auto\"", or_word(between(0.0, UNSTABLE_STEP), "beyond it the scheme is unstable; \"auto\" is 0.1",
-        &["auto", "paper"]), "time step").title("time step", "\u{394}t*", ""),
-    key("stop", "\"end\"", KeyKind::Words(names_of::<StopReason>),
-        "end at the duration, or as soon as the fall that ends the first peak is seen"),
-    key("kinetic_from_star", "\"auto\"", or_word((Included(0.0), Unbounded),
-        "the average is taken from there to the end of the run", AUTO), "start of the window that mu_k* is averaged over"),
-];
-
-#[rustfmt::skip]
-const OUTPUT: &[Key] = &[
-    key("snapshots", "\"auto\"", KeyKind::Special("`\"auto\"`, a list, or `{ every = 5.0 }`"), "when fields are written"),
-    key("fields", "[\"contact_stress_star\", \"traction\", \"displacement_x\", \"displacement_y\", \"sliding\"]",
-        KeyKind::Words(names_of::<Field>), "what is written then"),
-    key("stride", "1", KeyKind::Whole { least: 1, most: MAX_BLOCKS, noun: "", remark: "; 1 writes every block" },
-        "every n-th block in the fields file"),
-    key("series", "\"auto\"", SPACING, "spacing of the rows of the series in t*"),
-    key("movie", "false", KeyKind::Switch, "whether a movie is drawn of the snapshots"),
-];
-
-/// A time between snapshots or rows.
-pub(super) const SPACING: KeyKind = or_word(POSITIVE_TIME, "it is a spacing in t*", AUTO);
-
-/// A time of a snapshot in a list of them.
-pub(super) const SNAPSHOT_TIME: KeyKind = number(within(0.0, MAX_TIME_STAR), "snapshots are times t*");
-
 const fn section(is_shape: bool, name: &'static str, keys: &'static [Key]) -> Section {
     Section { name, is_shape, keys }
 }
@@ -235,6 +134,19 @@ pub fn title_of(path: &str) -> Option<(Title, Option<usize>)> {
     };
     let mut keys = sections_of(table).filter_map(|section| section.key(name));
     Some((keys.next()?.title?, texture))
+}
+
+/// The unit in which a key of this name counts, in a section or in a table within one; none for a key without
+/// a star.
+pub(crate) fn star_unit(name: &str) -> Option<StarUnit> {
+    fn of(keys: &[Key], name: &str) -> Option<StarUnit> {
+        keys.iter().find_map(|key| match key.kind {
+            _ if key.name == name => key.star,
+            KeyKind::Table(_, inner) => of(inner, name),
+            _ => None,
+        })
+    }
+    SECTIONS.iter().find_map(|section| of(section.keys, name))
 }
 
 /// Whether a key, such as `texture.0.file` or `file` within its table, names a file.

@@ -1,10 +1,10 @@
 //! The case file: every key that a user can write, with its default, and the text it is read from.
 //!
-//! Text is parsed as TOML, changed by overrides (`--set`), read into these structs, and checked against every bound that
-//! needs nothing but the file. Everything else, from units to the lattice, is done when a case is built from the file.
+//! Text is parsed as TOML, changed by overrides (`--set`), read into these structs, and checked against every
+//! bound that needs nothing but the file. Everything else, from units to the lattice, is done when a case is
+//! built from the file.
 
 mod check;
-mod choice;
 mod depth;
 mod diagnose;
 mod drive;
@@ -12,6 +12,7 @@ mod error;
 mod file;
 mod friction;
 mod key;
+mod key_rows;
 mod key_table;
 mod keys;
 mod length_of_a_block;
@@ -34,12 +35,12 @@ mod words;
 
 pub use depth::{limit_nesting, parts_of};
 pub use diagnose::syntax_error;
-pub use drive::{Attached, Drive, DriveSpeed, DriveStiffness, SpeedSegment};
+pub use drive::{Attached, AutoOrStiffness, Drive, DriveSpeed, DriveStiffness, SpeedSegment};
 pub use error::{CaseError, Invalid, Place};
 pub use file::{CaseFile, FileUse, NamedFile, ParsedCase};
 pub use friction::*;
-pub use key::{Bounds, Key, KeyKind, Title};
-pub(crate) use key_table::{MAX_BLOCKS, MAX_RELATIVE, MIN_RELATIVE};
+pub use key::{Bounds, Key, KeyKind, StarUnit, Title, key, whole};
+pub(crate) use key_table::star_unit;
 pub use key_table::{SECTIONS, Section, names_a_file, title_of};
 pub use keys::{
     STUDY_TABLES, TABLES as CASE_TABLES, exclude_each_other, header_below, partners_of,
@@ -54,8 +55,8 @@ pub(crate) use pattern::MAX_COUNT;
 pub use pattern::{Array, Count, Pattern, Pitch};
 pub use probe::names_of;
 pub use shapes::*;
-pub(crate) use slider::MAX_BLOCKS_TOTAL;
 pub use slider::{Damping, Grade, Slider};
+pub(crate) use slider::{MAX_BLOCKS, MAX_BLOCKS_TOTAL, MAX_RELATIVE, MIN_RELATIVE};
 pub use source::Source;
 pub use tables::Tables;
 pub use texture::Texture;

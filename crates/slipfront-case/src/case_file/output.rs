@@ -5,26 +5,43 @@ use slipfront::observe::Field;
 
 use super::check::Check;
 use super::error::CaseError;
-use super::key_table::{SNAPSHOT_TIME, SPACING};
+use super::key::{AUTO, KeyKind, MAX_TIME_STAR, POSITIVE_TIME, key, number, or_word, within};
+use super::probe::names_of;
+use super::slider::MAX_BLOCKS;
 use super::values::{AutoOr, words};
+use crate::key_rows;
 use slipfront_base::number_format::exact;
 
-/// The table `[output]`: snapshots, fields and the series.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Output {
-    /// The instants at which fields are written.
-    pub snapshots: Snapshots,
-    /// The fields that are written at these instants.
-    #[serde(deserialize_with = "words")]
-    pub fields: Vec<Field>,
-    /// Stride n of the fields file, which has every n-th block along x and along y; 1 or more.
-    pub stride: u32,
-    /// Spacing of the rows of the series in t*; `auto` is every step, or as many as give at most 20 000 rows.
-    pub series: AutoOr,
-    /// Whether a movie is drawn of the run.
-    pub movie: bool,
+key_rows! {
+    /// The table `[output]`: snapshots, fields and the series.
+    #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+    #[serde(deny_unknown_fields)]
+    pub struct Output {
+        /// The instants at which fields are written: `"auto"` is the instants A to F of Fig. 4; a list is
+        /// these t*, in increasing order, from 0 to 1e9, `[]` for never; `every` is multiples of that t*
+        /// (more than 0, at most 1e9), and the instants A to F as well.
+        pub snapshots: Snapshots = key("\"auto\"", KeyKind::Special("`\"auto\"`, a list, or `{ every = 5.0 }`")),
+        /// The fields that are written at these instants.
+        #[serde(deserialize_with = "words")]
+        pub fields: Vec<Field> = key("[\"contact_stress_star\", \"traction\", \"displacement_x\", \"displacement_y\", \"sliding\"]",
+            KeyKind::Words(names_of::<Field>))
+                .further_bounds(", each at most once; `\"traction\"` is blank over a texture"),
+        /// Stride of the fields file, which has every n-th block along x and along y.
+        pub stride: u32 = key("1", KeyKind::Whole { least: 1, most: MAX_BLOCKS, noun: "", remark: "; 1 writes every block" }),
+        /// Spacing of the rows of the series in t*; `"auto"` is every step, or as many as give at most 20 000
+        /// rows.
+        pub series: AutoOr = key("\"auto\"", SPACING),
+        /// Whether a movie is drawn of the snapshots, `movie.gif`.
+        pub movie: bool = key("false", KeyKind::Switch)
+            .note("See [pictures](../guide/results.md#pictures). It needs from 1 to 1000 snapshots of the field that it shows."),
+    }
 }
+
+/// A time between snapshots or rows.
+const SPACING: KeyKind = or_word(POSITIVE_TIME, "it is a spacing in t*", AUTO);
+
+/// A time of a snapshot in a list of them.
+const SNAPSHOT_TIME: KeyKind = number(within(0.0, MAX_TIME_STAR), "snapshots are times t*");
 
 /// The instants at which fields are written.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

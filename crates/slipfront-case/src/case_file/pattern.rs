@@ -4,10 +4,11 @@ use serde::{Deserialize, Serialize};
 
 use super::check::Check;
 use super::error::CaseError;
-use super::key::{Key, KeyKind, SIZE, key, whole};
+use super::key::{KeyKind, SIZE, key, whole};
 use super::probe::names_of;
 use super::values::{Pair, length, word};
 use super::words::Arrangement;
+use crate::key_rows;
 use crate::quantity::Length;
 
 /// Largest number of columns, and of rows, of all arrays of a texture together.
@@ -15,34 +16,26 @@ pub(crate) const MAX_COUNT: u64 = 1000;
 /// Kind of the number of columns and rows.
 const COUNT: KeyKind = whole(1, MAX_COUNT);
 
-/// The keys of a pattern, which all shapes have.
-#[rustfmt::skip]
-pub(super) const KEYS: &[Key] = &[
-    key("pitch", "", KeyKind::Special("a length, or a pair; more than 0, at most 1e9 m"),
-        "distance between neighbouring copies").title("pitch", "", "m"),
-    key("array", "\"auto\"", KeyKind::Special("`\"auto\"`, or a pair from 1 to 1000"),
-        "columns and rows of copies"),
-    key("lattice", "\"square\"", KeyKind::Words(names_of::<Arrangement>), "how the copies are arranged"),
-    key("repeat", "", KeyKind::Special("`{ array = [3, 3], pitch = \"20 um\", lattice = \"square\" }`"),
-        "a pattern of such patterns"),
-    key("invert", "false", KeyKind::Switch, "whether all but the inside is textured"),
-];
+/// Kind of the distance between neighbours.
+pub(super) const PITCH: KeyKind = KeyKind::Special("a length, or a pair; more than 0, at most 1e9 m");
 
-/// The pattern in which the shape of a texture is repeated; by default it stands once.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Pattern {
-    /// Distance between neighbouring copies.
-    pub pitch: Option<Pitch>,
-    /// Columns and rows of copies.
-    pub array: Count,
-    /// Arrangement of the copies.
-    #[serde(deserialize_with = "word")]
-    pub lattice: Arrangement,
-    /// A pattern that holds the array at every place.
-    pub repeat: Option<Array>,
-    /// Whether the parts outside of the shapes are textured, in place of the parts inside.
-    pub invert: bool,
+key_rows! {
+    /// The pattern in which the shape of a texture is repeated; by default it stands once.
+    #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+    #[serde(deny_unknown_fields)]
+    pub struct Pattern {
+        /// Distance between neighbouring copies.
+        pub pitch: Option<Pitch> = key("", PITCH).title("pitch", "", "m"),
+        /// Columns and rows of copies: `"auto"` is as many as have room with a `pitch`, and one without.
+        pub array: Count = key("\"auto\"", KeyKind::Special("`\"auto\"`, or a pair from 1 to 1000")),
+        /// Arrangement of the copies.
+        #[serde(deserialize_with = "word")]
+        pub lattice: Arrangement = key("\"square\"", KeyKind::Words(names_of::<Arrangement>)),
+        /// A pattern of such patterns.
+        pub repeat: Option<Array> = key("", KeyKind::Special("`{ array = [3, 3], pitch = \"20 um\", lattice = \"square\" }`")),
+        /// Whether the parts outside of the copies are textured, in place of the parts inside.
+        pub invert: bool = key("false", KeyKind::Switch),
+    }
 }
 
 /// Places in columns and rows.
@@ -185,7 +178,8 @@ impl From<Count> for CountKey {
     }
 }
 
-/// The key `pitch` as it stands in the file: texts, so that a length that cannot be read keeps its own message.
+/// The key `pitch` as it stands in the file: texts, so that a length that cannot be read keeps its own
+/// message.
 #[derive(Serialize, Deserialize)]
 #[serde(
     untagged,

@@ -4,70 +4,105 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use slipfront::Edges;
 
 use super::check::Check;
-use super::choice::keys_with_choice;
 use super::error::CaseError;
-use super::key_table::RELATIVE_PROPERTY;
+use super::key::{ARRAY, Key, KeyKind, StarUnit, key, number, quantity, whole, within};
 use super::motion::Along;
+use super::probe::names_of;
 use super::values::{Pair, pair, word};
 use super::words::Outline;
+use crate::key_rows;
 use crate::quantity::{Density, Length, Pressure, Rate};
 use slipfront_base::number_format::count;
 
-/// `[slider]`: the blocks, their material, the damping and the edges.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(try_from = "SliderKeys", into = "SliderKeys")]
-pub struct Slider {
-    /// Blocks along x and along y (`N_x`, `N_y`): 1 to 100 000 each, at least 3 along a periodic axis.
-    pub blocks: [u32; 2],
-    /// Edge of a block (l), m.
-    pub block_size: Length,
-    /// Thickness of the sheet (h), m; `block_size` if not given.
-    pub thickness: Option<Length>,
-    /// Young's modulus (E), Pa.
-    pub young_modulus: Pressure,
-    /// Density (rho), kg/m^3.
-    pub density: Density,
-    /// Damping of the blocks' motion: `omega_star` or `damping_rate`.
-    pub damping: Damping,
-    /// The lattice's edges that bound x and those that bound y.
-    pub edges: [Edges; 2],
-    /// Shape of the slider.
-    pub outline: Outline,
-    /// The file of an outline that is a mask: `.png` or `.npy`.
-    pub outline_file: Option<String>,
-    /// Damping constant of the damper beside every spring between blocks over the stiffness of the spring (`tau_v`), in t*.
-    pub viscosity_time_star: f64,
-    /// A file of Young's moduli over `young_modulus`, block by block: `.npy` or `.csv`, shape (ny, nx).
-    pub stiffness_field: Option<String>,
-    /// A relative modulus that changes along an axis.
-    pub stiffness_grade: Option<Grade>,
-    /// A file of densities over `density`, block by block: `.npy` or `.csv`, shape (ny, nx).
-    pub density_field: Option<String>,
-    /// A relative density that changes along an axis.
-    pub density_grade: Option<Grade>,
+/// Largest number of blocks along an axis.
+pub(crate) const MAX_BLOCKS: u64 = 100_000;
+/// Least and largest property of a block over that of the whole slider.
+pub(crate) const MIN_RELATIVE: f64 = 1e-6;
+pub(crate) const MAX_RELATIVE: f64 = 1e6;
+
+key_rows! {
+    /// `[slider]`: the blocks, their material, the damping and the edges.
+    #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+    #[serde(try_from = "SliderKeys", into = "SliderKeys")]
+    pub struct Slider from SliderKeys {
+        /// Blocks along x and along y.
+        #[serde(deserialize_with = "pair")]
+        pub blocks: [u32; 2] = key("[25, 25]", whole(1, MAX_BLOCKS)).paper("N_x, N_y")
+            .title("blocks along a side", "", "")
+            .further_bounds(" each, at most 4 000 000 000 together and [what memory holds](#what-a-run-needs); at least 3 along a periodic axis"),
+        /// Edge of a block.
+        pub block_size: Length = key("\"1 um\"", quantity("m", within(1e-12, 1e3))).paper("l")
+            .title("block size", "l", "m"),
+        /// Thickness of the sheet that the slider is; `block_size` if not given, as of the paper's cubes.
+        pub thickness: Option<Length> = key("", quantity("m", within(1e-12, 1e3)))
+            .title("thickness", "h", "m")
+            .note("[Thickness and mount](../model.md#thickness-and-mount) tells what it changes."),
+        /// Young's modulus.
+        pub young_modulus: Pressure = key("\"100 GPa\"", quantity("Pa", within(1e-3, 1e15))).paper("E")
+            .title("Young's modulus", "E", "Pa"),
+        /// Density.
+        pub density: Density = key("\"10 g/cm^3\"", quantity("kg/m^3", within(1e-6, 1e9))).paper("rho")
+            .title("density", "\u{3c1}", "kg/m\u{b3}"),
+        [
+            /// Damping of the blocks' motion: `omega_star` or `damping_rate`.
+            pub damping: Damping or "the slider needs a damping: `omega_star` or `damping_rate`" {
+                /// Damping of the blocks' motion.
+                omega_star: f64 => OmegaStar = key("0.1", number(within(0.0, 1e3), "a slider that rings little has 1"))
+                    .star(StarUnit::Rate)
+                    .or("damping_rate").paper("Omega* = Omega sqrt(m/k_1)").title("damping", "\u{3a9}*", ""),
+                /// Damping with its unit, in place of `omega_star`.
+                damping_rate: Rate => Rate = key("", quantity("1/s", within(0.0, 1e24))).or("omega_star")
+                    .paper("Omega")
+                    .title("damping", "\u{3a9}", "1/s"),
+            }
+        ]
+        /// Parts beyond the edges that bound x and those that bound y.
+        #[serde(serialize_with = "write_edges", deserialize_with = "read_edges")]
+        pub edges: [Edges; 2] = key("\"free\"", KeyKind::Words(names_of::<Edges>))
+            .further_bounds(", or a pair of them"),
+        /// Shape of the slider: blocks outside do not exist. A disc has as many blocks along x as along y.
+        #[serde(deserialize_with = "word")]
+        pub outline: Outline = key("\"rectangle\"", KeyKind::Words(names_of::<Outline>)),
+        /// The shape as a mask: dark pixels, or 1 in an array, are blocks; for `outline = "mask"`.
+        pub outline_file: Option<String> = key("", KeyKind::File(&["png", "npy"])),
+        /// Damping constant of a damper beside every spring between blocks over the spring's stiffness, tau_v
+        /// in t*.
+        pub viscosity_time_star: f64 = key("0", number(within(0.0, 1e3), "it is a time in t*, of the order of 0.1 where it matters"))
+            .star(StarUnit::Time)
+            .title("viscosity", "\u{3c4}\u{1d65}*", ""),
+        /// Young's modulus over `young_modulus`, block by block.
+        pub stiffness_field: Option<String> = key("", ARRAY).or("stiffness_grade"),
+        /// Young's modulus over `young_modulus`, from one edge to the other, in place of the field.
+        pub stiffness_grade: Option<Grade> = key("", GRADE).or("stiffness_field"),
+        /// Density over `density`, block by block.
+        pub density_field: Option<String> = key("", ARRAY).or("density_grade"),
+        /// Density over `density`, from one edge to the other, in place of the field.
+        pub density_grade: Option<Grade> = key("", GRADE).or("density_field"),
+    }
 }
 
-/// A property relative to that of the whole slider that changes linearly along an axis, from one edge to the other.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Grade {
-    /// The axis.
-    #[serde(deserialize_with = "word")]
-    pub along: Along,
-    /// Value at the edge where the axis begins, 1e-6 to 1e6.
-    pub from: f64,
-    /// Value at the other edge, 1e-6 to 1e6.
-    pub to: f64,
+key_rows! {
+    /// A property relative to that of the whole slider that changes linearly along an axis, from one edge to
+    /// the other.
+    #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+    #[serde(deny_unknown_fields)]
+    pub struct Grade {
+        /// The axis.
+        #[serde(deserialize_with = "word")]
+        pub along: Along = key("", KeyKind::Words(names_of::<Along>)),
+        /// Value at the edge where the axis begins.
+        pub from: f64 = key("", RELATIVE_PROPERTY),
+        /// Value at the other edge.
+        pub to: f64 = key("", RELATIVE_PROPERTY),
+    }
 }
 
-/// Damping of the motion.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Damping {
-    /// `omega_star`: Omega over the square root of `k_straight/block_mass`, dimensionless, 0 to 1000.
-    OmegaStar(f64),
-    /// `damping_rate`: Omega of Eq. 5, 1/s.
-    Rate(Rate),
-}
+/// A property of a block over that of the whole slider.
+const RELATIVE_PROPERTY: KeyKind = number(
+    within(MIN_RELATIVE, MAX_RELATIVE),
+    "it is relative, so that 1 changes nothing",
+);
+const GRADE: KeyKind = KeyKind::Table("{ along = \"x\", from = 1, to = 0.1 }", Grade::KEYS);
 
 /// Largest number of all blocks.
 pub(crate) const MAX_BLOCKS_TOTAL: u64 = 4_000_000_000;
@@ -151,38 +186,6 @@ impl Slider {
             }
             _ => Ok(()),
         }
-    }
-}
-
-keys_with_choice! {
-    Slider: SliderKeys {
-        #[serde(deserialize_with = "pair")]
-        blocks: [u32; 2],
-        block_size: Length,
-        #[serde(skip_serializing_if = "Option::is_none")]
-        thickness: Option<Length>,
-        young_modulus: Pressure,
-        density: Density,
-        (damping: Damping {
-            omega_star: f64 => OmegaStar,
-            damping_rate: Rate => Rate,
-            _ => "the slider needs a damping: `omega_star` or `damping_rate`"
-        }),
-        #[serde(serialize_with = "write_edges", deserialize_with = "read_edges")]
-        edges: [Edges; 2],
-        #[serde(deserialize_with = "word")]
-        outline: Outline,
-        #[serde(skip_serializing_if = "Option::is_none")]
-        outline_file: Option<String>,
-        viscosity_time_star: f64,
-        #[serde(skip_serializing_if = "Option::is_none")]
-        stiffness_field: Option<String>,
-        #[serde(skip_serializing_if = "Option::is_none")]
-        stiffness_grade: Option<Grade>,
-        #[serde(skip_serializing_if = "Option::is_none")]
-        density_field: Option<String>,
-        #[serde(skip_serializing_if = "Option::is_none")]
-        density_grade: Option<Grade>,
     }
 }
 

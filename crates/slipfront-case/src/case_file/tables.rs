@@ -6,8 +6,9 @@ use toml::de::{DeTable, DeValue, ValueDeserializer};
 
 use super::diagnose::value_error;
 use super::error::CaseError;
-use super::key_table::{SECTIONS, Section};
-use super::keys;
+use super::key::Key;
+use super::key_table::{SECTIONS, Section, fill_in_all};
+use super::keys::header;
 use super::probe::names_of;
 use super::reader::Reader;
 use super::source::Source;
@@ -21,15 +22,33 @@ pub struct Tables<'a, 'i> {
 }
 
 impl<'i> Tables<'_, 'i> {
-    /// The table `[name]`, or an empty one where the file has none.
-    pub fn read<T: DeserializeOwned>(&mut self, name: &str) -> Result<T, CaseError> {
+    /// The table `[name]` of a case, or an empty one where the file has none.
+    pub(super) fn read<T: DeserializeOwned>(&mut self, name: &str) -> Result<T, CaseError> {
+        let table = self.table(name)?;
+        self.read_section(table, name, &header(name))
+    }
+
+    /// The table `[name]`, which has these keys, or an empty one where the file has none.
+    ///
+    /// # Errors
+    /// [`CaseError::Invalid`] for a value that is no table, unknown keys, and values of another type.
+    pub fn read_with<T: DeserializeOwned>(&mut self, name: &str, keys: &[Key]) -> Result<T, CaseError> {
+        let mut table = self.table(name)?;
+        if let DeValue::Table(given) = table.get_mut() {
+            fill_in_all(given, keys);
+        }
+        self.read_keys(table, &header(name), None)
+    }
+
+    /// Takes the table `[name]` out of the file.
+    fn table(&mut self, name: &str) -> Result<Spanned<DeValue<'i>>, CaseError> {
         let table = self.root.remove(name);
         let table = table.unwrap_or_else(|| Spanned::new(0..0, DeValue::Table(DeTable::default())));
         if !table.get_ref().is_table() {
             let sentence = format!("`{name}` must be a table: write its keys below a line [{name}]");
             return Err(self.source.error_at(table.span(), sentence));
         }
-        self.read_section(table, name, &keys::header(name))
+        Ok(table)
     }
 
     /// A table that stands under `header`, with the defaults of a table or shape of texture called `section`.

@@ -1,42 +1,60 @@
 //! The table `[time]`: duration, steps and end of the run.
 
-use std::ops::Bound::{Excluded, Included};
+use std::ops::Bound::{Excluded, Included, Unbounded};
 
 use serde::{Deserialize, Serialize};
 use slipfront::StopReason;
 
 use super::check::Check;
-use super::choice::keys_with_choice;
 use super::drive::DriveSpeed;
 use super::error::CaseError;
-use super::key::MAX_TIME_STAR;
-use super::key_table::UNSTABLE_STEP;
-
+use super::key::{
+    AUTO, Key, KeyKind, MAX_TIME_STAR, POSITIVE_TIME, StarUnit, between, key, or_word, quantity, within,
+};
+use super::probe::names_of;
 use super::values::{AutoOr, WordOrNumber, word};
+use crate::key_rows;
 use crate::quantity::Duration;
 
-/// `[time]`: duration, step, end and averaging window of the run.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(try_from = "TimeKeys", into = "TimeKeys")]
-pub struct Time {
-    /// Duration of the run: `duration_star` or `duration`.
-    pub duration: RunTime,
-    /// The time step.
-    pub step: TimeStep,
-    /// Condition that ends the run: its duration, or the fall after the first peak of mu* if that comes first.
-    pub stop: StopReason,
-    /// Start of the window that the kinetic friction is averaged over, in t*; `auto` is 2.5/V* after the onset.
-    pub kinetic_from_star: AutoOr,
+key_rows! {
+    /// `[time]`: duration, step, end and averaging window of the run.
+    #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+    #[serde(try_from = "TimeKeys", into = "TimeKeys")]
+    pub struct Time from TimeKeys {
+        [
+            /// Duration of the run: `duration_star` or `duration`.
+            pub duration: RunTime or "the run needs a length: `duration_star` or `duration`" {
+                /// Length of the run; `"auto"` is 8/V*, or (8/3 f + 2.5)/V* where fewer than 48 % of the
+                /// blocks touch and bear f times the load (with a drive on every block), times 1 + tau_a/(P
+                /// mu_s) under adhesion, after the last change of a program.
+                duration_star: AutoOr => Star = key("\"auto\"", or_word(POSITIVE_TIME, "8/V* shows onset and sliding", AUTO))
+                    .star(StarUnit::Time)
+                    .or("duration").paper("t*").title("duration", "t*", ""),
+                /// Length of the run with its unit, in place of `duration_star`.
+                duration: Duration => Duration = key("", quantity("s", within(1e-24, 1e12)))
+                    .or("duration_star").paper("t")
+                    .title("duration", "t", "s"),
+            }
+        ]
+        /// Time step: `"auto"` is 0.1, or half the largest stable step where that is less; `"paper"` is (2/3)
+        /// V* (Eq. 13), which must be less than 0.9058 too.
+        pub step: TimeStep = key("\"auto\"", or_word(between(0.0, UNSTABLE_STEP), "beyond it the scheme is unstable; \"auto\" is 0.1",
+            &["auto", "paper"])).paper("dt*").title("time step", "\u{394}t*", ""),
+        /// Condition that ends the run: its duration, or the fall that ends the first peak as soon as it is
+        /// seen.
+        #[serde(deserialize_with = "word")]
+        pub stop: StopReason = key("\"end\"", KeyKind::Words(names_of::<StopReason>))
+            .note("Under [slow loading](#slow-loading) `\"after_onset\"` ends it where the kinetic window begins."),
+        /// Start of the window that mu_k* is averaged over; `"auto"` is t_s* + 2.5/V*.
+        pub kinetic_from_star: AutoOr = key("\"auto\"", or_word((Included(0.0), Unbounded),
+            "the average is taken from there to the end of the run", AUTO)).star(StarUnit::Time)
+                .further_bounds(", before the end of the run")
+            .note("Under [slow loading](#slow-loading) `\"auto\"` is 5/V*."),
+    }
 }
 
-/// The length of the run.
-#[derive(Clone, Debug, PartialEq)]
-pub enum RunTime {
-    /// The key `duration_star`: in t*, more than 0; `auto` is 8/V*, longer for drives that load slower.
-    Star(AutoOr),
-    /// The key `duration`, in s.
-    Duration(Duration),
-}
+/// dt* at which the scheme becomes unstable: 2/sqrt(6.5 x 0.75) = 0.9058.
+const UNSTABLE_STEP: f64 = 0.9058;
 
 /// The time step.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -76,20 +94,6 @@ impl Time {
             check.number_within("kinetic_from_star", from, (Included(0.0), end), remark)?;
         }
         Ok(())
-    }
-}
-
-keys_with_choice! {
-    Time: TimeKeys {
-        (duration: RunTime {
-            duration_star: AutoOr => Star,
-            duration: Duration => Duration,
-            _ => "the run needs a length: `duration_star` or `duration`"
-        }),
-        step: TimeStep,
-        #[serde(deserialize_with = "word")]
-        stop: StopReason,
-        kinetic_from_star: AutoOr,
     }
 }
 

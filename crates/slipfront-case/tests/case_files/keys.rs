@@ -50,7 +50,9 @@ fn every_bound_of_the_table_is_checked() {
                 KeyKind::Whole { most, .. } if key.default.starts_with('[') => format!("[1, {}]", most + 1),
                 KeyKind::Whole { most, .. } => (most + 1).to_string(),
                 KeyKind::File(_) => "mask.unknown".to_owned(),
-                KeyKind::Words(_) | KeyKind::Switch | KeyKind::Special(_) => "unknown".to_owned(),
+                KeyKind::Words(_) | KeyKind::Switch | KeyKind::Table(..) | KeyKind::Special(_) => {
+                    "unknown".to_owned()
+                }
             };
             let said = with(section, key.name, &absurd).expect_err(key.name);
             assert!(said.contains(&format!(".{}`", key.name)), "{said}");

@@ -1,7 +1,11 @@
-//! Case files that are read, and case files that are refused with the sentence that they contain; height maps; and cases that ranks make together.
+//! Case files that are read, and case files that are refused with the sentence that they contain; height
+//! maps; and cases that ranks make together.
 
 // Helpers of tests are not tests by themselves to clippy.
 #![allow(clippy::unwrap_used)]
+
+#[path = "../support/reference_page.rs"]
+mod reference_page;
 
 mod bad;
 mod coarse;

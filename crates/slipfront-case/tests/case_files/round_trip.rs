@@ -5,11 +5,11 @@ use slipfront::observe::Field;
 use slipfront::surface::Orientation;
 use slipfront::{Edges, StopReason};
 use slipfront_case::case_file::{
-    Ageing, AgeingLaw, Along, Arrangement, Array, Attached, AttachedEdge, AutoOr, Bearing, CaseFile, Cavity,
-    CavitySize, Center, ContactModel, Count, Damping, Drive, DriveSpeed, DriveStiffness, Friction, Grade,
-    Groove, GrooveSize, HeightMap, KineticFriction, Law, Load, Loading, Mask, Motion, Outline, Output,
-    Pattern, Pitch, Polygon, Profile, RunTime, Shape, Slider, SlipWeakeningLength, Snapshots, Source,
-    SpeedSegment, Texture, Time, TimeStep, Velocity, VelocityLaw,
+    Ageing, AgeingLaw, Along, Arrangement, Array, Attached, AttachedEdge, AutoOr, AutoOrStiffness, Bearing,
+    CaseFile, Cavity, CavitySize, Center, ContactModel, Count, Damping, Drive, DriveSpeed, DriveStiffness,
+    Friction, Grade, Groove, GrooveSize, HeightMap, KineticFriction, Law, Load, Loading, Mask, Motion,
+    Outline, Output, Pattern, Pitch, Polygon, Profile, RunTime, Shape, Slider, SlipWeakeningLength,
+    Snapshots, Source, SpeedSegment, Texture, Time, TimeStep, Velocity, VelocityLaw,
 };
 use slipfront_case::quantity::{Kind, Length, Quantity};
 
@@ -157,8 +157,8 @@ fn drive() -> impl Strategy<Value = Drive> {
     ];
     let newtons = || quantity(-20, 20, &["N/m", "kN/mm"]);
     let stiffness = prop_oneof![
-        Just(DriveStiffness::Auto),
-        newtons().prop_map(DriveStiffness::Each),
+        Just(DriveStiffness::Each(AutoOrStiffness::Auto)),
+        newtons().prop_map(|each| DriveStiffness::Each(AutoOrStiffness::Stiffness(each))),
         newtons().prop_map(DriveStiffness::Total),
         quantity(-20, 20, &["N/m^3", "kN/mm^3"]).prop_map(DriveStiffness::PerArea),
         (1e-9..1e6).prop_map(DriveStiffness::EachStar),

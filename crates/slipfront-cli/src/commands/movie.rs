@@ -119,7 +119,7 @@ impl MovieCommand {
         {
             return Err(refused(sentence));
         }
-        expect_memory(movie::memory(folder, self.size()).map_err(Failure::input)?)?;
+        expect_memory(movie::memory(folder).map_err(Failure::input)?)?;
         let movie = movie::of_run(RunFiles::Folder(folder), self.field).map_err(Failure::input)?;
         let movie = movie.ok_or_else(|| refused(self.no_snapshots(run.case.as_ref().ok())))?;
         let delays = movie::delays(&movie, self.pace()).map_err(Failure::input)?;

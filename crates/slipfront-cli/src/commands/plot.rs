@@ -10,7 +10,7 @@ use slipfront_base::number_format::{byte_size, count, four_digits, with_si_prefi
 use slipfront_case::arrays::extension;
 use slipfront_case::case::PROGRAM;
 use slipfront_case::field_info::{FIELDS, field_info, field_named};
-use slipfront_plot::{KYMOGRAPH_BYTES, Picture, PictureSize};
+use slipfront_plot::{Picture, PictureSize};
 use slipfront_run::measured::{Column, Measure, MeasuredError, MeasuredRecord};
 use slipfront_run::names::MANIFEST;
 use slipfront_run::pictures;
@@ -143,9 +143,7 @@ impl PlotCommand {
             runs.push(run);
         }
         self.expect_names()?;
-        let memory = pictures::memory(&self.folders).map_err(Failure::input)?;
-        let drawn = self.size().bytes().max(KYMOGRAPH_BYTES as f64);
-        expect_memory(memory + drawn)?;
+        expect_memory(pictures::memory(&self.folders).map_err(Failure::input)?)?;
         let (out, drawn) = match (self.field.as_deref(), self.folders.as_slice()) {
             (Some(name), [folder]) => {
                 let run = RunFiles::Folder(folder);

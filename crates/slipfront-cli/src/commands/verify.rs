@@ -175,7 +175,7 @@ impl VerifyCommand {
         let case = Arc::new(case?);
         let again =
             TemporaryFolder::new(folder).map_err(|error| Failure::input(VerifyError::Temporary(error)))?;
-        pictures::run_budget(&case)
+        case.budget
             .check_disk(&case.file, again.path(), 0, false)
             .map_err(Failure::input)?;
         let mut running = Running::start(&case, None, Execution::on_threads(rayon::current_num_threads()));

@@ -3,7 +3,6 @@
 use slipfront_base::machine::available_memory;
 use slipfront_base::number_format::{byte_size, four_digits, with_half_width, with_si_prefix};
 use slipfront_case::case::Case;
-use slipfront_run::pictures;
 use slipfront_run::times::instant;
 
 use super::summary::notes;
@@ -127,7 +126,7 @@ pub(super) fn standing(is_held: bool) -> &'static str {
 }
 
 fn resources(case: &Case, seconds: f64) -> String {
-    let budget = pictures::run_budget(case);
+    let budget = &case.budget;
     let available = available_memory().map_or(String::new(), |there| {
         format!(" of {} available", byte_size(there))
     });

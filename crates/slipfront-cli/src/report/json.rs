@@ -3,7 +3,6 @@
 use serde_json::{Value, json};
 use slipfront_base::machine::available_memory;
 use slipfront_case::case::Case;
-use slipfront_run::pictures;
 
 use super::cost::warnings;
 
@@ -16,7 +15,7 @@ pub(crate) fn text_of(report: &Value) -> String {
 /// that the run takes. A number that is not finite, such as the critical size of slip that is stable at any size, is null.
 pub(crate) fn check(case: &Case, seconds: f64) -> Value {
     let (groups, lattice, plan) = (&case.groups, &case.model.lattice, &case.time_plan);
-    let budget = pictures::run_budget(case);
+    let budget = &case.budget;
     let bytes = |estimate: f64| estimate.ceil() as u64;
     let lengths: Vec<Value> = case
         .lengths()

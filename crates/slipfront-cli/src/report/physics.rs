@@ -4,7 +4,9 @@ use slipfront::Loading;
 use slipfront::surface::Clearance;
 use slipfront_base::number_format::{count, four_digits, with_si_prefix};
 use slipfront_case::case::{Case, Topography};
-use slipfront_case::case_file::{Attached, AttachedEdge, DriveStiffness, Grade, Motion, Outline};
+use slipfront_case::case_file::{
+    Attached, AttachedEdge, AutoOrStiffness, DriveStiffness, Grade, Motion, Outline,
+};
 
 use super::summary::notes;
 
@@ -113,7 +115,7 @@ fn drive(case: &Case) -> String {
     let (slider, k_drive) = (case.model.slider(), four_digits(drive.k_drive));
     let springs = slider.sum_of_drive_springs(&case.model.lattice);
     let stiffness = match (&keys.stiffness, &slider.stiffness) {
-        (DriveStiffness::Auto, _) => String::new(),
+        (DriveStiffness::Each(AutoOrStiffness::Auto), _) => String::new(),
         (_, None) => format!(", {} springs of k_s* = {k_drive}", four_digits(springs)),
         (_, Some(_)) => format!(
             ", springs of k_s* = {k_drive} times the modulus of their blocks, {} together",
@@ -166,7 +168,8 @@ fn topography(topography: &Topography) -> String {
     )
 }
 
-/// The smallest lengths of the texture, on lines of their own, with remarks on them and the remarks `said` on a file.
+/// The smallest lengths of the texture, on lines of their own, with remarks on them and the remarks `said` on
+/// a file.
 pub(crate) fn smallest(case: &Case, smallest: Clearance, said: &[String]) -> String {
     let mut lines = String::new();
     for (name, length) in [("feature", smallest.feature), ("gap", smallest.gap)] {

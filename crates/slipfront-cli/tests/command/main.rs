@@ -3,6 +3,9 @@
 // Helpers of tests are not tests by themselves to clippy.
 #![allow(clippy::unwrap_used)]
 
+#[expect(dead_code, reason = "the page of the command line has no keys")]
+#[path = "../../../slipfront-case/tests/support/reference_page.rs"]
+mod reference_page;
 #[path = "../support/mod.rs"]
 mod support;
 
@@ -25,6 +28,7 @@ mod output;
 mod paper;
 mod plot;
 mod printed;
+mod reference;
 mod repetition;
 mod result_files;
 mod study;

@@ -39,14 +39,6 @@ pub(super) fn define(file: &FieldsFile) -> Definition {
     }
 }
 
-/// Bytes of a cell of the constant arrays: whether it is textured, two coefficients, and the time of the first slip.
-pub const STATIC_BYTES: usize = size_of::<i16>() + 3 * size_of::<f64>();
-
-/// Bytes of a record of `n_fields` fields of `n_cells` cells each: two times, the number of the step, a label, and values.
-pub fn record_bytes(n_fields: f64, n_cells: f64) -> f64 {
-    4.0 * size_of::<f64>() as f64 + n_fields * n_cells * size_of::<f32>() as f64
-}
-
 /// Variables that never change.
 fn statics() -> Vec<Variable> {
     let flags = [

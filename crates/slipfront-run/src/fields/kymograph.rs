@@ -17,11 +17,6 @@ const IN_CONTACT: &str = "blocks_in_contact";
 const SLIDING: &str = "sliding_share";
 const BIN_WIDTH: &str = "bin_width_m";
 
-/// Bytes of a share in the file.
-pub const SHARE_BYTES: usize = size_of::<f32>();
-/// Bytes of a share while the file is written, or read and drawn: in its row, among all, and in the file, which grows by doubling.
-pub const WORKING_SHARE_BYTES: usize = 4 * SHARE_BYTES;
-
 /// The bytes of the file of a run.
 pub fn kymograph_bytes(kymograph: &Kymograph, case: &Case) -> Vec<u8> {
     let (model, scales) = (&case.model, &case.scales);

@@ -16,9 +16,8 @@ mod netcdf3_reader;
 mod read;
 mod write;
 
-pub use definition::{STATIC_BYTES, record_bytes};
 pub use frame::{FieldFrame, FieldsData, FieldsError, FieldsFile, StaticFields, thin};
-pub use kymograph::{KymographData, SHARE_BYTES, WORKING_SHARE_BYTES, kymograph_bytes, read_kymograph};
+pub use kymograph::{KymographData, kymograph_bytes, read_kymograph};
 pub use read::{Reduction, count_snapshots, few_of, read_fields, read_first_slips, read_maps, read_rows};
 pub use write::{FieldsWriter, write_fields};
 

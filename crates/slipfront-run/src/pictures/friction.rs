@@ -15,9 +15,6 @@ use crate::run_files::RunFiles;
 use crate::series::{self, SeriesRow};
 use crate::summary::{SiSummary, Summary, summary_of};
 
-/// Bytes of a row of the series while pictures are drawn from it: three numbers that are read, and the points of its curves.
-pub(super) const ROW_BYTES: f64 = (3 + 2 + 3) as f64 * size_of::<f64>() as f64;
-
 /// Units of the axes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum AxisUnits {

@@ -17,12 +17,6 @@ use crate::run_files::RunFiles;
 use crate::series::{self, SeriesRow};
 use crate::summary::{InstantSummary, Summary, summary_of};
 
-/// Bytes of a cell of a lattice while maps of it are read: whether it is textured, and its mean.
-pub(super) const CELL_BYTES: f64 = (size_of::<bool>() + CellMeans::BYTES_PER_CELL) as f64;
-
-/// Bytes of a cell of a map in the picture of the stress while it is drawn: its value, and its part of the files.
-pub(super) const MAP_CELL_BYTES: f64 = (size_of::<f32>() + plot::STRESS_FILE_BYTES) as f64;
-
 /// Maps are read as the means that are drawn, so that they take no more memory for a larger lattice.
 impl Reduction for CellMeans {
     fn of(columns: usize, rows: usize) -> Self {

@@ -3,7 +3,6 @@
 //! No other module of this crate draws pictures: a program that writes a run calls [`write_run`] here, or [`complete`] after
 //! the results of several ranks.
 
-mod budget;
 pub mod error;
 mod files;
 pub mod friction;
@@ -13,22 +12,39 @@ pub mod movie;
 mod precursors;
 mod record_fit;
 
+use std::path::PathBuf;
+
 use slipfront::parallel::*;
-use slipfront_case::case::Case;
+use slipfront_case::case::{Case, PICTURES};
 use slipfront_plot::{MovieSize, Picture};
 
-pub use self::budget::{memory, run_budget};
 use self::error::RunPictureError;
+use self::files::found;
 pub use self::files::is_drawn_from;
 pub use self::front::draw_kymograph;
 pub use self::maps::draw_field;
 use self::movie::MoviePace;
 use crate::manifest::Manifest;
-use crate::names::{MOVIE, RunPicture};
+use crate::names::{KYMOGRAPH, MOVIE, RunPicture, SERIES};
 use crate::results;
 use crate::run_files::RunFiles;
 use crate::run_folder::RunFolder;
 use crate::running::Record;
+
+/// Largest number of bytes of the pixels of a picture whose size a user chooses.
+const PIXELS: f64 = 96.0 * 1024.0 * 1024.0;
+
+/// Memory in which the friction curves of these run folders are drawn, or all pictures of a single one, in bytes. What is read of a series
+/// or a kymograph takes less than four times its file.
+pub fn memory(folders: &[PathBuf]) -> Result<f64, RunPictureError> {
+    let mut read = 0;
+    for folder in folders {
+        for name in [SERIES, KYMOGRAPH] {
+            read += found(&folder.join(name))?.map_or(0, |file| file.len());
+        }
+    }
+    Ok(PICTURES + PIXELS + 4.0 * read as f64)
+}
 
 /// Writes the results of a run on one rank to its folder, where the case stands already, then the pictures and the manifest, which
 /// completes it. The fields are moved out of the record, which frees their memory before the pictures are drawn. After an error the

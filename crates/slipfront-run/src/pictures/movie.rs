@@ -4,16 +4,16 @@ use std::path::Path;
 
 use slipfront::observe::Field;
 use slipfront::parallel::*;
-use slipfront_case::case::{Budget, MAX_PICTURES};
+use slipfront_case::case::{MAX_PICTURES, memory_of_movie};
 use slipfront_case::case_file::Motion;
 use slipfront_plot::{
     CellMeans, FrictionAxes, Movie, MovieFrame, MovieGif, MoviePictures, MovieSize, PictureError,
 };
 
 use super::error::RunPictureError;
-use super::files::case_of;
-use super::friction::{ROW_BYTES, marked_curve};
-use super::maps::{CELL_BYTES, MapScale, MuStar, field_of_maps, separated};
+use super::files::{case_of, found};
+use super::friction::marked_curve;
+use super::maps::{MapScale, MuStar, field_of_maps, separated};
 use crate::fields;
 use crate::names::{FIELDS, SERIES, SUMMARY};
 use crate::run_files::RunFiles;
@@ -44,28 +44,11 @@ pub enum MoviePace {
     PerSecond(f64),
 }
 
-/// Bytes while [`BATCH`] pictures are drawn.
-pub(super) fn batch_bytes(size: MovieSize) -> f64 {
-    (BATCH * size.picture_bytes()) as f64
-}
-
-/// Bytes of a snapshot of `cells` cells while a movie is made: its values, and its picture in the file.
-pub(super) fn snapshot_bytes(cells: f64, size: MovieSize) -> f64 {
-    cells * size_of::<f32>() as f64 + size.file_bytes() as f64
-}
-
-/// Memory for making the movie of a run folder, in bytes.
-pub fn memory(folder: &Path, size: MovieSize) -> Result<f64, RunPictureError> {
-    let snapshots = fields::count_snapshots(&folder.join(FIELDS))?;
-    let rows = series::estimate_rows(&folder.join(SERIES))?;
-    let snapshots = snapshots.min(MAX_PICTURES) as f64;
-    let cells = CellMeans::MAX_CELLS as f64;
-    Ok(Budget::resident(
-        cells * CELL_BYTES
-            + Budget::grown(rows) * ROW_BYTES
-            + snapshots * snapshot_bytes(cells, size)
-            + batch_bytes(size),
-    ))
+/// Memory for making the movie of a run folder, in bytes. What is read of a series takes less than four times its file.
+pub fn memory(folder: &Path) -> Result<f64, RunPictureError> {
+    let snapshots = fields::count_snapshots(&folder.join(FIELDS))?.min(MAX_PICTURES);
+    let series = found(&folder.join(SERIES))?.map_or(0, |file| file.len());
+    Ok(memory_of_movie(snapshots as f64, f64::INFINITY) + 4.0 * series as f64)
 }
 
 /// The movie of a run, of the given field or of the field whose maps are drawn; none if the run has kept no snapshot

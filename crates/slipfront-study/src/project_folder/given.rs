@@ -1,4 +1,4 @@
-//! What a project is made of, kept in its folder so that it can be repeated from there.
+//! The files that a project is made of, which its folder keeps so that it can be repeated from there.
 
 use std::io::Write;
 use std::path::Path;
@@ -16,7 +16,7 @@ pub struct Given {
     pub text: String,
     /// Copies of the files that the text names.
     pub copies: Vec<Copy>,
-    /// Other files, by their names in the folder.
+    /// Files that the command was given beside the text, such as measured records, by their names in the folder.
     pub others: Vec<(String, Vec<u8>)>,
 }
 

@@ -32,7 +32,7 @@ impl ProjectKind {
     /// Loads a file of this kind by `parse`, which takes its text, its path, its name without the ending, and its folder.
     ///
     /// # Errors
-    /// Those of `parse`, and when the file cannot be read.
+    /// When the file cannot be read, or `parse` refuses its text.
     pub fn load<T>(
         &self,
         path: &Path,

@@ -27,7 +27,6 @@ impl ContactSprings {
     /// Needs of springs in contact: the anchor of the spring of a block, and how often it has broken.
     pub(super) const NEEDS: Needs = Needs {
         is_fused: false,
-        bytes: 3 * size_of::<f64>(),
         columns: 3,
         stores_energy: true,
         ..Needs::NONE

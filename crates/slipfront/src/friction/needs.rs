@@ -7,10 +7,6 @@ pub struct Needs {
     pub is_fused: bool,
     /// Whether the law changes thresholds in the fused kernel, which then sweeps the blocks as heterogeneous ones.
     pub varies: bool,
-    /// Bytes per block that the law adds to the general kernel.
-    pub bytes: usize,
-    /// Bytes per block that the law adds to the fused kernel.
-    pub fused_bytes: usize,
     /// Number of columns of a checkpoint that the law adds: numbers per block that it remembers beside the velocity.
     pub columns: usize,
     /// Whether contacts store energy, which is lost when they break.
@@ -26,8 +22,6 @@ impl Needs {
     pub(super) const NONE: Self = Self {
         is_fused: true,
         varies: false,
-        bytes: 0,
-        fused_bytes: 0,
         columns: 0,
         stores_energy: false,
         has_state: false,
@@ -39,8 +33,6 @@ impl Needs {
         option.map_or(self, |more| Self {
             is_fused: self.is_fused && more.is_fused,
             varies: self.varies || more.varies,
-            bytes: self.bytes + more.bytes,
-            fused_bytes: self.fused_bytes + more.fused_bytes,
             columns: self.columns + more.columns,
             stores_energy: self.stores_energy || more.stores_energy,
             has_state: self.has_state || more.has_state,

@@ -3,13 +3,12 @@
 use std::sync::Arc;
 
 use super::engine::Engine;
-use super::fused::{self, Fused};
-use super::general::{self, General};
+use super::fused::Fused;
+use super::general::General;
 use crate::checkpoint::Checkpoint;
 use crate::communicator::{Alone, Communicator};
 use crate::friction::Friction;
 use crate::model::Model;
-use crate::options::ModelOptions;
 use crate::state::State;
 
 /// Which kernel computes the steps.
@@ -56,31 +55,11 @@ impl Kernel {
         self.for_law(&model.friction, is_viscous, rotates)
     }
 
-    /// The kernel that computes models with these options when this one is asked for.
-    pub fn for_options(self, options: &ModelOptions) -> Self {
-        self.for_law(&options.friction, options.slider.has_dampers, options.rotates)
-    }
-
-    /// The kernel that computes a law of friction, with or without dampers and a rotation.
-    fn for_law(self, friction: &Friction, has_dampers: bool, rotates: bool) -> Self {
+    /// The kernel that computes models with this law of friction, with or without dampers and a rotation, when this one is
+    /// asked for.
+    pub fn for_law(self, friction: &Friction, has_dampers: bool, rotates: bool) -> Self {
         let is_fused = friction.needs().is_fused && !has_dampers && !rotates;
         if is_fused { self } else { Self::General }
-    }
-
-    /// Bytes per block that this kernel takes beside the model, on one thread. Margins of bands and of rows of blocks are not counted.
-    pub fn bytes_per_block(self, options: &ModelOptions) -> f64 {
-        match self {
-            Self::General => general::bytes_per_block(options) as f64,
-            Self::Fused => fused::bytes_per_block(options),
-        }
-    }
-
-    /// Most bytes per block that this kernel takes in addition on several threads.
-    pub fn bytes_per_block_of_bands(self, options: &ModelOptions) -> f64 {
-        match self {
-            Self::General => general::bytes_per_block_of_bands(options),
-            Self::Fused => 0.0,
-        }
     }
 
     /// Name of the kernel in a manifest.

@@ -28,16 +28,6 @@ pub struct Frame {
     pub values: Vec<Vec<f32>>,
 }
 
-impl Frame {
-    /// Bytes of a value.
-    pub const VALUE_BYTES: usize = size_of::<f32>();
-
-    /// Bytes of a frame of `n_fields` fields, without their values.
-    pub const fn bytes(n_fields: usize) -> usize {
-        size_of::<Self>() + n_fields * size_of::<Vec<f32>>()
-    }
-}
-
 /// Selection of the fields to record, and of the blocks.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Selection {

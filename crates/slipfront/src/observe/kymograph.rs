@@ -42,9 +42,6 @@ impl Kymograph {
     /// takes no longer.
     pub const INTERVAL: u64 = 8;
 
-    /// Bytes of a count.
-    pub const COUNT_BYTES: usize = size_of::<i64>();
-
     /// Largest number of counts of a run of `last_step` steps: rows of time times bins of place, whatever the direction of
     /// the drive.
     pub fn max_counts(lattice: &Lattice, last_step: u64) -> usize {

@@ -29,14 +29,6 @@ pub struct Precursors {
 }
 
 impl Precursors {
-    /// Least number of steps from an event to the next, on average. Measured were 175 and more.
-    const MIN_STEPS: u64 = 50;
-
-    /// Largest number of events for which memory is counted in a run of `steps` steps.
-    pub const fn expected_events(steps: u64) -> u64 {
-        steps.div_ceil(Self::MIN_STEPS)
-    }
-
     /// The recording of a slider that is driven at `edge`, with no event yet.
     pub fn new(edge: Edge) -> Self {
         Self {

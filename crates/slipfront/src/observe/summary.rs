@@ -84,10 +84,6 @@ impl KineticHistory {
     /// Largest number of means. A shorter run keeps every step.
     pub const BINS: u64 = 16_384;
 
-    /// Largest number of bytes while an uncertainty is sought: the means, and two copies of those of mu*, with as much again
-    /// to spare.
-    pub const MAX_BYTES: usize = Self::BINS as usize * 2 * (size_of::<Bin>() + size_of::<f64>());
-
     /// An empty history of a run of `last_step` steps of the drive; [`u64::MAX`] for a run without an end. A run that goes on for longer
     /// averages twice as many steps into each mean as often as it must.
     pub fn new(last_step: u64) -> Self {

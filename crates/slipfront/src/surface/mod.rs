@@ -201,11 +201,6 @@ impl Surface {
         }
     }
 
-    /// Bytes of a surface per block: whether it is textured, two coefficients, and a pressure where blocks have their own.
-    pub const fn bytes_per_block(has_pressures: bool) -> usize {
-        size_of::<bool>() + (2 + has_pressures as usize) * size_of::<f64>()
-    }
-
     /// Number of blocks that this process holds.
     pub fn n_blocks(&self) -> usize {
         self.textured.len()

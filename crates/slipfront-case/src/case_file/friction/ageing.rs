@@ -5,38 +5,36 @@ use slipfront::Ageing as Law;
 
 use crate::case_file::check::Check;
 use crate::case_file::error::CaseError;
-use crate::case_file::key::{Key, KeyKind, TIME_STAR, key, number, within};
+use crate::case_file::key::{KeyKind, StarUnit, TIME_STAR, key, number, within};
+use crate::case_file::probe::names_of;
 use crate::case_file::values::word;
+use crate::key_rows;
 use slipfront_base::number_format::four_digits;
 
-#[rustfmt::skip]
-pub(super) const KEYS: &[Key] = &[
-    key("ageing", "", KeyKind::Special("`{ law = \"logarithmic\", beta = 0.02, time_star = 1 }`; beta 0 to 10; time_star more than 0, at most 1e9"),
-        "static friction that grows while a block is stuck"),
-];
+pub(super) const SYNONYMS: &[(&str, &str)] =
+    &[("aging", ADVICE), ("healing", ADVICE), ("strengthening", ADVICE)];
+const ADVICE: &str = "static friction that grows with age is `friction.ageing` = { law = \"logarithmic\", beta = 0.02, time_star = 1 }";
+
+key_rows! {
+    /// `ageing`: static friction that grows while a block is stuck, mu_s [1 + beta ln(1 + t/time)].
+    #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+    #[serde(deny_unknown_fields)]
+    pub struct Ageing {
+        /// The law.
+        #[serde(deserialize_with = "word")]
+        pub law: AgeingLaw = key("", KeyKind::Words(names_of::<AgeingLaw>)),
+        /// Growth per unit of the logarithm.
+        pub beta: f64 = key("", BETA),
+        /// Time after which the growth shows, t*.
+        pub time_star: f64 = key("", TIME_STAR).star(StarUnit::Time),
+    }
+}
 
 /// Kind of the key `beta`: growth with age.
 const BETA: KeyKind = number(
     within(0.0, 10.0),
     "it is the growth per unit of the logarithm of the age",
 );
-
-pub(super) const SYNONYMS: &[(&str, &str)] =
-    &[("aging", ADVICE), ("healing", ADVICE), ("strengthening", ADVICE)];
-const ADVICE: &str = "static friction that grows with age is `friction.ageing` = { law = \"logarithmic\", beta = 0.02, time_star = 1 }";
-
-/// `ageing`: static friction that grows while a block is stuck, mu_s [1 + beta ln(1 + t/time)].
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Ageing {
-    /// The law.
-    #[serde(deserialize_with = "word")]
-    pub law: AgeingLaw,
-    /// Growth per unit of the logarithm, 0 to 10.
-    pub beta: f64,
-    /// Time after which the growth shows, t*; more than 0, at most 1e9.
-    pub time_star: f64,
-}
 
 /// Dependence of static friction on age.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]

@@ -2,17 +2,7 @@
 
 use slipfront::ContactSprings;
 
-use crate::case_file::key::{Key, KeyKind, STIFFNESS_PER_AREA, above, key, number};
 use slipfront_base::number_format::four_digits;
-
-#[rustfmt::skip]
-pub(super) const KEYS: &[Key] = &[
-    key("contact_stiffness_star", "", number(above(0.0, 1e3), "it is over E h, with the thickness h, and a spring between blocks has 0.75"),
-        "stiffness of the spring in the contact of a block").or("contact_stiffness_per_area").title("contact stiffness", "k\u{209c}*", ""),
-    key("contact_stiffness_per_area", "", STIFFNESS_PER_AREA, "stiffness of the springs in contact per area").or("contact_stiffness_star")
-        .title("contact stiffness", "K\u{209c}", "N/m\u{b3}"),
-    key("redraw", "false", KeyKind::Switch, "whether a spring that forms again has another threshold"),
-];
 
 pub(super) const SYNONYMS: &[(&str, &str)] = &[
     ("contact_stiffness", ADVICE),

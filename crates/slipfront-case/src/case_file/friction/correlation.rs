@@ -1,13 +1,5 @@
 //! `correlation_length`: random coefficients that are alike over a length.
 
-use crate::case_file::key::{Key, key, quantity, within};
-
-#[rustfmt::skip]
-pub(super) const KEYS: &[Key] = &[
-    key("correlation_length", "", quantity("m", within(1e-13, 1e8)), "length over which random coefficients are alike; without it every block draws its own")
-        .title("correlation length", "\u{3be}", "m"),
-];
-
 pub(super) const SYNONYMS: &[(&str, &str)] = &[
     ("correlation", ADVICE),
     ("correlated", ADVICE),

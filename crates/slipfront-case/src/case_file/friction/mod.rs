@@ -1,7 +1,7 @@
 //! The table `[friction]`: the law, the local coefficients and their dependences.
 //!
-//! Each law is a file, with its keys, the words that people try for them, the law of the model that they make, and the
-//! sentences about it. This file holds the common part, and a row for each law.
+//! Each law is a file, with its keys, the words that people try for them, the law of the model that they
+//! make, and the sentences about it. This file holds the common part, and a row for each law.
 
 mod ageing;
 mod contact_springs;
@@ -19,12 +19,15 @@ pub use self::ageing::{Ageing, AgeingLaw};
 pub use self::slip_weakening::SlipWeakeningLength;
 pub use self::weakening::{Velocity, VelocityLaw};
 use super::check::Check;
-use super::choice::keys_with_choice;
 use super::error::CaseError;
-use super::key::{ARRAY, Key, KeyKind, above, count, joined, key, number, quantity, whole, within};
+use super::key::{
+    ARRAY, Key, KeyKind, SLIP_STAR, SPEED_STAR, STIFFNESS_PER_AREA, StarUnit, TIME_STAR, above, key, number,
+    quantity, whole, within,
+};
 use super::length_of_a_block::LengthOfABlock;
 use super::probe::names_of;
 use super::values::word;
+use crate::key_rows;
 use crate::quantity::{Length, Pressure, StiffnessPerArea};
 use slipfront_base::number_format::four_digits;
 
@@ -37,46 +40,6 @@ const SHEAR_STRENGTH: KeyKind = quantity("Pa", within(0.0, 1e15));
 const MAX_SEED: u64 = i64::MAX.unsigned_abs();
 /// Largest mean kinetic over mean static coefficient.
 const MAX_R_STAR: f64 = 10.0;
-
-#[rustfmt::skip]
-const COEFFICIENTS: &[Key] = &[
-    key("law", "\"projection\"", KeyKind::Words(names_of::<Law>), "the reading of Eq. 4, or rate and state in its place"),
-    key("mu_static", "1.0", number(above(0.0, 100.0), "it is the scale of all forces"), "mean static coefficient")
-        .title("mean static coefficient", "\u{3bc}\u{209b}", ""),
-    key("r_star", "0.5", number(within(0.0, MAX_R_STAR), "it is the kinetic over the static coefficient"),
-        "mean kinetic over mean static coefficient").or("mu_kinetic").title("friction ratio", "R*", ""),
-    key("mu_kinetic", "", KeyKind::Special("0 to 10 times `mu_static`"), "mean kinetic coefficient")
-        .or("r_star").title("mean kinetic coefficient", "\u{3bc}\u{2096}", ""),
-    key("sigma_static_star", "0.05", SIGMA, "standard deviation of the static coefficients over their mean")
-        .title("spread of static coefficients", "\u{3c3}\u{209b}*", ""),
-    key("sigma_kinetic_star", "0.05", SIGMA, "standard deviation of the kinetic coefficients over *their* mean")
-        .title("spread of kinetic coefficients", "\u{3c3}\u{2096}*", ""),
-    key("seed", "1", whole(0, MAX_SEED), "seed of the random coefficients").title("seed", "", ""),
-    key("mu_static_field", "", ARRAY, "static coefficients block by block, in place of random ones"),
-    key("mu_kinetic_field", "", ARRAY, "kinetic coefficients block by block, in place of random ones"),
-    key("adhesion", "\"0 Pa\"", SHEAR_STRENGTH, "shear strength without load, added to the static threshold of the blocks in contact")
-        .title("adhesion", "\u{3c4}\u{2090}", "Pa"),
-    key("adhesion_kinetic", "\"0 Pa\"", SHEAR_STRENGTH, "the same, added to their kinetic friction")
-        .title("kinetic adhesion", "\u{3c4}\u{2090}\u{2096}", "Pa"),
-];
-
-#[rustfmt::skip]
-const CONTACT: &[Key] = &[
-    key("contact", "\"rigid\"", KeyKind::Words(names_of::<ContactModel>), "what holds a block until its threshold"),
-];
-
-/// The keys of the coefficients and of every law, in the order of the documentation.
-const LISTS: &[&[Key]] = &[
-    COEFFICIENTS,
-    correlation::KEYS,
-    weakening::KEYS,
-    ageing::KEYS,
-    slip_weakening::KEYS,
-    CONTACT,
-    contact_springs::KEYS,
-    rate_and_state::KEYS,
-];
-pub(super) const KEYS: &[Key] = &joined::<{ count(LISTS) }>(LISTS);
 
 /// Words that people try first, each with the advice on it, by law.
 pub(super) const SYNONYMS: &[&[(&str, &str)]] = &[
@@ -112,72 +75,108 @@ pub enum ContactModel {
     Springs,
 }
 
-/// `[friction]`: the law and the local coefficients (Eqs. 1 and 4).
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(try_from = "FrictionKeys", into = "FrictionKeys")]
-pub struct Friction {
-    /// Which reading of Eq. 4 is integrated, or rate and state in its place.
-    pub law: Law,
-    /// Mean of the local static coefficients, and the scale of all forces; more than 0, at most 100.
-    pub mu_static: f64,
-    /// Mean of the local kinetic coefficients: `r_star` or `mu_kinetic`.
-    pub kinetic: KineticFriction,
-    /// Standard deviation of the static coefficients over their mean, 0 to 1.
-    pub sigma_static_star: f64,
-    /// Standard deviation of the kinetic coefficients over the mean of the kinetic ones, 0 to 1.
-    pub sigma_kinetic_star: f64,
-    /// Seed of the random coefficients, 0 to 2^63 - 1.
-    pub seed: u64,
-    /// A file of static coefficients, block by block, in place of random ones: `.npy` or `.csv`, shape (ny, nx).
-    pub mu_static_field: Option<String>,
-    /// A file of kinetic coefficients, block by block, in place of random ones: `.npy` or `.csv`, shape (ny, nx).
-    pub mu_kinetic_field: Option<String>,
-    /// Shear strength of the contact without load (tau_a), which adds `tau_a l^2` to the static threshold, Pa.
-    pub adhesion: Pressure,
-    /// Shear strength of the sliding contact without load, which adds to the kinetic threshold, Pa.
-    pub adhesion_kinetic: Pressure,
-    /// Length over which random coefficients are alike (xi), m; every block draws its own if not given.
-    pub correlation_length: Option<Length>,
-    /// Kinetic friction that falls with speed.
-    pub velocity: Option<Velocity>,
-    /// Static friction that grows while a block is stuck.
-    pub ageing: Option<Ageing>,
-    /// Strength that falls with slip.
-    pub slip_weakening: Option<SlipWeakeningLength>,
-    /// Time for which a block must be stuck to be whole again, t*; never if not given.
-    pub healing_time_star: Option<f64>,
-    /// Connection that holds a block until its threshold.
-    pub contact: ContactModel,
-    /// Stiffness of the spring in the contact of a block over `young_modulus` times the thickness; for `contact` =
-    /// "springs".
-    pub contact_stiffness_star: Option<f64>,
-    /// Stiffness of the springs in the contact per area, N/m^3; for `contact` = "springs".
-    pub contact_stiffness_per_area: Option<StiffnessPerArea>,
-    /// Whether a spring that forms again has another threshold.
-    pub redraw: bool,
-    /// Direct effect of rate and state.
-    pub a: Option<f64>,
-    /// Evolution effect of rate and state.
-    pub b: Option<f64>,
-    /// Slip over which the state of rate and state follows, in units of P mu_s l^2/(E h).
-    pub d_c_star: Option<f64>,
-    /// Reference speed of rate and state, in the unit of V*.
-    pub v_0_star: Option<f64>,
-    /// Coefficient of steady sliding of rate and state at the reference speed; `mu_static` if not given.
-    pub mu_0: Option<f64>,
-    /// State of rate and state at the start, t*; `d_c_star/v_0_star` if not given.
-    pub theta_0_star: Option<f64>,
-    /// Speed above which a block counts as sliding, in the unit of V*; a tenth of V* if not given.
-    pub slip_speed_star: Option<f64>,
-}
-
-/// The mean kinetic coefficient.
-#[derive(Clone, Debug, PartialEq)]
-pub enum KineticFriction {
-    /// `r_star`: R*, the mean kinetic over the mean static coefficient, 0 to 10.
-    RStar(f64),
-    /// `mu_kinetic`: the mean kinetic coefficient itself, 0 to 10 times `mu_static`.
-    MuKinetic(f64),
+key_rows! {
+    /// `[friction]`: the law and the local coefficients (Eqs. 1 and 4).
+    #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+    #[serde(try_from = "FrictionKeys", into = "FrictionKeys")]
+    pub struct Friction from FrictionKeys {
+        /// The reading of Eq. 4, or rate and state in its place; `"reversal"` and `"literal"` are for
+        /// comparison.
+        #[serde(deserialize_with = "word")]
+        pub law: Law = key("\"projection\"", KeyKind::Words(names_of::<Law>)).paper("Eq. 4"),
+        /// Mean static coefficient, and the scale of all forces even when a field is given.
+        pub mu_static: f64 = key("1.0", number(above(0.0, 100.0), "it is the scale of all forces"))
+            .paper("mean of mu_s")
+            .title("mean static coefficient", "\u{3bc}\u{209b}", ""),
+        [
+            /// Mean of the local kinetic coefficients: `r_star` or `mu_kinetic`.
+            pub kinetic: KineticFriction or "friction needs `r_star` or `mu_kinetic`" {
+                /// Mean kinetic over mean static coefficient.
+                r_star: f64 => RStar = key("0.5", number(within(0.0, MAX_R_STAR), "it is the kinetic over the static coefficient"))
+                    .star(StarUnit::One)
+                    .or("mu_kinetic").paper("R*").title("friction ratio", "R*", ""),
+                /// Mean kinetic coefficient, in place of `r_star`.
+                mu_kinetic: f64 => MuKinetic = key("", KeyKind::Special("0 to 10 times `mu_static`"))
+                    .or("r_star").paper("mean of mu_k")
+                    .title("mean kinetic coefficient", "\u{3bc}\u{2096}", ""),
+            }
+        ]
+        /// Standard deviation of the static coefficients over their mean.
+        pub sigma_static_star: f64 = key("0.05", SIGMA).star(StarUnit::One).paper("sigma_s*")
+            .title("spread of static coefficients", "\u{3c3}\u{209b}*", ""),
+        /// Standard deviation of the kinetic coefficients over *their* mean.
+        pub sigma_kinetic_star: f64 = key("0.05", SIGMA).star(StarUnit::One).paper("sigma_k*")
+            .title("spread of kinetic coefficients", "\u{3c3}\u{2096}*", ""),
+        /// Seed of the random coefficients.
+        pub seed: u64 = key("1", whole(0, MAX_SEED)).title("seed", "", ""),
+        /// Static coefficients block by block, in place of random ones.
+        pub mu_static_field: Option<String> = key("", ARRAY).paper("mu_s,i"),
+        /// Kinetic coefficients block by block, in place of random ones.
+        pub mu_kinetic_field: Option<String> = key("", ARRAY).paper("mu_k,i"),
+        /// Shear strength without load, added to the static threshold of the blocks in contact, tau_a: the
+        /// threshold is mu_s,i F_n,i + tau_a l^2.
+        pub adhesion: Pressure = key("\"0 Pa\"", SHEAR_STRENGTH).title("adhesion", "\u{3c4}\u{2090}", "Pa"),
+        /// Shear strength without load, added to the kinetic friction of the blocks in contact.
+        pub adhesion_kinetic: Pressure = key("\"0 Pa\"", SHEAR_STRENGTH)
+            .title("kinetic adhesion", "\u{3c4}\u{2090}\u{2096}", "Pa"),
+        /// Length over which random coefficients are alike; without it every block draws its own.
+        pub correlation_length: Option<Length> = key("", quantity("m", within(1e-13, 1e8)))
+            .title("correlation length", "\u{3be}", "m")
+            .further_bounds(", 0.25 to 100 000 blocks")
+            .note("With it the spreads are those at a point, and those [of means over \
+            blocks](../model.md#coefficients-that-are-alike-over-a-length) are less."),
+        /// Kinetic friction that falls with speed: mu_k,i (ratio + (1 - ratio)/(1 + v/v_c)).
+        pub velocity: Option<Velocity> =
+            key("", KeyKind::Table("{ law = \"weakening\", v_c_star = 0.1, ratio = 0.5 }", Velocity::KEYS)),
+        /// Static friction that grows while a block is stuck: mu_s,i (1 + beta ln(1 + t/time)).
+        pub ageing: Option<Ageing> = key("", KeyKind::Table("{ law = \"logarithmic\", beta = 0.02, time_star = 1 }", Ageing::KEYS)),
+        /// Slip over which strength falls from the static to the kinetic threshold, D_c; without it strength
+        /// falls at once.
+        pub slip_weakening: Option<SlipWeakeningLength> = key("", KeyKind::Table("{ length = \"0.5 um\" }", SlipWeakeningLength::KEYS))
+            .further_bounds(", in units of P mu_s l^2/(E h); one of the two")
+            .note("See [the model](../model.md#other-laws-of-friction)."),
+        /// Time for which a block must be stuck to be whole again; without it none is before the run ends.
+        pub healing_time_star: Option<f64> = key("", TIME_STAR).star(StarUnit::Time)
+            .title("healing time", "t\u{2095}*", ""),
+        /// Connection that holds a block until its threshold: nothing that yields, or a spring, which breaks
+        /// there and forms again without stress.
+        #[serde(deserialize_with = "word")]
+        pub contact: ContactModel = key("\"rigid\"", KeyKind::Words(names_of::<ContactModel>)),
+        /// Stiffness of the spring in the contact of a block; this or the next is needed with
+        /// `contact = "springs"`.
+        pub contact_stiffness_star: Option<f64> = key("", number(above(0.0, 1e3),
+            "it is over E h, with the thickness h, and a spring between blocks has 0.75"))
+                .star(StarUnit::SpringOfBlock).or("contact_stiffness_per_area")
+            .paper("k_t/(E h)").title("contact stiffness", "k\u{209c}*", ""),
+        /// Stiffness of the springs in contact per area.
+        pub contact_stiffness_per_area: Option<StiffnessPerArea> = key("", STIFFNESS_PER_AREA)
+            .or("contact_stiffness_star")
+            .title("contact stiffness", "K\u{209c}", "N/m\u{b3}"),
+        /// Whether a spring that forms again has another threshold: that of the coefficient of a block in
+        /// contact, chosen at random from the seed.
+        pub redraw: bool = key("false", KeyKind::Switch),
+        /// Direct effect of rate and state; needed with that law, as are the next three.
+        pub a: Option<f64> = key("", number(within(1e-6, 10.0), "it is a coefficient, of the order of 0.01"))
+            .title("direct effect", "a", ""),
+        /// Evolution effect of rate and state.
+        pub b: Option<f64> = key("", number(within(0.0, 10.0), "it is a coefficient, of the order of 0.01"))
+            .title("evolution effect", "b", ""),
+        /// Slip over which the state follows a change of speed, in units of P mu_s l^2/(E h).
+        pub d_c_star: Option<f64> = key("", SLIP_STAR).star(StarUnit::Displacement)
+            .title("slip of the state", "D*", ""),
+        /// Reference speed of rate and state, in the unit of V*.
+        pub v_0_star: Option<f64> = key("", SPEED_STAR).star(StarUnit::Speed)
+            .title("reference speed", "V\u{2080}*", ""),
+        /// Coefficient of steady sliding at `v_0_star`; `mu_static` if not given.
+        pub mu_0: Option<f64> = key("", number(within(0.0, 100.0), "it is a coefficient"))
+            .title("coefficient of steady sliding", "\u{3bc}\u{2080}", ""),
+        /// State at the start, t*; `d_c_star`/`v_0_star` if not given.
+        pub theta_0_star: Option<f64> = key("", TIME_STAR).star(StarUnit::Time)
+            .title("state at the start", "\u{3b8}\u{2080}*", ""),
+        /// Speed above which a block counts as sliding under rate and state, in the unit of V*; V*/10 if not
+        /// given.
+        pub slip_speed_star: Option<f64> = key("", SPEED_STAR).star(StarUnit::Speed),
+    }
 }
 
 impl Friction {
@@ -209,8 +208,8 @@ impl Friction {
         check.value("healing_time_star", &self.healing_time_star)?;
         check.value("contact_stiffness_star", &self.contact_stiffness_star)?;
         check.value("contact_stiffness_per_area", &self.contact_stiffness_per_area)?;
-        for (key, value) in rate_and_state::KEYS.iter().zip(self.rate_and_state()) {
-            check.value(key.name, &value)?;
+        for (key, value) in self.rate_and_state() {
+            check.value(key, &value)?;
         }
         self.check_together(check)
     }
@@ -270,7 +269,8 @@ impl Friction {
             Law::Reversal => FrictionLaw::Reversal,
             Law::Literal => FrictionLaw::Literal,
             Law::RateAndState => {
-                let law = rate_and_state::law(self.rate_and_state(), self.mu_static, v_star);
+                let values = self.rate_and_state().map(|(_, value)| value);
+                let law = rate_and_state::law(values, self.mu_static, v_star);
                 return slipfront::Friction::RateAndState(law);
             }
         };
@@ -332,16 +332,16 @@ impl Friction {
             .then_some(("friction.redraw", contact_springs::ONE_RANK))
     }
 
-    /// The values of the keys of rate and state, in the order of the documentation.
-    fn rate_and_state(&self) -> [Option<f64>; rate_and_state::KEYS.len()] {
+    /// The keys of rate and state and their values. Those that the law needs stand first.
+    fn rate_and_state(&self) -> [(&'static str, Option<f64>); 7] {
         [
-            self.a,
-            self.b,
-            self.d_c_star,
-            self.v_0_star,
-            self.mu_0,
-            self.theta_0_star,
-            self.slip_speed_star,
+            ("a", self.a),
+            ("b", self.b),
+            ("d_c_star", self.d_c_star),
+            ("v_0_star", self.v_0_star),
+            ("mu_0", self.mu_0),
+            ("theta_0_star", self.theta_0_star),
+            ("slip_speed_star", self.slip_speed_star),
         ]
     }
 
@@ -402,8 +402,8 @@ impl Friction {
     /// Refuses keys that have no meaning under the law.
     fn check_law(&self, check: &Check) -> Result<(), CaseError> {
         let springs = ("contact", self.contact == ContactModel::Springs);
-        let values = rate_and_state::KEYS.iter().zip(self.rate_and_state());
-        let mut of_state = values.map(|(key, value)| (key.name, value.is_some()));
+        let values = self.rate_and_state().into_iter();
+        let mut of_state = values.map(|(key, value)| (key, value.is_some()));
         match self.law {
             Law::Projection => {}
             Law::Reversal | Law::Literal => {
@@ -443,8 +443,8 @@ impl Friction {
         ]
     }
 
-    /// The keys of kinetic friction, and whether they are set. Defaults are no contradiction where there is no kinetic
-    /// coefficient.
+    /// The keys of kinetic friction, and whether they are set. Defaults are no contradiction where there is
+    /// no kinetic coefficient.
     fn of_kinetic(&self) -> [(&'static str, bool); 5] {
         [
             (
@@ -486,7 +486,8 @@ const HELD_IN_TIME: &str = "with `drive.loading` = \"held\" the drive waits for 
 const HELD: &str = "with `drive.loading` = \"held\" the drive moves while all blocks in contact are stuck, as they are by \
                     `law` = \"projection\" and `contact` = \"rigid\" alone; take these, or `drive.loading` = \"constant\"";
 
-/// Whether a spread is set; 0 and the default are no contradiction where there are no coefficients that it spreads.
+/// Whether a spread is set; 0 and the default are no contradiction where there are no coefficients that it
+/// spreads.
 fn is_spread(sigma: f64) -> bool {
     sigma != 0.0 && sigma != DEFAULT_SIGMA
 }
@@ -494,54 +495,3 @@ fn is_spread(sigma: f64) -> bool {
 /// Default spread, which a printed case has even where it has no meaning.
 const DEFAULT_SIGMA: f64 = 0.05;
 const DEFAULT_R_STAR: f64 = 0.5;
-
-keys_with_choice! {
-    Friction: FrictionKeys {
-        #[serde(deserialize_with = "word")]
-        law: Law,
-        mu_static: f64,
-        (kinetic: KineticFriction {
-            r_star: f64 => RStar,
-            mu_kinetic: f64 => MuKinetic,
-            _ => "friction needs `r_star` or `mu_kinetic`"
-        }),
-        sigma_static_star: f64,
-        sigma_kinetic_star: f64,
-        seed: u64,
-        mu_static_field: Option<String>,
-        mu_kinetic_field: Option<String>,
-        adhesion: Pressure,
-        adhesion_kinetic: Pressure,
-        #[serde(skip_serializing_if = "Option::is_none")]
-        correlation_length: Option<Length>,
-        #[serde(skip_serializing_if = "Option::is_none")]
-        velocity: Option<Velocity>,
-        #[serde(skip_serializing_if = "Option::is_none")]
-        ageing: Option<Ageing>,
-        #[serde(skip_serializing_if = "Option::is_none")]
-        slip_weakening: Option<SlipWeakeningLength>,
-        #[serde(skip_serializing_if = "Option::is_none")]
-        healing_time_star: Option<f64>,
-        #[serde(deserialize_with = "word")]
-        contact: ContactModel,
-        #[serde(skip_serializing_if = "Option::is_none")]
-        contact_stiffness_star: Option<f64>,
-        #[serde(skip_serializing_if = "Option::is_none")]
-        contact_stiffness_per_area: Option<StiffnessPerArea>,
-        redraw: bool,
-        #[serde(skip_serializing_if = "Option::is_none")]
-        a: Option<f64>,
-        #[serde(skip_serializing_if = "Option::is_none")]
-        b: Option<f64>,
-        #[serde(skip_serializing_if = "Option::is_none")]
-        d_c_star: Option<f64>,
-        #[serde(skip_serializing_if = "Option::is_none")]
-        v_0_star: Option<f64>,
-        #[serde(skip_serializing_if = "Option::is_none")]
-        mu_0: Option<f64>,
-        #[serde(skip_serializing_if = "Option::is_none")]
-        theta_0_star: Option<f64>,
-        #[serde(skip_serializing_if = "Option::is_none")]
-        slip_speed_star: Option<f64>,
-    }
-}

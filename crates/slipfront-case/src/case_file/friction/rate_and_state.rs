@@ -2,25 +2,9 @@
 
 use slipfront::{Model, RateAndState};
 
-use crate::case_file::key::{Key, SPEED_STAR, TIME_STAR, above, key, number, within};
 use slipfront_base::number_format::four_digits;
 
-#[rustfmt::skip]
-pub(super) const KEYS: &[Key] = &[
-    key("a", "", number(within(1e-6, 10.0), "it is a coefficient, of the order of 0.01"), "direct effect of rate and state")
-        .title("direct effect", "a", ""),
-    key("b", "", number(within(0.0, 10.0), "it is a coefficient, of the order of 0.01"), "evolution effect of rate and state")
-        .title("evolution effect", "b", ""),
-    key("d_c_star", "", number(above(0.0, 1e9), "it is in units of P mu_s l^2/(E h)"), "slip over which the state follows a change of speed")
-        .title("slip of the state", "D*", ""),
-    key("v_0_star", "", SPEED_STAR, "reference speed of rate and state").title("reference speed", "V\u{2080}*", ""),
-    key("mu_0", "", number(within(0.0, 100.0), "it is a coefficient"), "coefficient of steady sliding at `v_0_star`")
-        .title("coefficient of steady sliding", "\u{3bc}\u{2080}", ""),
-    key("theta_0_star", "", TIME_STAR, "state at the start").title("state at the start", "\u{3b8}\u{2080}*", ""),
-    key("slip_speed_star", "", SPEED_STAR, "speed above which a block counts as sliding under rate and state"),
-];
-
-/// Number of the [`KEYS`] that have no default and must be given, which stand first.
+/// Number of the keys of the law that have no default and must be given, which stand first.
 pub(super) const NEEDED: usize = 4;
 
 pub(super) const SYNONYMS: &[(&str, &str)] = &[
@@ -55,9 +39,9 @@ pub(super) fn without_key(path: &str, key: &str) -> String {
     format!("`{path}` = \"rate_and_state\" needs `{key}`: it needs `a`, `b`, `d_c_star` and `v_0_star`")
 }
 
-/// The law of the model, with coefficients over `mu_static`, from the values of the [`KEYS`] and the speed of the drive. A
-/// file that was read has the keys without a default.
-pub(super) fn law(values: [Option<f64>; KEYS.len()], mu_static: f64, v_star: f64) -> RateAndState {
+/// The law of the model, with coefficients over `mu_static`, from the values of its keys and the speed of the
+/// drive. A file that was read has the keys without a default.
+pub(super) fn law(values: [Option<f64>; 7], mu_static: f64, v_star: f64) -> RateAndState {
     let [a, b, d_c, v_0, mu_0, theta_0, slip_speed] = values;
     let given = |key: Option<f64>| key.unwrap_or(f64::NAN);
     let (d_c, v_0) = (given(d_c), given(v_0));

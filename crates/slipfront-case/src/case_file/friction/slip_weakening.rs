@@ -5,20 +5,10 @@ use slipfront::{Scales, SlipWeakening};
 
 use crate::case_file::check::Check;
 use crate::case_file::error::CaseError;
-use crate::case_file::key::{Key, KeyKind, MAX_TIME_STAR, above, key, number, quantity, within};
+use crate::case_file::key::{KeyKind, SLIP_STAR, StarUnit, key, quantity, within};
+use crate::key_rows;
 use crate::quantity::Length;
 use slipfront_base::number_format::four_digits;
-
-#[rustfmt::skip]
-pub(super) const KEYS: &[Key] = &[
-    key("slip_weakening", "", KeyKind::Special("`{ length = \"0.5 um\" }`, 1e-18 to 1000 m, or `{ length_star = 0.5 }`, more than 0, at most 1e9"),
-        "slip over which strength falls from the static to the kinetic threshold"),
-    key("healing_time_star", "", number(above(0.0, MAX_TIME_STAR), "it is a time t*"),
-        "time for which a block must be stuck to be whole again; without it none is before the run ends").title("healing time", "t\u{2095}*", ""),
-];
-
-const LENGTH: KeyKind = quantity("m", within(1e-18, 1e3));
-const LENGTH_STAR: KeyKind = number(above(0.0, 1e9), "it is in units of P mu_s l^2/(E h)");
 
 pub(super) const SYNONYMS: &[(&str, &str)] = &[
     ("slip_weakening_length", ADVICE),
@@ -37,17 +27,21 @@ pub(super) const ALONE: &str = "beside `slip_weakening` it is not derived; leave
 /// Reason for which healing has no meaning without slip weakening.
 pub(super) const ELSEWHERE: &str = "it belongs to `slip_weakening`; set that, or leave it out";
 
-/// `slip_weakening`: the slip over which strength falls from the static to the kinetic threshold.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct SlipWeakeningLength {
-    /// Slip D_c, m.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub length: Option<Length>,
-    /// Slip D_c in units of P mu_s l^2/(E h).
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub length_star: Option<f64>,
+key_rows! {
+    /// `slip_weakening`: the slip over which strength falls from the static to the kinetic threshold.
+    #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+    #[serde(deny_unknown_fields)]
+    pub struct SlipWeakeningLength {
+        /// Slip D_c, m.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        pub length: Option<Length> = key("", LENGTH),
+        /// Slip D_c in units of P mu_s l^2/(E h).
+        #[serde(skip_serializing_if = "Option::is_none")]
+        pub length_star: Option<f64> = key("", SLIP_STAR).star(StarUnit::Displacement),
+    }
 }
+
+const LENGTH: KeyKind = quantity("m", within(1e-18, 1e3));
 
 impl SlipWeakeningLength {
     pub(super) fn check(&self, check: &Check) -> Result<(), CaseError> {
@@ -57,7 +51,7 @@ impl SlipWeakeningLength {
             });
         }
         check.value_of(&LENGTH, "slip_weakening.length", &self.length)?;
-        check.value_of(&LENGTH_STAR, "slip_weakening.length_star", &self.length_star)
+        check.value_of(&SLIP_STAR, "slip_weakening.length_star", &self.length_star)
     }
 
     /// The law of the model.

@@ -5,21 +5,11 @@ use slipfront::Weakening;
 
 use crate::case_file::check::Check;
 use crate::case_file::error::CaseError;
-use crate::case_file::key::{Key, KeyKind, SPEED_STAR, key, number, within};
+use crate::case_file::key::{KeyKind, SPEED_STAR, StarUnit, key, number, within};
+use crate::case_file::probe::names_of;
 use crate::case_file::values::word;
+use crate::key_rows;
 use slipfront_base::number_format::four_digits;
-
-#[rustfmt::skip]
-pub(super) const KEYS: &[Key] = &[
-    key("velocity", "", KeyKind::Special("`{ law = \"weakening\", v_c_star = 0.1, ratio = 0.5 }`; v_c_star more than 0, at most 10; ratio 0 to 1"),
-        "kinetic friction that falls with speed"),
-];
-
-/// Kind of the key `ratio`: a share of kinetic friction.
-const RATIO: KeyKind = number(
-    within(0.0, 1.0),
-    "it is kinetic friction at high speed over that at rest",
-);
 
 pub(super) const SYNONYMS: &[(&str, &str)] = &[
     ("weakening", ADVICE),
@@ -31,18 +21,26 @@ pub(super) const SYNONYMS: &[(&str, &str)] = &[
 ];
 const ADVICE: &str = "friction that falls with speed is `friction.velocity` = { law = \"weakening\", v_c_star = 0.1, ratio = 0.5 }";
 
-/// `velocity`: kinetic friction that falls with speed, mu_k [ratio + (1 - ratio)/(1 + v/v_c)].
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Velocity {
-    /// The law.
-    #[serde(deserialize_with = "word")]
-    pub law: VelocityLaw,
-    /// Speed at which half of the fall is reached, in the unit of V*; more than 0, at most 10.
-    pub v_c_star: f64,
-    /// Kinetic friction at high speed over that at rest, 0 to 1.
-    pub ratio: f64,
+key_rows! {
+    /// `velocity`: kinetic friction that falls with speed, mu_k [ratio + (1 - ratio)/(1 + v/v_c)].
+    #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+    #[serde(deny_unknown_fields)]
+    pub struct Velocity {
+        /// The law.
+        #[serde(deserialize_with = "word")]
+        pub law: VelocityLaw = key("", KeyKind::Words(names_of::<VelocityLaw>)),
+        /// Speed at which half of the fall is reached, in the unit of V*.
+        pub v_c_star: f64 = key("", SPEED_STAR).star(StarUnit::Speed),
+        /// Kinetic friction at high speed over that at rest.
+        pub ratio: f64 = key("", RATIO),
+    }
 }
+
+/// Kind of the key `ratio`: a share of kinetic friction.
+const RATIO: KeyKind = number(
+    within(0.0, 1.0),
+    "it is kinetic friction at high speed over that at rest",
+);
 
 /// Dependence of kinetic friction on speed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]

@@ -7,26 +7,11 @@ use slipfront::surface;
 
 use super::outlined::{Blocks, Outlined};
 use crate::case_file::check::Check;
-use crate::case_file::choice::keys_with_choice;
 use crate::case_file::error::CaseError;
 use crate::case_file::key::{COORDINATE, COVERAGE, DEGREES, Key, KeyKind, SIZE, key};
 use crate::case_file::values::{Pair, length};
+use crate::key_rows;
 use crate::quantity::Length;
-
-#[rustfmt::skip]
-pub(super) const KEYS: &[Key] = &[
-    key("s", "1", KeyKind::Whole { least: 1, most: 64, noun: "a whole number ", remark: "" },
-        "kind of outline: an ellipse for 1, else a polygon of s + 1 curved edges").title("cavity shape", "s", ""),
-    key("w", "0", KeyKind::Special("-1 < w < 1 for s = 1, else -1/s to 1/s"), "how far the outline is from a circle")
-        .title("cavity shape", "w", ""),
-    key("coverage", "", COVERAGE, "size: percent of the whole area")
-        .or("lambda").title("texture coverage", "A*", "%"),
-    key("lambda", "", SIZE, "size: the length of Eq. 17, a circle's radius")
-        .or("coverage").title("cavity size", "\u{3bb}", "m"),
-    key("across", "false", KeyKind::Switch, "the paper's swap of x and y"),
-    key("center", "\"middle\"", KeyKind::Special("`\"middle\"`, or a pair within 1e9 m"), "centre of the cavity, or of its pattern"),
-    key("rotate", "0", DEGREES, "rotation, degrees from x towards y").title("rotation of the texture", "", "\u{b0}"),
-];
 
 pub(super) const SYNONYMS: &[(&str, &str)] = &[
     ("circle", CIRCLE),
@@ -60,31 +45,37 @@ pub(super) const SYNONYMS: &[(&str, &str)] = &[
 const CIRCLE: &str = "a circle is `shape` = \"cavity\" with `coverage`, or with `lambda`, its radius";
 const RADIUS: &str = "the radius of a circle is `lambda`";
 
-/// A cavity with the outline of Eq. 17.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(try_from = "CavityKeys", into = "CavityKeys")]
-pub struct Cavity {
-    /// Kind of outline (s), 1 to 64: an ellipse for 1, else a polygon of s + 1 curved edges.
-    pub s: u32,
-    /// Departure of the outline from a circle (w): |w| < 1 for s = 1; otherwise |w| <= 1/s, where vertices are sharp.
-    pub w: f64,
-    /// The size: `coverage` or `lambda`.
-    pub size: CavitySize,
-    /// Whether x and y of the outline are swapped: an ellipse of w > 0 is then elongated along y, not x.
-    pub across: bool,
-    /// The centre of the cavity, or of the pattern.
-    pub center: Center,
-    /// Rotation about the centre, degrees from x towards y, -360 to 360.
-    pub rotate: f64,
-}
-
-/// The size of a cavity.
-#[derive(Clone, Debug, PartialEq)]
-pub enum CavitySize {
-    /// `coverage`: percent of the whole area (Eq. 18), all cavities of the pattern together; more than 0, less than 100.
-    Coverage(f64),
-    /// `lambda`: the length of Eq. 17, the radius of the circle that w = 0 gives, m.
-    Lambda(Length),
+key_rows! {
+    /// A cavity with the outline of Eq. 17.
+    #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+    #[serde(try_from = "CavityKeys", into = "CavityKeys")]
+    pub struct Cavity from CavityKeys {
+        /// Kind of outline: an ellipse for 1, else a polygon of s + 1 curved edges.
+        pub s: u32 = key("1", KeyKind::Whole { least: 1, most: 64, noun: "a whole number ", remark: "" })
+            .paper("s")
+            .title("cavity shape", "s", ""),
+        /// Departure of the outline from a circle: at 1/s the vertices are sharp.
+        pub w: f64 = key("0", KeyKind::Special("-1 < w < 1 for s = 1, else -1/s to 1/s")).paper("w")
+            .title("cavity shape", "w", ""),
+        [
+            /// Size of the cavity: `coverage` or `lambda`.
+            pub size: CavitySize or "a cavity needs a size: `coverage = 10` (percent of the area) or `lambda = \"8 um\"`" {
+                /// Size: percent of the whole area, all copies together.
+                coverage: f64 => Coverage = key("", COVERAGE).or("lambda").paper("A* (Eq. 18, D5)")
+                    .title("texture coverage", "A*", "%"),
+                /// Size: the length of Eq. 17, a circle's radius. A cavity needs one of the two.
+                lambda: Length => Lambda = key("", SIZE).or("coverage").paper("lambda")
+                    .title("cavity size", "\u{3bb}", "m"),
+            }
+        ]
+        /// Whether x and y are swapped, as the paper does: an ellipse of w > 0 is then elongated along y, not
+        /// x.
+        pub across: bool = key("false", KeyKind::Switch),
+        /// Centre of the cavity, or of its pattern.
+        pub center: Center = key("\"middle\"", KeyKind::Special("`\"middle\"`, or a pair within 1e9 m")),
+        /// Rotation, degrees from x towards y.
+        pub rotate: f64 = key("0", DEGREES).title("rotation of the texture", "", "\u{b0}"),
+    }
 }
 
 /// Place of a cavity.
@@ -156,21 +147,6 @@ impl Outlined for Cavity {
             rotate: self.rotate,
         };
         (surface::Shape::Cavity(cavity), Some(percent))
-    }
-}
-
-keys_with_choice! {
-    Cavity: CavityKeys {
-        s: u32,
-        w: f64,
-        (size: CavitySize {
-            coverage: f64 => Coverage,
-            lambda: Length => Lambda,
-            _ => "a cavity needs a size: `coverage = 10` (percent of the area) or `lambda = \"8 um\"`"
-        }),
-        across: bool,
-        center: Center,
-        rotate: f64,
     }
 }
 

@@ -5,22 +5,12 @@ use slipfront::surface::{self, Orientation};
 
 use super::outlined::{Blocks, Outlined};
 use crate::case_file::check::Check;
-use crate::case_file::choice::keys_with_choice;
 use crate::case_file::error::CaseError;
 use crate::case_file::key::{COORDINATE, COVERAGE, Key, KeyKind, SIZE, key};
 use crate::case_file::probe::names_of;
 use crate::case_file::values::word;
+use crate::key_rows;
 use crate::quantity::Length;
-
-#[rustfmt::skip]
-pub(super) const KEYS: &[Key] = &[
-    key("orientation", "\"across\"", KeyKind::Words(names_of::<Orientation>),
-        "whether the groove runs along y (across the x axis) or along x"),
-    key("coverage", "", COVERAGE, "size: percent of the whole area").or("width").title("texture coverage", "A*", "%"),
-    key("width", "", SIZE, "size: the width").or("coverage").title("groove width", "", "m"),
-    key("offset", "\"0 um\"", COORDINATE, "distance of the groove's middle line from the slider's")
-        .title("groove offset", "", "m"),
-];
 
 pub(super) const SYNONYMS: &[(&str, &str)] = &[
     ("line", GROOVE),
@@ -37,25 +27,27 @@ pub(super) const SYNONYMS: &[(&str, &str)] = &[
 ];
 const GROOVE: &str = "a straight one is `shape` = \"groove\" with `coverage` or `width`";
 
-/// A straight groove through the whole slider, half-open: its lower edge in, its upper edge out.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(try_from = "GrooveKeys", into = "GrooveKeys")]
-pub struct Groove {
-    /// Whether the groove runs across or along the x axis of the lattice, whatever the direction of the drive.
-    pub orientation: Orientation,
-    /// The size: `coverage` or `width`.
-    pub size: GrooveSize,
-    /// Distance of the groove's middle line from the slider's middle line, m.
-    pub offset: Length,
-}
-
-/// The size of a groove.
-#[derive(Clone, Debug, PartialEq)]
-pub enum GrooveSize {
-    /// `coverage`: percent of the whole area, more than 0, less than 100.
-    Coverage(f64),
-    /// The key `width`, m.
-    Width(Length),
+key_rows! {
+    /// A straight groove through the whole slider, half-open: its lower edge in, its upper edge out.
+    #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+    #[serde(try_from = "GrooveKeys", into = "GrooveKeys")]
+    pub struct Groove from GrooveKeys {
+        /// Orientation of the groove: along y (across the x axis), or along x.
+        #[serde(deserialize_with = "word")]
+        pub orientation: Orientation = key("\"across\"", KeyKind::Words(names_of::<Orientation>)),
+        [
+            /// Size of the groove: `coverage` or `width`.
+            pub size: GrooveSize or "a groove needs a size: `coverage = 10` (percent of the area) or `width = \"5 um\"`" {
+                /// Size: percent of the whole area, all copies together.
+                coverage: f64 => Coverage = key("", COVERAGE).or("width").paper("A*")
+                    .title("texture coverage", "A*", "%"),
+                /// Size: the width. A groove needs one of the two.
+                width: Length => Width = key("", SIZE).or("coverage").title("groove width", "", "m"),
+            }
+        ]
+        /// Distance of the groove's middle line from the slider's.
+        pub offset: Length = key("\"0 um\"", COORDINATE).title("groove offset", "", "m"),
+    }
 }
 
 impl Groove {
@@ -100,18 +92,5 @@ impl Outlined for Groove {
             }
         };
         (of_width(width), Some(percent))
-    }
-}
-
-keys_with_choice! {
-    Groove: GrooveKeys {
-        #[serde(deserialize_with = "word")]
-        orientation: Orientation,
-        (size: GrooveSize {
-            coverage: f64 => Coverage,
-            width: Length => Width,
-            _ => "a groove needs a size: `coverage = 10` (percent of the area) or `width = \"5 um\"`"
-        }),
-        offset: Length,
     }
 }

@@ -3,23 +3,11 @@
 use serde::{Deserialize, Serialize};
 
 use crate::case_file::check::Check;
-use crate::case_file::choice::keys_with_choice;
 use crate::case_file::error::CaseError;
 use crate::case_file::key::{COORDINATE, COVERAGE, Key, KeyKind, SIZE, key};
-use crate::case_file::pattern::Pitch;
+use crate::case_file::pattern::{PITCH, Pitch};
+use crate::key_rows;
 use crate::quantity::Length;
-
-#[rustfmt::skip]
-pub(super) const KEYS: &[Key] = &[
-    key("file", "", KeyKind::File(&["npy", "csv", "gsf", "x3p", "png", "tif", "tiff"]), "measured heights, stretched over the slider"),
-    key("bearing_percent", "", COVERAGE, "the share of the area that touches, the highest parts first")
-        .or("depth").title("bearing area", "", "%"),
-    key("depth", "", SIZE, "how far below the reference a block still touches").or("bearing_percent").title("depth of contact", "", "m"),
-    key("reference", "", COORDINATE, "height from which `depth` is counted; that of the highest block if left out"),
-    key("height_unit", "", SIZE, "the height that a value of 1 in the file means, if the file has no unit"),
-    key("pixel_size", "", KeyKind::Special("a length, or a pair; more than 0, at most 1e9 m"),
-        "distance of neighbouring points, if the file does not have it"),
-];
 
 pub(super) const SYNONYMS: &[(&str, &str)] = &[
     ("topography", HEIGHT_MAP),
@@ -29,29 +17,33 @@ pub(super) const SYNONYMS: &[(&str, &str)] = &[
 const HEIGHT_MAP: &str =
     "measured heights are `shape` = \"height_map\" with `file` and `bearing_percent` or `depth`";
 
-/// A measured surface stretched over the slider: parts below the height of contact are textured.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(try_from = "HeightMapKeys", into = "HeightMapKeys")]
-pub struct HeightMap {
-    /// A `.npy`, `.csv`, `.gsf`, `.x3p`, or a `.png` or `.tif` of grey levels, relative to the case file.
-    pub file: String,
-    /// Heights that touch: `bearing_percent` or `depth`.
-    pub bearing: Bearing,
-    /// The height from which `depth` is counted, m; the highest block if there is none.
-    pub reference: Option<Length>,
-    /// The height of the value 1 in the file, m; none where the file has a unit.
-    pub height_unit: Option<Length>,
-    /// Distance of neighbouring points along x and along y, m; none where the file has it.
-    pub pixel_size: Option<Pitch>,
-}
-
-/// Heights that touch.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Bearing {
-    /// `bearing_percent`: the highest blocks, this share of all in percent; more than 0, less than 100.
-    Percent(f64),
-    /// `depth`: the blocks that are at most this far below the reference, m.
-    Depth(Length),
+key_rows! {
+    /// A measured surface stretched over the slider: parts below the height of contact are textured.
+    #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+    #[serde(try_from = "HeightMapKeys", into = "HeightMapKeys")]
+    pub struct HeightMap from HeightMapKeys {
+        /// Measured heights, stretched over the slider.
+        pub file: String = key("", KeyKind::File(&["npy", "csv", "gsf", "x3p", "png", "tif", "tiff"])),
+        [
+            /// Heights that touch: `bearing_percent` or `depth`.
+            pub bearing: Bearing or "a height map needs what touches: `bearing_percent = 60` (percent of the area, the highest parts) or \
+                                     `depth = \"0.5 um\"` (below the highest)" {
+                /// Share of the area that touches, the highest parts first.
+                bearing_percent: f64 => Percent = key("", COVERAGE).or("depth")
+                    .title("bearing area", "", "%"),
+                /// Distance below the reference down to which a block still touches. A map needs one of the
+                /// two.
+                depth: Length => Depth = key("", SIZE).or("bearing_percent")
+                    .title("depth of contact", "", "m"),
+            }
+        ]
+        /// Height from which `depth` is counted; that of the highest block if left out.
+        pub reference: Option<Length> = key("", COORDINATE),
+        /// Height that a value of 1 in the file means, if the file has no unit.
+        pub height_unit: Option<Length> = key("", SIZE),
+        /// Distance of neighbouring points, if the file does not have it.
+        pub pixel_size: Option<Pitch> = key("", PITCH),
+    }
 }
 
 impl HeightMap {
@@ -77,20 +69,5 @@ impl HeightMap {
         check.value("height_unit", &self.height_unit)?;
         let mut lengths = self.pixel_size.iter().flat_map(Pitch::lengths);
         lengths.try_for_each(|length| check.value_of(&SIZE, "pixel_size", length))
-    }
-}
-
-keys_with_choice! {
-    HeightMap: HeightMapKeys {
-        file: String,
-        (bearing: Bearing {
-            bearing_percent: f64 => Percent,
-            depth: Length => Depth,
-            _ => "a height map needs what touches: `bearing_percent = 60` (percent of the area, the highest parts) or \
-                  `depth = \"0.5 um\"` (below the highest)"
-        }),
-        reference: Option<Length>,
-        height_unit: Option<Length>,
-        pixel_size: Option<Pitch>,
     }
 }

@@ -4,14 +4,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::case_file::check::Check;
 use crate::case_file::error::CaseError;
-use crate::case_file::key::{Key, KeyKind, between, key, number};
-
-#[rustfmt::skip]
-pub(super) const KEYS: &[Key] = &[
-    key("file", "", KeyKind::File(&["png", "npy"]), "an image, stretched over the slider"),
-    key("threshold", "0.5", number(between(0.0, 1.0), "it is a share of white"),
-        "a pixel of an image is dark below this share of white"),
-];
+use crate::case_file::key::{KeyKind, between, key, number};
+use crate::key_rows;
 
 pub(super) const SYNONYMS: &[(&str, &str)] = &[
     (
@@ -21,14 +15,17 @@ pub(super) const SYNONYMS: &[(&str, &str)] = &[
     ("png", "an image is `shape` = \"mask\" with `file` = \"mask.png\""),
 ];
 
-/// An image or array stretched over the slider.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Mask {
-    /// A `.png` (dark pixels are textured) or a `.npy` of shape (ny, nx) of 0 and 1 (textured), relative to the case file.
-    pub file: String,
-    /// A pixel of an image is dark below this share of white, more than 0, less than 1.
-    pub threshold: f64,
+key_rows! {
+    /// An image or array stretched over the slider.
+    #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+    #[serde(deny_unknown_fields)]
+    pub struct Mask {
+        /// An image, stretched over the slider with its top row at the largest y, dark pixels textured; or an
+        /// array of shape (ny, nx) of 0 and 1, 1 being textured.
+        pub file: String = key("", KeyKind::File(&["png", "npy"])),
+        /// Share of white below which a pixel of an image is dark; of no matter for an array.
+        pub threshold: f64 = key("0.5", number(between(0.0, 1.0), "it is a share of white")),
+    }
 }
 
 /// Default threshold, halfway to white.

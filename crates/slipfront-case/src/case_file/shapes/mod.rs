@@ -1,7 +1,7 @@
 //! The shapes of `[[texture]]`.
 //!
-//! Each shape is a file, with its keys, the words that people try for them, its name for a user, and the shape in blocks
-//! that they make. This file has a row for each shape.
+//! Each shape is a file, with its keys, the words that people try for them, its name for a user, and the
+//! shape in blocks that they make. This file has a row for each shape.
 
 mod cavity;
 mod groove;
@@ -20,23 +20,23 @@ pub(crate) use self::outlined::{Blocks, Outlined};
 pub use self::polygon::Polygon;
 use super::check::Check;
 use super::error::CaseError;
-use super::key::{Key, count, joined};
-use super::pattern;
+use super::key::{Key, joined};
+use super::pattern::Pattern;
 
 /// Joins the keys of a shape and the keys that all shapes have.
 macro_rules! keys {
-    ($own:expr) => {
-        &joined::<{ count(&[$own, pattern::KEYS]) }>(&[$own, pattern::KEYS])
+    ($shape:ident) => {
+        &joined::<{ $shape::KEYS.len() + Pattern::KEYS.len() }>($shape::KEYS, Pattern::KEYS)
     };
 }
 
 /// The names of the shapes and their keys, in the order of the documentation.
 pub(super) const ALL: [(&str, &[Key]); 5] = [
-    ("cavity", keys!(cavity::KEYS)),
-    ("groove", keys!(groove::KEYS)),
-    ("polygon", keys!(polygon::KEYS)),
-    ("mask", keys!(mask::KEYS)),
-    ("height_map", keys!(height_map::KEYS)),
+    ("cavity", keys!(Cavity)),
+    ("groove", keys!(Groove)),
+    ("polygon", keys!(Polygon)),
+    ("mask", keys!(Mask)),
+    ("height_map", keys!(HeightMap)),
 ];
 
 /// Words that people try first, each with the advice on it, by shape.

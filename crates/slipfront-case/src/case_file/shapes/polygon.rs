@@ -6,28 +6,26 @@ use slipfront::surface;
 use super::outlined::{Blocks, Outlined};
 use crate::case_file::check::Check;
 use crate::case_file::error::CaseError;
-use crate::case_file::key::{COORDINATE, Key, KeyKind, key};
+use crate::case_file::key::{COORDINATE, KeyKind, key};
 use crate::case_file::values::Pair;
+use crate::key_rows;
 use crate::quantity::Length;
 use slipfront_base::number_format::count;
-
-#[rustfmt::skip]
-pub(super) const KEYS: &[Key] = &[
-    key("points", "", KeyKind::Special("at least 3 pairs within 1e9 m"), "the corners"),
-];
 
 pub(super) const SYNONYMS: &[(&str, &str)] = &[(
     "rectangle",
     "a rectangle is `shape` = \"polygon\" with its four `points`",
 )];
 
-/// The inside of a closed polygon.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Polygon {
-    /// The corners [x, y], at least 3, from the slider's lower left corner, m.
-    #[serde(deserialize_with = "read_points")]
-    pub points: Vec<[Length; 2]>,
+key_rows! {
+    /// The inside of a closed polygon.
+    #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+    #[serde(deny_unknown_fields)]
+    pub struct Polygon {
+        /// The corners; the inside follows from the even-odd rule.
+        #[serde(deserialize_with = "read_points")]
+        pub points: Vec<[Length; 2]> = key("", KeyKind::Special("at least 3 pairs within 1e9 m")),
+    }
 }
 
 impl Polygon {

@@ -16,7 +16,6 @@ use slipfront_run::agree::RankFailure;
 use slipfront_run::checkpoint::Checkpoints;
 use slipfront_run::clock;
 use slipfront_run::folder_error::FolderError;
-use slipfront_run::pictures;
 use slipfront_run::results;
 use slipfront_run::run_folder::{ClaimedFolder, OpenedFolder, RunFolder, expect_shared};
 use slipfront_run::running::Running;
@@ -153,7 +152,7 @@ fn claim_folder(
     } else {
         0
     };
-    pictures::run_budget(case)
+    case.budget
         .check_disk(&case.file, out, replaced, saves)
         .map_err(Failure::input)?;
     folder

@@ -10,7 +10,6 @@ use slipfront_case::case_file::{CaseError, CaseFile};
 use slipfront_run::agree::RankFailure;
 use slipfront_run::checkpoint::{CheckpointError, Checkpoints, LoadedCheckpoint};
 use slipfront_run::clock;
-use slipfront_run::pictures;
 use slipfront_run::run_folder::inspection::{Contents, Inspection};
 use slipfront_run::run_folder::unfinished::Unfinished;
 use slipfront_run::run_folder::{OpenedFolder, expect_shared};
@@ -63,7 +62,7 @@ fn open(path: &Path, locks: bool) -> Result<OpenedFolder, Failure> {
 
 fn check_disk(run: &Inspection, case: &Case, options: &RunOptions) -> Result<(), Failure> {
     let replaced = run.managed_bytes().map_err(Failure::input)?;
-    pictures::run_budget(case)
+    case.budget
         .check_disk(&case.file, &run.path, replaced, options.interval.saves())
         .map_err(Failure::input)
 }
@@ -131,8 +130,9 @@ fn case_to_resume(run: &Inspection, file: CaseFile, options: &RunOptions) -> Res
         }
         failure => failure,
     })?;
-    let budget = pictures::run_budget(&case).resumed();
-    budget.check_memory(&case.file).map_err(Failure::input)?;
+    case.budget
+        .check_memory(&case.file, true)
+        .map_err(Failure::input)?;
     Ok(case)
 }
 

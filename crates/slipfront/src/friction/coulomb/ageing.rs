@@ -21,7 +21,6 @@ impl Ageing {
     /// is remembered.
     pub(super) const NEEDS: Needs = Needs {
         is_fused: false,
-        bytes: 2 * size_of::<f64>() + size_of::<bool>(),
         columns: 1,
         ..Needs::NONE
     };

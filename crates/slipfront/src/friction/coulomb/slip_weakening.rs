@@ -27,8 +27,6 @@ impl SlipWeakening {
     pub(super) fn needs(&self) -> Needs {
         let columns = if self.healing_time.is_some() { 3 } else { 1 };
         Needs {
-            bytes: (columns + 2) * size_of::<f64>(),
-            fused_bytes: (columns + 2) * size_of::<f64>(),
             columns,
             weakens_with_slip: true,
             ..Needs::NONE

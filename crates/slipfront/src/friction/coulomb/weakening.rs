@@ -20,8 +20,6 @@ impl Weakening {
     /// Needs of velocity weakening: kinetic friction at the present speed.
     pub(super) const NEEDS: Needs = Needs {
         varies: true,
-        bytes: size_of::<f64>(),
-        fused_bytes: size_of::<f64>(),
         ..Needs::NONE
     };
 

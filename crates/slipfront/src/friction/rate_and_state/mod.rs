@@ -54,7 +54,6 @@ impl RateAndState {
     /// Needs of rate and state: the state and the load of a block.
     pub(super) const NEEDS: Needs = Needs {
         is_fused: false,
-        bytes: 2 * size_of::<f64>(),
         columns: 1,
         has_state: true,
         ..Needs::NONE

@@ -109,7 +109,7 @@ pub(super) struct Band {
     /// Mask of the blocks in contact that have ever slid.
     pub(super) slipped: Vec<u8>,
     // Two numbers by which a settled tile needs no look at its resting vectors: when each must be swept, and
-    // what it has given to the tile's sum of energies, which is taken away when it moves.
+    // what it has given to the tile's sum of energies, which is replaced then.
     /// The first step at which a block of each vector may slip; 0 for a touched vector. Known in settled tiles.
     pub(super) active_from_step: Vec<u64>,
     /// Energy of the springs of each vector, as in [`Sums`]. Known in settled tiles.
@@ -125,27 +125,21 @@ pub(super) struct Band {
     pub(super) stride: usize,
 }
 
-/// Bytes of a [`Band`] per element: of the element itself, of its vector and of its tile.
-pub(super) const BYTES_PER_ELEMENT: f64 = {
-    let element = 2 * size_of::<[f64; 2]>() + 2 * size_of::<f64>() + size_of::<u32>();
-    let vector = (4 + 4) * size_of::<u8>() + size_of::<u64>() + size_of::<i64>();
-    let tile = size_of::<TileState>() + size_of::<TileTask>();
-    element as f64 + vector as f64 / LANES as f64 + tile as f64 / TILE as f64
-};
-
-// A spring to the next row acts on the block at its lower end now, and on the one at its upper end a row later. It is
-// computed once, and waits in between in a ring buffer, the only intermediate result that is longer than a tile:
+// A spring to the next row acts on the block at its lower end now, and on the one at its upper end a row later.
+// It is computed once, and waits in between in a ring buffer, the only intermediate result that is longer than a
+// tile. Element k and what its springs join, and where these springs are:
 //
-//   elements    k-stride-1 k-stride k-stride+1 ........... k ........... k+stride-1 k+stride k+stride+1
-//               springs from here to k, computed           its own, to   the row above, which has moved
-//               with the row below                         the north     before
+//   k-stride-1  k-stride  k-stride+1 ............ k ............ k+stride-1  k+stride  k+stride+1
+//   springs from these to k, computed             its own,       the row above, which has moved
+//   when the row below was the present one        computed now   before
 //
-//   ring      | 0 .. 15 ........ behind .................. own ..................... | 0 .. 15 |
-//                                read from here            written, then read        mirror of the beginning
+//   | 0 .. 15 .......... behind ................. own ......................... | 0 .. 15 |
+//                        read from here on        written, then read              mirror of the beginning
 //
-// Element k has the place k modulo the length of the ring. That is a row and a block, a tile, and a vector for what is
-// rounded to whole vectors: a tile writes over nothing that it reads. Own places are whole vectors, so that none of
-// them wraps around. Those behind begin anywhere, and may extend over the end: the mirror repeats the beginning there.
+// Element k has the place k modulo the length of the ring. That is a row and a block, a tile, and a vector for
+// what is rounded to whole vectors: a tile writes over nothing that it reads. Own places are whole vectors, so
+// that none of them wraps around. Those behind begin anywhere, and may extend over the end: the mirror repeats
+// the beginning there.
 /// Intermediate results on the way through the tiles, which are not needed later.
 #[derive(Debug, Default)]
 pub(super) struct Scratch {

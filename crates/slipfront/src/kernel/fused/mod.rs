@@ -62,7 +62,6 @@ use crate::kernel::vectors;
 use crate::lattice::K_STRAIGHT;
 use crate::model::Model;
 use crate::moduli::Moduli;
-use crate::options::ModelOptions;
 use crate::parallel::*;
 use crate::position_bins::PositionBins;
 use crate::state::State;
@@ -623,17 +622,6 @@ impl Engine for Fused {
             band.read_memory(&self.layout, time_star, column, first, values);
         }
     }
-}
-
-/// Bytes per block without the rows that are kept beside a band, which take the memory of a row of blocks.
-pub(crate) fn bytes_per_block(options: &ModelOptions) -> f64 {
-    let varied = if variations::options_differ(options) {
-        variations::BYTES_PER_ELEMENT
-    } else {
-        0
-    };
-    let kept = varied + options.friction.needs().fused_bytes;
-    band::BYTES_PER_ELEMENT + kept as f64 + size_of::<AtomicU32>() as f64 / TILE as f64
 }
 
 /// Least number of tiles in a band of several: more bands than threads share out the work more evenly, but each finds the

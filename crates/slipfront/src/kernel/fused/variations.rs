@@ -14,7 +14,6 @@ use crate::communicator::Communicator;
 use crate::lattice::Bond;
 use crate::model::Model;
 use crate::moduli::Moduli;
-use crate::options::ModelOptions;
 
 /// Numbers of the elements of a band.
 #[derive(Debug)]
@@ -27,15 +26,6 @@ pub(super) struct Variations {
     pub(super) mass: Aligned,
     // Beside the mass, in place of a division for every block in every step.
     pub(super) inverse_mass: Aligned,
-}
-
-/// Bytes of [`Variations`] per element: four springs, the drive spring, mass and its inverse.
-pub(super) const BYTES_PER_ELEMENT: usize = (4 + 3) * size_of::<f64>();
-
-/// Whether blocks of a model with these options need [`Variations`], as far as is known before the model is made.
-pub(super) fn options_differ(options: &ModelOptions) -> bool {
-    let slider = &options.slider;
-    slider.has_moduli || slider.has_densities || slider.drives_some || options.friction.needs().varies
 }
 
 /// [`Variations`] of some elements, in vectors of eight; empty where all blocks are alike.

@@ -14,9 +14,7 @@ use crate::kernel::block::Block;
 use crate::lattice::Bond;
 use crate::model::Model;
 use crate::moduli::Moduli;
-use crate::options::ModelOptions;
 use crate::reductions;
-use crate::slider::SliderOptions;
 use crate::state::State;
 use crate::vector_field::VectorField;
 
@@ -117,32 +115,6 @@ pub(super) struct Band {
     pub(super) first_slip: Vec<f64>,
     pub(super) stress_square_max: f64,
 }
-
-/// Bytes of a [`Band`] per block of its rows, without the rows beside them.
-pub(super) fn bytes_per_block(options: &ModelOptions) -> usize {
-    // Displacement and velocity; four forces and velocities.
-    let vectors = 2 + 4 + if options.slider.has_dampers { 1 } else { 0 };
-    // Two thresholds and the time of the first slip.
-    let own = vectors * VECTOR + 3 * size_of::<f64>() + size_of::<bool>();
-    own + bytes_per_block_of_bonds(&options.slider)
-        + DrivenBlocks::bytes_per_block(options.rotates)
-        + options.friction.needs().bytes
-}
-
-/// Bytes per block that a [`Band`] has along each of the four bonds, for its rows and the rows beside them: forces of
-/// springs and of dampers, and relative stiffness.
-pub(super) fn bytes_per_block_of_bonds(slider: &SliderOptions) -> usize {
-    let dampers = if slider.has_dampers { VECTOR } else { 0 };
-    let springs = if slider.has_equal_springs() {
-        0
-    } else {
-        size_of::<f64>()
-    };
-    Bond::ALL.len() * (VECTOR + dampers + springs)
-}
-
-/// Bytes per block of a [`VectorField`].
-const VECTOR: usize = 2 * size_of::<f64>();
 
 impl Band {
     /// The band of the rows of a model. `moduli`: moduli of the whole rank.

@@ -16,11 +16,6 @@ pub(super) struct DrivenBlocks {
 }
 
 impl DrivenBlocks {
-    /// Bytes per block: the direction, for a drive that rotates.
-    pub(super) const fn bytes_per_block(rotates: bool) -> usize {
-        if rotates { 2 * size_of::<f64>() } else { 0 }
-    }
-
     pub(super) fn of(model: &Model) -> Self {
         let lattice = &model.lattice;
         let direction = || {

@@ -20,8 +20,6 @@ use std::sync::Arc;
 use fearless_simd::dispatch;
 
 use self::band::{Band, BandSums, Summed};
-use self::rows::Rows;
-use self::weighted::WeightedScratch;
 use super::bands::for_each_band;
 use super::block::{Block, Field};
 use super::engine::Engine;
@@ -33,10 +31,8 @@ use crate::fixed_point::RunningSum;
 use crate::friction::ContactTotals;
 use crate::model::Model;
 use crate::moduli::Moduli;
-use crate::options::ModelOptions;
 use crate::position_bins::PositionBins;
 use crate::state::State;
-use crate::surface::Surface;
 use crate::totals::{StoredEnergy, Totals};
 use crate::vector_field::VectorField;
 
@@ -430,24 +426,6 @@ impl Engine for General {
     fn read_memory(&self, _: f64, column: usize, first: usize, values: &mut [f64]) {
         self.read(first, values, |band| band.contact.columns()[column]);
     }
-}
-
-/// Bytes per block where one band holds all rows.
-pub(crate) fn bytes_per_block(options: &ModelOptions) -> usize {
-    band::bytes_per_block(options)
-}
-
-/// Most bytes per block that bands of rows add where there are several: each has the model of its rows, the motion of its
-/// blocks among those of the rows beside them, these rows themselves, and room for the intermediate results of a thread.
-pub(crate) fn bytes_per_block_of_bands(options: &ModelOptions) -> f64 {
-    // A row below and a row above those of a band.
-    let beside = 2.0 / MIN_BAND_ROWS as f64;
-    let model = Surface::bytes_per_block(options.has_pressures) + options.slider.bytes_per_block();
-    let motion = Rows::bytes_per_block(options.slider.has_dampers);
-    // Their motion is passed on from the ends of each band, too.
-    let row_beside = 2 * motion + band::bytes_per_block_of_bonds(&options.slider);
-    let swept = WeightedScratch::BYTES_PER_BLOCK as f64 / MIN_BAND_ROWS as f64;
-    (model + motion) as f64 + beside * row_beside as f64 + swept
 }
 
 /// The rows of every band.

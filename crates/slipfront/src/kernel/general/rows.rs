@@ -32,12 +32,6 @@ struct Beside {
 }
 
 impl Rows {
-    /// Bytes per block, own or beside, of the motion that is kept where there are several bands.
-    pub(super) const fn bytes_per_block(has_dampers: bool) -> usize {
-        let fields = if has_dampers { 2 } else { 1 };
-        fields * 2 * size_of::<f64>()
-    }
-
     pub(super) fn new(model: &Model) -> Self {
         let (Lattice { nx, ny, edges }, rows) = (model.lattice, &model.rows);
         let whole = Self {

@@ -13,9 +13,6 @@ pub(super) struct WeightedScratch {
 }
 
 impl WeightedScratch {
-    /// Bytes for each block of a part: a velocity, a term and a product.
-    pub(super) const BYTES_PER_BLOCK: usize = (2 + 2) * size_of::<f64>();
-
     pub(super) fn new(n_blocks: usize) -> Self {
         Self {
             velocity: VectorField::zeros(n_blocks),

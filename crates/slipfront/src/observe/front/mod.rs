@@ -44,10 +44,6 @@ pub struct Quantiles {
 }
 
 impl Front {
-    /// Bytes per block for finding a front, beside the times: each time again with its place in their order, and its
-    /// cluster; then the slope around the block, and the speed.
-    pub const BYTES_PER_BLOCK: usize = 4 * size_of::<f64>();
-
     /// The front of a lattice whose blocks have first slipped at `times`, NaN for blocks that have not slipped or have no
     /// contact; `n_contact` blocks are in contact. None if no block has slipped.
     ///

@@ -1,0 +1,118 @@
+//! Tables of a file that are declared by a row for each key.
+
+/// Declares the struct of a table and the keys of the table, `KEYS`, by a row for each key: its meaning as a
+/// doc comment, its name, the type of its value, and its [`key`](super::key).
+///
+/// Where one of several keys sets the same quantity, such as `v_star` and `speed` in `[drive]`, their rows
+/// stand in brackets. The struct has an enum in their place, which says which key was given, and a table with
+/// none of them is refused with the sentence behind `or`. A second struct then has the keys as they stand in
+/// the file, and conversions from and to the first.
+#[macro_export]
+macro_rules! key_rows {
+    (
+        $(#[$attribute:meta])*
+        $of_table:vis struct $table:ident {
+            $($(#[doc = $doc:literal])+ $(#[serde($($serde:tt)*)])* $vis:vis $name:ident: $type:ty = $key:expr,)+
+        }
+    ) => {
+        $(#[$attribute])*
+        $of_table struct $table {
+            $($(#[doc = $doc])+ $(#[serde($($serde)*)])* $vis $name: $type,)+
+        }
+
+        impl $table {
+            /// The keys of the table, in the order of the documentation.
+            pub const KEYS: &'static [$crate::case_file::Key] =
+                &[$($key.named(stringify!($name), concat!($($doc),+)),)+];
+        }
+    };
+    (
+        $(#[$attribute:meta])*
+        pub struct $table:ident from $file:ident {
+            $($(#[doc = $doc:literal])+ $(#[serde($($serde:tt)*)])* pub $name:ident: $type:ty = $key:expr,)*
+            $(
+                [$(#[$of_choice:meta])+ pub $choice:ident: $enum:ident or $missing:literal {
+                    $($(#[doc = $doc_one:literal])+ $(#[serde($($serde_one:tt)*)])*
+                        $one:ident: $type_one:ty => $Variant:ident = $key_one:expr,)+
+                }]
+                $($(#[doc = $doc_after:literal])+ $(#[serde($($serde_after:tt)*)])*
+                    pub $after:ident: $type_after:ty = $key_after:expr,)*
+            )+
+        }
+    ) => {
+        $(#[$attribute])*
+        pub struct $table {
+            $($(#[doc = $doc])+ pub $name: $type,)*
+            $($(#[$of_choice])+ pub $choice: $enum, $($(#[doc = $doc_after])+ pub $after: $type_after,)*)+
+        }
+
+        impl $table {
+            /// The keys of the table, in the order of the documentation.
+            pub const KEYS: &'static [Key] = &[
+                $($key.named(stringify!($name), concat!($($doc),+)),)*
+                $(
+                    $($key_one.named(stringify!($one), concat!($($doc_one),+)),)+
+                    $($key_after.named(stringify!($after), concat!($($doc_after),+)),)*
+                )+
+            ];
+        }
+
+        $(
+            $(#[$of_choice])+
+            #[derive(Clone, Debug, PartialEq)]
+            pub enum $enum {
+                $($(#[doc = $doc_one])+ $Variant($type_one),)+
+            }
+
+            impl $enum {
+                /// Checks the value of the key that was given.
+                pub(super) fn check(&self, check: &Check) -> Result<(), CaseError> {
+                    match self {
+                        $(Self::$Variant(value) => check.value(stringify!($one), value),)+
+                    }
+                }
+            }
+        )+
+
+        #[derive(serde::Serialize, serde::Deserialize)]
+        #[serde(deny_unknown_fields)]
+        pub(super) struct $file {
+            $($(#[serde($($serde)*)])* $name: $type,)*
+            $(
+                $($(#[serde($($serde_one)*)])* $one: Option<$type_one>,)+
+                $($(#[serde($($serde_after)*)])* $after: $type_after,)*
+            )+
+        }
+
+        impl TryFrom<$file> for $table {
+            type Error = &'static str;
+
+            fn try_from(keys: $file) -> Result<Self, Self::Error> {
+                Ok(Self {
+                    $($name: keys.$name,)*
+                    $(
+                        $choice: {
+                            let given = None;
+                            $(let given = keys.$one.map($enum::$Variant).or(given);)+
+                            given.ok_or($missing)?
+                        },
+                        $($after: keys.$after,)*
+                    )+
+                })
+            }
+        }
+
+        impl From<$table> for $file {
+            fn from(table: $table) -> Self {
+                let mut keys = Self {
+                    $($name: table.$name,)*
+                    $($($one: None,)+ $($after: table.$after,)*)+
+                };
+                $(match table.$choice {
+                    $($enum::$Variant(value) => keys.$one = Some(value),)+
+                })+
+                keys
+            }
+        }
+    };
+}
