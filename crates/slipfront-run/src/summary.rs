@@ -263,59 +263,30 @@ pub struct NucleationSummary {
     pub time_star: f64,
 }
 
-/// A part of a run that has numbers of its own.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Part {
-    /// The first peak of mu*. A run without a transition has none of these numbers, whatever its summary says: its largest mu* is
-    /// its `mu_star_max`.
-    Peak,
-    /// The kinetic window. A run without a transition has these numbers only if the window begins after its largest mu*: before
-    /// that, mu* may still rise to the onset.
-    KineticWindow,
-}
+/// Keys of the numbers that the first peak of mu* defines. A run without a transition has none of these numbers, whatever
+/// its summary says: its largest mu* is its `mu_star_max`.
+pub const OF_PEAK: [&str; 5] = [
+    "static_friction_star",
+    "static_friction",
+    "static_lateral_friction_star",
+    "onset_time_star",
+    "onset_time_s",
+];
 
-/// A number of the summary that not every run has, or that has a title.
-#[derive(Clone, Copy, Debug)]
-pub struct KnownNumber {
-    /// Key of the number in the summary.
-    pub name: &'static str,
-    /// Part of the run to which it belongs.
-    pub part: Part,
-    /// Words of its title in pictures; empty if its key stands there.
-    pub words: &'static str,
-    /// Symbol in pictures.
-    pub symbol: &'static str,
-}
+/// Keys of the numbers of the kinetic window. A run without a transition has these numbers only if the window begins after
+/// its largest mu*: before that, mu* may still rise to the onset.
+pub const OF_KINETIC_WINDOW: [&str; 5] = [
+    "kinetic_friction_star",
+    "kinetic_friction_star_uncertainty",
+    "kinetic_friction",
+    "kinetic_lateral_friction_star",
+    "sliding_percent_kinetic",
+];
 
-impl KnownNumber {
-    /// The number of this name; none for a number of the whole run.
-    pub fn named(name: &str) -> Option<&'static Self> {
-        KNOWN_NUMBERS.iter().find(|number| number.name == name)
-    }
-}
-
-const fn of(part: Part, name: &'static str) -> KnownNumber {
-    KnownNumber {
-        name,
-        part,
-        words: "",
-        symbol: "",
-    }
-}
-
-/// The numbers that belong to a part of a run.
-#[rustfmt::skip]
-pub const KNOWN_NUMBERS: &[KnownNumber] = &[
-    KnownNumber { words: "static friction", symbol: "\u{3bc}\u{209b}*", ..of(Part::Peak, "static_friction_star") },
-    of(Part::Peak, "static_friction"),
-    of(Part::Peak, "static_lateral_friction_star"),
-    of(Part::Peak, "onset_time_star"),
-    of(Part::Peak, "onset_time_s"),
-    KnownNumber { words: "kinetic friction", symbol: "\u{3bc}\u{2096}*", ..of(Part::KineticWindow, "kinetic_friction_star") },
-    of(Part::KineticWindow, "kinetic_friction_star_uncertainty"),
-    of(Part::KineticWindow, "kinetic_friction"),
-    of(Part::KineticWindow, "kinetic_lateral_friction_star"),
-    of(Part::KineticWindow, "sliding_percent_kinetic"),
+/// Titles of numbers in pictures: key, words, symbol. Other numbers are called by their keys.
+pub const TITLES: [(&str, &str, &str); 2] = [
+    ("static_friction_star", "static friction", "\u{3bc}\u{209b}*"),
+    ("kinetic_friction_star", "kinetic friction", "\u{3bc}\u{2096}*"),
 ];
 
 /// Reads `summary.json` of a run folder.

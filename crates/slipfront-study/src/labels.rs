@@ -4,18 +4,15 @@ use crate::axis::{Axis, Spacing};
 use crate::summary_values::REDUCTION;
 use slipfront_case::case_file::title_of;
 use slipfront_plot::QuantityLabel;
-use slipfront_run::summary::KnownNumber;
-
-/// Title of the reduction: words, symbol, unit.
-const TITLE_OF_REDUCTION: [&str; 3] = ["reduction of \u{3bc}\u{209b}*", "", "%"];
+use slipfront_run::summary::TITLES;
 
 /// Title of a quantity: words, symbol, unit; none if its name stands for it.
 fn title_of_quantity(name: &str) -> Option<[&'static str; 3]> {
     if name == REDUCTION {
-        return Some(TITLE_OF_REDUCTION);
+        return Some(["reduction of \u{3bc}\u{209b}*", "", "%"]);
     }
-    let number = KnownNumber::named(name).filter(|number| !number.words.is_empty())?;
-    Some([number.words, number.symbol, ""])
+    let (_, words, symbol) = TITLES.iter().find(|(titled, ..)| *titled == name)?;
+    Some([words, symbol, ""])
 }
 
 /// The title of a quantity.
@@ -95,7 +92,6 @@ fn label(key: &str) -> Option<QuantityLabel<'_>> {
 mod tests {
     use slipfront_case::case_file::SECTIONS;
     use slipfront_plot::has_glyphs;
-    use slipfront_run::summary::KNOWN_NUMBERS;
 
     use super::*;
     use crate::axis::Level;
@@ -162,11 +158,7 @@ mod tests {
 
     #[test]
     fn every_key_has_one_title_that_the_font_can_write() {
-        let names: Vec<&str> = KNOWN_NUMBERS
-            .iter()
-            .map(|number| number.name)
-            .chain([REDUCTION])
-            .collect();
+        let names = [TITLES.map(|(name, ..)| name).as_slice(), &[REDUCTION]].concat();
         for (index, name) in names.iter().enumerate() {
             assert!(!names[..index].contains(name), "{name}");
             assert!(has_glyphs(&title(name)), "{}", title(name));

@@ -6,7 +6,7 @@ use std::sync::LazyLock;
 use serde_json::Value;
 
 use slipfront_run::observers;
-use slipfront_run::summary::{KnownNumber, Part, Summary};
+use slipfront_run::summary::{OF_KINETIC_WINDOW, OF_PEAK, Summary};
 
 /// Reduction of mu_s* against the reference of the same seed, % (Eq. 16).
 pub const REDUCTION: &str = "static_reduction_percent";
@@ -14,13 +14,9 @@ pub const REDUCTION: &str = "static_reduction_percent";
 /// Numbers of a summary that are no quantities: two in one, and one whose mean has no meaning.
 const NOT_QUANTITIES: [&str; 2] = ["kinetic_window_star", "seed"];
 
-fn part_of(name: &str) -> Option<Part> {
-    KnownNumber::named(name).map(|number| number.part)
-}
-
 /// Whether a quantity exists only for runs with a transition.
 pub(crate) fn needs_transition(name: &str) -> bool {
-    name == REDUCTION || part_of(name) == Some(Part::Peak)
+    name == REDUCTION || OF_PEAK.contains(&name)
 }
 
 /// Whether tables have the quantity of this name only if one of their runs has it.
@@ -99,12 +95,7 @@ impl SummaryValues {
             .kinetic_window_star
             .is_some_and(|[from, _]| from > summary.onset_time_star);
         let counts = |name: &str| {
-            summary.transition
-                || match part_of(name) {
-                    Some(Part::Peak) => false,
-                    Some(Part::KineticWindow) => slides,
-                    None => true,
-                }
+            summary.transition || !(OF_PEAK.contains(&name) || (OF_KINETIC_WINDOW.contains(&name) && !slides))
         };
         let known = known().iter().map(String::as_str);
         let values = known.map(|name| found.get(name).copied().flatten().filter(|_| counts(name)));
@@ -153,8 +144,6 @@ pub(crate) fn reduction_percent(point: &SummaryValues, reference: &SummaryValues
 
 #[cfg(test)]
 mod tests {
-    use slipfront_run::summary::KNOWN_NUMBERS;
-
     use super::*;
 
     #[test]
@@ -201,8 +190,7 @@ mod tests {
     #[test]
     fn what_the_peak_defines_is_empty_without_a_transition() {
         let (with, without) = (values_of(true, 200.0), values_of(false, 200.0));
-        let of_peak = KNOWN_NUMBERS.iter().filter(|number| number.part == Part::Peak);
-        for KnownNumber { name, .. } in of_peak {
+        for name in OF_PEAK {
             assert!(number(&with, name).is_some(), "{name}");
             assert_eq!(number(&without, name), None, "{name}");
         }
