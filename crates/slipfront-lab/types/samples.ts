@@ -1,6 +1,6 @@
 // Messages of every kind, written by the tests `page_types` of slipfront-session: with UPDATE=1 anew.
 import { Replies, Requests, Texture } from './protocol';
-import { Samples, Some } from './samples_check';
+import { Samples, Some } from './sample_lists';
 
 export const requests = {
   open: [

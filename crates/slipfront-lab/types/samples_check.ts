@@ -3,14 +3,6 @@
 import { CaseValue, Replies, Requests, Texture } from './protocol';
 import { replies, requests, textures } from './samples';
 
-/** One or more of a kind, each of which keeps its type. */
-export type Some<T> = [T, ...T[]];
-
-/** Samples of messages by their names, which stand under the key `Tag`. */
-export type Samples<Messages, Tag extends string> = {
-  [Name in keyof Messages]: Some<{ [Key in Tag]: Name } & Messages[Name]>;
-};
-
 /** Values of the keys of objects, and elements of lists: of each of a union. */
 type Values<T> = T extends T ? T[keyof T] : never;
 type Elements<T> = T extends (infer Element)[] ? Element : never;

@@ -445,7 +445,7 @@ fn samples_are_those_that_the_page_is_checked_with() {
     let text = format!(
         "// Messages of every kind, written by the tests `page_types` of slipfront-session: with UPDATE=1 anew.\n\
          import {{ Replies, Requests, Texture }} from './protocol';\n\
-         import {{ Samples, Some }} from './samples_check';\n\n\
+         import {{ Samples, Some }} from './sample_lists';\n\n\
          export const requests = {{\n{requests}}} satisfies Samples<Requests, 'do'>;\n\n\
          export const replies = {{\n{}}} satisfies Samples<Replies, 'is'>;\n\n\
          export const textures = [\n{textures}] satisfies Some<Texture>;\n",
