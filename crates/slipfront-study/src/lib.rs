@@ -31,7 +31,6 @@ pub mod project_file;
 pub mod project_folder;
 mod record;
 mod records;
-pub mod room;
 mod scheduler;
 mod shard;
 pub mod slurm;
@@ -43,6 +42,7 @@ mod tables;
 pub mod text_table;
 mod told_warnings;
 pub mod verify;
+pub mod work_memory;
 mod write;
 
 pub use anisotropy::{Anisotropy, OverDirections, anisotropies};
