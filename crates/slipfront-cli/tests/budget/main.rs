@@ -461,17 +461,12 @@ fn designs(_: &Path) {
         let design = file.design().unwrap();
         design.run(&bounds, &mut Known::new(), &mut |_| Ok(()), &mut |_| {})
     };
-    for threads in [1, 2] {
-        let before = LIVE.load(Ordering::Relaxed) as f64;
-        let (taken, _) = peak(|| on_threads(threads, find).unwrap());
-        let said = file.memory(runs).unwrap().of(threads);
-        assert_honest(
-            &format!("a design on {threads} threads"),
-            said,
-            taken - before,
-            FIXED_WITHOUT_PICTURES,
-        );
-    }
+    assert_honest_on_threads(
+        "a design",
+        FIXED_WITHOUT_PICTURES,
+        |threads| file.memory(runs).unwrap().of(threads),
+        |threads| drop(on_threads(threads, find).unwrap()),
+    );
 }
 
 /// A calibration with its report, on one thread and on two.
@@ -517,6 +512,34 @@ fn on_threads<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> T {
     pool.unwrap().install(work)
 }
 
+/// Measures the memory of work on one thread and on two, and asserts that what is `said` of each is honest. The memory of the
+/// work is that of its pieces, which threads do each for itself.
+fn assert_honest_on_threads(
+    what: &str,
+    fixed: f64,
+    said: impl Fn(usize) -> f64,
+    mut work: impl FnMut(usize),
+) {
+    let mut alone = 0.0;
+    for threads in [1, 2] {
+        // What an earlier part of the test has left, such as the fonts of pictures, is not counted.
+        let before = LIVE.load(Ordering::Relaxed) as f64;
+        let (taken, ()) = peak(|| work(threads));
+        let taken = taken - before;
+        if threads == 1 {
+            alone = taken;
+        }
+        // Whether the largest pieces of two threads meet is up to the system: they may.
+        let most = taken.max(threads as f64 * alone);
+        assert_honest(
+            &format!("{what} on {threads} threads"),
+            said(threads),
+            most,
+            fixed,
+        );
+    }
+}
+
 /// Runs at once, of two sizes.
 fn study(base: &str, folder: &Path) {
     let text = format!(
@@ -525,30 +548,18 @@ fn study(base: &str, folder: &Path) {
     );
     let file = StudyFile::parse(&text, "study.toml", "study", folder).unwrap();
     let plan = Plan::new(&file, None).unwrap();
-    let mut alone = 0.0;
-    for threads in [1, 2] {
-        let records = tempfile::tempdir().unwrap();
-        // The fonts of the pictures before, which a study has not yet when it runs.
-        let before = LIVE.load(Ordering::Relaxed) as f64;
-        let (taken, ()) = peak(|| {
+    assert_honest_on_threads(
+        "a study",
+        FIXED,
+        |threads| plan.memory(threads),
+        |threads| {
+            let records = tempfile::tempdir().unwrap();
             let records = Records::open(records.path()).unwrap();
             let never = AtomicBool::new(false);
             on_threads(threads, || {
                 study::execute(&plan, &records, folder, &never, &mut |_| {})
             })
             .unwrap();
-        });
-        let taken = taken - before;
-        if threads == 1 {
-            alone = taken;
-        }
-        // Whether the largest of two meet is up to the system: they may.
-        let most = taken.max(threads as f64 * alone);
-        assert_honest(
-            &format!("{threads} runs at once"),
-            plan.memory(threads),
-            most,
-            FIXED,
-        );
-    }
+        },
+    );
 }
