@@ -15,7 +15,7 @@ __all__ = [
     "Design",
     "FolderError",
     "ForkError",
-    "Record",
+    "RunData",
     "RunError",
     "Simulation",
     "Study",
@@ -93,10 +93,10 @@ class Simulation:
     def checkpoint(self) -> bytes: ...
     @staticmethod
     def resume(case: Case, checkpoint: bytes, threads: int) -> Simulation: ...
-    def record(self, reason: str) -> Record: ...
+    def record(self, reason: str) -> RunData: ...
 
 @final
-class Record:
+class RunData:
     def summary(self) -> str: ...
     def series(self) -> dict[str, Any]: ...
     def fields(self) -> dict[str, Any]: ...
@@ -132,7 +132,7 @@ class Study:
         self,
         folder: tuple[Path, bool],
         threads: int,
-        look: Callable[[Case, Record, tuple[int, int, bool]], list[float]] | None,
+        look: Callable[[Case, RunData, tuple[int, int, bool]], list[float]] | None,
         watch: Callable[[int, int, int], object] | None,
     ) -> tuple[dict[tuple[int, int, bool], list[float]], list[tuple[str, str]], str | None]: ...
 

@@ -31,7 +31,7 @@ Progress: TypeAlias = bool | Callable[[int, int, int], object] | None
 """True for a bar, False for none, None for one in terminals and notebooks, or a function of the numbers of runs that are done, of all, and of
 failed ones."""
 
-Look: TypeAlias = Callable[[_slipfront.Case, _slipfront.Record, tuple[int, int, bool]], list[float]]
+Look: TypeAlias = Callable[[_slipfront.Case, _slipfront.RunData, tuple[int, int, bool]], list[float]]
 """A function that returns the values of own quantities of a run, from its case, its record, and its point, replicate and whether it is the reference."""
 
 Results = TypeVar("Results", bound="StudyResults")
@@ -175,7 +175,7 @@ class Study:
             if self._native.has_column(quantity):
                 raise ValueError(f"the tables have a column `{quantity}` already: give the quantity another name")
 
-        def look(native: _slipfront.Case, record: _slipfront.Record, _: tuple[int, int, bool]) -> list[float]:
+        def look(native: _slipfront.Case, record: _slipfront.RunData, _: tuple[int, int, bool]) -> list[float]:
             result = Run(Case._of(native), record)
             return [float(quantity(result)) for quantity in own.values()]
 

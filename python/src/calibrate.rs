@@ -5,7 +5,7 @@ use std::sync::atomic::AtomicBool;
 use std::sync::{Mutex, PoisonError};
 
 use pyo3::prelude::*;
-use slipfront_calibrate::{CalibrationFile, CalibrationFolder, CalibrationProgress, GivenRecord};
+use slipfront_calibrate::{CalibrationFile, CalibrationFolder, CalibrationProgress, SampledRecord};
 use slipfront_study::StudyError;
 
 use crate::errors::study_error;
@@ -56,7 +56,7 @@ impl Calibration {
         let opened = detached(py, || {
             let records = self.file.read(&records)?;
             self.file.check_memory(&records, threads)?;
-            let notes = records.iter().filter_map(GivenRecord::note).collect();
+            let notes = records.iter().filter_map(SampledRecord::note).collect();
             let folder = CalibrationFolder::open(&folder, training.as_deref(), &self.file, records, force)?;
             Ok((folder, notes))
         })?;

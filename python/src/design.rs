@@ -9,7 +9,7 @@ use std::time::Instant;
 use pyo3::prelude::*;
 use pyo3::pybacked::PyBackedBytes;
 use slipfront_design::{
-    Bounds, Design as SlipfrontDesign, DesignFile, DesignFolder, Known, OpenSearch, SearchProgress,
+    Bounds, Design as SlipfrontDesign, DesignFile, DesignFolder, OpenSearch, RunCache, SearchProgress,
 };
 use slipfront_study::StudyError;
 
@@ -23,7 +23,7 @@ pub(crate) struct Design {
     design: SlipfrontDesign,
     search: Mutex<OpenSearch>,
     /// Runs that were made to evaluate textures.
-    known: Mutex<Known>,
+    known: Mutex<RunCache>,
 }
 
 /// Textures as bytes of 0 and 1.

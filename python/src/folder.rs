@@ -114,7 +114,7 @@ fn case_of(py: Python<'_>, folder: &Path, file: CaseFile) -> PyResult<Case> {
     })
 }
 
-/// A complete run in its folder: its case, and the content of a `Record`.
+/// A complete run in its folder: its case, and the content of a `RunData`.
 #[pyfunction]
 pub(crate) fn read_run<'py>(py: Python<'py>, folder: PathBuf) -> PyResult<(Case, Bound<'py, PyDict>)> {
     let run = inspect(&folder).map_err(folder_error)?;

@@ -24,15 +24,15 @@ use crate::process::detached;
 
 /// Results of a run of this process.
 #[pyclass(frozen, module = "slipfront._slipfront")]
-pub(crate) struct Record {
+pub(crate) struct RunData {
     pub(crate) case: Arc<SlipfrontCase>,
-    pub(crate) record: running::Record,
+    pub(crate) record: running::RunData,
     pub(crate) started: jiff::Timestamp,
     pub(crate) threads: usize,
 }
 
 #[pymethods]
-impl Record {
+impl RunData {
     /// Content of `summary.json`.
     fn summary(&self) -> String {
         summary_json(&self.record.summary)

@@ -23,7 +23,7 @@ use crate::arrays::{rows, stacked};
 use crate::case::Case;
 use crate::errors::{CaseError, RunError};
 use crate::process::{LOOK_EVERY, check_process, detached};
-use crate::record::{Record, series};
+use crate::record::{RunData, series};
 
 /// A run in progress, which only one thread can use at a time.
 #[pyclass(module = "slipfront._slipfront")]
@@ -245,7 +245,7 @@ impl Simulation {
     }
 
     /// Results of the run, once it has ended; the simulation is then used up.
-    fn record(&mut self, py: Python<'_>, reason: &str) -> PyResult<Record> {
+    fn record(&mut self, py: Python<'_>, reason: &str) -> PyResult<RunData> {
         let running = self.running.take().ok_or_else(ended)?;
         let reason = match reason {
             "onset" => StopReason::Onset,
@@ -253,7 +253,7 @@ impl Simulation {
         };
         let (case, threads) = (Arc::clone(running.case()), running.threads());
         let record = detached(py, || running.record(reason))?;
-        Ok(Record {
+        Ok(RunData {
             case,
             record,
             started: self.started,

@@ -19,7 +19,7 @@ use slipfront_study::{
 use crate::case::{Case, make};
 use crate::errors::{folder_error, study_error};
 use crate::process::{detached, watched};
-use crate::record::Record;
+use crate::record::RunData;
 
 /// A study whose every point is a valid case.
 #[pyclass(frozen, module = "slipfront._slipfront")]
@@ -214,7 +214,7 @@ impl Study {
         let opened = opened.map_err(failed)?;
         let plan = self.plan.clone().reading_copies(&opened.study);
         let shared = Shared::default();
-        let look_at_run = |run: RunKey, case: &Arc<SlipfrontCase>, record: &running::Record| {
+        let look_at_run = |run: RunKey, case: &Arc<SlipfrontCase>, record: &running::RunData| {
             let Some(look) = &look else { return true };
             shared.look(look, self.key(run), case, record)
         };
@@ -288,9 +288,9 @@ impl Shared {
         look: &Py<PyAny>,
         key: (usize, usize, bool),
         case: &Arc<SlipfrontCase>,
-        record: &running::Record,
+        record: &running::RunData,
     ) -> bool {
-        let record = Record {
+        let record = RunData {
             case: Arc::clone(case),
             record: record.clone(),
             started: clock::now(),

@@ -45,7 +45,7 @@ def sheet(tmp_path: Path) -> Path:
 
 def files(folder: Path) -> dict[str, bytes]:
     """Every file of a folder but the journal, whose lines stand in the order in which runs ended."""
-    every = (path for path in folder.rglob("*") if path.is_file() and path.name != "records.jsonl")
+    every = (path for path in folder.rglob("*") if path.is_file() and path.name != "runs.jsonl")
     return {str(path.relative_to(folder)): path.read_bytes() for path in every}
 
 
@@ -141,13 +141,13 @@ def test_an_interrupt_ends_it_and_it_goes_on(sheet: Path, tmp_path: Path) -> Non
 
     with pytest.raises(KeyboardInterrupt):
         sf.converge(case, folder, replicates=4, progress=press)
-    before = (folder / "records.jsonl").read_text().splitlines()
+    before = (folder / "runs.jsonl").read_text().splitlines()
     assert 0 < len(before) < 24 and not (folder / "convergence.json").exists()
     seen: list[tuple[int, int, int]] = []
     found = sf.converge(case, folder, replicates=4, progress=lambda *now: seen.append(now))
     assert len(found.runs) == 24 and seen[-1] == (24, 24, 0)
     # Runs that were recorded are not run again.
-    assert (folder / "records.jsonl").read_text().splitlines()[: len(before)] == before
+    assert (folder / "runs.jsonl").read_text().splitlines()[: len(before)] == before
 
 
 @pytest.mark.parametrize(

@@ -153,7 +153,7 @@ def test_an_interrupt_ends_a_study_which_goes_on(small: sf.Case, tmp_path: Path)
 
     with pytest.raises(KeyboardInterrupt):
         study.run(tmp_path / "study", progress=press)
-    records = (tmp_path / "study" / "records.jsonl").read_text().splitlines()
+    records = (tmp_path / "study" / "runs.jsonl").read_text().splitlines()
     assert 0 < len(records) < 40
     assert len(study.run(tmp_path / "study", progress=False).runs) == 40
 

@@ -36,7 +36,7 @@ STEPS = 500
 # The case whose pictures are drawn too.
 DRAWN = "circle"
 # They hold times, places and the order in which runs ended.
-NOT_HASHED = {"manifest.json", "checksums.json", "records.jsonl"}
+NOT_HASHED = {"manifest.json", "checksums.json", "runs.jsonl"}
 BEGIN, END = "<!-- written by tests/platforms/run.py -->\n", "<!-- end -->\n"
 
 

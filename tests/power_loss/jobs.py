@@ -135,7 +135,7 @@ def without_time(files):
             kept[name] = b"a manifest"
         elif name == "ro-crate-metadata.json":
             kept[name] = re.sub(rb'"datePublished": "20[0-9-]+"', b"", content)
-        elif name == "records.jsonl":
+        elif name == "runs.jsonl":
             kept[name] = sorted(re.findall(rb'"id":"(\w+)"', content))
         else:
             kept[name] = content

@@ -110,12 +110,12 @@ list = [0.4, 0.5, 0.6]
 END
 "$slipfront" study study.toml --quiet -o whole
 "$slipfront" study slurm study.toml --tasks 3 -o out > study.sbatch
-runs=$(wc -l < whole/records.jsonl)
+runs=$(wc -l < whole/runs.jsonl)
 echo "$runs runs without Slurm"
 
 # --- Submitted, requeued and killed.
 
-recorded() { if [ -f "$1/records.jsonl" ]; then wc -l < "$1/records.jsonl"; else echo 0; fi; }
+recorded() { if [ -f "$1/runs.jsonl" ]; then wc -l < "$1/runs.jsonl"; else echo 0; fi; }
 wait_for() { # until a part has more than so many records
   for _ in $(seq 600); do
     if [ "$(recorded "out/shard-$1")" -gt "$2" ]; then return; fi
@@ -157,8 +157,8 @@ wait_end "$again"
 for file in whole/*.csv whole/*.svg whole/*.png; do
   cmp "$file" "out/merged/$(basename "$file")"
 done
-merged=$(cut -c 18- out/merged/records.jsonl | sort | uniq | wc -l)
-parts=$(cat out/shard-*/records.jsonl | wc -l)
+merged=$(cut -c 18- out/merged/runs.jsonl | sort | uniq | wc -l)
+parts=$(cat out/shard-*/runs.jsonl | wc -l)
 echo "$parts runs in three parts, $merged merged"
 [ "$parts" = "$runs" ] && [ "$merged" = "$runs" ]
 echo "passed: tables and pictures are the same bytes, and no run was made twice"

@@ -17,7 +17,9 @@ use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
 use rayon::prelude::*;
-use slipfront_calibrate::{Calibration, Conditions, Curves, Estimate, Grid, SetUp, Training, Unknown};
+use slipfront_calibrate::{
+    Calibration, Conditions, Curves, Estimate, SamplePoints, SetUp, Training, Unknown,
+};
 use slipfront_case::case::Case;
 use slipfront_case::case_file::Override;
 use slipfront_run::measured::{Measure, MeasuredRecord};
@@ -49,7 +51,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         .collect();
     let curves: Vec<Vec<f64>> = records_of(&set_up, &truths, first)?;
     println!("{records} records made; a unit of time is {unit:.3e} s");
-    let grids: Vec<Grid> = set_up
+    let grids: Vec<SamplePoints> = set_up
         .conditions
         .iter()
         .map(|conditions| conditions.grid.clone())
@@ -118,7 +120,7 @@ fn set_up() -> Result<(SetUp, f64), Box<dyn Error>> {
         of: Measure::Coefficient,
         footer: None,
     };
-    let grid = Grid::of(&record).ok_or("no grid")?;
+    let grid = SamplePoints::of(&record).ok_or("no grid")?;
     let conditions = vec![Conditions {
         overrides: Vec::<Override>::new(),
         grid,

@@ -3,10 +3,10 @@
 use rayon::prelude::*;
 use slipfront_regression::{Prediction, Regression};
 
-use crate::grid::Grid;
 use crate::intervals::Distribution;
 use crate::misfit::{Check, Misfit};
 use crate::normals::{Stream, noisy, normals};
+use crate::sample_points::SamplePoints;
 use crate::scaling::{Scaling, summaries_of, units_of_friction};
 use crate::training::Training;
 
@@ -61,7 +61,7 @@ const LIKE_AT_LEAST: f64 = 50.0;
 impl Calibration {
     /// Learns from a training the relation between records and unknowns, for records with white noise whose standard
     /// deviation is the share `noise` of their mean friction. `grids` are those of the set-up.
-    pub fn new(training: &Training, grids: &[Grid], noise: f64) -> Self {
+    pub fn new(training: &Training, grids: &[SamplePoints], noise: f64) -> Self {
         let shares: Vec<f64> = grids.iter().map(|grid| noise * grid.noise_share()).collect();
         let units = units_of_friction(training, grids);
         let rows: Vec<Vec<f64>> = training
@@ -100,7 +100,7 @@ impl Calibration {
         }
     }
 
-    /// Estimate from records, each made by [`Grid::record`].
+    /// Estimate from records, each made by [`SamplePoints::record`].
     pub fn estimate(&self, records: &[Vec<f64>]) -> Estimate {
         let summaries = self.scaling.scaled(&summaries_of(records, &self.units));
         let predictions: Vec<_> = self
@@ -253,11 +253,11 @@ mod tests {
         Training { points, curves }
     }
 
-    fn grid() -> Grid {
+    fn grid() -> SamplePoints {
         grid_of(Measure::Coefficient)
     }
 
-    fn grid_of(of: Measure) -> Grid {
+    fn grid_of(of: Measure) -> SamplePoints {
         let x: Vec<f64> = (0..100).map(f64::from).collect();
         let record = MeasuredRecord {
             y: x.clone(),
@@ -266,7 +266,7 @@ mod tests {
             of,
             footer: None,
         };
-        Grid::of(&record).unwrap()
+        SamplePoints::of(&record).unwrap()
     }
 
     fn calibration() -> Calibration {

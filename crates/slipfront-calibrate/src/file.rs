@@ -13,7 +13,7 @@ use slipfront_run::measured::{Measure, MeasuredRecord};
 use slipfront_run::run_curve::steps_to;
 use toml::{Table, Value};
 
-use crate::grid::Grid;
+use crate::sample_points::SamplePoints;
 use crate::set_up::{Conditions, SetUp};
 use crate::summaries::{MIN_VALUES, n_summaries};
 use crate::unknowns::Unknown;
@@ -133,16 +133,16 @@ enum Number {
 
 /// A record as measured, and the steps in which it is compared.
 #[derive(Clone, Debug)]
-pub struct GivenRecord {
+pub struct SampledRecord {
     pub(crate) measured: MeasuredRecord,
-    pub(crate) grid: Grid,
+    pub(crate) grid: SamplePoints,
     /// Ending of the name of its file.
     pub(crate) ending: String,
     /// Content of its file.
     pub(crate) bytes: Vec<u8>,
 }
 
-impl GivenRecord {
+impl SampledRecord {
     /// A sentence about lines of the record that were passed over, if there are some.
     pub fn note(&self) -> Option<String> {
         let footer = self.measured.footer.as_ref()?;
@@ -258,7 +258,7 @@ impl CalibrationFile {
     ///
     /// # Errors
     /// When their number is another one, when one cannot be read, or when it is no record of these columns.
-    pub fn read(&self, paths: &[PathBuf]) -> Result<Vec<GivenRecord>, StudyError> {
+    pub fn read(&self, paths: &[PathBuf]) -> Result<Vec<SampledRecord>, StudyError> {
         let expected = self.keys.records.len();
         if paths.is_empty() || (expected > 0 && expected != paths.len()) {
             let sentence = format!(
@@ -271,7 +271,7 @@ impl CalibrationFile {
         paths.iter().map(|path| self.read_record(path)).collect()
     }
 
-    fn read_record(&self, path: &Path) -> Result<GivenRecord, StudyError> {
+    fn read_record(&self, path: &Path) -> Result<SampledRecord, StudyError> {
         let keys = &self.keys;
         let columns = MeasuredColumns::new(keys.columns(), [&keys.x_unit, &keys.y_unit]);
         let along = match keys.against {
@@ -281,7 +281,7 @@ impl CalibrationFile {
         let bytes = read_limited(path, TEXT_MAX_BYTES).map_err(FolderError::read(path))?;
         let measured = columns.parse(&bytes, path, along);
         let measured = measured.map_err(|sentence| self.project.error("x", sentence))?;
-        let grid = Grid::of(&measured).ok_or_else(|| {
+        let grid = SamplePoints::of(&measured).ok_or_else(|| {
             let sentence = format!(
                 "{} has {} values: a record needs {MIN_VALUES} at the least, which do not all stand at one place",
                 path.display(),
@@ -293,7 +293,7 @@ impl CalibrationFile {
             return Err(self.before_the_drive(path, &grid).into());
         }
         let ending = path.extension().and_then(|ending| ending.to_str());
-        Ok(GivenRecord {
+        Ok(SampledRecord {
             measured,
             grid,
             ending: ending.unwrap_or("csv").to_owned(),
@@ -303,7 +303,7 @@ impl CalibrationFile {
 
     /// The set-up of the runs for records, on the blocks of the case. Both ends of every range are checked
     /// with the case.
-    pub(crate) fn set_up(&self, records: &[GivenRecord]) -> Result<SetUp, StudyError> {
+    pub(crate) fn set_up(&self, records: &[SampledRecord]) -> Result<SetUp, StudyError> {
         let conditions = records.iter().enumerate().map(|(number, record)| Conditions {
             overrides: self.overrides_of(number),
             grid: record.grid.clone(),
@@ -337,7 +337,7 @@ impl CalibrationFile {
     ///
     /// # Errors
     /// When the ranges leave the bounds of the case, and with both figures of memory.
-    pub fn check_memory(&self, records: &[GivenRecord], threads: usize) -> Result<(), StudyError> {
+    pub fn check_memory(&self, records: &[SampledRecord], threads: usize) -> Result<(), StudyError> {
         let no_memory = |needed, available| StudyError::CalibrationMemory { needed, available };
         self.memory(records)?.check(threads, no_memory)
     }
@@ -346,7 +346,7 @@ impl CalibrationFile {
     ///
     /// # Errors
     /// When the ranges leave the bounds of the case.
-    pub fn memory(&self, records: &[GivenRecord]) -> Result<WorkMemory, StudyError> {
+    pub fn memory(&self, records: &[SampledRecord]) -> Result<WorkMemory, StudyError> {
         const NUMBER: f64 = size_of::<f64>() as f64;
         // Runs from which a regression finds its weights, with four numbers of a pair: it takes no less.
         const LEAST: usize = 2 * 900;
@@ -408,7 +408,7 @@ impl CalibrationFile {
     }
 
     /// The error of a record that ends before the drive moves.
-    fn before_the_drive(&self, path: &Path, grid: &Grid) -> CaseError {
+    fn before_the_drive(&self, path: &Path, grid: &SamplePoints) -> CaseError {
         let places = match self.keys.against {
             Against::Time => "times",
             Against::Displacement => "displacements",

@@ -18,9 +18,9 @@ pub(crate) struct Findings {
     /// Standard deviation of the noise for which records were estimated, as a share of their mean friction.
     pub(crate) noise: f64,
     /// The unknown keys.
-    pub(crate) unknowns: Vec<Told>,
+    pub(crate) unknowns: Vec<UnknownEstimate>,
     /// Pairs of unknowns that are determined only together.
-    pub(crate) pairs: Vec<ToldTogether>,
+    pub(crate) pairs: Vec<CoupledUnknowns>,
     /// Tests of whether the model can have made the records.
     pub(crate) misfit: Misfit,
     /// Whether the model cannot have made the records.
@@ -36,7 +36,7 @@ pub(crate) struct Findings {
 
 /// An unknown, as estimated from the records, in its own unit.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub(crate) struct Told {
+pub(crate) struct UnknownEstimate {
     pub(crate) key: String,
     /// Range of the unknown.
     pub(crate) range: [f64; 2],
@@ -54,7 +54,7 @@ pub(crate) struct Told {
 
 /// Two unknowns that are determined only together.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub(crate) struct ToldTogether {
+pub(crate) struct CoupledUnknowns {
     pub(crate) keys: [String; 2],
     pub(crate) correlation: f64,
 }
@@ -80,7 +80,7 @@ pub(crate) struct Further {
     pub(crate) narrowed_to: Vec<f64>,
 }
 
-impl Told {
+impl UnknownEstimate {
     pub(crate) fn of(unknown: &Unknown, estimate: &Estimate, number: usize) -> Self {
         let (median, interval) = in_its_unit(unknown, &estimate.distributions[number]);
         Self {

@@ -9,16 +9,16 @@ use slipfront_base::disk::is_same;
 use slipfront_run::manifest::ManifestFile;
 
 use crate::calibration::{Calibration, Estimate};
-use crate::file::{CALIBRATION, CalibrationFile, CalibrationKeys, GivenRecord};
-use crate::findings::{Findings, Further, OnFinerBlocks, Told, ToldTogether};
-use crate::grid::Grid;
+use crate::file::{CALIBRATION, CalibrationFile, CalibrationKeys, SampledRecord};
+use crate::findings::{CoupledUnknowns, Findings, Further, OnFinerBlocks, UnknownEstimate};
 use crate::predicted::{PREDICTED, bands};
 use crate::report::{FOUND, Report};
+use crate::sample_points::SamplePoints;
 use crate::set_up::{Curves, SetUp};
 use crate::training::{Training, TrainingRun};
 use slipfront_study::StudyError;
 use slipfront_study::project_folder::{
-    Checksums, Derivation, Given, Journal, JournalRecord, Others, ResultFiles, notes_of_use, read_numbers,
+    Checksums, Derivation, Given, Journal, JournalEntry, Others, ResultFiles, notes_of_use, read_numbers,
 };
 
 /// Beginning of the names of copies of records.
@@ -36,7 +36,7 @@ struct CalibrationRun {
     run: TrainingRun,
 }
 
-impl JournalRecord for CalibrationRun {
+impl JournalEntry for CalibrationRun {
     const KEYS: &'static [&'static str] = &["curves"];
 }
 
@@ -63,14 +63,14 @@ pub struct CalibrationProgress {
 }
 
 /// Runs of a calibration in progress.
-struct Work<'a> {
+struct RunCounter<'a> {
     stop: &'a AtomicBool,
     watch: &'a mut dyn FnMut(&CalibrationProgress),
     ended: usize,
     of: usize,
 }
 
-impl Work<'_> {
+impl RunCounter<'_> {
     /// Shows that `runs` more runs have ended.
     fn show(&mut self, stage: CalibrationStage, runs: usize) {
         self.ended += runs;
@@ -82,15 +82,15 @@ impl Work<'_> {
     }
 }
 
-/// Records, and the estimate of a training from them.
-struct Calibrated {
+/// Curves of measured records, and the estimate of a training from them.
+struct FittedRecords {
     curves: Vec<Vec<f64>>,
     calibration: Calibration,
     estimate: Estimate,
 }
 
-impl Calibrated {
-    fn of(training: &Training, set_up: &SetUp, records: &[GivenRecord], noise: f64) -> Self {
+impl FittedRecords {
+    fn of(training: &Training, set_up: &SetUp, records: &[SampledRecord], noise: f64) -> Self {
         let curves = records.iter().map(|record| record.grid.record(&record.measured));
         let curves: Vec<Vec<f64>> = curves.collect();
         let calibration = Calibration::new(training, &set_up.grids(), noise);
@@ -116,7 +116,7 @@ pub struct CalibrationFolder {
     /// Lines of the journals that failed their checksum.
     pub damaged: usize,
     file: CalibrationFile,
-    records: Vec<GivenRecord>,
+    records: Vec<SampledRecord>,
     set_up: SetUp,
 }
 
@@ -153,7 +153,7 @@ impl CalibrationFolder {
         path: &Path,
         training: Option<&Path>,
         file: &CalibrationFile,
-        records: Vec<GivenRecord>,
+        records: Vec<SampledRecord>,
         force: bool,
     ) -> Result<Self, StudyError> {
         if let Some(training) = training
@@ -247,24 +247,24 @@ impl CalibrationFolder {
         let keys = self.file.keys.clone();
         let set_up = self.set_up.clone();
         let (finer, further) = (self.finer(), self.file.further(&set_up)?);
-        let mut work = Work {
+        let mut work = RunCounter {
             stop,
             watch,
             ended: 0,
             of: self.n_missing(&finer, &further)?,
         };
         let training = self.train(&mut work, CalibrationStage::Training, &set_up, keys.runs)?;
-        let told = Calibrated::of(&training, &set_up, &self.records, keys.noise);
+        let told = FittedRecords::of(&training, &set_up, &self.records, keys.noise);
         let estimate = &told.estimate;
         let unknowns = set_up.unknowns.iter().enumerate();
-        let mut unknowns: Vec<Told> = unknowns
-            .map(|(number, unknown)| Told::of(unknown, estimate, number))
+        let mut unknowns: Vec<UnknownEstimate> = unknowns
+            .map(|(number, unknown)| UnknownEstimate::of(unknown, estimate, number))
             .collect();
         let finer = match finer {
             Ok(Some(finer)) => {
                 let training =
                     self.train(&mut work, CalibrationStage::FinerBlocks, &finer, keys.finer_runs)?;
-                let there = Calibrated::of(&training, &finer, &self.records, keys.noise).estimate;
+                let there = FittedRecords::of(&training, &finer, &self.records, keys.noise).estimate;
                 let found = finer.unknowns.iter().zip(&there.distributions);
                 for (told, (unknown, found)) in unknowns.iter_mut().zip(found) {
                     told.hold_against(unknown, found);
@@ -304,13 +304,13 @@ impl CalibrationFolder {
     /// Trains with each of the further experiments beside the records, and returns how much narrower the intervals are.
     fn weigh(
         &mut self,
-        work: &mut Work,
+        work: &mut RunCounter,
         further: Vec<(String, SetUp)>,
         training: &Training,
-        told: &Calibrated,
+        told: &FittedRecords,
     ) -> Result<Vec<Further>, StudyError> {
         let CalibrationKeys { runs, noise, .. } = self.file.keys;
-        let grids: Vec<Grid> = self.set_up.grids();
+        let grids: Vec<SamplePoints> = self.set_up.grids();
         let widths = told.calibration.widths(&told.estimate);
         let mut weighed = Vec::new();
         for (set, further) in further {
@@ -341,7 +341,7 @@ impl CalibrationFolder {
     /// Trains, or goes on from an earlier call.
     fn train(
         &mut self,
-        work: &mut Work,
+        work: &mut RunCounter,
         stage: CalibrationStage,
         set_up: &SetUp,
         runs: u32,
@@ -393,7 +393,7 @@ impl CalibrationFolder {
 
 /// The part of the findings that decides whether they promise anything.
 #[derive(Deserialize)]
-struct Decided {
+struct Refusal {
     is_refused: bool,
 }
 
@@ -405,15 +405,15 @@ impl CalibrationFolder {
     pub fn expect_own_records(&self) -> Result<(), StudyError> {
         let [numbers, words] = FOUND.map(|name| self.path().join(name));
         match read_numbers(&numbers)? {
-            Decided { is_refused: false } => Ok(()),
-            Decided { is_refused: true } => Err(StudyError::Refused { path: words }),
+            Refusal { is_refused: false } => Ok(()),
+            Refusal { is_refused: true } => Err(StudyError::Refused { path: words }),
         }
     }
 }
 
 /// Copies of records: their names in the folder, and their contents.
-fn contents(records: &[GivenRecord]) -> Vec<(String, Vec<u8>)> {
-    let copy = |(number, record): (usize, &GivenRecord)| {
+fn contents(records: &[SampledRecord]) -> Vec<(String, Vec<u8>)> {
+    let copy = |(number, record): (usize, &SampledRecord)| {
         let name = format!("{RECORD}{}.{}", number + 1, record.ending);
         (name, record.bytes.clone())
     };
@@ -421,8 +421,8 @@ fn contents(records: &[GivenRecord]) -> Vec<(String, Vec<u8>)> {
 }
 
 /// Pairs of unknowns that are determined only together.
-fn pairs(set_up: &SetUp, estimate: &Estimate) -> Vec<ToldTogether> {
-    let of = |pair: &crate::calibration::Pair| ToldTogether {
+fn pairs(set_up: &SetUp, estimate: &Estimate) -> Vec<CoupledUnknowns> {
+    let of = |pair: &crate::calibration::Pair| CoupledUnknowns {
         keys: pair
             .unknowns
             .map(|number| set_up.unknowns[number].key().to_owned()),

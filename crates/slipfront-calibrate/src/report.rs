@@ -8,7 +8,7 @@ use slipfront_plot::{Picture, PictureError, Response, Responses};
 use slipfront_run::measured::Measure;
 use slipfront_run::names::CASE;
 
-use crate::findings::{Findings, OnFinerBlocks, Told};
+use crate::findings::{Findings, OnFinerBlocks, UnknownEstimate};
 use crate::predicted::{Band, PREDICTED};
 use crate::set_up::{Conditions, SetUp};
 use slipfront_study::StudyError;
@@ -223,7 +223,7 @@ fn paragraph(sentence: &str) -> String {
     format!("{}\n", wrapped(sentence, COLUMNS))
 }
 
-fn row(told: &Told) -> Vec<String> {
+fn row(told: &UnknownEstimate) -> Vec<String> {
     let [low, high] = told.interval;
     let [from, to] = told.range.map(four_digits);
     let mut row = vec![
@@ -310,7 +310,7 @@ fn further(found: &Findings) -> String {
     }
     let mut header = vec!["key"];
     header.extend(found.next.iter().map(|further| further.set.as_str()));
-    let row = |(number, told): (usize, &Told)| {
+    let row = |(number, told): (usize, &UnknownEstimate)| {
         let widths = found
             .next
             .iter()

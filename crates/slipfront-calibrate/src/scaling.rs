@@ -2,13 +2,13 @@
 
 use slipfront_run::measured::Measure;
 
-use crate::grid::Grid;
+use crate::sample_points::SamplePoints;
 use crate::summaries::{level, summaries};
 use crate::training::Training;
 
 /// Units of the friction of several records in their summaries: 1 for a coefficient, and for a force the mean of the training. Forces may be
 /// nanonewtons or meganewtons, and the bounds of summaries are small numbers in the unit of friction.
-pub(crate) fn units_of_friction(training: &Training, grids: &[Grid]) -> Vec<f64> {
+pub(crate) fn units_of_friction(training: &Training, grids: &[SamplePoints]) -> Vec<f64> {
     let mean = |record: usize| {
         let levels = training.curves.iter().map(|curves| level(&curves[record]).abs());
         levels.sum::<f64>() / training.curves.len() as f64

@@ -6,7 +6,7 @@ use slipfront_case::case::{Case, Ranks};
 use slipfront_case::case_file::{CaseError, CaseFile, Override};
 use slipfront_run::run_curve::{run_curve_unless, steps_to};
 
-use crate::grid::Grid;
+use crate::sample_points::SamplePoints;
 use crate::unknowns::Unknown;
 use slipfront_study::Base;
 use slipfront_study::identity::physics;
@@ -18,7 +18,7 @@ pub struct Conditions {
     /// Keys in which the record differs from the case, such as its speed.
     pub overrides: Vec<Override>,
     /// Places at which friction is known.
-    pub grid: Grid,
+    pub grid: SamplePoints,
 }
 
 /// The set-up of a training.
@@ -45,7 +45,7 @@ impl SetUp {
     }
 
     /// The grids of the records.
-    pub(crate) fn grids(&self) -> Vec<Grid> {
+    pub(crate) fn grids(&self) -> Vec<SamplePoints> {
         self.conditions.iter().map(|one| one.grid.clone()).collect()
     }
 

@@ -87,7 +87,7 @@ mod tests {
     use slipfront_run::measured::{Measure, MeasuredRecord};
 
     use super::*;
-    use crate::grid::Grid;
+    use crate::sample_points::SamplePoints;
     use crate::set_up::Conditions;
     use crate::unknowns::Unknown;
     use slipfront_study::StudyFile;
@@ -111,7 +111,7 @@ mod tests {
             };
             Conditions {
                 overrides: vec![Override::new("drive.v_star", &toml::Value::from(speed))],
-                grid: Grid::of(&record).unwrap(),
+                grid: SamplePoints::of(&record).unwrap(),
             }
         });
         SetUp {

@@ -43,7 +43,7 @@ impl Failure {
     /// A results folder that could not be opened.
     pub(crate) fn of_folder(error: StudyError) -> Self {
         match error {
-            StudyError::Write { .. } | StudyError::Records { .. } => Self::running(error),
+            StudyError::Write { .. } | StudyError::Journal { .. } => Self::running(error),
             error => Self::input(error),
         }
     }

@@ -7,14 +7,14 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use slipfront_case::case::Case;
 use slipfront_case::case_file::CaseError;
 
-use crate::evaluate::{Evaluator, Keep, Known, MadeRun};
-use crate::grid::Grid;
+use crate::evaluate::{Evaluator, Keep, MadeRun, RunCache};
 use crate::judge::{Contender, Judge};
 use crate::limits::{Illegal, Limits};
 use crate::named::{GROOVE, Named, named};
 use crate::open_search::OpenSearch;
 use crate::search::Search;
-use crate::stages::{Bounds, DesignStage, Length, SearchProgress, Stages, Tried, Work};
+use crate::slider_blocks::SliderBlocks;
+use crate::stages::{Bounds, DesignStage, RunCost, SearchLength, SearchProgress, Stages, Tried};
 use crate::subject::{Fidelity, Subject};
 use crate::verdict::Verdict;
 use crate::wish::Wish;
@@ -41,7 +41,7 @@ pub struct Outcome {
     /// Every texture that was judged, by its name, the design first.
     pub(crate) compared: Vec<(String, Option<Arc<Vec<bool>>>)>,
     /// Length of the search.
-    pub(crate) length: Length,
+    pub(crate) length: SearchLength,
     /// Drafts that were tried, in their order.
     pub(crate) tried: Vec<Tried>,
 }
@@ -64,7 +64,7 @@ impl Design {
     ) -> Result<Self, StudyError> {
         let subject = |(case, wish): &(&Case, Wish)| Subject::new(case, wish.clone(), limits.coverage[1]);
         let subjects = cases.iter().map(subject).collect::<Result<Vec<_>, _>>()?;
-        let grid = Grid::of(cases[0].0);
+        let grid = SliderBlocks::of(cases[0].0);
         Ok(Self {
             evaluator: Evaluator {
                 subjects,
@@ -110,7 +110,7 @@ impl Design {
     pub fn run(
         &self,
         bounds: &Bounds,
-        known: &mut Known,
+        known: &mut RunCache,
         keep: &mut Keep,
         watch: &mut dyn FnMut(&SearchProgress),
     ) -> Result<Outcome, StudyError> {
@@ -136,7 +136,7 @@ impl Design {
         };
         let best = stages.run(bounds, known, &mut kept, &mut |now| {
             watch(&SearchProgress {
-                work: Work {
+                work: RunCost {
                     here: here.get(),
                     left: now.work.left_within((bounds.share_of_time)(), here.get()) + of_work,
                 },
@@ -162,7 +162,7 @@ impl Design {
                 stage: DesignStage::Judging,
                 best: f64::NAN,
                 best_texture: None,
-                work: Work {
+                work: RunCost {
                     here: here.get(),
                     left: (of_work - (here.get() - searched_work)).max(0.0),
                 },
@@ -196,7 +196,7 @@ impl Design {
     ) -> Result<Vec<Arc<Vec<bool>>>, StudyError> {
         let starts = self.starts(&|| bounds.stop.load(Ordering::Relaxed)).0;
         let mut stages = Stages::new(&self.evaluator, self.limits.clone(), self.start, starts);
-        let best = stages.run(bounds, &mut Known::new(), &mut |_| Ok(()), watch)?;
+        let best = stages.run(bounds, &mut RunCache::new(), &mut |_| Ok(()), watch)?;
         if best.is_empty() {
             return Err(StudyError::NoDesign);
         }
@@ -244,7 +244,7 @@ impl Design {
         textures: Vec<Vec<bool>>,
         surfaces: u64,
         is_coarse: bool,
-        known: &mut Known,
+        known: &mut RunCache,
         stop: &AtomicBool,
     ) -> Result<Vec<Result<f64, String>>, StudyError> {
         let fidelity = if is_coarse {
@@ -279,7 +279,7 @@ impl Design {
         } else {
             0..1
         };
-        let mut known = Known::new();
+        let mut known = RunCache::new();
         let wanted = self
             .evaluator
             .wanted(textures, surfaces.clone(), Fidelity::Verdict);

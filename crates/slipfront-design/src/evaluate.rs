@@ -9,10 +9,10 @@ use serde::{Deserialize, Serialize};
 use slipfront::parallel::*;
 use slipfront_case::case_file::CaseError;
 use slipfront_run::run_summary::run_summary_unless;
-use slipfront_run::running::{Record, run_unless};
+use slipfront_run::running::{RunData, run_unless};
 
-use crate::grid::Grid;
 use crate::search::hash;
+use crate::slider_blocks::SliderBlocks;
 use crate::subject::{Fidelity, Subject};
 use crate::wish::{Measured, Wish};
 use slipfront_study::StudyError;
@@ -35,10 +35,10 @@ pub(crate) struct Wanted {
 pub type RunId = String;
 
 /// Numbers of a run, or the reason for which it has none, a sentence: it diverged, or never came to rest under a held drive.
-pub type Ended = Result<Measured, String>;
+pub type RunOutcome = Result<Measured, String>;
 
 /// Ends of runs by their identities.
-pub type Known = HashMap<RunId, Ended>;
+pub type RunCache = HashMap<RunId, RunOutcome>;
 
 /// A run that was made, a line of the journal.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -46,7 +46,7 @@ pub struct MadeRun {
     /// Identity of the run.
     pub id: RunId,
     /// End of the run.
-    pub ended: Ended,
+    pub ended: RunOutcome,
     /// Cost of the run in this process, in steps times blocks; 0 for a run that the journal had.
     #[serde(skip)]
     pub(crate) work: f64,
@@ -61,7 +61,7 @@ pub(crate) struct Evaluator {
     /// The cases, all with the same blocks.
     pub(crate) subjects: Vec<Subject>,
     /// The blocks.
-    pub(crate) grid: Grid,
+    pub(crate) grid: SliderBlocks,
     /// Whether the worst case counts, in place of the mean.
     pub(crate) is_worst: bool,
 }
@@ -87,7 +87,7 @@ impl Evaluator {
     }
 
     /// An evaluator with other cases for this wish.
-    pub(crate) fn with_subjects(&self, subjects: Vec<Subject>, grid: Grid) -> Self {
+    pub(crate) fn with_subjects(&self, subjects: Vec<Subject>, grid: SliderBlocks) -> Self {
         Self {
             subjects,
             grid,
@@ -150,7 +150,7 @@ impl Evaluator {
     pub(crate) fn run(
         &self,
         wanted: &[Wanted],
-        known: &mut Known,
+        known: &mut RunCache,
         stop: &AtomicBool,
         keep: &mut Keep,
     ) -> Result<(), StudyError> {
@@ -181,7 +181,7 @@ impl Evaluator {
     }
 
     /// Makes one run; none after a stop.
-    fn measure(&self, wanted: &Wanted, stop: &AtomicBool) -> Result<Option<Ended>, CaseError> {
+    fn measure(&self, wanted: &Wanted, stop: &AtomicBool) -> Result<Option<RunOutcome>, CaseError> {
         let ends = || stop.load(Ordering::Relaxed);
         let texture = wanted.texture.as_ref().map(|texture| texture.as_slice());
         let subject = &self.subjects[wanted.subject];
@@ -204,13 +204,13 @@ impl Evaluator {
     }
 
     /// End of a run.
-    pub(crate) fn ended(&self, wanted: &Wanted, known: &Known) -> Ended {
+    pub(crate) fn ended(&self, wanted: &Wanted, known: &RunCache) -> RunOutcome {
         let ended = known.get(&self.id(wanted)).cloned();
         ended.unwrap_or_else(|| Err("the run was not made".to_owned()))
     }
 
     /// Deviation from the wish in a run with a texture, or the reason for which there is none.
-    fn deviation(&self, run: &Wanted, known: &Known) -> Result<f64, String> {
+    fn deviation(&self, run: &Wanted, known: &RunCache) -> Result<f64, String> {
         let wish = &self.subjects[run.subject].wish;
         let with = self.ended(run, known)?;
         if !wish.is_relative() {
@@ -233,7 +233,7 @@ impl Evaluator {
         texture: &Arc<Vec<bool>>,
         surfaces: Range<u64>,
         fidelity: Fidelity,
-        known: &Known,
+        known: &RunCache,
     ) -> Vec<f64> {
         let run = |surface| Wanted {
             subject,
@@ -253,7 +253,7 @@ impl Evaluator {
         texture: &Arc<Vec<bool>>,
         surfaces: Range<u64>,
         fidelity: Fidelity,
-        known: &Known,
+        known: &RunCache,
     ) -> f64 {
         let losses = (0..self.subjects.len()).map(|subject| {
             let deviations = self.deviations(subject, texture, surfaces.clone(), fidelity, known);
@@ -275,7 +275,7 @@ impl Evaluator {
         texture: &Arc<Vec<bool>>,
         surfaces: Range<u64>,
         fidelity: Fidelity,
-        known: &Known,
+        known: &RunCache,
     ) -> Vec<f64> {
         let n_surfaces = (surfaces.end - surfaces.start) as usize;
         let of_case = |subject: usize| -> Vec<f64> {
@@ -307,7 +307,7 @@ impl Evaluator {
         texture: &Arc<Vec<bool>>,
         surfaces: Range<u64>,
         fidelity: Fidelity,
-        known: &Known,
+        known: &RunCache,
     ) -> Option<String> {
         let cases = 0..self.subjects.len();
         let mut runs = surfaces.flat_map(|surface| cases.clone().map(move |subject| (subject, surface)));
@@ -336,7 +336,7 @@ impl Evaluator {
     /// The reason; when runs cannot be made or kept, and after a stop.
     pub(crate) fn check_reference(
         &self,
-        known: &mut Known,
+        known: &mut RunCache,
         stop: &AtomicBool,
         keep: &mut Keep,
     ) -> Result<(), StudyError> {
@@ -362,7 +362,7 @@ impl Evaluator {
 }
 
 /// Root of the mean square of mu* less the wished values at some times of the drive, with mu* linear between its rows.
-fn misfit(points: &[[f64; 2]], record: &Record) -> f64 {
+fn misfit(points: &[[f64; 2]], record: &RunData) -> f64 {
     let rows = &record.rows;
     let mut next = 0;
     let squares = points.iter().map(|&[time, wanted]| {

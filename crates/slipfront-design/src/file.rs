@@ -12,8 +12,8 @@ use slipfront_run::measured::Measure;
 use toml::{Table, Value};
 
 use crate::design::Design;
-use crate::grid::Grid;
 use crate::limits::Limits;
+use crate::slider_blocks::SliderBlocks;
 use crate::wish::{Quantity, Wish};
 use slipfront_study::StudyError;
 use slipfront_study::axis::overrides;
@@ -302,10 +302,10 @@ impl DesignFile {
             return Err(self.project.error("cases", sentence).into());
         }
         let cases = self.cases()?;
-        let grid = Grid::of(&base);
+        let grid = SliderBlocks::of(&base);
         if cases
             .iter()
-            .any(|case| Grid::of(case) != grid || case.scales.block_size != base.scales.block_size)
+            .any(|case| SliderBlocks::of(case) != grid || case.scales.block_size != base.scales.block_size)
         {
             let sentence = "all cases of a design have the blocks of the base".to_owned();
             return Err(self.project.error("cases", sentence).into());
@@ -329,7 +329,7 @@ impl DesignFile {
     }
 
     /// The limits in blocks.
-    fn limits(&self, base: &Case, grid: &Grid, percent: f64) -> Result<Limits, CaseError> {
+    fn limits(&self, base: &Case, grid: &SliderBlocks, percent: f64) -> Result<Limits, CaseError> {
         let keys = &self.keys;
         let narrowest = grid.size()[0].min(grid.size()[1]);
         let width = |[key, in_blocks]: [&str; 2], length: &Option<Length>, blocks: Option<u32>| {
@@ -380,7 +380,7 @@ impl DesignFile {
     }
 
     /// The largest coverage, %, up to `most`, that the length of a laser's lines allows.
-    fn largest_coverage(&self, base: &Case, grid: &Grid, most: f64) -> f64 {
+    fn largest_coverage(&self, base: &Case, grid: &SliderBlocks, most: f64) -> f64 {
         let Some(Writing {
             line_spacing,
             max_length: Some(length),
@@ -401,7 +401,7 @@ impl DesignFile {
     }
 
     /// The wish in units of mu_s and of t* of a case.
-    fn wish(&self, case: &Case, grid: &Grid) -> Result<Wish, StudyError> {
+    fn wish(&self, case: &Case, grid: &SliderBlocks) -> Result<Wish, StudyError> {
         let refuse = |sentence: &str| Err(self.project.error("wish", sentence.to_owned()).into());
         let mu_s = case.scales.mu_static_mean;
         let load = case.scales.pressure * case.scales.block_size.powi(2) * grid.n_blocks() as f64;

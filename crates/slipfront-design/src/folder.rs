@@ -6,16 +6,16 @@ use std::sync::atomic::AtomicBool;
 use serde::Deserialize;
 
 use crate::design::{Design, Outcome};
-use crate::evaluate::{Known, MadeRun};
+use crate::evaluate::{MadeRun, RunCache};
 use crate::file::{DESIGN, DesignFile};
 use crate::report::{Report, VERDICT};
-use crate::stages::{Bounds, Length, SearchProgress, Work};
+use crate::stages::{Bounds, RunCost, SearchLength, SearchProgress};
 use slipfront_study::StudyError;
 use slipfront_study::project_folder::{
-    Batch, Derivation, Journal, JournalRecord, Others, ResultFiles, notes_of_use, read_numbers,
+    Batch, Derivation, Journal, JournalEntry, Others, ResultFiles, notes_of_use, read_numbers,
 };
 
-impl JournalRecord for MadeRun {
+impl JournalEntry for MadeRun {
     const KEYS: &'static [&'static str] = &["ended"];
 }
 
@@ -25,7 +25,7 @@ pub struct DesignFolder {
     path: PathBuf,
     files: ResultFiles,
     journal: Journal,
-    known: Known,
+    known: RunCache,
     /// Lines of the journal that failed their checksum.
     pub damaged: usize,
     /// The design in the folder, which reads copies of its files.
@@ -88,7 +88,7 @@ impl DesignFolder {
         watch: &mut dyn FnMut(&SearchProgress),
     ) -> Result<String, StudyError> {
         let design = self.file.design()?;
-        let mut of_front = WorkOfFront::of(self.file.keys.front.len());
+        let mut of_front = FrontCost::of(self.file.keys.front.len());
         let outcome = self.run(&design, bounds, &mut |now| watch(&of_front.with(now)))?;
         let mut batch = self.files.begin();
         let mut text = self.report(&mut batch).write(&design, &outcome)?;
@@ -159,7 +159,7 @@ impl DesignFolder {
 
 /// Cost of the designs of a front beside that which is searched for, each of which costs about as much as the first.
 #[derive(Default)]
-struct WorkOfFront {
+struct FrontCost {
     /// Cost of the first design, once it is known.
     of_each: Option<f64>,
     /// Number of designs that follow.
@@ -170,7 +170,7 @@ struct WorkOfFront {
     here: f64,
 }
 
-impl WorkOfFront {
+impl FrontCost {
     fn of(to_come: usize) -> Self {
         Self {
             to_come,
@@ -186,11 +186,11 @@ impl WorkOfFront {
 
     /// Progress of a design, with the cost of the others.
     fn with(&mut self, now: &SearchProgress) -> SearchProgress {
-        let Work { here, left } = now.work;
+        let RunCost { here, left } = now.work;
         let of_each = *self.of_each.get_or_insert(here + left);
         self.here = here;
         SearchProgress {
-            work: Work {
+            work: RunCost {
                 here: self.before + here,
                 left: left + self.to_come as f64 * of_each,
             },
@@ -228,10 +228,10 @@ impl DesignFolder {
 ///
 /// # Errors
 /// When the file of the results cannot be read, or does not say.
-fn search_of(folder: &Path) -> Result<Length, StudyError> {
+fn search_of(folder: &Path) -> Result<SearchLength, StudyError> {
     #[derive(Deserialize)]
     struct Found {
-        search: Length,
+        search: SearchLength,
     }
     Ok(read_numbers::<Found>(&folder.join(VERDICT[0]))?.search)
 }

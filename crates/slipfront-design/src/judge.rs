@@ -6,7 +6,7 @@ use std::sync::atomic::AtomicBool;
 
 use serde::Serialize;
 
-use crate::evaluate::{Evaluator, Keep, Known};
+use crate::evaluate::{Evaluator, Keep, RunCache};
 use crate::stages::Stages;
 use crate::subject::Fidelity;
 use slipfront_study::CONFIDENCE;
@@ -97,7 +97,7 @@ impl Judge<'_> {
         &self,
         contenders: &[&Contender],
         surfaces: Range<u64>,
-        known: &mut Known,
+        known: &mut RunCache,
         keep: &mut Keep,
     ) -> Result<(), StudyError> {
         let textures: Vec<_> = contenders
@@ -114,13 +114,13 @@ impl Judge<'_> {
         Ok(())
     }
 
-    pub(crate) fn loss(&self, contender: &Contender, surfaces: Range<u64>, known: &Known) -> f64 {
+    pub(crate) fn loss(&self, contender: &Contender, surfaces: Range<u64>, known: &RunCache) -> f64 {
         self.evaluator
             .loss(&contender.texture, surfaces, Fidelity::Verdict, known)
     }
 
     /// The loss of a texture with the interval that follows from its scatter over surfaces.
-    pub(crate) fn mean_loss(&self, contender: &Contender, surfaces: Range<u64>, known: &Known) -> Mean {
+    pub(crate) fn mean_loss(&self, contender: &Contender, surfaces: Range<u64>, known: &RunCache) -> Mean {
         Mean::of(&self.loss_by_surface(contender, surfaces, known))
     }
 
@@ -130,7 +130,7 @@ impl Judge<'_> {
         one: &Contender,
         other: &Contender,
         surfaces: Range<u64>,
-        known: &Known,
+        known: &RunCache,
     ) -> Mean {
         let [one, other] = [one, other].map(|found| self.loss_by_surface(found, surfaces.clone(), known));
         let pairs = one.iter().zip(&other);
@@ -138,12 +138,17 @@ impl Judge<'_> {
     }
 
     /// Reason for which a texture has no loss on some surfaces, if it has none.
-    pub(crate) fn lost(&self, contender: &Contender, surfaces: Range<u64>, known: &Known) -> Option<String> {
+    pub(crate) fn lost(
+        &self,
+        contender: &Contender,
+        surfaces: Range<u64>,
+        known: &RunCache,
+    ) -> Option<String> {
         self.evaluator
             .lost(&contender.texture, surfaces, Fidelity::Verdict, known)
     }
 
-    fn loss_by_surface(&self, contender: &Contender, surfaces: Range<u64>, known: &Known) -> Vec<f64> {
+    fn loss_by_surface(&self, contender: &Contender, surfaces: Range<u64>, known: &RunCache) -> Vec<f64> {
         self.evaluator
             .loss_by_surface(&contender.texture, surfaces, Fidelity::Verdict, known)
     }

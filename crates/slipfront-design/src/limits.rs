@@ -2,8 +2,8 @@
 
 use slipfront_base::number_format::{are, count as count_of};
 
-use crate::grid::{Grid, count};
 use crate::patch::Draft;
+use crate::slider_blocks::{SliderBlocks, count};
 
 /// Limits of a design, in blocks.
 #[derive(Clone, Debug, PartialEq)]
@@ -64,7 +64,7 @@ impl Limits {
     ///
     /// # Errors
     /// The first limit that it breaks.
-    pub fn check(&self, grid: &Grid, textured: &[bool]) -> Result<(), Illegal> {
+    pub fn check(&self, grid: &SliderBlocks, textured: &[bool]) -> Result<(), Illegal> {
         let [least, most] = self.coverage;
         let found = grid.percent(textured);
         if !(least..=most).contains(&found) {
@@ -114,7 +114,7 @@ impl Limits {
 
     /// The texture of a draft: the blocks inside its patches when these have grown, all alike, to the largest legal texture
     /// within the coverage of the draft; none if there is none.
-    pub(crate) fn texture(&self, grid: &Grid, draft: &Draft) -> Option<Vec<bool>> {
+    pub(crate) fn texture(&self, grid: &SliderBlocks, draft: &Draft) -> Option<Vec<bool>> {
         let growth = self.growth(grid, draft);
         let mut levels: Vec<f64> = growth.iter().copied().filter(|level| level.is_finite()).collect();
         levels.sort_unstable_by(f64::total_cmp);
@@ -142,7 +142,7 @@ impl Limits {
     }
 
     /// Growth by which a draft holds each block, in every cell and half alike; endless where a block must touch.
-    fn growth(&self, grid: &Grid, draft: &Draft) -> Vec<f64> {
+    fn growth(&self, grid: &SliderBlocks, draft: &Draft) -> Vec<f64> {
         let of_draft = draft.growth(grid);
         let mut growth = vec![f64::INFINITY; of_draft.len()];
         for (block, value) in of_draft.into_iter().enumerate() {
@@ -166,7 +166,7 @@ impl Limits {
 
     /// Blocks that no legal texture has: those that do not exist, those that must touch, and all that cells and mirrors make equal to
     /// one of these.
-    fn barred(&self, grid: &Grid) -> Vec<bool> {
+    fn barred(&self, grid: &SliderBlocks) -> Vec<bool> {
         let n = grid.exists.len();
         let is_own = |block: usize| {
             !grid.exists[block] || self.forbidden.as_ref().is_some_and(|forbidden| forbidden[block])
@@ -187,7 +187,7 @@ impl Limits {
     }
 
     /// A set without parts that are too narrow, and without gaps that are.
-    fn smoothed(&self, grid: &Grid, set: &[bool]) -> Vec<bool> {
+    fn smoothed(&self, grid: &SliderBlocks, set: &[bool]) -> Vec<bool> {
         let opened = grid.lattice.opened(set, self.feature);
         if self.gap <= 1 {
             return opened;
@@ -201,7 +201,7 @@ impl Limits {
     }
 
     /// The block at this place of the first cell.
-    fn in_first_cell(&self, grid: &Grid, block: usize) -> usize {
+    fn in_first_cell(&self, grid: &SliderBlocks, block: usize) -> usize {
         let [nx, ny] = grid.size();
         let [columns, rows] = self.copies;
         block / nx % (ny / rows) * nx + block % nx % (nx / columns)
@@ -209,7 +209,7 @@ impl Limits {
 }
 
 /// The mirror image of a block about the middle of an axis.
-fn mirrored(grid: &Grid, block: usize, axis: usize) -> usize {
+fn mirrored(grid: &SliderBlocks, block: usize, axis: usize) -> usize {
     let [nx, ny] = grid.size();
     let [x, y] = [block % nx, block / nx];
     if axis == 0 {
@@ -222,9 +222,9 @@ fn mirrored(grid: &Grid, block: usize, axis: usize) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::grid::tests::{drawn, whole};
     use crate::named::named;
     use crate::search::Search;
+    use crate::slider_blocks::tests::{drawn, whole};
 
     #[test]
     fn every_limit_is_told_by_what_breaks_it() {
@@ -334,7 +334,7 @@ mod tests {
                     .map(|proposal| {
                         let columns = (0..nx * ny).filter(|&block| proposal.texture[block]);
                         let loss = columns.map(|block| (block % nx) as f64).sum();
-                        crate::search::Found { proposal, loss }
+                        crate::search::RatedTexture { proposal, loss }
                     })
                     .collect();
                 for search in &mut twins {

@@ -2,9 +2,9 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use crate::grid::{Grid, count};
 use crate::limits::Limits;
 use crate::patch::{Draft, Form, Patch};
+use crate::slider_blocks::{SliderBlocks, count};
 
 /// A pattern and its name.
 #[derive(Clone, Debug)]
@@ -17,7 +17,7 @@ pub(crate) struct Named {
 
 impl Named {
     /// A mask as a pattern.
-    pub(crate) fn drawn(grid: &Grid, name: &str, textured: &[bool]) -> Self {
+    pub(crate) fn drawn(grid: &SliderBlocks, name: &str, textured: &[bool]) -> Self {
         Self {
             name: name.to_owned(),
             draft: Draft::drawn(grid, textured),
@@ -30,7 +30,11 @@ pub(crate) const GROOVE: &str = "groove across";
 
 /// Named patterns that are legal, each with its texture, which covers as much as the limits allow; fewer once `ends` returns
 /// true.
-pub(crate) fn named(grid: &Grid, limits: &Limits, ends: &dyn Fn() -> bool) -> Vec<(Named, Vec<bool>)> {
+pub(crate) fn named(
+    grid: &SliderBlocks,
+    limits: &Limits,
+    ends: &dyn Fn() -> bool,
+) -> Vec<(Named, Vec<bool>)> {
     let percent = limits.coverage[1];
     // A strip whose middle is that of a block has an odd number of blocks across, and one whose middle is an edge an even number.
     let [edges, middles] = [0.0, 0.5].map(|shift| shifted(grid, percent, shift));
@@ -47,7 +51,7 @@ pub(crate) fn named(grid: &Grid, limits: &Limits, ends: &dyn Fn() -> bool) -> Ve
 /// Named patterns whose strips and cavities are moved by `shift` blocks: grooves across and along it (x is the direction of
 /// the drive, unless that is turned), in the middle, in pairs and in threes, one that is tilted, a frame, a cross, and
 /// cavities, round and square, one or several.
-fn shifted(grid: &Grid, percent: f64, shift: f64) -> Vec<Named> {
+fn shifted(grid: &SliderBlocks, percent: f64, shift: f64) -> Vec<Named> {
     let size = grid.size().map(|n| n as f64);
     let strip = |axis: usize, place: f64, angle: f64| {
         let mut center = size.map(|n| 0.5 * n);

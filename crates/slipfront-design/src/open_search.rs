@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
-use crate::search::{Found, Proposal, Search, hash};
+use crate::search::{Proposal, RatedTexture, Search, hash};
 
 /// A search whose runs the caller makes.
 #[derive(Debug)]
@@ -41,9 +41,9 @@ impl OpenSearch {
         let found = told.into_iter().map(|(texture, loss)| {
             let asked = self.asked.remove(&hash(&texture));
             let proposal = asked.unwrap_or_else(|| self.search.of_other(texture));
-            Found { proposal, loss }
+            RatedTexture { proposal, loss }
         });
-        let found: Vec<Found> = found.collect();
+        let found: Vec<RatedTexture> = found.collect();
         self.search.tell(&found);
     }
 

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::grid::Grid;
+use crate::slider_blocks::SliderBlocks;
 
 /// Form of a patch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -46,7 +46,7 @@ impl Patch {
     }
 
     /// Lowers the growth of every block to that of this patch.
-    fn lower(&self, grid: &Grid, growth: &mut [f64]) {
+    fn lower(&self, grid: &SliderBlocks, growth: &mut [f64]) {
         let direction = [libm::cos(self.angle), libm::sin(self.angle)];
         let [nx, ny] = grid.size();
         let along = |axis: usize, n: usize| -> Vec<f64> {
@@ -88,7 +88,7 @@ pub(crate) struct Draft {
 
 impl Draft {
     /// A texture that was drawn block by block.
-    pub(crate) fn drawn(grid: &Grid, textured: &[bool]) -> Self {
+    pub(crate) fn drawn(grid: &SliderBlocks, textured: &[bool]) -> Self {
         Self {
             patches: Vec::new(),
             drawn: Some(growth_of(grid, textured).into()),
@@ -97,7 +97,7 @@ impl Draft {
     }
 
     /// Growth by which the draft holds each block.
-    pub(crate) fn growth(&self, grid: &Grid) -> Vec<f64> {
+    pub(crate) fn growth(&self, grid: &SliderBlocks) -> Vec<f64> {
         let n = grid.exists.len();
         let mut growth = match &self.drawn {
             Some(drawn) => drawn.to_vec(),
@@ -112,7 +112,7 @@ impl Draft {
 
 /// Growth in blocks by which a set holds each block: the number of steps to it, straight or diagonal; for a block in the
 /// set, 1 less the number of steps out of it.
-fn growth_of(grid: &Grid, set: &[bool]) -> Vec<f64> {
+fn growth_of(grid: &SliderBlocks, set: &[bool]) -> Vec<f64> {
     let outwards = steps_to(grid, set);
     let inwards = steps_to(grid, &set.iter().map(|is_in| !is_in).collect::<Vec<_>>());
     let pairs = outwards.iter().zip(&inwards);
@@ -122,7 +122,7 @@ fn growth_of(grid: &Grid, set: &[bool]) -> Vec<f64> {
 }
 
 /// Number of steps, straight or diagonal, from every block to a set; as many as the slider has blocks if the set is empty.
-fn steps_to(grid: &Grid, set: &[bool]) -> Vec<f64> {
+fn steps_to(grid: &SliderBlocks, set: &[bool]) -> Vec<f64> {
     let most = set.len() as f64;
     let mut steps: Vec<f64> = set.iter().map(|&is_in| if is_in { 0.0 } else { most }).collect();
     let mut reached: Vec<usize> = (0..set.len()).filter(|&block| set[block]).collect();
@@ -151,9 +151,9 @@ fn steps_to(grid: &Grid, set: &[bool]) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::grid::tests::whole;
+    use crate::slider_blocks::tests::whole;
 
-    fn of(patch: Patch, grid: &Grid) -> Vec<f64> {
+    fn of(patch: Patch, grid: &SliderBlocks) -> Vec<f64> {
         let draft = Draft {
             patches: vec![patch],
             drawn: None,

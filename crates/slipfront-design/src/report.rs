@@ -19,9 +19,9 @@ use slipfront_run::running;
 use crate::design::{Design, Outcome};
 use crate::file::DesignFile;
 use crate::judge::Mean;
-use crate::stages::{Length, Tried};
+use crate::stages::{SearchLength, Tried};
 use crate::subject::{Fidelity, MASK, masked};
-use crate::verdict::{Given, OnFresh, Verdict};
+use crate::verdict::{FreshValues, OnFresh, Verdict};
 use crate::wish::{Quantity, Wish};
 use slipfront_study::StudyError;
 use slipfront_study::project_folder::Batch;
@@ -56,8 +56,8 @@ pub(crate) struct AsMeshed {
 
 /// Content of `design.json`.
 #[derive(Serialize)]
-struct Written<'a> {
-    search: Length,
+struct DesignJson<'a> {
+    search: SearchLength,
     as_meshed: &'a AsMeshed,
     #[serde(flatten)]
     verdict: &'a Verdict,
@@ -104,7 +104,7 @@ impl Report<'_> {
             .write(EVALUATIONS, |to| Ok(evaluations(design, outcome, to)?))?;
         let as_meshed = self.as_meshed(design, texture, &case);
         let [numbers, words] = VERDICT;
-        let written = Written {
+        let written = DesignJson {
             search: outcome.length,
             as_meshed: &as_meshed,
             verdict: &outcome.verdict,
@@ -364,7 +364,7 @@ fn headline(wish: &Wish, verdict: &Verdict) -> String {
     text + wish.missed(loss)
 }
 
-fn given(quantity: Quantity, given: &Given) -> Option<Mean> {
+fn given(quantity: Quantity, given: &FreshValues) -> Option<Mean> {
     match quantity {
         Quantity::StaticFriction => Some(given.static_friction_star),
         Quantity::KineticFriction => given.kinetic_friction_star,

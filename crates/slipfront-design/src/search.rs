@@ -11,10 +11,10 @@
 use std::collections::HashSet;
 use std::sync::Arc;
 
-use crate::grid::Grid;
 use crate::limits::Limits;
 use crate::named::Named;
 use crate::patch::{Draft, Form};
+use crate::slider_blocks::SliderBlocks;
 use crate::start::{GENERATION, Ranges, Start};
 use slipfront_study::draws::Draws;
 
@@ -44,7 +44,7 @@ pub(crate) struct Proposal {
 
 /// A texture with its loss.
 #[derive(Clone, Debug)]
-pub(crate) struct Found {
+pub(crate) struct RatedTexture {
     /// The texture.
     pub(crate) proposal: Proposal,
     /// Loss of the texture: the lower, the better.
@@ -54,7 +54,7 @@ pub(crate) struct Found {
 /// A search in progress.
 #[derive(Debug)]
 pub(crate) struct Search {
-    grid: Grid,
+    grid: SliderBlocks,
     limits: Limits,
     ranges: Ranges,
     draws: Draws,
@@ -63,7 +63,7 @@ pub(crate) struct Search {
     /// Every texture that was asked for, as hashes.
     seen: HashSet<[u8; 32]>,
     /// The best textures of all starts, the best first.
-    best: Vec<Found>,
+    best: Vec<RatedTexture>,
     /// Starts that have not ended.
     starts: Vec<Start>,
     /// Number of starts so far.
@@ -76,7 +76,7 @@ pub(crate) struct Search {
 
 impl Search {
     /// A search that begins with named patterns.
-    pub(crate) fn new(grid: Grid, limits: Limits, start: u64, mut named: Vec<Named>) -> Self {
+    pub(crate) fn new(grid: SliderBlocks, limits: Limits, start: u64, mut named: Vec<Named>) -> Self {
         // Taken from the end.
         named.reverse();
         Self {
@@ -129,15 +129,15 @@ impl Search {
     }
 
     /// Takes the losses of textures that were asked for, in their order.
-    pub(crate) fn tell(&mut self, found: &[Found]) {
-        let finite: Vec<Found> = found
+    pub(crate) fn tell(&mut self, found: &[RatedTexture]) {
+        let finite: Vec<RatedTexture> = found
             .iter()
             .filter(|found| found.loss.is_finite())
             .cloned()
             .collect();
         // Lost textures teach a start where not to go, but no start begins with one.
         merge(&mut self.best, &finite, self.limits.feature);
-        for Found { proposal, loss } in found {
+        for RatedTexture { proposal, loss } in found {
             let Some((number, normal)) = &proposal.drawn else {
                 continue;
             };
@@ -159,7 +159,7 @@ impl Search {
     }
 
     /// The best textures so far, which differ, the best first.
-    pub(crate) fn best(&self) -> &[Found] {
+    pub(crate) fn best(&self) -> &[RatedTexture] {
         &self.best
     }
 
@@ -252,7 +252,7 @@ const FINALISTS: usize = 24;
 
 /// Adds to the finalists, sorted by loss, and keeps the best that differ from every better one by more than a square of
 /// `feature` blocks.
-fn merge(list: &mut Vec<Found>, found: &[Found], feature: usize) {
+fn merge(list: &mut Vec<RatedTexture>, found: &[RatedTexture], feature: usize) {
     let mut all = std::mem::take(list);
     all.extend_from_slice(found);
     all.sort_by(|a, b| a.loss.total_cmp(&b.loss));
@@ -261,7 +261,7 @@ fn merge(list: &mut Vec<Found>, found: &[Found], feature: usize) {
         if list.len() == FINALISTS {
             break;
         }
-        let differs = |kept: &Found| {
+        let differs = |kept: &RatedTexture| {
             let pairs = kept
                 .proposal
                 .texture

@@ -5,9 +5,9 @@ use slipfront::Lattice;
 use slipfront_case::case_file::{CaseError, DriveSpeed};
 use slipfront_case::quantity::Speed;
 
-use crate::evaluate::{Evaluator, Keep, Known};
-use crate::grid::Grid;
+use crate::evaluate::{Evaluator, Keep, RunCache};
 use crate::judge::{Contender, Judge, Mean, Surfaces};
+use crate::slider_blocks::SliderBlocks;
 use crate::subject::{Fidelity, Subject};
 use slipfront_study::StudyError;
 
@@ -78,7 +78,7 @@ impl Judge<'_> {
         &self,
         design: &Contender,
         other: Option<&Contender>,
-        known: &mut Known,
+        known: &mut RunCache,
         keep: &mut Keep,
     ) -> Result<Sensitivity, StudyError> {
         let mut found = Sensitivity::default();
@@ -129,7 +129,7 @@ impl Judge<'_> {
         change: &str,
         design: &Contender,
         other: Option<&Contender>,
-        known: &mut Known,
+        known: &mut RunCache,
         keep: &mut Keep,
     ) -> Result<Changed, StudyError> {
         let surfaces = surfaces(self.evaluator);
@@ -194,7 +194,7 @@ impl Evaluator {
         let subjects = self.subjects.iter().map(Subject::on_finer_blocks);
         let subjects = subjects.collect::<Result<_, _>>()?;
         let [nx, ny] = self.grid.size();
-        let grid = Grid {
+        let grid = SliderBlocks {
             lattice: Lattice::with_edges(2 * nx, 2 * ny, self.grid.lattice.edges),
             exists: doubled([nx, ny], &self.grid.exists),
         };
@@ -203,7 +203,7 @@ impl Evaluator {
 }
 
 /// Moves a set; parts that leave a slider with edges are lost.
-fn moved(grid: &Grid, set: &[bool], shift: [isize; 2]) -> Vec<bool> {
+fn moved(grid: &SliderBlocks, set: &[bool], shift: [isize; 2]) -> Vec<bool> {
     let at = |block: usize| {
         let from = grid.neighbour(block, shift.map(|step| -step));
         grid.exists[block] && from.is_some_and(|from| set[from])
@@ -220,7 +220,7 @@ fn doubled([nx, ny]: [usize; 2], set: &[bool]) -> Vec<bool> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::grid::tests::whole;
+    use crate::slider_blocks::tests::whole;
 
     #[test]
     fn sets_are_moved_and_doubled() {

@@ -6,10 +6,10 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use serde::{Deserialize, Serialize};
 
-use crate::evaluate::{Evaluator, Keep, Known};
+use crate::evaluate::{Evaluator, Keep, RunCache};
 use crate::limits::Limits;
 use crate::named::Named;
-use crate::search::{Found, Proposal, Search};
+use crate::search::{Proposal, RatedTexture, Search};
 use crate::start::GENERATION;
 use crate::subject::Fidelity;
 use slipfront_study::StudyError;
@@ -69,19 +69,19 @@ pub struct SearchProgress {
     /// Blocks of the best draft.
     pub best_texture: Option<Arc<Vec<bool>>>,
     /// Cost of the runs of this call, search and verdict.
-    pub work: Work,
+    pub work: RunCost,
 }
 
 /// Cost of runs, in steps times blocks.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Work {
+pub struct RunCost {
     /// Cost of the runs that this call has made.
     pub here: f64,
     /// Largest cost of the runs that remain.
     pub left: f64,
 }
 
-impl Work {
+impl RunCost {
     /// Cost of what remains of a search that has cost `here` in this share of its time, as far as the time allows.
     pub(crate) fn left_within(self, share_of_time: f64, here: f64) -> f64 {
         if share_of_time > 0.0 {
@@ -126,7 +126,7 @@ impl Bounds<'_> {
 
 /// Length of a search.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub(crate) struct Length {
+pub(crate) struct SearchLength {
     /// Number of runs of the search.
     pub(crate) runs: usize,
     /// Whether the allowed time was over first, so that the drafts tried depend on the speed of the machine.
@@ -171,7 +171,7 @@ impl<'a> Stages<'a> {
     pub(crate) fn run(
         &mut self,
         bounds: &Bounds,
-        known: &mut Known,
+        known: &mut RunCache,
         keep: &mut Keep,
         watch: &mut dyn FnMut(&SearchProgress),
     ) -> Result<Vec<Arc<Vec<bool>>>, StudyError> {
@@ -228,8 +228,8 @@ impl<'a> Stages<'a> {
     }
 
     /// The length of the search.
-    pub(crate) fn length(&self, bounds: &Bounds) -> Length {
-        Length {
+    pub(crate) fn length(&self, bounds: &Bounds) -> SearchLength {
+        SearchLength {
             runs: bounds.runs,
             is_cut_short: self.is_cut_short,
             cut: self.is_cut_short.then_some(Cut {
@@ -245,7 +245,7 @@ impl<'a> Stages<'a> {
         proposals: Vec<Proposal>,
         is_refined: bool,
         bounds: &Bounds,
-        known: &mut Known,
+        known: &mut RunCache,
         keep: &mut Keep,
         watch: &mut dyn FnMut(&SearchProgress),
     ) -> Result<bool, StudyError> {
@@ -255,16 +255,16 @@ impl<'a> Stages<'a> {
         self.evaluator.run(&wanted, known, bounds.stop, keep)?;
         // Runs that are known already count alike, so that a search that goes on is the one that never stopped.
         self.runs += wanted.len();
-        let found: Vec<Found> = proposals
+        let found: Vec<RatedTexture> = proposals
             .into_iter()
             .map(|proposal| {
                 let loss = self
                     .evaluator
                     .loss(&proposal.texture, surfaces.clone(), fidelity, known);
-                Found { proposal, loss }
+                RatedTexture { proposal, loss }
             })
             .collect();
-        for Found { proposal, loss } in &found {
+        for RatedTexture { proposal, loss } in &found {
             let lost = if loss.is_finite() {
                 None
             } else {
@@ -299,7 +299,7 @@ impl<'a> Stages<'a> {
             },
             best: best.map_or(f64::NAN, |found| self.evaluator.wish().told(found.loss)),
             best_texture: best.map(|found| Arc::clone(&found.proposal.texture)),
-            work: Work {
+            work: RunCost {
                 here: 0.0,
                 left: self.work_left(bounds),
             },

@@ -3,9 +3,9 @@
 use std::f64::consts::PI;
 
 use crate::adaptation::Adaptation;
-use crate::grid::Grid;
 use crate::limits::Limits;
 use crate::patch::{Draft, Form, Patch};
+use crate::slider_blocks::SliderBlocks;
 use slipfront_study::draws::Draws;
 
 /// Number of drafts whose losses adapt the distribution of the next ones. More would tell the better directions more exactly, in fewer steps.
@@ -116,7 +116,7 @@ pub(crate) struct Ranges {
 
 impl Ranges {
     /// Ranges within the limits of a design.
-    pub(crate) fn new(grid: &Grid, limits: &Limits) -> Self {
+    pub(crate) fn new(grid: &SliderBlocks, limits: &Limits) -> Self {
         let size = grid.size().map(|n| n as f64);
         let width = 0.01 * limits.coverage[1] * size[0].min(size[1]);
         Self {
@@ -197,7 +197,7 @@ fn is_angle(index: usize) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::grid::tests::whole;
+    use crate::slider_blocks::tests::whole;
 
     /// A draft is that of its own numbers, and what is drawn from it lies within the limits.
     #[test]

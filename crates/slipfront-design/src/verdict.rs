@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use serde::Serialize;
 
-use crate::evaluate::{Evaluator, Keep, Known, Wanted};
+use crate::evaluate::{Evaluator, Keep, RunCache, Wanted};
 use crate::judge::{Contender, Judge, Mean, Surfaces};
 use crate::sensitivity::{self, Sensitivity};
 use crate::subject::Fidelity;
@@ -20,7 +20,7 @@ const NAMED_FINALISTS: usize = 4;
 
 /// Values of a texture on fresh surfaces in one case.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Given {
+pub struct FreshValues {
     /// Number of surfaces over which the means are taken: all, unless the texture is lost on some.
     pub surfaces: u64,
     /// The largest mu*.
@@ -39,7 +39,7 @@ pub struct OnFresh {
     /// Share of the blocks that are textured, %.
     pub coverage_percent: f64,
     /// Values in each case.
-    pub cases: Vec<Given>,
+    pub cases: Vec<FreshValues>,
     /// Loss over all cases; infinite if the texture is lost.
     pub loss: f64,
     /// Half the width of the interval of the loss, due to the scatter over surfaces.
@@ -106,7 +106,7 @@ impl Judge<'_> {
         searched: &[Contender],
         named: &[Contender],
         beside: &[Contender],
-        known: &mut Known,
+        known: &mut RunCache,
         keep: &mut Keep,
     ) -> Result<Option<Judged>, StudyError> {
         let Surfaces { compared, judged } = Surfaces::of(self.evaluator);
@@ -114,7 +114,7 @@ impl Judge<'_> {
         let named = &self.shortlist(named, known, keep)?;
         let all: Vec<&Contender> = searched.iter().chain(named).collect();
         self.run(&all, compared.clone(), known, keep)?;
-        let by_loss = |contenders: &[Contender], known: &Known| {
+        let by_loss = |contenders: &[Contender], known: &RunCache| {
             let loss = |contender: &Contender| self.loss(contender, compared.clone(), known);
             let best = contenders.iter().min_by(|a, b| loss(a).total_cmp(&loss(b)));
             best.cloned()
@@ -149,7 +149,7 @@ impl Judge<'_> {
             .filter(|named| named.texture != design.texture)
             .or(beside.first().filter(|other| other.texture != design.texture));
         let sensitivity = self.sensitivity(&design, other, known, keep)?;
-        let on_fresh = |contender: Option<&Contender>, known: &Known| {
+        let on_fresh = |contender: Option<&Contender>, known: &RunCache| {
             self.on_fresh(contender, &design, judged.clone(), known)
         };
         let verdict = Verdict {
@@ -185,7 +185,7 @@ impl Judge<'_> {
     fn shortlist(
         &self,
         named: &[Contender],
-        known: &mut Known,
+        known: &mut RunCache,
         keep: &mut Keep,
     ) -> Result<Vec<Contender>, StudyError> {
         let textures: Vec<_> = named.iter().map(|named| Arc::clone(&named.texture)).collect();
@@ -205,7 +205,7 @@ impl Judge<'_> {
         contender: Option<&Contender>,
         design: &Contender,
         surfaces: Range<u64>,
-        known: &Known,
+        known: &RunCache,
     ) -> OnFresh {
         let given = |subject: usize| {
             let run = |surface| Wanted {
@@ -220,7 +220,7 @@ impl Judge<'_> {
                 .collect();
             let mean = |of: &dyn Fn(&Measured) -> f64| Mean::of(&found.iter().map(of).collect::<Vec<_>>());
             let kinetic: Option<Vec<f64>> = found.iter().map(|found| found.kinetic_star).collect();
-            Given {
+            FreshValues {
                 surfaces: found.len() as u64,
                 static_friction_star: mean(&|found| found.largest_star),
                 first_peak_star: mean(&|found| found.first_peak_star),

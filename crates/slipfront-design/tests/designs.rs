@@ -11,7 +11,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use slipfront_design::{
-    Bounds, DESIGNS, Design, DesignFile, DesignFolder, DesignKeys, DesignStage, Known, Outcome, Work,
+    Bounds, DESIGNS, Design, DesignFile, DesignFolder, DesignKeys, DesignStage, Outcome, RunCache, RunCost,
 };
 use slipfront_study::StudyError;
 use slipfront_study::project_folder::Extent;
@@ -51,7 +51,7 @@ fn run(design: &Design, runs: usize) -> Outcome {
     design
         .run(
             &bounds(runs, &AtomicBool::new(false)),
-            &mut Known::new(),
+            &mut RunCache::new(),
             &mut |_| Ok(()),
             &mut |_| {},
         )
@@ -419,7 +419,7 @@ fn what_never_comes_to_rest_is_told() {
     let smooth = of("1e-9,1e-9");
     let error = smooth.design().unwrap().run(
         &bounds(40, &AtomicBool::new(false)),
-        &mut Known::new(),
+        &mut RunCache::new(),
         &mut |_| Ok(()),
         &mut |_| {},
     );
@@ -494,8 +494,8 @@ fn the_folder_has_the_cases_of_the_verdict() {
     let line = text.lines().find(|line| line.contains("case_2.toml")).unwrap();
     assert!(line.contains("drive.v_star=0.3, load.pressure="), "{text}");
     let judged = work.iter().filter(|(stage, _)| *stage == DesignStage::Judging);
-    let judged: Vec<Work> = judged.map(|(_, work)| *work).collect();
-    let falls = |pair: &[Work]| pair[0].here <= pair[1].here && pair[0].left >= pair[1].left;
+    let judged: Vec<RunCost> = judged.map(|(_, work)| *work).collect();
+    let falls = |pair: &[RunCost]| pair[0].here <= pair[1].here && pair[0].left >= pair[1].left;
     assert!(judged.len() > 5 && judged.windows(2).all(falls), "{judged:?}");
     // The runs of the second design of the front remain, too.
     assert!(judged.iter().all(|work| work.left > 0.0));
@@ -707,7 +707,7 @@ fn what_cannot_be_is_told_with_its_place() {
     let never = AtomicBool::new(false);
     let error = file.design().unwrap().run(
         &bounds(10, &never),
-        &mut Known::new(),
+        &mut RunCache::new(),
         &mut |_| Ok(()),
         &mut |_| {},
     );

@@ -6,7 +6,7 @@ use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::thread::Builder;
 
-use slipfront_study::{self as study, Records};
+use slipfront_study::{self as study, RunJournal};
 
 use crate::cache::FigureCache;
 use crate::claims::{Claim, ClaimResult, claims, tally};
@@ -87,7 +87,7 @@ impl Paper {
 /// When a run fails, a record cannot be written, or a signal asks to stop.
 pub fn run(
     figures: &[Figure],
-    records: &Records,
+    records: &RunJournal,
     options: &PaperOptions,
     watch: &(dyn Fn(&Stage) + Sync),
 ) -> Result<Paper, PaperError> {
@@ -174,7 +174,7 @@ fn with_finished(wanted: &[Figure], cache: &FigureCache, rules: &[StepRule]) -> 
 /// Data of a figure: from the cache, or measured now and stored there.
 fn data_of(
     stage: &Stage,
-    records: &Records,
+    records: &RunJournal,
     options: &PaperOptions,
     cache: &FigureCache,
     watch: &(dyn Fn(&Stage) + Sync),

@@ -12,7 +12,7 @@ use slipfront::observe::Field;
 use slipfront_case::case::{Case, Snapshots};
 use slipfront_plot::{FieldMap, FrictionCurve};
 use slipfront_run::pictures::friction::marked_curve;
-use slipfront_run::running::Record;
+use slipfront_run::running::RunData;
 
 /// A case that ends at the last of these times, with its fields at these alone.
 pub(super) fn seen_at(mut case: Case, times_star: &[f64]) -> Case {
@@ -61,7 +61,7 @@ pub(super) fn on_each<T>(
 /// A case and the record of its run.
 pub(super) struct FigureRun {
     pub(super) case: Arc<Case>,
-    pub(super) record: Record,
+    pub(super) record: RunData,
     /// Seconds that the run took.
     pub(super) wall_time_s: f64,
 }

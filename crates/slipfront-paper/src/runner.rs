@@ -18,12 +18,12 @@ use slipfront_case::case_file::CaseError;
 use slipfront_run::running;
 use slipfront_run::summary::Summary;
 use slipfront_study as study;
-use slipfront_study::{FinishedRun, Outcome, Plan, Records, StudyError, StudyFile, StudyResults};
+use slipfront_study::{FinishedRun, Outcome, Plan, RunJournal, StudyError, StudyFile, StudyResults};
 
 /// Runs the cases and studies of a figure.
 pub(super) struct FigureRunner<'a> {
     /// Finished runs of studies.
-    pub(super) records: &'a Records,
+    pub(super) records: &'a RunJournal,
     /// Flag set by a signal: all runs end.
     pub(super) stop: &'a AtomicBool,
     pub(super) step: StepRule,

@@ -12,7 +12,7 @@ use slipfront_run::names::FIGURE_CACHE;
 use slipfront_run::verify::{Verdict, VerifyError, differences};
 use slipfront_study::project_folder::{Checksums, ResultFiles};
 use slipfront_study::project_folder::{Extent, VerifyStudyError, verify_checksums};
-use slipfront_study::{Records, StudyError};
+use slipfront_study::{RunJournal, StudyError};
 
 use crate::cache::MAX_BYTES;
 use crate::error::PaperError;
@@ -25,7 +25,7 @@ use crate::report::write;
 /// # Errors
 /// When the folder cannot be read, and after a stop.
 pub fn verify(folder: &Path, extent: Extent, stop: &AtomicBool) -> Result<Verdict, PaperError> {
-    let (mut verdict, is_complete) = verify_checksums(folder, &[Records::FILE, FIGURE_CACHE], stop)?;
+    let (mut verdict, is_complete) = verify_checksums(folder, &[RunJournal::FILE, FIGURE_CACHE], stop)?;
     if verdict.differences.is_empty() && !is_complete {
         let (what, path) = ("paper", folder.to_owned());
         return Err(VerifyStudyError::UnfinishedSearch { what, path }.into());
@@ -56,7 +56,7 @@ fn derive(folder: &Path, verdict: &mut Verdict, stop: &AtomicBool) -> Result<(),
             folder: &again,
         };
         // No figure is asked for: there are those whose data were stored.
-        let paper = run(&[], &Records::open(&again)?, &options, &|_| {})?;
+        let paper = run(&[], &RunJournal::open(&again)?, &options, &|_| {})?;
         write(&paper, &ResultFiles::new(&again, "paper", false))?;
         let files = files_of(&again)?;
         if names(&files) == listed {

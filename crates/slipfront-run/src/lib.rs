@@ -1,7 +1,7 @@
 //! A case is run, and its results are written, read and verified.
 //!
 //! ```text
-//! Case -> Record -> files -> pictures
+//! Case -> RunData -> files -> pictures
 //! ```
 //!
 //! Each arrow is one function: [`running::run`] ([`run_summary::run_summary`] if only the numbers are wanted),

@@ -29,7 +29,7 @@ pub const PREVIOUS: &str = "checkpoint-previous.bin";
 /// Results from which the figures of the paper are made, kept between calls of `slipfront paper`.
 pub const FIGURE_CACHE: &str = "found";
 /// The journal of a study: a line for every run that has ended.
-pub const RECORDS: &str = "records.jsonl";
+pub const RUN_JOURNAL: &str = "runs.jsonl";
 /// Tables of a study: a row for every run, a row for every quantity at every point, and, where the direction of the drive is varied, a row
 /// for friction over all directions.
 pub const TABLES: [&str; 3] = ["runs.csv", "points.csv", "anisotropy.csv"];

@@ -1,4 +1,4 @@
-//! Writes the files of a run from its [`Record`].
+//! Writes the files of a run from its [`RunData`].
 
 use std::borrow::Cow;
 use std::io::Cursor;
@@ -16,58 +16,58 @@ use crate::fields::{self, FieldFrame, FieldsData, FieldsError, FieldsFile, Stati
 use crate::names::{CASE, FIELDS, KYMOGRAPH, SERIES, SUMMARY};
 use crate::run_folder::RunFolder;
 use crate::run_folder::unfinished::Unfinished;
-use crate::running::Record;
+use crate::running::RunData;
 use crate::series::{self, SeriesRow};
 
 /// Writes the results of a run on one rank to its folder, where the case stands already: the tables, then the fields, which
-/// are moved out of the record. Pictures and the manifest follow.
-pub fn write(case: &Case, record: &mut Record, folder: &mut RunFolder) -> Result<(), ResultsError> {
-    write_tables(case, record, folder)?;
-    match write_fields(case, record, folder.path(), &Alone)? {
+/// are moved out of the data. Pictures and the manifest follow.
+pub fn write(case: &Case, data: &mut RunData, folder: &mut RunFolder) -> Result<(), ResultsError> {
+    write_tables(case, data, folder)?;
+    match write_fields(case, data, folder.path(), &Alone)? {
         Some(fields) => Ok(folder.place(FIELDS, fields)?),
         None => Ok(()),
     }
 }
 
 /// Summary, series, kymograph and events, the first results of a run, by one of its ranks.
-pub fn write_tables(case: &Case, record: &Record, folder: &mut RunFolder) -> Result<(), ResultsError> {
-    each_table(case, record, |name, contents| Ok(folder.write(name, contents)?))
+pub fn write_tables(case: &Case, data: &RunData, folder: &mut RunFolder) -> Result<(), ResultsError> {
+    each_table(case, data, |name, contents| Ok(folder.write(name, contents)?))
 }
 
 /// Hands over the first results of a run, each with its name.
 fn each_table(
     case: &Case,
-    record: &Record,
+    data: &RunData,
     mut take: impl FnMut(&str, &[u8]) -> Result<(), ResultsError>,
 ) -> Result<(), ResultsError> {
-    take(SUMMARY, &disk::json(&record.summary))?;
-    let rows = record
+    take(SUMMARY, &disk::json(&data.summary))?;
+    let rows = data
         .rows
         .iter()
         .map(|row| SeriesRow::new(row, &case.scales, &case.model));
     take(SERIES, &series::to_csv(rows)?)?;
-    take(KYMOGRAPH, &fields::kymograph_bytes(&record.kymograph, case))?;
-    for (table, contents) in record.observers.tables(&case.scales)? {
+    take(KYMOGRAPH, &fields::kymograph_bytes(&data.kymograph, case))?;
+    for (table, contents) in data.observers.tables(&case.scales)? {
         take(table.file, &contents)?;
     }
     Ok(())
 }
 
 /// The files of a run on one rank, by their names in its folder, with the bytes that they have there: the case and the files that it reads,
-/// tables and fields, which are moved out of the record.
+/// tables and fields, which are moved out of the data.
 ///
 /// # Errors
 /// When a file that the case reads is no longer what the case was made of.
-pub fn in_memory(case: &Case, record: &mut Record) -> Result<Vec<(String, Vec<u8>)>, ResultsError> {
+pub fn in_memory(case: &Case, data: &mut RunData) -> Result<Vec<(String, Vec<u8>)>, ResultsError> {
     let mut files = vec![(CASE.to_owned(), case.file.to_toml()?.into_bytes())];
     for input in &case.inputs {
         files.push((input.name.clone(), input.read_again()?.to_vec()));
     }
-    each_table(case, record, |name, contents| {
+    each_table(case, data, |name, contents| {
         files.push((name.to_owned(), contents.to_vec()));
         Ok(())
     })?;
-    let fields = with_fields(case, record, |file| {
+    let fields = with_fields(case, data, |file| {
         let mut bytes = Cursor::new(Vec::new());
         let writer = fields::FieldsWriter::new(Path::new(FIELDS), file)?;
         let written = writer
@@ -114,10 +114,10 @@ fn surface_of(case: &Case) -> (Cow<'_, [bool]>, [Cow<'_, [f64]>; 2]) {
 }
 
 /// The content of the [fields file](write_fields) of a run on one rank.
-pub fn fields_of(case: &Case, record: &Record) -> FieldsData {
+pub fn fields_of(case: &Case, data: &RunData) -> FieldsData {
     let lattice = &case.model.lattice;
     let (textured, [mu_static, mu_kinetic]) = surface_of(case);
-    let (names, scale) = (&case.output.fields, record.contact_stress_max);
+    let (names, scale) = (&case.output.fields, data.contact_stress_max);
     let frame = |(label, frame): &(String, Frame)| {
         FieldFrame::in_si_units(frame.clone(), label.clone(), names, &case.scales, scale)
     };
@@ -133,20 +133,20 @@ pub fn fields_of(case: &Case, record: &Record) -> FieldsData {
         textured: fields::thin(&textured, lattice.nx, stride).collect(),
         mu_static: thinned(&mu_static),
         mu_kinetic: thinned(&mu_kinetic),
-        first_slip_time_star: thinned(&record.first_slip_time_star),
-        frames: record.frames.iter().map(frame).collect(),
+        first_slip_time_star: thinned(&data.first_slip_time_star),
+        frames: data.frames.iter().map(frame).collect(),
     }
 }
 
 /// Writes the fields to a temporary file of the run in folder `out`, each rank its own rows; the first one has the file. The
-/// fields are moved out of the record.
+/// fields are moved out of the data.
 pub fn write_fields(
     case: &Case,
-    record: &mut Record,
+    data: &mut RunData,
     out: &Path,
     communicator: &dyn Communicator,
 ) -> Result<Option<TempPath>, FieldsError> {
-    with_fields(case, record, |file| {
+    with_fields(case, data, |file| {
         fields::write_fields(
             &Unfinished::of(out).temporary(),
             &out.join(FIELDS),
@@ -156,16 +156,16 @@ pub fn write_fields(
     })
 }
 
-/// Hands over the fields of the rows that this rank holds, which are moved out of the record.
+/// Hands over the fields of the rows that this rank holds, which are moved out of the data.
 fn with_fields<T>(
     case: &Case,
-    record: &mut Record,
+    data: &mut RunData,
     write: impl FnOnce(&FieldsFile) -> Result<T, FieldsError>,
 ) -> Result<T, FieldsError> {
     let (textured, [mu_static, mu_kinetic]) = surface_of(case);
     let names = &case.output.fields;
-    let scale = record.contact_stress_max;
-    let frames: Vec<FieldFrame> = std::mem::take(&mut record.frames)
+    let scale = data.contact_stress_max;
+    let frames: Vec<FieldFrame> = std::mem::take(&mut data.frames)
         .into_iter()
         .map(|(label, frame)| FieldFrame::in_si_units(frame, label, names, &case.scales, scale))
         .collect();
@@ -181,7 +181,7 @@ fn with_fields<T>(
             textured: &textured,
             mu_static: &mu_static,
             mu_kinetic: &mu_kinetic,
-            first_slip_time_star: &record.first_slip_time_star,
+            first_slip_time_star: &data.first_slip_time_star,
         },
         frames: &frames,
     })
@@ -202,12 +202,12 @@ mod tests {
                     [[texture]]\nshape = 'cavity'\ncoverage = 12.5";
         let case = Case::parse(text, "case", "", &[]).unwrap();
         let case = std::sync::Arc::new(case);
-        let mut record = crate::running::run(&case, 1).unwrap();
-        let in_memory = fields_of(&case, &record);
+        let mut data = crate::running::run(&case, 1).unwrap();
+        let in_memory = fields_of(&case, &data);
         let out = folder.path().join("out");
         let mut run = RunFolder::prepare(&out, false, &case.inputs).unwrap();
         write_case(&case, &mut run).unwrap();
-        write(&case, &mut record, &mut run).unwrap();
+        write(&case, &mut data, &mut run).unwrap();
         let fields = fields::read_fields(out.join(FIELDS)).unwrap();
         // NaN are equal as they are printed.
         assert_eq!(format!("{in_memory:?}"), format!("{fields:?}"));
@@ -226,10 +226,7 @@ mod tests {
                 assert_eq!(values[b].is_nan(), is_blank, "{field:?} of block {b}");
             }
         }
-        assert_eq!(
-            (record.summary.n_blocks, record.summary.texture_percent),
-            (32, 12.5)
-        );
+        assert_eq!((data.summary.n_blocks, data.summary.texture_percent), (32, 12.5));
     }
 
     /// A copy holds the contents from which the case was made, or there is none.

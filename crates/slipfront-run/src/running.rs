@@ -1,4 +1,4 @@
-//! Runs a [`Case`] with all observers that its files need, and makes its [`Record`].
+//! Runs a [`Case`] with all observers that its files need, and makes its [`RunData`].
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -19,7 +19,7 @@ use slipfront_case::case::{Case, Output, Snapshots};
 
 /// All results of a run, in memory.
 #[derive(Clone, Debug)]
-pub struct Record {
+pub struct RunData {
     /// The numbers.
     pub summary: Summary,
     /// The recorded curve.
@@ -45,7 +45,7 @@ fn blocks_per_thread(kernel: Kernel) -> usize {
 }
 
 /// Runs a case to its end, on at most `threads` threads, unless the run diverges.
-pub fn run(case: &Arc<Case>, threads: usize) -> Result<Record, RunError> {
+pub fn run(case: &Arc<Case>, threads: usize) -> Result<RunData, RunError> {
     let mut running = Running::start(case, None, Execution::on_threads(threads));
     loop {
         if let Some(reason) = running.advance(u64::MAX)? {
@@ -438,7 +438,7 @@ impl Running {
     }
 
     /// All results of the run, once it has ended. All ranks must call this together.
-    pub fn record(self, reason: StopReason) -> Record {
+    pub fn record(self, reason: StopReason) -> RunData {
         let (case, simulation) = (self.case, self.simulation);
         let Observers {
             summary,
@@ -457,7 +457,7 @@ impl Running {
             &first_slip_time_star,
             &*self.communicator,
         );
-        Record {
+        RunData {
             summary: numbers,
             rows: summary.curve.rows,
             observers: summary.optional,
@@ -485,7 +485,7 @@ pub(crate) fn add_front(
 }
 
 /// Runs a case on one thread until `ends` returns true; none if it was given up.
-pub fn run_unless(case: &Arc<Case>, ends: &dyn Fn() -> bool) -> Option<Result<Record, RunError>> {
+pub fn run_unless(case: &Arc<Case>, ends: &dyn Fn() -> bool) -> Option<Result<RunData, RunError>> {
     let mut running = Running::start(case, None, Execution::default());
     while !ends() {
         match running.advance(case.steps_per_poll()) {

@@ -6,7 +6,7 @@ use crate::meshed::MeshedCoverage;
 use crate::plan::Plan;
 use crate::study_results::StudyResults;
 use crate::tables::quantities;
-use crate::told_warnings::told_warnings;
+use crate::warning_texts::warning_texts;
 
 /// The answer of a study as JSON: at each point the levels of the axes, and for each quantity that a run has the columns of
 /// `points.csv` (number of values, mean, standard deviation, ends of the interval, smallest and largest); the runs that
@@ -27,7 +27,7 @@ pub fn answer(plan: &Plan, results: &StudyResults) -> Value {
         "confidence": plan.settings.confidence(),
         "points": points,
         "failures": failures,
-        "warnings": told_warnings(plan),
+        "warnings": warning_texts(plan),
     })
 }
 

@@ -269,14 +269,14 @@ fn values_of(
     match (list, linspace, logspace) {
         (Some(list), None, None) => Ok((list, Spacing::Linear)),
         (None, Some(range), None) => {
-            let range = Range::read("linspace", &range)?;
+            let range = SpacingRange::read("linspace", &range)?;
             let (from, to) = (range.from, range.to);
             // Symmetric, so that a spacing from -1 to 1 meets 0.
             let value = |share: f64| from * (1.0 - share) + to * share;
             Ok((range.spaced(value)?, Spacing::Linear))
         }
         (None, None, Some(range)) => {
-            let range = Range::read("logspace", &range)?;
+            let range = SpacingRange::read("logspace", &range)?;
             let (from, to) = (range.from, range.to);
             if !(from > 0.0 && to > 0.0) {
                 return Err(format!("`logspace` from {from} to {to} must lie above 0"));
@@ -433,14 +433,14 @@ pub(crate) fn replaced_key<'k>(key: &str, earlier: &BTreeSet<&'k str>) -> Option
 }
 
 /// The ends of a spacing, in the unit of the first if they have one, and the number of values.
-struct Range {
+struct SpacingRange {
     from: f64,
     to: f64,
     unit: Option<String>,
     count: usize,
 }
 
-impl Range {
+impl SpacingRange {
     fn read(name: &str, range: &[Value]) -> Result<Self, String> {
         let wrong = |what: &str| {
             let given: Vec<String> = range.iter().map(Value::to_string).collect();

@@ -109,7 +109,7 @@ pub enum StudyError {
     #[error(
         "cannot {action} {path}: {source}; finished runs are safe, and the same command goes on from there"
     )]
-    Records {
+    Journal {
         action: &'static str,
         path: PathBuf,
         source: std::io::Error,
@@ -119,12 +119,12 @@ pub enum StudyError {
         display_path(path)
     )]
     Write { path: PathBuf, source: std::io::Error },
-    #[error("{path} is no file of recorded runs")]
-    NotRecords { path: PathBuf },
+    #[error("{path} is not a journal of runs")]
+    NotJournal { path: PathBuf },
     #[error(
         "{path} holds runs of another kind of work: put back the file that was there, or choose another folder"
     )]
-    OtherRecords { path: PathBuf },
+    OtherJournal { path: PathBuf },
     #[error(
         "cannot keep the folder of a run: {0}; finished runs are safe, and the same command goes on from there"
     )]

@@ -8,10 +8,10 @@ use std::sync::mpsc::{self, Sender};
 use std::time::Instant;
 
 use crate::error::StudyError;
+use crate::finished_run::{FinishedRun, Outcome};
 use crate::plan::{Plan, RunKey};
-use crate::record::{FinishedRun, Outcome};
-use crate::records::Records;
-use crate::scheduler::{Ended, Scheduler, Task};
+use crate::run_journal::RunJournal;
+use crate::scheduler::{Scheduler, Task, TaskResult};
 use crate::study_file::RetainRuns;
 use crate::study_results::{Progress, StudyResults};
 use slipfront_case::case::Case;
@@ -29,7 +29,7 @@ type RunCase<'a> = dyn Fn(RunKey, &IsStopped) -> Result<Option<Outcome>, StudyEr
 
 /// Function that gets a run that has ended, before its results are written, and returns whether it counts as done. A run
 /// that does not is no failure: it counts as stopped.
-pub type LookAtRun<'a> = dyn Fn(RunKey, &Arc<Case>, &running::Record) -> bool + Sync + 'a;
+pub type LookAtRun<'a> = dyn Fn(RunKey, &Arc<Case>, &running::RunData) -> bool + Sync + 'a;
 
 /// Runs everything that the plan needs and the records lack.
 ///
@@ -38,7 +38,7 @@ pub type LookAtRun<'a> = dyn Fn(RunKey, &Arc<Case>, &running::Record) -> bool + 
 /// the study keeps are written to `folder`. `watch` is called after every run. A run that fails is no error.
 pub fn execute(
     plan: &Plan,
-    records: &Records,
+    records: &RunJournal,
     folder: &Path,
     stop: &AtomicBool,
     watch: &mut dyn FnMut(&Progress),
@@ -49,7 +49,7 @@ pub fn execute(
 /// Executes a plan as [`execute`] does; `look` gets every run that ends, on the thread of the run.
 pub fn execute_and_look(
     plan: &Plan,
-    records: &Records,
+    records: &RunJournal,
     folder: &Path,
     stop: &AtomicBool,
     look: &LookAtRun,
@@ -61,18 +61,18 @@ pub fn execute_and_look(
 }
 
 /// The results of a plan from the records alone, if all its runs are recorded.
-pub fn collect(plan: &Plan, records: &Records) -> Result<StudyResults, StudyError> {
+pub fn collect(plan: &Plan, records: &RunJournal) -> Result<StudyResults, StudyError> {
     Scheduler::new(plan, records, &|_| {}, 1).collect()
 }
 
 fn execute_with(
     plan: &Plan,
-    records: &Records,
+    records: &RunJournal,
     run_case: &RunCase,
     stop: &AtomicBool,
     watch: &mut dyn FnMut(&Progress),
 ) -> Result<StudyResults, StudyError> {
-    let (to_scheduler, finished) = mpsc::channel::<Ended>();
+    let (to_scheduler, finished) = mpsc::channel::<TaskResult>();
     let abandon = AtomicBool::new(false);
     let is_stopped = || stop.load(Ordering::Relaxed) || abandon.load(Ordering::Relaxed);
     // The scheduler stays on the thread of the caller: it waits, and would take a run's place in the pool.
@@ -89,7 +89,7 @@ fn execute_with(
 }
 
 /// Does a run.
-fn work(run_case: &RunCase, Task { run, id }: Task, finished: &Sender<Ended>, is_stopped: &IsStopped) {
+fn work(run_case: &RunCase, Task { run, id }: Task, finished: &Sender<TaskResult>, is_stopped: &IsStopped) {
     let began = Instant::now();
     // The pool may hold many tasks that wait: after a stop they end here.
     let outcome = if is_stopped() {
@@ -158,7 +158,7 @@ fn run_one(
 /// be repeated.
 fn write_folder(
     case: &Case,
-    record: Option<&mut running::Record>,
+    record: Option<&mut running::RunData>,
     path: &Path,
     started: jiff::Timestamp,
 ) -> Result<(), RunPictureError> {
@@ -208,7 +208,7 @@ mod tests {
     fn execute_on(
         threads: usize,
         plan: &Plan,
-        records: &Records,
+        records: &RunJournal,
         run_case: &RunCase,
         watch: &mut (dyn FnMut(&Progress) + Send),
     ) -> Result<StudyResults, StudyError> {
@@ -220,7 +220,7 @@ mod tests {
 
     fn run(plan: &Plan, run_case: &RunCase, threads: usize) -> (Result<StudyResults, StudyError>, usize) {
         let folder = tempfile::tempdir().unwrap();
-        let records = Records::open(folder.path()).unwrap();
+        let records = RunJournal::open(folder.path()).unwrap();
         let found = execute_on(threads, plan, &records, run_case, &mut |_| {});
         (found, records.len())
     }
@@ -267,7 +267,7 @@ mod tests {
     fn runs_ahead_of_need_are_not_orphaned() {
         let plan = plan(ADAPTIVE);
         let folder = tempfile::tempdir().unwrap();
-        let records = Records::open(folder.path()).unwrap();
+        let records = RunJournal::open(folder.path()).unwrap();
         for threads in [16, 1] {
             let runner = |run, _: &IsStopped| Ok(Some(pretend(run)));
             let found = execute_on(threads, &plan, &records, &runner, &mut |_| {}).unwrap();
@@ -302,7 +302,7 @@ mod tests {
     fn a_fault_of_the_scheduler_ends_the_runs() {
         let plan = plan("base.slider.blocks = [2, 2]\nstudy.replicates = 100");
         let folder = tempfile::tempdir().unwrap();
-        let records = Records::open(folder.path()).unwrap();
+        let records = RunJournal::open(folder.path()).unwrap();
         let forever = AtomicBool::new(false);
         let runner = |run: RunKey, is_stopped: &IsStopped| {
             if run.replicate < 5 {
@@ -328,13 +328,13 @@ mod tests {
     fn a_study_that_cannot_go_on_keeps_what_is_finished() {
         let plan = plan("base.slider.blocks = [2, 2]\nstudy.replicates = 50");
         let runner = |run: RunKey, _: &IsStopped| match run.replicate {
-            10 => Err(StudyError::NotRecords {
+            10 => Err(StudyError::NotJournal {
                 path: "full disk".into(),
             }),
             _ => Ok(Some(pretend(run))),
         };
         let (found, recorded) = run(&plan, &runner, 1);
-        assert!(matches!(found, Err(StudyError::NotRecords { .. })));
+        assert!(matches!(found, Err(StudyError::NotJournal { .. })));
         assert!((10..50).contains(&recorded), "{recorded}");
     }
 }

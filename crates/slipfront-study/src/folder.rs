@@ -7,7 +7,7 @@ use crate::anisotropy::anisotropies;
 use crate::error::StudyError;
 use crate::plan::{Plan, RunKey};
 use crate::project_folder::{Batch, Others, ResultFiles};
-use crate::records::Records;
+use crate::run_journal::RunJournal;
 use crate::study_file::{STUDIES, StudyFile};
 use crate::study_results::StudyResults;
 use crate::{pictures, tables};
@@ -26,7 +26,7 @@ const STUDY: &str = STUDIES.file;
 pub struct StudyFolder {
     path: PathBuf,
     /// Finished runs.
-    pub records: Records,
+    pub records: RunJournal,
     /// Result files of the folder.
     pub(crate) files: ResultFiles,
     /// Whether the study has changed since the folder was last used.
@@ -47,7 +47,7 @@ impl StudyFolder {
         if is_of_figures(path) {
             return Err(STUDIES.other_things(path));
         }
-        let records = Records::of(STUDIES.open_journal(path)?);
+        let records = RunJournal::of(STUDIES.open_journal(path)?);
         let given = study.given()?;
         let parse = |text: &str| {
             let name = path.join(STUDY).display().to_string();
@@ -83,7 +83,7 @@ impl StudyFolder {
     pub fn notes(&self) -> Vec<String> {
         let damaged = (self.records.damaged > 0).then(|| {
             let lines = count(self.records.damaged, "damaged line");
-            format!("the record file has {lines}, passed over: its runs count as not run")
+            format!("the journal has {lines}, passed over: its runs count as not run")
         });
         let changed =
             "the study has changed since this folder was last used; runs that still belong to it are kept";

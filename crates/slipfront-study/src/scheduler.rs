@@ -9,9 +9,9 @@ use std::sync::mpsc::Receiver;
 use std::time::Duration;
 
 use crate::error::StudyError;
+use crate::finished_run::{FinishedRun, RunResult};
 use crate::plan::{Plan, RunKey};
-use crate::record::{FinishedRun, RunResult};
-use crate::records::Records;
+use crate::run_journal::RunJournal;
 use crate::statistics::Sample;
 use crate::study_results::{PointResult, Progress, StudyResults};
 use crate::summary_values::RunQuantity;
@@ -24,12 +24,12 @@ pub(crate) struct Task {
 }
 
 /// The record of a run that has ended; none if it was given up.
-pub(crate) type Ended = Result<Option<FinishedRun>, StudyError>;
+pub(crate) type TaskResult = Result<Option<FinishedRun>, StudyError>;
 
 /// Starts runs and decides on the number of replicates.
 pub(crate) struct Scheduler<'a> {
     plan: &'a Plan,
-    records: &'a Records,
+    records: &'a RunJournal,
     start: &'a dyn Fn(Task),
     /// Number of runs at once.
     threads: usize,
@@ -62,7 +62,12 @@ struct PointState {
 
 impl<'a> Scheduler<'a> {
     /// A scheduler; `start` has a run done by another thread.
-    pub(crate) fn new(plan: &'a Plan, records: &'a Records, start: &'a dyn Fn(Task), threads: usize) -> Self {
+    pub(crate) fn new(
+        plan: &'a Plan,
+        records: &'a RunJournal,
+        start: &'a dyn Fn(Task),
+        threads: usize,
+    ) -> Self {
         let until = plan.settings.until.as_ref();
         Self {
             plan,
@@ -93,7 +98,7 @@ impl<'a> Scheduler<'a> {
     /// Records finished runs and requests more, until no run is missing.
     pub(crate) fn run(
         mut self,
-        finished: &Receiver<Ended>,
+        finished: &Receiver<TaskResult>,
         stop: &AtomicBool,
         watch: &mut dyn FnMut(&Progress),
     ) -> Result<StudyResults, StudyError> {
@@ -122,7 +127,7 @@ impl<'a> Scheduler<'a> {
     }
 
     /// Writes finished runs to the journal, then ingests them.
-    fn record(&mut self, finished: impl Iterator<Item = Ended>) -> Result<(), StudyError> {
+    fn record(&mut self, finished: impl Iterator<Item = TaskResult>) -> Result<(), StudyError> {
         let (mut records, mut failure) = (Vec::new(), None);
         for ended in finished {
             match ended {

@@ -16,14 +16,14 @@ use slipfront_case::case_file::{
     syntax_error, unknown_case_table, unknown_key, whole,
 };
 use slipfront_case::key_rows;
-use slipfront_run::names::RECORDS;
+use slipfront_run::names::RUN_JOURNAL;
 
 /// Folders of studies. Their study file has the base case as a table in it: `slipfront study DIR/study.toml` repeats the study.
 pub(crate) static STUDIES: ProjectKind = ProjectKind {
     name: "study",
     table: "study",
     file: "study.toml",
-    journal: RECORDS,
+    journal: RUN_JOURNAL,
 };
 
 /// A study file.

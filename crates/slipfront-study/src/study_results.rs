@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 
 use crate::error::StudyError;
+use crate::finished_run::RunResult;
 use crate::plan::{Plan, Role, RunKey};
-use crate::record::RunResult;
 use crate::statistics::Sample;
 use crate::summary_values::{REDUCTION, RunQuantity, needs_transition, reduction_percent};
 

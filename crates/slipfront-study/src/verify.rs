@@ -20,7 +20,7 @@ use crate::folder::{StudyFolder, is_of_figures, stage, study_of};
 use crate::plan::Plan;
 use crate::project_folder::verify::{differences_from, verify_project};
 use crate::project_folder::{Derivation, Extent, Others, VerifyStudyError, verify_checksums};
-use crate::records::Records;
+use crate::run_journal::RunJournal;
 use crate::study_file::{RetainRuns, STUDIES};
 use crate::study_results::StudyResults;
 
@@ -44,7 +44,7 @@ pub fn verify(
     } else if let Some(derivation) = others.iter().find(|other| other.kind.is_in(folder)) {
         verify_project(folder, derivation, extent, stop)?
     } else if is_of_figures(folder) {
-        let (verdict, _) = verify_checksums(folder, &[Records::FILE, FIGURE_CACHE], stop)?;
+        let (verdict, _) = verify_checksums(folder, &[RunJournal::FILE, FIGURE_CACHE], stop)?;
         Verdict {
             not_derived: Some(format!(
                 "the figures in {} were not drawn again: `slipfront verify` does so",
@@ -64,7 +64,7 @@ pub fn verify(
 /// Compares a study with its list, makes its tables and pictures again from its records, and compares its run folders with their
 /// manifests.
 fn verify_study(folder: &Path, extent: Extent, stop: &AtomicBool) -> Result<Verdict, VerifyStudyError> {
-    let (mut verdict, is_complete) = verify_checksums(folder, &[Records::FILE, RUNS], stop)?;
+    let (mut verdict, is_complete) = verify_checksums(folder, &[RunJournal::FILE, RUNS], stop)?;
     let mut derived = None;
     if extent == Extent::Derived && verdict.differences.is_empty() {
         derived = derive_study(folder, &mut verdict, stop)?;
@@ -99,7 +99,7 @@ fn derive_study(
     let temporary = TemporaryFolder::new(folder).map_err(VerifyError::Temporary)?;
     let mut again = StudyFolder::open(temporary.path(), &file, false)?;
     again.records.merge(folder)?;
-    let records = folder.join(Records::FILE);
+    let records = folder.join(RunJournal::FILE);
     let (damaged, records) = (again.records.damaged, records.display());
     let results = match collect(&plan, &again.records) {
         Ok(results) => results,

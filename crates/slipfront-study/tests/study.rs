@@ -10,7 +10,7 @@ use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
 use slipfront_study::{
-    self as study, AxisKeys, Plan, Records, RunQuantity, Settings, StoppingRule, StudyFile, StudyResults,
+    self as study, AxisKeys, Plan, RunJournal, RunQuantity, Settings, StoppingRule, StudyFile, StudyResults,
     anisotropies,
 };
 
@@ -85,7 +85,7 @@ fn many_grooves_weaken_the_effect() {
     let study = StudyFile::load(&file).unwrap();
     let plan = Plan::new(&study, None).unwrap();
     let folder = tempfile::tempdir().unwrap();
-    let records = Records::open(folder.path()).unwrap();
+    let records = RunJournal::open(folder.path()).unwrap();
     let never = AtomicBool::new(false);
     let results = study::execute(&plan, &records, folder.path(), &never, &mut |_| {}).unwrap();
     let reductions = [37.4, 38.5, 38.4, 39.3, 32.0, 15.1];
@@ -101,7 +101,7 @@ fn results(text: &str) -> (Plan, StudyResults) {
     let study = StudyFile::parse(text, "study.toml", "study", Path::new("")).unwrap();
     let plan = Plan::new(&study, None).unwrap();
     let folder = tempfile::tempdir().unwrap();
-    let records = Records::open(folder.path()).unwrap();
+    let records = RunJournal::open(folder.path()).unwrap();
     let never = AtomicBool::new(false);
     let results = study::execute(&plan, &records, folder.path(), &never, &mut |_| {}).unwrap();
     (plan, results)

@@ -14,7 +14,7 @@ use std::sync::atomic::AtomicBool;
 
 use chacha20::ChaCha8Rng;
 use chacha20::rand_core::{Rng, SeedableRng};
-use slipfront_calibrate::{Calibration, Conditions, Grid, SetUp, Training, Unknown};
+use slipfront_calibrate::{Calibration, Conditions, SamplePoints, SetUp, Training, Unknown};
 use slipfront_case::case::Case;
 use slipfront_run::measured::{Measure, MeasuredRecord};
 use slipfront_study::StudyFile;
@@ -160,7 +160,7 @@ fn set_up() -> SetUp {
         unknowns: unknowns.collect(),
         conditions: vec![Conditions {
             overrides: Vec::new(),
-            grid: Grid::of(&record).unwrap(),
+            grid: SamplePoints::of(&record).unwrap(),
         }],
         is_finer: false,
     }

@@ -7,7 +7,7 @@ use slipfront_base::disk::{is_empty, make_folders};
 use slipfront_base::number_format::are;
 use slipfront_paper::{PaperError, PaperOptions};
 use slipfront_study::project_folder::ResultFiles;
-use slipfront_study::{Records, is_study};
+use slipfront_study::{RunJournal, is_study};
 
 use crate::failure::Failure;
 use crate::print::print_message;
@@ -109,7 +109,7 @@ fn refuse_foreign(docs: &Path) -> Result<(), Failure> {
 }
 
 /// Opens the records of an earlier call, or creates them in an empty folder.
-fn open(folder: &Path) -> Result<Records, Failure> {
+fn open(folder: &Path) -> Result<RunJournal, Failure> {
     let unusable = |error: std::io::Error| {
         Failure::input(anyhow::anyhow!(
             "cannot use the folder {}: {error}; choose another with --out",
@@ -117,7 +117,7 @@ fn open(folder: &Path) -> Result<Records, Failure> {
         ))
     };
     make_folders(folder).map_err(unusable)?;
-    let used = folder.join(Records::FILE).exists() && !is_study(folder);
+    let used = folder.join(RunJournal::FILE).exists() && !is_study(folder);
     if !used && !is_empty(folder).map_err(unusable)? {
         let sentence = "holds other things than figures of the paper: choose another with --out";
         return Err(Failure::input(anyhow::anyhow!(
@@ -125,5 +125,5 @@ fn open(folder: &Path) -> Result<Records, Failure> {
             folder.display()
         )));
     }
-    Records::open(folder).map_err(Failure::input)
+    RunJournal::open(folder).map_err(Failure::input)
 }

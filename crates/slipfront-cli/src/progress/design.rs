@@ -49,7 +49,7 @@ fn text(now: &SearchProgress, passed: Duration) -> String {
 
 #[cfg(test)]
 mod tests {
-    use slipfront_design::Work;
+    use slipfront_design::RunCost;
 
     use super::*;
 
@@ -63,7 +63,7 @@ mod tests {
             stage: DesignStage::Exploring,
             best: 31.25,
             best_texture: None,
-            work: Work { here, left: 1e9 },
+            work: RunCost { here, left: 1e9 },
         };
         assert_eq!(
             text(&now(1e8), Duration::from_secs(4)),

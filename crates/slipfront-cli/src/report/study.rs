@@ -6,7 +6,7 @@ use std::path::Path;
 use slipfront_base::number_format::{are, byte_size, count, four_digits, with_half_width};
 use slipfront_study::text_table::table;
 use slipfront_study::{
-    MeshedCoverage, Plan, REDUCTION, StudyResults, idle_axes, quantities_without_pictures, told_warnings,
+    MeshedCoverage, Plan, REDUCTION, StudyResults, idle_axes, quantities_without_pictures, warning_texts,
     why_no_pictures,
 };
 
@@ -87,7 +87,7 @@ fn merged(plan: &Plan) -> Option<String> {
 
 /// Warnings about the cases of a study as notes.
 fn case_warnings(plan: &Plan) -> String {
-    told_warnings(plan)
+    warning_texts(plan)
         .iter()
         .map(|sentence| note(sentence))
         .collect()
@@ -219,7 +219,7 @@ fn notes(plan: &Plan, results: &StudyResults) -> String {
     text += &case_warnings(plan);
     if results.orphaned_runs > 0 {
         text += &note(&format!(
-            "{} not part of the study as it is now, but kept in records.jsonl",
+            "{} not part of the study as it is now, but kept in runs.jsonl",
             are(results.orphaned_runs, "recorded run")
         ));
     }

@@ -15,7 +15,7 @@ use slipfront::testing::{Threads, alone};
 use slipfront_calibrate::{CalibrationFile, CalibrationFolder};
 use slipfront_case::case::{Case, PICTURES, PROGRAM, Ranks};
 use slipfront_case::case_file::CaseFile;
-use slipfront_design::{Bounds, DesignFile, Known};
+use slipfront_design::{Bounds, DesignFile, RunCache};
 use slipfront_run::checkpoint::Checkpoints;
 use slipfront_run::measured::Measure;
 use slipfront_run::run_curve::run_curve_unless;
@@ -25,7 +25,7 @@ use slipfront_run::run_folder::unfinished::Unfinished;
 use slipfront_run::running::Running;
 use slipfront_run::{pictures, results, running};
 use slipfront_study as study;
-use slipfront_study::{Plan, Records, StudyFile};
+use slipfront_study::{Plan, RunJournal, StudyFile};
 
 /// The system's allocator, counting bytes of all threads.
 struct Counting;
@@ -459,7 +459,7 @@ fn designs(_: &Path) {
             cut: None,
         };
         let design = file.design().unwrap();
-        design.run(&bounds, &mut Known::new(), &mut |_| Ok(()), &mut |_| {})
+        design.run(&bounds, &mut RunCache::new(), &mut |_| Ok(()), &mut |_| {})
     };
     assert_honest_on_threads(
         "a design",
@@ -554,7 +554,7 @@ fn study(base: &str, folder: &Path) {
         |threads| plan.memory(threads),
         |threads| {
             let records = tempfile::tempdir().unwrap();
-            let records = Records::open(records.path()).unwrap();
+            let records = RunJournal::open(records.path()).unwrap();
             let never = AtomicBool::new(false);
             on_threads(threads, || {
                 study::execute(&plan, &records, folder, &never, &mut |_| {})

@@ -340,7 +340,7 @@ fn a_study_without_room_is_said_before_its_runs() {
     for word in ["take about 400.0 KiB where ", "are free in disk/a", "study.keep"] {
         assert!(said.contains(word), "{said}");
     }
-    assert!(workspace.read("left/a/records.jsonl").is_empty());
+    assert!(workspace.read("left/a/runs.jsonl").is_empty());
 }
 
 /// A disk that takes so many bytes, but not so many files.

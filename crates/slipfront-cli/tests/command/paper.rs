@@ -86,7 +86,7 @@ fn what_others_have_written_stays() {
         "paper.md is not of an earlier call",
     );
     assert!(!workspace.exists("paper"));
-    workspace.write("paper/records.jsonl", "");
+    workspace.write("paper/runs.jsonl", "");
     workspace.write("paper/study.toml", "study.replicates = 1");
     refused(
         &workspace,

@@ -161,7 +161,7 @@ fn pipes_and_endless_files_end_no_verification() {
         ),
         (
             WRITERS[3].0,
-            ["records.jsonl", "study.toml", "checksums.json", "points.csv"],
+            ["runs.jsonl", "study.toml", "checksums.json", "points.csv"],
         ),
     ] {
         workspace.remove("out");
@@ -273,7 +273,7 @@ fn journals_of_another_kind_are_refused() {
     let kinds = [
         ("design", WRITERS[0].0, "design.jsonl"),
         ("calibration", WRITERS[1].0, "training.jsonl"),
-        ("study", WRITERS[3].0, "records.jsonl"),
+        ("study", WRITERS[3].0, "runs.jsonl"),
     ];
     for (kind, line, _) in kinds {
         workspace.succeed(&line.replace("-o out", &format!("-o {kind}")));

@@ -183,7 +183,7 @@ fn others() -> &'static Others {
             "other/series.csv",
             "other/fields.nc",
             "other/friction.png",
-            "study/records.jsonl",
+            "study/runs.jsonl",
             "study/points.csv",
         ];
         names.map(|name| (name.to_owned(), workspace.read(name))).into()
@@ -402,7 +402,7 @@ fn of_a_study_folder() {
     let (workspace, whole) = with_results(&JOBS[1]);
     let mut tally = Tally::new("damage");
     for name in whole.keys() {
-        let records = name == "records.jsonl" || name == "study.toml";
+        let records = name == "runs.jsonl" || name == "study.toml";
         let target = Target {
             kind: "studies that are verified",
             name: &format!("out/{name}"),
@@ -490,7 +490,7 @@ fn of_shards() {
     let line = "study merge part1 part2 --quiet -o merged";
     workspace.succeed_bounded(line).unwrap();
     let whole = workspace.files_if_any("merged");
-    for name in ["part1/records.jsonl", "part2/study.toml", "part1/study.toml"] {
+    for name in ["part1/runs.jsonl", "part2/study.toml", "part1/study.toml"] {
         let judge = |_: &Damage| {
             workspace.remove("merged");
             let ended = workspace.run_bounded(line)?;
@@ -514,7 +514,7 @@ fn of_a_paper() {
     let (workspace, whole) = with_results(&JOBS[2]);
     let mut tally = Tally::new("damage");
     for name in whole.keys() {
-        let kept = name.starts_with("found/") || name == "records.jsonl";
+        let kept = name.starts_with("found/") || name == "runs.jsonl";
         let target = Target {
             kind: "the paper's folder",
             name: &format!("out/{name}"),

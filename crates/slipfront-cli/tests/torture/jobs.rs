@@ -405,7 +405,7 @@ pub(crate) fn expect_all(now: &Files, whole: &Files) -> Result<(), String> {
     if now.get("checksums.json") != whole.get("checksums.json") {
         return Err("checksums.json is wrong".to_owned());
     }
-    if let (Some(now), Some(whole)) = (now.get("records.jsonl"), whole.get("records.jsonl")) {
+    if let (Some(now), Some(whole)) = (now.get("runs.jsonl"), whole.get("runs.jsonl")) {
         let now = records(now)?;
         // Runs of another study may stand there, too.
         if records(whole)?

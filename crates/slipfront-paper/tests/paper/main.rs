@@ -11,7 +11,7 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use slipfront_paper::{ClaimVerdict, FIGURES, Paper, PaperOptions};
 use slipfront_study::project_folder::Extent;
 use slipfront_study::project_folder::{Others, ResultFiles};
-use slipfront_study::{Records, StudyError};
+use slipfront_study::{RunJournal, StudyError};
 
 fn options<'a>(folder: &'a Path, stop: &'a AtomicBool) -> PaperOptions<'a> {
     PaperOptions {
@@ -24,7 +24,7 @@ fn options<'a>(folder: &'a Path, stop: &'a AtomicBool) -> PaperOptions<'a> {
 
 fn run(names: &[&str], folder: &Path, stop: &AtomicBool) -> Result<Paper, slipfront_paper::PaperError> {
     let names: Vec<String> = names.iter().map(|&name| name.to_owned()).collect();
-    let records = Records::open(folder)?;
+    let records = RunJournal::open(folder)?;
     slipfront_paper::run(
         &slipfront_paper::figures(&names)?,
         &records,
@@ -176,10 +176,10 @@ fn finished_runs_of_a_figure_that_was_not_finished_are_not_run_again() {
     let folder = tempfile::tempdir().unwrap();
     let never = AtomicBool::new(false);
     let first = run(&["fig8"], folder.path(), &never).unwrap();
-    let runs = Records::open(folder.path()).unwrap().len();
+    let runs = RunJournal::open(folder.path()).unwrap().len();
     std::fs::remove_dir_all(folder.path().join("found")).unwrap();
     let names = ["fig08".to_owned()];
-    let records = Records::open(folder.path()).unwrap();
+    let records = RunJournal::open(folder.path()).unwrap();
     let here = AtomicUsize::new(0);
     let figures = slipfront_paper::figures(&names).unwrap();
     let second = slipfront_paper::run(&figures, &records, &options(folder.path(), &never), &|stage| {

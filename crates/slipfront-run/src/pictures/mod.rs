@@ -29,7 +29,7 @@ use crate::names::{KYMOGRAPH, MOVIE, RunPicture, SERIES};
 use crate::results;
 use crate::run_files::RunFiles;
 use crate::run_folder::RunFolder;
-use crate::running::Record;
+use crate::running::RunData;
 
 /// Largest number of bytes of the pixels of a picture whose size a user chooses.
 const PIXELS: f64 = 96.0 * 1024.0 * 1024.0;
@@ -47,16 +47,16 @@ pub fn memory(folders: &[PathBuf]) -> Result<f64, RunPictureError> {
 }
 
 /// Writes the results of a run on one rank to its folder, where the case stands already, then the pictures and the manifest, which
-/// completes it. The fields are moved out of the record, which frees their memory before the pictures are drawn. After an error the
+/// completes it. The fields are moved out of the data, which frees their memory before the pictures are drawn. After an error the
 /// folder is left without a manifest.
 pub fn write_run(
     case: &Case,
-    record: &mut Record,
+    data: &mut RunData,
     mut folder: RunFolder,
     started: jiff::Timestamp,
     threads: usize,
 ) -> Result<Manifest, RunPictureError> {
-    results::write(case, record, &mut folder)?;
+    results::write(case, data, &mut folder)?;
     complete(case, folder, started, threads)
 }
 

@@ -6,7 +6,7 @@ use slipfront_base::text::note;
 use super::on_meshes::{Convergence, OnMeshes, Verdict};
 use crate::plan::Plan;
 use crate::text_table::table;
-use crate::told_warnings::told_warnings;
+use crate::warning_texts::warning_texts;
 
 /// The table of the results on every mesh, and a sentence on each quantity. Notes, in lines of at most `columns` characters,
 /// name lengths of the material that equal the length of a block, and the warnings about the cases.
@@ -33,7 +33,7 @@ pub fn text(plan: &Plan, found: &OnMeshes, columns: usize) -> String {
         );
         text += &note(&sentence, columns);
     }
-    let warnings = told_warnings(plan);
+    let warnings = warning_texts(plan);
     warnings
         .iter()
         .fold(text, |text, warning| text + &note(warning, columns))

@@ -11,10 +11,10 @@ use serde::Serialize;
 use slipfront_base::disk::{open_limited, sync_folder};
 use slipfront_base::unfinished::clear_unfinished;
 
-use super::line::{JournalRecord, Line, looks_like_ours, may_begin_ours, parse_line, to_line};
+use super::line::{JournalEntry, Line, looks_like_ours, may_begin_ours, parse_line, to_line};
 use crate::error::StudyError;
 
-/// A file of records, a line each, open for one process alone.
+/// A file of entries, a line each, open for one process alone.
 #[derive(Debug)]
 pub struct Journal {
     path: PathBuf,
@@ -23,8 +23,8 @@ pub struct Journal {
 
 impl Journal {
     /// Opens the file of this name in a folder, unless another process has it open, and makes an empty one where there is
-    /// none. Returns the records in it, and the number of lines that failed their checksum.
-    pub fn open<T: JournalRecord>(folder: &Path, name: &str) -> Result<(Self, Vec<T>, usize), StudyError> {
+    /// none. Returns the entries in it, and the number of lines that failed their checksum.
+    pub fn open<T: JournalEntry>(folder: &Path, name: &str) -> Result<(Self, Vec<T>, usize), StudyError> {
         let path = folder.join(name);
         let mut file = open_locked(&path, folder)?;
         // A study that has changed since it was killed may not write the same files again.
@@ -37,21 +37,21 @@ impl Journal {
         if lines.bytes == 0 {
             sync_folder(folder).map_err(failed("write to", &path))?;
         }
-        Ok((Self { path, file }, lines.records, lines.damaged))
+        Ok((Self { path, file }, lines.entries, lines.damaged))
     }
 
-    /// Reads the file of this name in a folder, whoever has it open: the records in it, and the number of lines that failed their checksum.
+    /// Reads the file of this name in a folder, whoever has it open: the entries in it, and the number of lines that failed their checksum.
     ///
     /// # Errors
-    /// When the file cannot be read, or has no records of this kind.
-    pub fn read<T: JournalRecord>(folder: &Path, name: &str) -> Result<(Vec<T>, usize), StudyError> {
+    /// When the file cannot be read, or has no entries of this kind.
+    pub fn read<T: JournalEntry>(folder: &Path, name: &str) -> Result<(Vec<T>, usize), StudyError> {
         let lines = JournalLines::read_at(&folder.join(name))?;
-        Ok((lines.records, lines.damaged))
+        Ok((lines.entries, lines.damaged))
     }
 
-    /// Copies a file of records of this kind, called `name`, from one folder to another. It is looked at before: what is no record is
+    /// Copies a file of entries of this kind, called `name`, from one folder to another. It is looked at before: what is no entry is
     /// not copied, however long it is.
-    pub fn copy<T: JournalRecord>(from: &Path, to: &Path, name: &str) -> Result<(), StudyError> {
+    pub fn copy<T: JournalEntry>(from: &Path, to: &Path, name: &str) -> Result<(), StudyError> {
         let path = from.join(name);
         let bytes = JournalLines::<T>::read_at(&path)?.bytes;
         let to = to.join(name);
@@ -60,12 +60,12 @@ impl Journal {
         copied.map(drop).map_err(failed("write to", &to))
     }
 
-    /// Appends records, each as a line, and waits until they are on the disk; earlier records stay whole.
+    /// Appends entries, each as a line, and waits until they are on the disk; earlier entries stay whole.
     ///
     /// # Errors
     /// When the system refuses to write.
-    pub fn append(&mut self, records: impl IntoIterator<Item = impl Serialize>) -> Result<(), StudyError> {
-        let lines: Vec<u8> = records.into_iter().flat_map(|record| to_line(&record)).collect();
+    pub fn append(&mut self, entries: impl IntoIterator<Item = impl Serialize>) -> Result<(), StudyError> {
+        let lines: Vec<u8> = entries.into_iter().flat_map(|entry| to_line(&entry)).collect();
         if lines.is_empty() {
             return Ok(());
         }
@@ -86,16 +86,16 @@ impl Journal {
     }
 }
 
-/// The error of an action on a record file that the system refused.
+/// The error of an action on a journal that the system refused.
 fn failed(action: &'static str, path: &Path) -> impl Fn(std::io::Error) -> StudyError {
-    move |source| StudyError::Records {
+    move |source| StudyError::Journal {
         action,
         path: path.to_owned(),
         source,
     }
 }
 
-/// Opens the record file and locks it for this process.
+/// Opens the journal and locks it for this process.
 fn open_locked(path: &Path, folder: &Path) -> Result<File, StudyError> {
     let mut options = OpenOptions::new();
     options.read(true).append(true).create(true);
@@ -103,7 +103,7 @@ fn open_locked(path: &Path, folder: &Path) -> Result<File, StudyError> {
     let metadata = file.metadata().map_err(failed("open", path))?;
     // Reading a pipe would wait for a writer, and reading a device might not end.
     if !metadata.is_file() {
-        return Err(StudyError::NotRecords {
+        return Err(StudyError::NotJournal {
             path: path.to_owned(),
         });
     }
@@ -116,29 +116,29 @@ fn open_locked(path: &Path, folder: &Path) -> Result<File, StudyError> {
     Ok(file)
 }
 
-/// The longest line of a record file: hundreds of times what a run takes.
+/// The longest line of a journal: hundreds of times what a run takes.
 const LINE_MAX_BYTES: u64 = 1 << 20;
 
-/// The contents of a record file.
+/// The contents of a journal.
 struct JournalLines<T> {
-    records: Vec<T>,
+    entries: Vec<T>,
     /// Lines that fail their checksum.
     damaged: usize,
-    /// Whether a line is a record or may once have been one.
+    /// Whether a line is an entry or may once have been one.
     ours: bool,
-    /// Whether a line is whole, but no record of this kind.
+    /// Whether a line is whole, but no entry of this kind.
     is_of_others: bool,
-    /// Whether a line is longer than any record.
+    /// Whether a line is longer than any entry.
     too_long: bool,
     bytes: u64,
-    /// Whether the last line is a record without a line break.
+    /// Whether the last line is an entry without a line break.
     lacks_break: bool,
     /// Position at which the last line begins, if it is a part of a line.
     cut_at: Option<u64>,
 }
 
-impl<T: JournalRecord> JournalLines<T> {
-    /// Reads a file that may be open elsewhere, unless it is none of such records.
+impl<T: JournalEntry> JournalLines<T> {
+    /// Reads a file that may be open elsewhere, unless it is none of such entries.
     fn read_at(path: &Path) -> Result<Self, StudyError> {
         let read = open_limited(path, u64::MAX).and_then(|mut file| Self::read(&mut file));
         let lines = read.map_err(failed("read", path))?;
@@ -146,11 +146,11 @@ impl<T: JournalRecord> JournalLines<T> {
         Ok(lines)
     }
 
-    /// Reads line by line: a file of any length takes no more memory than its records.
+    /// Reads line by line: a file of any length takes no more memory than its entries.
     fn read(file: &mut impl Read) -> std::io::Result<Self> {
         let mut file = BufReader::new(file);
         let mut lines = Self {
-            records: Vec::new(),
+            entries: Vec::new(),
             damaged: 0,
             ours: false,
             is_of_others: false,
@@ -175,8 +175,8 @@ impl<T: JournalRecord> JournalLines<T> {
             }
             lines.ours |= looks_like_ours(&line) || (!broken && may_begin_ours(&line));
             match parse_line(&line) {
-                Some(Line::Record(record)) => {
-                    lines.records.push(record);
+                Some(Line::Entry(entry)) => {
+                    lines.entries.push(entry);
                     lines.lacks_break = !broken;
                 }
                 // Its run counts as not made, as that of a damaged line.
@@ -191,8 +191,8 @@ impl<T: JournalRecord> JournalLines<T> {
         Ok(lines)
     }
 
-    /// Makes the file end with a line break, so that the next record begins a line: a record that lacks its line break gets
-    /// it, and a part of a record is cut off.
+    /// Makes the file end with a line break, so that the next entry begins a line: an entry that lacks its line break gets
+    /// it, and a part of an entry is cut off.
     fn repair_end(&self, file: &mut File) -> std::io::Result<()> {
         match self.cut_at {
             Some(begin) => file.set_len(begin),
@@ -201,14 +201,14 @@ impl<T: JournalRecord> JournalLines<T> {
         }
     }
 
-    /// Refuses a file that is not a record file, not even a damaged one, or has records of another kind.
+    /// Refuses a file that is not a journal, not even a damaged one, or has entries of another kind.
     fn expect_ours(&self, path: &Path) -> Result<(), StudyError> {
         let path = path.to_owned();
         if self.too_long || (self.damaged > 0 && !self.ours) {
-            return Err(StudyError::NotRecords { path });
+            return Err(StudyError::NotJournal { path });
         }
         if self.is_of_others {
-            return Err(StudyError::OtherRecords { path });
+            return Err(StudyError::OtherJournal { path });
         }
         Ok(())
     }

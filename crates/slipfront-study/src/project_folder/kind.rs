@@ -7,7 +7,7 @@ use slipfront_case::case_file::read_text;
 use slipfront_run::folder_error::FolderError;
 
 use super::journal::Journal;
-use super::line::JournalRecord;
+use super::line::JournalEntry;
 use crate::error::StudyError;
 
 /// A kind of projects, each of which has its results in a folder.
@@ -72,13 +72,13 @@ impl ProjectKind {
     ///
     /// # Errors
     /// When another process has it open, when it is no journal of this kind, or when the system refuses.
-    pub fn open_journal<T: JournalRecord>(
+    pub fn open_journal<T: JournalEntry>(
         &self,
         folder: &Path,
     ) -> Result<(Journal, Vec<T>, usize), StudyError> {
         make_folders(folder).map_err(FolderError::unwritable(folder))?;
         Journal::open(folder, self.journal).map_err(|error| match error {
-            StudyError::NotRecords { path } => FolderError::Foreign { path }.into(),
+            StudyError::NotJournal { path } => FolderError::Foreign { path }.into(),
             error => error,
         })
     }

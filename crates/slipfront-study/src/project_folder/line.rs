@@ -4,36 +4,36 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::{Map, Value};
 
-/// The line of a record with its line break.
-pub(crate) fn to_line(record: &impl Serialize) -> Vec<u8> {
+/// The line of an entry with its line break.
+pub(crate) fn to_line(entry: &impl Serialize) -> Vec<u8> {
     // Our own struct of numbers and strings: serialisation cannot fail.
-    let json = serde_json::to_string(record).unwrap_or_default();
+    let json = serde_json::to_string(entry).unwrap_or_default();
     format!("{} {json}\n", checksum(json.as_bytes())).into_bytes()
 }
 
-/// A record that a line of a journal can hold.
-pub trait JournalRecord: DeserializeOwned {
-    /// Keys of which every record of this kind has one, in any version of slipfront.
+/// An entry that a line of a journal can hold.
+pub trait JournalEntry: DeserializeOwned {
+    /// Keys of which every entry of this kind has one, in any version of slipfront.
     const KEYS: &'static [&'static str];
 }
 
 /// A whole line of a journal.
 pub(super) enum Line<T> {
-    Record(T),
-    /// A record of this kind that another version of slipfront has written.
+    Entry(T),
+    /// An entry of this kind that another version of slipfront has written.
     OfOtherVersion,
     OfOtherKind,
 }
 
 /// The line of a journal without its line break; none if it fails its checksum.
-pub(super) fn parse_line<T: JournalRecord>(line: &[u8]) -> Option<Line<T>> {
+pub(super) fn parse_line<T: JournalEntry>(line: &[u8]) -> Option<Line<T>> {
     let (sum, json) = line.split_at_checked(CHECKSUM)?;
     let json = json.strip_prefix(b" ")?;
     if checksum(json).as_bytes() != sum {
         return None;
     }
-    if let Ok(record) = serde_json::from_slice(json) {
-        return Some(Line::Record(record));
+    if let Ok(entry) = serde_json::from_slice(json) {
+        return Some(Line::Entry(entry));
     }
     let keys: Map<String, Value> = serde_json::from_slice(json).unwrap_or_default();
     let is_of_kind = T::KEYS.iter().any(|key| keys.contains_key(*key));
@@ -44,12 +44,12 @@ pub(super) fn parse_line<T: JournalRecord>(line: &[u8]) -> Option<Line<T>> {
     })
 }
 
-/// Whether a line has the form of a record, damaged or not. A file without any such line is not a journal.
+/// Whether a line has the form of an entry, damaged or not. A file without any such line is not a journal.
 pub(super) fn looks_like_ours(line: &[u8]) -> bool {
     line.get(CHECKSUM) == Some(&b' ') && line.get(CHECKSUM + 1) == Some(&b'{')
 }
 
-/// Whether the last line may be the beginning of a record: it ends within the checksum, or consists of zeros, which a power cut
+/// Whether the last line may be the beginning of an entry: it ends within the checksum, or consists of zeros, which a power cut
 /// can leave.
 pub(super) fn may_begin_ours(line: &[u8]) -> bool {
     let (sum, blank) = line.split_at(line.len().min(CHECKSUM));

@@ -6,26 +6,26 @@
 //! ```
 
 mod checksums;
-mod given;
 pub(crate) mod input_copies;
 mod journal;
+mod kept_inputs;
 mod kind;
 mod line;
 mod notes;
+mod read_numbers;
 mod result_files;
 pub(crate) mod verify;
-mod written_numbers;
 
 pub use checksums::{CHECKSUMS, Checksums};
-pub use given::Given;
 pub use input_copies::Copy;
 pub(crate) use input_copies::plain_name;
 pub use journal::Journal;
+pub use kept_inputs::Given;
 pub use kind::ProjectKind;
-pub use line::JournalRecord;
+pub use line::JournalEntry;
 #[cfg(test)]
 pub(crate) use line::to_line;
 pub use notes::notes_of_use;
+pub use read_numbers::read_numbers;
 pub use result_files::{Batch, Others, ResultFiles};
 pub use verify::{Derivation, Extent, VerifyStudyError, verify_checksums};
-pub use written_numbers::read_numbers;

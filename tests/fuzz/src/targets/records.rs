@@ -1,6 +1,6 @@
 //! Records of finished runs, one line each with a checksum.
 
-use slipfront_study::{FinishedRun, Outcome, Records};
+use slipfront_study::{FinishedRun, Outcome, RunJournal};
 
 use super::json::{long_objects, summary};
 use crate::checks::readable;
@@ -94,15 +94,15 @@ fn records(input: &[u8]) {
 }
 
 /// Opens a file of records, appends a record, and demands that all records are there when it is opened again.
-fn open(file: &[u8]) -> Option<Records> {
+fn open(file: &[u8]) -> Option<RunJournal> {
     let folder = scratch::folder("records");
-    std::fs::write(folder.join(Records::FILE), file).unwrap();
-    let records = match Records::open(&folder) {
+    std::fs::write(folder.join(RunJournal::FILE), file).unwrap();
+    let records = match RunJournal::open(&folder) {
         Ok(records) => records,
         Err(error) => {
             readable(&error);
             // A file that is refused is left unchanged.
-            assert_eq!(std::fs::read(folder.join(Records::FILE)).unwrap(), file);
+            assert_eq!(std::fs::read(folder.join(RunJournal::FILE)).unwrap(), file);
             return None;
         }
     };
@@ -111,7 +111,7 @@ fn open(file: &[u8]) -> Option<Records> {
     let known = usize::from(records.get(&one_more.id).is_some());
     records.append(&[one_more]).unwrap();
     drop(records);
-    let mut again = Records::open(&folder).unwrap();
+    let mut again = RunJournal::open(&folder).unwrap();
     let damaged = again.damaged;
     assert_eq!(again.len(), before + 1 - known);
     assert!(again.get("one more").is_some());

@@ -104,10 +104,10 @@ fn a_torn_last_line_is_run_again() {
 fn a_folder_with_other_things_is_left_alone() {
     let workspace = Workspace::with_study(SMALL);
     workspace.write("out/thesis.tex", "years of work");
-    workspace.write("notes/records.jsonl", "my own records\nof something\n");
+    workspace.write("notes/runs.jsonl", "my own records\nof something\n");
     for (out, sentence) in [
         ("out", "holds other things"),
-        ("notes", "records.jsonl is not a file of an earlier run"),
+        ("notes", "runs.jsonl is not a file of an earlier run"),
     ] {
         let output = workspace.output(&format!("study study.toml -o {out}"));
         assert_eq!(output.status.code(), Some(2));

@@ -106,7 +106,7 @@ fn a_full_disk_ends_it_with_a_sentence_and_it_goes_on() {
     assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
     let said = stderr(&output);
     assert!(
-        said.contains("records.jsonl") && said.contains("finished runs are safe"),
+        said.contains("runs.jsonl") && said.contains("finished runs are safe"),
         "{said}"
     );
     let before = workspace.results("full").recorded().len();

@@ -82,7 +82,7 @@ impl Results {
     }
 
     pub(crate) fn records(&self) -> PathBuf {
-        self.path.join("records.jsonl")
+        self.path.join("runs.jsonl")
     }
 
     /// Identities of recorded runs, in their order; none where there is no journal yet.

@@ -47,7 +47,7 @@ fn run_folders_that_shards_kept_are_taken_over() {
         workspace.succeed(&format!("study study.toml --shard {part}/2 -o {out}"));
     }
     // What kills left: of an earlier try, of a run in the folder, and of one in a shard which another one holds whole.
-    workspace.write("merged/records.jsonl", "");
+    workspace.write("merged/runs.jsonl", "");
     let hash = blake3::hash(b"an old case").to_hex();
     let journal = format!("{{\"name\":\"case.toml\",\"bytes\":11,\"blake3\":\"{hash}\"}}\n");
     for run in std::fs::read_dir(workspace.path("part2/runs")).unwrap() {

@@ -99,7 +99,7 @@ fn records_of_something_else_are_called_so() {
     workspace.study("out");
     workspace.write("other.toml", format!("{SMALL}\n[base.friction]\nseed = 77\n"));
     workspace.succeed("study other.toml -o other");
-    workspace.write("other/records.jsonl", workspace.read("out/records.jsonl"));
+    workspace.write("other/runs.jsonl", workspace.read("out/runs.jsonl"));
     let (status, _, problems) = verified(&workspace, "other");
     assert_eq!(status, 2);
     assert!(
@@ -124,7 +124,7 @@ fn records_that_were_damaged_and_mended_are_whole() {
     workspace.study("out");
     let (status, said, _) = verified(&workspace, "out");
     assert!(
-        status == 0 && said.contains("note: out/records.jsonl has 1 damaged line, whose"),
+        status == 0 && said.contains("note: out/runs.jsonl has 1 damaged line, whose"),
         "{said}"
     );
 }

@@ -10,7 +10,7 @@ const MAX_VALUES: usize = 400;
 
 /// Places at which friction of a record is known.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Grid {
+pub struct SamplePoints {
     /// Quantity of the places: time or displacement.
     along: Measure,
     /// Quantity at the places: force or coefficient.
@@ -21,7 +21,7 @@ pub struct Grid {
     count: usize,
 }
 
-impl Grid {
+impl SamplePoints {
     /// As many equal steps as a record has values, from its first to its last; none for a record that is too short or stands
     /// still.
     pub fn of(record: &MeasuredRecord) -> Option<Self> {
@@ -149,14 +149,14 @@ mod tests {
     #[test]
     fn a_record_in_equal_steps_is_itself() {
         let record = record(50);
-        let grid = Grid::of(&record).unwrap();
+        let grid = SamplePoints::of(&record).unwrap();
         assert_eq!((grid.places(), grid.record(&record)), (record.x, record.y));
     }
 
     #[test]
     fn neighbours_of_a_long_record_are_averaged() {
         let record = record(1000);
-        let grid = Grid::of(&record).unwrap();
+        let grid = SamplePoints::of(&record).unwrap();
         let (places, values) = (grid.places(), grid.record(&record));
         assert_eq!((places.len(), places[0], places[1]), (333, 0.5, 2.0));
         assert!(places.iter().zip(values).all(|(x, y)| (y - 3.0 * x).abs() < 1e-9));
@@ -172,14 +172,14 @@ mod tests {
             of: Measure::Force,
             footer: None,
         };
-        assert_eq!(Grid::of(&still), None);
-        assert_eq!(Grid::of(&record(MIN_VALUES - 1)), None);
+        assert_eq!(SamplePoints::of(&still), None);
+        assert_eq!(SamplePoints::of(&record(MIN_VALUES - 1)), None);
     }
 
     #[test]
     fn a_run_that_ends_too_soon_has_no_curve() {
         let record = record(50);
-        let grid = Grid::of(&record).unwrap();
+        let grid = SamplePoints::of(&record).unwrap();
         let mut run = RunCurve {
             displacement: record.x.clone(),
             time: record.x,

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use crate::project_folder::JournalRecord;
+use crate::project_folder::JournalEntry;
 use crate::summary_values::SummaryValues;
 use slipfront_run::summary::Summary;
 
@@ -56,7 +56,7 @@ pub struct FinishedRun {
     pub outcome: Outcome,
 }
 
-impl JournalRecord for FinishedRun {
+impl JournalEntry for FinishedRun {
     const KEYS: &'static [&'static str] = &["outcome"];
 }
 

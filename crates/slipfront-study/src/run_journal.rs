@@ -1,45 +1,45 @@
-//! The records of a study: its journal, and what its tables need of each run in memory.
+//! The runs of a study: its journal, and what its tables need of each run in memory.
 
 use std::collections::HashMap;
 use std::path::Path;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use slipfront_run::names::RECORDS;
+use slipfront_run::names::RUN_JOURNAL;
 
 use crate::error::StudyError;
+use crate::finished_run::{FinishedRun, RunResult};
 use crate::project_folder::Journal;
-use crate::record::{FinishedRun, RunResult};
 
-/// The record file of a study folder, open for one process alone, whose threads may share it.
+/// The journal of a study folder, open for one process alone, whose threads may share it.
 #[derive(Debug)]
-pub struct Records {
-    written: Mutex<Written>,
+pub struct RunJournal {
+    state: Mutex<JournalState>,
     /// Lines that failed their checksum.
     pub damaged: usize,
 }
 
 /// The file, and the results in it.
 #[derive(Debug)]
-struct Written {
+struct JournalState {
     journal: Journal,
     results: HashMap<String, RunResult>,
 }
 
-impl Records {
-    /// Name of the record file in its folder.
-    pub const FILE: &str = RECORDS;
+impl RunJournal {
+    /// Name of the journal in its folder.
+    pub const FILE: &str = RUN_JOURNAL;
 
     /// Opens the records of a study folder, unless another process has them open; a folder without them gets an empty file.
     pub fn open(folder: &Path) -> Result<Self, StudyError> {
-        Journal::open(folder, RECORDS).map(Self::of)
+        Journal::open(folder, RUN_JOURNAL).map(Self::of)
     }
 
-    /// The records of a journal that was opened.
+    /// The runs of a journal that was opened.
     pub(crate) fn of((journal, records, damaged): (Journal, Vec<FinishedRun>, usize)) -> Self {
         // Each record is dropped before the next is looked at.
         let results = records.into_iter().map(|record| entry(&record));
         Self {
-            written: Mutex::new(Written {
+            state: Mutex::new(JournalState {
                 journal,
                 results: results.collect(),
             }),
@@ -48,18 +48,18 @@ impl Records {
     }
 
     /// The file and results, locked for this thread. A thread that panicked has left them whole: results are added last.
-    fn written(&self) -> MutexGuard<'_, Written> {
-        self.written.lock().unwrap_or_else(PoisonError::into_inner)
+    fn state(&self) -> MutexGuard<'_, JournalState> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// The result of the run with this identity, if it is recorded.
     pub fn get(&self, id: &str) -> Option<RunResult> {
-        self.written().results.get(id).cloned()
+        self.state().results.get(id).cloned()
     }
 
     /// Number of runs recorded.
     pub fn len(&self) -> usize {
-        self.written().results.len()
+        self.state().results.len()
     }
 
     /// Whether the file has no records.
@@ -69,7 +69,7 @@ impl Records {
 
     /// Appends finished runs that are not recorded yet and waits until they are on the disk; earlier records stay whole.
     pub fn append(&self, records: &[FinishedRun]) -> Result<(), StudyError> {
-        let Written { journal, results } = &mut *self.written();
+        let JournalState { journal, results } = &mut *self.state();
         // Studies that share the file may have made the same run at the same time.
         let unknown = records.iter().filter(|record| !results.contains_key(&record.id));
         journal.append(unknown)?;
@@ -79,7 +79,7 @@ impl Records {
 
     /// Appends the records of another folder that are not here yet, and returns their number.
     pub fn merge(&mut self, folder: &Path) -> Result<usize, StudyError> {
-        let (mut records, damaged) = Journal::read::<FinishedRun>(folder, RECORDS)?;
+        let (mut records, damaged) = Journal::read::<FinishedRun>(folder, RUN_JOURNAL)?;
         self.damaged += damaged;
         records.retain(|record| self.get(&record.id).is_none());
         // Their lines need not be in memory all at once.
@@ -104,8 +104,8 @@ mod tests {
 
     use super::*;
     use crate::error::StudyError;
+    use crate::finished_run::Outcome;
     use crate::project_folder::to_line;
-    use crate::record::Outcome;
 
     fn record(id: &str) -> FinishedRun {
         FinishedRun {
@@ -127,8 +127,12 @@ mod tests {
         {
             let left = usize::from(cut == next.len() - 1);
             let folder = tempfile::tempdir().unwrap();
-            std::fs::write(folder.path().join(RECORDS), [&whole[..], &next[..cut]].concat()).unwrap();
-            let records = Records::open(folder.path()).unwrap();
+            std::fs::write(
+                folder.path().join(RUN_JOURNAL),
+                [&whole[..], &next[..cut]].concat(),
+            )
+            .unwrap();
+            let records = RunJournal::open(folder.path()).unwrap();
             assert_eq!(
                 (records.len(), records.get("b").is_some()),
                 (1 + left, left == 1),
@@ -136,12 +140,12 @@ mod tests {
             );
             records.append(&[record("c")]).unwrap();
             drop(records);
-            let records = Records::open(folder.path()).unwrap();
+            let records = RunJournal::open(folder.path()).unwrap();
             assert_eq!((records.len(), records.damaged), (2 + left, 0), "cut at {cut}");
             // The first line of all may be cut as well.
-            std::fs::write(folder.path().join(RECORDS), &next[..cut]).unwrap();
+            std::fs::write(folder.path().join(RUN_JOURNAL), &next[..cut]).unwrap();
             drop(records);
-            let records = Records::open(folder.path()).unwrap();
+            let records = RunJournal::open(folder.path()).unwrap();
             assert_eq!(records.len(), left, "cut at {cut}");
         }
     }
@@ -159,8 +163,8 @@ mod tests {
             let mut damaged = lines.clone();
             damaged[middle] ^= 1 << bit;
             let folder = tempfile::tempdir().unwrap();
-            std::fs::write(folder.path().join(RECORDS), damaged).unwrap();
-            let (records, damaged) = Journal::read::<FinishedRun>(folder.path(), RECORDS).unwrap();
+            std::fs::write(folder.path().join(RUN_JOURNAL), damaged).unwrap();
+            let (records, damaged) = Journal::read::<FinishedRun>(folder.path(), RUN_JOURNAL).unwrap();
             let ids: Vec<&str> = records.iter().map(|record| record.id.as_str()).collect();
             assert_eq!(ids, ["a", "c"]);
             assert!(damaged >= 1);
@@ -170,22 +174,22 @@ mod tests {
     #[test]
     fn one_process_at_a_time_and_no_foreign_file() {
         let folder = tempfile::tempdir().unwrap();
-        let first = Records::open(folder.path()).unwrap();
+        let first = RunJournal::open(folder.path()).unwrap();
         assert!(matches!(
-            Records::open(folder.path()),
+            RunJournal::open(folder.path()),
             Err(StudyError::Busy { .. })
         ));
         drop(first);
         // Whatever it is called, and whether or not its last line ends.
-        let path = folder.path().join(RECORDS);
+        let path = folder.path().join(RUN_JOURNAL);
         for mine in [
             "some notes\nof mine\n",
             "{\"my\": \"notes\"}",
             "deadbeef, and more",
         ] {
             std::fs::write(&path, mine).unwrap();
-            let opened = Records::open(folder.path());
-            assert!(matches!(opened, Err(StudyError::NotRecords { .. })), "{mine}");
+            let opened = RunJournal::open(folder.path());
+            assert!(matches!(opened, Err(StudyError::NotJournal { .. })), "{mine}");
             assert_eq!(std::fs::read(&path).unwrap(), mine.as_bytes());
         }
     }
@@ -195,11 +199,11 @@ mod tests {
     #[test]
     fn what_never_ends_is_refused() {
         let (folder, other) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
-        let mut records = Records::open(other.path()).unwrap();
-        let path = folder.path().join(RECORDS);
-        let refused = |records: &mut Records| {
-            let opened = Records::open(folder.path());
-            assert!(matches!(opened, Err(StudyError::NotRecords { .. })), "{opened:?}");
+        let mut records = RunJournal::open(other.path()).unwrap();
+        let path = folder.path().join(RUN_JOURNAL);
+        let refused = |records: &mut RunJournal| {
+            let opened = RunJournal::open(folder.path());
+            assert!(matches!(opened, Err(StudyError::NotJournal { .. })), "{opened:?}");
             assert!(records.merge(folder.path()).is_err());
         };
         File::create(&path).unwrap().set_len(1 << 40).unwrap();
@@ -213,7 +217,7 @@ mod tests {
     #[test]
     fn a_run_is_recorded_once() {
         let folder = tempfile::tempdir().unwrap();
-        let records = Records::open(folder.path()).unwrap();
+        let records = RunJournal::open(folder.path()).unwrap();
         std::thread::scope(|scope| {
             for other in ["b", "c"] {
                 let records = &records;
@@ -221,15 +225,18 @@ mod tests {
             }
         });
         assert_eq!(records.len(), 3);
-        let lines = std::fs::read_to_string(folder.path().join(RECORDS)).unwrap();
+        let lines = std::fs::read_to_string(folder.path().join(RUN_JOURNAL)).unwrap();
         assert_eq!(lines.lines().count(), 3);
     }
 
     #[test]
     fn merging_twice_is_merging_once() {
         let (one, other) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
-        Records::open(one.path()).unwrap().append(&[record("a")]).unwrap();
-        let mut records = Records::open(other.path()).unwrap();
+        RunJournal::open(one.path())
+            .unwrap()
+            .append(&[record("a")])
+            .unwrap();
+        let mut records = RunJournal::open(other.path()).unwrap();
         records.append(&[record("b")]).unwrap();
         assert_eq!(records.merge(one.path()).unwrap(), 1);
         assert_eq!(records.merge(one.path()).unwrap(), 0);

@@ -6,14 +6,14 @@ use slipfront_case::case::Case;
 
 /// The blocks of a slider. Sets of them are row-major, the smallest y first.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Grid {
+pub struct SliderBlocks {
     /// The blocks and their arrangement.
     pub lattice: Lattice,
     /// Marks of the blocks that exist: all, unless the slider has an outline.
     pub exists: Vec<bool>,
 }
 
-impl Grid {
+impl SliderBlocks {
     /// The blocks of the slider of a case.
     pub fn of(case: &Case) -> Self {
         let lattice = case.model.lattice;
@@ -67,16 +67,16 @@ pub(crate) mod tests {
     use super::*;
 
     /// A grid all of whose blocks exist.
-    pub(crate) fn whole([nx, ny]: [usize; 2], periodic: [bool; 2]) -> Grid {
+    pub(crate) fn whole([nx, ny]: [usize; 2], periodic: [bool; 2]) -> SliderBlocks {
         let edges = periodic.map(|is_periodic| if is_periodic { Edges::Periodic } else { Edges::Free });
-        Grid {
+        SliderBlocks {
             lattice: Lattice::with_edges(nx, ny, edges),
             exists: vec![true; nx * ny],
         }
     }
 
     /// A grid, and a set drawn with `#`, the largest y first.
-    pub(crate) fn drawn(rows: &[&str], periodic: [bool; 2]) -> (Grid, Vec<bool>) {
+    pub(crate) fn drawn(rows: &[&str], periodic: [bool; 2]) -> (SliderBlocks, Vec<bool>) {
         let set: Vec<bool> = rows
             .iter()
             .rev()

@@ -4,19 +4,19 @@ use crate::plan::Plan;
 use crate::plan_warnings::Warning;
 
 /// Largest number of warnings that are listed.
-const MAX_TOLD: usize = 8;
+const MAX_WARNINGS: usize = 8;
 
 /// Warnings about the cases of a study in words, each with the points that it concerns: the first eight, and the number of
 /// the others.
-pub fn told_warnings(plan: &Plan) -> Vec<String> {
+pub fn warning_texts(plan: &Plan) -> Vec<String> {
     let all = plan.warnings();
     let mut told: Vec<String> = all
         .iter()
-        .take(MAX_TOLD)
+        .take(MAX_WARNINGS)
         .map(|warning| format!("{} ({})", warning.sentence, place(warning, plan)))
         .collect();
-    if all.len() > MAX_TOLD {
-        let more = all.len() - MAX_TOLD;
+    if all.len() > MAX_WARNINGS {
+        let more = all.len() - MAX_WARNINGS;
         told.push(format!(
             "and {more} more of the kind, which `slipfront check` tells for a case"
         ));
