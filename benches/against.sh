@@ -3,10 +3,11 @@
 #
 #     benches/against.sh [-r ROUNDS] [-c COMMIT] [WHAT...]
 #
-# WHAT: step, run, study, paper, family; the first three unless told. Each is made by both programs alternately, ROUNDS times, 5 unless told;
-# the medians of the wall times, and the ratios of these, of the least wall times and of the processor times, are printed: where they differ by
-# much, the machine was busy. COMMIT is the one in benches/against.txt
-# unless told: the last before the work on speed that is under way. It is built in target/against. The machine should have nothing else to do.
+# WHAT: step, run, study, paper, family; the first three unless told. Each is made by both programs
+# alternately, ROUNDS times, 5 unless told; the medians of the wall times, and the ratios of these, of the
+# least wall times and of the processor times, are printed: where they differ by much, the machine was busy.
+# COMMIT is the one in benches/against.txt unless told: the last before the work on speed that is under way.
+# It is built in target/against. The machine should have nothing else to do.
 set -euo pipefail
 export LC_ALL=C
 cd "$(dirname "${BASH_SOURCE[0]}")/.."

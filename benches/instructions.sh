@@ -3,16 +3,17 @@
 #
 #     benches/instructions.sh
 #
-# Counts, under valgrind's callgrind, the instructions of 2000 and of 1000 steps of the baseline of Fig. 3 and takes the
-# difference: start and set-up fall out. Fails when a count is off by more than TOLERANCE from the one in
-# benches/instructions.txt; `benches/instructions.sh --pin` writes that file anew. Another compiler gives other counts, so the
-# file names the one it was pinned with, and with another one differences are told but not failed. Valgrind knows no
-# AVX-512: what is counted is the AVX2 code.
+# Counts, under valgrind's callgrind, the instructions of 2000 and of 1000 steps of the baseline of Fig. 3 and
+# takes the difference: start and set-up fall out. Fails when a count is off by more than TOLERANCE from the
+# one in benches/instructions.txt; `benches/instructions.sh --pin` writes that file anew. Another compiler
+# gives other counts, so the file names the one it was pinned with, and with another one differences are told
+# but not failed. Valgrind knows no AVX-512: what is counted is the AVX2 code.
 set -euo pipefail
 export LC_ALL=C
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-# In percent: what a hash seed or a longer path in the environment may change is far below; a lost inlining is far above.
+# In percent: what a hash seed or a longer path in the environment may change is far below; a lost inlining is
+# far above.
 TOLERANCE=2
 pins=benches/instructions.txt
 

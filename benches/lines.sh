@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# Lines of each crate outside of its tests, documents and generated files: Rust, and what the laboratory's page and the Python package
-# are made of. The first figure counts all lines, the second those with code: no blank lines, no comments, no docstrings.
+# Lines of each crate outside of its tests, documents and generated files: Rust, and what the laboratory's
+# page and the Python package are made of. The first figure counts all lines, the second those with code: no
+# blank lines, no comments, no docstrings.
 #
 #     benches/lines.sh [REVISION]
 #
@@ -14,7 +15,7 @@ git ls-tree -r --format='%(objectmode) %(path)' "$revision" |
     sed -n 's/^100[0-9]* //p' |
     grep -E '^(crates/[^/]+/(src|web|build\.rs|hash_sources\.rs)|python/(src|slipfront))' |
     grep -E '\.(rs|js|css|html|py|pyi|sh)$' |
-    grep -vE '/(tests|vendor)/|/tests\.rs$' |
+    grep -vE '/(tests|vendor)/|/(tests|testing|for_tests|page_types)\.rs$' |
     while read -r file; do
         crate=$(sed -E 's,^(crates/[^/]+|python)/.*,\1,' <<< "$file")
         lines=$(git show "$revision:$file" | awk -v kind="${file##*.}" '

@@ -3,10 +3,11 @@
 #
 #     benches/machine.sh [NAME]
 #
-# NAME is the title of the section, which is written anew where there is one of that name; without it, the name in /proc/cpuinfo is taken. The whole
-# takes some twenty minutes, in which the machine should have nothing else to do: the section tells what share others took. Needs the Rust
-# toolchain; gcc, Python 3 and LAMMPS for the other programs, Open MPI and libclang for ranks, valgrind for instruction counts. What is missing
-# is said in the section and left away.
+# NAME is the title of the section, which is written anew where there is one of that name; without it, the
+# name in /proc/cpuinfo is taken. The whole takes some twenty minutes, in which the machine should have
+# nothing else to do: the section tells what share others took. Needs the Rust toolchain; gcc, Python 3 and
+# LAMMPS for the other programs, Open MPI and libclang for ranks, valgrind for instruction counts. What is
+# missing is said in the section and left away.
 set -euo pipefail
 export LC_ALL=C
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -14,7 +15,8 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 source benches/common.sh
 
 page=docs/performance.md
-# Vector operations of eight numbers in a step of eight blocks, square root and division aside: docs/kernels.md counts them.
+# Vector operations of eight numbers in a step of eight blocks, square root and division aside:
+# docs/kernels.md counts them.
 OPERATIONS=170
 cores=$(nproc)
 field() { awk -F ': *' -v key="$1" '$1 ~ "^" key "[ \t]*$" { print $2; exit }' /proc/cpuinfo; }

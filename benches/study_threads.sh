@@ -5,9 +5,9 @@
 #     benches/study_threads.sh [path of slipfront]
 #
 # A study of 1000 equal runs (30 x 30 blocks, V* = 0.1, some 6 ms each) is run from nothing, by turns with
-# --threads 1 and --threads 2, five times each: whole commands, from reading the file to the tables. The ratio of the
-# best times is the answer; at least 1.9 is asked for. It only means something on two free cores, so the script says
-# how busy the machine was: the share of processor time that others took while it ran.
+# --threads 1 and --threads 2, five times each: whole commands, from reading the file to the tables. The ratio
+# of the best times is the answer; at least 1.9 is asked for. It only means something on two free cores, so
+# the script says how busy the machine was: the share of processor time that others took while it ran.
 
 set -euo pipefail
 export LC_ALL=C

@@ -1,10 +1,12 @@
 #!/usr/bin/env bash
-# Builds the book as a site, target/book: all pages with a search, the laboratory as one file, the references of Rust and of Python.
+# Builds the book as a site, target/book: all pages with a search, the laboratory as one file, the references
+# of Rust and of Python.
 #
 #     docs/build.sh
 #
-# Installs mdBook into target/mdbook and pdoc into target/venv where they are missing. Needs the Rust toolchain with rustup, and python3
-# with venv. SLIPFRONT names another command than target/debug/slipfront. Exit status: 1 also when a link of the site leads nowhere.
+# Installs mdBook into target/mdbook and pdoc into target/venv where they are missing. Needs the Rust
+# toolchain with rustup, and python3 with venv. SLIPFRONT names another command than target/debug/slipfront.
+# Exit status: 1 also when a link of the site leads nowhere.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 mdbook_version=0.5.4
@@ -19,8 +21,8 @@ mdbook=target/mdbook/bin/mdbook
     mdbook=target/mdbook/bin/mdbook
 }
 
-# The contents of the book as those of the site: a part for each line that ends with a colon, a chapter for each link; the second and later
-# links of an entry are chapters below its first.
+# The contents of the book as those of the site: a part for each line that ends with a colon, a chapter for
+# each link; the second and later links of an entry are chapters below its first.
 contents() {
     printf '# Summary\n\n[slipfront](README.md)\n[Contents](docs/README.md)\n'
     sed -n -e '/^## /q' -e 's/^\([A-Z].*\):$/\n# \1\n/p' -e '/^\(    \|[0-9]\)/p' docs/README.md | awk '
@@ -38,7 +40,8 @@ contents() {
     printf '\n# Files\n\n- [Cases](cases/README.md)\n- [Notebooks](python/examples/README.md)\n'
 }
 
-# A page for a folder that is linked to: its files, with the first sentence of those that begin with a comment.
+# A page for a folder that is linked to: its files, with the first sentence of those that begin with a
+# comment.
 files_of() {
     printf '# %s\n\n' "$2"
     for file in "$1"/*.* "$1"/*/*.toml; do
@@ -57,7 +60,8 @@ cp -r --parents README.md ARCHITECTURE.md CHANGELOG.md CITATION.cff CONTRIBUTING
 rm -r "$pages/docs/site" "$pages/docs/build.sh"
 files_of cases Cases > "$pages/cases/README.md"
 files_of python/examples Notebooks > "$pages/python/examples/README.md"
-# A README.md becomes the first page of its folder, and so does the list of the files of a folder that is linked to.
+# A README.md becomes the first page of its folder, and so does the list of the files of a folder that is
+# linked to.
 find "$pages" -name '*.md' -exec sed -i -e 's#](\([^):]*\)README\.md#](\1index.md#g' \
     -e 's#](\(\(\.\./\)*\(cases\|python/examples\)\))#](\1/index.md)#g' {} +
 contents > "$pages/SUMMARY.md"

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Builds the Python package from its source distribution, in a folder without this checkout beside it, installs the wheel in target/venv,
-# and runs the tests, the types and the notebooks with it.
+# Builds the Python package from its source distribution, in a folder without this checkout beside it,
+# installs the wheel in target/venv, and runs the tests, the types and the notebooks with it.
 #
 #     python/check.sh
 #

@@ -5,15 +5,16 @@
 #     release/build.sh STEP...      the steps that are named
 #
 # linux-x86_64, linux-aarch64    the command, static (musl), with the page's module, licences and cases
-# windows-x86_64                 the command
-# lab                            the laboratory without a server, as a folder and as one file
-# source                         the sources of this commit, and the source distribution for pip
-# wheel-linux-x86_64, wheel-linux-aarch64, wheel-musl-x86_64, wheel-musl-aarch64, wheel-windows-x86_64
-# check                          fails if a file in target/dist/ lacks a part, or a program in it asks for a library that not every machine has
-# reproducible                   linux-x86_64 again, in a clone elsewhere: fails if a byte differs
+# windows-x86_64                 the command lab                            the laboratory without a server,
+# as a folder and as one file source                         the sources of this commit, and the source
+# distribution for pip wheel-linux-x86_64, wheel-linux-aarch64, wheel-musl-x86_64, wheel-musl-aarch64,
+# wheel-windows-x86_64 check                          fails if a file in target/dist/ lacks a part, or a
+# program in it asks for a library that not every machine has reproducible                   linux-x86_64
+# again, in a clone elsewhere: fails if a byte differs
 #
-# Needs Linux on x86-64, git, rustup, binutils, and python3 with venv. Installs Rust's targets, maturin, zig and a checker of SBOMs in target/, and
-# mingw-w64 by apt-get for Windows. Each build of the command takes 4 minutes of processor time.
+# Needs Linux on x86-64, git, rustup, binutils, and python3 with venv. Installs Rust's targets, maturin, zig
+# and a checker of SBOMs in target/, and mingw-w64 by apt-get for Windows. Each build of the command takes 4
+# minutes of processor time.
 set -euo pipefail
 exec < /dev/null
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -25,8 +26,8 @@ tools=$PWD/target/dist-tools
 # Times of files in archives and wheels.
 SOURCE_DATE_EPOCH=$(git log -1 --format=%ct)
 export SOURCE_DATE_EPOCH
-# Paths of this machine are replaced by others, so that they are no part of what is built. The flags of .cargo/config.toml, which these
-# replace, are repeated.
+# Paths of this machine are replaced by others, so that they are no part of what is built. The flags of
+# .cargo/config.toml, which these replace, are repeated.
 flags=$(sed -n 's/^rustflags = \["\(.*\)"\]$/\1/p' .cargo/config.toml)
 paths=("$PWD=/slipfront" "${CARGO_HOME:-$HOME/.cargo}=/cargo" "$(rustc --print sysroot)=/rust")
 for path in "${paths[@]}"; do

@@ -1,11 +1,12 @@
 #!/usr/bin/env bash
-# Compares the results of two builds of slipfront, byte for byte: every case under cases/, every study under cases/studies, the whole
-# paper and the exact answers of the family. Pictures and manifests are left out: those change with the drawing, these with time and
-# place.
+# Compares the results of two builds of slipfront, byte for byte: every case under cases/, every study under
+# cases/studies, the whole paper and the exact answers of the family. Pictures and manifests are left out:
+# those change with the drawing, these with time and place.
 #
 #   tests/compare_builds.sh OLD_PROGRAM NEW_PROGRAM [FOLDER]
 #
-# Results are kept in FOLDER, which must be new; without one they are removed. Fails if any file differs or is missing.
+# Results are kept in FOLDER, which must be new; without one they are removed. Fails if any file differs or is
+# missing.
 set -euo pipefail
 old=$(realpath "$1")
 new=$(realpath "$2")

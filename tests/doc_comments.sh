@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
-# Doc comments that cannot be understood alone, although rustdoc shows each of them by itself: those that begin with a pronoun or with a
-# clause in place of a noun, and those with a sentence that leans on another comment, such as "The same of ...", "Those of ..." or
-# "Of the ..."; and headings that a text follows on their line.
+# Doc comments that cannot be understood alone, although rustdoc shows each of them by itself: those that
+# begin with a pronoun or with a clause in place of a noun, and those with a sentence that leans on another
+# comment, such as "The same of ...", "Those of ..." or "Of the ..."; headings that a text follows on their
+# line; and comments of any kind wider than 110 characters, code in them apart.
 #
 #     tests/doc_comments.sh
 #     tests/doc_comments.sh crates/slipfront
@@ -13,8 +14,8 @@ if [ $# -eq 0 ]; then
   set -- '*.rs' '*.py'
 fi
 
-# Comments of Rust, as `file:line: text` with the lines of each joined; without examples in code and the headings of sections. The first
-# lines of docstrings of Python likewise.
+# Comments of Rust, as `file:line: text` with the lines of each joined; without examples in code and the
+# headings of sections. The first lines of docstrings of Python likewise.
 comments() {
   git ls-files --cached --others --exclude-standard -- "$@" | grep '\.py$' | while read -r file; do
     [ ! -f "$file" ] || awk -v file="$file" 'sub(/^ *"""/, "") && $0 != "" { sub(/"""$/, ""); print file ":" NR ": " $0 }' "$file"
@@ -48,5 +49,15 @@ while IFS= read -r heading; do
   echo "$heading"
   found=$((found + 1))
 done < <(git ls-files --cached --others --exclude-standard -- "$@" | grep '\.rs$' | xargs -r grep -nE '^ *//[/!] # (Errors|Panics) +[^ ]' || true)
-echo "$found doc comments that cannot be understood alone"
+# Rust is ASCII here: a byte is a character.
+while IFS= read -r wide; do
+  echo "$wide: wider than 110"
+  found=$((found + 1))
+done < <(git ls-files --cached --others --exclude-standard -- "$@" | grep '\.rs$' | grep -v /text/ | while read -r file; do
+  [ ! -f "$file" ] || awk -v file="$file" '
+    !/^[ \t]*\/\// { code = 0; next }
+    /^[ \t]*\/\/[\/!]? *```/ { code = !code; next }
+    !code && length($0) > 110 { print file ":" FNR }' "$file"
+done)
+echo "$found comments that cannot be understood alone, or are too wide"
 (( found == 0 ))

@@ -1,11 +1,12 @@
 #!/usr/bin/env bash
-# Source files that name a thing, such as a law of friction or a shape of texture: about as many change when another of its kind is added.
+# Source files that name a thing, such as a law of friction or a shape of texture: about as many change when
+# another of its kind is added.
 #
 #     tests/named_in.sh ageing
 #     tests/named_in.sh 'contact.?springs' 8
 #
-# Takes an extended regular expression, whatever the case of its letters, and fails when there are more files than the number that
-# follows. Documents and tests do not count, also those behind `#[cfg(test)]` in a file.
+# Takes an extended regular expression, whatever the case of its letters, and fails when there are more files
+# than the number that follows. Documents and tests do not count, also those behind `#[cfg(test)]` in a file.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 

@@ -1,10 +1,11 @@
 #!/bin/bash
-# Runs a tour of the command in odd environments and below odd paths: the same files must come out everywhere, and commands that are printed
-# must work when they are pasted.
+# Runs a tour of the command in odd environments and below odd paths: the same files must come out everywhere,
+# and commands that are printed must work when they are pasted.
 #
 #     tests/places.sh [SLIPFRONT]
 #
-# The command is target/debug/slipfront unless another one is given. A locale that is not installed is C; one place needs root.
+# The command is target/debug/slipfront unless another one is given. A locale that is not installed is C; one
+# place needs root.
 
 set -uo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
@@ -50,7 +51,8 @@ cp "$work"/{case,study,wish,fit,sheet}.toml .
 "$slipfront" verify --rerun "./$1run"
 SH
 
-# The tour as it is called by the rest of the words; $1 is the name of the place, $2 the beginning of every name.
+# The tour as it is called by the rest of the words; $1 is the name of the place, $2 the beginning of every
+# name.
 tour() {
     local place=$1 prefix=$2 folder=$work/places/$1 name
     shift 2
@@ -69,7 +71,8 @@ tour() {
     done
 }
 
-# Pastes commands that are printed, in the present folder: another folder for a run, and the lines of a batch script.
+# Pastes commands that are printed, in the present folder: another folder for a run, and the lines of a batch
+# script.
 paste_commands() {
     local printed
     printed=$("$slipfront" run case.toml --quiet -o "./$1run" 2>&1 | grep -o -e '`--out .*` is free')

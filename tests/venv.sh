@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# Makes target/venv, a venv with what tests in Python need from PyPI, 1.5 GB, unless it is there: xarray, netCDF4 and VTK for
-# tests/fields, roc-validator and pybtex for tests/ro_crate, and what python/tests/requirements.txt lists. Needs python3 with venv. Exit status: 2 when something is missing.
+# Makes target/venv, a venv with what tests in Python need from PyPI, 1.5 GB, unless it is there: xarray,
+# netCDF4 and VTK for tests/fields, roc-validator and pybtex for tests/ro_crate, and what
+# python/tests/requirements.txt lists. Needs python3 with venv. Exit status: 2 when something is missing.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 made=target/venv/made

@@ -26,10 +26,10 @@ def main(size, folder, positions, steps):
     ux = (V_STAR * time - drag + (x - i) / EPSILON).reshape(size, size)
     uy = ((y - j) / EPSILON).reshape(size, size)
 
-    # Every block: the Numba program with friction 0. At t = 0 damping is the only force, so that the velocity half a
-    # step earlier follows from the kick. LAMMPS holds positions, and rounds them by spacing(size)/2 in every step; of
-    # that some 2/(Omega dt) = 230 steps are remembered, which add up to sqrt(230) roundings, times 4 or 5 for the
-    # worst of many blocks. Springs off by 1 % would give 1e-3.
+    # Every block: the Numba program with friction 0. At t = 0 damping is the only force, so that the velocity
+    # half a step earlier follows from the kick. LAMMPS holds positions, and rounds them by spacing(size)/2 in
+    # every step; of that some 2/(Omega dt) = 230 steps are remembered, which add up to sqrt(230) roundings,
+    # times 4 or 5 for the worst of many blocks. Springs off by 1 % would give 1e-3.
     zero = np.zeros((size, size))
     state = [zero.copy(), zero.copy(), *(kick / (1 - 0.5 * DAMPING * DT))]
     run_numba(zero, zero, steps, *state)
@@ -39,8 +39,9 @@ def main(size, folder, positions, steps):
         0.5 * np.spacing(float(size)) / EPSILON * np.sqrt(230) * 5,
     )
 
-    # The slider as a whole: e = V t - mean(u) obeys e'' + Omega e' + k_s e = Omega V, e(0) = 0, e'(0) = V - mean(kick).
-    # The scheme is of second order: its frequency is off by (omega dt)^2/24, its amplitude by (omega dt)^2/8.
+    # The slider as a whole: e = V t - mean(u) obeys e'' + Omega e' + k_s e = Omega V, e(0) = 0, e'(0) = V -
+    # mean(kick). The scheme is of second order: its frequency is off by (omega dt)^2/24, its amplitude by
+    # (omega dt)^2/8.
     omega = np.sqrt(K_DRIVE - DAMPING**2 / 4)
     a, b = -drag, (V_STAR - kick[0].mean() - 0.5 * DAMPING * drag) / omega
     decay = np.exp(-0.5 * DAMPING * time)

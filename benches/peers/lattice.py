@@ -65,7 +65,8 @@ def run_numpy(hold, slide, steps, ux, uy, vx, vy):
             fy[here] += gy
             fx[there] -= gx
             fy[there] -= gy
-        # Eqs. 4 to 8: friction with memory (a block is stuck if and only if its velocity is zero), damping, the step.
+        # Eqs. 4 to 8: friction with memory (a block is stuck if and only if its velocity is zero), damping,
+        # the step.
         stays = (vx == 0) & (vy == 0) & (fx * fx + fy * fy <= hold * hold)
         free_x, free_y = BEFORE * vx + IMPULSE * fx, BEFORE * vy + IMPULSE * fy
         speed = np.sqrt(free_x * free_x + free_y * free_y)
@@ -90,8 +91,8 @@ def springs(ux, uy, fx, fy, di, dj, k):
     ny, nx = ux.shape
     first, last = max(0, -di), nx - max(0, di)
     d = np.sqrt(float(di * di + dj * dj))
-    # The forces of a row are kept apart until they are added: a loop that wrote to two places at once would not be
-    # vectorised.
+    # The forces of a row are kept apart until they are added: a loop that wrote to two places at once would
+    # not be vectorised.
     gx, gy = np.empty(nx), np.empty(nx)
     for j in range(ny - dj):
         for i in range(first, last):

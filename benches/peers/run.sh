@@ -1,11 +1,13 @@
 #!/bin/bash
-# slipfront against LAMMPS, C, Numba and NumPy on the same work, one after another. README.md says what is compared.
+# slipfront against LAMMPS, C, Numba and NumPy on the same work, one after another. README.md says what is
+# compared.
 #
 #     benches/peers/run.sh [-r ROUNDS] [SIZE...]
 #
-# SIZE blocks a side, 25 50 200 unless told; 5 rounds. Needs cargo, gcc, python3 with venv, and LAMMPS (Debian's package
-# `lammps`; LMP=/path/of/lmp for another one). NumPy and Numba are put into target/peers/venv. Prints the machine and a
-# table in Markdown. Exit status: 1 when the programs do not agree, 2 when something is missing.
+# SIZE blocks a side, 25 50 200 unless told; 5 rounds. Needs cargo, gcc, python3 with venv, and LAMMPS
+# (Debian's package `lammps`; LMP=/path/of/lmp for another one). NumPy and Numba are put into
+# target/peers/venv. Prints the machine and a table in Markdown. Exit status: 1 when the programs do not
+# agree, 2 when something is missing.
 
 set -euo pipefail
 export LC_ALL=C PYTHONDONTWRITEBYTECODE=1

@@ -10,9 +10,9 @@ import sys
 from collections import defaultdict
 from statistics import median
 
-# mu_s* of these programs is the same but for rounding, some 1e-15: it is a mean of displacements that are sums of
-# hundreds of increments, and friction damps what differs. Springs for small displacements only, the slightest change
-# of the model there is, move it by 1e-11 to 1e-10. Between the two:
+# mu_s* of these programs is the same but for rounding, some 1e-15: it is a mean of displacements that are
+# sums of hundreds of increments, and friction damps what differs. Springs for small displacements only, the
+# slightest change of the model there is, move it by 1e-11 to 1e-10. Between the two:
 TOLERANCE = 1e-12
 
 

@@ -20,7 +20,8 @@ WIDTH = 3
 RECTANGLES = 3
 # Centre, length, width and angle of each, from 0 to 1.
 PARAMETERS = 5 * RECTANGLES
-# Of each search the best so many are tried on several surfaces with the step of the case, as its own does; the best of these counts.
+# Of each search the best so many are tried on several surfaces with the step of the case, as its own does;
+# the best of these counts.
 FINALISTS = 8
 REFINED_SURFACES = 4
 FRESH_SURFACES = 64

@@ -3,8 +3,8 @@
 #
 #     benches/rivals/run.sh [--runs N] [--sigma S] [--threads N] [START...]
 #
-# Needs cargo and python3 with venv; the other searches are put into target/rivals/venv. Exit status: 1 when another search finds more than the
-# own by more than 0.1 points, 2 when something is missing.
+# Needs cargo and python3 with venv; the other searches are put into target/rivals/venv. Exit status: 1 when
+# another search finds more than the own by more than 0.1 points, 2 when something is missing.
 set -euo pipefail
 here=$(realpath "$(dirname "${BASH_SOURCE[0]}")")
 cd "$here/../.."

@@ -1,13 +1,13 @@
-//! Hashes the sources, for the identity of the build, hands on the platform, and asks for the git revision, where it is built in a
-//! checkout of its own.
+//! Hashes the sources, for the identity of the build, hands on the platform, and asks for the git revision,
+//! where it is built in a checkout of its own.
 
 mod hash_sources;
 
 use std::path::Path;
 use std::process::Command;
 
-/// Files that decide the numbers of a run, relative to this crate; a change elsewhere in the checkout does not make it
-/// another program.
+/// Files that decide the numbers of a run, relative to this crate; a change elsewhere in the checkout does
+/// not make it another program.
 const SOURCES: [&str; 5] = [
     "../slipfront/src",
     "../slipfront-case/src",

@@ -1,5 +1,5 @@
-// Holds the bits of runs in WebAssembly to those of this machine: mu*, displacements and velocities of every case at its end, or after 3000
-// steps.
+// Holds the bits of runs in WebAssembly to those of this machine: mu*, displacements and velocities of every
+// case at its end, or after 3000 steps.
 //
 //     node crates/slipfront-wasm/bits.mjs
 //

@@ -1,19 +1,21 @@
 #!/usr/bin/env bash
-# Builds the session of the laboratory as WebAssembly, target/slipfront.wasm, and the module that draws the pictures of runs that are saved,
-# target/slipfront-pictures.wasm. `slipfront lab --export` and `--single` take both.
+# Builds the session of the laboratory as WebAssembly, target/slipfront.wasm, and the module that draws the
+# pictures of runs that are saved, target/slipfront-pictures.wasm. `slipfront lab --export` and `--single`
+# take both.
 #
 #     crates/slipfront-wasm/build.sh
 #
-# Needs rustup, which adds the target wasm32-unknown-unknown where it is missing. Where wasm-opt of Binaryen is installed, the modules become a
-# seventh smaller, which takes a minute.
+# Needs rustup, which adds the target wasm32-unknown-unknown where it is missing. Where wasm-opt of Binaryen
+# is installed, the modules become a seventh smaller, which takes a minute.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 target=wasm32-unknown-unknown
 if ! rustup target list --installed | grep --quiet --line-regexp "$target"; then
     rustup target add "$target"
 fi
-# Vectors of two doubles: every browser has had them since 2023. A folder of its own, since the program is built with other flags. Paths are replaced,
-# so that the modules have the same bytes wherever they are built. \x1f stands between flags, since a path may contain a blank.
+# Vectors of two doubles: every browser has had them since 2023. A folder of its own, since the program is
+# built with other flags. Paths are replaced, so that the modules have the same bytes wherever they are built.
+# \x1f stands between flags, since a path may contain a blank.
 printf -v flags '%s\x1f' -C target-feature=+simd128 "--remap-path-prefix=$PWD=/slipfront" "--remap-path-prefix=${CARGO_HOME:-$HOME/.cargo}=/cargo"
 export CARGO_ENCODED_RUSTFLAGS=${flags%$'\x1f'}
 # What rustc takes for granted of every browser, and SIMD.

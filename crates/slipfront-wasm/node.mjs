@@ -1,4 +1,5 @@
-// The modules of the laboratory in Node.js, for tests: target/slipfront.wasm and target/slipfront-pictures.wasm, which build.sh makes.
+// The modules of the laboratory in Node.js, for tests: target/slipfront.wasm and
+// target/slipfront-pictures.wasm, which build.sh makes.
 import { readFileSync } from 'node:fs';
 import path from 'node:path';
 import { fileURLToPath } from 'node:url';

@@ -1,9 +1,9 @@
-//! Hashes the sources of the crate that is being built, for the identity of the build: two programs made of the same sources
-//! give the same bits.
+//! Hashes the sources of the crate that is being built, for the identity of the build: two programs made of
+//! the same sources give the same bits.
 //!
-//! This file stands in slipfront, and every crate that makes recorded numbers links to it. `locked-versions.toml` of slipfront-run is a link
-//! to the lock file of the workspace. Packages hold such links as files, so that a package gives the hash of the checkout that
-//! it was made of.
+//! This file stands in slipfront, and every crate that makes recorded numbers links to it.
+//! `locked-versions.toml` of slipfront-run is a link to the lock file of the workspace. Packages hold such
+//! links as files, so that a package gives the hash of the checkout that it was made of.
 
 use std::io;
 use std::path::{Path, PathBuf};

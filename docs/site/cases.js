@@ -1,5 +1,5 @@
-// Opens the cases of a page in the laboratory: those in its blocks of TOML, and those of `cases/` that it names. build.sh writes this into
-// a function, after `makeLink` of the laboratory and the names `CASES`.
+// Opens the cases of a page in the laboratory: those in its blocks of TOML, and those of `cases/` that it
+// names. build.sh writes this into a function, after `makeLink` of the laboratory and the names `CASES`.
 
 const LABORATORY = `${path_to_root}lab.html`;
 
@@ -27,7 +27,8 @@ async function offer(code) {
   code.closest('pre').after(place);
 }
 
-// Studies, designs and calibrations have a second word after `toml`. The files that a case names are not in the page.
+// Studies, designs and calibrations have a second word after `toml`. The files that a case names are not in
+// the page.
 for (const code of document.querySelectorAll('main code.language-toml')) {
   const isCase = !['study', 'design', 'calibration', 'ignore'].some((other) => code.classList.contains(other));
   if (isCase && !/^file = /m.test(code.textContent)) offer(code);

@@ -284,8 +284,8 @@ def _unpickled(text: str, name: str, files: dict[str, bytes]) -> Case:
         text = text.replace(_toml.word(copy), _toml.word(_toml.IN_MEMORY + copy))
     case = Case.__new__(Case)
     vars(case)["_make"] = functools.partial(_slipfront.Case.parse, text, name, Path(), [], arrays)
-    # A process that was forked too late is told when it uses the case: it would die of an exception here, in the midst of reading
-    # the tasks of multiprocessing.Pool, which would wait for it for ever.
+    # A process that was forked too late is told when it uses the case: it would die of an exception here, in
+    # the midst of reading the tasks of multiprocessing.Pool, which would wait for it for ever.
     with contextlib.suppress(_slipfront.ForkError):
         _ = case._native
     return case

@@ -118,7 +118,8 @@ def _map(run: Drawn, values: npt.NDArray[Any], title: str, ax: Axes) -> None:
     unit, prefix = _unit(float(x[-1] + half))
     extent = (0.0, (x[-1] + half) / unit, 0.0, (y[-1] + half) / unit)
     image = ax.imshow(values, origin="lower", extent=extent, cmap="viridis", interpolation="nearest")
-    # What has no value shows the ground; over a texture that has values, its outline is drawn along the edges of the blocks.
+    # What has no value shows the ground; over a texture that has values, its outline is drawn along the edges
+    # of the blocks.
     ax.set_facecolor("0.8")
     textured = run._arrays["textured"]
     if np.isfinite(values[textured]).any():

@@ -298,7 +298,8 @@ class Run:
             told.append(("mu_k*", f"{kinetic:.4g}" + (f" \u00b1 {error:.1g}" if error is not None else "")))
         return [*told, ("t_s*", f"{self.onset_time_star:.4g}"), ("A*", f"{self.texture_percent:.4g} %")]
 
-    # What was asked for once is kept. It is handed out in new datasets, whose arrays are shared and cannot be written to.
+    # What was asked for once is kept. It is handed out in new datasets, whose arrays are shared and cannot be
+    # written to.
 
     @functools.cached_property
     def _summary(self) -> str:

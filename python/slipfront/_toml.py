@@ -91,7 +91,8 @@ def npy(array: np.ndarray[Any, Any]) -> bytes:
     return header + array.tobytes()
 
 
-# Searches make thousands of cases with arrays of one kind, and numpy writes a header in the time in which a small lattice is set up.
+# Searches make thousands of cases with arrays of one kind, and numpy writes a header in the time in which a
+# small lattice is set up.
 _HEADERS: dict[tuple[np.dtype[Any], tuple[int, ...]], bytes] = {}
 _MOST_HEADERS = 64
 

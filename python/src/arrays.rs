@@ -33,7 +33,8 @@ pub(crate) fn borrowed<'py, T: Element>(
 ) -> PyResult<Bound<'py, PyArray2<T>>> {
     let rows = values.len().checked_div(columns).unwrap_or(0);
     let view = ArrayView2::from_shape((rows, columns), values).map_err(crate::errors::folder_error)?;
-    // SAFETY: callers hand over numbers that `owner` holds behind an `Arc` and never changes; the array keeps `owner` alive.
+    // SAFETY: callers hand over numbers that `owner` holds behind an `Arc` and never changes; the array keeps
+    // `owner` alive.
     let array = unsafe { PyArray2::borrow_from_array(&view, owner) };
     array.readwrite().make_nonwriteable();
     Ok(array)

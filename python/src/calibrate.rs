@@ -41,8 +41,8 @@ impl Calibration {
         self.file.keys.columns()
     }
 
-    /// Calibrates in a folder, or goes on there, and returns sentences about lines of the records that were passed over. Beside the folder
-    /// stands whether edited files there are replaced.
+    /// Calibrates in a folder, or goes on there, and returns sentences about lines of the records that were
+    /// passed over. Beside the folder stands whether edited files there are replaced.
     fn execute(
         &self,
         py: Python<'_>,

@@ -21,8 +21,8 @@ use crate::process::{LOOK_EVERY, detached};
 #[pyclass(frozen, module = "slipfront._slipfront")]
 pub(crate) struct Case(pub(crate) Arc<SlipfrontCase>);
 
-/// Makes a case while other threads of Python go on, refused if a run of it has no memory, unless that memory is
-/// [small](Budget::SMALL); `make` gets the function that watches its texture. A signal ends the work.
+/// Makes a case while other threads of Python go on, refused if a run of it has no memory, unless that memory
+/// is [small](Budget::SMALL); `make` gets the function that watches its texture. A signal ends the work.
 pub(crate) fn make(
     py: Python<'_>,
     make: impl FnOnce(&mut dyn FnMut(f64) -> bool) -> Result<SlipfrontCase, Error> + Send,
@@ -79,7 +79,8 @@ impl Case {
         })
     }
 
-    /// The case of a text called `name`; the files it names are arrays in memory, or stand relative to a folder.
+    /// The case of a text called `name`; the files it names are arrays in memory, or stand relative to a
+    /// folder.
     #[staticmethod]
     fn parse(
         py: Python<'_>,
@@ -116,8 +117,8 @@ impl Case {
         serde_json::to_string(&self.0.file).map_err(|error| CaseError::new_err(error.to_string()))
     }
 
-    /// The files that the case reads: the name of each in the resolved case, its path or its name in memory, and the hash of
-    /// its contents.
+    /// The files that the case reads: the name of each in the resolved case, its path or its name in memory,
+    /// and the hash of its contents.
     #[getter]
     fn inputs(&self) -> Vec<(String, PathBuf, String)> {
         let inputs = self.0.inputs.iter();
@@ -144,8 +145,8 @@ impl Case {
         Ok(files)
     }
 
-    /// The contents of the files that the case reads, by their names in the resolved case; an error if one has changed since
-    /// the case was made.
+    /// The contents of the files that the case reads, by their names in the resolved case; an error if one
+    /// has changed since the case was made.
     fn read_inputs<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let files = PyDict::new(py);
         for input in &self.0.inputs {

@@ -93,7 +93,8 @@ impl Design {
         search.best().map(|(texture, loss)| (bytes(&texture), loss))
     }
 
-    /// Losses of textures, distances from the wish, on some surfaces; infinite with the reason for a texture that has none.
+    /// Losses of textures, distances from the wish, on some surfaces; infinite with the reason for a texture
+    /// that has none.
     fn losses(
         &self,
         py: Python<'_>,
@@ -117,8 +118,8 @@ impl Design {
         on_pool(py, threads, evaluate, &mut |_| Ok(()))
     }
 
-    /// Searches in a folder, or goes on there, and writes the results of the design; returns the verdict as a text. Beside the folder
-    /// stands whether edited files there are replaced.
+    /// Searches in a folder, or goes on there, and writes the results of the design; returns the verdict as a
+    /// text. Beside the folder stands whether edited files there are replaced.
     fn execute(
         &self,
         py: Python<'_>,

@@ -49,10 +49,12 @@ const OPTIONS: [(&str, &str); 13] = [
     ),
 ];
 
-/// Beginning of the names of files that are arrays in memory; a number and the key that was given the array follow.
+/// Beginning of the names of files that are arrays in memory; a number and the key that was given the array
+/// follow.
 pub(crate) const IN_MEMORY: &str = "memory:/";
 
-/// The sentence of an error in the words of Python: arguments in place of options, keys in place of files in memory.
+/// The sentence of an error in the words of Python: arguments in place of options, keys in place of files in
+/// memory.
 pub(crate) fn in_words_of_python(error: impl Display) -> String {
     let mut sentence = error.to_string();
     for (option, argument) in OPTIONS {

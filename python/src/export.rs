@@ -11,7 +11,8 @@ use slipfront_run::export::{Attribution, Author, ExportError, Licence, WholeRun,
 use crate::errors::{folder_error, in_words_of_python};
 use crate::process::detached;
 
-/// Describes runs as a Process Run Crate, and returns the path of the description with sentences about what the crate lacks.
+/// Describes runs as a Process Run Crate, and returns the path of the description with sentences about what
+/// the crate lacks.
 #[pyfunction]
 pub(crate) fn ro_crate(
     py: Python<'_>,

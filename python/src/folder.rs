@@ -49,8 +49,8 @@ impl TemporaryParent {
     }
 }
 
-/// Kind of a folder: `run`, `interrupted`, `study`, `meshes` of a study that tells what its meshes found, `design`, `paper`,
-/// or none of these.
+/// Kind of a folder: `run`, `interrupted`, `study`, `meshes` of a study that tells what its meshes found,
+/// `design`, `paper`, or none of these.
 #[pyfunction]
 pub(crate) fn kind_of(folder: PathBuf) -> PyResult<Option<&'static str>> {
     if has_records(&folder) {
@@ -92,8 +92,8 @@ pub(crate) fn verify(py: Python<'_>, folder: PathBuf) -> PyResult<()> {
     }
 }
 
-/// Makes a folder ready for the files of a run: a new or empty one, or with `force` one from which the files of an earlier run are
-/// removed, and nothing else.
+/// Makes a folder ready for the files of a run: a new or empty one, or with `force` one from which the files
+/// of an earlier run are removed, and nothing else.
 #[pyfunction]
 pub(crate) fn make_ready(folder: PathBuf, force: bool) -> PyResult<()> {
     let run = RunFolder::prepare(&folder, force, &[]).map_err(folder_error)?;
@@ -136,7 +136,8 @@ pub(crate) fn read_run<'py>(py: Python<'py>, folder: PathBuf) -> PyResult<(Case,
     Ok((case, read))
 }
 
-/// The case of an interrupted run, and the run continued from its latest checkpoint, or from its start if it has none.
+/// The case of an interrupted run, and the run continued from its latest checkpoint, or from its start if it
+/// has none.
 #[pyfunction]
 pub(crate) fn interrupted(py: Python<'_>, folder: PathBuf, threads: usize) -> PyResult<(Case, Simulation)> {
     let run = inspect(&folder).map_err(folder_error)?;

@@ -1,7 +1,8 @@
-//! The native part of the Python module `slipfront`: cases, simulations and their results, studies and the command.
+//! The native part of the Python module `slipfront`: cases, simulations and their results, studies and the
+//! command.
 //!
-//! The Python files beside it in the package give its names their public form. While the engine works, other threads of
-//! Python go on; signals are checked between two calls, or every 50 ms within one.
+//! The Python files beside it in the package give its names their public form. While the engine works, other
+//! threads of Python go on; signals are checked between two calls, or every 50 ms within one.
 
 #![expect(
     clippy::needless_pass_by_value,
@@ -27,8 +28,9 @@ use std::path::PathBuf;
 
 use pyo3::prelude::*;
 
-/// Runs the command with these arguments, the first of which is the name of the program, and returns its exit status. The
-/// command needs a process of its own. The session of the laboratory as WebAssembly is looked for in the folder `package`.
+/// Runs the command with these arguments, the first of which is the name of the program, and returns its exit
+/// status. The command needs a process of its own. The session of the laboratory as WebAssembly is looked for
+/// in the folder `package`.
 #[pyfunction]
 fn command(py: Python<'_>, arguments: Vec<OsString>, package: PathBuf) -> PyResult<u8> {
     process::detached(py, || slipfront_cli::main(arguments, Some(&package)))

@@ -14,8 +14,8 @@ use crate::case::Case;
 use crate::errors::{RunError, folder_error};
 use crate::process::{detached, watched};
 
-/// Runs cases, one on each thread at a time, and returns `summary.json` of each in their order. A signal ends all of them. A
-/// run that diverges ends those after it, so that the error is always that of the first.
+/// Runs cases, one on each thread at a time, and returns `summary.json` of each in their order. A signal ends
+/// all of them. A run that diverges ends those after it, so that the error is always that of the first.
 #[pyfunction]
 pub(crate) fn run_summaries(
     py: Python<'_>,

@@ -1,7 +1,8 @@
 //! The process whose threads the engine uses.
 //!
-//! Its pool of threads does not come along when a process forks, and locks that other threads hold stay locked: a child that
-//! used them would wait for ever. All uses of them go through this file, and are refused in such a child.
+//! Its pool of threads does not come along when a process forks, and locks that other threads hold stay
+//! locked: a child that used them would wait for ever. All uses of them go through this file, and are refused
+//! in such a child.
 
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::sync::mpsc::{self, RecvTimeoutError};
@@ -16,7 +17,8 @@ use crate::errors::{ForkError, folder_error, study_error};
 /// Time that the engine works between two checks for signals.
 pub(crate) const LOOK_EVERY: Duration = Duration::from_millis(50);
 
-/// The process that was the first to use the engine, which the children that it forks afterwards inherit; 0 before.
+/// The process that was the first to use the engine, which the children that it forks afterwards inherit; 0
+/// before.
 static FIRST: AtomicU32 = AtomicU32::new(0);
 
 /// Refuses to go on in a process that was forked from one in which the engine had been used.
@@ -43,7 +45,8 @@ pub(crate) fn detached<T: Send>(py: Python<'_>, work: impl FnOnce() -> T + Send)
     Ok(py.detach(work))
 }
 
-/// Does `work` on another thread, and checks for signals on this one, to which they come; none if the work panicked.
+/// Does `work` on another thread, and checks for signals on this one, to which they come; none if the work
+/// panicked.
 pub(crate) fn watched<T: Send>(work: impl FnOnce() -> T + Send, mut look: impl FnMut()) -> Option<T> {
     std::thread::scope(|scope| {
         let (done, result) = mpsc::channel();
@@ -58,8 +61,8 @@ pub(crate) fn watched<T: Send>(work: impl FnOnce() -> T + Send, mut look: impl F
     })
 }
 
-/// Does `work` on a pool of threads; this thread checks for signals and shows progress. An exception of either ends the
-/// work.
+/// Does `work` on a pool of threads; this thread checks for signals and shows progress. An exception of
+/// either ends the work.
 pub(crate) fn on_pool<T: Send>(
     py: Python<'_>,
     threads: usize,

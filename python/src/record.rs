@@ -92,8 +92,8 @@ pub(crate) fn series<'py>(py: Python<'py>, rows: &[SeriesRow]) -> PyResult<Bound
     Ok(columns)
 }
 
-/// The tables that a run may have beside its series, by name: columns, with NaN for missing numbers; None for a table that this run
-/// does not have.
+/// The tables that a run may have beside its series, by name: columns, with NaN for missing numbers; None for
+/// a table that this run does not have.
 pub(crate) fn tables<'py>(py: Python<'py>, run: RunFiles<'_>) -> PyResult<Bound<'py, PyDict>> {
     let tables = PyDict::new(py);
     for table in observers::tables() {

@@ -37,8 +37,8 @@ pub(crate) struct Simulation {
 const LENGTH_BYTES: usize = 8;
 
 impl Simulation {
-    /// A simulation of a run that has recorded the instant at which it stands: a checkpoint is made of an instant that was
-    /// recorded.
+    /// A simulation of a run that has recorded the instant at which it stands: a checkpoint is made of an
+    /// instant that was recorded.
     pub(crate) fn of(mut running: Running) -> PyResult<Self> {
         running.advance(0).map_err(run_error)?;
         Ok(Self {
@@ -86,8 +86,8 @@ impl Simulation {
         })?)
     }
 
-    /// The run that goes on under another case; the steps of this run and their duration in s; and the position of the drive
-    /// over each block, x and y in m.
+    /// The run that goes on under another case; the steps of this run and their duration in s; and the
+    /// position of the drive over each block, x and y in m.
     #[allow(clippy::type_complexity, reason = "a tuple of Python, which has no name")]
     fn change<'py>(
         &self,
@@ -102,8 +102,8 @@ impl Simulation {
         Ok((Self::of(leg.running)?, leg.steps, leg.time_s, drive))
     }
 
-    /// Takes at most `steps` steps, for 50 ms or a little longer; returns their number, and whether the run has ended:
-    /// `end`, `onset` or none.
+    /// Takes at most `steps` steps, for 50 ms or a little longer; returns their number, and whether the run
+    /// has ended: `end`, `onset` or none.
     fn advance(&mut self, py: Python<'_>, steps: u64) -> PyResult<(u64, Option<&'static str>)> {
         let running = self.running.as_mut().ok_or_else(ended)?;
         let first = running.snapshot().step;

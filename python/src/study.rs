@@ -30,11 +30,12 @@ pub(crate) struct Study {
     is_of_meshes: bool,
 }
 
-/// Values of the user's own quantities, in the order of their names, by run: the number of its point in the whole study, its
-/// replicate, and whether it is the reference.
+/// Values of the user's own quantities, in the order of their names, by run: the number of its point in the
+/// whole study, its replicate, and whether it is the reference.
 type OwnValues = BTreeMap<(usize, usize, bool), Vec<f64>>;
 
-/// Values of own quantities, places and reasons of failed runs, and why no run has a value of the main quantity, if none has.
+/// Values of own quantities, places and reasons of failed runs, and why no run has a value of the main
+/// quantity, if none has.
 type Executed = (OwnValues, Vec<(String, String)>, Option<String>);
 
 impl Study {
@@ -190,11 +191,12 @@ impl Study {
         [vec![("n", values.len() as f64)], found.unwrap_or_default()].concat()
     }
 
-    /// Makes the runs that the folder lacks, and writes tables, pictures and the comparison of meshes there. Beside the folder stands whether
-    /// edited files there are replaced. `look` is
-    /// called with the case, the record and the place of every run that ends, and returns the values of the user's own
-    /// quantities; `watch` is called with the numbers of runs that are done, of all, and of failed ones. Returns the values
-    /// by run, the reasons of the runs that failed, and why no run has a value of the main quantity, if none has.
+    /// Makes the runs that the folder lacks, and writes tables, pictures and the comparison of meshes there.
+    /// Beside the folder stands whether edited files there are replaced. `look` is called with the case, the
+    /// record and the place of every run that ends, and returns the values of the user's own quantities;
+    /// `watch` is called with the numbers of runs that are done, of all, and of failed ones. Returns the
+    /// values by run, the reasons of the runs that failed, and why no run has a value of the main quantity,
+    /// if none has.
     fn execute(
         &self,
         py: Python<'_>,

@@ -246,7 +246,8 @@ def test_arrays_in_memory_are_what_numpy_saves(dtype: Any) -> None:
             file = io.BytesIO()
             np.save(file, np.ascontiguousarray(array))
             expected = file.getvalue()
-            # Numpy writes objects as pickles, which no case reads; their file here has nothing but the right header.
+            # Numpy writes objects as pickles, which no case reads; their file here has nothing but the right
+            # header.
             end = len(expected) - array.nbytes if array.dtype != object else expected.index(b"\n")
             assert npy(array)[:end] == expected[:end] and (array.dtype == object or npy(array) == expected)
 

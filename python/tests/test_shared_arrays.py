@@ -16,7 +16,8 @@ import slipfront as sf
 xarray = pytest.importorskip("xarray")
 pandas = pytest.importorskip("pandas")
 
-# Words that stand for the arguments of methods that hand something out. Other methods take steps, write files or draw.
+# Words that stand for the arguments of methods that hand something out. Other methods take steps, write files
+# or draw.
 METHODS: dict[str, list[tuple[Any, ...]]] = {
     "field": [("traction",), ("sliding",), ("contact_stress_star",), ("displacement_x",), ("velocity_y",)],
     "recipe": [()],

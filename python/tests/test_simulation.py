@@ -111,7 +111,8 @@ def test_a_change_keeps_where_blocks_are_and_how_fast() -> None:
     before, velocity, steps = simulation.displacement, simulation.velocity, simulation.steps
     dt = case.numbers["dt_star"] * case.numbers["time_unit_s"]
     simulation.change({"drive.v_star": 0.02, "load.pressure": "60 kPa"})
-    # The step that was begun is taken to its end. Displacements are turned into units of the case and back: some roundings.
+    # The step that was begun is taken to its end. Displacements are turned into units of the case and back:
+    # some roundings.
     moved = before + dt * velocity
     scale = np.abs(moved).max()
     np.testing.assert_allclose(simulation.displacement, moved, rtol=0, atol=1e-13 * scale)

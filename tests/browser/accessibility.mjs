@@ -1,4 +1,5 @@
-// What axe-core finds, at the sizes of a phone, a notebook and a projector, light and dark, with each dialog open.
+// What axe-core finds, at the sizes of a phone, a notebook and a projector, light and dark, with each dialog
+// open.
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { createRequire } from 'node:module';

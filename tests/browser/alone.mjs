@@ -62,7 +62,8 @@ for (const [kept, toml] of Object.entries(CASES)) {
     await slipfront('run', `${kept}.toml`, '--quiet', '--out', folder);
     const names = ['case.toml', 'fields.nc', 'kymograph.nc', 'series.csv', 'summary.json'];
     assert.deepEqual([...files.keys()].filter((name) => !isPicture(name)).sort(), [...names, 'manifest.json'].sort());
-    // Every file of the command is there, pictures too, and has its bytes; the manifest tells when and where it was run.
+    // Every file of the command is there, pictures too, and has its bytes; the manifest tells when and where
+    // it was run.
     const others = readdirSync(folder).filter((name) => !name.startsWith('.'));
     assert.deepEqual([...files.keys()].sort(), others.sort());
     for (const name of others) assert.ok(name === 'manifest.json' || files.get(name).equals(readFileSync(path.join(folder, name))), `${name} differs`);

@@ -1,5 +1,5 @@
-// The book as a site, which docs/build.sh makes, opened from the disk: its pages on a telephone and without a network, its search, and
-// its cases in the laboratory.
+// The book as a site, which docs/build.sh makes, opened from the disk: its pages on a telephone and without a
+// network, its search, and its cases in the laboratory.
 import assert from 'node:assert/strict';
 import { readdirSync } from 'node:fs';
 import path from 'node:path';

@@ -103,7 +103,8 @@ test('a page gives nothing to another user who takes the port of a server that w
   assert.equal(new Set(stranger.asked).size, stranger.asked.length);
   assert.equal(lab.sockets, sockets);
   assert.ok(!stranger.heard.includes(token));
-  // What answers a reload is a page of the stranger, which reads what the tab keeps: not the token, and no key of other tabs.
+  // What answers a reload is a page of the stranger, which reads what the tab keeps: not the token, and no
+  // key of other tabs.
   await lab.page.reload();
   assert.equal(await lab.page.title(), 'stranger');
   const kept = await lab.page.evaluate(() => JSON.stringify([{ ...sessionStorage }, { ...localStorage }, location.href, history.state, document.cookie]));
@@ -120,7 +121,8 @@ test('a server that knows the nonce and not the token is no server', onServer, a
   lab.alone = true;
   await one.kill();
   await lab.notice(say('lost'));
-  // It has the right answer to the first question from somewhere, and takes the connection; there it cannot prove it again.
+  // It has the right answer to the first question from somewhere, and takes the connection; there it cannot
+  // prove it again.
   const prove = (nonce) => code(key, `server ${nonce}`);
   const stranger = await startStranger(one.address, prove);
   t.after(stranger.stop);

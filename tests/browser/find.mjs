@@ -1,4 +1,5 @@
-// The search for a texture that is better than the painted one: what is told of it, and that its result is one step of undo.
+// The search for a texture that is better than the painted one: what is told of it, and that its result is
+// one step of undo.
 import assert from 'node:assert/strict';
 import test from 'node:test';
 import { open, PLAIN, say, SMALL, until } from './page.mjs';

@@ -1,4 +1,5 @@
-// What the page tells by itself: whither the drive pulls, what to try, that a run has ended and what it has found.
+// What the page tells by itself: whither the drive pulls, what to try, that a run has ended and what it has
+// found.
 import assert from 'node:assert/strict';
 import test from 'node:test';
 import { SIZES } from './accessibility.mjs';

@@ -51,7 +51,8 @@ test('a link opens the same case, which runs the same way', async (t) => {
 });
 
 test('a case too large for a link is downloaded instead', async (t) => {
-  // Every pixel is at random below or above the threshold, by a generator of 32 bits: nothing in it can be packed.
+  // Every pixel is at random below or above the threshold, by a generator of 32 bits: nothing in it can be
+  // packed.
   let random = 1;
   const noise = image(200, () => (random = (Math.imul(random, 1664525) + 1013904223) >>> 0) >>> 24);
   // As many blocks as pixels, since no more pixels are kept.

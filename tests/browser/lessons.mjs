@@ -1,4 +1,5 @@
-// All lessons: every step loads its case, says its text with the numbers that lesson_numbers.json holds, and every button does what it is for.
+// All lessons: every step loads its case, says its text with the numbers that lesson_numbers.json holds, and
+// every button does what it is for.
 import assert from 'node:assert/strict';
 import test from 'node:test';
 import { open, say, until, webJson, webText } from './page.mjs';

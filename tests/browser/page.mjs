@@ -1,5 +1,6 @@
-// A page of the laboratory: what it and the server say to each other, and what a reader sees. When a test ends, its page is held to
-// what holds of every page: no error, nothing that the content security policy had to stop, no request to another host.
+// A page of the laboratory: what it and the server say to each other, and what a reader sees. When a test
+// ends, its page is held to what holds of every page: no error, nothing that the content security policy had
+// to stop, no request to another host.
 import assert from 'node:assert/strict';
 import { readFile } from 'node:fs/promises';
 import path from 'node:path';

@@ -1,12 +1,14 @@
 #!/bin/bash
-# Checks the types of the page of the laboratory, and lets a real browser, Debian's Chromium, use it: page and server together.
+# Checks the types of the page of the laboratory, and lets a real browser, Debian's Chromium, use it: page and
+# server together.
 #
 #     tests/browser/run.sh
 #
-# The command is target/debug/slipfront, or the one that SLIPFRONT names. Needs cargo, Node.js 18 or later with npm, and
-# Python; installs Chromium where it is missing. Exit status: 2 when something is missing.
+# The command is target/debug/slipfront, or the one that SLIPFRONT names. Needs cargo, Node.js 18 or later
+# with npm, and Python; installs Chromium where it is missing. Exit status: 2 when something is missing.
 #
-# With DELAY_MS=300 every message reaches the page up to 300 ms later: tests that do not wait for what they look at fail then.
+# With DELAY_MS=300 every message reaches the page up to 300 ms later: tests that do not wait for what they
+# look at fail then.
 
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."

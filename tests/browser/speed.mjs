@@ -1,11 +1,12 @@
-// How fast the laboratory is here, as a table: steps and pictures in a second while the slider slides, the time from the brush to the picture,
-// and the first picture of one file. Each is the median of five. Nothing else should work on the machine meanwhile, and the command should be a
-// release build:
+// How fast the laboratory is here, as a table: steps and pictures in a second while the slider slides, the
+// time from the brush to the picture, and the first picture of one file. Each is the median of five. Nothing
+// else should work on the machine meanwhile, and the command should be a release build:
 //
 //     SLIPFRONT=target/release/slipfront CHANNEL=worker node tests/browser/speed.mjs
 //
-// With CHANNEL=worker the page has no server, and its simulation is WebAssembly: the table then also has its memory and sizes, and the bounds that hold
-// on two quiet cores. Without, the page has the server. The command alone, on one thread, is timed for comparison.
+// With CHANNEL=worker the page has no server, and its simulation is WebAssembly: the table then also has its
+// memory and sizes, and the bounds that hold on two quiet cores. Without, the page has the server. The
+// command alone, on one thread, is timed for comparison.
 import { readFileSync, statSync, writeFileSync } from 'node:fs';
 import path from 'node:path';
 import { pathToFileURL } from 'node:url';

@@ -1,4 +1,5 @@
-// Texture by hand: brush, eraser, shapes and images; and that the friction which the page shows is the command's.
+// Texture by hand: brush, eraser, shapes and images; and that the friction which the page shows is the
+// command's.
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
 import { readFileSync, writeFileSync } from 'node:fs';
@@ -51,7 +52,8 @@ test('the eraser brings blocks into contact again; a stroke is one step of undo'
     await lab.press(`tool-${tool}`);
     return lab.after(() => lab.drag(...points), 'case', holds);
   };
-  // Of width 5 around ten middles of blocks: five columns of ten blocks, and eight blocks beyond each end; then four of the ten.
+  // Of width 5 around ten middles of blocks: five columns of ten blocks, and eight blocks beyond each end;
+  // then four of the ten.
   const percent = 100 * (5 * 10 + 2 * 8) / 400;
   await stroke('brush', [[5.5, 5.5], [5.5, 14.5]], (shown) => shown.texture_percent === percent);
   await stroke('eraser', [[5.5, 11.5], [5.5, 14.5]], (shown) => shown.texture_percent === percent - 100 * (5 * 4 + 2 * 8) / 400);

@@ -1,10 +1,11 @@
 #!/usr/bin/env bash
-# libFuzzer on the parsers: tests/fuzz/run.sh [SECONDS [TARGET ...]], by default 60 s of processor time on every target.
+# libFuzzer on the parsers: tests/fuzz/run.sh [SECONDS [TARGET ...]], by default 60 s of processor time on
+# every target.
 #
-# Needs a C++ compiler, and no nightly Rust: the coverage that libFuzzer steers by is a pass of the stable compiler.
-# What it finds stands in target/fuzz/artifacts/TARGET; what it has learned, in target/fuzz/corpus/TARGET, is gone on
-# from. A line for every slice is added to target/fuzz/log.csv. JOBS=2 runs two slices at a time, SLICE is the longest.
-# 0 seconds build everything and run nothing.
+# Needs a C++ compiler, and no nightly Rust: the coverage that libFuzzer steers by is a pass of the stable
+# compiler. What it finds stands in target/fuzz/artifacts/TARGET; what it has learned, in
+# target/fuzz/corpus/TARGET, is gone on from. A line for every slice is added to target/fuzz/log.csv. JOBS=2
+# runs two slices at a time, SLICE is the longest. 0 seconds build everything and run nothing.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 
@@ -63,7 +64,8 @@ run_slice() {
     local stat finding=
     stat() { sed -n "s/^stat::$1: *//p" "$said" | tail -n 1; }
     [ "$status" -eq 0 ] || finding="$(sed -n 's/.*Test unit written to //p' "$said" | tail -n 1)"
-    # A stack that overflows ends the process before it can write anything: such a target keeps its input itself.
+    # A stack that overflows ends the process before it can write anything: such a target keeps its input
+    # itself.
     local input
     # Its folder has a hidden name.
     input="$(find "$TMPDIR" -name "$name-input" -printf '%T@ %p\n' | sort -n | tail -n 1 | cut -d ' ' -f 2-)"

@@ -16,8 +16,8 @@ MANIFESTS = ["Cargo.toml", "crates/slipfront-mpi/Cargo.toml"]
 
 CRATES_IO = "https://github.com/rust-lang/crates.io-index"
 
-# The keys that are understood here, with what cargo-deny takes where they are missing: any other fails, lest a rule is
-# written that nobody holds. What is only warned of passes.
+# The keys that are understood here, with what cargo-deny takes where they are missing: any other fails, lest
+# a rule is written that nobody holds. What is only warned of passes.
 DEFAULTS = {
     "graph": {"all-features": False},
     "licenses": {"allow": [], "exceptions": []},

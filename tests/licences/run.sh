@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# Holds all crates to deny.toml, and the licence notices that slipfront ships to the crates that are locked. Advisories of RustSec, on
-# vulnerable and abandoned crates, are asked for by cargo-deny, where it is installed (cargo install cargo-deny) and can reach them.
+# Holds all crates to deny.toml, and the licence notices that slipfront ships to the crates that are locked.
+# Advisories of RustSec, on vulnerable and abandoned crates, are asked for by cargo-deny, where it is
+# installed (cargo install cargo-deny) and can reach them.
 #
 #     tests/licences/run.sh
 #

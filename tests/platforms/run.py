@@ -90,13 +90,15 @@ class Windows:
         folder = WORK / "windows"
         folder.mkdir(parents=True, exist_ok=True)
         shutil.copy(program or built("windows-x86_64", "slipfront.exe"), folder / "slipfront.exe")
-        # A library that Windows has had since 10 and wine 8 has not: its one function, by another one of Windows.
+        # A library that Windows has had since 10 and wine 8 has not: its one function, by another one of
+        # Windows.
         compiler = tool("x86_64-w64-mingw32-gcc", "gcc-mingw-w64-x86-64")
         library = folder / "bcryptprimitives.dll"
         subprocess.run([compiler, "-shared", "-O1", "-o", library, HERE / "bcryptprimitives.c", "-ladvapi32"], check=True)
         self.line = [wine, folder / "slipfront.exe"]
         self.environment = {"WINEPREFIX": str(WORK / "wine"), "WINEDEBUG": "-all", "WINEDLLOVERRIDES": "mscoree,mshtml="}
-        # Services of wine last as long as any process of it, and inherit the pipes of the command that starts them, which would be waited for.
+        # Services of wine last as long as any process of it, and inherit the pipes of the command that starts
+        # them, which would be waited for.
         quiet = {"env": {**os.environ, **self.environment}, "stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
         self.lasting = subprocess.Popen([wine, "cmd"], stdin=subprocess.PIPE, **quiet)
         subprocess.run([wine, "cmd", "/c", "ver"], check=True, **quiet)

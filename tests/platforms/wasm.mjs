@@ -2,8 +2,9 @@
 //
 //     node tests/platforms/wasm.mjs CASES.json OUT DRAWN
 //
-// CASES.json holds a list of `{name, toml, files}`, with files in Base64; each gives OUT/NAME.zip, with pictures if its name is DRAWN. Needs the modules
-// that crates/slipfront-wasm/build.sh makes. tests/platforms/run.py calls it.
+// CASES.json holds a list of `{name, toml, files}`, with files in Base64; each gives OUT/NAME.zip, with
+// pictures if its name is DRAWN. Needs the modules that crates/slipfront-wasm/build.sh makes.
+// tests/platforms/run.py calls it.
 import { readFileSync, writeFileSync } from 'node:fs';
 import path from 'node:path';
 import { answer, ARCHIVE } from '../../crates/slipfront-wasm/node.mjs';

@@ -13,7 +13,8 @@ import tempfile
 import pybtex.database
 import yaml
 
-# Every sign of ASCII but the slash, signs of YAML and TeX in a row, and letters, spaces and ends of lines of Unicode.
+# Every sign of ASCII but the slash, signs of YAML and TeX in a row, and letters, spaces and ends of lines of
+# Unicode.
 ASCII = "".join(chr(code) for code in range(1, 128) if chr(code) != "/")
 NAMES = [ASCII, "{", "a}b", "\\", "\\{", '"', "'", "%", "- a: [b, #c", "@misc{a,", "\u00e4\u00df \u03bc\u6f22\U0001f600", "\x85\u2028\u2029\ufeff\uffff."]
 

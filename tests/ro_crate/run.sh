@@ -1,10 +1,11 @@
 #!/usr/bin/env bash
-# Has crates of `slipfront export --ro-crate` validated by roc-validator: a run in its folder, and two runs as one crate. Has its citations read by
-# pybtex and PyYAML.
+# Has crates of `slipfront export --ro-crate` validated by roc-validator: a run in its folder, and two runs as
+# one crate. Has its citations read by pybtex and PyYAML.
 #
 #     SLIPFRONT=target/debug/slipfront tests/ro_crate/run.sh
 #
-# Needs the command and what tests/venv.sh needs. Exit status: 1 when a crate or a citation is not valid, 2 when something is missing.
+# Needs the command and what tests/venv.sh needs. Exit status: 1 when a crate or a citation is not valid, 2
+# when something is missing.
 
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."

@@ -1,21 +1,23 @@
 #!/bin/bash
-# Runs a study, a long run and a run on several ranks on a real Slurm: a cluster of this one machine, started in a temporary
-# folder and ended with it.
+# Runs a study, a long run and a run on several ranks on a real Slurm: a cluster of this one machine, started
+# in a temporary folder and ended with it.
 #
-# Needs Debian's slurm-wlm (slurmctld, slurmd, sbatch, scontrol) and munge, and root; it installs nothing. slipfront-mpi is
-# taken from the folder of slipfront:
+# Needs Debian's slurm-wlm (slurmctld, slurmd, sbatch, scontrol) and munge, and root; it installs nothing.
+# slipfront-mpi is taken from the folder of slipfront:
 #
 #     apt-get install slurm-wlm munge libopenmpi-dev openmpi-bin libclang-dev
 #     cargo build --release
 #     cargo build --release --manifest-path crates/slipfront-mpi/Cargo.toml --target-dir target
 #     tests/slurm/run.sh [path of slipfront]
 #
-# A study is submitted with the script of `slipfront study slurm`, in three tasks. One task is requeued in the middle,
-# the command of another is killed, and that task is submitted again. The merged parts must be the same bytes as the
-# study run without Slurm, and no run may have been made twice. Then the script of docs/guide/long.md runs a case whose
-# job gets SIGTERM twice: it puts itself back into the queue, and writes the same bytes as without. So does the second script
-# of that page, with the ranks started by `srun --mpi=pmix`; a rank that is killed ends its job, which goes on when it
-# is submitted again. Takes five to eight minutes on two busy cores. Not part of the tests that always run: no continuous integration has Slurm.
+# A study is submitted with the script of `slipfront study slurm`, in three tasks. One task is requeued in the
+# middle, the command of another is killed, and that task is submitted again. The merged parts must be the
+# same bytes as the study run without Slurm, and no run may have been made twice. Then the script of
+# docs/guide/long.md runs a case whose job gets SIGTERM twice: it puts itself back into the queue, and writes
+# the same bytes as without. So does the second script of that page, with the ranks started by
+# `srun --mpi=pmix`; a rank that is killed ends its job, which goes on when it is submitted again. Takes five
+# to eight minutes on two busy cores. Not part of the tests that always run: no continuous integration has
+# Slurm.
 
 set -euo pipefail
 
@@ -174,7 +176,8 @@ END
 "$slipfront" run case.toml --quiet -o once
 PATH=$(dirname "$slipfront"):$PATH
 
-# Writes a script of the guide as NAME.sh, its first or its second. This machine has fewer processors than the one the guide has in mind.
+# Writes a script of the guide as NAME.sh, its first or its second. This machine has fewer processors than the
+# one the guide has in mind.
 script() { # NAME NUMBER
   awk -v wanted="$2" '/^```/ { inside = /^```sh/; found += inside; next } inside && found == wanted' "$here/../../docs/guide/long.md" |
     sed "s/per-task=16/per-task=$(nproc)/; /--mem/d; s/--nodes=.*/--nodes=1/; s/per-node=.*/per-node=$ranks/" > "$1.sh"

@@ -10,8 +10,8 @@ use tempfile::{NamedTempFile, TempPath};
 pub use crate::folders::{folder_of, sync_folder};
 use crate::unfinished;
 
-/// Writes a file atomically: as a [hidden file](unfinished) in its folder, which is then renamed, or removed after an error. A file that is
-/// written survives a power failure.
+/// Writes a file atomically: as a [hidden file](unfinished) in its folder, which is then renamed, or removed
+/// after an error. A file that is written survives a power failure.
 pub fn write_atomic(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
     write_atomic_with(path, |file| file.write_all(bytes))
 }
@@ -25,8 +25,8 @@ pub fn write_atomic_with(
     sync_folder(folder_of(path))
 }
 
-/// Writes a [hidden file](unfinished) in the folder of the file that it is to become, and syncs it. The hidden file is
-/// removed when dropped, unless it is renamed (`persist`).
+/// Writes a [hidden file](unfinished) in the folder of the file that it is to become, and syncs it. The
+/// hidden file is removed when dropped, unless it is renamed (`persist`).
 pub fn write_beside(
     path: &Path,
     fill: impl FnOnce(&mut File) -> std::io::Result<()>,
@@ -34,8 +34,8 @@ pub fn write_beside(
     fill_and_sync(unfinished::file_for(folder_of(path), path)?, fill)
 }
 
-/// Writes a temporary file in a folder that no other process writes to, and syncs it. The file is removed when dropped,
-/// unless it is renamed (`persist`).
+/// Writes a temporary file in a folder that no other process writes to, and syncs it. The file is removed
+/// when dropped, unless it is renamed (`persist`).
 pub fn write_temp(
     folder: &Path,
     fill: impl FnOnce(&mut File) -> std::io::Result<()>,
@@ -105,8 +105,8 @@ pub fn begins_with(path: &Path, beginning: &[u8]) -> bool {
     file.and_then(|mut file| file.read_to_end(&mut found)).is_ok() && found == beginning
 }
 
-/// Opens a regular file of at most `most` bytes, so that a huge file in the place of a small one is refused before it
-/// fills the memory.
+/// Opens a regular file of at most `most` bytes, so that a huge file in the place of a small one is refused
+/// before it fills the memory.
 pub fn open_limited(path: &Path, most: u64) -> std::io::Result<Take<File>> {
     let file = open_regular(path)?;
     expect_at_most(file.metadata()?.len(), most)?;

@@ -45,9 +45,9 @@ pub fn with_uncertainty(value: f64, uncertainty: Option<f64>) -> String {
     }
 }
 
-/// A value and the half width of its interval, both to the place of the value's third digit, or of the second digit of the
-/// half width where that is coarser; a half width that is smaller than that place to its first digit. Where the larger of
-/// both is very small or large, both stand in a bracket before the power of ten.
+/// A value and the half width of its interval, both to the place of the value's third digit, or of the second
+/// digit of the half width where that is coarser; a half width that is smaller than that place to its first
+/// digit. Where the larger of both is very small or large, both stand in a bracket before the power of ten.
 pub fn with_half_width(value: f64, half: Option<f64>) -> String {
     let Some(half) = half else {
         return four_places(value);
@@ -76,7 +76,8 @@ pub fn with_half_width(value: f64, half: Option<f64>) -> String {
     }
 }
 
-/// A value to `digits` places with the half width of its interval; a value below half the last place as a power of ten.
+/// A value to `digits` places with the half width of its interval; a value below half the last place as a
+/// power of ten.
 pub fn with_interval(value: f64, interval: Option<[f64; 2]>, digits: usize) -> String {
     let small = value != 0.0 && value.abs() < 0.5 * 0.1_f64.powi(digits as i32);
     let value = if value == 0.0 {

@@ -2,8 +2,9 @@
 
 use std::collections::BTreeMap;
 
-/// Makes a map of entries, one after the other, of which the last with a key counts. `collect` would sort them first, with code of its own for
-/// every type of entries: 40 kB and more of the module that the page without a server loads.
+/// Makes a map of entries, one after the other, of which the last with a key counts. `collect` would sort
+/// them first, with code of its own for every type of entries: 40 kB and more of the module that the page
+/// without a server loads.
 ///
 /// ```
 /// use slipfront_base::ordered::map_of;

@@ -1,4 +1,5 @@
-//! Text from outside (files, arguments) made fit for a message: short, and without control characters; and sentences in lines of some width.
+//! Text from outside (files, arguments) made fit for a message: short, and without control characters; and
+//! sentences in lines of some width.
 
 use std::path::Path;
 
@@ -30,8 +31,9 @@ pub fn shell_quoted(word: &str) -> String {
     shlex::try_quote(word).unwrap_or_default().into_owned()
 }
 
-/// A path as one argument of a command that a reader can paste. What a terminal does not show as it is, and a backquote, with which the
-/// sentence around the command closes it, are written as in C between `$'` and `'`, which bash, zsh and ksh read.
+/// A path as one argument of a command that a reader can paste. What a terminal does not show as it is, and a
+/// backquote, with which the sentence around the command closes it, are written as in C between `$'` and `'`,
+/// which bash, zsh and ksh read.
 pub fn shell_path(path: &Path) -> String {
     let path = if path.as_os_str().as_encoded_bytes().starts_with(b"-") {
         // Else it would be taken for an option.
@@ -67,8 +69,8 @@ pub fn note(sentence: &str, columns: usize) -> String {
     format!("{}\n", wrapped(&format!("note: {sentence}"), columns))
 }
 
-/// Breaks a line between words into lines of at most `columns` characters, if no word is longer. Lines after the first are
-/// indented. A command in backquotes is one word, so that it can be copied.
+/// Breaks a line between words into lines of at most `columns` characters, if no word is longer. Lines after
+/// the first are indented. A command in backquotes is one word, so that it can be copied.
 pub fn wrapped(line: &str, columns: usize) -> String {
     const INDENT: &str = "\n      ";
     let (mut text, mut used) = (String::new(), 0);

@@ -1,9 +1,11 @@
-//! Hidden files and folders, which stand as long as a process works on something, and the leftovers of killed processes.
+//! Hidden files and folders, which stand as long as a process works on something, and the leftovers of killed
+//! processes.
 //!
-//! The names are derived from the target of the work: `.slipfront-`, 16 digits of a hash of it, `-` and 6 random letters or
-//! digits. The process that makes one holds its lock. A process that makes the next one for the same target removes those
-//! whose lock is free, because their process has ended. Random letters keep two living processes, and other users, out of
-//! each other's way. Where a file system has no locks nothing is removed.
+//! The names are derived from the target of the work: `.slipfront-`, 16 digits of a hash of it, `-` and 6
+//! random letters or digits. The process that makes one holds its lock. A process that makes the next one for
+//! the same target removes those whose lock is free, because their process has ended. Random letters keep two
+//! living processes, and other users, out of each other's way. Where a file system has no locks nothing is
+//! removed.
 
 use std::fs::{DirEntry, File, Metadata, TryLockError};
 use std::io::{Error, Result};
@@ -21,8 +23,8 @@ const BEGINNING: &str = ".slipfront-";
 const DIGITS: usize = 16;
 /// Random letters or digits.
 const RANDOM: usize = 6;
-/// Largest number of attempts to make a hidden file anew, because another process took it for a leftover before it was
-/// locked.
+/// Largest number of attempts to make a hidden file anew, because another process took it for a leftover
+/// before it was locked.
 const TRIES: usize = 100;
 
 /// The hidden names of one target but for their random letters.
@@ -40,8 +42,8 @@ pub fn is_unfinished(name: &str) -> bool {
     })
 }
 
-/// Makes an empty file, locked, in the folder of the file that it will be renamed to, and removes such files that killed
-/// processes have left.
+/// Makes an empty file, locked, in the folder of the file that it will be renamed to, and removes such files
+/// that killed processes have left.
 pub(crate) fn file_for(folder: &Path, path: &Path) -> Result<NamedTempFile> {
     let beginning = beginning_for(path.file_name().unwrap_or_default().as_encoded_bytes());
     clear(folder, &beginning, is_file);
@@ -54,8 +56,8 @@ pub fn clear_unfinished(folder: &Path) {
     clear(folder, BEGINNING, is_file);
 }
 
-/// A folder in the one for temporary files (`TMPDIR`), for this user alone. It is removed with all its contents when it is
-/// dropped.
+/// A folder in the one for temporary files (`TMPDIR`), for this user alone. It is removed with all its
+/// contents when it is dropped.
 #[derive(Debug)]
 pub struct TemporaryFolder {
     // Dropped first: as long as it is removed, it is locked.
@@ -66,14 +68,15 @@ pub struct TemporaryFolder {
 }
 
 impl TemporaryFolder {
-    /// Makes an empty folder for work on a folder, and removes the folders for such work that killed processes have left on
-    /// this machine.
+    /// Makes an empty folder for work on a folder, and removes the folders for such work that killed
+    /// processes have left on this machine.
     pub fn new(target: &Path) -> Result<Self> {
         let target = target.canonicalize().unwrap_or_else(|_| target.to_owned());
         Self::of_target(target.as_os_str().as_encoded_bytes())
     }
 
-    /// The folder for all work of this process that has no target. It exists as long as a part of the program holds it.
+    /// The folder for all work of this process that has no target. It exists as long as a part of the program
+    /// holds it.
     pub fn shared() -> Result<Arc<Self>> {
         static SHARED: Mutex<Weak<TemporaryFolder>> = Mutex::new(Weak::new());
         let mut shared = SHARED.lock().unwrap_or_else(PoisonError::into_inner);
@@ -114,8 +117,8 @@ impl Drop for TemporaryFolder {
     }
 }
 
-/// A folder under a hidden name beside the place that it will be renamed to. Until then it is removed with all its contents when it
-/// is dropped.
+/// A folder under a hidden name beside the place that it will be renamed to. Until then it is removed with
+/// all its contents when it is dropped.
 #[derive(Debug)]
 pub struct UnfinishedFolder {
     // Dropped first: as long as it is removed, it is locked.
@@ -136,7 +139,8 @@ impl UnfinishedFolder {
         self.folder.path()
     }
 
-    /// Gives the folder its name, in the place of an empty folder if there is one, such that it survives a power failure.
+    /// Gives the folder its name, in the place of an empty folder if there is one, such that it survives a
+    /// power failure.
     pub fn persist(mut self, path: &Path) -> Result<()> {
         sync_folder(self.path())?;
         // Not every system replaces an empty folder.
@@ -147,7 +151,8 @@ impl UnfinishedFolder {
     }
 }
 
-/// Makes an empty folder with this beginning of its name, locked, and removes such folders of this user whose lock is free.
+/// Makes an empty folder with this beginning of its name, locked, and removes such folders of this user whose
+/// lock is free.
 fn locked_folder(parent: &Path, beginning: &str, mode: u32) -> Result<(TempDir, Option<File>)> {
     let make = || {
         let folder = builder(beginning, mode).tempdir_in(parent)?;
@@ -203,15 +208,15 @@ fn until_locked<T>(make: impl Fn() -> Result<T>, is_locked: impl Fn(&T) -> bool)
     ))
 }
 
-/// Locks a new file or folder; false if another process has taken it for a leftover before. Where there are no locks, no
-/// process has.
+/// Locks a new file or folder; false if another process has taken it for a leftover before. Where there are
+/// no locks, no process has.
 fn hold(made: Option<&File>, path: &Path) -> bool {
     let is_taken = |made: &File| matches!(made.try_lock(), Err(TryLockError::WouldBlock));
     !made.is_some_and(is_taken) && path.symlink_metadata().is_ok()
 }
 
-/// Removes the hidden entries of a folder that killed processes have left, of the given kind and beginning of the name.
-/// Errors are ignored: a leftover does no harm.
+/// Removes the hidden entries of a folder that killed processes have left, of the given kind and beginning of
+/// the name. Errors are ignored: a leftover does no harm.
 fn clear(folder: &Path, beginning: &str, is_meant: impl Fn(&DirEntry) -> bool) {
     for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
         let name = entry.file_name();
@@ -229,7 +234,8 @@ fn is_file(entry: &DirEntry) -> bool {
 
 /// Removes a file, or a folder with all that it holds, unless a living process holds its lock.
 fn remove_unless_locked(path: &Path) -> Result<()> {
-    // Opened like this, it is a folder. A file is opened for writing, without which some network file systems lock none.
+    // Opened like this, it is a folder. A file is opened for writing, without which some network file systems
+    // lock none.
     let folder = File::open(path.join("."));
     let file = match &folder {
         Ok(folder) => folder,
@@ -300,7 +306,8 @@ mod tests {
         assert_eq!(names(folder.path()), ["a.png"]);
     }
 
-    /// Many processes write one file at once: each succeeds, the file is one of theirs, and nothing else is left.
+    /// Many processes write one file at once: each succeeds, the file is one of theirs, and nothing else is
+    /// left.
     #[test]
     fn writers_of_one_file_do_not_disturb_each_other() {
         let folder = tempfile::tempdir().unwrap();
@@ -371,7 +378,8 @@ mod tests {
         assert_eq!(std::fs::read(kept.join("mine")).unwrap(), b"mine");
     }
 
-    /// The hidden name of a file is no longer than the system allows, even if the name of the file is as long.
+    /// The hidden name of a file is no longer than the system allows, even if the name of the file is as
+    /// long.
     #[test]
     fn a_name_may_be_as_long_as_the_system_allows() {
         let folder = tempfile::tempdir().unwrap();

@@ -4,12 +4,12 @@
 //! $ cargo run --release -p slipfront-calibrate --example calibration_coverage -- 1000 1000 5000
 //! ```
 //!
-//! The arguments are the numbers of training runs and of records, of 30 x 30 blocks with six unknowns, over surfaces that
-//! training has not drawn, at 1 % and 5 % of noise. Prints for every unknown: the share of records whose interval of 90 %
-//! holds the truth, in all and in each quarter of the range; the median width of the interval over 0.9 of the range; the
-//! probability that the ranks of the truth are uniform (Kolmogorov and Smirnov). Then the share of records that the check
-//! refuses, as they are and with a drift, and processor times. The third number is that of the first record: other numbers
-//! are other records.
+//! The arguments are the numbers of training runs and of records, of 30 x 30 blocks with six unknowns, over
+//! surfaces that training has not drawn, at 1 % and 5 % of noise. Prints for every unknown: the share of
+//! records whose interval of 90 % holds the truth, in all and in each quarter of the range; the median width
+//! of the interval over 0.9 of the range; the probability that the ranks of the truth are uniform (Kolmogorov
+//! and Smirnov). Then the share of records that the check refuses, as they are and with a drift, and
+//! processor times. The third number is that of the first record: other numbers are other records.
 
 use std::collections::HashMap;
 use std::error::Error;
@@ -220,7 +220,8 @@ fn report(unknowns: &[Unknown], truths: &[Vec<f64>], fits: &[Estimate]) {
     println!("pairs told: {pairs} in {} records", fits.len());
 }
 
-/// Probability that uniform ranks have a Kolmogorov-Smirnov distance as large: `2 sum (-1)^(k-1) exp(-2 k^2 x^2)`.
+/// Probability that uniform ranks have a Kolmogorov-Smirnov distance as large:
+/// `2 sum (-1)^(k-1) exp(-2 k^2 x^2)`.
 fn uniformity(ranks: &mut [f64]) -> f64 {
     ranks.sort_by(f64::total_cmp);
     let n = ranks.len() as f64;

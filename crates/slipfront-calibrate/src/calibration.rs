@@ -10,7 +10,8 @@ use crate::sample_points::SamplePoints;
 use crate::scaling::{Scaling, summaries_of, units_of_friction};
 use crate::training::Training;
 
-/// Width of an interval of 90 %, as a share of the range, above which the record does not determine the unknown.
+/// Width of an interval of 90 %, as a share of the range, above which the record does not determine the
+/// unknown.
 const UNDETERMINED: f64 = 0.8;
 
 /// Correlation from which errors of two unknowns make a pair, and least width of both intervals of a pair.
@@ -34,8 +35,8 @@ pub struct Calibration {
 pub struct Pair {
     /// Numbers of the two unknowns.
     pub unknowns: [usize; 2],
-    /// Correlation of the errors of both: above 0 where both may be larger than found together, below 0 where one may be
-    /// larger and the other smaller.
+    /// Correlation of the errors of both: above 0 where both may be larger than found together, below 0 where
+    /// one may be larger and the other smaller.
     pub correlation: f64,
 }
 
@@ -59,8 +60,8 @@ pub struct Estimate {
 const LIKE_AT_LEAST: f64 = 50.0;
 
 impl Calibration {
-    /// Learns from a training the relation between records and unknowns, for records with white noise whose standard
-    /// deviation is the share `noise` of their mean friction. `grids` are those of the set-up.
+    /// Learns from a training the relation between records and unknowns, for records with white noise whose
+    /// standard deviation is the share `noise` of their mean friction. `grids` are those of the set-up.
     pub fn new(training: &Training, grids: &[SamplePoints], noise: f64) -> Self {
         let shares: Vec<f64> = grids.iter().map(|grid| noise * grid.noise_share()).collect();
         let units = units_of_friction(training, grids);
@@ -130,8 +131,8 @@ impl Calibration {
         }
     }
 
-    /// Likeness of a record with these predictions to every training run: a product of normal weights, wide enough to leave
-    /// enough runs.
+    /// Likeness of a record with these predictions to every training run: a product of normal weights, wide
+    /// enough to leave enough runs.
     fn likeness(&self, predictions: &[Prediction]) -> Vec<f64> {
         let runs = self.truths.first().map_or(0, Vec::len);
         let distance = |run: usize| -> f64 {
@@ -156,8 +157,8 @@ impl Calibration {
         }
     }
 
-    /// Draws `count` points of the ranges from the joint distribution of all unknowns: residuals of whole training runs
-    /// around the predictions from the records.
+    /// Draws `count` points of the ranges from the joint distribution of all unknowns: residuals of whole
+    /// training runs around the predictions from the records.
     pub fn sample(&self, estimate: &Estimate, count: usize) -> Vec<Vec<f64>> {
         let mut sum = 0.0;
         let sums: Vec<f64> = estimate
@@ -182,8 +183,8 @@ impl Calibration {
         (0..count).map(point).collect()
     }
 
-    /// Widths of the intervals of 90 % for records like these, for every unknown, as a share of its range: the mean over
-    /// training runs that are left out.
+    /// Widths of the intervals of 90 % for records like these, for every unknown, as a share of its range:
+    /// the mean over training runs that are left out.
     pub(crate) fn widths(&self, of: &Estimate) -> Vec<f64> {
         let all: Vec<_> = self.regressions.iter().zip(&self.truths).collect();
         all.par_iter()
@@ -241,7 +242,8 @@ mod tests {
     use crate::unknowns::design_point;
     use slipfront_run::measured::{Measure, MeasuredRecord};
 
-    /// A curve with a slope and a level that the slope leads to, both known, and a number that no curve shows.
+    /// A curve with a slope and a level that the slope leads to, both known, and a number that no curve
+    /// shows.
     fn curve(point: &[f64]) -> Vec<f64> {
         let (slope, level) = (0.02 + 0.03 * point[0], 0.5 + 0.5 * point[1]);
         (0..100).map(|i| (slope * f64::from(i)).min(level)).collect()
@@ -281,7 +283,8 @@ mod tests {
         let fit = calibration.estimate(&[record(0)]);
         assert_eq!(fit.undetermined, [2]);
         for (distribution, truth) in fit.distributions.iter().zip(point).take(2) {
-            // The interval of 99 % of both: a hundredth of the range would be missed by 1 % of noise over 100 values.
+            // The interval of 99 % of both: a hundredth of the range would be missed by 1 % of noise over 100
+            // values.
             let [low, high] = distribution.interval(0.99);
             assert!(
                 low <= truth && truth <= high && high - low < 0.1,
@@ -346,7 +349,8 @@ mod tests {
         }
     }
 
-    /// Forces of a quintillionth of a newton tell as much as those of a newton: powers of two keep every digit.
+    /// Forces of a quintillionth of a newton tell as much as those of a newton: powers of two keep every
+    /// digit.
     #[test]
     fn the_size_of_forces_does_not_matter() {
         let found = |newtons: f64| {

@@ -332,8 +332,8 @@ impl CalibrationFile {
         Ok(set_up)
     }
 
-    /// Refuses a calibration from these records if there is no memory for `threads` runs at once and the regressions behind them, and says
-    /// how many there is memory for.
+    /// Refuses a calibration from these records if there is no memory for `threads` runs at once and the
+    /// regressions behind them, and says how many there is memory for.
     ///
     /// # Errors
     /// When the ranges leave the bounds of the case, and with both figures of memory.
@@ -497,7 +497,8 @@ mod tests {
         );
     }
 
-    /// Blocks of half the size have runs of four times the blocks and twice the steps, and curves of their own.
+    /// Blocks of half the size have runs of four times the blocks and twice the steps, and curves of their
+    /// own.
     #[test]
     fn all_trainings_count() {
         let plain = memory("runs = 200\nfiner_runs = 0");

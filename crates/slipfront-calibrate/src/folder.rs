@@ -1,4 +1,5 @@
-//! The results folder of a calibration: its file, copies of the records, the journal of training runs, and the findings.
+//! The results folder of a calibration: its file, copies of the records, the journal of training runs, and
+//! the findings.
 
 use std::collections::{BTreeMap, HashMap};
 use std::path::{Path, PathBuf, absolute};
@@ -108,7 +109,8 @@ impl FittedRecords {
 pub struct CalibrationFolder {
     path: PathBuf,
     files: ResultFiles,
-    /// Journal of the folder, which keeps other processes out, and holds training runs unless another folder has them.
+    /// Journal of the folder, which keeps other processes out, and holds training runs unless another folder
+    /// has them.
     journal: Journal,
     /// Training runs that several calibrations share.
     shared: Option<Journal>,
@@ -142,13 +144,13 @@ fn is_same_place(one: &Path, other: &Path) -> bool {
 }
 
 impl CalibrationFolder {
-    /// Opens a results folder: a new one, an empty one, or one of an earlier call for these records that no other process works in. Training
-    /// runs are kept in it, or in the folder `training`.
+    /// Opens a results folder: a new one, an empty one, or one of an earlier call for these records that no
+    /// other process works in. Training runs are kept in it, or in the folder `training`.
     ///
     /// # Errors
     /// When the ranges leave the bounds of the case: then nothing is written. When the folder holds other
-    /// files, or some that were edited since they were written and may not be replaced by `force`; when another process works in it, or
-    /// it cannot be written to.
+    /// files, or some that were edited since they were written and may not be replaced by `force`; when
+    /// another process works in it, or it cannot be written to.
     pub fn open(
         path: &Path,
         training: Option<&Path>,
@@ -234,8 +236,8 @@ impl CalibrationFolder {
         self.known.len()
     }
 
-    /// Trains, fits the records, runs blocks of half the size and further experiments, writes the findings, and returns them
-    /// as a text.
+    /// Trains, fits the records, runs blocks of half the size and further experiments, writes the findings,
+    /// and returns them as a text.
     ///
     /// # Errors
     /// When runs cannot be made or kept, after a stop, and when the system refuses to write.
@@ -301,7 +303,8 @@ impl CalibrationFolder {
         Ok(text)
     }
 
-    /// Trains with each of the further experiments beside the records, and returns how much narrower the intervals are.
+    /// Trains with each of the further experiments beside the records, and returns how much narrower the
+    /// intervals are.
     fn weigh(
         &mut self,
         work: &mut RunCounter,
@@ -330,7 +333,8 @@ impl CalibrationFolder {
         Ok(weighed)
     }
 
-    /// The set-up on blocks of half the size; none if the file does not ask for it, or a reason why there is none.
+    /// The set-up on blocks of half the size; none if the file does not ask for it, or a reason why there is
+    /// none.
     fn finer(&self) -> Result<Option<SetUp>, String> {
         if self.file.keys.finer_runs == 0 {
             return Ok(None);

@@ -11,8 +11,8 @@ pub struct Distribution {
 }
 
 impl Distribution {
-    /// The distribution of residuals that training runs like the record had when they were left out, in units of their
-    /// scale, around the prediction from the record.
+    /// The distribution of residuals that training runs like the record had when they were left out, in units
+    /// of their scale, around the prediction from the record.
     ///
     /// ```text
     /// u = f + s (u_i - f_i)/s_i   with the weight exp(-(f - f_i)^2/(2 0.15^2) - log^2(s/s_i)/(2 0.5^2))
@@ -51,8 +51,8 @@ impl Distribution {
         [self.quantile(0.5 - 0.5 * share), self.quantile(0.5 + 0.5 * share)]
     }
 
-    /// The share of the distribution below a value: a uniform number for the true values of records that were drawn from the
-    /// prior.
+    /// The share of the distribution below a value: a uniform number for the true values of records that were
+    /// drawn from the prior.
     pub fn below(&self, value: f64) -> f64 {
         let place = self.values.partition_point(|&other| other < value);
         if place == 0 { 0.0 } else { self.sums[place - 1] }
@@ -79,7 +79,8 @@ mod tests {
         assert_eq!(one.interval(0.9), [0.1, 0.9]);
     }
 
-    /// A summary that is the unknown with normal noise, whose deviation grows from 0.02 to 0.12 over the range.
+    /// A summary that is the unknown with normal noise, whose deviation grows from 0.02 to 0.12 over the
+    /// range.
     #[test]
     fn intervals_hold_the_truth_as_often_as_they_say() {
         let truth = |run: usize| design_point(run, 1)[0];
@@ -99,7 +100,8 @@ mod tests {
             all[half] += 1.0;
             held[half] += f64::from(u8::from((low..=high).contains(&truth(run))));
         }
-        // Two and a half standard deviations of coverage: 0.3/sqrt(1000) of records and as much again, 0.3/sqrt(400), of training.
+        // Two and a half standard deviations of coverage: 0.3/sqrt(1000) of records and as much again,
+        // 0.3/sqrt(400), of training.
         let coverage = (held[0] + held[1]) / 1000.0;
         assert!(
             (coverage - 0.9).abs() < 2.5 * 0.3 * (1.0_f64 / 1000.0 + 1.0 / 400.0).sqrt(),

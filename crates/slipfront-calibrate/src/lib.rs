@@ -4,9 +4,9 @@
 //! CalibrationFile, records -> SetUp -> Training (curves of runs over the ranges) -> Calibration (what their summaries tell) -> Estimate
 //! ```
 //!
-//! Least squares on the curve fails where friction sticks and slips, since the phases of that are chance. Here every curve becomes
-//! `summaries`, every unknown is predicted from them by `regression`, and `intervals` are those that hold the truth for runs that the
-//! prediction has not seen.
+//! Least squares on the curve fails where friction sticks and slips, since the phases of that are chance.
+//! Here every curve becomes `summaries`, every unknown is predicted from them by `regression`, and
+//! `intervals` are those that hold the truth for runs that the prediction has not seen.
 
 mod calibration;
 mod file;

@@ -30,28 +30,30 @@ pub(crate) struct Check {
     table: Vec<f64>,
     /// Distance of a run to the others that few exceed.
     far: f64,
-    /// The least and the largest mean of the second half in the training, for each record, with noise: where no unknown moves the mean,
-    /// noise alone makes records differ.
+    /// The least and the largest mean of the second half in the training, for each record, with noise: where
+    /// no unknown moves the mean, noise alone makes records differ.
     levels: Vec<[f64; 2]>,
 }
 
 /// Tests of whether the model can have made a record.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Misfit {
-    /// Drift of friction over the record, as a share of friction: an interval that holds it for all records but 20 in 1000.
+    /// Drift of friction over the record, as a share of friction: an interval that holds it for all records
+    /// but 20 in 1000.
     pub drift: [f64; 2],
     /// Whether the interval leaves out 0.
     pub has_drift: bool,
-    /// Distance of the summaries from those of the nearest training runs, over the distance that 10 training runs in 1000
-    /// exceed.
+    /// Distance of the summaries from those of the nearest training runs, over the distance that 10 training
+    /// runs in 1000 exceed.
     pub distance: f64,
-    /// Mean of the second half of the record whose mean lies farthest outside of the means of the training runs, and the least and
-    /// the largest of these. Scaled summaries do not tell it, since what is far away is drawn nearer there.
+    /// Mean of the second half of the record whose mean lies farthest outside of the means of the training
+    /// runs, and the least and the largest of these. Scaled summaries do not tell it, since what is far away
+    /// is drawn nearer there.
     pub level: [f64; 3],
 }
 
-/// Part of the width of their range by which a mean may lie outside of the means of the training runs: one more run may well exceed all
-/// others, but hardly by a quarter of what these differ.
+/// Part of the width of their range by which a mean may lie outside of the means of the training runs: one
+/// more run may well exceed all others, but hardly by a quarter of what these differ.
 const MAX_OUTSIDE: f64 = 0.25;
 
 /// How far a mean lies outside of a range, over its width; 0 within.
@@ -85,8 +87,8 @@ fn drift_at(share: f64) -> f64 {
 }
 
 impl Check {
-    /// Learns drift from the training runs, each with a drift of its own; of every record there are the noise, as a share
-    /// of friction, and the unit of friction in its summaries.
+    /// Learns drift from the training runs, each with a drift of its own; of every record there are the
+    /// noise, as a share of friction, and the unit of friction in its summaries.
     pub(crate) fn learn(
         training: &Training,
         [noise, units]: [&[f64]; 2],

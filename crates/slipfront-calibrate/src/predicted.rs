@@ -18,7 +18,8 @@ pub(crate) const PREDICTED: usize = 60;
 /// Shares of the runs below the lines of a band.
 const LINES: [f64; 3] = [0.05, 0.5, 0.95];
 
-/// Friction of a record as the calibrated model has it, noise included: 90 % of the runs at every place, and their median.
+/// Friction of a record as the calibrated model has it, noise included: 90 % of the runs at every place, and
+/// their median.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Band {
     pub(crate) low: Vec<f64>,
@@ -49,7 +50,8 @@ impl Band {
     }
 }
 
-/// The bands of all records at these points of the ranges; `noise` is that of a value, as a share of the mean friction.
+/// The bands of all records at these points of the ranges; `noise` is that of a value, as a share of the mean
+/// friction.
 pub(crate) fn bands(
     set_up: &SetUp,
     points: &[Vec<f64>],

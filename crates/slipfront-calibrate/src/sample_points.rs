@@ -5,7 +5,8 @@ use slipfront_run::run_curve::RunCurve;
 
 use crate::summaries::MIN_VALUES;
 
-/// Largest number of values of a curve from which summaries are made: more values are averaged over neighbours.
+/// Largest number of values of a curve from which summaries are made: more values are averaged over
+/// neighbours.
 const MAX_VALUES: usize = 400;
 
 /// Places at which friction of a record is known.
@@ -22,8 +23,8 @@ pub struct SamplePoints {
 }
 
 impl SamplePoints {
-    /// As many equal steps as a record has values, from its first to its last; none for a record that is too short or stands
-    /// still.
+    /// As many equal steps as a record has values, from its first to its last; none for a record that is too
+    /// short or stands still.
     pub fn of(record: &MeasuredRecord) -> Option<Self> {
         let (count, start, end) = (record.x.len(), *record.x.first()?, *record.x.last()?);
         let step = (end - start) / (count - 1).max(1) as f64;

@@ -6,8 +6,9 @@ use crate::sample_points::SamplePoints;
 use crate::summaries::{level, summaries};
 use crate::training::Training;
 
-/// Units of the friction of several records in their summaries: 1 for a coefficient, and for a force the mean of the training. Forces may be
-/// nanonewtons or meganewtons, and the bounds of summaries are small numbers in the unit of friction.
+/// Units of the friction of several records in their summaries: 1 for a coefficient, and for a force the mean
+/// of the training. Forces may be nanonewtons or meganewtons, and the bounds of summaries are small numbers
+/// in the unit of friction.
 pub(crate) fn units_of_friction(training: &Training, grids: &[SamplePoints]) -> Vec<f64> {
     let mean = |record: usize| {
         let levels = training.curves.iter().map(|curves| level(&curves[record]).abs());
@@ -38,8 +39,8 @@ pub(crate) struct Scaling {
     deviations: Vec<f64>,
 }
 
-/// Largest distance of a summary from its mean that counts, in standard deviations: there is no extrapolation to a record
-/// outside of the training.
+/// Largest distance of a summary from its mean that counts, in standard deviations: there is no extrapolation
+/// to a record outside of the training.
 const MAX_AWAY: f64 = 4.0;
 
 impl Scaling {

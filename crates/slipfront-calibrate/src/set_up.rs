@@ -111,7 +111,8 @@ impl SetUp {
         Ok(largest)
     }
 
-    /// The curves of all records at these shares of the ranges, over the surface that `friction.seed` draws; none after a stop.
+    /// The curves of all records at these shares of the ranges, over the surface that `friction.seed` draws;
+    /// none after a stop.
     ///
     /// # Errors
     /// When the case is not valid there, the run diverges, or it ends before a record.

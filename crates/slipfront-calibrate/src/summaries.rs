@@ -1,9 +1,10 @@
 //! Summaries of a curve of friction: numbers from which a calibration learns.
 //!
-//! `y_i`, i from 0 to n - 1, is friction at n instants or places in equal steps. Widths of windows are shares of the record:
-//! "w of 400" is w n/400 values. `s3` and `s5` are running means over 3 and 5 of 400, `m` is the mean of the second half, in
-//! which a slider is taken to slide steadily. Each file of this folder has the formulas of its numbers; they are ratios and
-//! logarithms, so that a regression on them can be nearly linear.
+//! `y_i`, i from 0 to n - 1, is friction at n instants or places in equal steps. Widths of windows are shares
+//! of the record: "w of 400" is w n/400 values. `s3` and `s5` are running means over 3 and 5 of 400, `m` is
+//! the mean of the second half, in which a slider is taken to slide steadily. Each file of this folder has
+//! the formulas of its numbers; they are ratios and logarithms, so that a regression on them can be nearly
+//! linear.
 
 mod curve;
 mod levels;

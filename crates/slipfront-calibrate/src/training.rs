@@ -35,8 +35,8 @@ pub struct Training {
 }
 
 impl Training {
-    /// Runs the points of the ranges that are not `known`, each over a surface of its own, on rayon's threads; `keep` gets
-    /// the runs as they end.
+    /// Runs the points of the ranges that are not `known`, each over a surface of its own, on rayon's
+    /// threads; `keep` gets the runs as they end.
     ///
     /// # Errors
     /// The error of the first run that has one, errors of `keep`, and after a stop.

@@ -31,10 +31,12 @@ pub enum UnknownError {
 }
 
 impl Unknown {
-    /// An unknown with values of `key` between `from` and `to`, equally likely, or equally likely in their logarithm.
+    /// An unknown with values of `key` between `from` and `to`, equally likely, or equally likely in their
+    /// logarithm.
     ///
     /// # Errors
-    /// When the range is empty, not finite or too wide for its width to be a number, begins at or below 0 on a logarithmic scale, or is one of seeds.
+    /// When the range is empty, not finite or too wide for its width to be a number, begins at or below 0 on
+    /// a logarithmic scale, or is one of seeds.
     pub fn new(key: &str, from: f64, to: f64, is_logarithmic: bool) -> Result<Self, UnknownError> {
         let key = key.to_owned();
         if key == "friction.seed" {
@@ -78,7 +80,8 @@ impl Unknown {
         self.unit.as_deref()
     }
 
-    /// The value at a share of the range: `from + share (to - from)`, or `from (to/from)^share` on a logarithmic scale.
+    /// The value at a share of the range: `from + share (to - from)`, or `from (to/from)^share` on a
+    /// logarithmic scale.
     ///
     /// ```
     /// use slipfront_calibrate::Unknown;
@@ -114,11 +117,13 @@ impl Unknown {
     }
 }
 
-/// Shares of the ranges of `count` unknowns in training run `run`, of at most 65536: points that fill the ranges evenly, for any number of runs.
+/// Shares of the ranges of `count` unknowns in training run `run`, of at most 65536: points that fill the
+/// ranges evenly, for any number of runs.
 ///
-/// They are Sobol's sequence with the directions of Joe and Kuo (SIAM Journal on Scientific Computing 30 (2008) 2635), its digits scrambled as
-/// Owen proposed: every unknown alone, and every two together, take values as even as those of a grid. Multiples of powers of one number do
-/// not, since such a power may lie near a fraction of small numbers.
+/// They are Sobol's sequence with the directions of Joe and Kuo (SIAM Journal on Scientific Computing 30
+/// (2008) 2635), its digits scrambled as Owen proposed: every unknown alone, and every two together, take
+/// values as even as those of a grid. Multiples of powers of one number do not, since such a power may lie
+/// near a fraction of small numbers.
 pub fn design_point(run: usize, count: usize) -> Vec<f64> {
     // Beyond the last dimension the sequence begins again, with other digits.
     let share = |j: u32| sample(run as u32, j % NUM_DIMENSIONS, j / NUM_DIMENSIONS);
@@ -167,7 +172,8 @@ mod tests {
         })
     }
 
-    /// The share of n values below any number differs from it by less than log2(n)/n, for n that are no powers of two as well.
+    /// The share of n values below any number differs from it by less than log2(n)/n, for n that are no
+    /// powers of two as well.
     #[test]
     fn design_points_fill_the_range_of_every_unknown() {
         for (runs, count) in [(100, 3), (300, 8), (400, 4), (2500, 6), (2500, 12), (100, 300)] {
@@ -180,7 +186,8 @@ mod tests {
         }
     }
 
-    /// Every square of a grid of 16 x 16 holds at least one of 1024 values of two unknowns: random ones would leave some five squares empty.
+    /// Every square of a grid of 16 x 16 holds at least one of 1024 values of two unknowns: random ones would
+    /// leave some five squares empty.
     #[test]
     fn design_points_fill_the_ranges_of_two_unknowns() {
         let points: Vec<Vec<f64>> = (0..1024).map(|run| design_point(run, 8)).collect();

@@ -9,7 +9,8 @@ pub struct FieldInfo {
     pub field: Field,
     /// Name of the field in `output.fields` of a case file and in `fields.nc`.
     pub name: &'static str,
-    /// Unit of the field's values in `fields.nc` as the CF conventions write it; `1` for a number without unit.
+    /// Unit of the field's values in `fields.nc` as the CF conventions write it; `1` for a number without
+    /// unit.
     pub unit: &'static str,
     /// A description for the axis of a picture.
     pub long_name: &'static str,

@@ -1,8 +1,9 @@
 //! Physical quantities as a user writes them: a number, a unit, a dimension.
 //!
-//! Every accepted unit is a power of ten of its SI unit. Converting therefore means shifting the decimal exponent of the
-//! number's *text* before it is read, so that the SI value is rounded once, by `f64::from_str`, and is the `f64` nearest to
-//! what was written. The case file reads quantities; their SI values go to the scales of the model next.
+//! Every accepted unit is a power of ten of its SI unit. Converting therefore means shifting the decimal
+//! exponent of the number's *text* before it is read, so that the SI value is rounded once, by
+//! `f64::from_str`, and is the `f64` nearest to what was written. The case file reads quantities; their SI
+//! values go to the scales of the model next.
 
 use std::fmt;
 use std::marker::PhantomData;
@@ -221,7 +222,8 @@ quantities! {
 
 /// A quantity, with the text it was written as.
 ///
-/// Two quantities are equal when text and value are. Bounds belong to the key of the quantity, and are checked there.
+/// Two quantities are equal when text and value are. Bounds belong to the key of the quantity, and are
+/// checked there.
 ///
 /// ```
 /// use slipfront_case::quantity::{Density, Length};
@@ -400,7 +402,8 @@ impl Visitor<'_> for QuantityVisitor {
     }
 }
 
-/// A number with its unit as a text has it, of any dimension, for comparing quantities whose kind is not known.
+/// A number with its unit as a text has it, of any dimension, for comparing quantities whose kind is not
+/// known.
 ///
 /// ```
 /// use slipfront_case::quantity::WrittenQuantity;
@@ -496,8 +499,8 @@ fn split_exponent(text: &str) -> Option<(i32, &str)> {
 /// A product of powers of units.
 struct Unit {
     dimension: Dimension,
-    /// Power of ten of the unit's size, which is 10^`power_of_ten` times `factor` SI units; `factor` is 1 where every unit
-    /// in it is accepted.
+    /// Power of ten of the unit's size, which is 10^`power_of_ten` times `factor` SI units; `factor` is 1
+    /// where every unit in it is accepted.
     power_of_ten: i32,
     factor: f64,
     /// The first symbol in the unit that is not accepted.
@@ -621,8 +624,8 @@ fn find_symbol(symbol: &str) -> Option<(Dimension, i32)> {
     })
 }
 
-/// Advice on an unknown `symbol` among the `factors` of a unit: the nearest unit with which the whole has the `wanted`
-/// dimension, or else the known units.
+/// Advice on an unknown `symbol` among the `factors` of a unit: the nearest unit with which the whole has the
+/// `wanted` dimension, or else the known units.
 fn advice_on(symbol: &str, factors: &[(&str, i32)], wanted: Dimension, example: &str) -> String {
     if symbol.starts_with(',') {
         return "the decimal sign is a point".to_owned();
@@ -655,7 +658,8 @@ fn advice_on(symbol: &str, factors: &[(&str, i32)], wanted: Dimension, example: 
     )
 }
 
-/// The accepted unit, with its prefix, that is spelt nearly like `symbol`, among those of a dimension that fits.
+/// The accepted unit, with its prefix, that is spelt nearly like `symbol`, among those of a dimension that
+/// fits.
 fn nearest_unit(symbol: &str, fits: impl Fn(Dimension) -> bool) -> Option<String> {
     let units = UNITS.iter().filter(|(_, dimension, _)| fits(*dimension));
     let candidates = units.flat_map(|(unit, ..)| {

@@ -26,7 +26,8 @@ pub struct Difference {
 /// Names of inputs that all ranks must have alike, each with its value on this rank.
 pub type NamedInputs = Vec<(String, String)>;
 
-/// Fails on all ranks, with the same words, unless all have been `given` the same inputs. Every rank must ask.
+/// Fails on all ranks, with the same words, unless all have been `given` the same inputs. Every rank must
+/// ask.
 ///
 /// ```
 /// use slipfront::Communicator;
@@ -52,8 +53,8 @@ pub fn expect_same(
     }
     // Strings: serialisation cannot fail.
     let own = serde_json::to_string(&given()).unwrap_or_default();
-    // What ranks tell here first has the same length whatever they were given, and must keep it: programs of different versions
-    // begin with it.
+    // What ranks tell here first has the same length whatever they were given, and must keep it: programs of
+    // different versions begin with it.
     let hash = words_of(&blake3::hash(own.as_bytes()));
     let mut of_first = hash.map(|word| if communicator.rank() == 0 { word } else { 0 });
     communicator.sum(&mut of_first);

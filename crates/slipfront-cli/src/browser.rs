@@ -1,4 +1,5 @@
-//! The browser of the user, as far as the desktop tells, and whether it can show a file that only the user can read.
+//! The browser of the user, as far as the desktop tells, and whether it can show a file that only the user
+//! can read.
 
 use std::env;
 use std::fs::{self, File};
@@ -50,7 +51,8 @@ fn command_of(name: &str) -> Option<String> {
     Some(line.to_owned())
 }
 
-/// Whether a command line starts a program in a sandbox: by its words, by the targets of links, or by a script.
+/// Whether a command line starts a program in a sandbox: by its words, by the targets of links, or by a
+/// script.
 fn is_sandboxed(line: &str) -> bool {
     let tells = |text: &str| {
         ["/snap/", "/bin/snap", "flatpak"]

@@ -40,7 +40,8 @@ impl CaseArgs {
     pub(crate) fn load(self, ranks: &CommandRanks, signals: &Signals, quiet: bool) -> Result<Case, Failure> {
         let mut overrides = self.overrides;
         overrides.extend(self.seed.map(|seed| format!("friction.seed={seed}")));
-        // Without a file every key is at its default: errors name keys and `--set`, and no line that the user has not written.
+        // Without a file every key is at its default: errors name keys and `--set`, and no line that the user
+        // has not written.
         let (text, file, name) = match &self.case {
             None => (String::new(), BASELINE, BASELINE),
             Some(path) if path == Path::new("-") => (read_stdin(ranks)?, STDIN, "stdin"),

@@ -1,4 +1,5 @@
-//! Times at which the checkpoints of a run are saved: by the clock, on request, and when the run is told to stop.
+//! Times at which the checkpoints of a run are saved: by the clock, on request, and when the run is told to
+//! stop.
 
 use std::fmt;
 use std::str::FromStr;
@@ -49,8 +50,8 @@ impl FromStr for Interval {
     }
 }
 
-/// Ratio of the time until the next checkpoint to the time that a checkpoint took, at least: in the long run they take 1 %
-/// at most.
+/// Ratio of the time until the next checkpoint to the time that a checkpoint took, at least: in the long run
+/// they take 1 % at most.
 const RUN_PER_SAVE: u32 = 99;
 
 /// Wall time to the next checkpoint after one that took `cost`.

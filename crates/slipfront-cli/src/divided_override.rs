@@ -5,8 +5,9 @@ use std::path::Path;
 
 use slipfront_base::text::{shell_quoted, truncated};
 
-/// The sentence about the first `--set` among the arguments whose key and value are several words, with the one word that was
-/// meant: `--set drive.v_star 0.05`, or `--set slider.blocks=[50, 50]` without quotes around it.
+/// The sentence about the first `--set` among the arguments whose key and value are several words, with the
+/// one word that was meant: `--set drive.v_star 0.05`, or `--set slider.blocks=[50, 50]` without quotes
+/// around it.
 pub(crate) fn divided_override(args: &[OsString]) -> Option<String> {
     let words: Vec<&str> = args
         .iter()
@@ -54,7 +55,8 @@ fn joined(key: &str, rest: &[&str]) -> Option<String> {
     (!value.is_empty() && !is_option && !is_file).then(|| format!("{key}={value}"))
 }
 
-/// An override with the words behind it up to the last bracket that it opens; none where it opens none, or none closes it.
+/// An override with the words behind it up to the last bracket that it opens; none where it opens none, or
+/// none closes it.
 fn whole_value(first: &str, rest: &[&str]) -> Option<String> {
     let is_open = |text: &str| text.matches(['[', '{']).count() > text.matches([']', '}']).count();
     let mut whole = first.to_owned();

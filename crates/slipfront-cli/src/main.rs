@@ -2,7 +2,8 @@
 
 use std::process::ExitCode;
 
-/// Allocator of static programs. The allocator of musl gives memory back to the system and asks for it again, 900 times in a run of 50 x 50 blocks.
+/// Allocator of static programs. The allocator of musl gives memory back to the system and asks for it again,
+/// 900 times in a run of 50 x 50 blocks.
 #[cfg(target_env = "musl")]
 #[global_allocator]
 static ALLOCATOR: dlmalloc::GlobalDlmalloc = dlmalloc::GlobalDlmalloc;

@@ -1,4 +1,5 @@
-//! Makes the case of a command, with progress and checks for signals while its files are read and its texture is laid over the blocks.
+//! Makes the case of a command, with progress and checks for signals while its files are read and its texture
+//! is laid over the blocks.
 
 use slipfront_case::case::{self, Case, Watch};
 use slipfront_case::case_file::CaseError;
@@ -8,8 +9,8 @@ use crate::progress::mesh::MeshProgress;
 use crate::ranks::CommandRanks;
 use crate::signals::Signals;
 
-/// Makes a case with `make` on all ranks, and refuses it if a run of it has no memory; `make` gets the function that watches
-/// its work.
+/// Makes a case with `make` on all ranks, and refuses it if a run of it has no memory; `make` gets the
+/// function that watches its work.
 pub(crate) fn make_case(
     ranks: &CommandRanks,
     signals: &Signals,

@@ -10,8 +10,8 @@ pub(crate) fn print(text: &str) -> Result<(), Failure> {
     expect_printed(write(text))
 }
 
-/// Prints a message of a command whose product is files. A message that cannot be printed is lost: the command goes on and
-/// ends with the exit status of its work.
+/// Prints a message of a command whose product is files. A message that cannot be printed is lost: the
+/// command goes on and ends with the exit status of its work.
 pub(crate) fn print_message(text: &str) {
     let _ = write(text);
 }

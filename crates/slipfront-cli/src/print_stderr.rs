@@ -25,8 +25,8 @@ pub(crate) fn print_notes(sentences: impl IntoIterator<Item = String>) {
     }
 }
 
-/// Prints a line to stderr. A line that cannot be printed, since the terminal is closed or the disk is full, is lost: the
-/// command goes on and ends with the exit status of its work.
+/// Prints a line to stderr. A line that cannot be printed, since the terminal is closed or the disk is full,
+/// is lost: the command goes on and ends with the exit status of its work.
 pub(crate) fn print_stderr(line: &str) {
     if is_silent() {
         return;

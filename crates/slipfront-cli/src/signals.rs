@@ -16,9 +16,9 @@ pub(crate) struct Signals {
 }
 
 impl Signals {
-    /// Catches the signals of queues, users and terminals: SIGINT, SIGTERM, SIGHUP, SIGUSR2 and SIGXCPU stop the process at
-    /// its next check, a second one of the first three at once; SIGUSR1 does not stop it. Systems without some of them never
-    /// see those.
+    /// Catches the signals of queues, users and terminals: SIGINT, SIGTERM, SIGHUP, SIGUSR2 and SIGXCPU stop
+    /// the process at its next check, a second one of the first three at once; SIGUSR1 does not stop it.
+    /// Systems without some of them never see those.
     pub(crate) fn catch() -> std::io::Result<Self> {
         let mut signals = Self {
             stop: Arc::default(),
@@ -65,8 +65,8 @@ impl Signals {
     }
 }
 
-/// Makes a write that a limit of the size of files forbids fail with a reason, where the signal would end the process
-/// without a word.
+/// Makes a write that a limit of the size of files forbids fail with a reason, where the signal would end the
+/// process without a word.
 pub(crate) fn ignore_sigxfsz() -> std::io::Result<()> {
     #[cfg(unix)]
     signal_hook::flag::register(signal_hook::consts::SIGXFSZ, Arc::default())?;

@@ -18,16 +18,17 @@ pub(crate) fn count_from_one(text: &str) -> Result<u16, String> {
     count.ok_or_else(|| "it must be a whole number from 1 to 65535".to_owned())
 }
 
-/// Makes the pool of threads of this process and returns their number: by default one per core, and never more. Where the
-/// system refuses some there are fewer, at least the present thread. If there are several, the present thread belongs to the
-/// pool, so that it need not wake others at every step of a run, nor wait for them.
+/// Makes the pool of threads of this process and returns their number: by default one per core, and never
+/// more. Where the system refuses some there are fewer, at least the present thread. If there are several,
+/// the present thread belongs to the pool, so that it need not wake others at every step of a run, nor wait
+/// for them.
 pub(crate) fn set_threads(threads: Option<u16>) -> Result<usize, Failure> {
     let working = start_pool(threads, 0, true)?;
     Ok(working.max(1))
 }
 
-/// Makes the pool, as [`set_threads`] does, for a command that runs cases on the pool while the present thread waits for
-/// them. Every thread of the pool starts `others` beside it.
+/// Makes the pool, as [`set_threads`] does, for a command that runs cases on the pool while the present
+/// thread waits for them. Every thread of the pool starts `others` beside it.
 pub(crate) fn set_worker_threads(threads: Option<u16>, others: usize) -> Result<usize, Failure> {
     match start_pool(threads, others, false)? {
         0 => Err(Failure::running(anyhow::anyhow!(
@@ -38,8 +39,8 @@ pub(crate) fn set_worker_threads(threads: Option<u16>, others: usize) -> Result<
     }
 }
 
-/// Makes the pool and returns the number of its threads, each of which needs room for `others`; 0 if the present thread does
-/// all of its work. `joins`: whether the present thread is one of several.
+/// Makes the pool and returns the number of its threads, each of which needs room for `others`; 0 if the
+/// present thread does all of its work. `joins`: whether the present thread is one of several.
 fn start_pool(threads: Option<u16>, others: usize, joins: bool) -> Result<usize, Failure> {
     let cores = available_parallelism().map_or(1, usize::from);
     let asked = threads.map_or(cores, usize::from);

@@ -22,8 +22,8 @@ pub(crate) fn note(sentence: &str) -> String {
     text::note(sentence, stdout_columns())
 }
 
-/// A text for stderr: lines are broken only on a terminal, so that programs find sentences whole. A line that begins with a
-/// blank is an excerpt of a file, and stays as it is.
+/// A text for stderr: lines are broken only on a terminal, so that programs find sentences whole. A line that
+/// begins with a blank is an excerpt of a file, and stays as it is.
 pub(crate) fn for_stderr(text: &str) -> String {
     let Some(columns) = stderr_columns() else {
         return text.to_owned();

@@ -4,13 +4,15 @@
 //! $ cargo run --release -p slipfront-design --example design_bars -- 50 0.03 0 10000 least 1 2 3
 //! ```
 //!
-//! Arguments: blocks along a side, V*, sigma_s*, runs of a search, the wish, and start numbers. The wish is `least` static friction, `worst` for
-//! the least over V*/3, V* and 3 V* by the worst of them, a value of mu_s* such as `0.7`, or `curve`, that of a cavity beside the middle on a
-//! surface of its own. Textures cover at most 10 %, with features and gaps of at least 3 blocks. Prints a line for every start number: what the
-//! design gives on fresh surfaces with the half width of its 95 % interval (the reduction in %, mu_s* and its distance from the value in %, or the
-//! root of the mean square of mu* less the curve, and how many times that of the cavity itself on 16 surfaces it is), by how many points it is
-//! better than the groove across and than the best named pattern (the lower ends of the intervals), of several cases the reduction in each of them
-//! beside that of the groove, and the optimism of the search in points.
+//! Arguments: blocks along a side, V*, sigma_s*, runs of a search, the wish, and start numbers. The wish is
+//! `least` static friction, `worst` for the least over V*/3, V* and 3 V* by the worst of them, a value of
+//! mu_s* such as `0.7`, or `curve`, that of a cavity beside the middle on a surface of its own. Textures
+//! cover at most 10 %, with features and gaps of at least 3 blocks. Prints a line for every start number:
+//! what the design gives on fresh surfaces with the half width of its 95 % interval (the reduction in %,
+//! mu_s* and its distance from the value in %, or the root of the mean square of mu* less the curve, and how
+//! many times that of the cavity itself on 16 surfaces it is), by how many points it is better than the
+//! groove across and than the best named pattern (the lower ends of the intervals), of several cases the
+//! reduction in each of them beside that of the groove, and the optimism of the search in points.
 
 use std::collections::HashMap;
 use std::error::Error;

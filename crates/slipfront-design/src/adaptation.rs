@@ -1,8 +1,8 @@
 //! A search over vectors of numbers that adapts the distribution of its drafts to their losses.
 //!
-//! Matrix adaptation evolution strategy: H.-G. Beyer and B. Sendhoff, Simplify your covariance matrix adaptation evolution strategy,
-//! IEEE Transactions on Evolutionary Computation 21 (2017) 746-759, doi:10.1109/TEVC.2017.2680320, with the weights and constants
-//! given there.
+//! Matrix adaptation evolution strategy: H.-G. Beyer and B. Sendhoff, Simplify your covariance matrix
+//! adaptation evolution strategy, IEEE Transactions on Evolutionary Computation 21 (2017) 746-759,
+//! doi:10.1109/TEVC.2017.2680320, with the weights and constants given there.
 
 use slipfront_study::draws::Draws;
 
@@ -54,8 +54,8 @@ impl Adaptation {
         rows.map(|row| dot(row, z)).collect()
     }
 
-    /// Adapts the distribution to the numbers z of at least two drafts, the best first. With d_i those of the better half, and w_i weights
-    /// that fall from the best on, their sum 1:
+    /// Adapts the distribution to the numbers z of at least two drafts, the best first. With d_i those of the
+    /// better half, and w_i weights that fall from the best on, their sum 1:
     ///
     /// ```text
     /// w_i ~ ln(mu + 1/2) - ln i,   mu_e = 1/sum_i w_i^2,   d = sum_i w_i d_i
@@ -150,8 +150,8 @@ mod tests {
         (least, adaptation.mean)
     }
 
-    /// The axes of an ellipsoid are a thousand times apart, and turned: a search whose drafts were alike in all directions would take a
-    /// million times as many.
+    /// The axes of an ellipsoid are a thousand times apart, and turned: a search whose drafts were alike in
+    /// all directions would take a million times as many.
     #[test]
     fn the_middle_of_a_long_tilted_ellipsoid_is_found() {
         let [cos, sin] = [0.6, 0.8];

@@ -47,12 +47,12 @@ pub struct Outcome {
 }
 
 impl Design {
-    /// A design for some cases, at least one, all on the same blocks, each with the wish in its own units; `is_worst` asks for the
-    /// worst case, in place of the mean over them.
+    /// A design for some cases, at least one, all on the same blocks, each with the wish in its own units;
+    /// `is_worst` asks for the worst case, in place of the mean over them.
     ///
     /// # Errors
-    /// When a case cannot be run for as long as the search needs, or one of its files has changed since the case
-    /// was made.
+    /// When a case cannot be run for as long as the search needs, or one of its files has changed since the
+    /// case was made.
     ///
     /// # Panics
     /// Without a case.
@@ -77,8 +77,8 @@ impl Design {
         })
     }
 
-    /// Lets the search begin with a mask too, or with what is legal of it; it counts as a named pattern, and is judged whether it is
-    /// good or not.
+    /// Lets the search begin with a mask too, or with what is legal of it; it counts as a named pattern, and
+    /// is judged whether it is good or not.
     pub fn begin_with(&mut self, name: String, textured: Vec<bool>) {
         self.drawn.push((name, textured));
     }
@@ -105,8 +105,8 @@ impl Design {
     /// Searches, and judges the result on fresh surfaces.
     ///
     /// # Errors
-    /// When the limits leave no texture, when the slider without texture has nothing to compare with, when runs cannot be
-    /// made or kept, and after a stop.
+    /// When the limits leave no texture, when the slider without texture has nothing to compare with, when
+    /// runs cannot be made or kept, and after a stop.
     pub fn run(
         &self,
         bounds: &Bounds,
@@ -203,8 +203,8 @@ impl Design {
         Ok(best)
     }
 
-    /// The legal patterns with which a search begins, and their textures: the named ones, and masks; fewer once `ends`
-    /// returns true.
+    /// The legal patterns with which a search begins, and their textures: the named ones, and masks; fewer
+    /// once `ends` returns true.
     fn starts(&self, ends: &dyn Fn() -> bool) -> (Vec<Named>, Vec<Vec<bool>>) {
         let (grid, limits) = (&self.evaluator.grid, &self.limits);
         let drawn = self.drawn.iter().filter_map(|(name, textured)| {
@@ -234,8 +234,8 @@ impl Design {
         self.evaluator.grid.size()
     }
 
-    /// Loss of each texture, a distance from the wish, as a mean over the first `surfaces` surfaces of the search, or the
-    /// reason for which a texture has none; with a coarse step, or that of the case.
+    /// Loss of each texture, a distance from the wish, as a mean over the first `surfaces` surfaces of the
+    /// search, or the reason for which a texture has none; with a coarse step, or that of the case.
     ///
     /// # Errors
     /// When runs cannot be made, and after a stop.
@@ -263,8 +263,8 @@ impl Design {
         Ok(textures.iter().map(loss).collect())
     }
 
-    /// Loss of each texture, a distance from the wish, on each of `surfaces` surfaces that the search has not seen, or on
-    /// one where they do not differ, with the steps and times of a verdict.
+    /// Loss of each texture, a distance from the wish, on each of `surfaces` surfaces that the search has not
+    /// seen, or on one where they do not differ, with the steps and times of a verdict.
     ///
     /// # Errors
     /// When runs cannot be made, and after a stop.

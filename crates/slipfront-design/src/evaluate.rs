@@ -34,7 +34,8 @@ pub(crate) struct Wanted {
 /// Identity of a run: a hash of all that decides its numbers.
 pub type RunId = String;
 
-/// Numbers of a run, or the reason for which it has none, a sentence: it diverged, or never came to rest under a held drive.
+/// Numbers of a run, or the reason for which it has none, a sentence: it diverged, or never came to rest
+/// under a held drive.
 pub type RunOutcome = Result<Measured, String>;
 
 /// Ends of runs by their identities.
@@ -145,8 +146,8 @@ impl Evaluator {
         wanted
     }
 
-    /// Makes the runs that are not known yet, on the threads of rayon's pool, and hands them over in the order in which they
-    /// are wanted. After a stop, no run is handed over.
+    /// Makes the runs that are not known yet, on the threads of rayon's pool, and hands them over in the
+    /// order in which they are wanted. After a stop, no run is handed over.
     pub(crate) fn run(
         &self,
         wanted: &[Wanted],
@@ -246,8 +247,8 @@ impl Evaluator {
             .collect()
     }
 
-    /// The loss of a texture on some surfaces: the mean over the cases of the mean deviation of each, or the largest;
-    /// infinite if the texture is [lost](Self::lost) on any of them.
+    /// The loss of a texture on some surfaces: the mean over the cases of the mean deviation of each, or the
+    /// largest; infinite if the texture is [lost](Self::lost) on any of them.
     pub(crate) fn loss(
         &self,
         texture: &Arc<Vec<bool>>,
@@ -267,9 +268,9 @@ impl Evaluator {
         }
     }
 
-    /// Parts of the [loss](Self::loss) of a texture, surface by surface: their mean is the loss. Where a value is wished for, parts have the
-    /// sign of the mean deviation, and if the worst case counts they are those of this case, so that the scatter of the
-    /// parts is that of the loss.
+    /// Parts of the [loss](Self::loss) of a texture, surface by surface: their mean is the loss. Where a
+    /// value is wished for, parts have the sign of the mean deviation, and if the worst case counts they are
+    /// those of this case, so that the scatter of the parts is that of the loss.
     pub(crate) fn loss_by_surface(
         &self,
         texture: &Arc<Vec<bool>>,
@@ -300,8 +301,8 @@ impl Evaluator {
         (0..n_surfaces).map(of_surface).collect()
     }
 
-    /// Reason for which a texture is lost on some surfaces: that of the first run without a deviation from the wish, with its case and
-    /// seed where there are several.
+    /// Reason for which a texture is lost on some surfaces: that of the first run without a deviation from
+    /// the wish, with its case and seed where there are several.
     pub(crate) fn lost(
         &self,
         texture: &Arc<Vec<bool>>,
@@ -361,7 +362,8 @@ impl Evaluator {
     }
 }
 
-/// Root of the mean square of mu* less the wished values at some times of the drive, with mu* linear between its rows.
+/// Root of the mean square of mu* less the wished values at some times of the drive, with mu* linear between
+/// its rows.
 fn misfit(points: &[[f64; 2]], record: &RunData) -> f64 {
     let rows = &record.rows;
     let mut next = 0;

@@ -22,7 +22,8 @@ use slipfront_study::project_file::ProjectFile;
 use slipfront_study::project_folder::ProjectKind;
 use slipfront_study::work_memory::WorkMemory;
 
-/// Folders of designs. Their design file has the base case as a table in it: `slipfront design DIR/design.toml` repeats the design.
+/// Folders of designs. Their design file has the base case as a table in it:
+/// `slipfront design DIR/design.toml` repeats the design.
 pub(crate) static DESIGN: ProjectKind = ProjectKind {
     name: "design",
     table: "design",

@@ -1,4 +1,5 @@
-//! The results folder of a design: the design file, the journal of its runs, tables, the mask and a case that reads it.
+//! The results folder of a design: the design file, the journal of its runs, tables, the mask and a case that
+//! reads it.
 
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
@@ -33,11 +34,12 @@ pub struct DesignFolder {
 }
 
 impl DesignFolder {
-    /// Opens a results folder: a new one, an empty one, or one of an earlier call that no other process works in.
+    /// Opens a results folder: a new one, an empty one, or one of an earlier call that no other process works
+    /// in.
     ///
     /// # Errors
-    /// When the folder holds other files, or some that were edited since they were written and may not be replaced by `force`; when
-    /// another process works in it, or it cannot be written to.
+    /// When the folder holds other files, or some that were edited since they were written and may not be
+    /// replaced by `force`; when another process works in it, or it cannot be written to.
     pub fn open(path: &Path, file: &DesignFile, force: bool) -> Result<Self, StudyError> {
         DESIGN.is_used(path)?;
         let given = file.project.given()?;
@@ -77,8 +79,8 @@ impl DesignFolder {
         self.known.len()
     }
 
-    /// Finds the design, and the designs of a front if the file asks for one, writes their results, and returns the verdict
-    /// as a text.
+    /// Finds the design, and the designs of a front if the file asks for one, writes their results, and
+    /// returns the verdict as a text.
     ///
     /// # Errors
     /// As [`run`](Self::run), and when the system refuses to write.
@@ -111,12 +113,12 @@ impl DesignFolder {
         Ok(text)
     }
 
-    /// Searches and judges, or goes on from an earlier call; every run is kept as soon as the runs that were begun with it
-    /// have ended.
+    /// Searches and judges, or goes on from an earlier call; every run is kept as soon as the runs that were
+    /// begun with it have ended.
     ///
     /// # Errors
-    /// As [`Design::run`]. After a stop, the best texture so far stands in the folder without a verdict, unless the folder
-    /// has the verdict of an earlier search.
+    /// As [`Design::run`]. After a stop, the best texture so far stands in the folder without a verdict,
+    /// unless the folder has the verdict of an earlier search.
     pub fn run(
         &mut self,
         design: &Design,
@@ -157,7 +159,8 @@ impl DesignFolder {
     }
 }
 
-/// Cost of the designs of a front beside that which is searched for, each of which costs about as much as the first.
+/// Cost of the designs of a front beside that which is searched for, each of which costs about as much as the
+/// first.
 #[derive(Default)]
 struct FrontCost {
     /// Cost of the first design, once it is known.

@@ -26,7 +26,8 @@ struct Row<'a> {
 }
 
 impl Report<'_> {
-    /// Writes a front as a table and a picture, and returns it as a text; of a coverage that no texture keeps there is no design.
+    /// Writes a front as a table and a picture, and returns it as a text; of a coverage that no texture keeps
+    /// there is no design.
     ///
     /// # Errors
     /// When the system refuses to write, or the picture cannot be drawn.

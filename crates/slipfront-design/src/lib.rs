@@ -1,10 +1,12 @@
-//! From a wish to a texture: the search for a mask with the wished friction, within limits, and the verdict on it.
+//! From a wish to a texture: the search for a mask with the wished friction, within limits, and the verdict
+//! on it.
 //!
 //! ```text
 //! wish, limits -> drafts of patches -> masks -> runs on one surface -> the best on several -> the verdict on fresh ones
 //! ```
 //!
-//! A search sees some surfaces, and its result is good on these. The values in a verdict are measured on fresh surfaces.
+//! A search sees some surfaces, and its result is good on these. The values in a verdict are measured on
+//! fresh surfaces.
 
 mod adaptation;
 mod design;

@@ -10,9 +10,11 @@ use crate::slider_blocks::{SliderBlocks, count};
 pub struct Limits {
     /// Least and largest share of the blocks that are textured, %.
     pub coverage: [f64; 2],
-    /// Smallest width of a feature: every textured block belongs to a textured square of this many blocks along a side.
+    /// Smallest width of a feature: every textured block belongs to a textured square of this many blocks
+    /// along a side.
     pub feature: usize,
-    /// Smallest width of a gap: every block in contact belongs to a square of this many blocks in contact along a side.
+    /// Smallest width of a gap: every block in contact belongs to a square of this many blocks in contact
+    /// along a side.
     pub gap: usize,
     /// Whether the left half mirrors the right one, and the lower half the upper one.
     pub mirror: [bool; 2],
@@ -112,8 +114,8 @@ impl Limits {
         Ok(())
     }
 
-    /// The texture of a draft: the blocks inside its patches when these have grown, all alike, to the largest legal texture
-    /// within the coverage of the draft; none if there is none.
+    /// The texture of a draft: the blocks inside its patches when these have grown, all alike, to the largest
+    /// legal texture within the coverage of the draft; none if there is none.
     pub(crate) fn texture(&self, grid: &SliderBlocks, draft: &Draft) -> Option<Vec<bool>> {
         let growth = self.growth(grid, draft);
         let mut levels: Vec<f64> = growth.iter().copied().filter(|level| level.is_finite()).collect();
@@ -141,7 +143,8 @@ impl Limits {
         largest.filter(|texture| texture.contains(&true) && self.check(grid, texture).is_ok())
     }
 
-    /// Growth by which a draft holds each block, in every cell and half alike; endless where a block must touch.
+    /// Growth by which a draft holds each block, in every cell and half alike; endless where a block must
+    /// touch.
     fn growth(&self, grid: &SliderBlocks, draft: &Draft) -> Vec<f64> {
         let of_draft = draft.growth(grid);
         let mut growth = vec![f64::INFINITY; of_draft.len()];
@@ -164,8 +167,8 @@ impl Limits {
         growth
     }
 
-    /// Blocks that no legal texture has: those that do not exist, those that must touch, and all that cells and mirrors make equal to
-    /// one of these.
+    /// Blocks that no legal texture has: those that do not exist, those that must touch, and all that cells
+    /// and mirrors make equal to one of these.
     fn barred(&self, grid: &SliderBlocks) -> Vec<bool> {
         let n = grid.exists.len();
         let is_own = |block: usize| {
@@ -281,8 +284,8 @@ mod tests {
         assert!(search.ask(8, &|| false).is_empty());
     }
 
-    /// Textures that a search asks for are legal and new, whatever the limits, and it asks for the same after the same
-    /// losses.
+    /// Textures that a search asks for are legal and new, whatever the limits, and it asks for the same after
+    /// the same losses.
     #[test]
     fn what_is_asked_for_is_legal_and_new() {
         let [nx, ny] = [24, 18];

@@ -28,15 +28,16 @@ impl Named {
 /// The pattern with which others are compared first.
 pub(crate) const GROOVE: &str = "groove across";
 
-/// Named patterns that are legal, each with its texture, which covers as much as the limits allow; fewer once `ends` returns
-/// true.
+/// Named patterns that are legal, each with its texture, which covers as much as the limits allow; fewer once
+/// `ends` returns true.
 pub(crate) fn named(
     grid: &SliderBlocks,
     limits: &Limits,
     ends: &dyn Fn() -> bool,
 ) -> Vec<(Named, Vec<bool>)> {
     let percent = limits.coverage[1];
-    // A strip whose middle is that of a block has an odd number of blocks across, and one whose middle is an edge an even number.
+    // A strip whose middle is that of a block has an odd number of blocks across, and one whose middle is an
+    // edge an even number.
     let [edges, middles] = [0.0, 0.5].map(|shift| shifted(grid, percent, shift));
     let textured = |named: Named| Some((limits.texture(grid, &named.draft)?, named));
     let larger = |(one, other): (Named, Named)| {
@@ -48,9 +49,9 @@ pub(crate) fn named(
     pairs.filter_map(larger).collect()
 }
 
-/// Named patterns whose strips and cavities are moved by `shift` blocks: grooves across and along it (x is the direction of
-/// the drive, unless that is turned), in the middle, in pairs and in threes, one that is tilted, a frame, a cross, and
-/// cavities, round and square, one or several.
+/// Named patterns whose strips and cavities are moved by `shift` blocks: grooves across and along it (x is
+/// the direction of the drive, unless that is turned), in the middle, in pairs and in threes, one that is
+/// tilted, a frame, a cross, and cavities, round and square, one or several.
 fn shifted(grid: &SliderBlocks, percent: f64, shift: f64) -> Vec<Named> {
     let size = grid.size().map(|n| n as f64);
     let strip = |axis: usize, place: f64, angle: f64| {

@@ -27,8 +27,8 @@ pub(crate) struct Patch {
 }
 
 impl Patch {
-    /// Growth on every side by which the patch holds a point, in blocks; less than 0 inside of it. With (u, v) the place of
-    /// the point along length and width, and a and b their halves:
+    /// Growth on every side by which the patch holds a point, in blocks; less than 0 inside of it. With (u,
+    /// v) the place of the point along length and width, and a and b their halves:
     ///
     /// ```text
     /// rectangle  max(|u| - a, |v| - b);   ellipse  (sqrt((u/a)^2 + (v/b)^2) - 1) min(a, b)
@@ -69,8 +69,8 @@ impl Patch {
     }
 }
 
-/// Rounds a growth to a millionth of a block: blocks beside a strip along an axis are equally far from it, whatever the
-/// cosine of its angle is rounded to.
+/// Rounds a growth to a millionth of a block: blocks beside a strip along an axis are equally far from it,
+/// whatever the cosine of its angle is rounded to.
 fn rounded(growth: f64) -> f64 {
     (growth * 1e6).round() * 1e-6
 }
@@ -80,7 +80,8 @@ fn rounded(growth: f64) -> f64 {
 pub(crate) struct Draft {
     /// Patches of the draft.
     pub(crate) patches: Vec<Patch>,
-    /// Growth by which a texture that was drawn block by block holds each block, in blocks, if the draft begins with one.
+    /// Growth by which a texture that was drawn block by block holds each block, in blocks, if the draft
+    /// begins with one.
     pub(crate) drawn: Option<Arc<Vec<f64>>>,
     /// Largest share of the slider that the draft covers, %.
     pub(crate) percent: f64,
@@ -110,8 +111,8 @@ impl Draft {
     }
 }
 
-/// Growth in blocks by which a set holds each block: the number of steps to it, straight or diagonal; for a block in the
-/// set, 1 less the number of steps out of it.
+/// Growth in blocks by which a set holds each block: the number of steps to it, straight or diagonal; for a
+/// block in the set, 1 less the number of steps out of it.
 fn growth_of(grid: &SliderBlocks, set: &[bool]) -> Vec<f64> {
     let outwards = steps_to(grid, set);
     let inwards = steps_to(grid, &set.iter().map(|is_in| !is_in).collect::<Vec<_>>());
@@ -121,7 +122,8 @@ fn growth_of(grid: &SliderBlocks, set: &[bool]) -> Vec<f64> {
         .collect()
 }
 
-/// Number of steps, straight or diagonal, from every block to a set; as many as the slider has blocks if the set is empty.
+/// Number of steps, straight or diagonal, from every block to a set; as many as the slider has blocks if the
+/// set is empty.
 fn steps_to(grid: &SliderBlocks, set: &[bool]) -> Vec<f64> {
     let most = set.len() as f64;
     let mut steps: Vec<f64> = set.iter().map(|&is_in| if is_in { 0.0 } else { most }).collect();

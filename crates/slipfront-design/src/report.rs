@@ -1,5 +1,5 @@
-//! Results of a design: the mask as files for programs and lasers, a case that reads it, tables, pictures, and a text for a
-//! person.
+//! Results of a design: the mask as files for programs and lasers, a case that reads it, tables, pictures,
+//! and a text for a person.
 
 use std::io::Write;
 use std::path::Path;
@@ -164,7 +164,8 @@ impl Report<'_> {
         }
     }
 
-    /// Writes curves of the design and of the textures in its comparison, on a fresh surface, and maps of their first slips.
+    /// Writes curves of the design and of the textures in its comparison, on a fresh surface, and maps of
+    /// their first slips.
     fn write_pictures(&mut self, design: &Design, outcome: &Outcome) -> Result<(), StudyError> {
         let subject = &design.evaluator.subjects[0];
         let [nx, ny] = design.evaluator.grid.size();
@@ -315,7 +316,8 @@ fn evaluations(design: &Design, outcome: &Outcome, to: &mut impl Write) -> Resul
     Ok(table.flush()?)
 }
 
-/// Sentences about everything that counts as lost: drafts of the search, textures on fresh surfaces, and the design under changes.
+/// Sentences about everything that counts as lost: drafts of the search, textures on fresh surfaces, and the
+/// design under changes.
 fn losses(tried: &[Tried], verdict: &Verdict) -> Vec<String> {
     let drafts = tried
         .iter()

@@ -5,8 +5,8 @@
 //! tell: their losses -> the drafts of each start move towards its better ones; what has ended makes room for another start
 //! ```
 //!
-//! Starts begin by turns with patches anywhere and with one of the best textures so far. The textures asked for depend only on
-//! the start number and on the losses so far.
+//! Starts begin by turns with patches anywhere and with one of the best textures so far. The textures asked
+//! for depend only on the start number and on the losses so far.
 
 use std::collections::HashSet;
 use std::sync::Arc;
@@ -94,8 +94,8 @@ impl Search {
         }
     }
 
-    /// Up to `n` textures that were not asked for before, a generation of every start; fewer where the limits leave few or once
-    /// `ends` returns true, and none where the limits leave none.
+    /// Up to `n` textures that were not asked for before, a generation of every start; fewer where the limits
+    /// leave few or once `ends` returns true, and none where the limits leave none.
     pub(crate) fn ask(&mut self, n: usize, ends: &dyn Fn() -> bool) -> Vec<Proposal> {
         let mut asked = Vec::new();
         let mut in_vain = 0;
@@ -168,8 +168,9 @@ impl Search {
         self.seen.len()
     }
 
-    /// Returns the best textures, the best first, and forgets all losses, because later ones are measured otherwise. The start of the
-    /// best texture goes on if it has not ended; others begin with the best textures. What was asked for is not asked for again.
+    /// Returns the best textures, the best first, and forgets all losses, because later ones are measured
+    /// otherwise. The start of the best texture goes on if it has not ended; others begin with the best
+    /// textures. What was asked for is not asked for again.
     pub(crate) fn refine(&mut self) -> Vec<Proposal> {
         let best = std::mem::take(&mut self.best);
         let drawn = best.first().and_then(|found| found.proposal.drawn.as_ref());
@@ -186,7 +187,8 @@ impl Search {
         proposals.collect()
     }
 
-    /// A new draft, the next named one or of the start in this place, its origin, and how the start has drawn it.
+    /// A new draft, the next named one or of the start in this place, its origin, and how the start has drawn
+    /// it.
     fn draft(&mut self, place: usize) -> (String, Draft, Option<(usize, Vec<f64>)>) {
         if let Some(Named { name, draft }) = self.named.pop() {
             return (name, draft, None);
@@ -223,7 +225,8 @@ impl Search {
         Start::new(self.n_starts, from, spread, self.ranges)
     }
 
-    /// Patches anywhere: strips that cover the most the first time, cavities among them and less coverage at times later.
+    /// Patches anywhere: strips that cover the most the first time, cavities among them and less coverage at
+    /// times later.
     fn random_draft(&mut self) -> Draft {
         let is_first = self.n_anywhere == 0;
         let most = self.limits.max_features.unwrap_or(usize::MAX);
@@ -250,8 +253,8 @@ impl Search {
 /// Number of textures that a search hands on.
 const FINALISTS: usize = 24;
 
-/// Adds to the finalists, sorted by loss, and keeps the best that differ from every better one by more than a square of
-/// `feature` blocks.
+/// Adds to the finalists, sorted by loss, and keeps the best that differ from every better one by more than a
+/// square of `feature` blocks.
 fn merge(list: &mut Vec<RatedTexture>, found: &[RatedTexture], feature: usize) {
     let mut all = std::mem::take(list);
     all.extend_from_slice(found);

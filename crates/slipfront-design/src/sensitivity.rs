@@ -23,7 +23,8 @@ pub struct Changed {
     pub loss: Mean,
     /// Reason for which the design is lost, if it is: a run of it has not the numbers of the wish.
     pub lost: Option<String>,
-    /// The loss of the other texture under this change less that of the design, surface by surface: above 0 where the design is better.
+    /// The loss of the other texture under this change less that of the design, surface by surface: above 0
+    /// where the design is better.
     pub better_by: Option<Mean>,
 }
 
@@ -58,7 +59,8 @@ impl Sensitivity {
     }
 }
 
-/// Changes of the texture itself: misplaced by one block to every side; parts that leave a slider with edges are lost.
+/// Changes of the texture itself: misplaced by one block to every side; parts that leave a slider with edges
+/// are lost.
 const SHIFTS: [(&str, [isize; 2]); 4] = [
     ("one block towards +x", [1, 0]),
     ("one block towards -x", [-1, 0]),
@@ -186,7 +188,8 @@ impl Evaluator {
         Ok(self.with_subjects(subjects.collect::<Result<_, _>>()?, self.grid.clone()))
     }
 
-    /// The cases on blocks of half the size, as [`Case::on_other_blocks`](slipfront_case::case::Case::on_other_blocks) puts them there.
+    /// The cases on blocks of half the size, as
+    /// [`Case::on_other_blocks`](slipfront_case::case::Case::on_other_blocks) puts them there.
     ///
     /// # Errors
     /// When a case cannot be put there.

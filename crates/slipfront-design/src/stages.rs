@@ -1,4 +1,5 @@
-//! The stages of a search: many drafts on one surface with a coarse step, then fewer on several with the step of the case.
+//! The stages of a search: many drafts on one surface with a coarse step, then fewer on several with the step
+//! of the case.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -14,8 +15,8 @@ use crate::start::GENERATION;
 use crate::subject::Fidelity;
 use slipfront_study::StudyError;
 
-/// Number of runs of a search for each of the starts that go on beside each other, so that many threads have something to do. The drafts depend
-/// on the number of starts, and not on that of threads.
+/// Number of runs of a search for each of the starts that go on beside each other, so that many threads have
+/// something to do. The drafts depend on the number of starts, and not on that of threads.
 const RUNS_OF_START: usize = 2500;
 
 /// Largest number of starts that go on beside each other.
@@ -30,7 +31,8 @@ const REFINED_SURFACES: u64 = 4;
 /// A draft that was tried.
 #[derive(Clone, Debug)]
 pub(crate) struct Tried {
-    /// Whether the draft was tried on several surfaces with the step of the case, rather than on one with a coarse step.
+    /// Whether the draft was tried on several surfaces with the step of the case, rather than on one with a
+    /// coarse step.
     pub(crate) is_refined: bool,
     /// Origin of the draft.
     pub(crate) origin: String,
@@ -82,7 +84,8 @@ pub struct RunCost {
 }
 
 impl RunCost {
-    /// Cost of what remains of a search that has cost `here` in this share of its time, as far as the time allows.
+    /// Cost of what remains of a search that has cost `here` in this share of its time, as far as the time
+    /// allows.
     pub(crate) fn left_within(self, share_of_time: f64, here: f64) -> f64 {
         if share_of_time > 0.0 {
             self.left.min(here * (1.0 / share_of_time - 1.0).max(0.0))
@@ -100,11 +103,13 @@ pub struct Bounds<'a> {
     pub share_of_time: &'a dyn Fn() -> f64,
     /// Flag that ends all runs.
     pub stop: &'a AtomicBool,
-    /// Place at which an earlier search ended for lack of time, to make that search again; none for a new one.
+    /// Place at which an earlier search ended for lack of time, to make that search again; none for a new
+    /// one.
     pub cut: Option<Cut>,
 }
 
-/// Numbers of runs after which each stage of a search that ran out of time had ended: with them the search can be made again.
+/// Numbers of runs after which each stage of a search that ran out of time had ended: with them the search
+/// can be made again.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Cut {
     /// Number of runs after the stage on one surface.
@@ -114,7 +119,8 @@ pub struct Cut {
 }
 
 impl Bounds<'_> {
-    /// Share of a time that has passed, in seconds; 1 where the time is no number of more than 0, and 0 without a bound.
+    /// Share of a time that has passed, in seconds; 1 where the time is no number of more than 0, and 0
+    /// without a bound.
     pub fn share_of(passed: f64, most: Option<f64>) -> f64 {
         match most {
             Some(most) if passed < most => passed / most,
@@ -253,7 +259,8 @@ impl<'a> Stages<'a> {
         let textures: Vec<_> = proposals.iter().map(|found| Arc::clone(&found.texture)).collect();
         let wanted = self.evaluator.wanted(&textures, surfaces.clone(), fidelity);
         self.evaluator.run(&wanted, known, bounds.stop, keep)?;
-        // Runs that are known already count alike, so that a search that goes on is the one that never stopped.
+        // Runs that are known already count alike, so that a search that goes on is the one that never
+        // stopped.
         self.runs += wanted.len();
         let found: Vec<RatedTexture> = proposals
             .into_iter()

@@ -8,7 +8,8 @@ use crate::patch::{Draft, Form, Patch};
 use crate::slider_blocks::SliderBlocks;
 use slipfront_study::draws::Draws;
 
-/// Number of drafts whose losses adapt the distribution of the next ones. More would tell the better directions more exactly, in fewer steps.
+/// Number of drafts whose losses adapt the distribution of the next ones. More would tell the better
+/// directions more exactly, in fewer steps.
 pub(crate) const GENERATION: usize = 8;
 
 /// Generations without a loss that is lower by [`PROGRESS`] after which a start ends.
@@ -108,7 +109,8 @@ impl Start {
 pub(crate) struct Ranges {
     /// Blocks along x and y.
     size: [f64; 2],
-    /// Largest half length and half width of a patch before it grows, in blocks: those of a strip across the slider that covers all it may.
+    /// Largest half length and half width of a patch before it grows, in blocks: those of a strip across the
+    /// slider that covers all it may.
     half: [f64; 2],
     /// Least and largest coverage, %.
     coverage: [f64; 2],
@@ -140,8 +142,8 @@ impl Ranges {
         }
     }
 
-    /// Numbers of a draft: those of its patches, then of its coverage unless it is the most. What lies outside of its range counts as the
-    /// nearest end.
+    /// Numbers of a draft: those of its patches, then of its coverage unless it is the most. What lies
+    /// outside of its range counts as the nearest end.
     fn numbers(&self, draft: &Draft) -> Vec<f64> {
         let of_patch = |patch: &Patch| {
             let [x, y] = patch.center;
@@ -161,7 +163,8 @@ impl Ranges {
         draft.patches.iter().flat_map(of_patch).chain(covered).collect()
     }
 
-    /// A draft with the forms of another, and with other numbers; those outside of their ranges count as the nearest end.
+    /// A draft with the forms of another, and with other numbers; those outside of their ranges count as the
+    /// nearest end.
     fn draft(&self, from: &Draft, numbers: &[f64]) -> Draft {
         let held: Vec<f64> = numbers
             .iter()
@@ -235,8 +238,8 @@ mod tests {
         }
     }
 
-    /// The loss is the distance of a patch from a place. The last draft lies within half a block of it, since a start ends when drafts deviate by a
-    /// tenth of a block.
+    /// The loss is the distance of a patch from a place. The last draft lies within half a block of it, since
+    /// a start ends when drafts deviate by a tenth of a block.
     #[test]
     fn drafts_become_better_until_the_start_ends() {
         let grid = whole([40, 40], [false; 2]);

@@ -13,16 +13,19 @@ use slipfront_case::case_file::{
 use crate::wish::Wish;
 use slipfront_study::identity::physics;
 
-/// The step with which designs are tried: it orders reductions as a quarter of the step does, at a third of the cost.
+/// The step with which designs are tried: it orders reductions as a quarter of the step does, at a third of
+/// the cost.
 const COARSE_STEP: f64 = 0.4;
 
-/// Ratio of two times: up to the first the largest mu* of a design counts as its static friction; the second is that of the
-/// slider without texture times the load factor of as much texture as the limits allow. The second is twice the time of the
-/// onset (Eq. 12), so that the first is 1.2 times the latest onset that is expected. A block that only its own drive spring
-/// pulls until it slips, without its neighbours, slips at 2.67/2.5 = 1.07 of the onset.
+/// Ratio of two times: up to the first the largest mu* of a design counts as its static friction; the second
+/// is that of the slider without texture times the load factor of as much texture as the limits allow. The
+/// second is twice the time of the onset (Eq. 12), so that the first is 1.2 times the latest onset that is
+/// expected. A block that only its own drive spring pulls until it slips, without its neighbours, slips at
+/// 2.67/2.5 = 1.07 of the onset.
 const SEARCHED: f64 = 0.6;
 
-/// Multiple of the time of a search up to which verdicts run, so that no design is good only because the search has ended.
+/// Multiple of the time of a search up to which verdicts run, so that no design is good only because the
+/// search has ended.
 const JUDGED: f64 = 2.0;
 
 /// Accuracy of a run of a design.
@@ -212,8 +215,9 @@ mod tests {
         Subject::new(&case, Wish::Least(Quantity::StaticFriction), 10.0).unwrap()
     }
 
-    /// A ripple before the peak is no reduction: bars that a search once placed so that mu* ripples at 0.5005, just above
-    /// the level of sliding, before it rises on to 0.59, do not count for the ripple, with either step.
+    /// A ripple before the peak is no reduction: bars that a search once placed so that mu* ripples at
+    /// 0.5005, just above the level of sliding, before it rises on to 0.59, do not count for the ripple, with
+    /// either step.
     #[test]
     fn a_ripple_before_the_peak_is_no_reduction() {
         let subject = subject(
@@ -235,7 +239,8 @@ mod tests {
         }
     }
 
-    /// A search runs until every block in contact has slipped, as far as its own drive spring alone can make it.
+    /// A search runs until every block in contact has slipped, as far as its own drive spring alone can make
+    /// it.
     #[test]
     fn a_search_looks_until_every_block_has_slipped() {
         let subject = subject("slider.blocks = [4, 4]\ndrive.v_star = 0.1\ntime.kinetic_from_star = 70");
@@ -246,8 +251,8 @@ mod tests {
         let case = subject.case(None, 3, Fidelity::Coarse).unwrap();
         assert_eq!((case.time_plan.dt_star, case.file.friction.seed), (0.4, 4));
         assert_eq!(case.time_plan.last_step, (searched / 0.4).ceil() as u64);
-        // A verdict has a quarter of the step and twice the time. Where a block gives the material its lengths, a run on blocks of half the size
-        // has as many steps.
+        // A verdict has a quarter of the step and twice the time. Where a block gives the material its
+        // lengths, a run on blocks of half the size has as many steps.
         let work = [Fidelity::Coarse, Fidelity::Verdict].map(|fidelity| subject.work(fidelity));
         let finer = subject.on_finer_blocks().unwrap().work(Fidelity::Verdict);
         let ratios = [work[1] / work[0], finer / work[1]];

@@ -48,8 +48,8 @@ pub struct OnFresh {
     pub loss_deviation: Option<f64>,
     /// Reason for which the texture is lost, if it is: a run of it has not the numbers of the wish.
     pub lost: Option<String>,
-    /// The loss of this texture less that of the design, surface by surface: above 0 where the design is better; none for
-    /// the design itself.
+    /// The loss of this texture less that of the design, surface by surface: above 0 where the design is
+    /// better; none for the design itself.
     pub design_is_better_by: Option<Mean>,
 }
 
@@ -62,10 +62,11 @@ pub struct Verdict {
     pub first_surface: u64,
     /// The design.
     pub design: OnFresh,
-    /// Whether the design is a named pattern, because no searched texture is better on fresh surfaces than the best of them.
+    /// Whether the design is a named pattern, because no searched texture is better on fresh surfaces than
+    /// the best of them.
     pub is_named: bool,
-    /// The slider without texture, the groove across, and the best named pattern, as far as there are such; and the best of
-    /// the search if it was not better.
+    /// The slider without texture, the groove across, and the best named pattern, as far as there are such;
+    /// and the best of the search if it was not better.
     pub others: Vec<OnFresh>,
     /// The loss on fresh surfaces less that on the surfaces that the search chose by.
     pub optimism: f64,
@@ -84,8 +85,8 @@ pub(crate) struct Judged {
 }
 
 impl Judge<'_> {
-    /// Largest number of runs of a verdict on so many `named` patterns, and their cost in steps times blocks; `beside` textures are
-    /// judged whether they are good or not.
+    /// Largest number of runs of a verdict on so many `named` patterns, and their cost in steps times blocks;
+    /// `beside` textures are judged whether they are good or not.
     pub(crate) fn most_runs(evaluator: &Evaluator, named: usize, beside: usize) -> (usize, f64) {
         let Surfaces { compared, judged } = Surfaces::of(evaluator);
         let n = |surfaces: Range<u64>| (surfaces.end - surfaces.start) as usize;
@@ -99,8 +100,9 @@ impl Judge<'_> {
         (runs + changed_runs, work + changed_work)
     }
 
-    /// Compares the finalists of a search with the best of the named patterns, and returns the winner with the verdict on
-    /// it; none if there is no texture. Textures `beside` them are judged whether they are good or not, the groove first if it is legal.
+    /// Compares the finalists of a search with the best of the named patterns, and returns the winner with
+    /// the verdict on it; none if there is no texture. Textures `beside` them are judged whether they are
+    /// good or not, the groove first if it is legal.
     pub(crate) fn verdict(
         &self,
         searched: &[Contender],

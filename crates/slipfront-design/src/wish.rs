@@ -120,8 +120,8 @@ impl Wish {
         matches!(self, Self::Least(_) | Self::Largest(_))
     }
 
-    /// Deviation of a run with a texture from the wish, given the run of the same surface without it if the wish
-    /// [is relative](Self::is_relative):
+    /// Deviation of a run with a texture from the wish, given the run of the same surface without it if the
+    /// wish [is relative](Self::is_relative):
     ///
     /// ```text
     /// least  q/q_0;   largest  -q/q_0;   value  q/q_wanted - 1;   curve  root of the mean square of the differences of mu*
@@ -162,7 +162,8 @@ impl Wish {
         }
     }
 
-    /// A loss as reported: a reduction or a rise in %, the distance from a value in %, or the distance from a curve.
+    /// A loss as reported: a reduction or a rise in %, the distance from a value in %, or the distance from a
+    /// curve.
     pub(crate) fn told(&self, loss: f64) -> f64 {
         match self {
             Self::Least(_) => self.difference_told(1.0 - loss),
@@ -189,8 +190,8 @@ impl Wish {
         }
     }
 
-    /// A sentence on the loss of a design as reported, with half the width of its interval; `found` is the quantity of the design if there is
-    /// one case, and empty over several.
+    /// A sentence on the loss of a design as reported, with half the width of its interval; `found` is the
+    /// quantity of the design if there is one case, and empty over several.
     pub(crate) fn headline(&self, loss: f64, half_width: Option<f64>, found: &str) -> String {
         let of = self.quantity().name();
         match self {

@@ -52,11 +52,11 @@ fn ratio(w: f64, redraw: Option<u64>) -> Result<f64, FamilyError> {
     Ok(peak / (sliding.iter().map(force).sum::<f64>() / sliding.len() as f64))
 }
 
-/// Largest allowed distance of the ratio from the exact one: the pull lags behind the rise of friction by `Omega/k_s`, and
-/// is read once a step; the weakest of 400 springs lies `w/400` within their range. After ten cycles the phases of springs
-/// that keep their thresholds are spread over `20 w` cycles: the mean of 40 sawteeth, 1/(4 40) off if all were cut at once,
-/// is off by an eighth of that over `20 w`. With thresholds that are drawn anew, 16000 of them scatter, by three standard
-/// deviations at most.
+/// Largest allowed distance of the ratio from the exact one: the pull lags behind the rise of friction by
+/// `Omega/k_s`, and is read once a step; the weakest of 400 springs lies `w/400` within their range. After
+/// ten cycles the phases of springs that keep their thresholds are spread over `20 w` cycles: the mean of 40
+/// sawteeth, 1/(4 40) off if all were cut at once, is off by an eighth of that over `20 w`. With thresholds
+/// that are drawn anew, 16000 of them scatter, by three standard deviations at most.
 fn tolerance(w: f64, exact: f64, redrawn: bool) -> (f64, &'static str) {
     let rise = SOFTNESS * V_STAR;
     let peak = rise * (scales::damping(OMEGA_STAR) + K_DRIVE * DT_STAR) + w / 400.0;
@@ -75,7 +75,8 @@ fn tolerance(w: f64, exact: f64, redrawn: bool) -> (f64, &'static str) {
     }
 }
 
-/// Pull at which the first spring of a chain breaks that is driven at its first block; NaN if another one breaks.
+/// Pull at which the first spring of a chain breaks that is driven at its first block; NaN if another one
+/// breaks.
 fn pull(n: usize, stiffness: f64) -> f64 {
     let lattice = Lattice::free(n, 1);
     let law = Friction::ContactSprings(ContactSprings {

@@ -49,7 +49,8 @@ struct Longer {
 }
 
 impl Longer {
-    /// Relative error of the load, and its largest allowed sizes without and with the load that the drive has added.
+    /// Relative error of the load, and its largest allowed sizes without and with the load that the drive has
+    /// added.
     fn error(&self, slope: f64) -> [f64; 3] {
         let exact = precursor_load(self.length, KINETIC, slope);
         [self.load - exact, self.bound, self.bound + self.added].map(|load| load.abs() / exact)
@@ -57,11 +58,12 @@ impl Longer {
 }
 
 impl Chain {
-    /// Events that are longer than all before, and the largest load, of a run that ends when an event has crossed the chain; the load is
-    /// infinite if none crosses it.
+    /// Events that are longer than all before, and the largest load, of a run that ends when an event has
+    /// crossed the chain; the load is infinite if none crosses it.
     fn precursors(&self, slope: f64, dt_star: f64) -> Result<(Vec<Longer>, f64), FamilyError> {
         let (n, v_star) = (f64::from(self.blocks), self.v_star);
-        // Until the springs would pull with 1.3 times the kinetic friction of the whole chain, were it at rest.
+        // Until the springs would pull with 1.3 times the kinetic friction of the whole chain, were it at
+        // rest.
         let duration = 1.3 * KINETIC / STATIC * n * n / (KAPPA * v_star);
         let text = format!(
             "[slider]\nblocks = [{n}, 1]\nomega_star = 0\nviscosity_time_star = 0.365\n\
@@ -113,7 +115,8 @@ impl Chain {
         Ok((longer, largest))
     }
 
-    /// Answers for the chain's runs under one profile of pressure; and the events of the run of the finest step.
+    /// Answers for the chain's runs under one profile of pressure; and the events of the run of the finest
+    /// step.
     fn answers(&self, slope: f64) -> Result<(Vec<Answer>, Vec<Longer>), FamilyError> {
         let runs = self
             .steps

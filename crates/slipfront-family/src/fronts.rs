@@ -16,7 +16,8 @@ const KINETIC: f64 = 0.5;
 const DT_STAR: f64 = 5e-3;
 const PRESTRESSES: [f64; 6] = [0.4, 0.5, 0.6, 0.7, 0.8, 0.9];
 
-/// Speed over that of sound of a front in a chain with drive springs of `kappa` times its own stiffness, under a constant force.
+/// Speed over that of sound of a front in a chain with drive springs of `kappa` times its own stiffness,
+/// under a constant force.
 fn speed(kappa: f64, prestress: f64) -> Result<f64, FamilyError> {
     let lattice = Lattice::free(BLOCKS, 1);
     let drive = Drive {

@@ -40,7 +40,8 @@ pub(crate) fn chapter() -> Result<Chapter, FamilyError> {
         let name = |what: &str| format!("{what}, {nx} x {ny} blocks at V* = {v_star}");
         let mut simulation = equal_blocks(blocks, v_star);
         let [path, peak] = step_until(&mut simulation, true);
-        // Leapfrog swings about K, from rest to a step in which it stops: of the order of (sqrt(k_s) dt)^2 of the fall.
+        // Leapfrog swings about K, from rest to a step in which it stops: of the order of (sqrt(k_s) dt)^2 of
+        // the fall.
         let of_the_step = K_DRIVE * DT_STAR * DT_STAR;
         let step = v_star * DT_STAR;
         answers.push(Answer::new(

@@ -1,8 +1,8 @@
 //! The models around the paper's: for every option of the engine the exact answers, and what it computes.
 //!
-//! Each chapter builds its sliders from the physics alone and compares their motion with a closed form or with the
-//! integration of an equation that is derived in its text. The command is `slipfront family`; its page is
-//! `docs/validation/family.md`.
+//! Each chapter builds its sliders from the physics alone and compares their motion with a closed form or
+//! with the integration of an equation that is derived in its text. The command is `slipfront family`; its
+//! page is `docs/validation/family.md`.
 
 mod adhesion;
 mod ageing;

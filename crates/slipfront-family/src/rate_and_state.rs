@@ -36,8 +36,8 @@ fn computed(k_drive: f64, damping: f64) -> f64 {
     growth_of_disturbance(model, DT_STAR, 60.0, 36.0)
 }
 
-/// Mass of a block in steps of [`DT_STAR`]: friction is that of the speed half a step later, `mu(v + dt v'/2)`, as if the mass were larger
-/// by `sigma a dt/(2 V)`.
+/// Mass of a block in steps of [`DT_STAR`]: friction is that of the speed half a step later,
+/// `mu(v + dt v'/2)`, as if the mass were larger by `sigma a dt/(2 V)`.
 const MASS: f64 = 1.0 + LAW.a * DT_STAR / (2.0 * V_STAR);
 
 /// The law over this mass.
@@ -56,8 +56,8 @@ const STIFF: f64 = 2500.0;
 /// Damping Omega, with which the swing about the speed of the drive decays to exp(-Omega t/2) = exp(-50).
 const STIFF_DAMPING: f64 = 10.0;
 
-/// `mu - mu_ss` of blocks that slid steadily at [`V_1`] until a drive took them to `v_2`, a time [`AFTER`] later. Springs
-/// are so stiff that the blocks follow it.
+/// `mu - mu_ss` of blocks that slid steadily at [`V_1`] until a drive took them to `v_2`, a time [`AFTER`]
+/// later. Springs are so stiff that the blocks follow it.
 fn after_step(v_2: f64) -> f64 {
     let law = RateAndState {
         theta_0: LAW.d_c / V_1,

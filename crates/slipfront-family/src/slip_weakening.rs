@@ -37,8 +37,8 @@ fn block(weakening: f64, damping: f64, segments: &[(f64, f64)]) -> Simulation {
     Simulation::new(model, DT_STAR, None, Execution::default())
 }
 
-/// Place where a block that has jumped without damping comes to rest, with the drive standing at its threshold, and the
-/// energy of weakening; NaN if it still slides.
+/// Place where a block that has jumped without damping comes to rest, with the drive standing at its
+/// threshold, and the energy of weakening; NaN if it still slides.
 fn jumped(weakening: f64) -> [f64; 2] {
     let until = (1.0 / K_DRIVE / FAST / DT_STAR).ceil() * DT_STAR + DT_STAR;
     let mut simulation = block(weakening, 0.0, &[(FAST, until), (0.0, f64::INFINITY)]);

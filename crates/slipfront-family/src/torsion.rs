@@ -34,9 +34,9 @@ const DT_STAR: f64 = 0.8;
 /// Torque that the springs gain in half a step.
 const HALF_A_STEP: f64 = 0.5 * (K_DRIVE * V_STAR) * DT_STAR;
 
-/// Excess that the torque may have over that of blocks at their kinetic friction while those within `stuck` of the radius
-/// stick: by the drag of sliding blocks, `Omega V* r/r_max` each; by the rest of `1 - R*` of each block a time t after its
-/// slip, which is found up to a step late: at most
+/// Excess that the torque may have over that of blocks at their kinetic friction while those within `stuck`
+/// of the radius stick: by the drag of sliding blocks, `Omega V* r/r_max` each; by the rest of `1 - R*` of
+/// each block a time t after its slip, which is found up to a step late: at most
 ///
 /// ```text
 /// s_2/(s_2 - s_1) exp(-s_1 t),   s_1,2 = Omega/2 -+ sqrt(Omega^2/4 - k_s)
@@ -58,7 +58,8 @@ fn excess(radii: &[f64], stuck: f64, r_star: f64) -> f64 {
     sliding.map(of_block).sum::<f64>() / radii.iter().sum::<f64>() + HALF_A_STEP
 }
 
-/// A disc of 40 blocks across that are driven each on its own: their springs to each other are a million times softer.
+/// A disc of 40 blocks across that are driven each on its own: their springs to each other are a million
+/// times softer.
 fn decoupled(r_star: f64) -> Experiment {
     let lattice = Lattice::free(40, 40);
     let outline = Outline::new(Outline::disc(&lattice, 0..40), &Alone);

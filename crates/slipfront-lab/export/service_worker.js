@@ -1,4 +1,5 @@
-// Keeps the files of the page, so that it opens without a network once it was opened. Written by `slipfront lab --export`.
+// Keeps the files of the page, so that it opens without a network once it was opened. Written by
+// `slipfront lab --export`.
 const FILES = ['FILES'];
 const CACHE = 'CACHE';
 

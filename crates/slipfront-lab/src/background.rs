@@ -22,7 +22,8 @@ impl BackgroundTask {
     /// # Errors
     /// A sentence, if the system refuses threads.
     pub(crate) fn begin(job: Job, threads: usize, working: &Sender<()>) -> Result<Self, String> {
-        // A pool of its own: steps of the run that is shown would wait in that of all others until whole runs have ended.
+        // A pool of its own: steps of the run that is shown would wait in that of all others until whole runs
+        // have ended.
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
         let pool = pool.map_err(|error| format!("the system refuses threads for the work: {error}"))?;
         let stop = Arc::new(AtomicBool::new(false));

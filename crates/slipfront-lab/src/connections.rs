@@ -1,4 +1,5 @@
-//! Connections over HTTP, which everybody on this machine may open: few at once, with small headers that come soon.
+//! Connections over HTTP, which everybody on this machine may open: few at once, with small headers that come
+//! soon.
 //!
 //! A page that has proved that it knows the token goes on over a WebSocket, and no longer counts here.
 
@@ -23,8 +24,9 @@ const MAX_HEADER_BYTES: usize = 16 << 10;
 /// Time to the next attempt when the system refuses a connection, for lack of files or memory.
 const RETRY_INTERVAL: Duration = Duration::from_millis(100);
 
-/// Serves whoever connects, for ever; a connection may take `header_timeout` to send the next header. When there are too many, the oldest goes: whoever holds connections open without a use keeps no
-/// page out, which needs its own for some milliseconds.
+/// Serves whoever connects, for ever; a connection may take `header_timeout` to send the next header. When
+/// there are too many, the oldest goes: whoever holds connections open without a use keeps no page out, which
+/// needs its own for some milliseconds.
 pub(crate) async fn serve(listener: TcpListener, router: Router, header_timeout: Duration) -> Infallible {
     let mut http = http1::Builder::new();
     http.timer(TokioTimer::new())

@@ -1,4 +1,5 @@
-//! The laboratory without a server: its page, and the session as WebAssembly, as a folder for any web server or as one file.
+//! The laboratory without a server: its page, and the session as WebAssembly, as a folder for any web server
+//! or as one file.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -28,10 +29,12 @@ const BEGINNING: &str = "start.json";
 /// The file with the licences of what an exported page contains.
 const NOTICES: &str = "THIRD-PARTY-NOTICES.txt";
 
-/// Content security policy of the page of an exported folder: it may take files from its own folder, and compile the module.
+/// Content security policy of the page of an exported folder: it may take files from its own folder, and
+/// compile the module.
 const POLICY_OF_FOLDER: &str = include_str!("../export/folder.policy");
 
-/// Content security policy of a page of one file: it may run its loader, show its styles, and use what the loader makes of its files.
+/// Content security policy of a page of one file: it may run its loader, show its styles, and use what the
+/// loader makes of its files.
 const POLICY_OF_SINGLE: &str = include_str!("../export/single.policy");
 
 /// Element with which an exported page says that it has no server, and by which it is known as one.
@@ -121,7 +124,8 @@ struct Parts {
     modules: BTreeMap<&'static str, Vec<u8>>,
 }
 
-/// Finds the module of the session, in the first of some folders that has it. The one that draws pictures stands beside it.
+/// Finds the module of the session, in the first of some folders that has it. The one that draws pictures
+/// stands beside it.
 ///
 /// # Errors
 /// When none of the folders has the module.
@@ -188,8 +192,8 @@ impl Parts {
     }
 }
 
-/// Writes the laboratory as a folder that any web server can serve: a page that opens with a case of the start, and asks for nothing outside
-/// of the folder. It contains the licence notices of its parts.
+/// Writes the laboratory as a folder that any web server can serve: a page that opens with a case of the
+/// start, and asks for nothing outside of the folder. It contains the licence notices of its parts.
 ///
 /// # Errors
 /// When the module is none, the folder holds other things, or the system refuses.
@@ -242,8 +246,8 @@ fn service_worker(files: &BTreeMap<String, Vec<u8>>) -> String {
         .replacen("'CACHE'", &format!("'slipfront-{digits}'"), 1)
 }
 
-/// Writes the laboratory as one file, which opens from the disk: a page that opens with a case of the start, and asks for nothing.
-/// It contains the licence notices of its parts.
+/// Writes the laboratory as one file, which opens from the disk: a page that opens with a case of the start,
+/// and asks for nothing. It contains the licence notices of its parts.
 ///
 /// # Errors
 /// When the module is none, there is another file of this name that was not exported, or the system refuses.

@@ -20,8 +20,8 @@ pub(crate) fn document(path: &Path, name: &str, allowed: &[PathBuf]) -> Result<D
     Document::new(name, &text, |file| reach.read(file))
 }
 
-/// The folders in which files of the disk may be read: one, and those that the user allows. What leads out of them, by its name
-/// or by symbolic links, is refused.
+/// The folders in which files of the disk may be read: one, and those that the user allows. What leads out of
+/// them, by its name or by symbolic links, is refused.
 pub(crate) struct ReadableFolders<'a> {
     folder: &'a Path,
     /// The owner of the folder in messages, such as `the case`.

@@ -1,7 +1,7 @@
 //! Who is answered: pages that this server itself has given to a browser on this machine.
 //!
-//! A page of another site may send requests to 127.0.0.1 as well. Its browser then tells its origin, which is refused; and a name of
-//! another site that was made to stand for 127.0.0.1 is seen in the header `Host`.
+//! A page of another site may send requests to 127.0.0.1 as well. Its browser then tells its origin, which is
+//! refused; and a name of another site that was made to stand for 127.0.0.1 is seen in the header `Host`.
 
 use axum::extract::{Request, State};
 use axum::http::header::{self, HeaderMap, HeaderName, HeaderValue};
@@ -9,7 +9,8 @@ use axum::http::{StatusCode, Uri};
 use axum::middleware::Next;
 use axum::response::{IntoResponse, Response};
 
-/// Headers of every answer: the page takes files from this server alone, and no other site shows the page or reads it.
+/// Headers of every answer: the page takes files from this server alone, and no other site shows the page or
+/// reads it.
 const HEADERS: [(HeaderName, &str); 6] = [
     (
         header::CONTENT_SECURITY_POLICY,

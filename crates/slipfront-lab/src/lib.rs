@@ -5,9 +5,9 @@
 //!          --- requests ->                           --- channel ->
 //! ```
 //!
-//! The server answers on 127.0.0.1 alone; every page has a session of its own, with its own run, which works only while
-//! somebody looks. The session and what it and its page say to each other are slipfront-session's; the page itself stands in `web/`,
-//! without a build step.
+//! The server answers on 127.0.0.1 alone; every page has a session of its own, with its own run, which works
+//! only while somebody looks. The session and what it and its page say to each other are slipfront-session's;
+//! the page itself stands in `web/`, without a build step.
 
 mod assets;
 mod background;

@@ -28,7 +28,8 @@ pub(crate) enum StartSource {
 pub struct OpeningError(String);
 
 impl Start {
-    /// The case of a file, or of the folder of a complete run, with the files that it names in its folder or in one that is allowed.
+    /// The case of a file, or of the folder of a complete run, with the files that it names in its folder or
+    /// in one that is allowed.
     ///
     /// # Errors
     /// When there is no such case or run, or it cannot be shown, or names a file elsewhere.

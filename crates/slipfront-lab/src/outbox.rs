@@ -9,10 +9,12 @@ use tokio::sync::Notify;
 /// Replies that may wait before the run does.
 const MAX_WAITING_REPLIES: usize = 64;
 
-/// Bytes of replies that may wait before the next request does: those to a page that does not read them do not fill the memory.
+/// Bytes of replies that may wait before the next request does: those to a page that does not read them do
+/// not fill the memory.
 const MAX_WAITING_BYTES: usize = 4 << 20;
 
-/// Messages that wait for a page. The session and the work it has begun fill the outbox, the connection empties it.
+/// Messages that wait for a page. The session and the work it has begun fill the outbox, the connection
+/// empties it.
 #[derive(Default)]
 pub(crate) struct Outbox {
     waiting: Mutex<Queue>,

@@ -37,8 +37,8 @@ pub(crate) fn all() -> Presets {
     Presets(all)
 }
 
-/// A case of the folder, with the files beside it that it names. It is not parsed before it is chosen: a text in quotes is taken for the name of
-/// a file if there is such a file.
+/// A case of the folder, with the files beside it that it names. It is not parsed before it is chosen: a text
+/// in quotes is taken for the name of a file if there is such a file.
 fn case(name: &str, text: &str) -> Preset {
     let files = CASES.files().filter_map(|file| {
         let name = file.path().to_str()?;
@@ -78,7 +78,8 @@ fn title(text: &str) -> String {
     sentence.unwrap_or(&comment).trim_end_matches('.').to_owned()
 }
 
-/// The case of a file of the paper: as a whole, or the base of its study. The run goes on to its end, to be seen.
+/// The case of a file of the paper: as a whole, or the base of its study. The run goes on to its end, to be
+/// seen.
 fn case_of_study(text: &str) -> String {
     // What is wrong with a case is told when it is chosen.
     let Ok(mut table) = text.parse::<Table>() else {

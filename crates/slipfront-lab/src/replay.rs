@@ -41,7 +41,8 @@ pub(crate) fn folder(results: &Path, name: &str, allowed: &[PathBuf]) -> Result<
 /// Reads a complete run.
 ///
 /// # Errors
-/// A sentence, if it is none, or was changed since it was written, or one of its files lies elsewhere and not where it is `allowed`.
+/// A sentence, if it is none, or was changed since it was written, or one of its files lies elsewhere and not
+/// where it is `allowed`.
 pub(crate) fn read(folder: &Path, allowed: &[PathBuf]) -> Result<OpenedCase, String> {
     let reach = ReadableFolders::new(folder, "the run", allowed)?;
     let canonical = folder.canonicalize().unwrap_or_else(|_| folder.to_owned());

@@ -54,8 +54,8 @@ fn make_folder(path: &Path) -> Result<(), String> {
         })
 }
 
-/// Runs the case to its end and writes it into a new folder; reports now and then the share that is done, and looks whether it shall
-/// stop. Gives whether the run was completed.
+/// Runs the case to its end and writes it into a new folder; reports now and then the share that is done, and
+/// looks whether it shall stop. Gives whether the run was completed.
 ///
 /// # Errors
 /// A sentence; then there is no folder.

@@ -1,4 +1,5 @@
-//! Runs that are being saved. They belong to the server and not to a page: one that is closed or loaded again ends none of them.
+//! Runs that are being saved. They belong to the server and not to a page: one that is closed or loaded again
+//! ends none of them.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
@@ -80,7 +81,8 @@ impl Saves {
         page.reply(list.reply());
     }
 
-    /// Begins to save a run of a case, in a thread that holds `working`, into a folder of the results of this name.
+    /// Begins to save a run of a case, in a thread that holds `working`, into a folder of the results of this
+    /// name.
     ///
     /// # Errors
     /// A sentence, if the name is taken or none, or too many runs are being saved.

@@ -1,4 +1,5 @@
-//! The server: files of the page over HTTP, and a session for every page over a WebSocket, on 127.0.0.1 alone.
+//! The server: files of the page over HTTP, and a session for every page over a WebSocket, on 127.0.0.1
+//! alone.
 
 use std::future::Future;
 use std::io;
@@ -99,7 +100,8 @@ impl Laboratory {
         })
     }
 
-    /// The address of the page, with the token that opens it; `link` is what follows `#case=` in the link of another page.
+    /// The address of the page, with the token that opens it; `link` is what follows `#case=` in the link of
+    /// another page.
     pub fn address(&self, link: Option<&str>) -> String {
         let case = link.map_or(String::new(), |link| format!("&case={link}"));
         format!(
@@ -109,8 +111,8 @@ impl Laboratory {
         )
     }
 
-    /// Writes a page that leads to the address, and which only this user can read; its path may be told to everybody. It is removed
-    /// once a page has connected, or when the server ends.
+    /// Writes a page that leads to the address, and which only this user can read; its path may be told to
+    /// everybody. It is removed once a page has connected, or when the server ends.
     ///
     /// # Errors
     /// When the system refuses to write.
@@ -126,8 +128,8 @@ impl Laboratory {
         PrivateFile::write(".txt", &format!("{}\n", self.address(link)))
     }
 
-    /// Answers until `stop` is done. Then pages are told, whatever is open is closed, and what is being saved takes its unfinished
-    /// folder away; neither takes longer than it is given.
+    /// Answers until `stop` is done. Then pages are told, whatever is open is closed, and what is being saved
+    /// takes its unfinished folder away; neither takes longer than it is given.
     ///
     /// # Errors
     /// When the system refuses what a server needs.

@@ -63,7 +63,8 @@ pub(crate) async fn prove(
     Ok(shared.token.proof_of_server(caller))
 }
 
-/// Begins a session with a page that knows the token. Browsers send tab, nonce and proof of a page as subprotocols.
+/// Begins a session with a page that knows the token. Browsers send tab, nonce and proof of a page as
+/// subprotocols.
 pub(crate) async fn connect(
     State(shared): State<Shared>,
     headers: HeaderMap,
@@ -183,7 +184,8 @@ async fn forward(
                 Some(Ok(Message::Close(_)) | Err(_)) | None => return,
             },
             () = sleep(RETRY_INTERVAL), if kept.is_some() => {
-                // Nothing is read from the page meanwhile: that it has gone shows only when something is sent.
+                // Nothing is read from the page meanwhile: that it has gone shows only when something is
+                // sent.
                 if asked.elapsed() > PING_INTERVAL {
                     asked = Instant::now();
                     if to_page.send(Message::Ping(Bytes::new())).await.is_none() {

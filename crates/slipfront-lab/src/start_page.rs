@@ -1,8 +1,8 @@
 //! Files that hold the address of the laboratory, and which only their owner can read.
 //!
-//! Every user of the machine can read the arguments with which a browser is started, so that they must not hold the token of the
-//! address. They name the start page, which leads to the address, and which is gone once a page has connected. A log that others can
-//! read names a file with the address.
+//! Every user of the machine can read the arguments with which a browser is started, so that they must not
+//! hold the token of the address. They name the start page, which leads to the address, and which is gone
+//! once a page has connected. A log that others can read names a file with the address.
 
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -37,7 +37,8 @@ impl StartPage {
     }
 }
 
-/// A file in the folder of temporary files of this process, for this user alone. Dropping the value removes the file.
+/// A file in the folder of temporary files of this process, for this user alone. Dropping the value removes
+/// the file.
 pub struct PrivateFile {
     file: NamedTempFile,
     _folder: Arc<TemporaryFolder>,

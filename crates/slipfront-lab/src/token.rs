@@ -1,8 +1,10 @@
-//! The token of the address, and how a page and the server prove to each other that they know it without telling it.
+//! The token of the address, and how a page and the server prove to each other that they know it without
+//! telling it.
 //!
-//! Whoever listens on the port once the server has ended may be another user, to whom a page that tries to connect must give nothing.
-//! So a tab draws a name, keeps the key that the token gives for this name, and forgets the token. For every connection it draws a
-//! number, the nonce; the server proves with it that it knows the key, and then the page does.
+//! Whoever listens on the port once the server has ended may be another user, to whom a page that tries to
+//! connect must give nothing. So a tab draws a name, keeps the key that the token gives for this name, and
+//! forgets the token. For every connection it draws a number, the nonce; the server proves with it that it
+//! knows the key, and then the page does.
 
 use std::io;
 
@@ -42,12 +44,14 @@ impl Token {
         &self.0
     }
 
-    /// Proof of the server to a page, in hexadecimal digits: the code of "server NONCE", which only those who know the token can compute.
+    /// Proof of the server to a page, in hexadecimal digits: the code of "server NONCE", which only those who
+    /// know the token can compute.
     pub(crate) fn proof_of_server(&self, caller: Caller) -> String {
         hexadecimal(&self.code("server", caller).finalize().into_bytes())
     }
 
-    /// Tells whether a page proves that it knows the token: `proof` is the code of "page NONCE", in hexadecimal digits.
+    /// Tells whether a page proves that it knows the token: `proof` is the code of "page NONCE", in
+    /// hexadecimal digits.
     pub(crate) fn is_proof_of_page(&self, caller: Caller, proof: &str) -> bool {
         let bytes: Option<Vec<u8>> = (proof.len() == 64 && proof.is_ascii())
             .then(|| {

@@ -1,5 +1,6 @@
-// What the page and the server say to each other, as `protocol.rs` of slipfront-session has it: `samples.ts` holds the two against
-// each other. A number that is not finite is sent as null. Browsers are not given this file.
+// What the page and the server say to each other, as `protocol.rs` of slipfront-session has it: `samples.ts`
+// holds the two against each other. A number that is not finite is sent as null. Browsers are not given this
+// file.
 
 /** A value of a key of the case, as in TOML. */
 export type CaseValue = string | number | boolean | CaseValue[] | { [key: string]: CaseValue };

@@ -1,4 +1,5 @@
-// The Workers of a page without a server: the functions of the WebAssembly module, and the messages between page and Worker.
+// The Workers of a page without a server: the functions of the WebAssembly module, and the messages between
+// page and Worker.
 
 /** The functions that every module of slipfront-wasm exports (`exports.rs`). */
 export interface Module {

@@ -98,7 +98,8 @@ function show() {
   list.replaceChildren(...texture.map(item));
   find('no-shapes').hidden = texture.length > 0;
   find('too-coarse').textContent = state.case?.too_coarse ?? '';
-  // The list is made anew, but the reader stays where he was, and what he types replaces the number as after Tab.
+  // The list is made anew, but the reader stays where he was, and what he types replaces the number as after
+  // Tab.
   if (id) {
     const again = document.getElementById(id);
     again?.focus();

@@ -9,8 +9,8 @@ use mpi::topology::{Process, SimpleCommunicator};
 use mpi::traits::{Communicator as _, CommunicatorCollectives, Destination, Source};
 use slipfront::Communicator;
 
-/// Tag that distinguishes a message to the rank below from one to the rank above: of two ranks, each has the other on both
-/// sides.
+/// Tag that distinguishes a message to the rank below from one to the rank above: of two ranks, each has the
+/// other on both sides.
 const DOWN: Tag = 0;
 const UP: Tag = 1;
 

@@ -1,7 +1,7 @@
 //! One lattice over many processes, on one machine or many: the command of slipfront on the ranks of MPI.
 //!
-//! All computation, printing and writing is in the other crates. They know a rank's connection with the others as
-//! [`slipfront::Communicator`]; this crate makes it.
+//! All computation, printing and writing is in the other crates. They know a rank's connection with the
+//! others as [`slipfront::Communicator`]; this crate makes it.
 
 mod communicator;
 
@@ -18,8 +18,8 @@ pub use self::communicator::MpiCommunicator;
 /// The status with which Rust ends a program that panics.
 const PANICKED: i32 = 101;
 
-/// Runs `work` on every rank, and returns the status of the process. The function is called once, on the main thread. A rank
-/// that panics takes the others with it, where they would wait for it without an end.
+/// Runs `work` on every rank, and returns the status of the process. The function is called once, on the main
+/// thread. A rank that panics takes the others with it, where they would wait for it without an end.
 pub fn on_ranks(work: impl FnOnce(Arc<MpiCommunicator>) -> ExitCode) -> ExitCode {
     let Some((universe, threading)) = initialize_with_threading(Threading::Funneled) else {
         panic!("MPI is initialized already");

@@ -106,8 +106,8 @@ fn several_ranks_speak_with_one_voice(#[case] line: &str, #[case] status: i32, #
     assert_eq!(std::fs::read_dir(&folder).unwrap().count(), 0);
 }
 
-/// Shapes, edges, textures, masks and fields, directions, instants and snapshots at some rows, sums at every step, slow drives; other
-/// drives and laws, which either kernel computes.
+/// Shapes, edges, textures, masks and fields, directions, instants and snapshots at some rows, sums at every
+/// step, slow drives; other drives and laws, which either kernel computes.
 const CASES: [(&str, &str); 8] = [
     ("baseline", ""),
     (
@@ -187,8 +187,8 @@ fn a_run_on_ranks_writes_the_bytes_of_the_plain_command(#[values(0, 1, 2, 3, 4, 
 /// Message of a run that has saved its state where it was stopped.
 const SAVED: &str = "which is saved: `slipfront-mpi run --resume stopped` goes on";
 
-/// mpirun passes on SIGUSR2 as it is; after SIGINT and SIGTERM it sends SIGTERM to the ranks, and has status 1 whatever
-/// theirs is. mpirun itself reports that a rank was killed.
+/// mpirun passes on SIGUSR2 as it is; after SIGINT and SIGTERM it sends SIGTERM to the ranks, and has status
+/// 1 whatever theirs is. mpirun itself reports that a rank was killed.
 #[rstest]
 #[case(Target::Mpirun, "-USR2", 140, SAVED, Resumed::OnRanks)]
 #[case(Target::Mpirun, "-TERM", 1, SAVED, Resumed::Plain)]

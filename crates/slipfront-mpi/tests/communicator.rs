@@ -1,4 +1,5 @@
-//! Ranks talk to each other: messages arrive where they belong, and no rank is left behind by one that gives up.
+//! Ranks talk to each other: messages arrive where they belong, and no rank is left behind by one that gives
+//! up.
 
 #![allow(clippy::unwrap_used)] // A helper that cannot do its work fails its test.
 
@@ -46,7 +47,8 @@ fn rank_exchange() {
     check_ranks(|ranks| {
         let (rank, size) = (ranks.rank(), ranks.size());
         let [below, above] = [(rank + size - 1) % size, (rank + 1) % size];
-        // Nothing one way or both, and messages below and above the length from which MPI waits for the receiver.
+        // Nothing one way or both, and messages below and above the length from which MPI waits for the
+        // receiver.
         let lengths = [
             [1, 1],
             [3, 7],

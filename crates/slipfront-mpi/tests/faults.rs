@@ -1,7 +1,8 @@
-//! File-system calls of one rank of two fail or kill it, while it goes on with a run that has a checkpoint: both ranks end,
-//! with one answer, and the run that they leave goes on to the same bytes.
+//! File-system calls of one rank of two fail or kill it, while it goes on with a run that has a checkpoint:
+//! both ranks end, with one answer, and the run that they leave goes on to the same bytes.
 //!
-//! A few calls are tried, each fault under another law; with `SLIPFRONT_TORTURE=long` every call under every law.
+//! A few calls are tried, each fault under another law; with `SLIPFRONT_TORTURE=long` every call under every
+//! law.
 
 #![cfg(target_os = "linux")]
 #![allow(clippy::unwrap_used)] // A helper that cannot do its work fails its test.
@@ -74,8 +75,8 @@ fn stopped_run(law: &str) -> TempDir {
     folder
 }
 
-/// Goes on with the run on two ranks. Calls of one of them that concern its folder meet with an action from number `from` to
-/// number `to`, 0 for no end. Returns all of its calls as well.
+/// Goes on with the run on two ranks. Calls of one of them that concern its folder meet with an action from
+/// number `from` to number `to`, 0 for no end. Returns all of its calls as well.
 fn resume_disturbed(folder: &Path, rank: usize, [action, from, to]: [&str; 3]) -> (Output, Vec<String>) {
     let log = folder.join("log");
     let mut command = launcher();

@@ -1,5 +1,5 @@
-//! Ranks that were given different inputs: all of them end, with one sentence on the difference and its rank, before
-//! anything is written. Other inputs may differ.
+//! Ranks that were given different inputs: all of them end, with one sentence on the difference and its rank,
+//! before anything is written. Other inputs may differ.
 
 #![allow(clippy::unwrap_used)] // A helper that cannot do its work fails its test.
 
@@ -300,7 +300,8 @@ fn another_folder_is_not_resumed(#[case] change: &str, #[case] sentence: &str) {
     run_plain(&a, "run -q --resume k");
 }
 
-/// Threads, spellings of the folder, names of the case and printed output may differ: the results are those of a run alone.
+/// Threads, spellings of the folder, names of the case and printed output may differ: the results are those
+/// of a run alone.
 #[rstest]
 #[case::threads("run m.toml -q -o ../k --threads 1", "run m.toml -q -o ../k --threads 2")]
 #[case::spelling("run m.toml -q -o ../k", "run m.toml -q -o ABSOLUTE/k")]

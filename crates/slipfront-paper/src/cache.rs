@@ -1,7 +1,8 @@
-//! The data of figures, stored as soon as they are measured, so that a call that was stopped does not measure them again.
+//! The data of figures, stored as soon as they are measured, so that a call that was stopped does not measure
+//! them again.
 //!
-//! A file holds the data of a figure under a step rule, and a checksum. A damaged file, and one that was made by another
-//! program, with other cases or with other options, is ignored.
+//! A file holds the data of a figure under a step rule, and a checksum. A damaged file, and one that was made
+//! by another program, with other cases or with other options, is ignored.
 
 use std::path::{Path, PathBuf};
 
@@ -23,7 +24,8 @@ pub(crate) const MAX_BYTES: u64 = 1 << 28;
 #[derive(Debug)]
 pub struct FigureCache {
     folder: PathBuf,
-    /// Hash of the program, its cases and the options: all that the data depend on besides figure and step rule.
+    /// Hash of the program, its cases and the options: all that the data depend on besides figure and step
+    /// rule.
     origin: blake3::Hash,
 }
 

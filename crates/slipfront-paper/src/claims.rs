@@ -1,4 +1,5 @@
-//! The claims of the paper, read from `cases/claims.toml` of this crate and judged by the numbers of the figures.
+//! The claims of the paper, read from `cases/claims.toml` of this crate and judged by the numbers of the
+//! figures.
 
 use std::collections::BTreeMap;
 
@@ -37,10 +38,11 @@ pub struct Claim {
     pub digits: usize,
     /// Bounds of the number within which the claim holds, ends included.
     pub within: [f64; 2],
-    /// A second number: where it is out of its bounds, the claim holds only with a condition, which its words name.
+    /// A second number: where it is out of its bounds, the claim holds only with a condition, which its words
+    /// name.
     pub condition: Option<Reading>,
-    /// The number that follows when a slip of the print is corrected: where it is within its bounds, a claim that does not
-    /// hold as printed is a misprint, which its words correct.
+    /// The number that follows when a slip of the print is corrected: where it is within its bounds, a claim
+    /// that does not hold as printed is a misprint, which its words correct.
     pub correction: Option<Reading>,
     /// Expected verdict; another one points to a fault of the program or to a change of the model.
     pub expected: ClaimVerdict,
@@ -49,8 +51,9 @@ pub struct Claim {
     /// A remark for the reader; may be empty.
     #[serde(default)]
     pub remark: String,
-    /// Part of the claim's wording or criterion that was settled only after a measurement, and that measurement; empty if
-    /// there is none. A claim with such a part counts as [`ClaimVerdict::NotAsStated`], not as one that holds.
+    /// Part of the claim's wording or criterion that was settled only after a measurement, and that
+    /// measurement; empty if there is none. A claim with such a part counts as [`ClaimVerdict::NotAsStated`],
+    /// not as one that holds.
     #[serde(default)]
     pub revised: String,
     /// Whether two surfaces and one time step are enough to judge the claim.
@@ -86,8 +89,8 @@ pub enum ClaimVerdict {
     Holds,
     /// The claim holds under a condition that the paper does not state.
     HoldsWithCondition,
-    /// The claim was not reproduced by the criterion that was fixed before measuring; by one that was settled afterwards a
-    /// part of it holds.
+    /// The claim was not reproduced by the criterion that was fixed before measuring; by one that was settled
+    /// afterwards a part of it holds.
     NotAsStated,
     /// The claim does not hold as printed; with a slip of print or algebra corrected it does.
     Misprint,

@@ -1,4 +1,5 @@
-//! The files of `cases/` in this crate, embedded in the program so that `slipfront paper` needs no other files.
+//! The files of `cases/` in this crate, embedded in the program so that `slipfront paper` needs no other
+//! files.
 
 /// Pairs of name and text, from names relative to `cases/` without `.toml`.
 macro_rules! files {

@@ -4,8 +4,8 @@
 //! cases/*.toml -> runs -> FigureData (numbers, pictures, tables) -> verdicts -> report
 //! ```
 //!
-//! A figure has a file of its own (`figures/fig12.rs`); its cases are in `cases/fig12.toml`, and the claims about it in
-//! `cases/claims.toml`. The command is `slipfront paper`.
+//! A figure has a file of its own (`figures/fig12.rs`); its cases are in `cases/fig12.toml`, and the claims
+//! about it in `cases/claims.toml`. The command is `slipfront paper`.
 
 mod cache;
 mod claims;

@@ -36,7 +36,8 @@ impl MeasuredNumber {
         }
     }
 
-    /// The mean and the ends of its interval, NaN where there is no interval: the form in which pictures take them.
+    /// The mean and the ends of its interval, NaN where there is no interval: the form in which pictures take
+    /// them.
     pub(super) fn ends(&self) -> [f64; 3] {
         let [low, high] = self.interval.unwrap_or([f64::NAN; 2]);
         [self.value, low, high]

@@ -80,8 +80,8 @@ impl Paper {
     }
 }
 
-/// Runs figures under each step rule and judges the claims about them. Figures that earlier calls have finished in the same
-/// folder are part of the result as well.
+/// Runs figures under each step rule and judges the claims about them. Figures that earlier calls have
+/// finished in the same folder are part of the result as well.
 ///
 /// # Errors
 /// When a run fails, a record cannot be written, or a signal asks to stop.
@@ -131,8 +131,8 @@ pub fn run(
     })
 }
 
-/// Results of `work` for each item, in their order, on the present thread and on others beside it, if the system grants
-/// them: `threads` in all. After an error no further item is begun.
+/// Results of `work` for each item, in their order, on the present thread and on others beside it, if the
+/// system grants them: `threads` in all. After an error no further item is begun.
 fn map_at_once<T: Sync, R: Send + Sync>(
     items: &[T],
     threads: usize,

@@ -131,7 +131,8 @@ impl FigureRun {
         value(&a.point) + share.clamp(0.0, 1.0) * (value(&b.point) - value(&a.point))
     }
 
-    /// The largest difference of a quantity between this and another run, over the rows of this run in a window of time.
+    /// The largest difference of a quantity between this and another run, over the rows of this run in a
+    /// window of time.
     pub(super) fn largest_difference(
         &self,
         other: &FigureRun,

@@ -60,8 +60,8 @@ impl FigureRunner<'_> {
         rayon::scope(|_| run_case(case, self.stop))
     }
 
-    /// Runs a case again that `run` is of, with its fields at the times at which these shares of its blocks have slipped, up
-    /// to the last of these. Maps of the new run have the scale of the whole run.
+    /// Runs a case again that `run` is of, with its fields at the times at which these shares of its blocks
+    /// have slipped, up to the last of these. Maps of the new run have the scale of the whole run.
     pub(super) fn run_seen_at_shares(
         &self,
         case: Case,
@@ -101,9 +101,9 @@ impl FigureRunner<'_> {
         Ok(ParameterSweep { plan, results })
     }
 
-    /// A study with its results as from [`study`](Self::study), and the runs of the first `replicates` of its points with
-    /// their curves and fields, in the order of replicates and then of points. Where the study goes to the same end, these
-    /// are runs of it and not made again.
+    /// A study with its results as from [`study`](Self::study), and the runs of the first `replicates` of its
+    /// points with their curves and fields, in the order of replicates and then of points. Where the study
+    /// goes to the same end, these are runs of it and not made again.
     pub(super) fn study_with_runs(
         &mut self,
         name: &str,

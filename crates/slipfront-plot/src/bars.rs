@@ -67,8 +67,8 @@ pub struct Bar {
 /// Draws bars from zero with error bars, as wide as a journal's column (85 mm)
 /// unless there are too many.
 ///
-/// One group is drawn as bars of one colour, each with its name below. With several groups, each group has its name below,
-/// and a legend names the bars.
+/// One group is drawn as bars of one colour, each with its name below. With several groups, each group has
+/// its name below, and a legend names the bars.
 ///
 /// # Errors
 ///

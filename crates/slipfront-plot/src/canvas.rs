@@ -1,4 +1,5 @@
-//! The canvas of a picture: a list of lines, shapes, texts and images, in the order in which they cover each other.
+//! The canvas of a picture: a list of lines, shapes, texts and images, in the order in which they cover each
+//! other.
 
 use crate::color_image::Image;
 use crate::geometry::{Align, Area, CanvasPoint};
@@ -25,8 +26,8 @@ pub(crate) struct Element {
 
 /// Elements that can be drawn; areas are filled. SVG and PNG are made of these alone.
 pub(crate) enum Primitive {
-    /// A line through points, and back to the first one if it is closed. `dashes` has the lengths of dashes and of the gaps
-    /// after them; it is empty for a line without gaps.
+    /// A line through points, and back to the first one if it is closed. `dashes` has the lengths of dashes
+    /// and of the gaps after them; it is empty for a line without gaps.
     Line {
         points: Vec<CanvasPoint>,
         width: f64,

@@ -3,8 +3,9 @@
 /// Largest number of cells along a side; more blocks are averaged in groups.
 const MAX_CELLS: usize = 256;
 
-/// The mean of every cell of a lattice over its blocks that are not NaN, taken while the values come in, so that the memory
-/// does not depend on the lattice. A cell is a block, or a group of blocks where a side has more than 256.
+/// The mean of every cell of a lattice over its blocks that are not NaN, taken while the values come in, so
+/// that the memory does not depend on the lattice. A cell is a block, or a group of blocks where a side has
+/// more than 256.
 ///
 /// ```
 /// let mut means = slipfront_plot::CellMeans::new(512, 1);
@@ -45,7 +46,8 @@ impl CellMeans {
         [nx, ny].map(|blocks| blocks.min(MAX_CELLS))
     }
 
-    /// Takes the values of the next blocks in, row by row from y = 0; more than there are blocks are left out.
+    /// Takes the values of the next blocks in, row by row from y = 0; more than there are blocks are left
+    /// out.
     pub fn add(&mut self, values: impl Iterator<Item = f32>) {
         let ([nx, ny], [columns, rows]) = (self.blocks, Self::cells(self.blocks[0], self.blocks[1]));
         // The cell c of a side has the blocks from c * blocks / cells up to (c + 1) * blocks / cells.
@@ -90,7 +92,8 @@ mod tests {
 
     #[test]
     fn groups_of_blocks_are_averaged_without_the_blank_ones() {
-        // Groups of two by two blocks; those of the first group are there but for one, those of the second are blank.
+        // Groups of two by two blocks; those of the first group are there but for one, those of the second
+        // are blank.
         let [nx, ny] = [512, 512];
         let value = |block: usize| match (block % nx, block / nx) {
             (0, 0) => f32::NAN,

@@ -11,7 +11,8 @@ const GAP: f64 = 14.0;
 /// Distance of a name above the bar from the bar, or from the text over the map.
 pub(crate) const ABOVE: f64 = 18.0;
 
-/// A colour bar, dark at its foot. The name reads upwards beside the bar, or stands above it where the bar is too short.
+/// A colour bar, dark at its foot. The name reads upwards beside the bar, or stands above it where the bar is
+/// too short.
 pub(crate) struct ColourBar {
     name: Text,
     /// Values at the ends of the bar.
@@ -52,7 +53,8 @@ impl ColourBar {
         }
     }
 
-    /// Draws the bar with its upper left corner at `(x, top)`, and its name, if that is above it, on the line `above`.
+    /// Draws the bar with its upper left corner at `(x, top)`, and its name, if that is above it, on the line
+    /// `above`.
     pub(crate) fn draw(&self, canvas: &mut Canvas, (x, top): CanvasPoint, above: f64) {
         let area = Area::new(x, top, BAR_WIDTH, self.height);
         colour_bar(canvas, area, self.range);

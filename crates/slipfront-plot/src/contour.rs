@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 
 use crate::geometry::CanvasPoint;
 
-/// The means of the values around each over `2 reach + 1` columns and rows, without those that are NaN; NaN stays NaN. Row by row.
+/// The means of the values around each over `2 reach + 1` columns and rows, without those that are NaN; NaN
+/// stays NaN. Row by row.
 pub(crate) fn smoothed(values: &[f32], columns: usize, reach: usize) -> Vec<f32> {
     let rows = values.len() / columns;
     let mean = |(cell, value): (usize, &f32)| {
@@ -27,13 +28,14 @@ pub(crate) fn smoothed(values: &[f32], columns: usize, reach: usize) -> Vec<f32>
     values.iter().enumerate().map(mean).collect()
 }
 
-/// The lines on which values, interpolated linearly between the middles of cells, are `level`: each a chain of points in
-/// columns and rows from the middle of the first cell, closed if it ends where it starts. No line passes a cell without a
-/// value.
+/// The lines on which values, interpolated linearly between the middles of cells, are `level`: each a chain
+/// of points in columns and rows from the middle of the first cell, closed if it ends where it starts. No
+/// line passes a cell without a value.
 pub(crate) fn contours(values: &[f32], columns: usize, level: f64) -> Vec<Vec<CanvasPoint>> {
     let rows = values.len() / columns;
     let value = |column: usize, row: usize| f64::from(values[row * columns + column]);
-    // A line crosses the sides between cells: each is named by its first cell and by whether it leads upwards.
+    // A line crosses the sides between cells: each is named by its first cell and by whether it leads
+    // upwards.
     let mut links: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
     for row in 0..rows.saturating_sub(1) {
         for column in 0..columns - 1 {

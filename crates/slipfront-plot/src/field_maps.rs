@@ -18,7 +18,8 @@ const MAX_WIDTH: f64 = 520.0;
 /// Maps on one colour scale.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct FieldMaps {
-    /// Quantity of the values, beside the colour bar or over it; the letter after an underscore is a subscript.
+    /// Quantity of the values, beside the colour bar or over it; the letter after an underscore is a
+    /// subscript.
     pub value_title: String,
     /// Values at the ends of the colour bar; values beyond are drawn as the ends.
     pub range: [f64; 2],
@@ -47,8 +48,9 @@ pub struct FieldMap {
     pub marks: Vec<[usize; 2]>,
 }
 
-/// Draws the maps in rows, as wide as a journal's text (175 mm) or less, all on one colour scale, textured areas
-/// outlined and marked blocks circled. Every map is as wide as the others, whatever its number of blocks.
+/// Draws the maps in rows, as wide as a journal's text (175 mm) or less, all on one colour scale, textured
+/// areas outlined and marked blocks circled. Every map is as wide as the others, whatever its number of
+/// blocks.
 ///
 /// # Errors
 ///

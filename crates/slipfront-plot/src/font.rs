@@ -1,5 +1,5 @@
-//! The font of all pictures, a part of `DejaVu` Sans: widths and outlines of its letters. `font/README.md` tells how the
-//! files were made.
+//! The font of all pictures, a part of `DejaVu` Sans: widths and outlines of its letters. `font/README.md`
+//! tells how the files were made.
 
 use std::collections::HashMap;
 use std::sync::LazyLock;
@@ -33,14 +33,15 @@ fn glyph(character: char) -> Option<&'static Glyph> {
     GLYPHS.get(format!("{:x}", u32::from(character)).as_str())
 }
 
-/// Distance by which `character` moves the pen, over the font size. A character that the font lacks, which a viewer of the
-/// SVG takes from another font, gets an em: wide enough for nearly everything, so that nothing collides.
+/// Distance by which `character` moves the pen, over the font size. A character that the font lacks, which a
+/// viewer of the SVG takes from another font, gets an em: wide enough for nearly everything, so that nothing
+/// collides.
 pub(crate) fn advance(character: char) -> f64 {
     f64::from(glyph(character).map_or(1.0, |glyph| glyph.width / UNITS_PER_EM))
 }
 
-/// Adds the outline of `character` to a path; a box if the font lacks it. `place` takes a point of the outline, x from the pen and
-/// y above the baseline, over the font size, to its place in the picture.
+/// Adds the outline of `character` to a path; a box if the font lacks it. `place` takes a point of the
+/// outline, x from the pen and y above the baseline, over the font size, to its place in the picture.
 pub(crate) fn draw(character: char, path: &mut PathBuilder, place: impl Fn(f32, f32) -> (f32, f32)) {
     let outline = glyph(character)
         .or_else(|| GLYPHS.get("missing"))

@@ -24,7 +24,8 @@ pub(crate) fn left_room(ticks: &[Tick]) -> f64 {
     (MARGIN + f64::from(SIZE_LABEL) + 14.0 + widest(ticks) + TICK_LENGTH + 7.0).round()
 }
 
-/// Right end of a panel from `left` to `right` in a picture of this width, such that no number below it is cut off.
+/// Right end of a panel from `left` to `right` in a picture of this width, such that no number below it is
+/// cut off.
 pub(crate) fn right_end(ticks: &[Tick], left: f64, right: f64, width: f64) -> f64 {
     const EDGE: f64 = 4.0;
     let end = |(x, text): &Tick| {

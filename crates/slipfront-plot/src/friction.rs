@@ -28,10 +28,11 @@ const SHADE: Rgb = [0x9a, 0xa5, 0xb1];
 
 /// Draws friction and, below it, N* against time or path, as wide as a journal's column (85 mm).
 ///
-/// One curve is drawn with all its marks: first slip, peak, kinetic window, lettered instants. The names of lines and
-/// windows stand above the panels, where no curve is. Several curves are drawn over each other with their peaks, the
-/// lettered instants if only one has any, and a legend above. Curves of more than 4000 points are thinned to the first,
-/// last, lowest and highest point of every pixel column, which shows the same picture.
+/// One curve is drawn with all its marks: first slip, peak, kinetic window, lettered instants. The names of
+/// lines and windows stand above the panels, where no curve is. Several curves are drawn over each other with
+/// their peaks, the lettered instants if only one has any, and a legend above. Curves of more than 4000
+/// points are thinned to the first, last, lowest and highest point of every pixel column, which shows the
+/// same picture.
 ///
 /// # Errors
 ///
@@ -237,7 +238,8 @@ impl FrictionDrawing<'_> {
         }
     }
 
-    /// Draws the dots of these marks, each with its label; the label of the peak comes first because it is the longest.
+    /// Draws the dots of these marks, each with its label; the label of the peak comes first because it is
+    /// the longest.
     fn draw_marks(&mut self, marks: &[Mark]) {
         let dots: Vec<CanvasPoint> = marks.iter().map(|mark| mark.at).collect();
         for (x, y) in &dots {
@@ -283,8 +285,8 @@ impl Mark {
     }
 }
 
-/// The peak of a curve, if one is given, and its instants, as far as they lie in the panel. Instants whose dots would cover
-/// each other are one mark, because their letters could not be distinguished.
+/// The peak of a curve, if one is given, and its instants, as far as they lie in the panel. Instants whose
+/// dots would cover each other are one mark, because their letters could not be distinguished.
 fn marks(panels: &Panels, curve: &FrictionCurve, peak: Option<CanvasPoint>) -> Vec<Mark> {
     let mark = |at, letters, peak| Mark { at, letters, peak };
     let peak = peak.and_then(|(x, value)| Some(mark(panels.point((x, value))?, Vec::new(), Some(value))));

@@ -2,8 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Titles of the axes of a friction picture, and names of the marks: texts in which the character after an underscore is a
-/// subscript.
+/// Titles of the axes of a friction picture, and names of the marks: texts in which the character after an
+/// underscore is a subscript.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FrictionAxes {
     /// Title of the horizontal axis.

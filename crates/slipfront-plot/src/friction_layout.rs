@@ -21,8 +21,8 @@ pub(crate) struct Panels {
 }
 
 impl Panels {
-    /// Panels that hold all curves and their marks, at the top of a picture of this width; with the room below them they are as
-    /// high as the given height, or as usual.
+    /// Panels that hold all curves and their marks, at the top of a picture of this width; with the room
+    /// below them they are as high as the given height, or as usual.
     pub(crate) fn of(curves: &[FrictionCurve], width: f64, height: Option<f64>) -> Self {
         // The panels share the height in the usual proportion.
         let usual = HEIGHT_FRICTION + HEIGHT_SLIDING;
@@ -114,8 +114,8 @@ impl Panels {
     }
 }
 
-/// The first title that is no longer than `room`: the first in the size of a label, the second in that of a number, or else the
-/// third in that of a number.
+/// The first title that is no longer than `room`: the first in the size of a label, the second in that of a
+/// number, or else the third in that of a number.
 fn fitted(titles: [&str; 3], room: f64) -> Text {
     let [label, number, last] = titles;
     let sized = [(label, SIZE_LABEL), (number, SIZE_TICK)];

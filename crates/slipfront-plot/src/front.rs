@@ -1,5 +1,5 @@
-//! The spread of slip: the time at which every block has first slipped, and the share of sliding blocks along the drive
-//! against time.
+//! The spread of slip: the time at which every block has first slipped, and the share of sliding blocks along
+//! the drive against time.
 
 use crate::axis::{DrawnAxis, range};
 use crate::canvas::Canvas;
@@ -20,7 +20,8 @@ use crate::ticks::{Direction, Tick, round_values};
 
 /// Distance between a panel and its colour bar.
 const GAP: f64 = 30.0;
-/// Largest width of a map beside the other panel, 44 mm, and largest height, unless the slider is long along y.
+/// Largest width of a map beside the other panel, 44 mm, and largest height, unless the slider is long along
+/// y.
 const MAX_SIDE: f64 = 520.0;
 const MAX_SIDE_LONG: f64 = 1000.0;
 /// Ratio of length to height above which a slider has its map above the other panel, as wide as the page.
@@ -35,7 +36,8 @@ const HEIGHT_ALONE: f64 = 900.0;
 const CONTOUR_STEPS: usize = 8;
 /// Share of the map over whose cells means are taken around each cell for the contours.
 const SMOOTHED_SHARE: usize = 64;
-/// Distance of contours over the scatter of cells around these means: nearer contours would show the scatter alone.
+/// Distance of contours over the scatter of cells around these means: nearer contours would show the scatter
+/// alone.
 const SCATTERS_APART: f64 = 3.0;
 /// Least number of cells along a side for contours, which would otherwise be mere ticks.
 const MIN_CELLS_OF_CONTOURS: usize = 8;
@@ -79,12 +81,14 @@ fn is_above(ratio: f64) -> bool {
     ratio * MAX_RATIO < 1.0
 }
 
-/// Draws the map and the space-time panel, as wide as a journal's text (175 mm) or less: the map beside the other panel, or
-/// above it for a long slider. Nucleations are circled, the first filled; the texture is outlined.
+/// Draws the map and the space-time panel, as wide as a journal's text (175 mm) or less: the map beside the
+/// other panel, or above it for a long slider. Nucleations are circled, the first filled; the texture is
+/// outlined.
 ///
 /// # Errors
 ///
-/// A lattice without blocks, an array of the wrong length, a block size that is not a positive length, no instant.
+/// A lattice without blocks, an array of the wrong length, a block size that is not a positive length, no
+/// instant.
 pub fn front(map: &FrontMap, space_time: &SpaceTime) -> Result<Picture, PictureError> {
     check(map, space_time)?;
     let layout = FrontLayout::of(map, space_time);
@@ -349,7 +353,8 @@ fn draw_map(canvas: &mut Canvas, map: &FrontMap, layout: &FrontLayout, lines: Ve
     panel.draw_axes(canvas, [x, y]);
 }
 
-/// The levels of the contours of these means of first slips, on a map with `side` cells along its shorter side.
+/// The levels of the contours of these means of first slips, on a map with `side` cells along its shorter
+/// side.
 fn levels([lo, hi]: [f64; 2], first_slips: &[f32], means: &[f32], side: usize) -> Vec<f64> {
     let deviations = first_slips
         .iter()

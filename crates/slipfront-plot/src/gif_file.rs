@@ -7,8 +7,8 @@ use gif::{DisposalMethod, Encoder, EncodingError, Frame, Repeat};
 use crate::movie::MovieSize;
 use crate::picture::PictureError;
 
-/// An animated GIF file of pictures of a movie, which begins again when it has ended. For every picture the file has the
-/// rectangle in which it differs from the picture before.
+/// An animated GIF file of pictures of a movie, which begins again when it has ended. For every picture the
+/// file has the rectangle in which it differs from the picture before.
 pub struct MovieGif {
     encoder: Encoder<Vec<u8>>,
     /// Width and height of the pictures in pixels.

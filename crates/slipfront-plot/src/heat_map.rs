@@ -36,7 +36,8 @@ pub struct HeatMap {
     pub value_title: String,
     /// One value for every cell: all of the first y, then all of the second; NaN is left grey.
     pub values: Vec<f64>,
-    /// The half width of the confidence interval of every value in the same order, NaN where there is none; may be empty.
+    /// The half width of the confidence interval of every value in the same order, NaN where there is none;
+    /// may be empty.
     pub half_widths: Vec<f64>,
     /// Marks of cells that get a cross, in the order of the values; may be empty.
     pub crossed: Vec<bool>,
@@ -57,14 +58,15 @@ pub struct HeatAxis {
 
 /// Draws a map, as wide as a journal's column (85 mm).
 ///
-/// A cell reaches half-way to its neighbours, so uneven values give uneven cells. The colours span the values and half the
-/// median interval beyond them, so that values which differ by less look alike. A map of up to 8 x 8 cells has its numbers
-/// in the cells, if they are wide enough. The half width of an interval stands below the number; where numbers have no room
-/// for that, a second map below shows the half widths.
+/// A cell reaches half-way to its neighbours, so uneven values give uneven cells. The colours span the values
+/// and half the median interval beyond them, so that values which differ by less look alike. A map of up to 8
+/// x 8 cells has its numbers in the cells, if they are wide enough. The half width of an interval stands
+/// below the number; where numbers have no room for that, a second map below shows the half widths.
 ///
 /// # Errors
 ///
-/// An axis without values, with a value that is not a number, or with a value twice; or another number of values than cells.
+/// An axis without values, with a value that is not a number, or with a value twice; or another number of
+/// values than cells.
 pub fn heat_map(map: &HeatMap) -> Result<Picture, PictureError> {
     let (mut x, mut y) = (HeatCells::of(&map.x)?, HeatCells::of(&map.y)?);
     let values = in_order([&x, &y], &map.values)?;
@@ -467,7 +469,8 @@ mod tests {
         assert!(!heat_map(&map(6, 9)).unwrap().svg.contains(">17.5</text>"));
     }
 
-    /// Half widths stand below the numbers where there is room, else on a map of their own; nowhere if there are none.
+    /// Half widths stand below the numbers where there is room, else on a map of their own; nowhere if there
+    /// are none.
     #[test]
     fn half_widths_are_shown_wherever_there_are_some() {
         let svg = |columns: usize, half: f64| {

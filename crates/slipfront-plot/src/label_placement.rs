@@ -87,8 +87,8 @@ impl Placer {
     }
 }
 
-/// Places around `point` for a label of this size, near ones first. Far places get a leader, and so do places to which one
-/// of the other `dots` is as near, because the label would be taken for that dot's.
+/// Places around `point` for a label of this size, near ones first. Far places get a leader, and so do places
+/// to which one of the other `dots` is as near, because the label would be taken for that dot's.
 pub(crate) fn around(
     point: CanvasPoint,
     (width, height): (f64, f64),

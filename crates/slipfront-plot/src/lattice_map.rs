@@ -79,7 +79,8 @@ impl Cells {
         }
     }
 
-    /// Draws the means of all cells, the ends of the colours being those of `range`, and the outline of the texture.
+    /// Draws the means of all cells, the ends of the colours being those of `range`, and the outline of the
+    /// texture.
     pub(crate) fn draw(&self, canvas: &mut Canvas, area: Area, means: &[f32], range: [f64; 2]) {
         // The image's first row is the uppermost.
         let cells = means.chunks_exact(self.columns).rev().flatten();

@@ -44,8 +44,8 @@ const NAME_GAP: f64 = 10.0;
 const COLUMN_GAP: f64 = 30.0;
 
 impl Legend {
-    /// Places the names in rows between `left` and `right`, from the top of the picture down, with the title before
-    /// them, or above them if it is long. Without a name there is no legend.
+    /// Places the names in rows between `left` and `right`, from the top of the picture down, with the title
+    /// before them, or above them if it is long. Without a name there is no legend.
     pub(crate) fn of(title: &str, names: &[(&str, LegendSample)], left: f64, right: f64) -> Self {
         if names.is_empty() {
             return Self::default();

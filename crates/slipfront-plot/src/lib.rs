@@ -1,9 +1,10 @@
-//! Pictures for the eye and for print. Pictures of a run: friction against time, maps of contact stress, and the spread of
-//! slip. Pictures of a parametric study: response curves, heat maps, bars, all with their confidence intervals.
+//! Pictures for the eye and for print. Pictures of a run: friction against time, maps of contact stress, and
+//! the spread of slip. Pictures of a parametric study: response curves, heat maps, bars, all with their
+//! confidence intervals.
 //!
 //! Every picture is drawn once, on a canvas, and comes out as SVG and as PNG of the same physical size: a
-//! journal's column for curves, heat maps and bars, its text width for maps of stress. Bytes depend on the arguments only: no date, no
-//! random identifier.
+//! journal's column for curves, heat maps and bars, its text width for maps of stress. Bytes depend on the
+//! arguments only: no date, no random identifier.
 
 mod axis;
 mod bars;

@@ -1,7 +1,9 @@
-//! A movie of a run: maps of a field one after the other, beside the friction curve with a mark at the instant that is shown.
+//! A movie of a run: maps of a field one after the other, beside the friction curve with a mark at the
+//! instant that is shown.
 //!
-//! Pictures of a movie usually have 800 x 400 pixels of 256 colours at the most. They are drawn twice as large, and every pixel is the
-//! mean of four, so that letters are as large as in the other pictures beside their lines. A long slider has its map above the curve.
+//! Pictures of a movie usually have 800 x 400 pixels of 256 colours at the most. They are drawn twice as
+//! large, and every pixel is the mean of four, so that letters are as large as in the other pictures beside
+//! their lines. A long slider has its map above the curve.
 
 use crate::axis::DrawnAxis;
 use crate::canvas::Canvas;
@@ -405,7 +407,8 @@ mod tests {
                         .zip(found)
                         .map(|(one, other)| one.abs_diff(other))
                         .max();
-                    // Of 255 levels to 192 colours, steps of at most 3, looked up without three bits, up to 7.
+                    // Of 255 levels to 192 colours, steps of at most 3, looked up without three bits, up to
+                    // 7.
                     assert!(far <= Some(9), "({column}, {row}): {wanted:?} {found:?}");
                 }
             }

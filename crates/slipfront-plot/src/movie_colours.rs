@@ -45,8 +45,8 @@ impl Colours {
     }
 }
 
-/// The colour in the middle of those with these leading bits; the outermost colours stand for themselves, so that white
-/// stays white.
+/// The colour in the middle of those with these leading bits; the outermost colours stand for themselves, so
+/// that white stays white.
 fn unpacked(bits: u32) -> Rgb {
     let largest = (1 << BITS) - 1;
     let channel = |k: u32| ((bits >> (BITS * (2 - k)) & largest) * 255 / largest) as u8;

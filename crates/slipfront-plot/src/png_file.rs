@@ -3,8 +3,8 @@
 use crate::picture::PictureError;
 use crate::style::DPI;
 
-/// A PNG file of an image: its bytes are red, green and blue of every pixel, printed at [`DPI`], or an index into the palette
-/// for every pixel if there is one.
+/// A PNG file of an image: its bytes are red, green and blue of every pixel, printed at [`DPI`], or an index
+/// into the palette for every pixel if there is one.
 pub(crate) fn encode(
     width: usize,
     height: usize,

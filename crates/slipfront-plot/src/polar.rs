@@ -27,7 +27,8 @@ const BELOW: f64 = 64.0;
 /// Angle between two lines of directions, degrees, and between two that are numbered.
 const SPOKES: usize = 30;
 const NUMBERED: usize = 90;
-/// Share of the largest value below which all values are alike: from the centre, their differences could not be seen.
+/// Share of the largest value below which all values are alike: from the centre, their differences could not
+/// be seen.
 const ALIKE: f64 = 0.4;
 /// Least range of values, over the largest of them, that fills half of the radius.
 const LEAST_RANGE: f64 = 0.1;
@@ -47,9 +48,9 @@ pub struct Polar {
     pub curves: Vec<Response>,
 }
 
-/// Draws means around a centre with their confidence bands, as wide as a journal's column (85 mm). The centre is zero, unless all values
-/// are alike, and the note says what it is then. A curve whose directions go all the way round is closed, and has a gap where a value is
-/// missing or below zero.
+/// Draws means around a centre with their confidence bands, as wide as a journal's column (85 mm). The centre
+/// is zero, unless all values are alike, and the note says what it is then. A curve whose directions go all
+/// the way round is closed, and has a gap where a value is missing or below zero.
 ///
 /// # Errors
 ///
@@ -105,7 +106,8 @@ pub fn polar(polar: &Polar) -> Result<Picture, PictureError> {
     canvas.finish()
 }
 
-/// Value at the centre: 0, or a round value as far below the smallest as the largest is above it, where they are alike.
+/// Value at the centre: 0, or a round value as far below the smallest as the largest is above it, where they
+/// are alike.
 fn centre_value(smallest: f64, largest: f64) -> f64 {
     let range = (largest - smallest).max(LEAST_RANGE * largest);
     let start = smallest - range;
@@ -216,7 +218,8 @@ impl Ring {
         (self.centre.0 + radius * cosine, self.centre.1 - radius * sine)
     }
 
-    /// Draws circles at round values and lines of directions; the first two that are numbered are the axes x and y.
+    /// Draws circles at round values and lines of directions; the first two that are numbered are the axes x
+    /// and y.
     fn draw_grid(&self, canvas: &mut Canvas) {
         let circle = |radius: f64| {
             (0..=180)
@@ -354,8 +357,8 @@ mod tests {
         assert!(Round::of(&twice).is_closed);
     }
 
-    /// Directions and values have their places: 0 degrees is to the right, 90 upwards, and the radius is in proportion to
-    /// the value.
+    /// Directions and values have their places: 0 degrees is to the right, 90 upwards, and the radius is in
+    /// proportion to the value.
     #[test]
     fn directions_and_values_have_their_places() {
         let ring = Ring {

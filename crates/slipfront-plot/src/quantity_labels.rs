@@ -35,8 +35,8 @@ impl QuantityLabel<'_> {
         parts.join(" ")
     }
 
-    /// The title of a legend: the symbol and unit of a quantity that has a symbol and belongs to no numbered texture, else
-    /// [`title`](Self::title).
+    /// The title of a legend: the symbol and unit of a quantity that has a symbol and belongs to no numbered
+    /// texture, else [`title`](Self::title).
     ///
     /// ```
     /// use slipfront_plot::QuantityLabel;

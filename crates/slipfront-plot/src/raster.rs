@@ -1,5 +1,5 @@
-//! A canvas as pixels, drawn by `tiny-skia`. The features `simd` and `std` of `tiny-skia` are off, so that every machine
-//! computes the same bits.
+//! A canvas as pixels, drawn by `tiny-skia`. The features `simd` and `std` of `tiny-skia` are off, so that
+//! every machine computes the same bits.
 
 use tiny_skia::{
     Color, ColorU8, FillRule, LineCap, LineJoin, Paint, Path, PathBuilder, Pixmap, PremultipliedColorU8,
@@ -312,8 +312,8 @@ mod tests {
         assert_eq!(mixed, [161, 116, 61]);
     }
 
-    /// Every pixel of an image is the mean of its samples, with more and fewer cells than pixels, and rows of pixels that
-    /// lie in one or in several rows of cells.
+    /// Every pixel of an image is the mean of its samples, with more and fewer cells than pixels, and rows of
+    /// pixels that lie in one or in several rows of cells.
     #[test]
     fn every_pixel_of_an_image_is_the_mean_of_its_samples() {
         for [columns, rows, width, height] in [[3, 4, 11, 18], [7, 20, 11, 18], [1, 1, 8, 6], [5, 6, 5, 6]] {

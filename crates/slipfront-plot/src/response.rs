@@ -15,7 +15,8 @@ use crate::text::Text;
 use crate::ticks::{Direction, MAX_STEPS};
 
 const HEIGHT: f64 = 560.0;
-/// Distance between the last number below the panel, half of which may stand beyond it, and the picture's edge.
+/// Distance between the last number below the panel, half of which may stand beyond it, and the picture's
+/// edge.
 const RIGHT: f64 = 34.0;
 
 /// Response curves over one axis.
@@ -53,11 +54,13 @@ pub struct Response {
     /// Marks of points that get a cross, on their marker or, without a mean, on the lower side; may be empty.
     #[serde(default)]
     pub crossed: Vec<bool>,
-    /// Whether the curve is a formula or a level rather than measured: a line through its points, without markers.
+    /// Whether the curve is a formula or a level rather than measured: a line through its points, without
+    /// markers.
     pub line: bool,
 }
 
-/// Refuses an empty list of curves, and a curve whose columns differ in length; `counted` names its abscissae.
+/// Refuses an empty list of curves, and a curve whose columns differ in length; `counted` names its
+/// abscissae.
 pub(crate) fn check_curves(curves: &[Response], counted: &'static str) -> Result<(), PictureError> {
     if curves.is_empty() {
         return Err(PictureError::Nothing("curve"));
@@ -74,8 +77,8 @@ pub(crate) fn check_curves(curves: &[Response], counted: &'static str) -> Result
 
 /// Draws means with their confidence bands, as wide as a journal's column (85 mm).
 ///
-/// The y axis starts where the values do, not at zero. A point without neighbours has an error bar in place of a band.
-/// Several curves have a legend above, and markers of different shapes.
+/// The y axis starts where the values do, not at zero. A point without neighbours has an error bar in place
+/// of a band. Several curves have a legend above, and markers of different shapes.
 ///
 /// # Errors
 ///

@@ -47,8 +47,8 @@ const MARKERS: [&[CanvasPoint]; 4] = [
     &[(0.0, 1.3), (-1.2, -0.8), (1.2, -0.8)],
 ];
 
-/// Draws the marker of curve `index`, in a shape of its own because colours do not survive a copier, with a thin white rim
-/// that parts it from the curves below.
+/// Draws the marker of curve `index`, in a shape of its own because colours do not survive a copier, with a
+/// thin white rim that parts it from the curves below.
 pub(crate) fn marker(canvas: &mut Canvas, index: usize, (x, y): CanvasPoint, radius: f64, colour: Rgb) {
     let Some(shape) = (index % (MARKERS.len() + 1)).checked_sub(1) else {
         return canvas.dot((x, y), radius, colour);

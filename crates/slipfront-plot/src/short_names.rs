@@ -19,7 +19,8 @@ fn text(letters: &[char]) -> String {
     letters.iter().collect()
 }
 
-/// Names no wider than `room`. Different names differ where they are cut; if that is impossible, they are numbered.
+/// Names no wider than `room`. Different names differ where they are cut; if that is impossible, they are
+/// numbered.
 pub(crate) fn fitted_names(names: &[&str], size: u32, room: f64) -> Vec<Text> {
     let whole: Vec<Vec<char>> = names.iter().map(|name| name.chars().collect()).collect();
     // The same without what all of them start with.
@@ -57,8 +58,8 @@ fn shortened(name: &[char], from: &[char], before: &str, cut: Cut, size: u32, ro
     cuts.find(|cut| fits(cut)).unwrap_or_default()
 }
 
-/// The folder that all names begin with, with its slash, and the names without it. A folder that is the whole of a name, and one
-/// of a single name, is no folder in common.
+/// The folder that all names begin with, with its slash, and the names without it. A folder that is the whole
+/// of a name, and one of a single name, is no folder in common.
 pub(crate) fn without_common_folder<'n>(names: &[&'n str]) -> (&'n str, Vec<&'n str>) {
     let letters: Vec<Vec<char>> = names.iter().map(|name| name.chars().collect()).collect();
     let Some(first) = names.first().filter(|_| names.len() > 1) else {

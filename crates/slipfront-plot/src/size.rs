@@ -5,12 +5,13 @@ use crate::style::MM;
 
 /// Size of labels unless another is asked for, pt.
 const LABEL_PT: f64 = 8.0;
-/// Least width of a picture, and least height below its legend, in units of letters of the usual size: less leaves no room for a
-/// curve.
+/// Least width of a picture, and least height below its legend, in units of letters of the usual size: less
+/// leaves no room for a curve.
 const MIN_WIDTH: f64 = 500.0;
 const MIN_HEIGHT: f64 = 330.0;
 
-/// Size of a picture and of its letters; what is not given is as usual. Lines, marks and numbers grow and shrink with the letters.
+/// Size of a picture and of its letters; what is not given is as usual. Lines, marks and numbers grow and
+/// shrink with the letters.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PictureSize {
     /// Width, mm.

@@ -19,8 +19,8 @@ const GAP: f64 = 30.0;
 /// Largest width of maps beside each other, 44 mm, and largest height.
 const MAX_WIDTH: f64 = 520.0;
 const MAX_HEIGHT: f64 = 620.0;
-/// Ratio of length to width above which a slider is long. Along x two of its maps stand side by side, or one if it is longer
-/// yet; along y all stand in one row.
+/// Ratio of length to width above which a slider is long. Along x two of its maps stand side by side, or one
+/// if it is longer yet; along y all stand in one row.
 const LONG: f64 = 3.0;
 const VERY_LONG: f64 = 10.0;
 /// Least thickness of the map of a slider that is long along x, over its length.
@@ -62,8 +62,9 @@ pub struct StressMaps {
     pub is_torque: bool,
 }
 
-/// Draws the maps, three in a row, at most as wide as a journal's text (175 mm), all on one colour scale, the textured area
-/// outlined. A slider that is long along x has two maps in a row, or one; a slider that is long along y has all in one row.
+/// Draws the maps, three in a row, at most as wide as a journal's text (175 mm), all on one colour scale, the
+/// textured area outlined. A slider that is long along x has two maps in a row, or one; a slider that is long
+/// along y has all in one row.
 ///
 /// A slider more than twelve times as long as wide, six times along y, is drawn as if it were that long.
 ///

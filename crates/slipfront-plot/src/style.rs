@@ -40,8 +40,8 @@ pub(crate) const WHITE: Rgb = [0xff, 0xff, 0xff];
 /// Colour of blocks without a value.
 pub(crate) const BLANK: Rgb = [0xd9, 0xd9, 0xd9];
 
-/// Okabe and Ito's palette, distinguishable with any colour vision; its yellow is left out because it is too pale for a
-/// line.
+/// Okabe and Ito's palette, distinguishable with any colour vision; its yellow is left out because it is too
+/// pale for a line.
 pub(crate) const CURVES: [Rgb; 7] = [
     [0x00, 0x72, 0xb2],
     [0xd5, 0x5e, 0x00],

@@ -85,8 +85,8 @@ fn tag(element: &Element) -> String {
     }
 }
 
-/// An image scaled to its area. Cells are pixels, because neighbouring rectangles leave hairline seams between them in most
-/// viewers.
+/// An image scaled to its area. Cells are pixels, because neighbouring rectangles leave hairline seams
+/// between them in most viewers.
 fn image_tag(image: &Image) -> Result<String, PictureError> {
     // Both properties: the second is what browsers know, the first what older viewers know.
     Ok(format!(

@@ -26,8 +26,8 @@ pub(crate) struct TextRun {
 }
 
 impl Text {
-    /// A text as it is, for the words of a user: control characters and doubled spaces, which SVG does not keep, are
-    /// dropped. Unicode's subscript letters, which the font lacks, become small letters.
+    /// A text as it is, for the words of a user: control characters and doubled spaces, which SVG does not
+    /// keep, are dropped. Unicode's subscript letters, which the font lacks, become small letters.
     pub(crate) fn plain(text: &str, size: u32) -> Self {
         let words = text.split(|c: char| c.is_whitespace() || c.is_control());
         let words: Vec<&str> = words.filter(|word| !word.is_empty()).collect();

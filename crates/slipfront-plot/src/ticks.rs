@@ -23,7 +23,8 @@ const APART_Y: f64 = 14.0;
 const SHORT_TICK_DECADES: f64 = 4.0;
 
 impl DrawnAxis {
-    /// Numbered ticks, as many as have room: round numbers in at most `most` steps, or 1, 2, 5 times powers of ten.
+    /// Numbered ticks, as many as have room: round numbers in at most `most` steps, or 1, 2, 5 times powers
+    /// of ten.
     pub(crate) fn ticks(&self, direction: Direction, most: usize) -> Vec<Tick> {
         let mut choices = Vec::new();
         if self.is_log {
@@ -35,7 +36,8 @@ impl DrawnAxis {
         // A logarithmic axis of less than about half a decade is numbered like a linear one.
         if choices.first().is_none_or(|ticks| ticks.len() < 3) {
             choices = (2..=most).rev().map(|most| self.linear_ticks(most)).collect();
-            // An axis may lie between two numbers that are half of it apart; of those a third apart it has one.
+            // An axis may lie between two numbers that are half of it apart; of those a third apart it has
+            // one.
             choices.retain(|ticks| !ticks.is_empty());
             if choices.is_empty() {
                 choices.push(self.linear_ticks(3));
@@ -114,7 +116,8 @@ pub(crate) fn apart(ticks: &[Tick], direction: Direction) -> bool {
     })
 }
 
-/// The distance of round values from `lo` to `hi`, and the values; none if `lo` and `hi` lie between two of them.
+/// The distance of round values from `lo` to `hi`, and the values; none if `lo` and `hi` lie between two of
+/// them.
 pub(crate) fn round_values(lo: f64, hi: f64, most: usize) -> (f64, Vec<f64>) {
     let step = round_step((hi - lo) / most.max(2) as f64);
     let first = (lo / step - 1e-9).ceil();
@@ -136,8 +139,8 @@ fn power_of(value: f64) -> f64 {
     libm::log10(value).floor()
 }
 
-/// A round value among values that are `step` apart, as text; very large and very small ones as multiples of one power of
-/// ten: `0.5e-9`, `1.0e-9`.
+/// A round value among values that are `step` apart, as text; very large and very small ones as multiples of
+/// one power of ten: `0.5e-9`, `1.0e-9`.
 fn written(value: f64, step: f64, power: f64) -> String {
     let smallest = power_of(step);
     if (-4.0..6.0).contains(&power) {
@@ -235,7 +238,8 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
 
-        /// Whatever its range and its length, an axis has numbers: on the axis, none touching the next, and no two alike.
+        /// Whatever its range and its length, an axis has numbers: on the axis, none touching the next, and
+        /// no two alike.
         #[test]
         fn numbers_of_any_axis_differ_and_are_apart(
             middle in -1.0..1.0, power in -12..12, spread in -6.0..0.0, length in 1.0..3000.0, most in 2..=MAX_STEPS,

@@ -1,4 +1,5 @@
-//! Symmetric systems of some thousand equations: Cholesky's factor, solutions, and the diagonal of the inverse.
+//! Symmetric systems of some thousand equations: Cholesky's factor, solutions, and the diagonal of the
+//! inverse.
 //!
 //! Every sum runs in the order of its index, so that results have the same bits for any width of vectors.
 
@@ -57,7 +58,8 @@ fn inverse_of_triangle(triangle: &[[f64; PANEL]; PANEL], width: usize) -> [[f64;
 }
 
 impl Factor {
-    /// Factorizes a symmetric matrix, of which the lower half is read, with numbers added to its diagonal; none if the sum is not positive.
+    /// Factorizes a symmetric matrix, of which the lower half is read, with numbers added to its diagonal;
+    /// none if the sum is not positive.
     ///
     /// ```text
     /// L_ij = (A_ij - sum_k<j L_ik L_jk)/L_jj,   L_jj = sqrt(A_jj + added_j - sum_k<j L_jk^2)
@@ -227,7 +229,8 @@ impl Factor {
         inverse
     }
 
-    /// Replaces `columns` by the columns of `L^-1` from `first` on, as many as a panel has, from row `first` on.
+    /// Replaces `columns` by the columns of `L^-1` from `first` on, as many as a panel has, from row `first`
+    /// on.
     #[inline(always)]
     fn inverse_columns<S: Simd>(&self, simd: S, first: usize, columns: &mut Vec<[f64; PANEL]>) {
         let n = self.n;
@@ -250,7 +253,8 @@ impl Factor {
     }
 }
 
-/// Sums `sum_j m_ij (x_j - x_i)` over points of `d` numbers each, with a matrix of as many rows and columns as there are points.
+/// Sums `sum_j m_ij (x_j - x_i)` over points of `d` numbers each, with a matrix of as many rows and columns
+/// as there are points.
 pub(crate) fn differences(matrix: &[f64], points: &[f64], d: usize) -> Vec<f64> {
     dispatch!(Level::new(), simd => simd.vectorize(
         #[inline(always)]
@@ -283,7 +287,8 @@ fn sums_of_differences<S: Simd>(simd: S, matrix: &[f64], points: &[f64], d: usiz
     found
 }
 
-/// Squared distances between points of `d` numbers each, row after row of `points` and column after column of `others`.
+/// Squared distances between points of `d` numbers each, row after row of `points` and column after column of
+/// `others`.
 pub fn squared_distances(points: &[f64], others: &[f64], d: usize) -> Vec<f64> {
     dispatch!(Level::new(), simd => simd.vectorize(
         #[inline(always)]

@@ -10,7 +10,8 @@ pub(crate) struct Fit {
 }
 
 impl Fit {
-    /// The regression `A a = u` of values u, whose mean is 0, `A = K + diag(noise)`; none if A is not positive.
+    /// The regression `A a = u` of values u, whose mean is 0, `A = K + diag(noise)`; none if A is not
+    /// positive.
     pub(crate) fn of(
         kernel: Vec<f64>,
         values: &[f64],
@@ -34,8 +35,8 @@ impl Fit {
 pub(crate) enum Noise {
     /// All runs have the same noise.
     Normal,
-    /// Some runs are far off, such as those that stick and slip among others that slide: they have more noise, so that nothing is learnt
-    /// to explain them.
+    /// Some runs are far off, such as those that stick and slip among others that slide: they have more
+    /// noise, so that nothing is learnt to explain them.
     HeavyTailed,
 }
 
@@ -46,15 +47,16 @@ const FREEDOM: f64 = 4.0;
 const MEDIAN_SIZE: f64 = 0.6745;
 
 impl Noise {
-    /// Variances of the noise of runs with these residuals, over that of a run whose residual has the standard deviation s, s the median size
-    /// over that of a normal number; none if all are the same.
+    /// Variances of the noise of runs with these residuals, over that of a run whose residual has the
+    /// standard deviation s, s the median size over that of a normal number; none if all are the same.
     ///
     /// ```text
     /// (nu + e^2/s^2)/(nu + 1)
     /// ```
     ///
-    /// A regression with normal noise of these variances, made anew with the residuals that it leaves, becomes the likeliest one with noise
-    /// of Student's distribution with nu degrees of freedom (Lange et al., Journal of the American Statistical Association 84 (1989) 881).
+    /// A regression with normal noise of these variances, made anew with the residuals that it leaves,
+    /// becomes the likeliest one with noise of Student's distribution with nu degrees of freedom (Lange et
+    /// al., Journal of the American Statistical Association 84 (1989) 881).
     pub(crate) fn variances(self, residuals: &[f64]) -> Option<Vec<f64>> {
         let sizes: Vec<f64> = residuals.iter().map(|e| e.abs()).collect();
         let deviation = median(&sizes) / MEDIAN_SIZE;

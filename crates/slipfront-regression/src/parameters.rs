@@ -1,8 +1,9 @@
 //! Weights of summaries in the kernel of an unknown, and the ridge, by their likelihood.
 //!
-//! The values `u` at the training runs count as normal numbers with the covariance `c A`, c their likeliest scale, and the variances v_i of
-//! the noise as given. What is least is the negative logarithm of their likelihood, without constants (Rasmussen and Williams, Gaussian
-//! Processes for Machine Learning, 2006, section 5.4.1):
+//! The values `u` at the training runs count as normal numbers with the covariance `c A`, c their likeliest
+//! scale, and the variances v_i of the noise as given. What is least is the negative logarithm of their
+//! likelihood, without constants (Rasmussen and Williams, Gaussian Processes for Machine Learning, 2006,
+//! section 5.4.1):
 //!
 //! ```text
 //! l = n/2 log(u^T a/n) + 1/2 log det A,   A = K + lambda diag(v),   a = A^-1 u
@@ -10,9 +11,9 @@
 //! dl/dlog w_f = w_f sum_i x_if sum_j g_ij k_ij (x_jf - x_if),   dl/dlog lambda = lambda sum_i v_i g_ii
 //! ```
 //!
-//! First all summaries share one weight, then each gets its own. These start from the mean squared slopes of the first regression
-//! (Radhakrishnan et al., Science 383 (2024) 1461, with a diagonal matrix) and are held near them: a hundred free weights would follow the
-//! noise of some hundred runs.
+//! First all summaries share one weight, then each gets its own. These start from the mean squared slopes of
+//! the first regression (Radhakrishnan et al., Science 383 (2024) 1461, with a diagonal matrix) and are held
+//! near them: a hundred free weights would follow the noise of some hundred runs.
 
 use crate::dense::{Factor, differences, squared_distances};
 use crate::fit::{Fit, Noise, kernel_of_all, median, multiplied};
@@ -23,17 +24,20 @@ pub(crate) const MAX_SEARCHED: usize = 900;
 /// Largest number of runs from which the common weight and the first slopes are found.
 const MAX_OF_COMMON_WEIGHT: usize = 450;
 
-/// Number of steps towards the likeliest parameters: later ones change the regression by less than another sample of runs does.
+/// Number of steps towards the likeliest parameters: later ones change the regression by less than another
+/// sample of runs does.
 const STEPS: usize = 10;
 
 /// Standard deviation of the logarithm of a weight around its start, before a run is known.
 const PRIOR_DEVIATION: f64 = 1.0;
 
-/// Ridge, and inverse of the common weight over the median of the squared distances, from which the search of the common weight starts.
+/// Ridge, and inverse of the common weight over the median of the squared distances, from which the search of
+/// the common weight starts.
 const COMMON_RIDGE: f64 = 1e-3;
 const COMMON_SPREAD: f64 = 4.0;
 
-/// Ridge, and median of the weighted squared distances, from which the search of the weights of all summaries starts.
+/// Ridge, and median of the weighted squared distances, from which the search of the weights of all summaries
+/// starts.
 const RIDGE: f64 = 3e-3;
 const SPREAD: f64 = 0.5;
 
@@ -43,8 +47,8 @@ const LEAST_WEIGHT: f64 = 1e-6;
 /// Least ridge: with less, rounding is as large as what the kernels of neighbours differ by.
 const LEAST_RIDGE: f64 = 1e-8;
 
-/// Largest residual that counts where the residuals are compared with the values, in standard deviations of these: few runs far off decide
-/// nothing.
+/// Largest residual that counts where the residuals are compared with the values, in standard deviations of
+/// these: few runs far off decide nothing.
 const MAX_RESIDUAL: f64 = 3.0;
 
 /// Least share of the variance of an unknown that a regression must explain; otherwise it has learnt nothing.
@@ -59,7 +63,8 @@ pub(crate) struct Parameters {
 }
 
 impl Parameters {
-    /// The likeliest parameters for values, whose mean is 0, at rows of summaries; none if no summary depends on the unknown.
+    /// The likeliest parameters for values, whose mean is 0, at rows of summaries; none if no summary depends
+    /// on the unknown.
     pub(crate) fn likeliest(summaries: &[f64], values: &[f64], noise: Noise) -> Option<Self> {
         let (n, d) = (values.len(), summaries.len() / values.len());
         // The work grows with the cube of the number of runs, and two numbers are found from few.
@@ -135,7 +140,8 @@ impl<'a> Sample<'a> {
         Fit::of(self.kernel(weights), self.values, self.noise(ridge))
     }
 
-    /// Variances of the noise that follow from the residuals of a regression; none if all runs have the same noise, which takes no regression.
+    /// Variances of the noise that follow from the residuals of a regression; none if all runs have the same
+    /// noise, which takes no regression.
     fn learnt_variances(&self, noise: Noise, weights: &[f64], ridge: f64) -> Option<Vec<f64>> {
         if noise == Noise::Normal {
             return None;
@@ -218,8 +224,8 @@ impl<'a> Sample<'a> {
         })
     }
 
-    /// Weights like the mean squared slopes of a regression with one weight for all summaries, given by its logarithm and that of the ridge;
-    /// none if it has learnt nothing. A run with more noise counts for less.
+    /// Weights like the mean squared slopes of a regression with one weight for all summaries, given by its
+    /// logarithm and that of the ridge; none if it has learnt nothing. A run with more noise counts for less.
     ///
     /// ```text
     /// df/dx_f(x_i) = w sum_j a_j k_ij (x_jf - x_if)
@@ -268,15 +274,17 @@ struct Slope {
     slopes: Vec<f64>,
 }
 
-/// Multiples of a step along a parameter whose slope keeps its sign, or changes it, the first step, and the largest.
+/// Multiples of a step along a parameter whose slope keeps its sign, or changes it, the first step, and the
+/// largest.
 const LONGER: f64 = 1.3;
 const SHORTER: f64 = 0.5;
 const FIRST_STEP: f64 = 0.5;
 const LONGEST: f64 = 2.0;
 
-/// The parameters with the least value that [`STEPS`] steps down from `start` find, of which the last is the logarithm of the ridge. Each
-/// parameter has a step of its own, and only the sign of its slope counts (Riedmiller and Braun, IEEE International Conference on Neural
-/// Networks 1993, p. 586): the units of parameters do not matter, and no value has to be sought along a line.
+/// The parameters with the least value that [`STEPS`] steps down from `start` find, of which the last is the
+/// logarithm of the ridge. Each parameter has a step of its own, and only the sign of its slope counts
+/// (Riedmiller and Braun, IEEE International Conference on Neural Networks 1993, p. 586): the units of
+/// parameters do not matter, and no value has to be sought along a line.
 fn descend(start: Vec<f64>, f: &dyn Fn(&[f64]) -> Option<Slope>) -> Vec<f64> {
     let mut place = start.clone();
     // Steps by signs alone may lead upwards, so that the best place is kept and not the last.
@@ -348,7 +356,8 @@ mod tests {
             };
             let slope = (moved(step) - moved(-step)) / (2.0 * step);
             let told = found.of_weights.get(k).copied().unwrap_or(found.of_ridge);
-            // A central difference is off by a third derivative times step^2/6, and by rounding over the step.
+            // A central difference is off by a third derivative times step^2/6, and by rounding over the
+            // step.
             assert!((slope - told).abs() < 1e-5, "{k} {slope} {told}");
         }
     }

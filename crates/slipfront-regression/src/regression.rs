@@ -1,22 +1,24 @@
 //! Regression of one unknown on the summaries of training runs, which finds the summaries that matter.
 //!
-//! Kernel ridge regression with a Gaussian kernel, in which every summary has a weight of its own, found in `parameters.rs`:
+//! Kernel ridge regression with a Gaussian kernel, in which every summary has a weight of its own, found in
+//! `parameters.rs`:
 //!
 //! ```text
 //! f(x) = f_0 + sum_i a_i k(x, x_i),   A a = u - f_0,   A = K + lambda diag(v)
 //! k(x, x') = exp(-sum_f w_f (x_f - x'_f)^2/2)
 //! ```
 //!
-//! The variances v of the noise are larger for runs that are far off. The logarithm of the size of the residuals is a function of the
-//! summaries too, found likewise.
+//! The variances v of the noise are larger for runs that are far off. The logarithm of the size of the
+//! residuals is a function of the summaries too, found likewise.
 //!
-//! The prediction of a run by all others, from which intervals are made, needs no regression of its own: `u_i -
-//! f_without_i(x_i) = a_i/[A^-1]_ii`.
+//! The prediction of a run by all others, from which intervals are made, needs no regression of its own:
+//! `u_i - f_without_i(x_i) = a_i/[A^-1]_ii`.
 
 use crate::fit::{Fit, Noise, kernel, kernel_of_all, median, multiplied};
 use crate::parameters::{MAX_SEARCHED, Parameters};
 
-/// Size that is added to residuals before their logarithm is taken, over their median: a residual near 0 is chance.
+/// Size that is added to residuals before their logarithm is taken, over their median: a residual near 0 is
+/// chance.
 const LEAST_SIZE: f64 = 0.1;
 
 /// Regression of an unknown on the summaries of training runs, and of the size of its residuals.
@@ -52,7 +54,8 @@ pub struct Prediction {
     pub scale: f64,
 }
 
-/// Widths over which training runs count as like a record, in its prediction (of the range) and in the logarithm of its scale.
+/// Widths over which training runs count as like a record, in its prediction (of the range) and in the
+/// logarithm of its scale.
 const LIKE_VALUE: f64 = 0.15;
 const LIKE_SCALE: f64 = 0.5;
 
@@ -80,8 +83,8 @@ impl Regression {
         away * away + wider * wider
     }
 
-    /// The residual of a training run with this truth, in units of its scale, around the prediction from a record: `f + s
-    /// (u_i - f_i)/s_i`.
+    /// The residual of a training run with this truth, in units of its scale, around the prediction from a
+    /// record: `f + s (u_i - f_i)/s_i`.
     pub fn moved(&self, run: usize, truth: f64, record: &Prediction) -> f64 {
         let other = self.left_out(run);
         let residual = (truth - other.bounded()) / other.scale;
@@ -113,7 +116,8 @@ impl Regression {
         }
     }
 
-    /// Likeness of every training run to a record in this regression and in another: the product of their kernels.
+    /// Likeness of every training run to a record in this regression and in another: the product of their
+    /// kernels.
     pub fn likeness(&self, summaries: &[f64], other: &Self) -> Vec<f64> {
         let own = |of: &Self| {
             let kernel = of.value.kernel(summaries);
@@ -132,7 +136,8 @@ impl Regression {
 }
 
 impl Function {
-    /// Learns a function from its values at `values.len()` rows of summaries; returns it with the residual of every run by all others.
+    /// Learns a function from its values at `values.len()` rows of summaries; returns it with the residual of
+    /// every run by all others.
     fn learn(summaries: &[f64], values: &[f64], noise: Noise) -> (Self, Vec<f64>) {
         let (n, d) = (values.len(), summaries.len() / values.len());
         let mean = mean(values);
@@ -232,7 +237,8 @@ mod tests {
             let row = point(run, d);
             found.predict(&row).value - unknown(&row)
         });
-        // One run of fifteen is off by 0.5: with equal noise they would raise all predictions by their mean, 0.033.
+        // One run of fifteen is off by 0.5: with equal noise they would raise all predictions by their mean,
+        // 0.033.
         let mean = errors.sum::<f64>() / 100.0;
         assert!(mean.abs() < 0.01, "{mean}");
     }

@@ -4,8 +4,8 @@
 //! $ cargo run --release -p slipfront-run --example change_cost -- 256 1
 //! ```
 //!
-//! 256 x 256 blocks on one thread, sliding, whose texture is an image that changes from leg to leg, as while a person paints it.
-//! Prints the median of each part in ms.
+//! 256 x 256 blocks on one thread, sliding, whose texture is an image that changes from leg to leg, as while
+//! a person paints it. Prints the median of each part in ms.
 
 use std::error::Error;
 use std::fs;

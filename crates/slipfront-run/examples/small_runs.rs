@@ -4,9 +4,9 @@
 //! $ cargo run --release -p slipfront-run --example small_runs -- 50
 //! ```
 //!
-//! 50 x 50 blocks with a texture on one thread, to the end of the first peak and along a path. Prints the least time in ms of making the
-//! case, of its steps alone, of the run whose numbers alone are kept, and of the run that records all that its files need, each over that
-//! of the steps.
+//! 50 x 50 blocks with a texture on one thread, to the end of the first peak and along a path. Prints the
+//! least time in ms of making the case, of its steps alone, of the run whose numbers alone are kept, and of
+//! the run that records all that its files need, each over that of the steps.
 
 use std::error::Error;
 use std::hint::black_box;

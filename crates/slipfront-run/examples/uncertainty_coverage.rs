@@ -4,10 +4,11 @@
 //! $ cargo run --release -p slipfront-run --example uncertainty_coverage -- 1001 1334
 //! ```
 //!
-//! 25 x 25 blocks in three regimes, a run for each seed: the speed of the paper's runs, ten times its damping, and a third
-//! of its speed. The mean of a run five times as long as its longest window, whose error is as much smaller, stands for that
-//! of an infinite one. Prints for windows of these lengths the number that give a standard error, the root mean square of z,
-//! which is the deviation over that error, and the number of intervals of +-1.96 errors that hold the mean.
+//! 25 x 25 blocks in three regimes, a run for each seed: the speed of the paper's runs, ten times its
+//! damping, and a third of its speed. The mean of a run five times as long as its longest window, whose error
+//! is as much smaller, stands for that of an infinite one. Prints for windows of these lengths the number
+//! that give a standard error, the root mean square of z, which is the deviation over that error, and the
+//! number of intervals of +-1.96 errors that hold the mean.
 
 use std::error::Error;
 

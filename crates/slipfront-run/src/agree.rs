@@ -18,8 +18,8 @@ pub struct RankFailure {
     pub sentence: String,
 }
 
-/// Returns the outcome of this rank if all have succeeded, else the failure of the lowest rank that failed. Every rank must
-/// ask.
+/// Returns the outcome of this rank if all have succeeded, else the failure of the lowest rank that failed.
+/// Every rank must ask.
 ///
 /// ```
 /// use slipfront::communicator::Alone;

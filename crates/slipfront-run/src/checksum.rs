@@ -1,8 +1,9 @@
 //! Checksums (BLAKE3), by which changed and damaged files are noticed.
 //!
-//! A checksummed file is its contents followed by a hash. The hash of a small file is taken over a context and the contents;
-//! the context names the conditions under which the contents are valid, such as a build of the program, and is not written.
-//! The hash of a large file is taken over the hashes of its pieces, which several ranks find together.
+//! A checksummed file is its contents followed by a hash. The hash of a small file is taken over a context
+//! and the contents; the context names the conditions under which the contents are valid, such as a build of
+//! the program, and is not written. The hash of a large file is taken over the hashes of its pieces, which
+//! several ranks find together.
 
 use std::io::{ErrorKind, Read, Seek, SeekFrom};
 
@@ -17,7 +18,8 @@ const PIECE: u64 = 4 << 20;
 /// Pieces whose hashes are in memory at once, in 2 MiB.
 const PIECES_AT_ONCE: u64 = 1 << 16;
 
-/// The hash of the hashes of all pieces of the first `length` bytes of a file, of which every rank reads its share.
+/// The hash of the hashes of all pieces of the first `length` bytes of a file, of which every rank reads its
+/// share.
 ///
 /// # Errors
 /// When one of the ranks cannot read its share.
@@ -103,8 +105,8 @@ mod tests {
         }
     }
 
-    /// Any number of ranks finds the hash of the hashes of the pieces, for files that end at, before and behind the end of a
-    /// piece.
+    /// Any number of ranks finds the hash of the hashes of the pieces, for files that end at, before and
+    /// behind the end of a piece.
     #[test]
     fn any_number_of_ranks_finds_the_same_hash_of_pieces() {
         let piece = PIECE as usize;

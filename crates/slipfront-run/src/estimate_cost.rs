@@ -8,8 +8,8 @@ use slipfront_case::case::Case;
 /// Duration of an estimate.
 const ESTIMATE: Duration = Duration::from_millis(25);
 
-/// Seconds that a step of this case takes when every block is computed: no run takes longer, and one with blocks at rest is
-/// faster.
+/// Seconds that a step of this case takes when every block is computed: no run takes longer, and one with
+/// blocks at rest is faster.
 pub fn seconds_per_step(case: &Case) -> f64 {
     let execution = Execution {
         skips: false,

@@ -8,8 +8,8 @@ use slipfront::observe::{Front, Quantiles};
 use slipfront::{Edges, Lattice};
 use slipfront_case::case::Case;
 
-/// Largest number of blocks from which the front is found: of a larger lattice every n-th of each axis is taken. The first
-/// rank holds the times of all of them.
+/// Largest number of blocks from which the front is found: of a larger lattice every n-th of each axis is
+/// taken. The first rank holds the times of all of them.
 const MAX_BLOCKS: usize = 1 << 22;
 
 /// Number of values that ranks exchange at once.
@@ -18,8 +18,8 @@ const PART: usize = 1 << 17;
 /// Marks a block without contact, in place of its time.
 const NO_CONTACT: f64 = f64::INFINITY;
 
-/// The front in units of this model: lengths in blocks, times t*. For a slider driven at an edge, all but the sites belong
-/// to the event that crosses it.
+/// The front in units of this model: lengths in blocks, times t*. For a slider driven at an edge, all but the
+/// sites belong to the event that crosses it.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct LatticeFront {
     pub(crate) nucleations: Vec<Nucleation>,
@@ -36,9 +36,10 @@ pub(crate) struct Nucleation {
     pub(crate) time_star: f64,
 }
 
-/// The front of a run with these first slips of the blocks that this rank holds, on the first rank; none on the others, and
-/// none if nothing has slipped. The front passes `during` these t*: for a slider driven at an edge one event alone, since
-/// between two events slip spreads as fast as the drive loads it. All ranks must call this together.
+/// The front of a run with these first slips of the blocks that this rank holds, on the first rank; none on
+/// the others, and none if nothing has slipped. The front passes `during` these t*: for a slider driven at an
+/// edge one event alone, since between two events slip spreads as fast as the drive loads it. All ranks must
+/// call this together.
 pub(crate) fn of_ranks(
     case: &Case,
     first_slips: &[f64],
@@ -198,8 +199,8 @@ mod tests {
         assert_eq!(summaries[0].front_duration_s, alone.front_duration_s);
     }
 
-    /// Between the events of a slider driven at an edge slip spreads as fast as the drive loads it. The front of the event that crosses it
-    /// runs at a speed of waves, whatever drives it.
+    /// Between the events of a slider driven at an edge slip spreads as fast as the drive loads it. The front
+    /// of the event that crosses it runs at a speed of waves, whatever drives it.
     #[test]
     fn of_a_slider_driven_at_an_edge_the_speed_is_that_of_the_event_that_crosses_it() {
         for v_star in [2.0, 1.0] {

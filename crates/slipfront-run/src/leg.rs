@@ -18,8 +18,8 @@ pub struct Leg {
     pub drive_time_star: f64,
     /// Duration of these steps, s.
     pub time_s: f64,
-    /// Displacement of the driven ends of the drive springs, block by block, m: the difference between displacements of the
-    /// leg before and of the new leg.
+    /// Displacement of the driven ends of the drive springs, block by block, m: the difference between
+    /// displacements of the leg before and of the new leg.
     pub drive_m: VectorField,
 }
 
@@ -57,21 +57,21 @@ fn blocks(([nx, ny], size): ([usize; 2], f64)) -> String {
 impl Running {
     /// Goes on under another case from here, on at most `threads` threads.
     ///
-    /// Displacements in m and velocities in m/s are kept. The step that has begun is taken to its end, as velocities are known half a
-    /// step after displacements, and the new leg begins when they meet. Its drive begins where that of this leg stands, and its
-    /// displacements count from there:
+    /// Displacements in m and velocities in m/s are kept. The step that has begun is taken to its end, as
+    /// velocities are known half a step after displacements, and the new leg begins when they meet. Its drive
+    /// begins where that of this leg stands, and its displacements count from there:
     ///
     /// ```text
     /// u' = (u + dt v - X) U/U'    with U = P mu_s l^2/(E h)
     /// v' = v W/W'                 with W = P mu_s l/(h sqrt(E rho))
     /// ```
     ///
-    /// where X is the displacement of the driven end over each block, and a prime marks the new case. Scales, load and the
-    /// state of stuck blocks follow the new case. This run stays as it is.
+    /// where X is the displacement of the driven end over each block, and a prime marks the new case. Scales,
+    /// load and the state of stuck blocks follow the new case. This run stays as it is.
     ///
     /// # Errors
-    /// [`ChangeError`] when the cases have other blocks, contacts of one of them remember more than a state holds,
-    /// or the run diverges.
+    /// [`ChangeError`] when the cases have other blocks, contacts of one of them remember more than a state
+    /// holds, or the run diverges.
     ///
     /// # Panics
     /// If several ranks share the lattice.
@@ -179,8 +179,8 @@ mod tests {
         values.iter().fold(0.0, |most, value| most.max(value.abs()))
     }
 
-    /// Compares a leg that begins after `steps` under `after` with a run under `case` alone: difference of mu* at the
-    /// beginning, and of displacements 200 steps later, over the largest.
+    /// Compares a leg that begins after `steps` under `after` with a run under `case` alone: difference of
+    /// mu* at the beginning, and of displacements 200 steps later, over the largest.
     fn differences(case: &Arc<Case>, after: &Arc<Case>, steps: u64) -> [f64; 2] {
         let (mut plain, before) = (started(case, steps), started(case, steps - 1));
         let mut leg = before.change(after, 1).unwrap();
@@ -206,7 +206,8 @@ mod tests {
     fn under_the_same_case_the_trajectory_is_the_same() {
         let case = case_of(&[]);
         let [mu_star, displacement] = differences(&case, &case, 700);
-        // Roundings of displacements that count from the drive: some in mu*, one a step in displacements while springs pass them on.
+        // Roundings of displacements that count from the drive: some in mu*, one a step in displacements
+        // while springs pass them on.
         assert!(
             mu_star < 1e-14 && displacement < 1e-13,
             "{mu_star:e} {displacement:e}"
@@ -246,7 +247,8 @@ mod tests {
     fn a_rotation_goes_on_from_where_the_drive_stands() {
         let case = case_of(&["drive.motion = 'rotation'", "load.pressure = '100 Pa'"]);
         let [mu_star, displacement] = differences(&case, &case, 700);
-        // Counting from the drive turns springs back by eps X/r_max, and with them their forces, here by 1e-9 times 2.1/14.
+        // Counting from the drive turns springs back by eps X/r_max, and with them their forces, here by 1e-9
+        // times 2.1/14.
         assert!(
             mu_star < 1e-14 && displacement < 2e-10,
             "{mu_star:e} {displacement:e}"
@@ -269,8 +271,9 @@ mod tests {
                 .map(|v| v * unit)
                 .collect::<Vec<_>>()
         };
-        // Velocities that the new leg begins with are changed by its first step, which is computed at once, of blocks that stay stuck or
-        // that friction stops: those of the others by less than an impulse of the threshold, twice the mean load.
+        // Velocities that the new leg begins with are changed by its first step, which is computed at once,
+        // of blocks that stay stuck or that friction stops: those of the others by less than an impulse of
+        // the threshold, twice the mean load.
         let (before, after) = (speeds(&running), speeds(&leg.running));
         let impulse = 4.0 * case.time_plan.dt_star * loaded.scales.speed();
         assert!(largest(&before) > 0.0);

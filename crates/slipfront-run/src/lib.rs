@@ -4,8 +4,9 @@
 //! Case -> RunData -> files -> pictures
 //! ```
 //!
-//! Each arrow is one function: [`running::run`] ([`run_summary::run_summary`] if only the numbers are wanted),
-//! [`results::write`], `pictures::complete` (with the feature `plot`), which also writes the manifest.
+//! Each arrow is one function: [`running::run`] ([`run_summary::run_summary`] if only the numbers are
+//! wanted), [`results::write`], `pictures::complete` (with the feature `plot`), which also writes the
+//! manifest.
 
 pub mod agree;
 pub mod checkpoint;

@@ -1,6 +1,7 @@
 //! The file `manifest.json`: the files of a run folder, and the program, time and machine that wrote them.
 //!
-//! The manifest is the only file of a run that another run of the same case does not repeat, and the last to be written.
+//! The manifest is the only file of a run that another run of the same case does not repeat, and the last to
+//! be written.
 
 use std::collections::BTreeMap;
 use std::fs::File;
@@ -30,10 +31,12 @@ const CHECKSUM_KEY: &[u8] = b"\"seal\"";
 pub struct Manifest {
     /// Version of slipfront.
     pub version: String,
-    /// The git commit from which the program was built, with `-dirty` if its sources were changed; null outside of git.
+    /// The git commit from which the program was built, with `-dirty` if its sources were changed; null
+    /// outside of git.
     #[serde(default)]
     pub revision: Option<String>,
-    /// The identity of the build, which is equal for programs that give the same bits: see [`program::this_build`].
+    /// The identity of the build, which is equal for programs that give the same bits: see
+    /// [`program::this_build`].
     #[serde(default)]
     pub build: String,
     /// The kernel that made the steps.
@@ -146,8 +149,8 @@ impl Manifest {
         Self::at(files, case, times, threads)
     }
 
-    /// The bytes of the manifest of a run on one thread, whose files are in memory, and of the reason for which it has no pictures,
-    /// if it has none.
+    /// The bytes of the manifest of a run on one thread, whose files are in memory, and of the reason for
+    /// which it has no pictures, if it has none.
     pub fn of_run_in_memory(
         files: &[(String, Vec<u8>)],
         case: &Case,
@@ -245,8 +248,8 @@ impl Manifest {
     }
 }
 
-/// The checksum that a list of files should have under its last key, `seal`, from the bytes before this key; none if the bytes lack
-/// the key.
+/// The checksum that a list of files should have under its last key, `seal`, from the bytes before this key;
+/// none if the bytes lack the key.
 pub fn seal(manifest: &[u8]) -> Option<String> {
     let mut windows = manifest.windows(CHECKSUM_KEY.len());
     let before = windows.rposition(|bytes| bytes == CHECKSUM_KEY)?;
@@ -268,8 +271,8 @@ impl<R: Read> Read for Until<'_, R> {
     }
 }
 
-/// Whether the entry of this name in a folder is a file that equals one of those listed; none if there is no such entry. A file of another
-/// length is not read: it may be huge.
+/// Whether the entry of this name in a folder is a file that equals one of those listed; none if there is no
+/// such entry. A file of another length is not read: it may be huge.
 ///
 /// # Errors
 /// When the system does not say what the entry is, or does not read it.

@@ -147,10 +147,10 @@ impl Measure {
 }
 
 impl MeasuredRecord {
-    /// Reads two columns of a table whose fields are separated by commas, semicolons, tabs or blanks; unless commas
-    /// separate, numbers may have decimal commas. Empty lines, and those that begin with `#`, count as none; lines without
-    /// numbers at the end are passed over, and named. The first column is along times or displacements; the second has
-    /// forces, or coefficients if its unit is 1.
+    /// Reads two columns of a table whose fields are separated by commas, semicolons, tabs or blanks; unless
+    /// commas separate, numbers may have decimal commas. Empty lines, and those that begin with `#`, count as
+    /// none; lines without numbers at the end are passed over, and named. The first column is along times or
+    /// displacements; the second has forces, or coefficients if its unit is 1.
     ///
     /// # Errors
     /// When the table cannot be read, has not these columns, or lacks numbers in them before its end; when no
@@ -159,7 +159,8 @@ impl MeasuredRecord {
         Self::read_from(&|| open_limited(path, u64::MAX), path, columns, along)
     }
 
-    /// Reads two columns of a table that is in memory, as [`read`](Self::read) does those of a file; messages name its path.
+    /// Reads two columns of a table that is in memory, as [`read`](Self::read) does those of a file; messages
+    /// name its path.
     ///
     /// # Errors
     /// As [`read`](Self::read).
@@ -302,8 +303,8 @@ impl NoNumber {
     }
 }
 
-/// Number of the line that ends, with its terminator if it has one, at the byte `end` of a table. The reader of tables counts no lines that
-/// are empty, comments or end as those of Windows.
+/// Number of the line that ends, with its terminator if it has one, at the byte `end` of a table. The reader
+/// of tables counts no lines that are empty, comments or end as those of Windows.
 fn line_at<R: Read>(open: &impl Fn() -> std::io::Result<R>, end: u64) -> csv::Result<u64> {
     let mut before = BufReader::new(open()?.take(end.saturating_sub(1)));
     let mut line = 1;
@@ -390,7 +391,8 @@ fn factor(
         });
     }
     let unit = unit_of(column, header);
-    // Units of names are written small: force_n, time_ms. Where case decides, as between mN and MN, the unit has to be given.
+    // Units of names are written small: force_n, time_ms. Where case decides, as between mN and MN, the unit
+    // has to be given.
     let as_written = |unit: &str| measure.factor(unit).ok();
     let of_name = |unit: &str| match (measure, unit) {
         (Measure::Force, "n") => Some(1.0),

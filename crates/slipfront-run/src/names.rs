@@ -18,7 +18,8 @@ pub const MOVIE: &str = "movie.gif";
 pub const RO_CRATE: &str = "ro-crate-metadata.json";
 /// The hidden subfolder for everything that belongs to a run which is not complete.
 pub const UNFINISHED: &str = ".slipfront";
-/// In the hidden subfolder: the files that the run has finished, which also says that the subfolder is slipfront's.
+/// In the hidden subfolder: the files that the run has finished, which also says that the subfolder is
+/// slipfront's.
 pub const JOURNAL: &str = "journal.jsonl";
 /// In the hidden subfolder: a folder of the temporary files that are being written.
 pub const TEMPORARY: &str = "tmp";
@@ -30,8 +31,8 @@ pub const PREVIOUS: &str = "checkpoint-previous.bin";
 pub const FIGURE_CACHE: &str = "found";
 /// The journal of a study: a line for every run that has ended.
 pub const RUN_JOURNAL: &str = "runs.jsonl";
-/// Tables of a study: a row for every run, a row for every quantity at every point, and, where the direction of the drive is varied, a row
-/// for friction over all directions.
+/// Tables of a study: a row for every run, a row for every quantity at every point, and, where the direction
+/// of the drive is varied, a row for friction over all directions.
 pub const TABLES: [&str; 3] = ["runs.csv", "points.csv", "anisotropy.csv"];
 /// Results of a study over meshes: as numbers, and as a text.
 pub const CONVERGENCE: [&str; 2] = ["convergence.json", "convergence.txt"];

@@ -1,17 +1,20 @@
-//! The identity of this program: for the manifest, and for distinguishing programs that may not give the same bits.
+//! The identity of this program: for the manifest, and for distinguishing programs that may not give the same
+//! bits.
 
 use std::sync::LazyLock;
 
 /// Version of slipfront.
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");
 
-/// The git commit from which the program was built, with `-dirty` if its sources were changed; none outside of a checkout.
+/// The git commit from which the program was built, with `-dirty` if its sources were changed; none outside
+/// of a checkout.
 pub const REVISION: Option<&str> = option_env!("SLIPFRONT_REVISION");
 
 /// The platform that the program was built for, as the compiler names it.
 pub const PLATFORM: &str = env!("SLIPFRONT_PLATFORM");
 
-/// Version, identity of the build, git commit and platform, a line for each, as `--version` prints them after the name.
+/// Version, identity of the build, git commit and platform, a line for each, as `--version` prints them after
+/// the name.
 pub fn version_lines() -> &'static str {
     static LINES: LazyLock<String> = LazyLock::new(|| {
         format!(
@@ -24,7 +27,8 @@ pub fn version_lines() -> &'static str {
     &LINES
 }
 
-/// The vector instructions of the kernels; those that every processor of this kind has with their name there, too.
+/// The vector instructions of the kernels; those that every processor of this kind has with their name there,
+/// too.
 fn vectors() -> String {
     let name = slipfront::simd_width();
     let here = if cfg!(target_arch = "aarch64") {
@@ -50,9 +54,9 @@ pub fn in_words(version: &str, revision: Option<&str>) -> String {
     }
 }
 
-/// The identity of the build: version, and a hash of the sources of slipfront-base, slipfront, slipfront-case and
-/// slipfront-run and of the
-/// locked versions of the crates they use. Programs of one identity give the same bits, whichever program they are part of.
+/// The identity of the build: version, and a hash of the sources of slipfront-base, slipfront, slipfront-case
+/// and slipfront-run and of the locked versions of the crates they use. Programs of one identity give the
+/// same bits, whichever program they are part of.
 pub fn this_build() -> &'static str {
     static BUILD: LazyLock<String> = LazyLock::new(|| {
         let hashes = [

@@ -19,8 +19,8 @@ use crate::run_folder::unfinished::Unfinished;
 use crate::running::RunData;
 use crate::series::{self, SeriesRow};
 
-/// Writes the results of a run on one rank to its folder, where the case stands already: the tables, then the fields, which
-/// are moved out of the data. Pictures and the manifest follow.
+/// Writes the results of a run on one rank to its folder, where the case stands already: the tables, then the
+/// fields, which are moved out of the data. Pictures and the manifest follow.
 pub fn write(case: &Case, data: &mut RunData, folder: &mut RunFolder) -> Result<(), ResultsError> {
     write_tables(case, data, folder)?;
     match write_fields(case, data, folder.path(), &Alone)? {
@@ -53,8 +53,8 @@ fn each_table(
     Ok(())
 }
 
-/// The files of a run on one rank, by their names in its folder, with the bytes that they have there: the case and the files that it reads,
-/// tables and fields, which are moved out of the data.
+/// The files of a run on one rank, by their names in its folder, with the bytes that they have there: the
+/// case and the files that it reads, tables and fields, which are moved out of the data.
 ///
 /// # Errors
 /// When a file that the case reads is no longer what the case was made of.
@@ -138,8 +138,8 @@ pub fn fields_of(case: &Case, data: &RunData) -> FieldsData {
     }
 }
 
-/// Writes the fields to a temporary file of the run in folder `out`, each rank its own rows; the first one has the file. The
-/// fields are moved out of the data.
+/// Writes the fields to a temporary file of the run in folder `out`, each rank its own rows; the first one
+/// has the file. The fields are moved out of the data.
 pub fn write_fields(
     case: &Case,
     data: &mut RunData,

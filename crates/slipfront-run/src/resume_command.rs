@@ -4,7 +4,8 @@ use std::path::Path;
 
 use slipfront_base::text::shell_path;
 
-/// The command of a program, `slipfront` or `slipfront-mpi`, that goes on with the run in a folder, as a shell reads it.
+/// The command of a program, `slipfront` or `slipfront-mpi`, that goes on with the run in a folder, as a
+/// shell reads it.
 pub fn resume_command(program: &str, folder: &Path) -> String {
     format!("{program} run --resume {}", shell_path(folder))
 }

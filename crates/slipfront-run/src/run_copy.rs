@@ -8,7 +8,8 @@ use crate::folder_error::FolderError;
 use crate::names::{CASE, MANIFEST, UNFINISHED};
 use crate::run_folder::RunFolder;
 
-/// Copies the files of a run folder. The case and the manifest come last: without them, the copy does not count as whole.
+/// Copies the files of a run folder. The case and the manifest come last: without them, the copy does not
+/// count as whole.
 pub fn copy_run(from: &Path, to: &Path) -> Result<(), FolderError> {
     let failed = |source| FolderError::Copy {
         from: from.to_owned(),

@@ -1,5 +1,5 @@
-//! Runs a [`Case`] and keeps only the curve of friction against time and displacement, as a fit needs it from many small
-//! cases.
+//! Runs a [`Case`] and keeps only the curve of friction against time and displacement, as a fit needs it from
+//! many small cases.
 
 use std::sync::Arc;
 
@@ -62,8 +62,9 @@ impl Observer for Tracing {
     }
 }
 
-/// Runs a case on one thread up to a time or a displacement, whatever its `time` says, and keeps only the curve; none if
-/// `ends` gave it up. Where a program of speeds decides how far the drive comes, the case sets the end of the run.
+/// Runs a case on one thread up to a time or a displacement, whatever its `time` says, and keeps only the
+/// curve; none if `ends` gave it up. Where a program of speeds decides how far the drive comes, the case sets
+/// the end of the run.
 ///
 /// ```
 /// use slipfront_case::case::Case;

@@ -11,8 +11,9 @@ use crate::running::{add_front, instants_of};
 use crate::summary::Summary;
 use crate::summary_observers::SummaryObservers;
 
-/// Runs a case on one thread up to the end that its `time.stop` sets, and returns the numbers of `summary.json` with the
-/// bits of [`running::run`](crate::running::run). Neither curve, fields nor kymograph are recorded, and no file is written.
+/// Runs a case on one thread up to the end that its `time.stop` sets, and returns the numbers of
+/// `summary.json` with the bits of [`running::run`](crate::running::run). Neither curve, fields nor kymograph
+/// are recorded, and no file is written.
 ///
 /// ```
 /// use slipfront_case::case::Case;
@@ -73,7 +74,8 @@ mod tests {
     use super::*;
     use crate::running;
 
-    /// The numbers are those of a run that records all: every observer has numbers in the summary of one of these cases.
+    /// The numbers are those of a run that records all: every observer has numbers in the summary of one of
+    /// these cases.
     #[test]
     fn the_numbers_are_those_of_a_run_that_records_all() {
         for text in [

@@ -102,8 +102,8 @@ fn on_useful_threads(case: &Case, execution: Execution) -> Execution {
     }
 }
 
-/// The instants A-F of a run of this case, with these fields at each; none for a run that keeps snapshots at given times
-/// alone.
+/// The instants A-F of a run of this case, with these fields at each; none for a run that keeps snapshots at
+/// given times alone.
 pub(crate) fn instants_of(case: &Case, fields: Vec<Field>) -> Option<Instants> {
     let (plan, stride) = (&case.time_plan, case.output.stride);
     let has_instants = !matches!(case.output.snapshots, Snapshots::At(_));
@@ -154,7 +154,8 @@ impl Observers {
                 .is_consistent_with(&new.summary, checkpoint, case.time_plan.dt_star)
     }
 
-    /// The numbers of blocks that a checkpoint keeps: those of the simulation, and those of every field of every frame.
+    /// The numbers of blocks that a checkpoint keeps: those of the simulation, and those of every field of
+    /// every frame.
     fn columns(&self, case: &Case) -> [Columns; 2] {
         let (lattice, stride) = (&case.model.lattice, case.output.stride);
         let columns = |count: usize, stride: usize, number_bytes: usize| Columns {
@@ -221,9 +222,9 @@ fn own_rows_of_fields(case: &Case) -> Range<usize> {
 const PART: usize = 1 << 17;
 
 impl Running {
-    /// Begins a run in this state, in which blocks may be displaced and slide, or at rest. The run is computed as
-    /// `execution` says, on no more threads than have enough blocks; ranks that share the lattice call this and then the
-    /// same functions.
+    /// Begins a run in this state, in which blocks may be displaced and slide, or at rest. The run is
+    /// computed as `execution` says, on no more threads than have enough blocks; ranks that share the lattice
+    /// call this and then the same functions.
     ///
     /// # Panics
     /// If a number of the state is not finite, or the state has another number of blocks.
@@ -239,8 +240,8 @@ impl Running {
         }
     }
 
-    /// Goes on with a run where its state was written down; none if the state is not one of this case. `read` gets a place
-    /// in the columns of the state and room for the bytes from there on.
+    /// Goes on with a run where its state was written down; none if the state is not one of this case. `read`
+    /// gets a place in the columns of the state and room for the bytes from there on.
     ///
     /// # Errors
     /// Errors of `read`.
@@ -303,8 +304,8 @@ impl Running {
         }))
     }
 
-    /// Makes at most `steps` steps; returns the reason of the end, if the run ended. An error says that it diverges. All
-    /// ranks must call this together.
+    /// Makes at most `steps` steps; returns the reason of the end, if the run ended. An error says that it
+    /// diverges. All ranks must call this together.
     pub fn advance(&mut self, steps: u64) -> Result<Option<StopReason>, RunError> {
         let mut observers = self.observers.scheduled(&self.case.output.snapshots);
         self.simulation
@@ -316,8 +317,8 @@ impl Running {
         self.simulation.snapshot()
     }
 
-    /// The present fields of the output of the case, in SI units; tau_c* is divided by its largest value so far. All
-    /// ranks must call this together.
+    /// The present fields of the output of the case, in SI units; tau_c* is divided by its largest value so
+    /// far. All ranks must call this together.
     pub fn fields(&self) -> FieldFrame {
         let output = &self.case.output;
         let frame = selection(output).capture(&self.snapshot());
@@ -335,15 +336,15 @@ impl Running {
         &self.observers.kymograph
     }
 
-    /// The instants A-F that are known by now and t* of the drive at each, see [`Instants::by_now`]; none for a run that
-    /// keeps snapshots at given times alone.
+    /// The instants A-F that are known by now and t* of the drive at each, see [`Instants::by_now`]; none for
+    /// a run that keeps snapshots at given times alone.
     pub fn instants(&self) -> impl Iterator<Item = (char, f64)> {
         let instants = self.observers.fields.instants.iter();
         instants.flat_map(|instants| instants.by_now())
     }
 
-    /// Friction in the kinetic window up to now; none before it begins or if no block has slipped. All ranks must call this
-    /// together.
+    /// Friction in the kinetic window up to now; none before it begins or if no block has slipped. All ranks
+    /// must call this together.
     pub fn kinetic(&self) -> Option<Kinetic> {
         let now = self.snapshot();
         now.earliest_first_slip()?;
@@ -370,8 +371,8 @@ impl Running {
         &self.case
     }
 
-    /// State from which the run goes on later, beside its [columns](Self::write_columns), as it is written. All ranks must
-    /// call this together.
+    /// State from which the run goes on later, beside its [columns](Self::write_columns), as it is written.
+    /// All ranks must call this together.
     pub fn state(&self) -> impl Serialize + '_ {
         RunState {
             simulation: self.simulation.checkpoint(),
@@ -384,8 +385,8 @@ impl Running {
         self.observers.columns(&self.case)
     }
 
-    /// Passes the numbers of the rows that are held here to `write`, with a place in the columns and the bytes from there
-    /// on.
+    /// Passes the numbers of the rows that are held here to `write`, with a place in the columns and the
+    /// bytes from there on.
     ///
     /// # Errors
     /// Errors of `write`.
@@ -497,8 +498,8 @@ pub fn run_unless(case: &Arc<Case>, ends: &dyn Fn() -> bool) -> Option<Result<Ru
     None
 }
 
-/// Frames without letters, and instants with theirs, in the order of time. Frames of one step, as instants on a uniform
-/// lattice may be, are one frame with all letters, because times of a file must rise.
+/// Frames without letters, and instants with theirs, in the order of time. Frames of one step, as instants on
+/// a uniform lattice may be, are one frame with all letters, because times of a file must rise.
 fn lettered(instants: Vec<(char, Frame)>, frames: Vec<Frame>) -> Vec<(String, Frame)> {
     let frames = frames.into_iter().map(|frame| (String::new(), frame));
     let instants = instants
@@ -551,8 +552,8 @@ mod tests {
         assert_eq!(record.kymograph, kymograph);
     }
 
-    /// A sheet on a mount without texture moves as a whole: forces, paths and displacements in SI units are equal on blocks
-    /// of half the size, at steps that are equally long.
+    /// A sheet on a mount without texture moves as a whole: forces, paths and displacements in SI units are
+    /// equal on blocks of half the size, at steps that are equally long.
     #[test]
     fn a_sheet_is_one_slider_on_any_blocks() {
         let run = |blocks: usize, size: f64, step: f64| {

@@ -67,8 +67,8 @@ pub struct SeriesRow {
     /// Energy lost with springs in contact that broke since the start, J.
     #[serde(default, deserialize_with = "number", skip_serializing_if = "Option::is_none")]
     pub broken_spring_loss_j: Option<f64>,
-    /// Part of the loss to friction since the start that is the energy that falling strength takes, J; none where strength does not
-    /// fall.
+    /// Part of the loss to friction since the start that is the energy that falling strength takes, J; none
+    /// where strength does not fall.
     #[serde(default, deserialize_with = "number", skip_serializing_if = "Option::is_none")]
     pub weakening_loss_j: Option<f64>,
     /// Mean state of the contacts, t*; none for contacts without a state.
@@ -76,8 +76,8 @@ pub struct SeriesRow {
     pub mean_state_star: Option<f64>,
 }
 
-/// Reads a number of an optional column, which a series may lack because it belongs to an option or is younger than the
-/// file; a series that has the column has a number in every row.
+/// Reads a number of an optional column, which a series may lack because it belongs to an option or is
+/// younger than the file; a series that has the column has a number in every row.
 fn number<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<f64>, D::Error> {
     f64::deserialize(deserializer).map(Some)
 }
@@ -133,7 +133,8 @@ impl SeriesRow {
     }
 }
 
-/// A column of a series: its name, and its value in a row, which has none where the column belongs to another option.
+/// A column of a series: its name, and its value in a row, which has none where the column belongs to another
+/// option.
 type Column = (&'static str, fn(&SeriesRow) -> Option<f64>);
 
 /// Names the fields of a row, each with the function that gives its number in it, if it has one.
@@ -150,7 +151,8 @@ const COLUMNS: &[Column] = columns_of! {
     viscous_loss_j contact_spring_energy_j broken_spring_loss_j weakening_loss_j mean_state_star
 };
 
-/// The columns of a series: names and values, without columns that it lacks, and without the numbers of the steps.
+/// The columns of a series: names and values, without columns that it lacks, and without the numbers of the
+/// steps.
 pub fn columns(rows: &[SeriesRow]) -> Vec<(&'static str, Vec<f64>)> {
     let all = COLUMNS.iter();
     all.filter_map(|(name, value)| Some((*name, rows.iter().map(value).collect::<Option<_>>()?)))

@@ -15,17 +15,18 @@ use crate::observers::cycles::CycleSummary;
 use crate::observers::precursors::PrecursorSummary;
 use crate::run_files::RunFile;
 
-/// The numbers of a run. Starred quantities are dimensionless (Eq. 11); times without a star are in s. A drive that is held
-/// has its own time, which counts only while it moves.
+/// The numbers of a run. Starred quantities are dimensionless (Eq. 11); times without a star are in s. A
+/// drive that is held has its own time, which counts only while it moves.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Summary {
-    /// mu_s*, the first peak of mu*; for a drive that is held the largest value before the kinetic window; without a
-    /// transition the largest value.
+    /// mu_s*, the first peak of mu*; for a drive that is held the largest value before the kinetic window;
+    /// without a transition the largest value.
     pub static_friction_star: f64,
     /// Static friction coefficient mu_s.
     pub static_friction: f64,
-    /// Friction across the drive at the instant of mu_s*, over the load and mu_s, positive to the left of the drive.
+    /// Friction across the drive at the instant of mu_s*, over the load and mu_s, positive to the left of the
+    /// drive.
     #[serde(default)]
     pub static_lateral_friction_star: f64,
     /// Time t_s* of the onset, on the time of the drive.
@@ -53,16 +54,17 @@ pub struct Summary {
     pub sliding_percent_max: f64,
     /// Largest mu* of the whole run; above mu_s* where a later peak is higher than the first.
     pub mu_star_max: f64,
-    /// Whether mu* fell at least half-way to the steady level L and by (1 - L)/20 after its first peak, within the time of a
-    /// transition, mu_k* is as much below the peak, and steady sliding takes less force than the blocks hold at rest.
+    /// Whether mu* fell at least half-way to the steady level L and by (1 - L)/20 after its first peak,
+    /// within the time of a transition, mu_k* is as much below the peak, and steady sliding takes less force
+    /// than the blocks hold at rest.
     pub transition: bool,
     /// The instants A-F that were found.
     pub instants: Vec<InstantSummary>,
     /// Units of the starred quantities and laboratory values.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub si: Option<SiSummary>,
-    /// Number of sites at which slip has nucleated. Like all values of the front, it belongs to a run with a transition, or
-    /// to an event that crosses a slider driven at an edge.
+    /// Number of sites at which slip has nucleated. Like all values of the front, it belongs to a run with a
+    /// transition, or to an event that crosses a slider driven at an edge.
     pub nucleation_sites: Option<usize>,
     /// Coordinate x of the first nucleation, m.
     pub nucleation_x_m: Option<f64>,
@@ -71,11 +73,12 @@ pub struct Summary {
     /// All sites of nucleation.
     #[serde(default)]
     pub nucleations: Vec<NucleationSummary>,
-    /// Share of the windows of 7 x 7 blocks through which a front passes. For a slider driven at an edge, this and the
-    /// following values belong to the event that crosses it.
+    /// Share of the windows of 7 x 7 blocks through which a front passes. For a slider driven at an edge,
+    /// this and the following values belong to the event that crosses it.
     #[serde(default)]
     pub front_share: Option<f64>,
-    /// Median speed of the slip front over the speed of long shear waves; none where it passes through less than half of the windows.
+    /// Median speed of the slip front over the speed of long shear waves; none where it passes through less
+    /// than half of the windows.
     pub front_speed_c_s: Option<f64>,
     /// Speed below which 5 % of the front is, over the speed of long shear waves.
     pub front_speed_low_c_s: Option<f64>,
@@ -124,8 +127,8 @@ pub struct Summary {
     /// Share of the variance of correlated random coefficients at a point that means over blocks keep, %.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub variance_of_blocks_percent: Option<f64>,
-    /// Share of the variance of correlated random coefficients at a point that the mean of a surface has from seed to seed,
-    /// %.
+    /// Share of the variance of correlated random coefficients at a point that the mean of a surface has from
+    /// seed to seed, %.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub variance_of_surfaces_percent: Option<f64>,
     /// Negative draws of the coefficients of blocks in contact that were set to 0.
@@ -138,7 +141,8 @@ pub struct Summary {
     pub friction_loss_j: f64,
     /// Energy lost to damping, J.
     pub damping_loss_j: f64,
-    /// Motion of a drive that rotates: mu* and its derivatives are the torque over P mu_s l^2 times the sum of all radii.
+    /// Motion of a drive that rotates: mu* and its derivatives are the torque over P mu_s l^2 times the sum
+    /// of all radii.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub motion: Option<Motion>,
     /// Events of slip of a slider driven at an edge.
@@ -153,7 +157,8 @@ pub struct Summary {
     /// Energy lost with contacts that broke, J; none for contacts that store no energy.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub broken_spring_loss_j: Option<f64>,
-    /// Part of the loss to friction that is the energy that falling strength takes, J; none where strength does not fall.
+    /// Part of the loss to friction that is the energy that falling strength takes, J; none where strength
+    /// does not fall.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub weakening_loss_j: Option<f64>,
     /// Mean state of the contacts at the end, t*; none for contacts without a state.
@@ -263,8 +268,8 @@ pub struct NucleationSummary {
     pub time_star: f64,
 }
 
-/// Keys of the numbers that the first peak of mu* defines. A run without a transition has none of these numbers, whatever
-/// its summary says: its largest mu* is its `mu_star_max`.
+/// Keys of the numbers that the first peak of mu* defines. A run without a transition has none of these
+/// numbers, whatever its summary says: its largest mu* is its `mu_star_max`.
 pub const OF_PEAK: [&str; 5] = [
     "static_friction_star",
     "static_friction",
@@ -273,8 +278,8 @@ pub const OF_PEAK: [&str; 5] = [
     "onset_time_s",
 ];
 
-/// Keys of the numbers of the kinetic window. A run without a transition has these numbers only if the window begins after
-/// its largest mu*: before that, mu* may still rise to the onset.
+/// Keys of the numbers of the kinetic window. A run without a transition has these numbers only if the window
+/// begins after its largest mu*: before that, mu* may still rise to the onset.
 pub const OF_KINETIC_WINDOW: [&str; 5] = [
     "kinetic_friction_star",
     "kinetic_friction_star_uncertainty",
@@ -294,7 +299,8 @@ pub fn read_summary(run: &Path) -> Result<Summary, ResultsError> {
     summary_of(&run.join(SUMMARY).into())
 }
 
-/// Reads the largest contact stress of a run, Pa, from its `summary.json`, and nothing else of it; none if the run was written without units.
+/// Reads the largest contact stress of a run, Pa, from its `summary.json`, and nothing else of it; none if
+/// the run was written without units.
 pub fn contact_stress_max_of(file: &RunFile<'_>) -> Result<Option<f64>, ResultsError> {
     #[derive(Deserialize)]
     struct Stress {

@@ -65,8 +65,8 @@ impl SummaryObservers {
         scheduled
     }
 
-    /// The t* in which a front passes: all t* of a run with a transition, or the event that crosses a slider driven at an
-    /// edge; none if there is no front.
+    /// The t* in which a front passes: all t* of a run with a transition, or the event that crosses a slider
+    /// driven at an edge; none if there is no front.
     pub(crate) fn times_of_front(&self, transition: bool) -> Option<RangeInclusive<f64>> {
         let Some(precursors) = &self.optional.precursors else {
             return transition.then_some(0.0..=f64::INFINITY);
@@ -96,8 +96,8 @@ impl SummaryObservers {
         instants: &[(char, Frame)],
     ) -> Summary {
         let (peak, first_slip) = (simulation.peak(), simulation.snapshot().earliest_first_slip());
-        // A run that stops at its onset has no kinetic phase, wherever the window was meant to begin, and neither has one
-        // in which nothing slipped.
+        // A run that stops at its onset has no kinetic phase, wherever the window was meant to begin, and
+        // neither has one in which nothing slipped.
         let kinetic = match reason {
             StopReason::End => first_slip.and_then(|_| self.kinetic(case, &peak)),
             StopReason::Onset => None,
@@ -186,8 +186,8 @@ impl SummaryObservers {
     }
 }
 
-/// mu* along and across the drive and t* of static friction: at the first peak, or at the largest mu* if there is no
-/// transition.
+/// mu* along and across the drive and t* of static friction: at the first peak, or at the largest mu* if
+/// there is no transition.
 fn static_friction(peak: &Peak, transition: bool) -> [f64; 3] {
     if transition {
         [peak.mu_star, peak.mu_lateral_star, peak.drive_time_star]

@@ -26,7 +26,8 @@ pub struct Verdict {
     pub differences: Vec<String>,
     /// Differences that do no harm, a line each.
     pub notes: Vec<String>,
-    /// Reason for which the files, although as they were written, were not derived again from the recorded runs.
+    /// Reason for which the files, although as they were written, were not derived again from the recorded
+    /// runs.
     pub not_derived: Option<String>,
 }
 
@@ -49,8 +50,8 @@ pub enum VerifyError {
     Temporary(std::io::Error),
 }
 
-/// Refuses those files, chosen by `which`, of a complete run that have changed since they were written; without a manifest
-/// nothing is known of them.
+/// Refuses those files, chosen by `which`, of a complete run that have changed since they were written;
+/// without a manifest nothing is known of them.
 pub fn expect_as_written(run: &Inspection, which: impl Fn(&str) -> bool) -> Result<(), VerifyError> {
     let manifest = match run.manifest() {
         Ok(manifest) => manifest,
@@ -74,7 +75,8 @@ pub fn expect_as_written(run: &Inspection, which: impl Fn(&str) -> bool) -> Resu
 /// Compares the files of a complete run with its manifest.
 ///
 /// # Errors
-/// When the folder has no manifest, or the system does not say what it holds. After a stop the verdict is not complete.
+/// When the folder has no manifest, or the system does not say what it holds. After a stop the verdict is not
+/// complete.
 pub fn verify_run(run: &Inspection, stop: &AtomicBool) -> Result<Verdict, VerifyError> {
     let mut verdict = Verdict::default();
     let manifest = match run.manifest() {
@@ -114,8 +116,8 @@ pub fn verify_run(run: &Inspection, stop: &AtomicBool) -> Result<Verdict, Verify
     Ok(verdict)
 }
 
-/// Whether the description in a folder, which names the checksum of a manifest, is of the run with this manifest; none if
-/// there is no description that can be read.
+/// Whether the description in a folder, which names the checksum of a manifest, is of the run with this
+/// manifest; none if there is no description that can be read.
 fn is_described(folder: &Path, manifest: &Manifest) -> Option<bool> {
     let text = read_limited(&folder.join(RO_CRATE), TEXT_MAX_BYTES).ok()?;
     let checksum = manifest.checksum.as_bytes();
@@ -137,8 +139,8 @@ pub fn inspect(folder: &Path) -> Result<Inspection, VerifyError> {
     Ok(Inspection::of(folder)?)
 }
 
-/// Differences between the files of a folder and the listed ones, a sentence for each; the verb may be `were written`. After a stop
-/// some files are not looked at.
+/// Differences between the files of a folder and the listed ones, a sentence for each; the verb may be
+/// `were written`. After a stop some files are not looked at.
 pub fn differences<'f>(
     files: impl IntoIterator<Item = &'f ManifestFile>,
     folder: &Path,

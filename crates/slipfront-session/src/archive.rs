@@ -18,13 +18,15 @@ const SHARE: f64 = 0.01;
 /// Files, each as its name and its contents.
 pub type NamedFiles = Vec<(String, Vec<u8>)>;
 
-/// Draws the pictures of a run of these files, with its movie or without. Gives the files of the pictures, or a sentence that says why it cannot.
+/// Draws the pictures of a run of these files, with its movie or without. Gives the files of the pictures, or
+/// a sentence that says why it cannot.
 pub type Draw<'a> = dyn Fn(&[(String, Vec<u8>)], bool) -> Result<NamedFiles, String> + 'a;
 
-/// Runs a case from rest to its end, and gives an archive of its files: the case and the files that it reads, summary, series, fields,
-/// kymograph and pictures, each with the bytes that `slipfront run` writes, and the manifest of these files. `now` tells the time of day, UTC as in
-/// RFC 3339, and that of a monotonic clock; `report_progress` is told the share of the run that is done. `draw` gives the pictures of a run of
-/// these files, with its movie or without; why it cannot, the manifest says.
+/// Runs a case from rest to its end, and gives an archive of its files: the case and the files that it reads,
+/// summary, series, fields, kymograph and pictures, each with the bytes that `slipfront run` writes, and the
+/// manifest of these files. `now` tells the time of day, UTC as in RFC 3339, and that of a monotonic clock;
+/// `report_progress` is told the share of the run that is done. `draw` gives the pictures of a run of these
+/// files, with its movie or without; why it cannot, the manifest says.
 ///
 /// # Errors
 /// A sentence, if the case cannot be run, or the run diverges.

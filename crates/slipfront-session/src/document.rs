@@ -16,13 +16,15 @@ use crate::base64;
 use crate::names::{MAX_FILES, is_plain_name, plain_name};
 use crate::protocol::Source;
 
-/// Most blocks of a case: such that the run, its twin and the pictures stay within the memory of a small machine.
+/// Most blocks of a case: such that the run, its twin and the pictures stay within the memory of a small
+/// machine.
 pub const MAX_BLOCKS: usize = 1 << 19;
 
 /// Name of the image that holds a painted texture.
 const PAINTED: &str = "texture.png";
 
-/// A case that is edited. Copies share their files. It can be sent as JSON, as the source of an `open` request that opens it.
+/// A case that is edited. Copies share their files. It can be sent as JSON, as the source of an `open`
+/// request that opens it.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(try_from = "Source", into = "Source")]
 pub struct Document {
@@ -154,7 +156,8 @@ impl Document {
         twin
     }
 
-    /// A copy of the case with other values of keys, none to remove one. A key that sets the same thing as another replaces it.
+    /// A copy of the case with other values of keys, none to remove one. A key that sets the same thing as
+    /// another replaces it.
     ///
     /// # Errors
     /// A sentence, if a key has no place in the case.
@@ -237,8 +240,8 @@ impl Document {
         self.with_image(&png, slipfront_case::case_file::DEFAULT_THRESHOLD)
     }
 
-    /// The place of the texture that a brush paints on, among all textures: the last image that is stretched over the slider as it is. None
-    /// if there is no such texture.
+    /// The place of the texture that a brush paints on, among all textures: the last image that is stretched
+    /// over the slider as it is. None if there is no such texture.
     pub(crate) fn painted_layer(&self) -> Option<usize> {
         let textures = self.keys.get("texture")?.as_array()?;
         let is_layer = |texture: &Value| {
@@ -252,8 +255,8 @@ impl Document {
         textures.iter().rposition(is_layer)
     }
 
-    /// A copy of the case whose texture at `index` is this mask instead, one value per block from y = 0 upwards; without an index the mask is
-    /// a texture more. A mask of no block is none.
+    /// A copy of the case whose texture at `index` is this mask instead, one value per block from y = 0
+    /// upwards; without an index the mask is a texture more. A mask of no block is none.
     ///
     /// # Errors
     /// When the image of the mask cannot be written, or the case is none without it either.
@@ -280,15 +283,18 @@ impl Document {
     /// The case that can be run, as `slipfront run` makes it, unless `watch` ends the work.
     ///
     /// # Errors
-    /// When the keys are no case that can be run, or it has more than [`MAX_BLOCKS`] blocks, or the work was ended.
+    /// When the keys are no case that can be run, or it has more than [`MAX_BLOCKS`] blocks, or the work was
+    /// ended.
     pub fn case(&self, watch: &mut Watch) -> Result<Case, CaseError> {
         self.build(&[], watch)
     }
 
-    /// The case that is shown, unless `watch` ends the work: it writes nothing, and keeps no more snapshots than the instants A-F.
+    /// The case that is shown, unless `watch` ends the work: it writes nothing, and keeps no more snapshots
+    /// than the instants A-F.
     ///
     /// # Errors
-    /// When the keys are no case that can be run, or it has more than [`MAX_BLOCKS`] blocks, or the work was ended.
+    /// When the keys are no case that can be run, or it has more than [`MAX_BLOCKS`] blocks, or the work was
+    /// ended.
     pub fn case_to_show(&self, watch: &mut Watch) -> Result<Case, CaseError> {
         let overrides = [
             "output.fields=[\"sliding\"]",
@@ -302,7 +308,8 @@ impl Document {
     /// The case with other values of keys, each as `key=value`.
     ///
     /// # Errors
-    /// When the keys are no case that can be run, or it has more than [`MAX_BLOCKS`] blocks, or the work was ended.
+    /// When the keys are no case that can be run, or it has more than [`MAX_BLOCKS`] blocks, or the work was
+    /// ended.
     fn build(&self, overrides: &[&str], watch: &mut Watch) -> Result<Case, CaseError> {
         let overrides: Vec<String> = overrides.iter().map(|&text| text.to_owned()).collect();
         let mut file = CaseFile::parse(&self.toml(), &self.name, &overrides)?;
@@ -325,7 +332,8 @@ impl Document {
         Case::to_run_with(file, &self.name, files, watch, Ranks::ALONE)
     }
 
-    /// Refuses a file that does not belong to the case, wherever that may be: keys may come from anybody's link.
+    /// Refuses a file that does not belong to the case, wherever that may be: keys may come from anybody's
+    /// link.
     fn expect_own_files(&self, case: &mut CaseFile) -> Result<(), CaseError> {
         let (mut named, source) = case.files_mut();
         match named.find(|file| !self.files.contains_key(file.name.as_str())) {
@@ -368,8 +376,8 @@ fn mask_image(textured: &[bool], nx: usize) -> Result<Vec<u8>, png::EncodingErro
     Ok(bytes)
 }
 
-/// The table that holds the last of the parts of a key such as `texture.0.center`, and that part; the tables on the way are made
-/// if they are to be.
+/// The table that holds the last of the parts of a key such as `texture.0.center`, and that part; the tables
+/// on the way are made if they are to be.
 ///
 /// # Errors
 /// A sentence, if it is no key.
@@ -474,7 +482,8 @@ mod tests {
         assert_eq!(error, "the case has no place for the key `drive.v_star.more`");
     }
 
-    /// Masks come back from their image unchanged, also where the width is no multiple of the eight blocks that a byte holds.
+    /// Masks come back from their image unchanged, also where the width is no multiple of the eight blocks
+    /// that a byte holds.
     #[test]
     fn a_mask_is_the_texture_it_was_painted_as() {
         for (nx, ny) in [(1, 2), (7, 3), (8, 8), (13, 5), (100, 9)] {

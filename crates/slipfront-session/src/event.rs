@@ -9,10 +9,12 @@ use serde::{Deserialize, Serialize};
 
 use crate::protocol::Estimate;
 
-/// Static friction mu_s* with one seed: of the case and, if it has texture, of the case without; none of a run without a transition.
+/// Static friction mu_s* with one seed: of the case and, if it has texture, of the case without; none of a
+/// run without a transition.
 pub(crate) type Frictions = Vec<Option<f64>>;
 
-/// Whoever does work beside a session: it passes on what the work tells, and tells it the time and whether it shall stop.
+/// Whoever does work beside a session: it passes on what the work tells, and tells it the time and whether it
+/// shall stop.
 pub trait Worker {
     /// Passes an event of the work on to the session.
     fn tell(&self, event: Event);
@@ -93,8 +95,10 @@ pub(crate) struct Comparison {
     pub(crate) surfaces: usize,
     /// Change of static friction by the best texture of the search, against the slider without texture, %.
     pub(crate) best: Option<Estimate>,
-    /// Change of static friction by the painted texture, against the slider without texture, %; none where nothing is painted.
+    /// Change of static friction by the painted texture, against the slider without texture, %; none where
+    /// nothing is painted.
     pub(crate) painted: Option<Estimate>,
-    /// Whether the best texture of the search is better than the painted one, by more than the scatter over surfaces.
+    /// Whether the best texture of the search is better than the painted one, by more than the scatter over
+    /// surfaces.
     pub(crate) is_better: bool,
 }

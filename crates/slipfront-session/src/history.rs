@@ -9,8 +9,8 @@ use crate::names::MAX_FILES;
 /// Most steps back.
 const MAX_STEPS: usize = 100;
 
-/// Most bytes of keys and files of all cases together: more than the files of one case may have, so that some steps back are
-/// left to a large one.
+/// Most bytes of keys and files of all cases together: more than the files of one case may have, so that some
+/// steps back are left to a large one.
 const MAX_BYTES: usize = MAX_FILES as usize + (32 << 20);
 
 /// The present case, those before it and those that were undone.

@@ -1,4 +1,5 @@
-//! The interface of a session to its host, which holds the session and connects it with page, folders and threads.
+//! The interface of a session to its host, which holds the session and connects it with page, folders and
+//! threads.
 
 use crate::document::Document;
 use crate::event::Event;

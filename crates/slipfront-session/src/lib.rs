@@ -1,12 +1,13 @@
-//! A session of the laboratory: a case that is edited, its run beside that of the slider without texture, and what is shown of them.
+//! A session of the laboratory: a case that is edited, its run beside that of the slider without texture, and
+//! what is shown of them.
 //!
 //! ```text
 //! page -- Message -->  Session  -- replies as JSON, pictures as bytes --> Host
 //!                      work(now) -> when to call again
 //! ```
 //!
-//! A session knows no file, thread, socket or clock. Its [`Host`] tells it the time, hands it the messages of the page, passes on what it
-//! says, and does what it may not: work beside it, saving, folders.
+//! A session knows no file, thread, socket or clock. Its [`Host`] tells it the time, hands it the messages of
+//! the page, passes on what it says, and does what it may not: work beside it, saving, folders.
 
 mod archive;
 mod base64;

@@ -57,7 +57,8 @@ impl Painter {
         self.high = None;
     }
 
-    /// The picture of a run at this instant. Displacements count from rest: `origin` is where the drive stood when the leg began, m.
+    /// The picture of a run at this instant. Displacements count from rest: `origin` is where the drive stood
+    /// when the leg began, m.
     pub(crate) fn paint_snapshot(
         &mut self,
         now: &Snapshot,
@@ -223,7 +224,8 @@ fn round_up(value: f32) -> f32 {
     step.unwrap_or(10.0) * power
 }
 
-/// The share of blocks that slide against place and time, as a picture; `before_star` is t* of the legs before this one.
+/// The share of blocks that slide against place and time, as a picture; `before_star` is t* of the legs
+/// before this one.
 pub(crate) fn kymograph(
     of: &Kymograph,
     bins: &PositionBins,

@@ -13,7 +13,8 @@ use crate::document::Document;
 use crate::event::{Event, EventKind, Frictions, Worker};
 use crate::protocol::{Estimate, RepeatedReply};
 
-/// Runs the case, and if it has texture the same without, with each of the seeds to the end of its first peak.
+/// Runs the case, and if it has texture the same without, with each of the seeds to the end of its first
+/// peak.
 pub(crate) fn repeat(document: &Document, seeds: &[u64], worker: &dyn Worker) {
     let twin = document.has_texture().then(|| document.without_texture());
     let documents: Vec<&Document> = [document].into_iter().chain(&twin).collect();
@@ -47,8 +48,8 @@ fn static_friction(document: &Document, seed: u64, stop: &AtomicBool) -> Result<
     Ok(record.map(|record| found(&record.summary)))
 }
 
-/// Results over the seeds from 1 on. They are counted in the order of the seeds, whichever ends first: seeds whose runs are short would
-/// come first otherwise, and a mean over them depends on the machine.
+/// Results over the seeds from 1 on. They are counted in the order of the seeds, whichever ends first: seeds
+/// whose runs are short would come first otherwise, and a mean over them depends on the machine.
 #[derive(Debug)]
 pub(crate) struct SeedsFound {
     of: u64,
@@ -85,8 +86,8 @@ impl SeedsFound {
         }))
     }
 
-    /// Means over the seeds counted up to now. Runs without a transition have no static friction: they are counted, and neither a mean nor a
-    /// change has them.
+    /// Means over the seeds counted up to now. Runs without a transition have no static friction: they are
+    /// counted, and neither a mean nor a change has them.
     pub(crate) fn report(&self, finished: bool) -> RepeatedReply {
         let column = |k: usize| self.counted.iter().filter_map(move |found| *found.get(k)?);
         let changes = self.counted.iter().filter_map(|found| match found[..] {

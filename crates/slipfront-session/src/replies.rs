@@ -7,8 +7,8 @@ use crate::document::MAX_BLOCKS;
 use crate::presets::Presets;
 use crate::protocol::{Reply, SavingEntry};
 
-/// The first reply to a page, with what it can choose from: cases, names of the runs that were recorded, and the folder `results` of
-/// these, if there is one.
+/// The first reply to a page, with what it can choose from: cases, names of the runs that were recorded, and
+/// the folder `results` of these, if there is one.
 pub fn hello(presets: &Presets, folders: &[String], results: Option<&str>) -> String {
     let hello = Reply::Hello {
         version: VERSION,
@@ -21,7 +21,8 @@ pub fn hello(presets: &Presets, folders: &[String], results: Option<&str>) -> St
     hello.json()
 }
 
-/// The reply that tells of all runs that are being saved, each with its name and the share of it that is done.
+/// The reply that tells of all runs that are being saved, each with its name and the share of it that is
+/// done.
 pub fn saving<'a>(under_way: impl IntoIterator<Item = (&'a str, f64)>) -> String {
     let entries = under_way.into_iter();
     let entries = entries.map(|(name, share)| SavingEntry { name, share });
@@ -31,7 +32,8 @@ pub fn saving<'a>(under_way: impl IntoIterator<Item = (&'a str, f64)>) -> String
     saving.json()
 }
 
-/// The reply that tells that a run of this name was saved into a folder, beside the names of all `folders` of runs.
+/// The reply that tells that a run of this name was saved into a folder, beside the names of all `folders` of
+/// runs.
 pub fn saved(name: &str, folder: &str, folders: &[String]) -> String {
     let saved = Reply::Saved {
         name,

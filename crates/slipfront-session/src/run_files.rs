@@ -19,12 +19,14 @@ fn sentence(error: impl std::fmt::Display) -> String {
     error.to_string()
 }
 
-/// A complete run, which gets this name: its case with the files that the case names, its curve, and its snapshots where the fields are
-/// given. `read` gives the contents of a file of the run's folder, none if there is no such file; errors call the folder `place`. Each file
-/// is held to the manifest, if the folder has one.
+/// A complete run, which gets this name: its case with the files that the case names, its curve, and its
+/// snapshots where the fields are given. `read` gives the contents of a file of the run's folder, none if
+/// there is no such file; errors call the folder `place`. Each file is held to the manifest, if the folder
+/// has one.
 ///
 /// # Errors
-/// A sentence, if the folder is not that of a run, or a file cannot be read or was changed since it was written.
+/// A sentence, if the folder is not that of a run, or a file cannot be read or was changed since it was
+/// written.
 pub fn recorded_run(
     name: &str,
     place: &Path,

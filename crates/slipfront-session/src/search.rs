@@ -20,7 +20,8 @@ pub(crate) const SEARCH_TIME: Duration = Duration::from_secs(60);
 /// Most runs of a search: as many as a design has unless its file says otherwise.
 const MAX_RUNS: usize = 10_000;
 
-/// Smallest width of a feature and of a gap, in blocks: what a laser writes has round corners, which three blocks can show.
+/// Smallest width of a feature and of a gap, in blocks: what a laser writes has round corners, which three
+/// blocks can show.
 const WIDTH: usize = 3;
 
 /// Largest coverage of a search, %, where nothing is painted.
@@ -29,8 +30,8 @@ const PLAIN_PERCENT: f64 = 10.0;
 /// Largest coverage of a search, %, where the painted coverage is below 3 %.
 const LEAST_PERCENT: f64 = 3.0;
 
-/// Most block-steps in which a texture is tried, for each thread: with some 1e8 of them in a second, there is time for several hundred
-/// textures in a minute, and for a comparison of the best in less than another one.
+/// Most block-steps in which a texture is tried, for each thread: with some 1e8 of them in a second, there is
+/// time for several hundred textures in a minute, and for a comparison of the best in less than another one.
 const MAX_BLOCK_STEPS: f64 = 1e7;
 
 /// Number of surfaces, unseen by the search, on which the best texture is compared with the painted one.

@@ -1,4 +1,5 @@
-//! A session for tests, without threads: its host does work when it is begun, and its clock goes on when it is told to.
+//! A session for tests, without threads: its host does work when it is begun, and its clock goes on when it
+//! is told to.
 
 use std::cell::{Cell, RefCell};
 use std::collections::VecDeque;

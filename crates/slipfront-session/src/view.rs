@@ -77,7 +77,8 @@ impl Default for View {
 }
 
 impl View {
-    /// t* in a second, 0 for as fast as possible, of a run in which a block in contact has slipped, or none yet.
+    /// t* in a second, 0 for as fast as possible, of a run in which a block in contact has slipped, or none
+    /// yet.
     pub(crate) fn pace_when(&self, has_slipped: bool) -> f64 {
         if has_slipped || self.pace == 0.0 {
             self.pace

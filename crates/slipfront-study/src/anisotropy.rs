@@ -1,5 +1,5 @@
-//! Friction against the direction of the drive: the size of the difference, whether it is more than chance, and friction
-//! across the drive.
+//! Friction against the direction of the drive: the size of the difference, whether it is more than chance,
+//! and friction across the drive.
 
 use std::collections::HashMap;
 
@@ -45,33 +45,35 @@ pub struct Anisotropy {
 pub struct OverDirections {
     /// The mean over the directions.
     pub mean: Sample,
-    /// The direction in which the mean over replicates is largest, degrees from x towards y; the first if there are several.
+    /// The direction in which the mean over replicates is largest, degrees from x towards y; the first if
+    /// there are several.
     pub largest_direction: f64,
     /// The direction in which the mean over replicates is smallest.
     pub smallest_direction: f64,
-    /// Friction in the largest direction less that in the smallest, over the mean over the directions, of every replicate r
-    /// after the first; for each, the directions are those in which the mean of the replicates before it is largest and
-    /// smallest:
+    /// Friction in the largest direction less that in the smallest, over the mean over the directions, of
+    /// every replicate r after the first; for each, the directions are those in which the mean of the
+    /// replicates before it is largest and smallest:
     ///
     /// ```text
     /// (mu_r(largest direction of 0 .. r - 1) - mu_r(smallest direction of 0 .. r - 1))/mean(mu_r)
     /// ```
     ///
-    /// Where friction does not depend on the direction its mean is zero; the difference between the largest and the smallest
-    /// of the same values would be above zero by chance alone.
+    /// Where friction does not depend on the direction its mean is zero; the difference between the largest
+    /// and the smallest of the same values would be above zero by chance alone.
     pub anisotropy: Sample,
-    /// Probability of axes that stand out as much or more if friction has none; none for less than three directions in half
-    /// a turn.
+    /// Probability of axes that stand out as much or more if friction has none; none for less than three
+    /// directions in half a turn.
     pub p_value: Option<f64>,
     /// The axes of the friction tensor, if they are more than chance.
     pub principal: Option<Principal>,
-    /// Friction across the drive, positive to its left, and the direction where its mean is largest in size. As for
-    /// `anisotropy`, the direction of every value is that of the replicates before it, and so is its sign.
+    /// Friction across the drive, positive to its left, and the direction where its mean is largest in size.
+    /// As for `anisotropy`, the direction of every value is that of the replicates before it, and so is its
+    /// sign.
     pub lateral: Option<(f64, Sample)>,
 }
 
-/// The anisotropy of static and kinetic friction at all levels of the other axes; empty if no axis is one of directions. Levels at which
-/// no run has a value are left out.
+/// The anisotropy of static and kinetic friction at all levels of the other axes; empty if no axis is one of
+/// directions. Levels at which no run has a value are left out.
 pub fn anisotropies(plan: &Plan, results: &StudyResults) -> Vec<Anisotropy> {
     let Some(over) = direction_axis(&plan.axes) else {
         return Vec::new();
@@ -144,7 +146,8 @@ impl DirectedPoints<'_> {
         axes.flatten().collect()
     }
 
-    /// The directions that have a point at these levels of the other axes, each once, with the positions of the points.
+    /// The directions that have a point at these levels of the other axes, each once, with the positions of
+    /// the points.
     fn directions(&self, fixed: &Levels) -> Vec<(f64, usize)> {
         let mut levels = vec![0; self.plan.axes.len()];
         for &(axis, level) in fixed {
@@ -266,9 +269,10 @@ fn largest_in_size(degrees: &[f64], values: &[Vec<f64>], confidence: f64) -> Opt
     Some((degrees[at], Sample::of(&sizes, confidence)?))
 }
 
-/// A number of every replicate after the first, from its values and the sums of those of the replicates before it. A choice
-/// from these does not depend on the scatter of the replicate itself, as a choice from all would; nor does a number depend
-/// on the choice for an earlier one, so that the interval of the numbers is as wide as it claims to be.
+/// A number of every replicate after the first, from its values and the sums of those of the replicates
+/// before it. A choice from these does not depend on the scatter of the replicate itself, as a choice from
+/// all would; nor does a number depend on the choice for an earlier one, so that the interval of the numbers
+/// is as wide as it claims to be.
 fn by_those_before(values: &[Vec<f64>], of: impl Fn(&[f64], &[f64]) -> f64) -> Vec<f64> {
     let Some((first, later)) = values.split_first() else {
         return Vec::new();
@@ -329,8 +333,8 @@ mod tests {
         0.0, 30.0, 60.0, 90.0, 120.0, 150.0, 180.0, 210.0, 240.0, 270.0, 300.0, 330.0,
     ];
 
-    /// Replicates with normal scatter of 0.01 around this friction in each of the directions, and a scatter of 0.02 that a replicate has in
-    /// all of them, as that of its surface.
+    /// Replicates with normal scatter of 0.01 around this friction in each of the directions, and a scatter
+    /// of 0.02 that a replicate has in all of them, as that of its surface.
     fn planted(friction: [f64; 12], replicates: usize, seed: u64) -> Vec<Vec<f64>> {
         let normal = |deviation| Distribution { mean: 0.0, deviation };
         let drawn = Coefficients::draw(12 * replicates, normal(0.01), normal(0.02), seed);
@@ -350,8 +354,8 @@ mod tests {
         [count(|ends| ends[0] > 0.0), count(|ends| ends[1] < 0.0)]
     }
 
-    /// The largest and the smallest of 12 means differ by chance; that difference must not pass for anisotropy more often than the
-    /// confidence says.
+    /// The largest and the smallest of 12 means differ by chance; that difference must not pass for
+    /// anisotropy more often than the confidence says.
     #[test]
     fn isotropic_friction_is_called_anisotropic_no_more_often_than_it_may_be() {
         for replicates in [3, 6, 12] {
@@ -361,8 +365,9 @@ mod tests {
                 over_directions(&TWELVE, &values, 0.95).unwrap()
             };
             let found: Vec<OverDirections> = (0..trials).map(trial).collect();
-            // 2.5 % of 2000 on either side are 50 +- 7: five standard errors. The differences of replicates are independent and normal but
-            // for the division by the mean, whose scatter of 2 % is far below that.
+            // 2.5 % of 2000 on either side are 50 +- 7: five standard errors. The differences of replicates
+            // are independent and normal but for the division by the mean, whose scatter of 2 % is far below
+            // that.
             let differences: Vec<Sample> = found.iter().map(|found| found.anisotropy).collect();
             let [above, below] = outside(&differences);
             assert!(
@@ -409,13 +414,15 @@ mod tests {
         for covered in [axis, values[0], values[1]] {
             assert!(covered.abs_diff(380) < 23, "{axis} {values:?}");
         }
-        // The largest is at 60 or 240, the smallest a quarter turn from there. 30 degrees away friction is 0.02 less, four standard errors
-        // of a difference of two means of eight (3e-5), and there are eight such pairs: one of 400 trials in ten times.
+        // The largest is at 60 or 240, the smallest a quarter turn from there. 30 degrees away friction is
+        // 0.02 less, four standard errors of a difference of two means of eight (3e-5), and there are eight
+        // such pairs: one of 400 trials in ten times.
         let at = share(&|found| {
             found.largest_direction % 180.0 == 60.0 && found.smallest_direction % 180.0 == 150.0
         });
         assert!(at >= 398, "{at}");
-        // A direction that one or two replicates choose wrongly makes a difference smaller, by a twentieth on average at most.
+        // A direction that one or two replicates choose wrongly makes a difference smaller, by a twentieth on
+        // average at most.
         let sizes: Vec<f64> = found.iter().map(|found| found.anisotropy.mean).collect();
         let size = mean(&sizes);
         assert!((0.095..=0.1002).contains(&size), "{size}");
@@ -438,7 +445,8 @@ mod tests {
         assert!(found.p_value.is_none() && found.principal.is_none());
     }
 
-    /// A direction that fails, or runs that never slide, are left out, and a sentence says so; the others stay.
+    /// A direction that fails, or runs that never slide, are left out, and a sentence says so; the others
+    /// stay.
     #[test]
     fn what_has_no_value_is_left_out_and_said() {
         let text = "base.slider.blocks = [4, 4]\nstudy.replicates = 4\n[[axes]]\nkey = 'drive.direction'\nlist = [0, 60, 120, 90, 360]";

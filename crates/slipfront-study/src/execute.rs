@@ -1,4 +1,5 @@
-//! Makes the missing runs of a study: the scheduler on this thread, and one run at a time on each thread of the pool.
+//! Makes the missing runs of a study: the scheduler on this thread, and one run at a time on each thread of
+//! the pool.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
@@ -27,15 +28,16 @@ type IsStopped<'a> = dyn Fn() -> bool + Sync + 'a;
 /// Runs a case; without an outcome if the run was given up.
 type RunCase<'a> = dyn Fn(RunKey, &IsStopped) -> Result<Option<Outcome>, StudyError> + Sync + 'a;
 
-/// Function that gets a run that has ended, before its results are written, and returns whether it counts as done. A run
-/// that does not is no failure: it counts as stopped.
+/// Function that gets a run that has ended, before its results are written, and returns whether it counts as
+/// done. A run that does not is no failure: it counts as stopped.
 pub type LookAtRun<'a> = dyn Fn(RunKey, &Arc<Case>, &running::RunData) -> bool + Sync + 'a;
 
 /// Runs everything that the plan needs and the records lack.
 ///
-/// The threads of rayon's pool do one run each at a time, of this study and of others that are executed meanwhile; this thread
-/// waits for them, and must not be the only one of the pool. `stop` ends all runs; finished ones stay recorded. Run folders that
-/// the study keeps are written to `folder`. `watch` is called after every run. A run that fails is no error.
+/// The threads of rayon's pool do one run each at a time, of this study and of others that are executed
+/// meanwhile; this thread waits for them, and must not be the only one of the pool. `stop` ends all runs;
+/// finished ones stay recorded. Run folders that the study keeps are written to `folder`. `watch` is called
+/// after every run. A run that fails is no error.
 pub fn execute(
     plan: &Plan,
     records: &RunJournal,
@@ -124,8 +126,8 @@ fn run_one(
     is_stopped: &IsStopped,
 ) -> Result<Option<Outcome>, StudyError> {
     let started = clock::now();
-    // The point was valid when the study began. If it is not now, a file that it reads has changed: that ends the study and is
-    // not recorded as a failure of the run.
+    // The point was valid when the study began. If it is not now, a file that it reads has changed: that ends
+    // the study and is not recorded as a failure of the run.
     let case = match plan.case(run, &mut |_| !is_stopped()) {
         Ok(case) => Arc::new(case),
         Err(CaseError::Stopped) => return Ok(None),
@@ -154,8 +156,8 @@ fn run_one(
     }))
 }
 
-/// Writes a run folder. The folder of a failed run is that of an interrupted one and holds the case alone, by which it can
-/// be repeated.
+/// Writes a run folder. The folder of a failed run is that of an interrupted one and holds the case alone, by
+/// which it can be repeated.
 fn write_folder(
     case: &Case,
     record: Option<&mut running::RunData>,
@@ -170,8 +172,8 @@ fn write_folder(
     Ok(())
 }
 
-/// Sets a flag when it is dropped, on an error and a panic as well: without a scheduler the pool would run cases that nobody
-/// records.
+/// Sets a flag when it is dropped, on an error and a panic as well: without a scheduler the pool would run
+/// cases that nobody records.
 struct SetOnDrop<'a>(&'a AtomicBool);
 
 impl Drop for SetOnDrop<'_> {

@@ -36,12 +36,13 @@ pub struct StudyFolder {
 }
 
 impl StudyFolder {
-    /// Opens a results folder: a new one, an empty one, or one of an earlier call that no other process works in. If the study has
-    /// changed since then, its tables and pictures are removed: they can be made from the records again.
+    /// Opens a results folder: a new one, an empty one, or one of an earlier call that no other process works
+    /// in. If the study has changed since then, its tables and pictures are removed: they can be made from
+    /// the records again.
     ///
     /// # Errors
-    /// When the folder holds other things, or files that were edited since they were written and may not be replaced by `force`; when
-    /// another process works in it, or it cannot be written to.
+    /// When the folder holds other things, or files that were edited since they were written and may not be
+    /// replaced by `force`; when another process works in it, or it cannot be written to.
     pub fn open(path: &Path, study: &StudyFile, force: bool) -> Result<Self, StudyError> {
         STUDIES.is_used(path)?;
         if is_of_figures(path) {
@@ -93,7 +94,8 @@ impl StudyFolder {
             .collect()
     }
 
-    /// Copies complete run folders, and the cases of failed runs, from the folder of a shard, where this folder lacks them.
+    /// Copies complete run folders, and the cases of failed runs, from the folder of a shard, where this
+    /// folder lacks them.
     ///
     /// # Errors
     /// When the system refuses to read or to write, and after a stop.
@@ -172,7 +174,8 @@ pub fn is_study(folder: &Path) -> bool {
 /// Loads the study file of a results folder.
 pub fn study_of(folder: &Path) -> Result<StudyFile, StudyError> {
     let path = folder.join(STUDY);
-    // A study file given by the user may be a pipe; in a results folder, opening a pipe would block without end.
+    // A study file given by the user may be a pipe; in a results folder, opening a pipe would block without
+    // end.
     open_limited(&path, TEXT_MAX_BYTES).map_err(FolderError::read(&path))?;
     let mut study = StudyFile::load(&path)?;
     if let Some(name) = folder.file_name() {
@@ -204,8 +207,8 @@ pub fn refuse_foreign(folders: &[PathBuf]) -> Result<(), StudyError> {
 mod tests {
     use super::*;
 
-    /// Runs read the copies of which their identity was made: changes of the original files during a study have no effect,
-    /// and a changed copy is an error.
+    /// Runs read the copies of which their identity was made: changes of the original files during a study
+    /// have no effect, and a changed copy is an error.
     #[test]
     fn runs_read_what_their_identity_was_made_of() {
         let folder = tempfile::tempdir().unwrap();

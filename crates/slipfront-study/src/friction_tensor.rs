@@ -17,7 +17,8 @@ const ROUNDING: f64 = 1e-9;
 /// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Principal {
-    /// Direction theta_1 of the larger principal value, from 0 to 180 degrees; the other direction is across it.
+    /// Direction theta_1 of the larger principal value, from 0 to 180 degrees; the other direction is across
+    /// it.
     pub direction: f64,
     /// Half width of the direction's confidence interval, degrees.
     pub half_width: Option<f64>,
@@ -37,8 +38,8 @@ pub(crate) struct Tensor {
 }
 
 impl Tensor {
-    /// The tensor of the values of at least [`MIN_REPLICATES`] replicates, each in all directions; none if there are less than three
-    /// directions in half a turn.
+    /// The tensor of the values of at least [`MIN_REPLICATES`] replicates, each in all directions; none if
+    /// there are less than three directions in half a turn.
     pub(crate) fn of(degrees: &[f64], values: &[Vec<f64>], confidence: f64) -> Option<Self> {
         let harmonics: Vec<[f64; 3]> = degrees
             .iter()
@@ -61,8 +62,8 @@ impl Tensor {
     }
 }
 
-/// Hotelling's test of whether the mean of the two components of the second harmonic, (c, s) with the covariance S over n replicates, is
-/// zero; none of fewer than [`MIN_REPLICATES`] replicates:
+/// Hotelling's test of whether the mean of the two components of the second harmonic, (c, s) with the
+/// covariance S over n replicates, is zero; none of fewer than [`MIN_REPLICATES`] replicates:
 ///
 /// ```text
 /// T^2 = n (c, s) . S^-1 (c, s),   (n - 2)/(2 (n - 1)) T^2 ~ F(2, n - 2)
@@ -131,7 +132,8 @@ fn over_replicates(values: &[Vec<f64>]) -> Vec<f64> {
     (0..directions).map(mean).collect()
 }
 
-/// The factors of three functions, given by their values, whose sum is nearest to these values; none if the functions do not differ there.
+/// The factors of three functions, given by their values, whose sum is nearest to these values; none if the
+/// functions do not differ there.
 fn least_squares(functions: &[[f64; 3]], values: &[f64]) -> Option<[f64; 3]> {
     let product = |i: usize, j: usize| functions.iter().map(|f| f[i] * f[j]).sum::<f64>();
     let matrix: [[f64; 3]; 3] = std::array::from_fn(|i| std::array::from_fn(|j| product(i, j)));
@@ -217,7 +219,8 @@ mod tests {
         let turned = [-1.0, 0.0, 1.0].map(|degrees| of_tensor(&EIGHTH, [0.9, 0.6], 20.0 + degrees));
         let found = Tensor::of(&EIGHTH, &turned, 0.95).unwrap().principal.unwrap();
         assert!((found.direction - 20.0).abs() < 1e-10);
-        // t(2, 97.5 %) = 4.3027 times sin(2 degrees)/sqrt(3), over the amplitude of the mean, (1 + 2 cos 2 degrees)/3.
+        // t(2, 97.5 %) = 4.3027 times sin(2 degrees)/sqrt(3), over the amplitude of the mean, (1 + 2 cos 2
+        // degrees)/3.
         let turn = 2f64.to_radians();
         let ratio = 4.3027 * turn.sin() / 3f64.sqrt() / ((1.0 + 2.0 * turn.cos()) / 3.0);
         // The quantile has four decimals: 1e-5 of 2.5 degrees.
@@ -225,7 +228,8 @@ mod tests {
         assert!((found.half_width.unwrap() - expected).abs() < 1e-4, "{found:?}");
     }
 
-    /// F(2, d) has a closed form: P(F > f) = (1 + 2 f/d)^(-d/2), which makes (1 + T^2/(n - 1))^(-(n - 2)/2) of it.
+    /// F(2, d) has a closed form: P(F > f) = (1 + 2 f/d)^(-d/2), which makes (1 + T^2/(n - 1))^(-(n - 2)/2)
+    /// of it.
     #[test]
     fn the_test_is_that_of_hotelling() {
         let fits = [
@@ -241,7 +245,8 @@ mod tests {
         assert!((p_of_isotropy(&fits).unwrap() - expected).abs() < 1e-13);
     }
 
-    /// Isotropic friction with normal scatter is called anisotropic as often as the level says, which is exact for such scatter.
+    /// Isotropic friction with normal scatter is called anisotropic as often as the level says, which is
+    /// exact for such scatter.
     #[test]
     fn chance_passes_for_anisotropy_as_often_as_it_may() {
         let scatter = Distribution {

@@ -30,8 +30,9 @@ impl<'a> Prepared<'a> {
     }
 }
 
-/// Hash of all that decides the numbers of a run but its seed: the physics of the case, the contents of its files and the
-/// program; not the names of files, nor the output. Tables that equal those of a `known` case are not hashed again.
+/// Hash of all that decides the numbers of a run but its seed: the physics of the case, the contents of its
+/// files and the program; not the names of files, nor the output. Tables that equal those of a `known` case
+/// are not hashed again.
 pub fn physics(case: &Case, known: Option<(&CaseFile, &[Vec<u8>; 6])>) -> Result<blake3::Hash, CaseError> {
     let mut hasher = blake3::Hasher::new();
     hasher.update(program::this_build().as_bytes());
@@ -45,7 +46,8 @@ pub fn physics(case: &Case, known: Option<(&CaseFile, &[Vec<u8>; 6])>) -> Result
     Ok(hasher.finalize())
 }
 
-/// The tables of a case that decide its numbers, with the contents of files in place of their names, and without the seed.
+/// The tables of a case that decide its numbers, with the contents of files in place of their names, and
+/// without the seed.
 fn texts(
     file: &CaseFile,
     inputs: &[Input],

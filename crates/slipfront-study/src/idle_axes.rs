@@ -1,5 +1,6 @@
-//! Axes that change nothing in a study: the dimensionless model and its time plan are the same at every level. Pressure,
-//! stiffness and density alone are such axes, since they only set units as long as the drive has a V*.
+//! Axes that change nothing in a study: the dimensionless model and its time plan are the same at every
+//! level. Pressure, stiffness and density alone are such axes, since they only set units as long as the drive
+//! has a V*.
 
 use std::cell::LazyCell;
 
@@ -9,8 +10,8 @@ use slipfront_case::case::Case;
 use crate::axis::Axis;
 use crate::plan::Plan;
 
-/// Strain of the load below which results do not depend on it in the digits that are printed: the strain shows in the third
-/// digit above ten times this.
+/// Strain of the load below which results do not depend on it in the digits that are printed: the strain
+/// shows in the third digit above ten times this.
 const NEGLIGIBLE_EPSILON: f64 = 1e-3;
 
 /// The keys that set the unit of speed (Eq. 11a): V* does not change with them.
@@ -23,8 +24,8 @@ const UNITS_OF_SPEED: [&str; 4] = [
 
 /// A sentence for each axis that changes nothing: the axis and the remedy.
 ///
-/// An axis changes nothing if all its levels are one model, both at the first levels of the other axes and at the last ones. Where
-/// an axis changes something, its second level shows it.
+/// An axis changes nothing if all its levels are one model, both at the first levels of the other axes and at
+/// the last ones. Where an axis changes something, its second level shows it.
 pub fn idle_axes(plan: &Plan) -> Vec<String> {
     let first = vec![0; plan.axes.len()];
     let last = plan.axes.iter().map(|axis| axis.levels.len() - 1).collect();
@@ -52,14 +53,14 @@ pub fn idle_axes(plan: &Plan) -> Vec<String> {
     idle.map(|axis| sentence(&plan.axes[axis])).collect()
 }
 
-/// Hash of the computed model at these levels; none where they are no valid case, since a part of a study need not notice a
-/// point that it does not run.
+/// Hash of the computed model at these levels; none where they are no valid case, since a part of a study
+/// need not notice a point that it does not run.
 fn digest_at(plan: &Plan, levels: &[usize]) -> Option<blake3::Hash> {
     plan.case_of(levels).ok().as_ref().map(digest)
 }
 
-/// Hash of all that the kernel and the observers use of a case. Numbers are rounded to 24 bits, since units that cancel leave
-/// the rounding of two operations at 53 bits.
+/// Hash of all that the kernel and the observers use of a case. Numbers are rounded to 24 bits, since units
+/// that cancel leave the rounding of two operations at 53 bits.
 fn digest(case: &Case) -> blake3::Hash {
     let (model, time) = (&case.model, &case.time_plan);
     let mut hasher = blake3::Hasher::new();
@@ -141,7 +142,8 @@ mod tests {
         format!("[[axes]]\nkey = '{key}'\nlist = {list}\n")
     }
 
-    /// Axes of units are named with their remedy: only the dimensionless model counts, whatever the key is called.
+    /// Axes of units are named with their remedy: only the dimensionless model counts, whatever the key is
+    /// called.
     #[test]
     fn axes_of_units_are_named_with_their_remedy() {
         let (pressure, speed) = (

@@ -25,8 +25,8 @@ pub(crate) fn quantity_symbol(quantity: &str) -> &'static str {
     title_of_quantity(quantity).map_or("", |[_, symbol, _]| symbol)
 }
 
-/// The title of an axis, with the unit of its numbers. The second and further textures are numbered. A key without a title is
-/// shown as it is.
+/// The title of an axis, with the unit of its numbers. The second and further textures are numbered. A key
+/// without a title is shown as it is.
 pub(crate) fn axis_title(axis: &Axis) -> String {
     in_its_unit(axis, |label| label.title())
 }

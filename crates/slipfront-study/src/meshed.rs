@@ -1,5 +1,5 @@
-//! Meshed coverages of the levels of a coverage, which blocks meet only nearly: pictures show them in place of the asked
-//! ones.
+//! Meshed coverages of the levels of a coverage, which blocks meet only nearly: pictures show them in place
+//! of the asked ones.
 
 use std::collections::HashMap;
 
@@ -8,8 +8,8 @@ use slipfront_base::number_format::count;
 use crate::axis::Spacing;
 use crate::plan::Plan;
 
-/// Meshed coverage at every point of a study with an axis of numbers over the coverage of its only texture. For several
-/// textures the coverage of each is not known.
+/// Meshed coverage at every point of a study with an axis of numbers over the coverage of its only texture.
+/// For several textures the coverage of each is not known.
 pub struct MeshedCoverage {
     /// Position of the axis.
     pub axis: usize,
@@ -36,7 +36,8 @@ impl MeshedCoverage {
         })
     }
 
-    /// Percent that the shapes of the texture cover at the point with these levels; none if it belongs to another part of the study.
+    /// Percent that the shapes of the texture cover at the point with these levels; none if it belongs to
+    /// another part of the study.
     pub fn at(&self, levels: &[usize]) -> Option<f64> {
         self.percent.get(levels).copied()
     }

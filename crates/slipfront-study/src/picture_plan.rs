@@ -1,4 +1,5 @@
-//! The pictures of a study, which follow from its axes alone: curves over numbers, maps over two of them, bars for names.
+//! The pictures of a study, which follow from its axes alone: curves over numbers, maps over two of them,
+//! bars for names.
 
 use std::collections::HashSet;
 
@@ -23,8 +24,9 @@ const MOST_OF_LEVELS: usize = 100;
 /// The picture of friction over the directions of the drive.
 pub(crate) const POLAR: &str = "friction_polar";
 
-/// The axis of directions and the combinations of levels of the others, each of which is a curve of every quantity in the polar picture;
-/// none if there is no such axis. A sentence if there are too many for one picture.
+/// The axis of directions and the combinations of levels of the others, each of which is a curve of every
+/// quantity in the polar picture; none if there is no such axis. A sentence if there are too many for one
+/// picture.
 pub(crate) fn polar(axes: &[Axis]) -> Option<Result<(usize, Vec<Levels>), String>> {
     let over = direction_axis(axes)?;
     let others = others_than(axes, over);
@@ -51,7 +53,8 @@ pub(crate) struct PlannedPicture {
 pub(crate) enum PictureKind {
     /// A bar for each name of one axis, or groups of bars for two.
     Bars,
-    /// Curves over axis `x`, one for each combination of levels of the `varied` axes, at these levels of the others.
+    /// Curves over axis `x`, one for each combination of levels of the `varied` axes, at these levels of the
+    /// others.
     Curves {
         x: usize,
         fixed: Levels,
@@ -61,8 +64,8 @@ pub(crate) enum PictureKind {
     Map { x: usize, y: usize },
 }
 
-/// The quantities for which the study has a value at some point: runs that stop at the onset have no kinetic friction, and a
-/// study without a reference has no reduction.
+/// The quantities for which the study has a value at some point: runs that stop at the onset have no kinetic
+/// friction, and a study without a reference has no reduction.
 pub(crate) fn measured_quantities(plan: &Plan, results: &StudyResults) -> Vec<&'static str> {
     let has = |quantity: &&str| {
         let mut points = 0..plan.points.len();
@@ -71,7 +74,8 @@ pub(crate) fn measured_quantities(plan: &Plan, results: &StudyResults) -> Vec<&'
     QUANTITIES.into_iter().filter(has).collect()
 }
 
-/// A sentence for each quantity that a study of this kind has pictures of, and for which this one has no value.
+/// A sentence for each quantity that a study of this kind has pictures of, and for which this one has no
+/// value.
 pub fn quantities_without_pictures(plan: &Plan, results: &StudyResults) -> Vec<String> {
     let measured = measured_quantities(plan, results);
     let expected = |quantity: &&str| plan.has_reference() || *quantity != REDUCTION;
@@ -82,8 +86,8 @@ pub fn quantities_without_pictures(plan: &Plan, results: &StudyResults) -> Vec<S
         .collect()
 }
 
-/// Sentences on why a study of these axes has no curves and no bars, and why no polar picture of its directions; none for
-/// pictures that it has.
+/// Sentences on why a study of these axes has no curves and no bars, and why no polar picture of its
+/// directions; none for pictures that it has.
 pub fn why_no_pictures(axes: &[Axis]) -> Vec<String> {
     let polar = polar(axes).and_then(Result::err);
     why_no_curves(axes).into_iter().chain(polar).collect()
@@ -104,7 +108,8 @@ fn why_no_curves(axes: &[Axis]) -> Option<String> {
 /// Kind of the charts of a study beside a map.
 enum ChartKind {
     Bars,
-    /// Curves over axis `x`; the first `split` of the others take a picture for each combination of their levels.
+    /// Curves over axis `x`; the first `split` of the others take a picture for each combination of their
+    /// levels.
     Curves {
         x: usize,
         split: usize,
@@ -173,8 +178,8 @@ fn others_than(axes: &[Axis], x: usize) -> Vec<usize> {
     (0..axes.len()).filter(|&axis| axis != x).collect()
 }
 
-/// Number of axes beside `x` that are split off into pictures of their own, from the front, so that a picture can hold
-/// curves for the rest; a sentence if there would still be too many curves, or too many pictures.
+/// Number of axes beside `x` that are split off into pictures of their own, from the front, so that a picture
+/// can hold curves for the rest; a sentence if there would still be too many curves, or too many pictures.
 fn split(axes: &[Axis], x: usize) -> Result<usize, String> {
     let others = others_than(axes, x);
     let count: usize = others.iter().map(|&axis| axes[axis].levels.len()).product();
@@ -198,7 +203,8 @@ fn split(axes: &[Axis], x: usize) -> Result<usize, String> {
     }
 }
 
-/// Curves over axis `x`, one for each combination of levels of the other axes, of which those in front have pictures of their own.
+/// Curves over axis `x`, one for each combination of levels of the other axes, of which those in front have
+/// pictures of their own.
 fn planned_curves(axes: &[Axis], x: usize, split: usize, quantity: &str) -> Vec<PlannedPicture> {
     let others = others_than(axes, x);
     let (front, back) = others.split_at(split);

@@ -23,8 +23,8 @@ use slipfront_plot::{
 /// Note that coverages are meshed ones, for which a legend of several axes has no room.
 const AS_MESHED: &str = "A* as meshed";
 
-/// Draws the pictures of a study and hands each on with the name of its files. The budget limits the number of pictures in
-/// memory at once.
+/// Draws the pictures of a study and hands each on with the name of its files. The budget limits the number
+/// of pictures in memory at once.
 pub(crate) fn draw(
     plan: &Plan,
     results: &StudyResults,
@@ -216,8 +216,8 @@ impl<'a> PlottedQuantity<'a> {
         parts.join("; ")
     }
 
-    /// A curve over axis `x` at these levels of the others; the levels of the `varied` axes name it; a single varied axis
-    /// stands in the title of the legend.
+    /// A curve over axis `x` at these levels of the others; the levels of the `varied` axes name it; a single
+    /// varied axis stands in the title of the legend.
     fn curve(&self, x: usize, fixed: &[(usize, usize)], varied: &[(usize, usize)]) -> Response {
         let held = [fixed, varied].concat();
         let label = varied.iter().map(|&(axis, level)| match varied.len() {
@@ -281,8 +281,8 @@ impl<'a> PlottedQuantity<'a> {
         })
     }
 
-    /// The mean meshed coverages of the lines of a map over two axes; none if this is no axis of coverages, or if the lines
-    /// would not keep their order.
+    /// The mean meshed coverages of the lines of a map over two axes; none if this is no axis of coverages,
+    /// or if the lines would not keep their order.
     fn meshed_lines(&self, axis: usize, asked: &[(f64, usize)], log: bool) -> Option<Vec<f64>> {
         let meshed = self.meshed(axis)?;
         let across = 0..self.axes[1 - axis].levels.len();
@@ -335,8 +335,8 @@ impl<'a> PlottedQuantity<'a> {
     }
 }
 
-/// Static and kinetic friction around the directions of the drive, a curve for each combination of levels of the other axes; none if no
-/// run has either.
+/// Static and kinetic friction around the directions of the drive, a curve for each combination of levels of
+/// the other axes; none if no run has either.
 fn friction_polar(
     plan: &Plan,
     results: &StudyResults,

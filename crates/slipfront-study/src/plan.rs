@@ -68,7 +68,8 @@ struct RunSpec {
     meshed_coverage: Option<f64>,
 }
 
-/// Number of blocks above which cases are made one at a time while planning: one for each thread might not fit into memory.
+/// Number of blocks above which cases are made one at a time while planning: one for each thread might not
+/// fit into memory.
 const LARGE: u64 = 250_000;
 
 /// Data of a run, and the warnings about it.
@@ -101,7 +102,8 @@ const POINTS_OF_A_BASE: usize = 64;
 /// Bytes of a line of the records and a row of the tables.
 const RECORD_BYTES: f64 = 4096.0;
 
-/// Bytes that a run keeps in memory: its identity and its numbers, in the records, in the results and for the pictures.
+/// Bytes that a run keeps in memory: its identity and its numbers, in the records, in the results and for the
+/// pictures.
 const RESULT_BYTES: f64 = 2048.0;
 
 /// Number of pictures of the study that are drawn at once.
@@ -187,8 +189,8 @@ impl Plan {
         Ok(())
     }
 
-    /// Number of the first axes that keep their levels over several points in a row, from which a base can be made, and the
-    /// number of these points.
+    /// Number of the first axes that keep their levels over several points in a row, from which a base can be
+    /// made, and the number of these points.
     fn slow_axes(&self) -> (usize, usize) {
         let (mut slow, mut length) = (self.axes.len(), 1);
         while slow > 0 && length < POINTS_OF_A_BASE {
@@ -198,7 +200,8 @@ impl Plan {
         (slow, length)
     }
 
-    /// Makes the cases of points with the same levels of the first `slow` axes, unless one of them has more blocks than `most`.
+    /// Makes the cases of points with the same levels of the first `slow` axes, unless one of them has more
+    /// blocks than `most`.
     fn make_row(&self, base: &ParsedCase, row: &[Point], slow: usize, most: u64) -> MadeRow {
         let bases = self.roles().map(|role| {
             let overrides = self.overrides(&row[0], role, 0..slow);
@@ -235,7 +238,8 @@ impl Plan {
         self.reference.is_some()
     }
 
-    /// The main quantity: the one that decides on replicates, else the reduction if there is a reference, else mu_s*.
+    /// The main quantity: the one that decides on replicates, else the reduction if there is a reference,
+    /// else mu_s*.
     pub fn main_quantity(&self) -> &str {
         match &self.settings.until {
             Some(until) => &until.key,
@@ -281,7 +285,8 @@ impl Plan {
         self.trimmed(file, "point", &mut |_| true)
     }
 
-    /// The case file of a point: its base with the overrides of its levels of the axes after the first `slow`.
+    /// The case file of a point: its base with the overrides of its levels of the axes after the first
+    /// `slow`.
     fn varied_file(
         &self,
         base: &Prepared,
@@ -338,8 +343,8 @@ impl Plan {
         &self.warnings
     }
 
-    /// The case of a run, ready to run, unless a file that it reads has changed since the plan was made. `watch` gets the
-    /// progress of laying its texture over the blocks.
+    /// The case of a run, ready to run, unless a file that it reads has changed since the plan was made.
+    /// `watch` gets the progress of laying its texture over the blocks.
     pub fn case(&self, run: RunKey, watch: &mut Watch) -> Result<Case, CaseError> {
         let mut file = self.case_file(&self.base.parse()?, &self.points[run.point], run.role)?;
         file.friction.seed = self.seed(run);
@@ -358,8 +363,8 @@ impl Plan {
         Ok(case)
     }
 
-    /// Returns the plan for the study in a results folder, which reads copies of its files there: later changes of the
-    /// original files have no effect on its runs.
+    /// Returns the plan for the study in a results folder, which reads copies of its files there: later
+    /// changes of the original files have no effect on its runs.
     #[must_use]
     pub fn reading_copies(self, study: &StudyFile) -> Self {
         Self {
@@ -389,12 +394,14 @@ impl Plan {
         &self.specs[run.point * self.roles().count() + usize::from(run.role == Role::Reference)]
     }
 
-    /// Seed of a run. Replicates differ by their seed alone, so that replicate r has one surface at all points.
+    /// Seed of a run. Replicates differ by their seed alone, so that replicate r has one surface at all
+    /// points.
     pub fn seed(&self, run: RunKey) -> u64 {
         self.spec_of(run).seed + run.replicate as u64
     }
 
-    /// Identity of a run, from its physics and seed. Points share runs of one identity, such as their reference.
+    /// Identity of a run, from its physics and seed. Points share runs of one identity, such as their
+    /// reference.
     pub fn identity(&self, run: RunKey) -> String {
         let mut hasher = blake3::Hasher::new();
         hasher.update(self.spec_of(run).physics.as_bytes());
@@ -402,8 +409,8 @@ impl Plan {
         hasher.finalize().to_hex()[..32].to_owned()
     }
 
-    /// Name of the folder of a run, where it is kept: the beginning of its identity, so that the name stays when the study
-    /// grows.
+    /// Name of the folder of a run, where it is kept: the beginning of its identity, so that the name stays
+    /// when the study grows.
     pub fn folder_name(&self, run: RunKey) -> String {
         self.identity(run)[..12].to_owned()
     }
@@ -419,8 +426,8 @@ impl Plan {
         self.runs(1).any(|run| self.spec_of(run).is_held)
     }
 
-    /// Memory of `threads` runs at once, if they are the largest, with the results of all runs and the pictures of the study,
-    /// in bytes.
+    /// Memory of `threads` runs at once, if they are the largest, with the results of all runs and the
+    /// pictures of the study, in bytes.
     pub fn memory(&self, threads: usize) -> f64 {
         self.work().of(threads)
     }
@@ -443,8 +450,8 @@ impl Plan {
             .max_by(|a, b| a.1.total_cmp(&b.1))
     }
 
-    /// Refuses `threads` runs at once if there is no memory for them, and says how many there is memory for; with no runs,
-    /// only the memory of tables and pictures counts.
+    /// Refuses `threads` runs at once if there is no memory for them, and says how many there is memory for;
+    /// with no runs, only the memory of tables and pictures counts.
     pub fn check_memory(&self, threads: usize) -> Result<(), StudyError> {
         self.compare_memory(threads, available_of(self.memory(threads)))
     }
@@ -480,7 +487,8 @@ impl Plan {
         self.spec_of(first_run(position)).texture_percent
     }
 
-    /// Meshed area of the shapes of the only texture at the point at `position`, %; none where there are several textures.
+    /// Meshed area of the shapes of the only texture at the point at `position`, %; none where there are
+    /// several textures.
     pub(crate) fn meshed_coverage(&self, position: usize) -> Option<f64> {
         self.spec_of(first_run(position)).meshed_coverage
     }
@@ -577,11 +585,12 @@ mod tests {
         assert!(notes("sigma_static_star = 0, sigma_kinetic_star = 0")[0].contains("the same run"));
     }
 
-    /// The threads share the blocks of a large case, too: none may wait for another to be done with one. The data of the
-    /// runs and the named invalid point do not depend on the number of threads.
+    /// The threads share the blocks of a large case, too: none may wait for another to be done with one. The
+    /// data of the runs and the named invalid point do not depend on the number of threads.
     #[test]
     fn large_cases_are_planned_on_any_number_of_threads() {
-        // Some large cases, unevenly spread over 16 rows, so that threads run out of rows of their own at different times.
+        // Some large cases, unevenly spread over 16 rows, so that threads run out of rows of their own at
+        // different times.
         let blocks = (0..16 * POINTS_OF_A_BASE).map(|point| match (point * 7919 / 13) % 97 {
             7 => format!("[600, {}]", 2000 + point),
             _ => format!("[{}, 2]", 2 + point),

@@ -158,8 +158,8 @@ fn base_table(base: &Base) -> Result<toml::Table, CaseError> {
     base.parse()?.to_table()
 }
 
-/// The text of a study. Keys in an axis or under `[study]` keep their order, which is that of columns and points: a table in
-/// full would have its lists of tables behind all else.
+/// The text of a study. Keys in an axis or under `[study]` keep their order, which is that of columns and
+/// points: a table in full would have its lists of tables behind all else.
 pub(crate) fn portable_text(mut study: toml::Table) -> Result<String, CaseError> {
     let mut text = String::new();
     if let Some(base) = study.remove("base") {
@@ -180,7 +180,8 @@ pub(crate) fn portable_text(mut study: toml::Table) -> Result<String, CaseError>
     Ok(text)
 }
 
-/// The base case of a file called `file`: a table of it, a case file that it names relative to `folder`, or the baseline.
+/// The base case of a file called `file`: a table of it, a case file that it names relative to `folder`, or
+/// the baseline.
 pub(crate) fn read_base(tables: &mut Tables, file: &str, folder: &Path) -> Result<Base, StudyError> {
     let folder = folder.to_owned();
     let Some(value) = tables.root.remove("base") else {

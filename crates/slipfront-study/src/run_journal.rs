@@ -29,7 +29,8 @@ impl RunJournal {
     /// Name of the journal in its folder.
     pub const FILE: &str = RUN_JOURNAL;
 
-    /// Opens the records of a study folder, unless another process has them open; a folder without them gets an empty file.
+    /// Opens the records of a study folder, unless another process has them open; a folder without them gets
+    /// an empty file.
     pub fn open(folder: &Path) -> Result<Self, StudyError> {
         Journal::open(folder, RUN_JOURNAL).map(Self::of)
     }
@@ -47,7 +48,8 @@ impl RunJournal {
         }
     }
 
-    /// The file and results, locked for this thread. A thread that panicked has left them whole: results are added last.
+    /// The file and results, locked for this thread. A thread that panicked has left them whole: results are
+    /// added last.
     fn state(&self) -> MutexGuard<'_, JournalState> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -67,7 +69,8 @@ impl RunJournal {
         self.len() == 0
     }
 
-    /// Appends finished runs that are not recorded yet and waits until they are on the disk; earlier records stay whole.
+    /// Appends finished runs that are not recorded yet and waits until they are on the disk; earlier records
+    /// stay whole.
     pub fn append(&self, records: &[FinishedRun]) -> Result<(), StudyError> {
         let JournalState { journal, results } = &mut *self.state();
         // Studies that share the file may have made the same run at the same time.

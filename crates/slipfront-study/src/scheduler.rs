@@ -1,7 +1,7 @@
 //! Decides on the runs that a study needs, and records each as soon as it is finished.
 //!
-//! The results do not depend on the order in which runs finish: the number of replicates of a point is decided by its first
-//! replicates in their order, however many more have been run.
+//! The results do not depend on the order in which runs finish: the number of replicates of a point is
+//! decided by its first replicates in their order, however many more have been run.
 
 use std::collections::{HashMap, HashSet};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -145,8 +145,8 @@ impl<'a> Scheduler<'a> {
         failure.map_or(Ok(()), Err)
     }
 
-    /// Requests the replicates of a point up to the number `requested`: recorded runs are taken as they are, the others are
-    /// started.
+    /// Requests the replicates of a point up to the number `requested`: recorded runs are taken as they are,
+    /// the others are started.
     fn request(&mut self, point: usize, requested: usize) {
         let plan = self.plan;
         for run in plan.runs_of(point, self.points[point].requested..requested) {
@@ -199,8 +199,8 @@ impl<'a> Scheduler<'a> {
         }
     }
 
-    /// Decides on the number of replicates of a point once all that were requested are finished, and requests more where they
-    /// are not enough.
+    /// Decides on the number of replicates of a point once all that were requested are finished, and requests
+    /// more where they are not enough.
     fn decide(&mut self, point: usize) {
         // Again where all that was asked for is recorded already, as when a study goes on.
         while self.points[point].missing == 0 && self.points[point].result.is_none() {
@@ -215,8 +215,8 @@ impl<'a> Scheduler<'a> {
         }
     }
 
-    /// Evaluates the stopping rule with the first replicates of a point, one more at a time: the smallest number that fulfils
-    /// it is the number of replicates.
+    /// Evaluates the stopping rule with the first replicates of a point, one more at a time: the smallest
+    /// number that fulfils it is the number of replicates.
     fn evaluate_stopping(&mut self, point: usize) -> Option<PointResult> {
         let settings = &self.plan.settings;
         let state = &mut self.points[point];
@@ -256,7 +256,8 @@ impl<'a> Scheduler<'a> {
         watch(&self.progress);
     }
 
-    /// The results of the study. Replicates that were run and turned out not to be needed stay in the records alone.
+    /// The results of the study. Replicates that were run and turned out not to be needed stay in the records
+    /// alone.
     fn results(self) -> StudyResults {
         let orphaned_runs = self.orphaned_runs();
         let points: Vec<PointResult> = self.points.into_iter().filter_map(|point| point.result).collect();

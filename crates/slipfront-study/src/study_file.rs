@@ -18,7 +18,8 @@ use slipfront_case::case_file::{
 use slipfront_case::key_rows;
 use slipfront_run::names::RUN_JOURNAL;
 
-/// Folders of studies. Their study file has the base case as a table in it: `slipfront study DIR/study.toml` repeats the study.
+/// Folders of studies. Their study file has the base case as a table in it: `slipfront study DIR/study.toml`
+/// repeats the study.
 pub(crate) static STUDIES: ProjectKind = ProjectKind {
     name: "study",
     table: "study",

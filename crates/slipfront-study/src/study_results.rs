@@ -78,9 +78,9 @@ impl StudyResults {
             .filter(|run| self.is_without_transition(*run))
     }
 
-    /// Number of replicates of the point at `position` of the plan for which a quantity is missing because its run has no
-    /// transition: the run of the point or, for a reduction, its reference. For quantities that do not need a transition it
-    /// is the number of runs of the point without one.
+    /// Number of replicates of the point at `position` of the plan for which a quantity is missing because
+    /// its run has no transition: the run of the point or, for a reduction, its reference. For quantities
+    /// that do not need a transition it is the number of runs of the point without one.
     pub fn runs_without_transition(&self, position: usize, name: &str) -> usize {
         let replicates = self.points.get(position).map_or(0, |point| point.replicates);
         let roles = if name == REDUCTION {

@@ -25,7 +25,8 @@ pub(crate) fn is_optional(name: &str) -> bool {
     optional.iter().any(|(optional, _)| *optional == name)
 }
 
-/// Names of all numbers, in the order of the summary, then of the observers that only some runs have; the reduction comes last.
+/// Names of all numbers, in the order of the summary, then of the observers that only some runs have; the
+/// reduction comes last.
 pub fn known() -> &'static [String] {
     static KNOWN: LazyLock<Vec<String>> = LazyLock::new(|| {
         let names = named(&Summary::default()).into_iter().map(|(name, _)| name);
@@ -77,8 +78,8 @@ impl RunQuantity {
     }
 }
 
-/// The numbers of a summary in the order of [`known`]: the part of it that tables and statistics need. Numbers that only
-/// some summaries have are left out.
+/// The numbers of a summary in the order of [`known`]: the part of it that tables and statistics need.
+/// Numbers that only some summaries have are left out.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SummaryValues {
     values: Box<[Option<f64>]>,
@@ -132,7 +133,8 @@ fn named(summary: &Summary) -> Vec<(String, Option<f64>)> {
         .collect()
 }
 
-/// Reduction of mu_s* in % (Eq. 16), both runs on the same random surface; none unless both have a transition:
+/// Reduction of mu_s* in % (Eq. 16), both runs on the same random surface; none unless both have a
+/// transition:
 ///
 /// ```text
 /// 100 (mu_s*(reference) - mu_s*)/mu_s*(reference)
@@ -207,8 +209,8 @@ mod tests {
         assert_eq!(reduction_percent(&without, &with), None);
     }
 
-    /// A kinetic window before the largest mu* gives no kinetic friction without a transition: while mu* still rises to the
-    /// onset, its mean is none.
+    /// A kinetic window before the largest mu* gives no kinetic friction without a transition: while mu*
+    /// still rises to the onset, its mean is none.
     #[test]
     fn a_kinetic_window_before_the_largest_mu_star_is_none_without_a_transition() {
         assert_eq!(number(&values_of(false, 100.0), "kinetic_friction_star"), None);

@@ -12,8 +12,8 @@ use crate::summary_values::{
     AFTER_AXES, BEFORE_AXES, RunQuantity, STATISTICS, is_optional, known, needs_transition,
 };
 
-/// Writes `runs.csv`: for each run, references included, the levels of its point, the seed, whether it failed and why, and
-/// every number of its summary.
+/// Writes `runs.csv`: for each run, references included, the levels of its point, the seed, whether it failed
+/// and why, and every number of its summary.
 pub(crate) fn runs(plan: &Plan, results: &StudyResults, to: impl Write) -> csv::Result<()> {
     let mut table = csv::Writer::from_writer(to);
     let quantities = quantities(plan, results);
@@ -50,8 +50,8 @@ pub(crate) fn runs(plan: &Plan, results: &StudyResults, to: impl Write) -> csv::
     Ok(table.flush()?)
 }
 
-/// The quantities that the tables of a study have: a reduction only against a reference, and an optional quantity only if
-/// one run has it, or if it decides on replication.
+/// The quantities that the tables of a study have: a reduction only against a reference, and an optional
+/// quantity only if one run has it, or if it decides on replication.
 pub(crate) fn quantities(plan: &Plan, results: &StudyResults) -> Vec<(&'static str, RunQuantity)> {
     let until = plan.settings.until.as_ref();
     let is_there = |name: &str, quantity: RunQuantity| match quantity {
@@ -69,9 +69,9 @@ pub(crate) fn quantities(plan: &Plan, results: &StudyResults) -> Vec<(&'static s
         .collect()
 }
 
-/// Writes `points.csv`: for each point and quantity the number of values, their mean, standard deviation, confidence
-/// interval of the mean, smallest and largest; reductions are paired by seed. Beside an axis of coverages stands A* as
-/// meshed.
+/// Writes `points.csv`: for each point and quantity the number of values, their mean, standard deviation,
+/// confidence interval of the mean, smallest and largest; reductions are paired by seed. Beside an axis of
+/// coverages stands A* as meshed.
 pub(crate) fn points(plan: &Plan, results: &StudyResults, to: impl Write) -> csv::Result<()> {
     let mut table = csv::Writer::from_writer(to);
     let meshed = MeshedCoverage::of(plan).map(|_| TEXTURE_PERCENT);
@@ -84,7 +84,8 @@ pub(crate) fn points(plan: &Plan, results: &StudyResults, to: impl Write) -> csv
             let until = plan.settings.until.as_ref();
             let decides = until.is_some_and(|until| until.key == name);
             let without = results.runs_without_transition(position, name);
-            // A decisive quantity that no run has gets a row without numbers, and so does one that runs lack for want of a transition.
+            // A decisive quantity that no run has gets a row without numbers, and so does one that runs lack
+            // for want of a transition.
             if sample.is_none() && !decides && !(without > 0 && needs_transition(name)) {
                 continue;
             }
@@ -107,8 +108,8 @@ pub(crate) fn points(plan: &Plan, results: &StudyResults, to: impl Write) -> csv
     Ok(table.flush()?)
 }
 
-/// Writes `anisotropy.csv`: for the levels of all axes but that of the directions, the dependence of static and kinetic
-/// friction on the directions. There is at least one row.
+/// Writes `anisotropy.csv`: for the levels of all axes but that of the directions, the dependence of static
+/// and kinetic friction on the directions. There is at least one row.
 pub(crate) fn anisotropy(rows: &[Anisotropy], to: impl Write) -> csv::Result<()> {
     let mut table = csv::Writer::from_writer(to);
     let levels = rows.first().into_iter().flat_map(|row| &row.levels);

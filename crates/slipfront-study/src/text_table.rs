@@ -3,8 +3,8 @@
 /// The sign between a value and the half width of its interval.
 const PLUS_MINUS: &str = " \u{b1} ";
 
-/// A table as text, a line a row: each column as wide as its widest cell, numbers to the right and words to the left. Cells beyond the
-/// columns of the header are remarks.
+/// A table as text, a line a row: each column as wide as its widest cell, numbers to the right and words to
+/// the left. Cells beyond the columns of the header are remarks.
 pub fn table(header: &[&str], rows: &[Vec<String>]) -> String {
     let columns = header.iter().enumerate().map(|(column, name)| {
         let cells: Vec<&str> = rows.iter().map(|row| row[column].as_str()).collect();
@@ -48,7 +48,8 @@ impl TableColumn {
     }
 }
 
-/// Cells of values with half widths: decimal points of both stand below each other. Columns without half widths stay as they are.
+/// Cells of values with half widths: decimal points of both stand below each other. Columns without half
+/// widths stay as they are.
 fn aligned(cells: &[&str]) -> Vec<String> {
     if !cells.iter().any(|cell| cell.contains(PLUS_MINUS)) {
         return cells.iter().map(|&cell| cell.to_owned()).collect();
@@ -74,8 +75,8 @@ fn aligned(cells: &[&str]) -> Vec<String> {
         .collect()
 }
 
-/// Fills up texts so that their first points, or their ends, stand below each other, to one width. The halves of a bracket
-/// before a power of ten are filled up from outside alone.
+/// Fills up texts so that their first points, or their ends, stand below each other, to one width. The halves
+/// of a bracket before a power of ten are filled up from outside alone.
 fn at_the_point(texts: &[&str], fill: fn(&str, usize) -> String) -> Vec<String> {
     let split = |text: &str| {
         let (before, after) = text.split_at(text.find('.').unwrap_or(text.len()));

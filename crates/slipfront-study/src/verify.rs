@@ -1,5 +1,6 @@
-//! Compares the folder of a study with the list of its files, then with the tables and pictures that its recorded runs give, and the run
-//! folders that it has kept with their manifests; other folders as what they are.
+//! Compares the folder of a study with the list of its files, then with the tables and pictures that its
+//! recorded runs give, and the run folders that it has kept with their manifests; other folders as what they
+//! are.
 
 use std::collections::HashSet;
 use std::io::ErrorKind;
@@ -61,8 +62,8 @@ pub fn verify(
     Ok(verdict)
 }
 
-/// Compares a study with its list, makes its tables and pictures again from its records, and compares its run folders with their
-/// manifests.
+/// Compares a study with its list, makes its tables and pictures again from its records, and compares its run
+/// folders with their manifests.
 fn verify_study(folder: &Path, extent: Extent, stop: &AtomicBool) -> Result<Verdict, VerifyStudyError> {
     let (mut verdict, is_complete) = verify_checksums(folder, &[RunJournal::FILE, RUNS], stop)?;
     let mut derived = None;
@@ -78,8 +79,8 @@ fn verify_study(folder: &Path, extent: Extent, stop: &AtomicBool) -> Result<Verd
     Ok(verdict)
 }
 
-/// Makes tables and pictures of a study again from its records, and compares the folder with them; returns the plan and the results
-/// of its runs unless they are lost.
+/// Makes tables and pictures of a study again from its records, and compares the folder with them; returns
+/// the plan and the results of its runs unless they are lost.
 fn derive_study(
     folder: &Path,
     verdict: &mut Verdict,
@@ -137,8 +138,8 @@ fn derive_study(
     Ok(Some((plan, results)))
 }
 
-/// Verifies the run folders that a study has kept, and looks for those that it lacks if its plan and results are known; returns their
-/// number.
+/// Verifies the run folders that a study has kept, and looks for those that it lacks if its plan and results
+/// are known; returns their number.
 fn verify_kept(
     folder: &Path,
     derived: Option<&(Plan, StudyResults)>,

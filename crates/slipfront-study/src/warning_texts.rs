@@ -6,8 +6,8 @@ use crate::plan_warnings::Warning;
 /// Largest number of warnings that are listed.
 const MAX_WARNINGS: usize = 8;
 
-/// Warnings about the cases of a study in words, each with the points that it concerns: the first eight, and the number of
-/// the others.
+/// Warnings about the cases of a study in words, each with the points that it concerns: the first eight, and
+/// the number of the others.
 pub fn warning_texts(plan: &Plan) -> Vec<String> {
     let all = plan.warnings();
     let mut told: Vec<String> = all

@@ -10,7 +10,8 @@ use crate::error::StudyError;
 pub struct WorkMemory {
     /// Bytes that are taken whatever the number of threads.
     pub beside: f64,
-    /// Bytes of a piece of each kind of work, and how many of them there are. Kinds follow one after the other.
+    /// Bytes of a piece of each kind of work, and how many of them there are. Kinds follow one after the
+    /// other.
     pub pieces: Vec<(f64, usize)>,
 }
 
@@ -22,8 +23,9 @@ impl WorkMemory {
         self.beside + at_once.fold(0.0, f64::max)
     }
 
-    /// Refuses work on `threads` threads if there is no memory for it, and says for how many threads there is. `none` gives the
-    /// error where there is no memory for a single one, from the texts of the memory that it needs and that is available.
+    /// Refuses work on `threads` threads if there is no memory for it, and says for how many threads there
+    /// is. `none` gives the error where there is no memory for a single one, from the texts of the memory
+    /// that it needs and that is available.
     ///
     /// # Errors
     /// With both figures.

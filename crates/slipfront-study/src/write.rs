@@ -1,4 +1,5 @@
-//! Results of a study, written to its folder: tables, pictures, and the comparison of its meshes if there is one.
+//! Results of a study, written to its folder: tables, pictures, and the comparison of its meshes if there is
+//! one.
 
 use std::sync::atomic::AtomicBool;
 
@@ -9,8 +10,8 @@ use crate::plan::Plan;
 use crate::project_folder::Others;
 use crate::study_results::StudyResults;
 
-/// Writes the tables and pictures of a study to its folder, and removes those of earlier results. If the folder has a comparison of
-/// meshes, this is written anew as well.
+/// Writes the tables and pictures of a study to its folder, and removes those of earlier results. If the
+/// folder has a comparison of meshes, this is written anew as well.
 ///
 /// # Errors
 /// When the system refuses to write, when a file in its place was edited, and after a stop.

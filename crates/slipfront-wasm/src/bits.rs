@@ -8,8 +8,8 @@ use slipfront::{Execution, Simulation};
 use slipfront_case::case::{Case, Files, FilesInMemory, Ranks};
 use slipfront_case::case_file::CaseFile;
 
-/// Takes a case to its end, or at most so many steps, and gives the steps that were taken and hashes of mu*, of all displacements and of all
-/// velocities then: FNV-1a of the bits of the numbers, as hexadecimal digits.
+/// Takes a case to its end, or at most so many steps, and gives the steps that were taken and hashes of mu*,
+/// of all displacements and of all velocities then: FNV-1a of the bits of the numbers, as hexadecimal digits.
 ///
 /// # Errors
 /// A sentence, if it is no case, or the run diverges.

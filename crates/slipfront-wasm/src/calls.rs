@@ -40,7 +40,8 @@ struct Beginning {
     opening: Document,
 }
 
-/// Begins a session, given presets and the case with which the page opens, and how many Workers may go on beside it.
+/// Begins a session, given presets and the case with which the page opens, and how many Workers may go on
+/// beside it.
 pub(crate) fn open(workers: u32) {
     refuse(read().map(|Beginning { presets, opening }| {
         let host = Rc::new(WorkerHost::new(presets, opening, workers));
@@ -65,8 +66,8 @@ pub(crate) fn handle() {
     });
 }
 
-/// Does what is due at a time of the Worker, ms, when the page has so many messages still to read; gives the time at which to call again, ms,
-/// which is negative if there is nothing to do before a message.
+/// Does what is due at a time of the Worker, ms, when the page has so many messages still to read; gives the
+/// time at which to call again, ms, which is negative if there is nothing to do before a message.
 pub(crate) fn advance(now: f64, unread: u32) -> f64 {
     PAGE.with_borrow_mut(|page| {
         let Some((session, host)) = page else { return -1.0 };

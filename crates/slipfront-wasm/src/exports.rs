@@ -3,7 +3,8 @@
 /// Gives functions of a module of this crate to the Worker, by their names.
 macro_rules! exported {
     ($($module:ident::$name:ident($($argument:ident: $kind:ty),*) $(-> $given:ty)?;)*) => {$(
-        // SAFETY: a name that is not changed could be that of another function of the module, of which none is called like this.
+        // SAFETY: a name that is not changed could be that of another function of the module, of which none
+        // is called like this.
         #[unsafe(no_mangle)]
         extern "C" fn $name($($argument: $kind),*) $(-> $given)? {
             crate::$module::$name($($argument),*)

@@ -36,7 +36,8 @@ pub(crate) enum Saying {
 }
 
 #[expect(unsafe_code, reason = "Rust cannot look at a function of the Worker")]
-// SAFETY: the Worker gives it with these types (`lab_worker.js`), and reads no more than the bytes that it is shown.
+// SAFETY: the Worker gives it with these types (`lab_worker.js`), and reads no more than the bytes that it is
+// shown.
 unsafe extern "C" {
     safe fn say(what: u32, number: u32, at: *const u8, length: usize);
 }

@@ -5,8 +5,8 @@ use slipfront_run::pictures;
 use crate::given;
 use crate::imports::{Saying, tell};
 
-/// Draws the pictures of a run. The Worker has given the files of the run, and whether it has a movie; it is told the files of the pictures, or
-/// why they cannot be drawn.
+/// Draws the pictures of a run. The Worker has given the files of the run, and whether it has a movie; it is
+/// told the files of the pictures, or why they cannot be drawn.
 pub(crate) fn draw() {
     let files: Result<(Vec<(String, Vec<u8>)>, bool), _> = postcard::from_bytes(&given::take());
     let drawn = files

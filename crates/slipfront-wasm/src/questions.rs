@@ -5,7 +5,8 @@ use std::time::Duration;
 use crate::given;
 
 #[expect(unsafe_code, reason = "Rust cannot look at functions of the Worker")]
-// SAFETY: the Worker gives them with these types (`lab_worker.js`), and reads no more than the bytes that it is shown.
+// SAFETY: the Worker gives them with these types (`lab_worker.js`), and reads no more than the bytes that it
+// is shown.
 unsafe extern "C" {
     safe fn now() -> f64;
     safe fn date();
@@ -18,7 +19,8 @@ pub(crate) fn time_of_day() -> String {
     String::from_utf8(given::take()).unwrap_or_default()
 }
 
-/// Answer of the module that draws pictures to these bytes; empty where there is no such module, or it has failed.
+/// Answer of the module that draws pictures to these bytes; empty where there is no such module, or it has
+/// failed.
 pub(crate) fn drawn_of(asked: &[u8]) -> Vec<u8> {
     draw(asked.as_ptr(), asked.len());
     given::take()

@@ -4,10 +4,10 @@
 //! $ cargo run --release -p slipfront --example large_step -- 4096 2
 //! ```
 //!
-//! 4096 x 4096 blocks of the baseline of Fig. 3 on two threads, past their onset, every block at every step. A step must read
-//! displacement and velocity of every block (32 bytes) and its two thresholds (16), and write displacement and velocity
-//! (32): 80 bytes. A plain loop over six arrays that moves just these bytes, on as many threads, gives the time they take. The
-//! two are measured alternately; the best of each counts.
+//! 4096 x 4096 blocks of the baseline of Fig. 3 on two threads, past their onset, every block at every step.
+//! A step must read displacement and velocity of every block (32 bytes) and its two thresholds (16), and
+//! write displacement and velocity (32): 80 bytes. A plain loop over six arrays that moves just these bytes,
+//! on as many threads, gives the time they take. The two are measured alternately; the best of each counts.
 
 use std::error::Error;
 use std::time::Instant;

@@ -4,10 +4,11 @@
 //! $ cargo run --release -p slipfront --example option_cost -- 1 50 200 1024
 //! ```
 //!
-//! The first number is that of the threads, the others are sizes: square sliders with the coefficients of Fig. 3. They begin in steady
-//! sliding, and after a hundred steps some blocks stick and others slip. Every block is computed at every step. The options are measured
-//! by turns, and the best of each counts: nanoseconds per step and block of the lattice, and how many times as long it takes as the
-//! plain model on the fused kernel. What that kernel does not compute stands below the plain model on the general kernel.
+//! The first number is that of the threads, the others are sizes: square sliders with the coefficients of
+//! Fig. 3. They begin in steady sliding, and after a hundred steps some blocks stick and others slip. Every
+//! block is computed at every step. The options are measured by turns, and the best of each counts:
+//! nanoseconds per step and block of the lattice, and how many times as long it takes as the plain model on
+//! the fused kernel. What that kernel does not compute stands below the plain model on the general kernel.
 
 use std::error::Error;
 use std::sync::Arc;
@@ -193,7 +194,8 @@ pub(crate) fn model(size: usize, choices: &[Choice]) -> Result<Model, Box<dyn Er
     Ok(model)
 }
 
-/// State in which every block slides at about the speed of the drive, behind it by the stretch that keeps it sliding.
+/// State in which every block slides at about the speed of the drive, behind it by the stretch that keeps it
+/// sliding.
 pub(crate) fn steady_state(model: &Model) -> State {
     let behind = match model.friction {
         Friction::ContactSprings(_) => 0.0,

@@ -5,9 +5,9 @@
 //! ```
 //!
 //! A slider of 50 x 50 blocks; the two files hold the local coefficients, row by row from y = 0, as
-//! little-endian f64. `--no-skip` steps every block at every step, also at rest. Prints mu_s*, the step of the peak
-//! and nanoseconds per block and step of the loop alone.
-//! `benches/peers/run.sh` compares other programs with it.
+//! little-endian f64. `--no-skip` steps every block at every step, also at rest. Prints mu_s*, the step of
+//! the peak and nanoseconds per block and step of the loop alone. `benches/peers/run.sh` compares other
+//! programs with it.
 
 use std::error::Error;
 use std::time::Instant;

@@ -1,9 +1,9 @@
 //! State that a run needs to continue later with the same bits.
 //!
-//! A checkpoint is small. Beside it stand the columns: numbers of every block in the order of the lattice, so that they do not
-//! depend on how the kernel lays out its arrays, on the number of threads or ranks, or on the SIMD width. They are handed over
-//! part by part, and nothing of the size of the lattice is copied. Everything else that a kernel keeps is found again by its
-//! next sweep.
+//! A checkpoint is small. Beside it stand the columns: numbers of every block in the order of the lattice, so
+//! that they do not depend on how the kernel lays out its arrays, on the number of threads or ranks, or on
+//! the SIMD width. They are handed over part by part, and nothing of the size of the lattice is copied.
+//! Everything else that a kernel keeps is found again by its next sweep.
 
 use serde::{Deserialize, Serialize};
 
@@ -57,16 +57,16 @@ impl Model {
     }
 }
 
-/// A number that is kept of every block, whatever the law of friction. After these columns a law of friction that remembers
-/// more has [columns](crate::Friction::n_columns) of its own.
+/// A number that is kept of every block, whatever the law of friction. After these columns a law of friction
+/// that remembers more has [columns](crate::Friction::n_columns) of its own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BlockColumn {
     /// u_x at t_n.
     DisplacementX,
     /// u_y at t_n.
     DisplacementY,
-    /// v_x half a step after t_n for the fused kernel, half a step before t_n for the general kernel, which evaluates t_n
-    /// again.
+    /// v_x half a step after t_n for the fused kernel, half a step before t_n for the general kernel, which
+    /// evaluates t_n again.
     VelocityX,
     /// v_y at the instant of [`VelocityX`](Self::VelocityX).
     VelocityY,
@@ -87,8 +87,8 @@ impl BlockColumn {
     /// Number of blocks in a part of a column.
     const PART: usize = 1 << 16;
 
-    /// Takes all columns of `n_blocks` blocks part by part through `work`, which is given the column, the first block, and room
-    /// for the values. The first error ends it.
+    /// Takes all columns of `n_blocks` blocks part by part through `work`, which is given the column, the
+    /// first block, and room for the values. The first error ends it.
     pub(crate) fn for_each_part<E>(
         n_blocks: usize,
         mut work: impl FnMut(Self, usize, &mut [f64]) -> Result<(), E>,
@@ -98,7 +98,8 @@ impl BlockColumn {
         })
     }
 
-    /// Takes one column of `n_blocks` blocks part by part through `work`, as [`for_each_part`] does for all columns.
+    /// Takes one column of `n_blocks` blocks part by part through `work`, as [`for_each_part`] does for all
+    /// columns.
     pub(crate) fn for_each_part_of_one<E>(
         n_blocks: usize,
         mut work: impl FnMut(usize, &mut [f64]) -> Result<(), E>,
@@ -111,10 +112,10 @@ impl BlockColumn {
     }
 }
 
-/// Upper bounds on displacements, on the differences of displacement between the ends of springs, and on speeds: the values
-/// of the latest measurement, and the most by which they may have grown since. The fused kernel chooses by them how it
-/// computes spring forces, and the quanta of its sums. They are part of a checkpoint, so that a resumed run chooses the same
-/// at every step.
+/// Upper bounds on displacements, on the differences of displacement between the ends of springs, and on
+/// speeds: the values of the latest measurement, and the most by which they may have grown since. The fused
+/// kernel chooses by them how it computes spring forces, and the quanta of its sums. They are part of a
+/// checkpoint, so that a resumed run chooses the same at every step.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct MotionBounds {
     /// Largest u_x, -u_x, u_y, -u_y at the latest measurement.
@@ -127,7 +128,8 @@ pub(crate) struct MotionBounds {
     pub(crate) speed: f64,
     /// Ranges of the displacements along x and y, for their sums.
     pub(crate) windows: [Window; 2],
-    /// Differences of displacement between the ends of a spring, x and y together, for the sum of their energies.
+    /// Differences of displacement between the ends of a spring, x and y together, for the sum of their
+    /// energies.
     pub(crate) spring_range: FixedPoint,
 }
 

@@ -1,6 +1,8 @@
-//! The two times of a run: the time of the blocks, and the time of the drive, which stands while a held drive does.
+//! The two times of a run: the time of the blocks, and the time of the drive, which stands while a held drive
+//! does.
 
-/// An instant t_n, as counts of steps: times are products of these and of the time step, so that no rounding errors add up.
+/// An instant t_n, as counts of steps: times are products of these and of the time step, so that no rounding
+/// errors add up.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Clock {
     /// Number of the step, n.

@@ -1,7 +1,8 @@
-//! How the processes that share one lattice talk to each other. The physics knows nothing else of other processes.
+//! How the processes that share one lattice talk to each other. The physics knows nothing else of other
+//! processes.
 //!
-//! Each process, a *rank*, holds consecutive rows of the lattice: rank 0 the lowest. Everything that ranks agree on is a
-//! maximum or a sum of integers, so that it does not depend on how many they are.
+//! Each process, a *rank*, holds consecutive rows of the lattice: rank 0 the lowest. Everything that ranks
+//! agree on is a maximum or a sum of integers, so that it does not depend on how many they are.
 
 use std::fmt::Debug;
 
@@ -13,9 +14,10 @@ pub trait Communicator: Debug + Send + Sync {
     /// Number of ranks.
     fn size(&self) -> usize;
 
-    /// Sends `to[0]` to the rank below and `to[1]` to the rank above, and receives `from[0]` from the rank below and
-    /// `from[1]` from the rank above, while `meanwhile` runs. The ranks form a ring: the last is below the first. Empty
-    /// slices are neither sent nor received, and both sides must agree on which are empty.
+    /// Sends `to[0]` to the rank below and `to[1]` to the rank above, and receives `from[0]` from the rank
+    /// below and `from[1]` from the rank above, while `meanwhile` runs. The ranks form a ring: the last is
+    /// below the first. Empty slices are neither sent nor received, and both sides must agree on which are
+    /// empty.
     fn exchange(&self, to: [&[f64]; 2], from: [&mut [f64]; 2], meanwhile: &mut dyn FnMut());
 
     /// Replaces every value by the largest that any rank has in its place.

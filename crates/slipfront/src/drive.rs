@@ -12,15 +12,17 @@ use crate::vector_field::{length, unit_vector};
 /// How the slider is pulled.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Drive {
-    /// Dimensionless speed `V*` (Eq. 11a); the largest of a program; for a rotation the speed at the largest radius.
+    /// Dimensionless speed `V*` (Eq. 11a); the largest of a program; for a rotation the speed at the largest
+    /// radius.
     pub v_star: f64,
     /// Unit vector of the sliding direction.
     pub direction: [f64; 2],
-    /// Stiffness `k_s` of the spring on every block, in units of `E h`; see [`Slider::drive_springs`](crate::Slider::drive_springs).
+    /// Stiffness `k_s` of the spring on every block, in units of `E h`; see
+    /// [`Slider::drive_springs`](crate::Slider::drive_springs).
     pub k_drive: f64,
-    /// A constant force on every block in addition to the drive spring's, in units of `P mu_s l^2`; zero in the paper. It is
-    /// scaled with the relative stiffness of the block's drive spring. The components are along x and y; for a rotation
-    /// along the [direction](Self::direction_at) of each block and across it.
+    /// A constant force on every block in addition to the drive spring's, in units of `P mu_s l^2`; zero in
+    /// the paper. It is scaled with the relative stiffness of the block's drive spring. The components are
+    /// along x and y; for a rotation along the [direction](Self::direction_at) of each block and across it.
     pub constant_force: [f64; 2],
     /// Speeds that follow one another; the drive moves at `v_star` all the time if there are none.
     pub program: Option<Arc<Program>>,
@@ -36,9 +38,9 @@ pub enum Loading {
     /// The far ends move in every step, at the speed of the drive.
     #[default]
     Constant,
-    /// The far ends move only in steps before which no block in contact slid: slow loading, however large the speed. The
-    /// drive's own time, which path, program and windows count in, is then `dt*` times the number of steps in which it
-    /// moved.
+    /// The far ends move only in steps before which no block in contact slid: slow loading, however large the
+    /// speed. The drive's own time, which path, program and windows count in, is then `dt*` times the number
+    /// of steps in which it moved.
     Held {
         /// Steps of the drive up to which the largest mu* counts as static friction.
         onset_steps: u64,
@@ -76,9 +78,9 @@ pub struct Rotation {
 }
 
 impl Drive {
-    /// Lengths in blocks over which the mount, a drive spring on every block, screens a local change of stress: blocks
-    /// farther away are pulled as before. First the length along the drive, then across it. The stiffness of the lattice
-    /// against a strain along the drive is 9/8, 3/4 for a chain:
+    /// Lengths in blocks over which the mount, a drive spring on every block, screens a local change of
+    /// stress: blocks farther away are pulled as before. First the length along the drive, then across it.
+    /// The stiffness of the lattice against a strain along the drive is 9/8, 3/4 for a chain:
     ///
     /// ```text
     /// lambda = sqrt(K_el/k_s),   K_el = 9/8 along and 3/8 across
@@ -95,8 +97,8 @@ impl Drive {
 }
 
 impl Rotation {
-    /// A rotation about the centroid of all blocks of the whole lattice that exist, of which this rank holds some `rows`.
-    /// All `ranks` must call this together.
+    /// A rotation about the centroid of all blocks of the whole lattice that exist, of which this rank holds
+    /// some `rows`. All `ranks` must call this together.
     pub fn about_centroid(
         lattice: &Lattice,
         rows: &Range<usize>,
@@ -106,7 +108,8 @@ impl Rotation {
         let held = lattice.blocks_of(rows);
         // Number of each in the whole lattice, and on this rank.
         let blocks: Vec<(usize, usize)> = held.zip(0..).filter(|&(_, b)| slider.exists(b)).collect();
-        // Twice the coordinates of the centres of blocks are odd whole numbers, which no order of summation rounds.
+        // Twice the coordinates of the centres of blocks are odd whole numbers, which no order of summation
+        // rounds.
         let mut sums = blocks.iter().fold([0, 0, 0], |[x, y, n], &(block, _)| {
             let (i, j) = lattice.column_row(block);
             [x + 2 * i as i64 + 1, y + 2 * j as i64 + 1, n + 1]
@@ -146,7 +149,8 @@ impl Rotation {
 }
 
 impl Program {
-    /// A program from the speed of each segment and the t* at which the segment ends; the last segment has no end.
+    /// A program from the speed of each segment and the t* at which the segment ends; the last segment has no
+    /// end.
     pub fn new(segments: impl IntoIterator<Item = (f64, f64)>) -> Self {
         let (mut from_star, mut from_position) = (0.0, 0.0);
         let segment = |(v_star, until_star): (f64, f64)| {
@@ -210,7 +214,8 @@ impl Drive {
         if self.is_held() { 0.0 } else { self.v_star }
     }
 
-    /// Path of the driven ends at `time_star` of the drive, along the direction; for a rotation at its largest radius.
+    /// Path of the driven ends at `time_star` of the drive, along the direction; for a rotation at its
+    /// largest radius.
     #[inline]
     pub fn path(&self, time_star: f64) -> f64 {
         match &self.program {
@@ -244,14 +249,15 @@ impl Drive {
         [along * self.direction[0], along * self.direction[1]]
     }
 
-    /// Force of the drive spring on a block at displacement `u` (Eq. 2), `F_s = k_s (V t - u)`, with the constant force.
+    /// Force of the drive spring on a block at displacement `u` (Eq. 2), `F_s = k_s (V t - u)`, with the
+    /// constant force.
     pub fn force(&self, u: [f64; 2], time_star: f64) -> [f64; 2] {
         let position = self.position(time_star);
         [0, 1].map(|axis| self.k_drive * (position[axis] - u[axis]) + self.constant_force[axis])
     }
 
-    /// Displacement of the driven end over block `b` of the whole lattice per path of the drive, `g`: the direction, or `z x r/r_max` of a rotation.
-    /// Power and work of the drive belong to `sum F_s . g`.
+    /// Displacement of the driven end over block `b` of the whole lattice per path of the drive, `g`: the
+    /// direction, or `z x r/r_max` of a rotation. Power and work of the drive belong to `sum F_s . g`.
     pub fn direction_at(&self, lattice: &Lattice, b: usize) -> [f64; 2] {
         match &self.rotation {
             None => self.direction,
@@ -259,8 +265,8 @@ impl Drive {
         }
     }
 
-    /// Time of the drive at which the driven ends have first moved by `path`, forwards or backwards; infinite if they never
-    /// do.
+    /// Time of the drive at which the driven ends have first moved by `path`, forwards or backwards; infinite
+    /// if they never do.
     pub fn time_of_path(&self, path: f64) -> f64 {
         let Some(program) = &self.program else {
             return path / self.v_star;

@@ -1,7 +1,9 @@
-//! Exponential and logarithm of a fixed number of sums, products and quotients in a fixed order, without branches: the compiler
-//! computes them for several blocks at once, which it cannot do with those of `libm`, and they have the same bits on every machine.
+//! Exponential and logarithm of a fixed number of sums, products and quotients in a fixed order, without
+//! branches: the compiler computes them for several blocks at once, which it cannot do with those of `libm`,
+//! and they have the same bits on every machine.
 
-/// ln 2 in two parts, of which the first has so few digits that its products with small whole numbers are exact.
+/// ln 2 in two parts, of which the first has so few digits that its products with small whole numbers are
+/// exact.
 const LN_2: [f64; 2] = [
     f64::from_bits(0x3fe6_2e42_fee0_0000),
     f64::from_bits(0x3dea_39ef_3579_3c76),
@@ -91,7 +93,8 @@ pub(crate) fn small_mean_decay(x: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// Tolerance: seven roundings by half a unit in the last place, 1.1e-16 each, of numbers no larger than the value.
+    /// Tolerance: seven roundings by half a unit in the last place, 1.1e-16 each, of numbers no larger than
+    /// the value.
     fn assert_close(found: f64, exact: f64, x: f64) {
         assert!(
             (found - exact).abs() <= 8e-16 * exact.abs(),

@@ -55,8 +55,8 @@ pub enum RunError {
     Observer(String),
 }
 
-/// Speed below which motion is due to rounding, in units of `P mu_s/sqrt(E rho)`: displacements of 1 are rounded by 1e-16 at every step, and
-/// some thousand blocks may be involved.
+/// Speed below which motion is due to rounding, in units of `P mu_s/sqrt(E rho)`: displacements of 1 are
+/// rounded by 1e-16 at every step, and some thousand blocks may be involved.
 const ROUNDING_SPEED: f64 = 1e-9;
 
 /// Cause and remedy of a slider that does not come to rest.

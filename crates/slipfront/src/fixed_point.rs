@@ -1,8 +1,8 @@
 //! Sums that do not depend on the order in which they are added.
 //!
-//! Numbers of a known size become integers, multiples of a quantum, and integers add up exactly: in any order, over any number
-//! of lanes, tiles, threads and ranks the sum has the same bits. Each term is rounded to the nearest multiple of the quantum,
-//! by at most `2^-51` of the largest size that it might have.
+//! Numbers of a known size become integers, multiples of a quantum, and integers add up exactly: in any
+//! order, over any number of lanes, tiles, threads and ranks the sum has the same bits. Each term is rounded
+//! to the nearest multiple of the quantum, by at most `2^-51` of the largest size that it might have.
 
 use serde::{Deserialize, Serialize};
 
@@ -46,8 +46,8 @@ impl FixedPoint {
         self.limit
     }
 
-    /// Shift of `1.5 2^52` quanta. A number added to it is rounded to a multiple of the quantum, and the bits of the sum are
-    /// those of the shift plus the multiple.
+    /// Shift of `1.5 2^52` quanta. A number added to it is rounded to a multiple of the quantum, and the bits
+    /// of the sum are those of the shift plus the multiple.
     pub(crate) fn shift(self) -> f64 {
         3.0 * self.limit
     }
@@ -59,8 +59,9 @@ impl FixedPoint {
         (x + shift).to_bits().wrapping_sub(shift.to_bits()) as i64
     }
 
-    /// Sum of the integers of `term(k)` over `0..n`. The integer of a term beyond the bound, or of one that is no number, is
-    /// arbitrary, so that sums with such terms may wrap around: without a bound [`value`](Self::value) is NaN of any sum.
+    /// Sum of the integers of `term(k)` over `0..n`. The integer of a term beyond the bound, or of one that
+    /// is no number, is arbitrary, so that sums with such terms may wrap around: without a bound
+    /// [`value`](Self::value) is NaN of any sum.
     #[inline(always)]
     pub(crate) fn sum(self, n: usize, term: impl Fn(usize) -> f64) -> i128 {
         let mut sum = 0;
@@ -86,8 +87,8 @@ pub(crate) struct Window {
 }
 
 impl Window {
-    /// Least difference between the ends of the range for which a window is made: displacements differ by more as soon as
-    /// blocks slide.
+    /// Least difference between the ends of the range for which a window is made: displacements differ by
+    /// more as soon as blocks slide.
     const MIN_RANGE: f64 = 1e-9;
 
     /// A window of at least twice the range from `low` to `high`, which lies in its middle.
@@ -116,8 +117,8 @@ impl Window {
         self.differences
     }
 
-    /// Constant whose sum with a number has, in its bits, the nearest multiple for the difference of the number from the
-    /// centre: see [`FixedPoint::shift`].
+    /// Constant whose sum with a number has, in its bits, the nearest multiple for the difference of the
+    /// number from the centre: see [`FixedPoint::shift`].
     pub(crate) fn shift(&self) -> f64 {
         self.differences.shift() - self.centre
     }
@@ -129,8 +130,8 @@ pub(crate) fn sum(n: usize, term: impl Fn(usize) -> f64) -> f64 {
     sum_over(&Alone, n, term)
 }
 
-/// Sum of `term(k)` over the blocks of all `ranks`, equal for any order. All ranks call this together, each with its own `n`
-/// terms.
+/// Sum of `term(k)` over the blocks of all `ranks`, equal for any order. All ranks call this together, each
+/// with its own `n` terms.
 #[inline(always)]
 pub(crate) fn sum_over(ranks: &dyn Communicator, n: usize, term: impl Fn(usize) -> f64) -> f64 {
     // A term that is no number makes the bound infinite.
@@ -143,14 +144,15 @@ pub(crate) fn sum_over(ranks: &dyn Communicator, n: usize, term: impl Fn(usize) 
     fixed_point.value(join(words))
 }
 
-/// A sum over blocks that is found at every step, part by part. Its terms hardly ever outgrow the power of two that bounds
-/// them, or fall below it. They are added up with the bound of the step before while the largest is found, and once more if
-/// the bound has changed. So the sum equals [`sum`] of the terms, whatever was before.
+/// A sum over blocks that is found at every step, part by part. Its terms hardly ever outgrow the power of
+/// two that bounds them, or fall below it. They are added up with the bound of the step before while the
+/// largest is found, and once more if the bound has changed. So the sum equals [`sum`] of the terms, whatever
+/// was before.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RunningSum {
     bound: FixedPoint,
-    /// Bits of the largest size of a term so far. As integers, bits have the order of the sizes; NaN lies beyond all of
-    /// them.
+    /// Bits of the largest size of a term so far. As integers, bits have the order of the sizes; NaN lies
+    /// beyond all of them.
     largest: i64,
     sum: i128,
 }
@@ -187,8 +189,8 @@ impl RunningSum {
         }
     }
 
-    /// Empties the sum and sets the bound of the next terms by the `largest` of those before. Returns whether those were
-    /// added up with that bound.
+    /// Empties the sum and sets the bound of the next terms by the `largest` of those before. Returns whether
+    /// those were added up with that bound.
     fn restart(&mut self, largest: f64) -> bool {
         let bound = FixedPoint::new(largest);
         let was_bound = bound.limit.to_bits() == self.bound.limit.to_bits();
@@ -199,8 +201,8 @@ impl RunningSum {
         was_bound
     }
 
-    /// Sums of all terms that all `ranks` have added; none if a bound has changed, so that all terms have to be added once
-    /// more.
+    /// Sums of all terms that all `ranks` have added; none if a bound has changed, so that all terms have to
+    /// be added once more.
     pub(crate) fn finish<const N: usize>(ranks: &dyn Communicator, sums: &mut [Self; N]) -> Option<[f64; N]> {
         let mut largest = sums.each_ref().map(Self::largest);
         ranks.largest(&mut largest);
@@ -228,7 +230,8 @@ impl Default for RunningSum {
 /// Bits of a sum in the lower of its two words.
 const LOW_BITS: u32 = 40;
 
-/// A sum of integers as two words, each of which may be added over up to 2^23 ranks: [`join`] makes the sum of them.
+/// A sum of integers as two words, each of which may be added over up to 2^23 ranks: [`join`] makes the sum
+/// of them.
 ///
 /// The sum over all ranks has 2^102 as its bound, the integers of 2^51 numbers.
 pub(crate) fn split(sum: i128) -> [i64; 2] {
@@ -265,7 +268,8 @@ mod tests {
         }
     }
 
-    /// Whatever came before, a sum is that of its own terms: larger ones, smaller ones, none, and some that are no numbers.
+    /// Whatever came before, a sum is that of its own terms: larger ones, smaller ones, none, and some that
+    /// are no numbers.
     #[test]
     fn a_running_sum_is_the_sum_of_its_step() {
         let scales = [1.0, 1e-3, 1.5e-3, 1e9, 0.0, f64::NAN, 2.0, f64::INFINITY, 1e-12];
@@ -314,8 +318,8 @@ mod tests {
     }
 
     proptest! {
-        /// Numbers of all sizes up to the bound, the bound included: any order and any partition gives the same bits, with an
-        /// error of at most half a quantum per term.
+        /// Numbers of all sizes up to the bound, the bound included: any order and any partition gives the
+        /// same bits, with an error of at most half a quantum per term.
         #[test]
         fn any_partition_gives_the_same_bits(
             terms in prop::collection::vec((-1.0..=1.0_f64, -60..=0_i32), 1..200),

@@ -1,7 +1,7 @@
 //! The slider's blocks, their neighbours and the springs between them.
 //!
-//! Block (i, j) has index `j nx + i`: i runs along x, row 0 lies at y = 0, and its centre stands at
-//! ((i + 1/2), (j + 1/2)) in units of the block size. The [`kernel`](crate::kernel) reads the springs from here.
+//! Block (i, j) has index `j nx + i`: i runs along x, row 0 lies at y = 0, and its centre stands at ((i +
+//! 1/2), (j + 1/2)) in units of the block size. The [`kernel`](crate::kernel) reads the springs from here.
 
 use std::f64::consts::SQRT_2;
 use std::ops::Range;
@@ -10,7 +10,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::communicator::Communicator;
 
-/// Stiffness of a spring to a straight neighbour, `k_1 = (3/4) E h`, in units of `E h` with the thickness `h` of a block.
+/// Stiffness of a spring to a straight neighbour, `k_1 = (3/4) E h`, in units of `E h` with the thickness `h`
+/// of a block.
 pub const K_STRAIGHT: f64 = 0.75;
 /// Stiffness of a spring to a diagonal neighbour, `k_2 = k_1/2`, in units of `E h`.
 pub const K_DIAGONAL: f64 = 0.375;
@@ -21,7 +22,8 @@ pub const POISSON_RATIO: f64 = 1.0 / 3.0;
 /// Square of the lattice's highest frequency, `omega_max^2 = 6.5 k_1/m`.
 pub const OMEGA_MAX_SQUARED: f64 = 6.5 * K_STRAIGHT;
 
-/// Speed of long shear waves, `c_S = sqrt(3/8)`, in blocks per unit of t*, of a slider whose blocks are alike.
+/// Speed of long shear waves, `c_S = sqrt(3/8)`, in blocks per unit of t*, of a slider whose blocks are
+/// alike.
 pub fn shear_wave_speed() -> f64 {
     (0.5 * K_STRAIGHT).sqrt()
 }
@@ -31,17 +33,17 @@ pub fn dt_star_limit() -> f64 {
     2.0 / OMEGA_MAX_SQUARED.sqrt()
 }
 
-/// Number of drive springs whose force a block bears that is held alone in a large sheet of free blocks, with drive springs
-/// of stiffness `k_drive`: the lattice passes on the pull on its neighbours. The response of the free sheet, an integral
-/// over the waves of the lattice, is
+/// Number of drive springs whose force a block bears that is held alone in a large sheet of free blocks, with
+/// drive springs of stiffness `k_drive`: the lattice passes on the pull on its neighbours. The response of
+/// the free sheet, an integral over the waves of the lattice, is
 ///
 /// ```text
 /// 1/G_xx(0)/k_s     G(0) = mean over q of [k_s + D(q)]^-1
 /// D_xx = 2 k_1 (1 - cos q_x) + 2 k_2 (1 - cos q_x cos q_y)     D_xy = 2 k_2 sin q_x sin q_y
 /// ```
 pub fn springs_on_a_lone_block(k_drive: f64) -> f64 {
-    /// Number of waves along each axis with q between 0 and pi, enough for four digits down to a tenth of [`K_DRIVE`]: waves
-    /// of -q give the same.
+    /// Number of waves along each axis with q between 0 and pi, enough for four digits down to a tenth of
+    /// [`K_DRIVE`]: waves of -q give the same.
     const WAVES: usize = 32;
     let wave = |n: usize| (n as f64 + 0.5) / WAVES as f64 * std::f64::consts::PI;
     // Every one stands in many terms of the sum.
@@ -137,7 +139,8 @@ impl Lattice {
     /// A lattice with the given ends along x and along y.
     ///
     /// # Panics
-    /// If a periodic axis has fewer than [`Lattice::MIN_PERIODIC`] blocks: two springs would join the same pair of blocks.
+    /// If a periodic axis has fewer than [`Lattice::MIN_PERIODIC`] blocks: two springs would join the same
+    /// pair of blocks.
     pub fn with_edges(nx: usize, ny: usize, edges: [Edges; 2]) -> Self {
         for (count, edges) in [nx, ny].into_iter().zip(edges) {
             assert!(
@@ -151,8 +154,8 @@ impl Lattice {
     /// Fewest blocks along a periodic axis.
     pub const MIN_PERIODIC: usize = 3;
 
-    /// Stiffness against a strain along an axis that is uniform across it, in units of `E h`: `k_1 + k_2 = 9/8` for a sheet,
-    /// `k_1` for a chain.
+    /// Stiffness against a strain along an axis that is uniform across it, in units of `E h`:
+    /// `k_1 + k_2 = 9/8` for a sheet, `k_1` for a chain.
     pub(crate) fn stiffness_along(&self) -> f64 {
         if self.nx == 1 || self.ny == 1 {
             K_STRAIGHT
@@ -171,7 +174,8 @@ impl Lattice {
         j * self.nx + i
     }
 
-    /// The rows that a rank holds: consecutive ones, as many as the others hold or one more, rank 0 the lowest.
+    /// The rows that a rank holds: consecutive ones, as many as the others hold or one more, rank 0 the
+    /// lowest.
     ///
     /// ```
     /// use slipfront::Lattice;
@@ -217,7 +221,8 @@ fn neighbour_coordinate(coordinate: usize, offset: isize, count: usize, edges: E
     }
 }
 
-/// Stiffness of two springs in series, each half as long as one of the same modulus: `2 a b/(a + b)`; 0 if both are 0.
+/// Stiffness of two springs in series, each half as long as one of the same modulus: `2 a b/(a + b)`; 0 if
+/// both are 0.
 #[inline(always)]
 pub(crate) fn harmonic_mean(a: f64, b: f64) -> f64 {
     if a + b > 0.0 { 2.0 * a * b / (a + b) } else { 0.0 }
@@ -264,9 +269,9 @@ impl Bond {
     /// F = k (r - d)/eps  r/|r|,   r = d + eps e,   (r - d)/eps = (2 d.e + eps e^2)/(r + d)
     /// ```
     ///
-    /// `e`: displacement of the neighbour less that of the block, in units of `P mu_s l^2/(E h)`; `epsilon`: the
-    /// strain `P mu_s l/(E h)` that ties this unit to the block size. No two nearly equal lengths are subtracted, so
-    /// that small displacements lose no digits.
+    /// `e`: displacement of the neighbour less that of the block, in units of `P mu_s l^2/(E h)`; `epsilon`:
+    /// the strain `P mu_s l/(E h)` that ties this unit to the block size. No two nearly equal lengths are
+    /// subtracted, so that small displacements lose no digits.
     ///
     /// ```
     /// use slipfront::lattice::Bond;
@@ -282,7 +287,8 @@ impl Bond {
         [tension * rx, tension * ry]
     }
 
-    /// Force on the block from a damper beside this spring, over the time `tau_v` of its damping constant `eta = tau_v k`:
+    /// Force on the block from a damper beside this spring, over the time `tau_v` of its damping constant
+    /// `eta = tau_v k`:
     ///
     /// ```text
     /// F_v/tau_v = k (r/|r| . w) r/|r|,   r = d + eps e

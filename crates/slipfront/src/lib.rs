@@ -2,13 +2,13 @@
 //!
 //! A slider of `nx` x `ny` blocks lies on a rigid plane, is pulled at constant speed through one spring per
 //! block, and is held together by springs between each block and its eight neighbours. Every block obeys
-//! Amontons-Coulomb friction with its own coefficients; blocks over a texture (a cavity, a groove) have no contact with the
-//! plane. The model is that of Tribology International (2023), doi 10.1016/j.triboint.2023.108866, with the
-//! numbered deviations D1... that the project's book explains.
+//! Amontons-Coulomb friction with its own coefficients; blocks over a texture (a cavity, a groove) have no
+//! contact with the plane. The model is that of Tribology International (2023), doi
+//! 10.1016/j.triboint.2023.108866, with the numbered deviations D1... that the project's book explains.
 //!
 //! This crate is the physics alone: no files, no terminal, no clock. Everything is dimensionless: lengths in
-//! blocks, masses in blocks, time in `l sqrt(rho/E)`, displacements in `P mu_s l^2/(E h)`, forces in `P mu_s l^2`;
-//! all conversions are in [`scales`].
+//! blocks, masses in blocks, time in `l sqrt(rho/E)`, displacements in `P mu_s l^2/(E h)`, forces in
+//! `P mu_s l^2`; all conversions are in [`scales`].
 //!
 //! ```
 //! use slipfront::{Drive, Execution, FrictionLaw, Lattice, Model, Simulation, Stop, Surface};

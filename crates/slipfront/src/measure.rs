@@ -1,5 +1,5 @@
-//! Measures of one instant of a run: the friction coefficient mu* (Eq. 9), the percentage of sliding blocks N*, the largest
-//! mu* and the first peak of mu*.
+//! Measures of one instant of a run: the friction coefficient mu* (Eq. 9), the percentage of sliding blocks
+//! N*, the largest mu* and the first peak of mu*.
 
 use serde::{Deserialize, Serialize};
 
@@ -23,13 +23,15 @@ pub struct CurvePoint {
 }
 
 impl CurvePoint {
-    /// Eq. 9 over mu_s at a time t* of the drive, from the mean displacement, with the relative stiffness w of the drive springs and N blocks that exist:
+    /// Eq. 9 over mu_s at a time t* of the drive, from the mean displacement, with the relative stiffness w
+    /// of the drive springs and N blocks that exist:
     ///
     /// ```text
     /// mu* = (1/N) sum_i F_s,i . d = k_s (mean(w) V* t* - mean(w u . d))
     /// ```
     ///
-    /// If the drive springs differ, `w_i` being their relative stiffness, and of a rotation, with `g_i = z x r_i/r_max`:
+    /// If the drive springs differ, `w_i` being their relative stiffness, and of a rotation, with
+    /// `g_i = z x r_i/r_max`:
     ///
     /// ```text
     /// mu* = (k_s/N) (X sum_i w_i - sum_i w_i u_i . d)
@@ -57,7 +59,8 @@ impl CurvePoint {
 
 /// The largest mu* until the drive has gone a stated path.
 ///
-/// A ripple cannot be mistaken for it as it can for a first peak: a later, higher mu* counts until the end of the path.
+/// A ripple cannot be mistaken for it as it can for a first peak: a later, higher mu* counts until the end of
+/// the path.
 ///
 /// ```
 /// use slipfront::observe::Largest;
@@ -80,8 +83,8 @@ pub struct Largest {
 }
 
 impl Largest {
-    /// The state before the first step. Steps after the drive has first gone further than `until_path`, in units of
-    /// displacement, do not count; [`f64::INFINITY`] takes the whole run.
+    /// The state before the first step. Steps after the drive has first gone further than `until_path`, in
+    /// units of displacement, do not count; [`f64::INFINITY`] takes the whole run.
     pub fn until(until_path: f64) -> Self {
         Self {
             mu_star: f64::NEG_INFINITY,
@@ -106,16 +109,18 @@ impl Largest {
     }
 }
 
-/// Least loss of friction in a transition, as a share of the largest loss 1 - L. Ripples of sliding just above L are
-/// smaller; a texture that lowers mu_s* nearly to L leaves more.
+/// Least loss of friction in a transition, as a share of the largest loss 1 - L. Ripples of sliding just
+/// above L are smaller; a texture that lowers mu_s* nearly to L leaves more.
 const LEAST_FALL: f64 = 0.05;
 
-/// The first peak of mu* that is followed by a fall of at least half-way to the steady level L and of at least (1 - L)/20, within the
-/// longest time that a transition takes. It is found while the run goes on: until such a fall is seen it is the largest mu* so far,
-/// and it stays that if the first fall comes too late, of a slider that creeps.
+/// The first peak of mu* that is followed by a fall of at least half-way to the steady level L and of at
+/// least (1 - L)/20, within the longest time that a transition takes. It is found while the run goes on:
+/// until such a fall is seen it is the largest mu* so far, and it stays that if the first fall comes too
+/// late, of a slider that creeps.
 ///
-/// Under a held drive it is the largest mu* until the drive has moved in a stated number of steps, if such a fall follows it until then, on the
-/// time of the drive: a ripple just above L would pass for a first peak there.
+/// Under a held drive it is the largest mu* until the drive has moved in a stated number of steps, if such a
+/// fall follows it until then, on the time of the drive: a ripple just above L would pass for a first peak
+/// there.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Peak {
     /// mu* at the peak: mu_s* once `ended`.
@@ -134,7 +139,8 @@ pub struct Peak {
     pub largest: Largest,
     steady_level: f64,
     longest_fall: f64,
-    /// Whether mu* fell by the least loss too late for a transition; under a held drive, whether it did not fall.
+    /// Whether mu* fell by the least loss too late for a transition; under a held drive, whether it did not
+    /// fall.
     crept: bool,
     /// Peak under a held drive.
     held: Option<HeldPeak>,
@@ -190,7 +196,8 @@ impl Peak {
         }
     }
 
-    /// Whether a run that stops after the onset ends now: the fall has been seen, or under a held drive there was none.
+    /// Whether a run that stops after the onset ends now: the fall has been seen, or under a held drive there
+    /// was none.
     pub(crate) fn is_final(&self) -> bool {
         self.ended || (self.held.is_some() && self.crept)
     }
@@ -205,7 +212,8 @@ impl Peak {
         self.mu_star > self.steady_level && mu_star <= half_way && self.is_above(mu_star)
     }
 
-    /// Whether the peak is above this mean of mu* in sliding by the least that friction loses in a transition, (1 - L)/20.
+    /// Whether the peak is above this mean of mu* in sliding by the least that friction loses in a
+    /// transition, (1 - L)/20.
     pub fn is_above(&self, sliding: f64) -> bool {
         self.mu_star - sliding >= LEAST_FALL * (1.0 - self.steady_level).max(0.0)
     }
@@ -283,8 +291,8 @@ mod tests {
         );
     }
 
-    /// A ripple of less than 0.025 is no peak at L = 0.5, though it falls half-way to L; where L is above 1 half-way is
-    /// enough.
+    /// A ripple of less than 0.025 is no peak at L = 0.5, though it falls half-way to L; where L is above 1
+    /// half-way is enough.
     #[test]
     fn a_ripple_just_above_the_level_of_sliding_is_no_peak() {
         let curve = [0.0, 0.51, 0.5, 0.52, 0.497, 0.68, 0.55];

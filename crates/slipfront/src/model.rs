@@ -13,7 +13,8 @@ use crate::slider::Slider;
 use crate::surface::Surface;
 use crate::vector_field::length;
 
-/// Path of the drive to the onset of sliding where all blocks touch, in units of displacement: t_s* = 2.5/V* (Eq. 12).
+/// Path of the drive to the onset of sliding where all blocks touch, in units of displacement: t_s* = 2.5/V*
+/// (Eq. 12).
 pub const ONSET_PATH: f64 = 2.5;
 
 /// The slider with its surface and drive.
@@ -38,8 +39,8 @@ pub struct Model {
 }
 
 impl Model {
-    /// Puts the parts together, with all blocks alike; [`with_slider`](Self::with_slider) makes them differ. The surface must be made
-    /// for this lattice.
+    /// Puts the parts together, with all blocks alike; [`with_slider`](Self::with_slider) makes them differ.
+    /// The surface must be made for this lattice.
     pub fn new(
         lattice: Lattice,
         surface: Surface,
@@ -81,8 +82,8 @@ impl Model {
     /// Returns the model with a heterogeneous slider, for which the surface must be made.
     ///
     /// # Panics
-    /// Unless every array of the slider has one value for each block that this process holds, and drive springs are given with an
-    /// outline, 0 where there is no block.
+    /// Unless every array of the slider has one value for each block that this process holds, and drive
+    /// springs are given with an outline, 0 where there is no block.
     pub fn with_slider(self, slider: Slider) -> Self {
         slider.assert_fits(self.surface.n_blocks());
         Self { slider, ..self }
@@ -126,10 +127,11 @@ impl Model {
         self.slider.n_blocks(&self.lattice)
     }
 
-    /// Size along the drive, in blocks, from which a patch at its threshold runs away where strength falls with slip: the
-    /// critical size of a long strip across the drive whose blocks have the mean strength of those in contact, on the mean
-    /// drive spring `k_s`; without drive springs, where only some blocks have one. The size is infinite where the mount is
-    /// stiff enough for slip of any size to be stable; there is none under other laws.
+    /// Size along the drive, in blocks, from which a patch at its threshold runs away where strength falls
+    /// with slip: the critical size of a long strip across the drive whose blocks have the mean strength of
+    /// those in contact, on the mean drive spring `k_s`; without drive springs, where only some blocks have
+    /// one. The size is infinite where the mount is stiff enough for slip of any size to be stable; there is
+    /// none under other laws.
     ///
     /// ```text
     /// L_c = pi sqrt(K_el/(W - k_s)),   W = (S - K)/D_c,   K_el = 9/8, 3/4 of a chain
@@ -153,8 +155,8 @@ impl Model {
         })
     }
 
-    /// Divisor of the sum of the forces of the drive springs in mu*: the number of blocks that exist; for a rotation `sum
-    /// r_i/r_max`, which makes mu* the torque of the drive springs over `P mu_s l^2 sum r_i`.
+    /// Divisor of the sum of the forces of the drive springs in mu*: the number of blocks that exist; for a
+    /// rotation `sum r_i/r_max`, which makes mu* the torque of the drive springs over `P mu_s l^2 sum r_i`.
     pub fn mu_star_divisor(&self) -> f64 {
         match &self.drive.rotation {
             None => self.n_blocks() as f64,
@@ -162,8 +164,8 @@ impl Model {
         }
     }
 
-    /// Rise of mu* per path of the drive over [`Drive::k_drive`] while no block moves: 1 if every block has a drive spring and the
-    /// drive does not rotate.
+    /// Rise of mu* per path of the drive over [`Drive::k_drive`] while no block moves: 1 if every block has a
+    /// drive spring and the drive does not rotate.
     pub fn driven_share(&self) -> f64 {
         let driven = match &self.drive.rotation {
             None => self.slider.sum_of_drive_springs(&self.lattice),
@@ -172,31 +174,31 @@ impl Model {
         driven / self.mu_star_divisor()
     }
 
-    /// Speed of a drive with a spring of stiffness `k_2` on every block that loads the slider as fast as this one does, in which
-    /// waiting times are counted: V* times `sum k_s/(k_2 N)`.
+    /// Speed of a drive with a spring of stiffness `k_2` on every block that loads the slider as fast as this
+    /// one does, in which waiting times are counted: V* times `sum k_s/(k_2 N)`.
     pub fn loading_speed(&self) -> f64 {
         self.drive.v_star * (self.drive.k_drive * self.driven_share() / K_DRIVE)
     }
 
-    /// Speed at which the paper's drive loads equal blocks as fast as this one loads these, in the time in which a slip front passes a
-    /// block: the [loading speed](Self::loading_speed) times [`Slider::mean_slowness`]. Equal blocks of any modulus and density have
-    /// their own V*.
+    /// Speed at which the paper's drive loads equal blocks as fast as this one loads these, in the time in
+    /// which a slip front passes a block: the [loading speed](Self::loading_speed) times
+    /// [`Slider::mean_slowness`]. Equal blocks of any modulus and density have their own V*.
     pub fn speed_against_front(&self) -> f64 {
         self.loading_speed() * self.slider.mean_slowness
     }
 
-    /// Earliest and latest t* at which the onset is expected. The later of the two is Eq. 12 for blocks that bear their load
-    /// alone, which is larger by the [load factor](Surface::load_factor) f where only some touch; the earlier one is Eq. 12
-    /// for blocks that all touch or, if that is later, for blocks that stand alone and are pushed by their free neighbours
-    /// too:
+    /// Earliest and latest t* at which the onset is expected. The later of the two is Eq. 12 for blocks that
+    /// bear their load alone, which is larger by the [load factor](Surface::load_factor) f where only some
+    /// touch; the earlier one is Eq. 12 for blocks that all touch or, if that is later, for blocks that stand
+    /// alone and are pushed by their free neighbours too:
     ///
     /// ```text
     /// max(2.5, f/A k_2)/V* ... 2.5 f/V*
     /// ```
     ///
-    /// with A = [`springs_on_a_lone_block`] and the [speed of loading](Self::loading_speed) in place of V*. The pull that a
-    /// sheet of free blocks passes to those that touch is known only for a drive on every block; `f` is 1 for any other
-    /// drive.
+    /// with A = [`springs_on_a_lone_block`] and the [speed of loading](Self::loading_speed) in place of V*.
+    /// The pull that a sheet of free blocks passes to those that touch is known only for a drive on every
+    /// block; `f` is 1 for any other drive.
     pub fn onset_estimate(&self, load_factor: f64) -> [f64; 2] {
         let speed = self.loading_speed();
         let late = ONSET_PATH * load_factor.max(1.0);
@@ -204,30 +206,33 @@ impl Model {
         [lone.clamp(ONSET_PATH, late) / speed, late / speed]
     }
 
-    /// The longest time in which mu* falls from its peak half-way to the [level of sliding](Self::steady_level) in a
-    /// transition; a slower fall is creep. It is the longest of three times: of loading, 2.5/V* (Eq. 12), after which
-    /// kinetic friction is measured; of a slip front across the slider, a block per t*; and of a swing of the slider on its
-    /// drive springs.
+    /// The longest time in which mu* falls from its peak half-way to the [level of
+    /// sliding](Self::steady_level) in a transition; a slower fall is creep. It is the longest of three
+    /// times: of loading, 2.5/V* (Eq. 12), after which kinetic friction is measured; of a slip front across
+    /// the slider, a block per t*; and of a swing of the slider on its drive springs.
     pub fn longest_fall(&self) -> f64 {
         let k_drive = self.drive.k_drive;
         let loading = ONSET_PATH / self.loading_speed() * self.friction.loading_delay(k_drive);
         loading.max(self.response_time())
     }
 
-    /// The longer of the times, in t*, of a slip front across the slider, a block per t*, and of a swing of the slider on its drive springs.
+    /// The longer of the times, in t*, of a slip front across the slider, a block per t*, and of a swing of
+    /// the slider on its drive springs.
     fn response_time(&self) -> f64 {
         let front = self.lattice.nx.max(self.lattice.ny) as f64;
         front.max(TAU / self.drive.k_drive.sqrt())
     }
 
-    /// The longest time, in t*, for which a held drive stands still. Without damping, kinetic friction of R* of the static one stops a swing on the
-    /// drive springs after some (1 - R*)/(4 R*) periods, so that a slider that slides for 1000 of them has an R* of less than 3e-4.
+    /// The longest time, in t*, for which a held drive stands still. Without damping, kinetic friction of R*
+    /// of the static one stops a swing on the drive springs after some (1 - R*)/(4 R*) periods, so that a
+    /// slider that slides for 1000 of them has an R* of less than 3e-4.
     pub(crate) fn longest_stop(&self) -> f64 {
         1000.0 * self.response_time()
     }
 
     /// Drag of the damping in steady sliding at V*; 0 under a held drive. It is the part of
-    /// [`steady_level`](Self::steady_level) that is no friction. All `ranks` of a lattice must call this together.
+    /// [`steady_level`](Self::steady_level) that is no friction. All `ranks` of a lattice must call this
+    /// together.
     pub fn steady_drag(&self, ranks: &dyn Communicator) -> f64 {
         let drag = self.damping * self.drive.steady_speed();
         let Some(rotation) = &self.drive.rotation else {
@@ -250,8 +255,9 @@ impl Model {
     /// L = [sum_i mu_ki F_n,i r_i/(P l^2 mu_s) + Omega V* sum_i m_i r_i^2/r_max]/sum_i r_i    of a rotation
     /// ```
     ///
-    /// V* counts as 0 under a held drive; a coefficient that depends on the speed is taken at V*; for springs in contact
-    /// half the mean threshold stands for kinetic friction. All `ranks` of a lattice must call this together.
+    /// V* counts as 0 under a held drive; a coefficient that depends on the speed is taken at V*; for springs
+    /// in contact half the mean threshold stands for kinetic friction. All `ranks` of a lattice must call
+    /// this together.
     pub fn steady_level(&self, ranks: &dyn Communicator) -> f64 {
         let Some(rotation) = &self.drive.rotation else {
             let kinetic = self
@@ -271,15 +277,15 @@ impl Model {
         torque / rotation.sum_radii
     }
 
-    /// Time of the first slip of a block in contact on a surface without texture, exact. For a drive at constant speed along
-    /// a direction
+    /// Time of the first slip of a block in contact on a surface without texture, exact. For a drive at
+    /// constant speed along a direction
     ///
     /// ```text
     /// t* = min_i max(mu_si, mu_ki) F_n,i/(k_s,i V*)
     /// ```
     ///
-    /// In general it is the time t at which the path of the drive is as long as that of the constant speed at this time,
-    /// `path(t) = V* t*`. All `ranks` of a lattice must call this together.
+    /// In general it is the time t at which the path of the drive is as long as that of the constant speed at
+    /// this time, `path(t) = V* t*`. All `ranks` of a lattice must call this together.
     pub fn first_slip_estimate(&self, ranks: &dyn Communicator) -> f64 {
         let (k_drive, v_star) = (self.drive.k_drive, self.drive.v_star);
         let pull =

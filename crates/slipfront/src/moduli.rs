@@ -1,4 +1,5 @@
-//! Young's moduli of the blocks that a rank holds and of the rows beside them, and the springs that follow from them.
+//! Young's moduli of the blocks that a rank holds and of the rows beside them, and the springs that follow
+//! from them.
 
 use std::ops::Range;
 
@@ -6,8 +7,8 @@ use crate::communicator::Communicator;
 use crate::lattice::{Edges, Lattice, harmonic_mean};
 use crate::slider::Slider;
 
-/// Moduli `E_i/E` of the blocks of some rows and of the rows below the first and above the last; 0 for blocks that do not
-/// exist.
+/// Moduli `E_i/E` of the blocks of some rows and of the rows below the first and above the last; 0 for blocks
+/// that do not exist.
 pub(crate) struct Moduli<'a> {
     slider: &'a Slider,
     lattice: Lattice,
@@ -17,8 +18,8 @@ pub(crate) struct Moduli<'a> {
 }
 
 impl<'a> Moduli<'a> {
-    /// Moduli of the rows that this rank holds. All `ranks` call this at once, and exchange the moduli at the ends of their
-    /// rows.
+    /// Moduli of the rows that this rank holds. All `ranks` call this at once, and exchange the moduli at the
+    /// ends of their rows.
     pub(crate) fn new(
         slider: &'a Slider,
         lattice: &Lattice,
@@ -61,8 +62,8 @@ impl<'a> Moduli<'a> {
         self.beside[side].get(i).copied().unwrap_or(0.0)
     }
 
-    /// Stiffness of the spring from block (i, j) of these rows to the block `offset` away, over the stiffness of its bond:
-    /// the harmonic mean of their moduli; 0 beyond a free edge.
+    /// Stiffness of the spring from block (i, j) of these rows to the block `offset` away, over the stiffness
+    /// of its bond: the harmonic mean of their moduli; 0 beyond a free edge.
     pub(crate) fn spring(&self, [i, j]: [usize; 2], offset: [isize; 2]) -> f64 {
         let Some(other) = self.lattice.neighbour(i, j, offset) else {
             return 0.0;

@@ -3,8 +3,8 @@
 use crate::lattice::{Edges, Lattice};
 
 impl Lattice {
-    /// The opening of a set: all its squares of `side` x `side` blocks, each wholly in the set. Places beyond free edges are
-    /// in no set, so that a strip along an edge is as narrow as it looks.
+    /// The opening of a set: all its squares of `side` x `side` blocks, each wholly in the set. Places beyond
+    /// free edges are in no set, so that a strip along an edge is as narrow as it looks.
     ///
     /// ```
     /// # use slipfront::Lattice;
@@ -25,8 +25,8 @@ impl Lattice {
         found
     }
 
-    /// The smallest width of a set: the largest side of a square by which it can be opened without losing a block; none for
-    /// an empty set.
+    /// The smallest width of a set: the largest side of a square by which it can be opened without losing a
+    /// block; none for an empty set.
     pub fn width(&self, set: &[bool]) -> Option<usize> {
         if !set.contains(&true) {
             return None;
@@ -100,8 +100,9 @@ impl Lattice {
         }
     }
 
-    /// Calls a function on what belongs together along an axis, one row along x and all rows along y, with a copy of it, the
-    /// length of `step` blocks along the axis in it, and whether its last block is the neighbour of its first.
+    /// Calls a function on what belongs together along an axis, one row along x and all rows along y, with a
+    /// copy of it, the length of `step` blocks along the axis in it, and whether its last block is the
+    /// neighbour of its first.
     fn each_line(
         &self,
         set: &mut [bool],
@@ -118,8 +119,8 @@ impl Lattice {
     }
 }
 
-/// Shifts after which a set and its shifted copies, joined one after the other, have joined `side` blocks: 1, 2, 4 and so on,
-/// and the rest.
+/// Shifts after which a set and its shifted copies, joined one after the other, have joined `side` blocks: 1,
+/// 2, 4 and so on, and the rest.
 fn doublings(side: usize) -> impl Iterator<Item = usize> {
     let mut joined = 1;
     std::iter::from_fn(move || {

@@ -3,8 +3,9 @@
 use crate::drive::Drive;
 use crate::lattice::Lattice;
 
-/// Bins of blocks by `r . d`, with the place r of a block and the direction d of the drive; in a rotation by their distance from
-/// the axis. A bin is one block wide, or several where that would take more than [`PositionBins::MAX`] bins.
+/// Bins of blocks by `r . d`, with the place r of a block and the direction d of the drive; in a rotation by
+/// their distance from the axis. A bin is one block wide, or several where that would take more than
+/// [`PositionBins::MAX`] bins.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PositionBins {
     /// Number of bins.

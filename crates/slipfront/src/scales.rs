@@ -1,8 +1,9 @@
 //! Conversion between dimensional and dimensionless quantities (Eq. 11).
 //!
-//! A block is `l` by `l` and as thick as the sheet, `h`; the paper's blocks are cubes, `h = l`. Lengths count in blocks, masses in
-//! block masses, times in `l sqrt(rho/E)` (D4: the paper prints no `l`), displacements in `P mu_s l^2/(E h)`, forces in
-//! `P mu_s l^2`. The case parser builds a [`Scales`]; writers of results ask it for units.
+//! A block is `l` by `l` and as thick as the sheet, `h`; the paper's blocks are cubes, `h = l`. Lengths count
+//! in blocks, masses in block masses, times in `l sqrt(rho/E)` (D4: the paper prints no `l`), displacements
+//! in `P mu_s l^2/(E h)`, forces in `P mu_s l^2`. The case parser builds a [`Scales`]; writers of results ask
+//! it for units.
 
 use crate::lattice::K_STRAIGHT;
 
@@ -68,8 +69,8 @@ impl Scales {
         self.young_modulus * self.thickness
     }
 
-    /// Stiffness of a spring on one block, in units of `E h`, for springs of the given stiffness per area, in N/m^3: `K
-    /// l^2/(E h)`.
+    /// Stiffness of a spring on one block, in units of `E h`, for springs of the given stiffness per area, in
+    /// N/m^3: `K l^2/(E h)`.
     ///
     /// ```
     /// let scales = slipfront::Scales {

@@ -17,8 +17,8 @@ use crate::state::State;
 use crate::stop::{Stop, StopReason};
 use crate::totals::Totals;
 
-/// Largest number of steps under a drive that is held, whose steps are not known in advance: the fused kernel keeps their
-/// numbers in 32 bits.
+/// Largest number of steps under a drive that is held, whose steps are not known in advance: the fused kernel
+/// keeps their numbers in 32 bits.
 const MAX_HELD_STEPS: u64 = u32::MAX as u64 - 1;
 
 /// A run in progress.
@@ -36,9 +36,9 @@ pub struct Simulation {
 }
 
 impl Simulation {
-    /// A slider at t = 0 in a given state, or at rest, computed as `execution` says. `dt_star` must stay below
-    /// [`crate::lattice::dt_star_limit`]. Ranks that share a lattice call this and then the same functions, each with a model of its
-    /// own rows and the state of their blocks.
+    /// A slider at t = 0 in a given state, or at rest, computed as `execution` says. `dt_star` must stay
+    /// below [`crate::lattice::dt_star_limit`]. Ranks that share a lattice call this and then the same
+    /// functions, each with a model of its own rows and the state of their blocks.
     ///
     /// # Panics
     /// If a displacement or velocity of the state is not finite.
@@ -72,9 +72,10 @@ impl Simulation {
         simulation
     }
 
-    /// A run that continues from a checkpoint with the same bits as if it had not been stopped, computed as `execution`
-    /// says. `read` is given the number of a column, a block and room for the values of the blocks from there on. None if another
-    /// kernel wrote the checkpoint. Ranks that share a lattice all call this together, each for the blocks of its rows.
+    /// A run that continues from a checkpoint with the same bits as if it had not been stopped, computed as
+    /// `execution` says. `read` is given the number of a column, a block and room for the values of the
+    /// blocks from there on. None if another kernel wrote the checkpoint. Ranks that share a lattice all call
+    /// this together, each for the blocks of its rows.
     ///
     /// # Errors
     /// Whatever `read` fails with.
@@ -102,9 +103,9 @@ impl Simulation {
         }))
     }
 
-    /// The state that [`Simulation::resume`] needs beside the [columns](Self::write_columns). Taken between two calls of
-    /// [`Simulation::advance`], it belongs together with the recordings of the observers by then. All ranks must call this
-    /// together.
+    /// The state that [`Simulation::resume`] needs beside the [columns](Self::write_columns). Taken between
+    /// two calls of [`Simulation::advance`], it belongs together with the recordings of the observers by
+    /// then. All ranks must call this together.
     pub fn checkpoint(&self) -> Checkpoint {
         Checkpoint {
             step: self.clock.step,
@@ -118,9 +119,9 @@ impl Simulation {
         }
     }
 
-    /// The numbers of all blocks that [`Simulation::resume`] reads, part by part: `write` is given the number of the column, the
-    /// first block, and the values. The columns are [`BlockColumn::ALL`] and those of the law of friction, together
-    /// [`Model::n_columns`].
+    /// The numbers of all blocks that [`Simulation::resume`] reads, part by part: `write` is given the number
+    /// of the column, the first block, and the values. The columns are [`BlockColumn::ALL`] and those of the
+    /// law of friction, together [`Model::n_columns`].
     ///
     /// # Errors
     /// Errors of `write`.
@@ -141,8 +142,8 @@ impl Simulation {
         })
     }
 
-    /// Steps until `stop`, and shows every instant, including the last, to the observers that are due. All ranks must call
-    /// this together, with observers that need energies at the same steps.
+    /// Steps until `stop`, and shows every instant, including the last, to the observers that are due. All
+    /// ranks must call this together, with observers that need energies at the same steps.
     ///
     /// # Errors
     /// [`RunError::NotFinite`] when the run diverges, and whatever an observer fails with.
@@ -154,8 +155,9 @@ impl Simulation {
         }
     }
 
-    /// Makes at most `steps` steps towards `stop`; returns none if it was not reached. Observers see every instant once,
-    /// also where one call ends and the next begins. All ranks must call this together, as [`Simulation::run`].
+    /// Makes at most `steps` steps towards `stop`; returns none if it was not reached. Observers see every
+    /// instant once, also where one call ends and the next begins. All ranks must call this together, as
+    /// [`Simulation::run`].
     ///
     /// # Errors
     /// As for [`Simulation::run`].
@@ -240,20 +242,20 @@ impl Simulation {
         self.peak
     }
 
-    /// The largest contact stress (Eq. 10) over blocks in contact and all steps so far, in units of `P mu_s`: the scale of
-    /// tau_c*. All ranks must call this together.
+    /// The largest contact stress (Eq. 10) over blocks in contact and all steps so far, in units of `P mu_s`:
+    /// the scale of tau_c*. All ranks must call this together.
     pub fn contact_stress_max(&self) -> f64 {
         self.engine.stress_square_max(&self.model, &self.clock).sqrt()
     }
 
-    /// First-slip times t* of the blocks of this rank while in contact; NaN for blocks that have not slipped. The run ends,
-    /// and its memory is reused for them.
+    /// First-slip times t* of the blocks of this rank while in contact; NaN for blocks that have not slipped.
+    /// The run ends, and its memory is reused for them.
     pub fn into_first_slip_time_star(self) -> Vec<f64> {
         self.engine.into_first_slips()
     }
 
-    /// Checks that the run does not diverge. Sums of squares of speeds show it first, because they overflow long before
-    /// displacements do.
+    /// Checks that the run does not diverge. Sums of squares of speeds show it first, because they overflow
+    /// long before displacements do.
     fn check_finite(&self) -> Result<(), RunError> {
         let (point, totals) = (&self.point, &self.totals);
         let stored = totals.stored_energy.unwrap_or_default().total();
@@ -304,8 +306,8 @@ impl Simulation {
         Ok(())
     }
 
-    /// The block of all ranks that is displaced farthest along an axis, the first of equal ones, and its displacement along
-    /// this axis. A displacement that is no number counts as infinite.
+    /// The block of all ranks that is displaced farthest along an axis, the first of equal ones, and its
+    /// displacement along this axis. A displacement that is no number counts as infinite.
     fn largest_displacement(&self) -> (usize, f64) {
         let size = |u: f64| if u.is_nan() { f64::INFINITY } else { u.abs() };
         let first = self.model.lattice.blocks_of(&self.model.rows).start;

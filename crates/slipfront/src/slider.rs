@@ -6,8 +6,8 @@ use crate::communicator::Communicator;
 use crate::fixed_point::sum_over;
 use crate::lattice::{Edge, Lattice};
 
-/// Heterogeneous properties of the slider; arrays have one value per block. Without any of them, as in the paper, all blocks
-/// are alike.
+/// Heterogeneous properties of the slider; arrays have one value per block. Without any of them, as in the
+/// paper, all blocks are alike.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Slider {
     /// Young's modulus `E_i/E`. A spring between blocks takes the harmonic mean of its ends.
@@ -16,8 +16,8 @@ pub struct Slider {
     pub density: Option<Vec<f64>>,
     /// Mean of the masses of all blocks of the whole lattice that exist, in units of `rho l^3`.
     pub mean_mass: f64,
-    /// Mean over all blocks of the whole lattice that exist of the time in which a wave passes one, `sqrt(rho_i E/(rho
-    /// E_i))`, over the time for a block of `E` and `rho`.
+    /// Mean over all blocks of the whole lattice that exist of the time in which a wave passes one,
+    /// `sqrt(rho_i E/(rho E_i))`, over the time for a block of `E` and `rho`.
     pub mean_slowness: f64,
     /// Drive springs of different stiffness.
     pub drive_springs: Option<DriveSprings>,
@@ -25,14 +25,16 @@ pub struct Slider {
     pub drives_some: bool,
     /// Outline of the slider, if some blocks do not exist.
     pub outline: Option<Outline>,
-    /// Time of the dampers beside all springs between blocks, `tau_v = eta_ij/k_ij` (Kelvin-Voigt); 0 for none.
+    /// Time of the dampers beside all springs between blocks, `tau_v = eta_ij/k_ij` (Kelvin-Voigt); 0 for
+    /// none.
     pub viscosity_time: f64,
 }
 
 /// Drive springs of different stiffness.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DriveSprings {
-    /// Stiffness of each drive spring over [`Drive::k_drive`](crate::Drive::k_drive); 0 for a block that is not driven.
+    /// Stiffness of each drive spring over [`Drive::k_drive`](crate::Drive::k_drive); 0 for a block that is
+    /// not driven.
     pub relative: Vec<f64>,
     /// Sum of the relative stiffness over the whole lattice.
     pub sum: f64,
@@ -63,8 +65,8 @@ impl Default for Slider {
 }
 
 impl DriveSprings {
-    /// Drive springs of the blocks that this rank holds. All `ranks` call this at once: the sum has the same bits for any
-    /// number of ranks.
+    /// Drive springs of the blocks that this rank holds. All `ranks` call this at once: the sum has the same
+    /// bits for any number of ranks.
     pub fn new(relative: Vec<f64>, ranks: &dyn Communicator) -> Self {
         Self {
             sum: sum_over(ranks, relative.len(), |b| relative[b]),
@@ -84,8 +86,8 @@ impl Outline {
         }
     }
 
-    /// Marks the blocks of some rows that belong to the disc that fills the lattice: those whose centres lie within half its
-    /// shorter side of its middle.
+    /// Marks the blocks of some rows that belong to the disc that fills the lattice: those whose centres lie
+    /// within half its shorter side of its middle.
     ///
     /// ```
     /// use slipfront::{Lattice, Outline};
@@ -107,8 +109,8 @@ impl Outline {
 }
 
 impl Slider {
-    /// A slider with the given moduli, densities and outline of the blocks that this rank holds. All `ranks` call this at
-    /// once. Each drive spring is as stiff as its block: `k_s,i = k_s E_i/E`.
+    /// A slider with the given moduli, densities and outline of the blocks that this rank holds. All `ranks`
+    /// call this at once. Each drive spring is as stiff as its block: `k_s,i = k_s E_i/E`.
     pub fn new(
         stiffness: Option<Vec<f64>>,
         mut density: Option<Vec<f64>>,
@@ -145,8 +147,8 @@ impl Slider {
         slider
     }
 
-    /// A property that changes linearly along an axis, at the middle of every block of some rows: `from` at the edge where the axis
-    /// begins, `to` at the other.
+    /// A property that changes linearly along an axis, at the middle of every block of some rows: `from` at
+    /// the edge where the axis begins, `to` at the other.
     ///
     /// ```
     /// use slipfront::{Lattice, Slider};
@@ -225,7 +227,8 @@ impl Slider {
         self.density.as_ref().map_or(1.0, |density| density[b])
     }
 
-    /// Stiffness of the drive spring of block `b` over that of [`Drive`](crate::Drive); 0 for a block that does not exist.
+    /// Stiffness of the drive spring of block `b` over that of [`Drive`](crate::Drive); 0 for a block that
+    /// does not exist.
     pub fn drive_spring(&self, b: usize) -> f64 {
         match &self.drive_springs {
             _ if !self.exists(b) => 0.0,
@@ -243,8 +246,8 @@ impl Slider {
         }
     }
 
-    /// Takes the drive springs away from all blocks but those for which `is_attached` is true, among the blocks that this
-    /// rank holds. All `ranks` call this at once.
+    /// Takes the drive springs away from all blocks but those for which `is_attached` is true, among the
+    /// blocks that this rank holds. All `ranks` call this at once.
     pub fn attach(&mut self, n_blocks: usize, is_attached: impl Fn(usize) -> bool, ranks: &dyn Communicator) {
         let relative = |b: usize| if is_attached(b) { self.drive_spring(b) } else { 0.0 };
         let mut without = [(0..n_blocks)
@@ -255,8 +258,8 @@ impl Slider {
         (self.drive_springs, self.drives_some) = (Some(springs), without[0] > 0);
     }
 
-    /// Attaches drive springs to the blocks of one edge of the lattice alone, on the rank that holds these `rows`: see
-    /// [`attach`](Self::attach).
+    /// Attaches drive springs to the blocks of one edge of the lattice alone, on the rank that holds these
+    /// `rows`: see [`attach`](Self::attach).
     pub fn attach_edge(
         &mut self,
         lattice: &Lattice,

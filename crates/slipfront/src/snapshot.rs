@@ -44,8 +44,8 @@ pub struct Snapshot<'a> {
 pub(crate) const MU_STAR_ROUNDING: f64 = 1e-9;
 
 impl Snapshot<'_> {
-    /// Displacement, velocity and forces of block `b`. The fused kernel keeps no forces, so that they are recomputed: to
-    /// read all blocks, use [`read_field`](Self::read_field).
+    /// Displacement, velocity and forces of block `b`. The fused kernel keeps no forces, so that they are
+    /// recomputed: to read all blocks, use [`read_field`](Self::read_field).
     ///
     /// # Panics
     /// If several ranks share the lattice: one of them does not hold all neighbours of its blocks.
@@ -72,8 +72,8 @@ impl Snapshot<'_> {
         });
     }
 
-    /// Values of `field` in every `stride`-th row, several blocks of a row at a time: `write` is given the row, the column
-    /// of the first value, and the values.
+    /// Values of `field` in every `stride`-th row, several blocks of a row at a time: `write` is given the
+    /// row, the column of the first value, and the values.
     pub(crate) fn read_rows(&self, field: Field, stride: usize, mut write: impl FnMut(usize, usize, &[f32])) {
         let Some(outline) = &self.model.slider.outline else {
             return self
@@ -112,13 +112,14 @@ impl Snapshot<'_> {
             .expect("an observer needs the energies of this step")
     }
 
-    /// Energy that falling strength takes since the start, a part of the loss to friction: for each block the integral of `f - K` over
-    /// its slip; 0 where strength does not fall. All ranks must call this together.
+    /// Energy that falling strength takes since the start, a part of the loss to friction: for each block the
+    /// integral of `f - K` over its slip; 0 where strength does not fall. All ranks must call this together.
     pub fn weakening_energy(&self) -> f64 {
         let Some(law) = self.model.friction.strength_over_slip() else {
             return 0.0;
         };
-        /// Blocks at once: few enough for the stack, since memory for all of them would be asked for at every row of a series.
+        /// Blocks at once: few enough for the stack, since memory for all of them would be asked for at every
+        /// row of a series.
         const CHUNK: usize = 1024;
         let surface = &self.model.surface;
         let (mut energies, mut lost_before) = ([0.0; CHUNK], [0.0; CHUNK]);
@@ -161,7 +162,8 @@ impl Snapshot<'_> {
         self.engine.read_column(BlockColumn::FirstSlip, 0, values);
     }
 
-    /// Time t* at which the first block of all ranks slid while in contact. All ranks must call this together.
+    /// Time t* at which the first block of all ranks slid while in contact. All ranks must call this
+    /// together.
     pub fn earliest_first_slip(&self) -> Option<f64> {
         const PART: usize = 1 << 10;
         let (n, mut times) = (self.model.surface.n_blocks(), [0.0; PART]);

@@ -6,15 +6,17 @@ use crate::model::Model;
 use crate::moduli::Moduli;
 use crate::slider::Slider;
 
-/// Largest stable time step of a block, from the largest eigenvalue `springs` of `2 sum_j k_ij e_ij e_ij^T/m_i` over the springs to its
-/// neighbours, `held`, the stiffness of the springs that hold it to the drive and to the substrate over its mass, and the time
-/// `tau_v` of the dampers beside the former, which lag by half a step:
+/// Largest stable time step of a block, from the largest eigenvalue `springs` of
+/// `2 sum_j k_ij e_ij e_ij^T/m_i` over the springs to its neighbours, `held`, the stiffness of the springs
+/// that hold it to the drive and to the substrate over its mass, and the time `tau_v` of the dampers beside
+/// the former, which lag by half a step:
 ///
 /// ```text
 /// (dt^2 + 2 tau_v dt) springs + dt^2 held = 4
 /// ```
 ///
-/// The first term bounds what the neighbours contribute whatever their motion, since `(x - y)^2 <= 2 x^2 + 2 y^2`.
+/// The first term bounds what the neighbours contribute whatever their motion, since
+/// `(x - y)^2 <= 2 x^2 + 2 y^2`.
 ///
 /// ```
 /// use slipfront::stability::stable_step;
@@ -30,8 +32,8 @@ pub fn stable_step(springs: f64, held: f64, viscosity_time: f64) -> f64 {
 
 impl Model {
     /// The bound below which a time step must stay: the least [`stable_step`] of all blocks, and no more than
-    /// [`dt_star_limit`], the bound of the paper's slider. Friction and damping do not lower it. All `ranks` of a lattice
-    /// must call this together.
+    /// [`dt_star_limit`], the bound of the paper's slider. Friction and damping do not lower it. All `ranks`
+    /// of a lattice must call this together.
     pub fn stable_step_limit(&self, ranks: &dyn Communicator) -> f64 {
         let (lattice, slider) = (&self.lattice, &self.slider);
         let contact = self.friction.contact_stiffness();

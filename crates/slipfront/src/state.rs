@@ -2,13 +2,15 @@
 
 use crate::vector_field::VectorField;
 
-/// A state at step n: displacements at t_n, velocities half a step earlier or later (leapfrog, D6). A block slides if and
-/// only if its velocity is not zero (D12), so that the friction law (D2) needs no further memory.
+/// A state at step n: displacements at t_n, velocities half a step earlier or later (leapfrog, D6). A block
+/// slides if and only if its velocity is not zero (D12), so that the friction law (D2) needs no further
+/// memory.
 #[derive(Clone, Debug, PartialEq)]
 pub struct State {
     /// Displacement **u** from the rest site, in units of `P mu_s l^2/(E h)`.
     pub displacement: VectorField,
-    /// Velocity in units of `P mu_s/sqrt(E rho)`: at `t - dt/2` where a simulation begins, at `t + dt/2` where it stands.
+    /// Velocity in units of `P mu_s/sqrt(E rho)`: at `t - dt/2` where a simulation begins, at `t + dt/2`
+    /// where it stands.
     pub velocity: VectorField,
 }
 

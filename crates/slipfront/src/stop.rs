@@ -17,7 +17,8 @@ pub struct Stop {
 pub enum StopReason {
     /// The last step is done.
     End,
-    /// The fall that ends the first peak of mu* was seen, or the drive that is held has gone the path up to which the largest mu* counts.
+    /// The fall that ends the first peak of mu* was seen, or the drive that is held has gone the path up to
+    /// which the largest mu* counts.
     #[serde(rename = "after_onset")]
     Onset,
 }
@@ -31,8 +32,8 @@ impl Stop {
         }
     }
 
-    /// Stops as soon as the fall that ends the first peak is seen, under a held drive as soon as the largest mu* is known,
-    /// and after `last_step` steps at the latest.
+    /// Stops as soon as the fall that ends the first peak is seen, under a held drive as soon as the largest
+    /// mu* is known, and after `last_step` steps at the latest.
     pub fn after_onset(last_step: u64) -> Self {
         Self {
             last_step,

@@ -1,5 +1,5 @@
-//! Helpers for tests of slipfront and of crates that use it: ranks that are threads, parts that are private to the fused
-//! kernel, and tests that have a process of their own.
+//! Helpers for tests of slipfront and of crates that use it: ranks that are threads, parts that are private
+//! to the fused kernel, and tests that have a process of their own.
 
 use std::process::Command;
 use std::sync::mpsc::{Receiver, Sender, channel};
@@ -9,8 +9,8 @@ use std::thread;
 use crate::communicator::Communicator;
 pub use crate::kernel::fused::for_tests::FusedKernel;
 
-/// Does some work in a process of its own, for what is measured of a whole process: the test program is begun once more for the test
-/// `name` alone, which calls this.
+/// Does some work in a process of its own, for what is measured of a whole process: the test program is begun
+/// once more for the test `name` alone, which calls this.
 ///
 /// # Panics
 /// If the test fails there, or no test has this name.
@@ -82,8 +82,9 @@ impl Meeting {
     }
 }
 
-/// Number of times that a rank lets others go first before it sleeps until it is woken, which costs far more. There are more
-/// ranks than cores, and the words that a rank waits for are mostly there when its turn comes again.
+/// Number of times that a rank lets others go first before it sleeps until it is woken, which costs far more.
+/// There are more ranks than cores, and the words that a rank waits for are mostly there when its turn comes
+/// again.
 const TURNS: usize = 16;
 
 impl Seat {
@@ -247,7 +248,8 @@ mod tests {
     use super::*;
     use crate::communicator::{Alone, lowest_rank};
 
-    /// Threads talk as ranks do, also in the ring of one and of two ranks, where above and below are the same.
+    /// Threads talk as ranks do, also in the ring of one and of two ranks, where above and below are the
+    /// same.
     #[test]
     fn threads_talk_as_ranks_do() {
         for size in 1..5 {

@@ -5,8 +5,9 @@ use serde::{Deserialize, Serialize};
 /// Sums over all blocks at t_n, in units of this crate.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Totals {
-    /// `sum w u`, with the relative stiffness `w` of the drive springs. For a drive that rotates the two components are not
-    /// x and y, but along the [direction](crate::Drive::direction_at) `g` of each block and across it, to its left.
+    /// `sum w u`, with the relative stiffness `w` of the drive springs. For a drive that rotates the two
+    /// components are not x and y, but along the [direction](crate::Drive::direction_at) `g` of each block
+    /// and across it, to its left.
     pub displacement: [f64; 2],
     /// Sum `sum w v` at t_n, the mean of the half steps around it, in the components of `displacement`.
     pub velocity: [f64; 2],

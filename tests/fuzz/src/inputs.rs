@@ -40,8 +40,8 @@ impl Target {
         made.map(|(k, bytes)| (format!("long {k}"), bytes)).collect()
     }
 
-    /// The text of the target's dictionary in the format of libFuzzer, for case and study files and requests with the keys
-    /// of a case; empty without one.
+    /// The text of the target's dictionary in the format of libFuzzer, for case and study files and requests
+    /// with the keys of a case; empty without one.
     pub fn words(&self) -> String {
         let Some(name) = self.dictionary else {
             return String::new();

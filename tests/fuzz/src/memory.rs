@@ -4,8 +4,8 @@ use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 use std::sync::{Mutex, PoisonError};
 
-/// The system's allocator, which counts the bytes that are allocated at present, in all threads together: pictures are
-/// drawn by several.
+/// The system's allocator, which counts the bytes that are allocated at present, in all threads together:
+/// pictures are drawn by several.
 struct Counting;
 
 static ALLOCATED: AtomicUsize = AtomicUsize::new(0);

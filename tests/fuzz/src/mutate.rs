@@ -61,7 +61,8 @@ impl Mutator {
         input
     }
 
-    /// A seed in which a piece is repeated until the input has about this length; half of the inputs number the repetitions.
+    /// A seed in which a piece is repeated until the input has about this length; half of the inputs number
+    /// the repetitions.
     pub fn repeated(&mut self, seeds: &[Vec<u8>], length: usize) -> Vec<u8> {
         let seed = seeds[self.below(seeds.len())].clone();
         let (start, end) = self.range(seed.len());

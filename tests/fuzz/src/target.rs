@@ -27,7 +27,8 @@ pub struct Target {
     pub mutations: usize,
     /// Long inputs that `cargo test` tries.
     pub repetitions: usize,
-    /// Makes long inputs in code: many of each thing of which the format allows any number, and where it is long or deep.
+    /// Makes long inputs in code: many of each thing of which the format allows any number, and where it is
+    /// long or deep.
     pub(crate) long: fn() -> Vec<Vec<u8>>,
 }
 
@@ -46,9 +47,9 @@ pub(crate) struct Time {
 }
 
 impl Time {
-    /// Time of most checks: more than twice what was measured of the slowest long input, and ten times that of most, so that a busy
-    /// machine does not come near. Time that grows with the square of the length, at a nanosecond for each pair of bytes, takes ten times
-    /// this for the long inputs.
+    /// Time of most checks: more than twice what was measured of the slowest long input, and ten times that
+    /// of most, so that a busy machine does not come near. Time that grows with the square of the length, at
+    /// a nanosecond for each pair of bytes, takes ten times this for the long inputs.
     pub(crate) const READING: Self = Self {
         seconds: 2.0,
         us_per_byte: 25.0,

@@ -18,8 +18,9 @@ pub fn machine_number() -> i64 {
     i64::from_le_bytes(hash.as_bytes().as_chunks().0[0])
 }
 
-/// Memory that this process may still take, in bytes: the memory that the machine can give without swapping, or the rest of
-/// its control group or of its limit of addresses (`ulimit -v`) if that is less. `None` if the system does not say.
+/// Memory that this process may still take, in bytes: the memory that the machine can give without swapping,
+/// or the rest of its control group or of its limit of addresses (`ulimit -v`) if that is less. `None` if the
+/// system does not say.
 pub fn available_memory() -> Option<f64> {
     use sysinfo::{ProcessRefreshKind, ProcessesToUpdate, System};
     let mut system = System::new().ok()?;
@@ -33,7 +34,8 @@ pub fn available_memory() -> Option<f64> {
         );
         system.process(own)?.cgroup_limits()
     });
-    // What files of the group lie in memory for reading, such as those just written, is given back when asked for.
+    // What files of the group lie in memory for reading, such as those just written, is given back when asked
+    // for.
     let of_group = group.map(|limits| limits.total_memory.saturating_sub(limits.rss));
     let least = of_machine
         .into_iter()
@@ -43,8 +45,9 @@ pub fn available_memory() -> Option<f64> {
     least.map(|bytes| bytes as f64)
 }
 
-/// Bytes of addresses that a thread may take beside the memory that is asked for: its stack, and an arena, for which the
-/// allocator of glibc wants twice as much for a moment. A thread that gets no arena takes a page for every small piece.
+/// Bytes of addresses that a thread may take beside the memory that is asked for: its stack, and an arena,
+/// for which the allocator of glibc wants twice as much for a moment. A thread that gets no arena takes a
+/// page for every small piece.
 const THREAD_ADDRESSES: u64 = (2 + 128) << 20;
 
 /// Least number of bytes of addresses that are left to the work of the threads.
@@ -62,8 +65,8 @@ fn addresses_left() -> Option<u64> {
     Some(limit.saturating_sub(taken))
 }
 
-/// Number of the `wanted` threads that have room within the limit of addresses of this process (`ulimit -v`), each with
-/// `others` that it needs.
+/// Number of the `wanted` threads that have room within the limit of addresses of this process (`ulimit -v`),
+/// each with `others` that it needs.
 pub fn threads_that_fit(wanted: usize, others: usize) -> usize {
     let Some(left) = addresses_left() else {
         return wanted;

@@ -54,8 +54,8 @@ fn window(y: &[f64], count: usize) -> usize {
     ((count * y.len() + 200) / 400).max(1)
 }
 
-/// Position of the first peak: of the largest value up to the first fall by `fall` below the largest so far, or of all
-/// values.
+/// Position of the first peak: of the largest value up to the first fall by `fall` below the largest so far,
+/// or of all values.
 fn first_peak(s: &[f64], fall: f64) -> usize {
     let mut peak = 0;
     for (i, &value) in s.iter().enumerate() {
@@ -69,7 +69,8 @@ fn first_peak(s: &[f64], fall: f64) -> usize {
     peak
 }
 
-/// Running mean over the values from `w/2` before to `w/2` behind, both rounded down, without those beyond the ends.
+/// Running mean over the values from `w/2` before to `w/2` behind, both rounded down, without those beyond
+/// the ends.
 pub(super) fn running_mean(y: &[f64], w: usize) -> Vec<f64> {
     let half = w / 2;
     (0..y.len())

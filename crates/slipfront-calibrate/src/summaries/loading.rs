@@ -1,5 +1,5 @@
-//! The rise of friction up to the first peak, which shows the stiffness of the mount, and slip before the slider as a whole
-//! slips.
+//! The rise of friction up to the first peak, which shows the stiffness of the mount, and slip before the
+//! slider as a whole slips.
 //!
 //! ```text
 //! log s5_p                     the height of the first peak
@@ -26,7 +26,8 @@ pub(super) fn summaries(curve: &Curve) -> Vec<f64> {
     found
 }
 
-/// Place at which values first rise above a level, interpolated between two of them; the last place if they never do.
+/// Place at which values first rise above a level, interpolated between two of them; the last place if they
+/// never do.
 fn rises_above(s: &[f64], level: f64) -> f64 {
     let Some(i) = s.iter().position(|&value| value > level) else {
         return s.len() as f64 - 1.0;

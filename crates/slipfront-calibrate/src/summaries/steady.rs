@@ -1,6 +1,7 @@
 //! Steady sliding: size, speed and regularity of the scatter of friction in the second half of the record.
 //!
-//! With `e_i = y_i - m` of the second half, d_L its differences over L of 400, and quantities over a window as in [the whole](super):
+//! With `e_i = y_i - m` of the second half, d_L its differences over L of 400, and quantities over a window
+//! as in [the whole](super):
 //!
 //! ```text
 //! log sd(e)/m                  and of its running means over 4, 8, 16, 32 of 400
@@ -107,7 +108,8 @@ mod tests {
         let found = summaries(&Curve::new(&y));
         let near = |k: usize, value: f64| assert!((found[k] - value).abs() < 1e-9, "{k} {found:?}");
         near(0, 0.1_f64.ln());
-        // Differences over 1 have the size 0.2, those over 2 and 4 vanish; their mean over 199 is one of them.
+        // Differences over 1 have the size 0.2, those over 2 and 4 vanish; their mean over 199 is one of
+        // them.
         let size = 0.2 * (1.0 - 1.0 / f64::from(199 * 199)).sqrt();
         near(5, size.ln());
         near(7, super::super::curve::LEAST.ln());
@@ -122,7 +124,8 @@ mod tests {
         (26..36).for_each(|k| near(k, 2.0 * super::super::curve::LEAST.ln()));
     }
 
-    /// A swing of 8 periods over the half of the record, of amplitude 0.1: three Fourier coefficients, n/4 and n/8 twice, of its amplitude.
+    /// A swing of 8 periods over the half of the record, of amplitude 0.1: three Fourier coefficients, n/4
+    /// and n/8 twice, of its amplitude.
     #[test]
     fn a_swing_is_in_its_band() {
         let y: Vec<f64> = (0..400)

@@ -1,6 +1,8 @@
-//! Rate and state of a block that is pulled at steps of speed: a calibration beside a fit of maximum likelihood, which shares nothing with it.
+//! Rate and state of a block that is pulled at steps of speed: a calibration beside a fit of maximum
+//! likelihood, which shares nothing with it.
 //!
-//! Records come from the equations of the laboratory, without inertia, in units in which the normal force is 1:
+//! Records come from the equations of the laboratory, without inertia, in units in which the normal force is
+//! 1:
 //!
 //! ```text
 //! dF/dt = k (V(t) - v),   v = V_0 exp((F - mu_0 - b ln(V_0 theta/D_c))/a),   dtheta/dt = 1 - v theta/D_c
@@ -22,10 +24,11 @@ use slipfront_study::StudyFile;
 /// Coefficient of steady sliding at [`V_0`], and coefficient by which slipfront scales forces.
 const MU_0: f64 = 0.6;
 const V_0: f64 = 0.005;
-/// Stiffness of the drive spring: stiff enough for stable sliding anywhere in the ranges, (b - a)/(mu_0 D_c) < 0.14.
+/// Stiffness of the drive spring: stiff enough for stable sliding anywhere in the ranges, (b - a)/(mu_0 D_c)
+/// < 0.14.
 const STIFFNESS: f64 = 1.0;
-/// Speeds of the drive, each until a time t* at which a value of a record stands and a step of a run ends. They are so low that inertia, of
-/// the order of V sqrt(k), is lost in the noise.
+/// Speeds of the drive, each until a time t* at which a value of a record stands and a step of a run ends.
+/// They are so low that inertia, of the order of V sqrt(k), is lost in the noise.
 const SPEEDS: [(f64, f64); 5] = [
     (0.005, 600.0),
     (0.0015, 1400.0),
@@ -69,8 +72,8 @@ fn friction([a, b, d_c]: [f64; 3]) -> Vec<f64> {
     values
 }
 
-/// Estimate of maximum likelihood from a record with normal noise of this standard deviation, and the half width of each interval of 90 %,
-/// `1.645 sqrt(s^2 (J^T J)^-1)`, both as shares of the ranges.
+/// Estimate of maximum likelihood from a record with normal noise of this standard deviation, and the half
+/// width of each interval of 90 %, `1.645 sqrt(s^2 (J^T J)^-1)`, both as shares of the ranges.
 fn most_likely(record: &[f64], noise: f64) -> [[f64; 2]; 3] {
     let curve = |shares: [f64; 3]| {
         let value = |j: usize| RANGES[j][0] + shares[j] * (RANGES[j][1] - RANGES[j][0]);
@@ -170,8 +173,8 @@ fn set_up() -> SetUp {
 ///
 /// - its intervals hold the estimate of maximum likelihood as often as the truth at least;
 /// - they hold the truth with 90 %;
-/// - they are comparable in width: not narrower, which they could not be and hold the truth, but for the tenth by which a width scatters that is
-///   found from some hundred residuals; and at most twice as wide.
+/// - they are comparable in width: not narrower, which they could not be and hold the truth, but for the
+///   tenth by which a width scatters that is found from some hundred residuals; and at most twice as wide.
 ///
 /// Bounds allow for 30 records, three standard deviations of a share of 90 %: 0.9 - 3 sqrt(0.09/30) = 0.74.
 #[test]

@@ -12,11 +12,12 @@ use super::slab::Slab;
 /// Largest ratio of compression: deflate cannot pack more than about 1030 bytes into one.
 const DEFLATE_MAX_RATIO: u64 = 1040;
 
-/// Reads a mask for some rows of a lattice of `nx` x `ny` blocks from a PNG image called `path`, of any colour type and
-/// depth.
+/// Reads a mask for some rows of a lattice of `nx` x `ny` blocks from a PNG image called `path`, of any
+/// colour type and depth.
 ///
-/// The image is stretched over the slider, and a block is textured if the pixel at its centre is dark. Returns the values in
-/// row-major order, the smallest y (the bottom of the image) first: no other pixel is kept, though all are read.
+/// The image is stretched over the slider, and a block is textured if the pixel at its centre is dark.
+/// Returns the values in row-major order, the smallest y (the bottom of the image) first: no other pixel is
+/// kept, though all are read.
 ///
 /// A pixel is dark when its luminance, in 0 to 1, lies below `threshold`. The luminance is
 ///
@@ -24,11 +25,12 @@ const DEFLATE_MAX_RATIO: u64 = 1040;
 /// 0.2126 R + 0.7152 G + 0.0722 B
 /// ```
 ///
-/// (Rec. 709) of the stored values, whatever gamma or colour profile the file names; a transparent pixel is laid
-/// over white.
+/// (Rec. 709) of the stored values, whatever gamma or colour profile the file names; a transparent pixel is
+/// laid over white.
 ///
 /// # Errors
-/// [`ArrayError`] if the file is not a PNG image, corrupt, or has more than 2^28 pixels, or more than 2^20 along a side.
+/// [`ArrayError`] if the file is not a PNG image, corrupt, or has more than 2^28 pixels, or more than 2^20
+/// along a side.
 pub fn mask_png(
     path: &Path,
     source: &mut (impl BufRead + Seek),
@@ -71,7 +73,8 @@ pub(super) fn png_reader<'a, S: BufRead + Seek>(
     Ok(reader)
 }
 
-/// Refuses a palette that is not made of 1 to 256 whole colours: the decoder takes any length and panics on such a one.
+/// Refuses a palette that is not made of 1 to 256 whole colours: the decoder takes any length and panics on
+/// such a one.
 fn check_palette(path: &Path, palette: Option<&[u8]>) -> Result<(), ArrayError> {
     let bytes = palette.map_or(0, <[u8]>::len);
     if bytes.is_multiple_of(3) && (3..=768).contains(&bytes) {
@@ -185,8 +188,8 @@ pub(super) fn decoding_error(path: &Path, source: DecodingError) -> ArrayError {
 
 /// The bytes of a black and white PNG image of a texture: one pixel per block, textured = black.
 ///
-/// `textured` holds `nx * ny` values in row-major order, row j = 0 (the smallest y) first; the top row of the image is the
-/// largest y. For this lattice [`mask_png`] gives the mask back.
+/// `textured` holds `nx * ny` values in row-major order, row j = 0 (the smallest y) first; the top row of the
+/// image is the largest y. For this lattice [`mask_png`] gives the mask back.
 ///
 /// # Errors
 /// When there is no block, or more along a side than an image can have, or `textured` has another length.

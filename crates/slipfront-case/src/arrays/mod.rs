@@ -1,11 +1,11 @@
 //! Arrays and images that a case reads: friction coefficients block by block, texture masks, and height maps.
 //!
-//! The files may hold anything, so every parser compares the sizes in a header with the length of the file before it
-//! allocates memory, files longer than their lattice can need are refused, and any invalid contents give an
-//! [`ArrayError`]. Arrays are (ny, nx) and row-major, row j = 0 (the smallest y) first.
+//! The files may hold anything, so every parser compares the sizes in a header with the length of the file
+//! before it allocates memory, files longer than their lattice can need are refused, and any invalid contents
+//! give an [`ArrayError`]. Arrays are (ny, nx) and row-major, row j = 0 (the smallest y) first.
 //!
-//! A file is never in memory as a whole: only the values of the rows that are asked for are kept. Where several ranks read
-//! their rows of one file, the error of the lowest rank is the error of reading all rows.
+//! A file is never in memory as a whole: only the values of the rows that are asked for are kept. Where
+//! several ranks read their rows of one file, the error of the lowest rank is the error of reading all rows.
 
 mod error;
 mod head;
@@ -85,13 +85,14 @@ pub fn limit_length_of_height_map(path: &Path, found: u64) -> Result<(), ArrayEr
 
 /// Reads one number per block of some rows from a `.npy` or `.csv` file called `path`.
 ///
-/// A `.npy` file has the shape (ny, nx), any real, integer or boolean type, either byte order and either memory order. A
-/// `.csv` file has `ny` lines of `nx` numbers with a decimal point, separated by commas, semicolons, tabs or blanks; blank
-/// lines and lines that start with `#` are skipped. Returns the values in row-major order, the smallest y first, in the unit
-/// of the file; a friction coefficient has none.
+/// A `.npy` file has the shape (ny, nx), any real, integer or boolean type, either byte order and either
+/// memory order. A `.csv` file has `ny` lines of `nx` numbers with a decimal point, separated by commas,
+/// semicolons, tabs or blanks; blank lines and lines that start with `#` are skipped. Returns the values in
+/// row-major order, the smallest y first, in the unit of the file; a friction coefficient has none.
 ///
 /// # Errors
-/// [`ArrayError`] if the file is of another format or shape, or has a value that is not finite or is below zero.
+/// [`ArrayError`] if the file is of another format or shape, or has a value that is not finite or is below
+/// zero.
 pub fn field(path: &Path, source: &mut (impl BufRead + Seek), slab: &Slab) -> Result<Vec<f64>, ArrayError> {
     let wanted = "a finite number >= 0";
     let is_wrong = |value: f64| !value.is_finite() || value < 0.0;

@@ -13,10 +13,11 @@ use slipfront_base::text::truncated;
 /// Largest length of a header; numpy itself refuses longer ones.
 pub(super) const HEADER_MAX_BYTES: u64 = 10_000;
 
-/// Reads a mask for some rows from a `.npy` file called `path`, of shape (ny, nx): 1 or true = textured, 0 or false = not.
+/// Reads a mask for some rows from a `.npy` file called `path`, of shape (ny, nx): 1 or true = textured, 0 or
+/// false = not.
 ///
-/// Any real, integer or boolean type is accepted, in either byte and memory order. Returns the values in row-major order, the
-/// smallest y first.
+/// Any real, integer or boolean type is accepted, in either byte and memory order. Returns the values in
+/// row-major order, the smallest y first.
 ///
 /// # Errors
 /// [`ArrayError`] if the file is not a `.npy` file, of another shape, or has another value:
@@ -65,8 +66,9 @@ pub(super) fn values(
     Ok(values)
 }
 
-/// Reads an array of any size in the order of its file, and returns its columns and rows. `take` is given numbers of a row
-/// one after the other, with their row, counted along the first axis, and the column of the first number.
+/// Reads an array of any size in the order of its file, and returns its columns and rows. `take` is given
+/// numbers of a row one after the other, with their row, counted along the first axis, and the column of the
+/// first number.
 pub(super) fn rows(
     path: &Path,
     source: &mut (impl BufRead + Seek),
@@ -182,7 +184,8 @@ impl<'a, S: BufRead + Seek> NpyArray<'a, S> {
     }
 }
 
-/// The bytes of a `.npy` file of the shape (ny, nx) that holds a mask of rows of `nx` blocks, the smallest y first. [`mask_npy`] gives it back.
+/// The bytes of a `.npy` file of the shape (ny, nx) that holds a mask of rows of `nx` blocks, the smallest y
+/// first. [`mask_npy`] gives it back.
 pub fn npy_of_mask(nx: usize, textured: &[bool]) -> Vec<u8> {
     const BEFORE_HEADER: usize = 10;
     let ny = textured.len() / nx.max(1);
@@ -253,7 +256,8 @@ enum Kind {
 }
 
 impl NumberType {
-    /// The type of this name, such as `<f8`; `None` for anything but booleans, integers and real numbers of at most 64 bits.
+    /// The type of this name, such as `<f8`; `None` for anything but booleans, integers and real numbers of
+    /// at most 64 bits.
     fn of(name: &str) -> Option<NumberType> {
         let mut letters = name.chars();
         let big_endian = match letters.next()? {

@@ -12,7 +12,8 @@ pub(super) struct NpyHeader<'a> {
 }
 
 impl<'a> NpyHeader<'a> {
-    /// Reads the text of a header; none if it does not describe an array of numbers whose count fits into 64 bits.
+    /// Reads the text of a header; none if it does not describe an array of numbers whose count fits into 64
+    /// bits.
     pub(super) fn parse(text: &'a [u8]) -> Option<Self> {
         let text = std::str::from_utf8(text).ok()?.trim();
         let entries = text.strip_prefix('{')?.strip_suffix('}')?;
@@ -43,8 +44,8 @@ impl<'a> NpyHeader<'a> {
     }
 }
 
-/// The parts of a text between separators that stand in no quotes and brackets, without blanks around them. A last part may
-/// be empty, and is left out. None if quotes or brackets do not close.
+/// The parts of a text between separators that stand in no quotes and brackets, without blanks around them. A
+/// last part may be empty, and is left out. None if quotes or brackets do not close.
 fn split(text: &str, separator: char) -> Option<Vec<&str>> {
     let (mut parts, mut start) = (Vec::new(), 0);
     let (mut depth, mut quote) = (0_usize, None);

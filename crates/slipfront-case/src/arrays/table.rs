@@ -12,13 +12,15 @@ use super::slab::Slab;
 
 /// Total length of comment lines among which the separator is searched.
 pub(super) const PREAMBLE_MAX_BYTES: u64 = 1 << 20;
-/// Largest length of a number with its separator and blanks, and its share of comments: numpy's longest number takes 25.
+/// Largest length of a number with its separator and blanks, and its share of comments: numpy's longest
+/// number takes 25.
 pub(super) const NUMBER_MAX_BYTES: u64 = 64;
-/// Largest length of a line of a table of any size. The line is in memory as a whole, with the place of each of its fields:
-/// eight bytes for each of the fields that are read.
+/// Largest length of a line of a table of any size. The line is in memory as a whole, with the place of each
+/// of its fields: eight bytes for each of the fields that are read.
 const LINE_MAX_BYTES: u64 = 8 * SIDE_MAX;
 
-/// The rows of a slab of `ny` lines of `nx` numbers. Lines before these rows are counted, lines behind are not read.
+/// The rows of a slab of `ny` lines of `nx` numbers. Lines before these rows are counted, lines behind are
+/// not read.
 pub(super) fn values(
     path: &Path,
     source: &mut (impl BufRead + Seek),
@@ -65,8 +67,8 @@ pub(super) fn values(
     Ok(values)
 }
 
-/// Reads a table of any size row after row, and returns its columns and rows. `take` gets each row, with its number and the
-/// column 0.
+/// Reads a table of any size row after row, and returns its columns and rows. `take` gets each row, with its
+/// number and the column 0.
 pub(super) fn rows(
     path: &Path,
     source: &mut (impl BufRead + Seek),
@@ -179,8 +181,8 @@ pub fn reader<R: Read>(source: R, separator: u8) -> csv::Reader<R> {
         .from_reader(source)
 }
 
-/// Separator of the fields of the first line that is no comment, from the beginning of a table: a semicolon, a tab, a comma
-/// or a blank.
+/// Separator of the fields of the first line that is no comment, from the beginning of a table: a semicolon,
+/// a tab, a comma or a blank.
 ///
 /// The semicolon comes before the comma, so that a decimal comma is recognised.
 pub fn separator(preamble: &[u8]) -> u8 {

@@ -48,8 +48,8 @@ fn open(path: &Path, nx: usize, ny: usize) -> Result<BufReader<File>, ArrayError
     Ok(BufReader::new(file))
 }
 
-/// Reads all rows at once. Every division of the rows among several ranks gives the same result, or the error of the lowest
-/// rank.
+/// Reads all rows at once. Every division of the rows among several ranks gives the same result, or the error
+/// of the lowest rank.
 fn read<T: PartialEq + Debug>(
     nx: usize,
     ny: usize,

@@ -1,8 +1,8 @@
-//! Memory and disk space of a run, estimated from the blocks, snapshots and rows that it keeps and compared with the machine
-//! before any of it is taken.
+//! Memory and disk space of a run, estimated from the blocks, snapshots and rows that it keeps and compared
+//! with the machine before any of it is taken.
 //!
-//! The estimate is an upper bound with one margin: every figure of this file is the most that was measured over all options,
-//! rounded up. `tests/budget` of slipfront-cli holds it against the memory that runs take.
+//! The estimate is an upper bound with one margin: every figure of this file is the most that was measured
+//! over all options, rounded up. `tests/budget` of slipfront-cli holds it against the memory that runs take.
 
 use std::ops::Range;
 use std::path::Path;
@@ -43,10 +43,12 @@ const MAP_BLOCKS: f64 = 65_536.0;
 /// Bytes of a run in memory and in a checkpoint that do not grow with it.
 const RESULTS: f64 = 1.5 * MIB;
 
-/// Numbers of blocks that the first of several ranks takes to find the slip front, and the most blocks of which it does.
+/// Numbers of blocks that the first of several ranks takes to find the slip front, and the most blocks of
+/// which it does.
 const GATHERED: [f64; 2] = [5.0, (1 << 22) as f64];
 
-/// Steps from one slip event of a slider that is driven at an edge to the next, at the least. Measured were 175 and more.
+/// Steps from one slip event of a slider that is driven at an edge to the next, at the least. Measured were
+/// 175 and more.
 const STEPS_OF_EVENT: u64 = 50;
 
 /// The numbers of blocks, snapshots, rows and the like on which memory and disk space of a run depend.
@@ -94,7 +96,8 @@ struct Cause {
 
 /// A part of the memory and disk space of a run.
 struct Part {
-    /// Function that makes the words of the cause, called for a refusal alone because many small cases are judged.
+    /// Function that makes the words of the cause, called for a refusal alone because many small cases are
+    /// judged.
     cause: fn(&Budget) -> Cause,
     /// Bytes in memory, in files, and in a checkpoint.
     bytes: [f64; 3],
@@ -109,8 +112,8 @@ enum Place {
 }
 
 impl Budget {
-    /// Memory of cases that are too small to be compared with the machine, nor in Python their runs: asking for its free
-    /// memory takes longer than making a small case. Commands compare the whole memory of a run.
+    /// Memory of cases that are too small to be compared with the machine, nor in Python their runs: asking
+    /// for its free memory takes longer than making a small case. Commands compare the whole memory of a run.
     pub const SMALL: f64 = 64.0 * MIB;
 
     /// The budget of a model, without results, for a process that holds these rows.
@@ -262,7 +265,8 @@ impl Budget {
         }
     }
 
-    /// Bytes while pictures and movie are drawn, beside those of the run; its snapshots are in memory no more.
+    /// Bytes while pictures and movie are drawn, beside those of the run; its snapshots are in memory no
+    /// more.
     fn drawing(&self) -> f64 {
         if self.movie == 0.0 {
             return PICTURES;
@@ -282,8 +286,8 @@ impl Budget {
         self.blocks * NUMBER * self.numbers[1] + self.laid
     }
 
-    /// Memory of one of several runs at once beside the program, each on one thread, in bytes; `writes` tells whether it
-    /// writes files and draws pictures.
+    /// Memory of one of several runs at once beside the program, each on one thread, in bytes; `writes` tells
+    /// whether it writes files and draws pictures.
     pub fn beside_others(&self, writes: bool) -> f64 {
         let on_one_thread = Self { bands: 1.0, ..*self };
         on_one_thread.of_run(writes)
@@ -315,13 +319,14 @@ impl Budget {
         snapshots.bytes[Place::Files as usize]
     }
 
-    /// Disk space for checkpoints while the run goes on, in bytes: the latest one, the one before it, and one that is being
-    /// written.
+    /// Disk space for checkpoints while the run goes on, in bytes: the latest one, the one before it, and one
+    /// that is being written.
     pub fn disk_of_checkpoints(&self) -> f64 {
         3.0 * self.total(Place::Checkpoint)
     }
 
-    /// Refuses a case that has no memory to be made, or to be run if it is made for that. No array is there yet.
+    /// Refuses a case that has no memory to be made, or to be run if it is made for that. No array is there
+    /// yet.
     pub(super) fn check_case(&self, file: &CaseFile, to_run: bool) -> Result<(), CaseError> {
         let (whose, budget) = if to_run {
             ("a run of this case", *self)
@@ -344,8 +349,8 @@ impl Budget {
         budget.compare(file, whose, None, 0.0, available_memory())
     }
 
-    /// Refuses a run, or one that goes on from a checkpoint if it `is_resumed`, that needs more memory than there is; the
-    /// models of all ranks are in memory already.
+    /// Refuses a run, or one that goes on from a checkpoint if it `is_resumed`, that needs more memory than
+    /// there is; the models of all ranks are in memory already.
     ///
     /// # Errors
     /// A sentence with both figures, the cause of the largest part, and the key to change.
@@ -371,8 +376,9 @@ impl Budget {
         self.compare(file, whose, remedy, had, available)
     }
 
-    /// Refuses a demand for more memory than there is: `had` bytes were taken by each rank already, `available` bytes are free
-    /// beside them. `whose` memory it is and the `remedy`, if not that of its largest part, are words of the refusal.
+    /// Refuses a demand for more memory than there is: `had` bytes were taken by each rank already,
+    /// `available` bytes are free beside them. `whose` memory it is and the `remedy`, if not that of its
+    /// largest part, are words of the refusal.
     fn compare(
         &self,
         file: &CaseFile,
@@ -408,8 +414,8 @@ impl Budget {
         Err(file.source.error(cause.key, sentence))
     }
 
-    /// Refuses a run whose files, and checkpoints if it saves any, have no room in `folder`, which need not exist yet.
-    /// `replaced` is what goes from there before.
+    /// Refuses a run whose files, and checkpoints if it saves any, have no room in `folder`, which need not
+    /// exist yet. `replaced` is what goes from there before.
     ///
     /// # Errors
     /// A sentence with both figures, what most of it is for, and the key to change.
@@ -466,7 +472,8 @@ impl Budget {
     }
 }
 
-/// Memory for making a movie of this many pictures of at most `cells` blocks, in bytes: maps of larger lattices are averaged.
+/// Memory for making a movie of this many pictures of at most `cells` blocks, in bytes: maps of larger
+/// lattices are averaged.
 pub fn memory_of_movie(pictures: f64, cells: f64) -> f64 {
     MOVIE + pictures * (1e5 + 4.0 * cells.min(MAP_BLOCKS))
 }
@@ -501,7 +508,8 @@ fn numbers_of_block(file: &CaseFile, friction: &Friction) -> [f64; 2] {
     [3.0 + own, stepped + 2.0 * needs.columns as f64]
 }
 
-/// Ratio of the memory of the general kernel on several threads, each of which has the rows beside its own, to that on one.
+/// Ratio of the memory of the general kernel on several threads, each of which has the rows beside its own,
+/// to that on one.
 const BANDS: f64 = 1.3;
 
 fn is_viscous(file: &CaseFile) -> bool {
@@ -609,7 +617,8 @@ mod tests {
         );
     }
 
-    /// Memory that has been taken already counts as available: the case itself is in memory when its run is judged.
+    /// Memory that has been taken already counts as available: the case itself is in memory when its run is
+    /// judged.
     #[test]
     fn what_has_been_taken_already_counts_as_available() {
         let case = case(&["slider.blocks=[2000,1000]", "output.snapshots=[]"]);

@@ -10,8 +10,8 @@ const ROUNDING: f64 = 1e-6;
 const LEAST_BLOCK: f64 = 1e-12;
 
 impl Case {
-    /// A sentence on blocks that are too coarse for the outlines of the textures, with the number of blocks that is enough;
-    /// none for masks and height maps, whose outlines are not known.
+    /// A sentence on blocks that are too coarse for the outlines of the textures, with the number of blocks
+    /// that is enough; none for masks and height maps, whose outlines are not known.
     pub fn too_coarse(&self) -> Option<String> {
         let lengths = self.smallest_lengths();
         let too_small = lengths.iter().filter_map(|length| {
@@ -41,7 +41,8 @@ impl Case {
         ))
     }
 
-    /// Settings for blocks that are `finer` times finer, on a slider of this size; the ratio of its sides stays.
+    /// Settings for blocks that are `finer` times finer, on a slider of this size; the ratio of its sides
+    /// stays.
     fn blocks_for(&self, finer: f64) -> String {
         let (lattice, block_size) = (&self.model.lattice, self.scales.block_size);
         let sides = [lattice.nx, lattice.ny].map(|blocks| blocks as u64);
@@ -55,7 +56,8 @@ impl Case {
                 with_si_prefix(block_size / finer, "m")
             );
         }
-        // Of other outlines a coverage is that of the blocks which exist: how many these are depends a little on their size.
+        // Of other outlines a coverage is that of the blocks which exist: how many these are depends a little
+        // on their size.
         let least = match self.file.slider.outline {
             Outline::Rectangle => "at least",
             Outline::Disc | Outline::Mask => "about",

@@ -1,5 +1,5 @@
-//! Friction coefficients of a case, drawn or read from the files that it names, and the contact that turns them into
-//! thresholds.
+//! Friction coefficients of a case, drawn or read from the files that it names, and the contact that turns
+//! them into thresholds.
 
 use slipfront::surface::{
     Adhesion, Coefficients, Contact, CorrelatedField, Distribution, Load, deviation_along, pressure_along,

@@ -20,7 +20,8 @@ pub(super) struct Derived {
 }
 
 impl Derived {
-    /// Derives the quantities; refuses numbers out of the range of the model, and cases for which there is no memory.
+    /// Derives the quantities; refuses numbers out of the range of the model, and cases for which there is no
+    /// memory.
     pub(super) fn of(
         file: &CaseFile,
         lattice: &Lattice,

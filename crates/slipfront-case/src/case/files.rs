@@ -6,8 +6,8 @@ use std::io::{self, Cursor, Read, Seek, SeekFrom};
 use std::path::Path;
 use std::sync::Arc;
 
-/// Function that gets the share that is done of a part of making a case: of a file that is read, or of laying the texture over the
-/// blocks; `false` ends the work.
+/// Function that gets the share that is done of a part of making a case: of a file that is read, or of laying
+/// the texture over the blocks; `false` ends the work.
 pub type Watch<'a> = dyn FnMut(f64) -> bool + 'a;
 
 /// Contents of files by the names that a case gives them.
@@ -65,8 +65,8 @@ impl Seek for OpenFile {
     }
 }
 
-/// A file that is read until somebody ends it: every read first asks whether to go on, whatever the format of the file. It ends where it did
-/// when it was opened, since one that grows meanwhile may have no end.
+/// A file that is read until somebody ends it: every read first asks whether to go on, whatever the format of
+/// the file. It ends where it did when it was opened, since one that grows meanwhile may have no end.
 pub(super) struct Watched<'a, 'w> {
     file: OpenFile,
     /// Length of the file, and the place of the next read.

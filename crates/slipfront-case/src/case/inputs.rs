@@ -28,8 +28,8 @@ pub struct Input {
     pub contents: Option<Arc<[u8]>>,
     /// Length of the file in bytes.
     pub length: u64,
-    /// Hash of the file's contents, taken before the case was made from them. A copy that is made afterwards and has this
-    /// hash holds the contents that the case was made from.
+    /// Hash of the file's contents, taken before the case was made from them. A copy that is made afterwards
+    /// and has this hash holds the contents that the case was made from.
     pub hash: blake3::Hash,
 }
 
@@ -68,8 +68,8 @@ impl Input {
     }
 }
 
-/// Names the copy of a file in the folder `inputs/` after its plain name; files of one name and different contents are
-/// numbered. Returns the name, and whether there is such a copy already.
+/// Names the copy of a file in the folder `inputs/` after its plain name; files of one name and different
+/// contents are numbered. Returns the name, and whether there is such a copy already.
 ///
 /// `is_same` tells for a name whether the copy with it, if there is one, has the contents of the file.
 pub fn name_of_copy(plain: &str, is_same: impl Fn(&str) -> Option<bool>) -> (String, bool) {
@@ -128,7 +128,8 @@ impl NamedFiles {
         found.collect::<Result<_, _>>().map(Self)
     }
 
-    /// Hashes the files, and replaces their names in the case by those of copies. Files of equal contents and names are one.
+    /// Hashes the files, and replaces their names in the case by those of copies. Files of equal contents and
+    /// names are one.
     ///
     /// One of the ranks that find the same files, such as those of one machine, hashes them.
     ///
@@ -232,7 +233,8 @@ impl NamedFiles {
         inputs
     }
 
-    /// Refuses a file that has changed since it was found, because its contents as read may differ from the hashed ones.
+    /// Refuses a file that has changed since it was found, because its contents as read may differ from the
+    /// hashed ones.
     pub(super) fn expect_unchanged(&self, file: &CaseFile) -> Result<(), CaseError> {
         for found in self.0.iter().filter(|found| found.contents.is_none()) {
             let now = stamp(&found.original).map_err(|error| placed(file, &found.key, error))?;
@@ -288,8 +290,8 @@ fn hash_of_words(words: [i64; 4]) -> blake3::Hash {
     blake3::Hash::from_bytes(bytes)
 }
 
-/// Opens a file that is in memory or on the disk, and limits its length to that of its use for a lattice of `nx` x `ny`
-/// blocks. Returns the file and its length.
+/// Opens a file that is in memory or on the disk, and limits its length to that of its use for a lattice of
+/// `nx` x `ny` blocks. Returns the file and its length.
 fn open(
     original: &Path,
     contents: Option<&Arc<[u8]>>,
@@ -359,8 +361,8 @@ impl Inputs {
         read.map_err(|error| placed(file, key, error))
     }
 
-    /// Reads the image or array that has this name in the case, given by `key`: whether each block of the slab is dark, or
-    /// 1.
+    /// Reads the image or array that has this name in the case, given by `key`: whether each block of the
+    /// slab is dark, or 1.
     pub(super) fn read_mask(
         &self,
         file: &CaseFile,

@@ -19,7 +19,8 @@ use crate::case_file::{CaseError, CaseFile};
 /// The texture as asked and as meshed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TextureReport {
-    /// A* as asked for, %; none if there is a mask, a polygon or the depth of a height map, whose area is known only after meshing.
+    /// A* as asked for, %; none if there is a mask, a polygon or the depth of a height map, whose area is
+    /// known only after meshing.
     pub asked_percent: Option<f64>,
     /// A* as meshed, % (Eq. 15).
     pub meshed_percent: f64,
@@ -31,8 +32,8 @@ pub struct TextureReport {
     pub empty: Vec<usize>,
 }
 
-/// The model of some rows of the lattice, without the program of its drive, whose speeds change where steps begin. Files
-/// that have changed while they were read are refused.
+/// The model of some rows of the lattice, without the program of its drive, whose speeds change where steps
+/// begin. Files that have changed while they were read are refused.
 pub(super) fn make(
     file: &CaseFile,
     derived: &Derived,

@@ -39,8 +39,8 @@ pub const MAX_MAPS: usize = 6;
 /// Largest number of pictures of a movie, which take a minute and more.
 pub const MAX_PICTURES: usize = 1000;
 
-/// The field whose maps are drawn: the contact stress, or the traction if only some blocks have a drive spring, because the
-/// contact stress of a stuck block is the pull of its own drive spring.
+/// The field whose maps are drawn: the contact stress, or the traction if only some blocks have a drive
+/// spring, because the contact stress of a stuck block is the pull of its own drive spring.
 pub fn mapped_field(file: &CaseFile) -> Field {
     match file.drive.attached {
         Attached::At(AttachedEdge::All) => Field::ContactStress,

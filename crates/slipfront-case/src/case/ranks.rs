@@ -23,8 +23,8 @@ impl Ranks<'static> {
 }
 
 impl Ranks<'_> {
-    /// Returns `found` of this rank if no rank has failed; else an error on all ranks: the error of the lowest rank that has
-    /// one, which it names unless it is rank 0, or that they were stopped.
+    /// Returns `found` of this rank if no rank has failed; else an error on all ranks: the error of the
+    /// lowest rank that has one, which it names unless it is rank 0, or that they were stopped.
     pub fn agree<T>(&self, found: Result<T, CaseError>) -> Result<T, CaseError> {
         self.agree_in_words(found, |rank, text| match rank {
             0 => text,
@@ -32,7 +32,8 @@ impl Ranks<'_> {
         })
     }
 
-    /// [Agrees](Self::agree) on the results of each rank for the rows that it holds: the error is that of reading all rows.
+    /// [Agrees](Self::agree) on the results of each rank for the rows that it holds: the error is that of
+    /// reading all rows.
     pub(super) fn agree_on_rows<T>(&self, found: Result<T, CaseError>) -> Result<T, CaseError> {
         self.agree_in_words(found, |_, text| text)
     }

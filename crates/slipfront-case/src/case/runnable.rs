@@ -27,7 +27,8 @@ use crate::same::expect_same;
 pub struct Case {
     /// Name of the case and of its results.
     pub name: String,
-    /// The case file with every default filled in and its input files in `inputs/`, as the run folder holds it.
+    /// The case file with every default filled in and its input files in `inputs/`, as the run folder holds
+    /// it.
     pub file: CaseFile,
     /// Files that the case reads.
     pub inputs: Vec<Input>,
@@ -35,7 +36,8 @@ pub struct Case {
     pub scales: Scales,
     /// Dimensionless groups.
     pub groups: Groups,
-    /// The slider, and the surface of the rows that this process holds: all, unless it is one rank of several.
+    /// The slider, and the surface of the rows that this process holds: all, unless it is one rank of
+    /// several.
     pub model: Arc<Model>,
     /// Estimates of the run before it begins.
     pub expected: Expected,
@@ -60,8 +62,8 @@ pub struct Expected {
     pub first_slip_star: f64,
     /// Earliest and latest t* of the onset, see [`Model::onset_estimate`].
     pub onset_star: [f64; 2],
-    /// t* up to which the largest mu* is static friction: twice the t* of the onset, and more where only some blocks touch
-    /// or adhesion delays it.
+    /// t* up to which the largest mu* is static friction: twice the t* of the onset, and more where only some
+    /// blocks touch or adhesion delays it.
     pub onset_end_star: f64,
 }
 
@@ -78,9 +80,10 @@ impl Expected {
 }
 
 impl Case {
-    /// Loads a case file and the files it names, which stand relative to it. A case whose model needs more memory to be
-    /// stepped than there is, is refused before any array is allocated. `watch` gets the progress of reading files and of laying
-    /// the texture over the blocks, and can end both. All `ranks` make the case at once, as [`to_run`](Self::to_run) does.
+    /// Loads a case file and the files it names, which stand relative to it. A case whose model needs more
+    /// memory to be stepped than there is, is refused before any array is allocated. `watch` gets the
+    /// progress of reading files and of laying the texture over the blocks, and can end both. All `ranks`
+    /// make the case at once, as [`to_run`](Self::to_run) does.
     pub fn load(
         path: &Path,
         overrides: &[String],
@@ -90,7 +93,8 @@ impl Case {
         Self::load_with(path, overrides, None, watch, ranks)
     }
 
-    /// Loads a case file as [`load`](Self::load) does; some of the files that it or an override names may be in memory.
+    /// Loads a case file as [`load`](Self::load) does; some of the files that it or an override names may be
+    /// in memory.
     pub fn load_with(
         path: &Path,
         overrides: &[String],
@@ -107,7 +111,8 @@ impl Case {
         Self::to_run_with(file, &name, files, watch, ranks)
     }
 
-    /// Makes a case of text alone, as [`load`](Self::load) does; the files it names stand relative to `folder`.
+    /// Makes a case of text alone, as [`load`](Self::load) does; the files it names stand relative to
+    /// `folder`.
     pub fn parse(
         text: &str,
         name: &str,
@@ -118,9 +123,9 @@ impl Case {
         Self::to_run(file, name, folder.as_ref(), &mut |_| true, Ranks::ALONE)
     }
 
-    /// Makes a case of a case file that was read already, to be run; the files it names stand relative to `folder`. All
-    /// `ranks` make the case at once: each makes the surface of its own rows, and knows the rest of the case. If one fails,
-    /// or was given another case or other files, all return the same error.
+    /// Makes a case of a case file that was read already, to be run; the files it names stand relative to
+    /// `folder`. All `ranks` make the case at once: each makes the surface of its own rows, and knows the
+    /// rest of the case. If one fails, or was given another case or other files, all return the same error.
     pub fn to_run(
         file: CaseFile,
         name: &str,
@@ -157,8 +162,8 @@ impl Case {
         Self::make(file, name, files, true, watch, ranks)
     }
 
-    /// Makes a case of a case file on all `ranks` at once; the files it names stand relative to `folder`. The memory for
-    /// stepping its model is not checked.
+    /// Makes a case of a case file on all `ranks` at once; the files it names stand relative to `folder`. The
+    /// memory for stepping its model is not checked.
     pub fn new(
         file: CaseFile,
         name: &str,

@@ -28,8 +28,8 @@ pub(super) struct InBlocks {
     pub(super) topographies: Vec<Topography>,
 }
 
-/// The textured blocks of the rows that this rank holds, with the textures; masks and height maps are read. `n_blocks`
-/// blocks exist.
+/// The textured blocks of the rows that this rank holds, with the textures; masks and height maps are read.
+/// `n_blocks` blocks exist.
 pub(super) fn mesh(
     file: &CaseFile,
     scales: &Scales,
@@ -140,8 +140,8 @@ pub(super) fn outlines_in_blocks(
     file.texture.iter().filter_map(outline).collect()
 }
 
-/// The arrays of a pattern in blocks, the outermost first: it is spread over the slider, and the next one over a place of
-/// it. An error consists of the key, within the texture, and the sentence.
+/// The arrays of a pattern in blocks, the outermost first: it is spread over the slider, and the next one
+/// over a place of it. An error consists of the key, within the texture, and the sentence.
 pub(super) fn arrays(
     pattern: &Pattern,
     scales: &Scales,
@@ -266,8 +266,8 @@ impl<'a> Masks<'a> {
     }
 }
 
-/// How far a texture may reach, in slider lengths. A texture farther away is a typing error, and on a periodic axis its
-/// position would be lost to rounding.
+/// How far a texture may reach, in slider lengths. A texture farther away is a typing error, and on a
+/// periodic axis its position would be lost to rounding.
 const REACH: f64 = 100.0;
 
 fn within_reach(shape: &surface::Shape, arrays: &[surface::Array], lattice: &Lattice) -> Result<(), String> {

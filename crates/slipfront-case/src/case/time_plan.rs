@@ -24,12 +24,13 @@ pub struct TimePlan {
     pub stop: Stop,
     /// Start of the window that kinetic friction is averaged over, on the time of the drive.
     pub kinetic: KineticStart,
-    /// Whether the drive is held, and if so up to which of its steps the largest mu* counts as static friction.
+    /// Whether the drive is held, and if so up to which of its steps the largest mu* counts as static
+    /// friction.
     pub loading: Loading,
 }
 
-/// Load of a block in contact over its load if every block touched, a factor by which the onset comes later: 1 unless every
-/// block has a drive spring, and can bear its load by that alone.
+/// Load of a block in contact over its load if every block touched, a factor by which the onset comes later:
+/// 1 unless every block has a drive spring, and can bear its load by that alone.
 pub(super) fn load_factor(file: &CaseFile, model: &Model) -> f64 {
     match file.drive.attached {
         Attached::At(AttachedEdge::All) => model.surface.load_factor(),
@@ -44,8 +45,8 @@ const AUTO_STEP: f64 = 0.1;
 const MAX_STEPS: f64 = 4e9;
 
 impl TimePlan {
-    /// The time plan of a case, refused when the step is unstable, the run too long, or its kinetic window or a snapshot after its end. All
-    /// ranks must call this together.
+    /// The time plan of a case, refused when the step is unstable, the run too long, or its kinetic window or
+    /// a snapshot after its end. All ranks must call this together.
     pub(super) fn of(
         file: &CaseFile,
         scales: &Scales,
@@ -139,11 +140,11 @@ impl TimePlan {
     }
 }
 
-/// Duration of "auto": 8/V*, which shows onset and sliding of the paper's slider, or longer. Where only some blocks touch
-/// and bear f times the load, the onset comes before their own drive springs bear it all, at f/(k_s V*); after that time
-/// there must be room for the 2.5/V* that pass before the kinetic window begins, which takes longer than 8/V* where less
-/// than 48 % of the blocks touch. A drive that loads more slowly and adhesion delay the onset; under a program of speeds it
-/// is counted from the last of them.
+/// Duration of "auto": 8/V*, which shows onset and sliding of the paper's slider, or longer. Where only some
+/// blocks touch and bear f times the load, the onset comes before their own drive springs bear it all, at
+/// f/(k_s V*); after that time there must be room for the 2.5/V* that pass before the kinetic window begins,
+/// which takes longer than 8/V* where less than 48 % of the blocks touch. A drive that loads more slowly and
+/// adhesion delay the onset; under a program of speeds it is counted from the last of them.
 fn auto_duration(file: &CaseFile, scales: &Scales, model: &Model) -> f64 {
     let last = match &file.drive.speed {
         DriveSpeed::Program(segments) => segments
@@ -161,15 +162,16 @@ fn delay(file: &CaseFile, scales: &Scales) -> f64 {
     1.0 + file.friction.adhesion.si() / scales.stress()
 }
 
-/// Time t* of a held drive up to which the largest mu* counts as static friction: twice that of the onset (Eq. 12), or the
-/// time at which the drive springs of the blocks that touch bear the whole load, if that is later.
+/// Time t* of a held drive up to which the largest mu* counts as static friction: twice that of the onset
+/// (Eq. 12), or the time at which the drive springs of the blocks that touch bear the whole load, if that is
+/// later.
 pub(super) fn auto_onset_end(file: &CaseFile, scales: &Scales, model: &Model) -> f64 {
     let path = f64::max(2.0 * ONSET_PATH, load_factor(file, model) / K_DRIVE);
     path / model.loading_speed() * delay(file, scales)
 }
 
-/// The window of kinetic friction under a drive that is held, and its loading: the largest mu* before the window, or of the whole run, counts as
-/// static friction. A run that ends first has no window.
+/// The window of kinetic friction under a drive that is held, and its loading: the largest mu* before the
+/// window, or of the whole run, counts as static friction. A run that ends first has no window.
 fn held(from_star: f64, dt_star: f64, last_step: u64) -> (KineticStart, Loading) {
     let first = (from_star / dt_star).ceil().max(1.0) as u64;
     let kinetic = KineticStart::At(first.min(last_step + 1) as f64 * dt_star);

@@ -44,8 +44,8 @@ pub(super) struct Ground<'a> {
 }
 
 impl Ground<'_> {
-    /// Reads the height map of a texture: the blocks that do not touch, and their area as asked for, % of the area of the
-    /// blocks that exist.
+    /// Reads the height map of a texture: the blocks that do not touch, and their area as asked for, % of the
+    /// area of the blocks that exist.
     pub(super) fn read(
         &self,
         file: &CaseFile,
@@ -141,8 +141,8 @@ impl Ground<'_> {
     }
 }
 
-/// The least height, m, at which some blocks touch, at least one of them; none if there is no block. A share is turned into
-/// the height of a block, so that all blocks of equal height touch or none does.
+/// The least height, m, at which some blocks touch, at least one of them; none if there is no block. A share
+/// is turned into the height of a block, so that all blocks of equal height touch or none does.
 fn contact_height(mut heights: Vec<f64>, map: &HeightMap) -> Option<f64> {
     let highest = heights.iter().copied().reduce(f64::max)?;
     Some(match &map.bearing {

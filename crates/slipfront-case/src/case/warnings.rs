@@ -15,33 +15,39 @@ use slipfront_base::number_format::{are, count, four_digits, with_si_prefix};
 
 /// Blocks that a pattern may leave free at periodic edges without a warning.
 const LARGE_SEAM: f64 = 0.5;
-/// Difference between the size of a height map and the size of the blocks below it, relative to the latter, above which
-/// there is a warning.
+/// Difference between the size of a height map and the size of the blocks below it, relative to the latter,
+/// above which there is a warning.
 const LARGE_SCALE: f64 = 0.01;
-/// Difference between the texture as asked and as meshed, relative to the asked one, above which there is a warning.
+/// Difference between the texture as asked and as meshed, relative to the asked one, above which there is a
+/// warning.
 const LARGE_MISFIT: f64 = 0.25;
 /// A coverage, in percent, below which a share of 1 may have been meant.
 const SMALL_COVERAGE: f64 = 1.0;
 /// Relative difference between `mu_static` and the mean of given coefficients above which there is a warning.
 const LARGE_MISMATCH: f64 = 0.1;
-/// Standard deviation of the mean of a surface from seed to seed, relative to that of the coefficients, above which there is a warning.
+/// Standard deviation of the mean of a surface from seed to seed, relative to that of the coefficients, above
+/// which there is a warning.
 const LARGE_COMMON_SHARE: f64 = 0.5;
 /// Strain of the load above which geometric nonlinearity of the springs shows in the third digit.
 const LARGE_EPSILON: f64 = 1e-2;
 /// Speed above which loading is faster than the slip front.
 const LARGE_V_STAR: f64 = 0.2;
-/// Drag of the damping over kinetic friction above which there is a warning: without drag, mu_k* of a run is above the
-/// kinetic coefficient of the blocks by up to a twentieth, since some of them stick now and then; the bound is twice that.
+/// Drag of the damping over kinetic friction above which there is a warning: without drag, mu_k* of a run is
+/// above the kinetic coefficient of the blocks by up to a twentieth, since some of them stick now and then;
+/// the bound is twice that.
 const LARGE_DRAG: f64 = 0.1;
-/// Drag over the static strength of the blocks below which there is no warning, however little kinetic friction there is.
+/// Drag over the static strength of the blocks below which there is no warning, however little kinetic
+/// friction there is.
 const SMALL_DRAG: f64 = 0.01;
-/// Rise of mu* in a step of a held drive above which there is a warning: twice that of V* = 0.03 in steps of 0.1.
+/// Rise of mu* in a step of a held drive above which there is a warning: twice that of V* = 0.03 in steps of
+/// 0.1.
 const LARGE_INCREMENT: f64 = 2.25e-3;
 /// Fewest blocks for which the paper calls edge effects small.
 const FEW_BLOCKS: usize = 625;
 
 impl Case {
-    /// Warnings about a case outside the range in which the model is valid, or that differs from what was asked.
+    /// Warnings about a case outside the range in which the model is valid, or that differs from what was
+    /// asked.
     pub fn warnings(&self) -> Vec<String> {
         let mut warnings = self.texture_warnings();
         warnings.extend(self.friction_warnings());
@@ -101,15 +107,16 @@ impl Case {
         warnings
     }
 
-    /// Whether steady sliding takes less force than the static strength of the blocks. If not, friction loses nothing when
-    /// they slip, and no fall of mu* is a transition. A law without thresholds loses nothing that could be compared.
+    /// Whether steady sliding takes less force than the static strength of the blocks. If not, friction loses
+    /// nothing when they slip, and no fall of mu* is a transition. A law without thresholds loses nothing
+    /// that could be compared.
     pub fn can_have_transition(&self) -> bool {
         !self.model.friction.has_thresholds()
             || self.expected.steady_level < self.model.surface.mean_static_force()
     }
 
-    /// Warnings where sliding takes as much force as its start, and where damping has a part in the measured kinetic
-    /// friction.
+    /// Warnings where sliding takes as much force as its start, and where damping has a part in the measured
+    /// kinetic friction.
     fn level_warnings(&self) -> Vec<String> {
         let (level, drag) = (self.expected.steady_level, self.expected.steady_drag);
         let (kinetic, v_star) = (level - drag, self.groups.v_star);
@@ -205,7 +212,8 @@ impl Case {
         warnings
     }
 
-    /// A warning where a height map differs in size from the blocks below it, or has fewer points than they are.
+    /// A warning where a height map differs in size from the blocks below it, or has fewer points than they
+    /// are.
     fn other_scale(&self, topography: &Topography) -> Option<String> {
         let Topography {
             file,
@@ -246,7 +254,8 @@ impl Case {
         })
     }
 
-    /// A warning where a pattern that fills the slider does not go on beyond a periodic edge as it does within.
+    /// A warning where a pattern that fills the slider does not go on beyond a periodic edge as it does
+    /// within.
     fn seam(&self, pattern: &Pattern, number: usize) -> Option<String> {
         let lattice = &self.model.lattice;
         let arrays = arrays(pattern, &self.scales, lattice).ok()?;
@@ -276,7 +285,8 @@ impl Case {
         })
     }
 
-    /// A warning where most of the spread is between surfaces of different seeds, and little of it within one.
+    /// A warning where most of the spread is between surfaces of different seeds, and little of it within
+    /// one.
     fn correlation_warning(&self) -> Option<String> {
         let share = libm::sqrt(self.correlated_field()?.variance_of_slider());
         let is_random = self.groups.sigma_static_star > 0.0 || self.groups.sigma_kinetic_star > 0.0;

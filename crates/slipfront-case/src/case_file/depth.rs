@@ -1,9 +1,9 @@
-//! Limits the depth of a text and of a key before they are parsed: tables within tables are read, copied, written and freed
-//! by functions that call themselves, each level of which takes some of the stack.
+//! Limits the depth of a text and of a key before they are parsed: tables within tables are read, copied,
+//! written and freed by functions that call themselves, each level of which takes some of the stack.
 //!
-//! `toml` itself refuses keys of 80 parts and brackets 80 deep, but not both together, which are tables 6400 deep. The
-//! parser also counts brackets that close nothing, as in `{ [], a = { [], a = `, so that a text of such mistakes takes it as
-//! deep as it is long.
+//! `toml` itself refuses keys of 80 parts and brackets 80 deep, but not both together, which are tables 6400
+//! deep. The parser also counts brackets that close nothing, as in `{ [], a = { [], a = `, so that a text of
+//! such mistakes takes it as deep as it is long.
 
 use toml_parser::Source as Tokens;
 use toml_parser::lexer::TokenKind;
@@ -34,7 +34,8 @@ pub fn parts_of(key: &str) -> Result<Vec<&str>, &'static str> {
     Ok(parts)
 }
 
-/// Returns the text, which begins at `offset` of the source, if it can be parsed as TOML without going too deep.
+/// Returns the text, which begins at `offset` of the source, if it can be parsed as TOML without going too
+/// deep.
 ///
 /// # Errors
 /// [`CaseError::Invalid`] at the bracket or dot that is nested too deep.
@@ -141,8 +142,8 @@ mod tests {
         }
     }
 
-    /// The parser's own limits, which hold for keys and for brackets alone, are not reached: the sentence is always one of
-    /// this crate.
+    /// The parser's own limits, which hold for keys and for brackets alone, are not reached: the sentence is
+    /// always one of this crate.
     #[test]
     fn what_is_let_through_is_parsed() {
         let nested = |levels: usize, key: &str| {

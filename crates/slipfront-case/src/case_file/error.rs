@@ -113,7 +113,8 @@ impl fmt::Display for Place {
     }
 }
 
-/// The line, and below it carets under `width` characters from byte `start`; empty when there is nothing to show.
+/// The line, and below it carets under `width` characters from byte `start`; empty when there is nothing to
+/// show.
 fn excerpt(line: &str, start: usize, width: usize) -> String {
     let before = &line[..start.min(line.len())];
     if line.trim().is_empty() || before.chars().count() > MAX_EXCERPT {

@@ -65,12 +65,12 @@ pub struct CaseFile {
 impl CaseFile {
     /// Reads a case from the text of a TOML file, changed by `overrides` of the form `drive.v_star=0.05`.
     ///
-    /// `name` stands for the file in messages. An override's value is TOML, or else a string as it stands; it replaces
-    /// a key that excludes it, such as `drive.v_star` of the file when `drive.speed` is set.
+    /// `name` stands for the file in messages. An override's value is TOML, or else a string as it stands; it
+    /// replaces a key that excludes it, such as `drive.v_star` of the file when `drive.speed` is set.
     ///
     /// # Errors
-    /// [`CaseError::Invalid`], with its place, for text that is not TOML, unknown keys and values out of their
-    /// bounds.
+    /// [`CaseError::Invalid`], with its place, for text that is not TOML, unknown keys and values out of
+    /// their bounds.
     pub fn parse(text: &str, name: &str, overrides: &[String]) -> Result<Self, CaseError> {
         let base = ParsedCase::parse(text, name)?;
         let overrides = overrides.iter().map(|entry| Override::parse(entry));
@@ -124,7 +124,8 @@ impl CaseFile {
     /// Checks every bound that needs nothing but the file. [`parse`](Self::parse) has done so already.
     ///
     /// # Errors
-    /// [`CaseError::Invalid`], with the value, its bound and what to do, at the place where the value was written.
+    /// [`CaseError::Invalid`], with the value, its bound and what to do, at the place where the value was
+    /// written.
     pub fn check(&self) -> Result<(), CaseError> {
         let check = |table| Check::new(&self.source, keys_of(table), table);
         self.slider.check(&check("slider"))?;
@@ -142,10 +143,12 @@ impl CaseFile {
         self.output.check(&check("output"))
     }
 
-    /// Writes the case with every default filled in, in the order of the design; reading it back gives an equal case.
+    /// Writes the case with every default filled in, in the order of the design; reading it back gives an
+    /// equal case.
     ///
     /// # Errors
-    /// Errors of [`check`](Self::check) for a case that was changed in code, so that the written text can be read.
+    /// Errors of [`check`](Self::check) for a case that was changed in code, so that the written text can be
+    /// read.
     pub fn to_toml(&self) -> Result<String, CaseError> {
         self.check()?;
         // By way of a table, so that the keys of every struct need only one writer.
@@ -249,7 +252,8 @@ impl<'t> ParsedCase<'t> {
     /// Sets these keys of the file, one after the other, as `--set` does.
     ///
     /// # Errors
-    /// [`CaseError::Invalid`] for an override that does not fit; errors of the case come from [`with`](Self::with).
+    /// [`CaseError::Invalid`] for an override that does not fit; errors of the case come from
+    /// [`with`](Self::with).
     pub fn set(mut self, overrides: &'t [Override]) -> Result<Self, CaseError> {
         for change in overrides {
             change.apply(&mut self.root, &mut self.source)?;
@@ -270,8 +274,8 @@ impl<'t> ParsedCase<'t> {
         tables.read_table(root, "a case")
     }
 
-    /// Makes the case with these overrides the base of many cases. The base is read once, so that [`with`](Self::with) only
-    /// reads the tables that are changed further.
+    /// Makes the case with these overrides the base of many cases. The base is read once, so that
+    /// [`with`](Self::with) only reads the tables that are changed further.
     ///
     /// # Errors
     /// [`CaseError::Invalid`] for an override that does not fit; errors of the case come from `with`.

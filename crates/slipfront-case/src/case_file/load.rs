@@ -65,7 +65,8 @@ pub fn read_text_from(input: impl Read, path: &Path) -> Result<String, CaseError
     })
 }
 
-/// Whether text is UTF-16: it begins with a mark of its byte order, or with a character of ASCII beside a zero byte.
+/// Whether text is UTF-16: it begins with a mark of its byte order, or with a character of ASCII beside a
+/// zero byte.
 fn is_utf16(bytes: &[u8]) -> bool {
     matches!(
         bytes,
@@ -76,8 +77,8 @@ fn is_utf16(bytes: &[u8]) -> bool {
 /// Largest number of entries of a folder among which a similar name is looked for.
 const MAX_ENTRIES: usize = 10_000;
 
-/// The file that a missing one was probably meant to be: one of a similar name, or with the ending .toml, in the same folder,
-/// or else in its folder `cases`, `cases/studies`, `cases/designs` or `cases/calibrations`.
+/// The file that a missing one was probably meant to be: one of a similar name, or with the ending .toml, in
+/// the same folder, or else in its folder `cases`, `cases/studies`, `cases/designs` or `cases/calibrations`.
 fn similar_file(path: &Path) -> Option<PathBuf> {
     let folder = path.parent().unwrap_or(Path::new(""));
     let stem = path.file_name()?.to_str()?.trim_end_matches(".toml");

@@ -40,7 +40,8 @@ impl Override {
         }
     }
 
-    /// Reads an override of the form `KEY=VALUE`. The value is TOML, or a string as it stands if it is not TOML.
+    /// Reads an override of the form `KEY=VALUE`. The value is TOML, or a string as it stands if it is not
+    /// TOML.
     ///
     /// # Errors
     /// When there is no value, and when a value that begins like a string, list or table of TOML is none.

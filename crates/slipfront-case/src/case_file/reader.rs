@@ -1,5 +1,6 @@
-//! Reads the values of a parsed file into structs. toml has a deserializer too, which offers every type of value to every type that is read, each
-//! time with code of its own; this one offers what can be meant, so that the module of a page without a server is 120 kB smaller.
+//! Reads the values of a parsed file into structs. toml has a deserializer too, which offers every type of
+//! value to every type that is read, each time with code of its own; this one offers what can be meant, so
+//! that the module of a page without a server is 120 kB smaller.
 
 use std::fmt;
 use std::ops::Range;
@@ -125,7 +126,8 @@ impl<'de> Reader<'de> {
 
     fn text<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, ReadError> {
         self.visit(|value| match value {
-            // Not as borrowed text, for which every type would need code of its own: cases keep no borrowed text.
+            // Not as borrowed text, for which every type would need code of its own: cases keep no borrowed
+            // text.
             DeValue::String(text) => visitor.visit_str(&text),
             other => Err(unexpected(&other, &visitor)),
         })

@@ -11,8 +11,8 @@ use super::error::{CaseError, Place};
 use slipfront_base::ordered::map_of;
 use slipfront_base::text::truncated;
 
-/// The longest key whose place is noted, in bytes: all known keys are shorter. Each key below one of many megabytes would
-/// take its length.
+/// The longest key whose place is noted, in bytes: all known keys are shorter. Each key below one of many
+/// megabytes would take its length.
 const MAX_KEY: usize = 64;
 
 /// The text that a case was read from, kept so that errors found later name their place.
@@ -22,10 +22,11 @@ const MAX_KEY: usize = 64;
 pub struct Source {
     name: Arc<str>,
     file: Arc<str>,
-    /// The overrides, each with the position of its first byte: positions go on behind the file, so that a span determines
-    /// its text.
+    /// The overrides, each with the position of its first byte: positions go on behind the file, so that a
+    /// span determines its text.
     overrides: Vec<(usize, String)>,
-    /// The span of every value by its key, such as `drive.v_star` or `texture.0.coverage`; longer keys are left out.
+    /// The span of every value by its key, such as `drive.v_star` or `texture.0.coverage`; longer keys are
+    /// left out.
     places: BTreeMap<String, Range<usize>>,
     /// The file that this text is a table of, if it is not as the user wrote it.
     whole: Option<Arc<Whole>>,
@@ -54,7 +55,8 @@ impl Source {
         }
     }
 
-    /// Says that the text is that of the table `table` of a file which the user wrote: errors name their places there.
+    /// Says that the text is that of the table `table` of a file which the user wrote: errors name their
+    /// places there.
     pub fn of_table(mut self, whole: Source, table: &str) -> Self {
         let table = table.to_owned();
         self.whole = Some(Arc::new(Whole { source: whole, table }));
@@ -160,7 +162,8 @@ impl Source {
         }
     }
 
-    /// The place of a span in the file that this text is a table of: of the value or key there, or of the table around it.
+    /// The place of a span in the file that this text is a table of: of the value or key there, or of the
+    /// table around it.
     fn place_in_whole(&self, span: &Range<usize>) -> Option<Place> {
         let Whole { source, table } = self.whole.as_deref()?;
         // The span is that of a value, or of a key, whose value is the next with its name.
@@ -207,8 +210,8 @@ fn note_value(places: &mut BTreeMap<String, Range<usize>>, key: String, value: &
     places.insert(key, span_of(value));
 }
 
-/// The span of a value; of a list of numbers or words one of which an override has set, the span of the last of these: what
-/// the file holds is not what the list is.
+/// The span of a value; of a list of numbers or words one of which an override has set, the span of the last
+/// of these: what the file holds is not what the list is.
 fn span_of(value: &Spanned<DeValue<'_>>) -> Range<usize> {
     let span = value.span();
     let DeValue::Array(values) = value.get_ref() else {

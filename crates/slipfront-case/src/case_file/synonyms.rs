@@ -2,7 +2,8 @@
 
 use super::{friction, shapes};
 
-/// Each word, in small letters if it is longer than one letter, and the advice on it. Keys stand in backquotes.
+/// Each word, in small letters if it is longer than one letter, and the advice on it. Keys stand in
+/// backquotes.
 const COMMON: &[(&str, &str)] = &[
     ("E", YOUNG),
     ("young", YOUNG),
@@ -243,8 +244,8 @@ mod tests {
     use super::*;
     use crate::case_file::key_table::SECTIONS;
 
-    /// Every key that is named exists. No word is a key itself, which would be misdirected from the wrong table, unless its
-    /// advice names it.
+    /// Every key that is named exists. No word is a key itself, which would be misdirected from the wrong
+    /// table, unless its advice names it.
     #[test]
     fn advice_names_keys_that_exist() {
         for (word, advice) in synonyms() {

@@ -40,8 +40,8 @@ impl<'de, T: Deserialize<'de>> Visitor<'de> for PairVisitor<T> {
     }
 }
 
-/// Reads a length from a text, so that a text that cannot be read keeps its own message where several shapes of a value are
-/// tried.
+/// Reads a length from a text, so that a text that cannot be read keeps its own message where several shapes
+/// of a value are tried.
 pub(super) fn length(text: &str) -> Result<Length, String> {
     text.parse().map_err(|error: QuantityError| error.to_string())
 }
@@ -54,7 +54,8 @@ where
     Pair::deserialize(deserializer).map(|Pair(values)| values)
 }
 
-/// One of the words of `T`, an enum of unit variants, which serde would also read from a table `{ word = {} }`.
+/// One of the words of `T`, an enum of unit variants, which serde would also read from a table
+/// `{ word = {} }`.
 struct Word<T>(T);
 
 impl<'de, T: Deserialize<'de>> Deserialize<'de> for Word<T> {
@@ -70,7 +71,8 @@ impl<'de, T: Deserialize<'de>> Deserialize<'de> for Word<T> {
     }
 }
 
-/// Visitor that lets a word be looked up inside the visit, where an error still gets the place of the word. It is one for all words.
+/// Visitor that lets a word be looked up inside the visit, where an error still gets the place of the word.
+/// It is one for all words.
 struct WordVisitor<'a>(&'a mut dyn FnMut(&str) -> Result<(), ValueError>);
 
 impl Visitor<'_> for WordVisitor<'_> {

@@ -57,8 +57,8 @@ pub enum Arrangement {
     /// A square grid.
     #[default]
     Square,
-    /// A hexagonal arrangement: every second row is shifted by half a pitch, and rows are sqrt(3)/2 pitches apart, so that
-    /// every copy has six neighbours at one distance.
+    /// A hexagonal arrangement: every second row is shifted by half a pitch, and rows are sqrt(3)/2 pitches
+    /// apart, so that every copy has six neighbours at one distance.
     Hexagonal,
     /// A staggered arrangement: every second row is shifted by half a pitch.
     Staggered,

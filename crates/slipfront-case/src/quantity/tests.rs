@@ -196,7 +196,8 @@ proptest! {
     #[test]
     fn the_nearest_double_is_found(digits in 1..1_000_000_000_u64) {
         let read = format!("{digits} um").parse::<Length>().unwrap().si();
-        // read = mantissa x 2^-e. In whole numbers: mantissa x 10^6 lies within half a spacing of digits x 2^e.
+        // read = mantissa x 2^-e. In whole numbers: mantissa x 10^6 lies within half a spacing of digits x
+        // 2^e.
         let bits = read.to_bits();
         let e = 1075 - (bits >> 52);
         let mantissa = u128::from((bits & ((1 << 52) - 1)) | (1 << 52));

@@ -1,5 +1,5 @@
-//! Outlines as DXF of AutoCAD 2000, the oldest version that has ellipses, in millimetres. A layer for each texture, and one
-//! for the slider.
+//! Outlines as DXF of AutoCAD 2000, the oldest version that has ellipses, in millimetres. A layer for each
+//! texture, and one for the slider.
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 use std::fmt::Display;

@@ -1,5 +1,5 @@
-//! The texture of a case as a file for other programs, in true size: outlines for a laser or a drawing program, SVG and DXF, and
-//! blocks as a picture or a height field, PNG and GSF.
+//! The texture of a case as a file for other programs, in true size: outlines for a laser or a drawing
+//! program, SVG and DXF, and blocks as a picture or a height field, PNG and GSF.
 
 mod drawing;
 mod dxf;
@@ -26,8 +26,8 @@ pub fn smallest(case: &Case) -> Result<Clearance, CaseError> {
     Ok(clearance(&case.model.lattice, &case.textures_in_blocks()?))
 }
 
-/// Writes the texture of a case to `path`, in the format of its ending; `scale` is the number of pixels of a block along a
-/// side of a picture, one if there is none. Returns notes about the file.
+/// Writes the texture of a case to `path`, in the format of its ending; `scale` is the number of pixels of a
+/// block along a side of a picture, one if there is none. Returns notes about the file.
 ///
 /// # Errors
 /// [`TextureFileError`], if the ending names no format, the file would be too large, or cannot be written.

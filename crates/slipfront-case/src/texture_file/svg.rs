@@ -1,4 +1,5 @@
-//! Outlines as SVG: user units are millimetres, and y points down. A group for each texture, and the edge of the slider.
+//! Outlines as SVG: user units are millimetres, and y points down. A group for each texture, and the edge of
+//! the slider.
 
 use std::fmt::Write;
 

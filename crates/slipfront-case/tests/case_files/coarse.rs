@@ -23,7 +23,8 @@ fn blocks_of(overrides: &[String]) -> [u64; 2] {
 const DIMPLES: &str =
     "[[texture]]\nshape = 'cavity'\nlambda = '30 um'\npitch = '120 um'\nlattice = 'hexagonal'";
 
-/// Dimples of 60 um that are 120 um apart, on a slider of 2 mm: they need five blocks each, and their gaps of 60 um two.
+/// Dimples of 60 um that are 120 um apart, on a slider of 2 mm: they need five blocks each, and their gaps of
+/// 60 um two.
 #[test]
 fn a_slider_of_two_millimetres_needs_167_blocks() {
     for (blocks, expected) in [
@@ -68,7 +69,8 @@ fn a_slider_of_two_millimetres_needs_167_blocks() {
     }
 }
 
-/// The blocks that are named are fine enough, and the next coarser ones of the slider are not, for any cause of coarseness.
+/// The blocks that are named are fine enough, and the next coarser ones of the slider are not, for any cause
+/// of coarseness.
 #[test]
 fn the_blocks_that_are_named_are_the_fewest() {
     let on = |slider: &str, texture: &str| format!("[slider]\n{slider}\n[[texture]]\n{texture}");

@@ -146,7 +146,8 @@ fn a_case_changed_in_code_is_checked_without_a_place() {
     );
 }
 
-/// The step is 0.1 where that is stable, and the run lasts as long as it takes to load the slider through its own drive springs.
+/// The step is 0.1 where that is stable, and the run lasts as long as it takes to load the slider through its
+/// own drive springs.
 #[test]
 fn steps_and_durations_follow_the_blocks() {
     let case = |modulus: f64| {
@@ -185,8 +186,8 @@ fn a_total_stiffness_is_the_sum_of_all_drive_springs() {
     }
 }
 
-/// Equal blocks of any modulus and density have the V* of a case with this material; for a grade the equivalent speed is
-/// stated.
+/// Equal blocks of any modulus and density have the V* of a case with this material; for a grade the
+/// equivalent speed is stated.
 #[test]
 fn fast_loading_is_told_in_the_speed_that_equal_blocks_would_have() {
     let fast = |keys: &str| {
@@ -224,8 +225,8 @@ fn fast_loading_is_told_in_the_speed_that_equal_blocks_would_have() {
     assert_eq!(graded, Some(of_equal(&expected)));
 }
 
-/// Where fewer than half of the blocks touch, the run lasts until their own drive springs have borne their load, and 2.5/V*
-/// more. Blocks under an edge drive bear their load by the springs of others.
+/// Where fewer than half of the blocks touch, the run lasts until their own drive springs have borne their
+/// load, and 2.5/V* more. Blocks under an edge drive bear their load by the springs of others.
 #[test]
 fn runs_last_longer_where_few_blocks_touch() {
     let end = |texture: &str, changes: &[&str]| {
@@ -261,8 +262,8 @@ fn runs_last_longer_where_few_blocks_touch() {
     }
 }
 
-/// Times are compared with the end of the run that its own drive springs determine: later than 8/V* for a soft slider,
-/// earlier for a stiff one, whose moduli are known only when a file is read.
+/// Times are compared with the end of the run that its own drive springs determine: later than 8/V* for a
+/// soft slider, earlier for a stiff one, whose moduli are known only when a file is read.
 #[test]
 fn times_are_held_against_the_end_of_the_run_itself() {
     let folder = tempfile::tempdir().unwrap();
@@ -301,8 +302,8 @@ fn a_coverage_that_may_be_a_share_is_noted() {
     assert_eq!(note("width = '0.1 um'"), None);
 }
 
-/// The coverage of a pattern does not depend on its form: a pitch that fills the slider, a count, an array in an array, or a
-/// mask for each cell.
+/// The coverage of a pattern does not depend on its form: a pitch that fills the slider, a count, an array in
+/// an array, or a mask for each cell.
 #[test]
 fn patterns_can_be_said_in_several_ways() {
     let case = |pattern: &str| {

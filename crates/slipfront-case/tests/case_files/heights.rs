@@ -41,9 +41,9 @@ const OWN: HeightMapUnits = HeightMapUnits {
     pixel: None,
 };
 
-/// The map has no symmetry, and lies on the blocks as SurfaceTopography and Gwyddion show it, for every format. Heights
-/// stored as 32-bit numbers are good to 2^-24 of 6 um, of 64 bits, as grey levels and in decimals to rounding, as integers
-/// to half a step: their range, less than 6 um, over 2^32 or 2^16.
+/// The map has no symmetry, and lies on the blocks as SurfaceTopography and Gwyddion show it, for every
+/// format. Heights stored as 32-bit numbers are good to 2^-24 of 6 um, of 64 bits, as grey levels and in
+/// decimals to rounding, as integers to half a step: their range, less than 6 um, over 2^32 or 2^16.
 #[test_case("map.npy", HeightMapUnits { height: Some(1.0), pixel: SIZE }, 1e-15)]
 #[test_case("map_f4_fortran.npy", HeightMapUnits { height: Some(1e-6), pixel: SIZE }, 4e-13)]
 #[test_case("map.csv", HeightMapUnits { height: Some(1e-6), pixel: SIZE }, 1e-15)]
@@ -71,7 +71,8 @@ fn every_format_gives_what_numpy_computes(name: &str, units: HeightMapUnits, err
             let mean = mean.as_f64().unwrap();
             assert!((found - mean).abs() < error, "{name} {grid}: {found} and {mean}");
         }
-        // Parameters change by no more than the heights, over a roughness of some 0.5 um; the fourth moment by four times that.
+        // Parameters change by no more than the heights, over a roughness of some 0.5 um; the fourth moment
+        // by four times that.
         let near = |key: &str, found: f64, unit: f64| {
             let wanted = reference[key].as_f64().unwrap();
             let bound = 20.0 * error / 0.5e-6 * unit;
@@ -147,7 +148,8 @@ fn the_aspect_is_kept() {
 /// Tag of the width of a tile.
 const TILE_WIDTH: u16 = 322;
 
-/// A TIFF file of grey levels 1, 2 and, in the row below, 3, 4, with changes to its tags, each a number of 16 bits or of 32.
+/// A TIFF file of grey levels 1, 2 and, in the row below, 3, 4, with changes to its tags, each a number of 16
+/// bits or of 32.
 fn tiff(changes: &[(u16, u32)]) -> Vec<u8> {
     let pixels = [1_u16, 2, 3, 4].map(u16::to_le_bytes);
     let (header, length) = (8, 8);
@@ -386,7 +388,8 @@ fn damaged_x3p_files_are_refused() {
     assert!(said.contains("it is no zip archive"), "{said}");
 }
 
-/// The parser would compare all of them with each other: 10 000 elements within 5000 namespaces take it minutes.
+/// The parser would compare all of them with each other: 10 000 elements within 5000 namespaces take it
+/// minutes.
 #[test]
 fn descriptions_with_thousands_of_names_are_refused_before_they_are_parsed() {
     let names = |count: usize, name: &dyn Fn(usize) -> String| (0..count).map(name).collect::<String>();
@@ -631,7 +634,8 @@ fn on_a_disc(texture: &str, ranks: usize) -> Vec<Case> {
     })
 }
 
-/// Blocks that do not exist have no share: half of the lattice's blocks would be all blocks of the disc and more.
+/// Blocks that do not exist have no share: half of the lattice's blocks would be all blocks of the disc and
+/// more.
 #[test]
 fn blocks_that_do_not_exist_have_no_share() {
     for ranks in [1, 3] {

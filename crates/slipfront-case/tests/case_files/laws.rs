@@ -86,8 +86,9 @@ fn a_drive_that_is_too_soft_is_told() {
     assert!(warns(0.02));
 }
 
-/// A steel slider on a machine of 0.5 N/um: as slow as the paper's by V* N_x, and pulled faster than its blocks can slide. The drag is Omega V*
-/// with Omega = sqrt(0.75) Omega*, so that the sentences begin where it is a tenth of R* and where both together are 1.
+/// A steel slider on a machine of 0.5 N/um: as slow as the paper's by V* N_x, and pulled faster than its
+/// blocks can slide. The drag is Omega V* with Omega = sqrt(0.75) Omega*, so that the sentences begin where
+/// it is a tenth of R* and where both together are 1.
 #[test]
 fn sliding_that_takes_as_much_force_as_its_start_is_told() {
     let warnings = |changes: &[&str]| {
@@ -159,7 +160,8 @@ fn coefficients_that_are_alike_over_a_length_are_those_of_the_place() {
                     let [i, j] = [parts * (b % 12), parts * (b / 12)];
                     let rows = (j..j + parts).map(|j| &other[12 * parts * j + i..][..parts]);
                     let mean = rows.flatten().sum::<f64>() / (parts * parts) as f64;
-                    // Some 700 differences of error functions, rounded to 1e-16 of 1, are added, times a spread of 0.025.
+                    // Some 700 differences of error functions, rounded to 1e-16 of 1, are added, times a
+                    // spread of 0.025.
                     assert!(
                         (mean - parent).abs() < 1e-14,
                         "{edges} {parts} {b}: {mean} {parent}"

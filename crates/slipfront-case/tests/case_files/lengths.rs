@@ -45,7 +45,8 @@ fn note_on(case: &Case, name: &str) -> Option<String> {
     case.warnings().into_iter().find(|note| note.starts_with(&begins))
 }
 
-/// The critical size is `L_c = pi sqrt(9/(8 (W - k_s)))`, the screening length `sqrt(9/(8 k_s))`, with k_s = 3/8.
+/// The critical size is `L_c = pi sqrt(9/(8 (W - k_s)))`, the screening length `sqrt(9/(8 k_s))`, with k_s =
+/// 3/8.
 #[test]
 fn the_critical_size_decides_of_a_sheet() {
     let sheet = case(&format!("{SHEET}slip_weakening = {{ length_star = 0.8 }}"));
@@ -74,8 +75,8 @@ fn the_critical_size_decides_of_a_sheet() {
     );
 }
 
-/// A drive at an edge leaves most blocks without a spring: however stiff it is, it does not hold a patch far from it, and
-/// `L_c = pi sqrt(9/(8 W))`.
+/// A drive at an edge leaves most blocks without a spring: however stiff it is, it does not hold a patch far
+/// from it, and `L_c = pi sqrt(9/(8 W))`.
 #[test]
 fn a_stiff_drive_at_an_edge_does_not_make_slip_stable() {
     for (stiffness, edge) in [(0.375, "left"), (1000.0, "right")] {
@@ -97,7 +98,8 @@ fn a_stiff_drive_at_an_edge_does_not_make_slip_stable() {
     }
 }
 
-/// Where slip of any size is stable, or nearly so, stress is screened over a shorter length than slip needs to run away.
+/// Where slip of any size is stable, or nearly so, stress is screened over a shorter length than slip needs
+/// to run away.
 #[test]
 fn the_screening_length_decides_where_slip_is_stable() {
     for (length, size) in [(2.0, f64::INFINITY), (1.0, std::f64::consts::PI * 3.0)] {

@@ -351,8 +351,8 @@ fn another_file_is_refused_by_all() {
     }
 }
 
-/// A file that changes while the case is made is refused, because its contents may differ from the hashed ones, on whichever
-/// rank it happens.
+/// A file that changes while the case is made is refused, because its contents may differ from the hashed
+/// ones, on whichever rank it happens.
 #[test_matrix([1, 3])]
 fn a_file_that_changes_while_the_case_is_made_is_refused(size: usize) {
     let folder = tempfile::tempdir().unwrap();

@@ -166,7 +166,8 @@ fn svg_path(path: &str, point: &dyn Fn(f64, f64) -> [f64; 2], block: f64) -> Ele
     parts
 }
 
-/// The arc of less than half a turn, counterclockwise, found in coordinates in which the ellipse is the unit circle.
+/// The arc of less than half a turn, counterclockwise, found in coordinates in which the ellipse is the unit
+/// circle.
 fn arc(from: [f64; 2], to: [f64; 2], [a, b]: [f64; 2], angle: f64) -> Part {
     let (s, c) = angle.sin_cos();
     let turned = |p: [f64; 2]| [(p[0] * c + p[1] * s) / a, (p[1] * c - p[0] * s) / b];

@@ -18,7 +18,8 @@ NX, NY = 30, 20
 PIXEL = 0.5e-6
 COUNT = 2e-9  # Height of a grey level.
 
-# No symmetry, so that a mirrored or turned map is noticed; heights of about a micrometre, far from a mean of zero.
+# No symmetry, so that a mirrored or turned map is noticed; heights of about a micrometre, far from a mean of
+# zero.
 rng = np.random.default_rng(1)
 y, x = np.mgrid[:NY, :NX]
 z = 1e-6 * (5 + 0.8 * np.sin(0.35 * x + 0.1 * y) + 0.02 * x * (y / NY) ** 2 + 0.15 * rng.standard_normal((NY, NX)))
@@ -26,7 +27,8 @@ z -= 1.5e-6 * np.exp(-((x - 7) ** 2 + (y - 14) ** 2) / 9)
 grey = np.round(z / COUNT).astype(np.uint16)
 z = grey * COUNT  # The same heights in every format.
 
-# SurfaceTopography counts along x, then along y from the top row, as it and Gwyddion show a surface; arrays of a case begin with the bottom row.
+# SurfaceTopography counts along x, then along y from the top row, as it and Gwyddion show a surface; arrays
+# of a case begin with the bottom row.
 size = (NX * PIXEL, NY * PIXEL)
 surface = Topography(z[::-1].T, size, unit="m")
 rows = surface.heights().T[::-1]
@@ -97,7 +99,8 @@ with open("reference.json", "w") as file:
     json.dump(reference, file, indent=1)
     file.write("\n")
 
-# The ground surface of cases/ground.toml: scratches along x of random depth, place and length. It is made, not measured.
+# The ground surface of cases/ground.toml: scratches along x of random depth, place and length. It is made,
+# not measured.
 N, POINT = 80, 1.25e-6
 ground = np.zeros((N, N))
 y, x = np.mgrid[:N, :N] * POINT

@@ -1,4 +1,5 @@
-//! Pages of `docs/reference/` with the tables of keys that structs declare. Tests of several crates include this file.
+//! Pages of `docs/reference/` with the tables of keys that structs declare. Tests of several crates include
+//! this file.
 
 use std::ops::Bound::{Excluded, Included, Unbounded};
 use std::path::Path;

@@ -31,10 +31,12 @@ pub(crate) struct CalibrateCommand {
     /// Folder for the results [default: results/ and the name of the calibration]
     #[arg(short, long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Folder that keeps training runs, which calibrations of other records then have in common [default: that of the results]
+    /// Folder that keeps training runs, which calibrations of other records then have in common [default:
+    /// that of the results]
     #[arg(long, value_name = "DIR")]
     training: Option<PathBuf>,
-    /// Replace files of the results that were edited since they were written, and files of others in their places
+    /// Replace files of the results that were edited since they were written, and files of others in their
+    /// places
     #[arg(long)]
     force: bool,
     /// Most runs at once [default: one per core]; results do not depend on it

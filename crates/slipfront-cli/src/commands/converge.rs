@@ -37,7 +37,8 @@ pub(crate) struct ConvergeCommand {
     /// Surfaces of each mesh [default: 5 if coefficients scatter, else 1]
     #[arg(long, value_name = "N", value_parser = count_from_one)]
     replicates: Option<u16>,
-    /// Replace files of the results that were edited since they were written, and files of others in their places
+    /// Replace files of the results that were edited since they were written, and files of others in their
+    /// places
     #[arg(long)]
     force: bool,
     /// Most runs at once [default: one per core]; results do not depend on it

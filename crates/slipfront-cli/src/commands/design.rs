@@ -15,7 +15,8 @@ use crate::progress::design::DesignProgress;
 use crate::signals::Signals;
 use crate::threads::{count_from_one, set_threads};
 
-/// Search for the texture that gives the friction that is wished for, and judge it on surfaces that the search has not seen
+/// Search for the texture that gives the friction that is wished for, and judge it on surfaces that the
+/// search has not seen
 #[derive(Args)]
 #[command(after_help = "Examples:
   slipfront design cases/designs/least_friction.toml
@@ -34,10 +35,12 @@ pub(crate) struct DesignCommand {
     /// Runs of the search, in place of `design.runs`; the verdict takes some more
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     runs: Option<u32>,
-    /// Cuts the search short after this time, such as 60s or 10min; what is found then depends on the speed of this machine
+    /// Cuts the search short after this time, such as 60s or 10min; what is found then depends on the speed
+    /// of this machine
     #[arg(long, value_name = "TIME")]
     time: Option<SignedDuration>,
-    /// Replace files of the results that were edited since they were written, and files of others in their places
+    /// Replace files of the results that were edited since they were written, and files of others in their
+    /// places
     #[arg(long)]
     force: bool,
     /// Most runs at once [default: one per core]; results do not depend on it

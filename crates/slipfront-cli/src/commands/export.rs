@@ -31,7 +31,8 @@ pub(crate) struct ExportCommand {
     /// Licence of the results: an identifier of SPDX such as CC-BY-4.0, or an address
     #[arg(long, value_name = "ID")]
     licence: Option<Licence>,
-    /// A new folder for the crate, to which the runs are copied [default: the folder of the run itself, of one run]
+    /// A new folder for the crate, to which the runs are copied [default: the folder of the run itself, of
+    /// one run]
     #[arg(short, long, value_name = "DIR", conflicts_with_all = ["bibtex", "cff"])]
     out: Option<PathBuf>,
     /// Replace a description that stands in the folder of the run
@@ -82,7 +83,8 @@ impl ExportCommand {
     }
 }
 
-/// A change of the results, or a disk that cannot be written, is a failure of the work; all else is one of the input.
+/// A change of the results, or a disk that cannot be written, is a failure of the work; all else is one of
+/// the input.
 fn failure(error: ExportError) -> Failure {
     if matches!(error, ExportError::Changed { .. } | ExportError::Write { .. }) {
         Failure::running(error)

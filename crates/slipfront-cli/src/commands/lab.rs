@@ -35,8 +35,8 @@ pub(crate) struct LabCommand {
     /// Folder of results: runs are saved there, and those that are there can be shown again
     #[arg(short, long, value_name = "DIR", default_value = "results")]
     results: PathBuf,
-    /// Another folder of which files that a case names may be read and become part of links and exports: else those in the
-    /// folder of the case alone; may be given several times
+    /// Another folder of which files that a case names may be read and become part of links and exports: else
+    /// those in the folder of the case alone; may be given several times
     #[arg(long, value_name = "DIR")]
     allow_files: Vec<PathBuf>,
     /// The port [default: one that is free]
@@ -94,7 +94,8 @@ impl LabCommand {
                 self.port
             ))
         })?;
-        // Whoever has the address can use the laboratory. The file goes with this value, when the server has ended.
+        // Whoever has the address can use the laboratory. The file goes with this value, when the server has
+        // ended.
         let file = if others_read_output() {
             let file = laboratory.address_file(link);
             Some(file.map_err(|error| {
@@ -154,15 +155,16 @@ impl LabCommand {
     }
 }
 
-/// Folders in which the session as WebAssembly may stand: beside this program, and above that in `target/` of a checkout.
+/// Folders in which the session as WebAssembly may stand: beside this program, and above that in `target/` of
+/// a checkout.
 fn places_of_module() -> Vec<PathBuf> {
     let program = std::env::current_exe().and_then(|program| program.canonicalize());
     let program = program.unwrap_or_default();
     program.ancestors().skip(1).take(2).map(Path::to_owned).collect()
 }
 
-/// Starts the browser on a page that leads to the address, which is not in the arguments: every user of the machine can read
-/// the arguments of a program.
+/// Starts the browser on a page that leads to the address, which is not in the arguments: every user of the
+/// machine can read the arguments of a program.
 fn start_browser(laboratory: &Laboratory, link: Option<&str>) -> Result<(), String> {
     if let Some(reason) = browser::hindrance() {
         return Err(reason);

@@ -26,7 +26,8 @@ use crate::print::print_message;
 use crate::signals::Signals;
 use crate::threads::set_threads;
 
-/// Show the snapshots of a run one after the other, beside its friction curve with a mark at the instant, as an animated GIF
+/// Show the snapshots of a run one after the other, beside its friction curve with a mark at the instant, as
+/// an animated GIF
 #[derive(Args)]
 #[command(after_help = "Examples:
   slipfront run cases/circle.toml -o results/circle --set output.snapshots={every=1.5}
@@ -43,7 +44,8 @@ pub(crate) struct MovieCommand {
     /// The file: .gif, or .mp4, which ffmpeg makes [default: movie.gif in the folder of the run]
     #[arg(short, long, value_name = "FILE")]
     out: Option<PathBuf>,
-    /// Duration in seconds, in which instants A-F are shown five times as long as other snapshots [default: about 16]
+    /// Duration in seconds, in which instants A-F are shown five times as long as other snapshots [default:
+    /// about 16]
     #[arg(long, value_name = "S", value_parser = seconds)]
     seconds: Option<f64>,
     /// Snapshots per second, each shown as long as the others

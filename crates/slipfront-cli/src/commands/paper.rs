@@ -22,13 +22,15 @@ use crate::threads::{count_from_one, set_worker_threads};
   slipfront paper fig12 fig15         two figures and the claims about them
   slipfront paper --docs docs/validation   the claims table of the documentation, too")]
 pub(crate) struct PaperCommand {
-    /// Figures: fig1 ... fig18, table1, sensitivity, or all; those finished in the folder are reported in any case
+    /// Figures: fig1 ... fig18, table1, sensitivity, or all; those finished in the folder are reported in any
+    /// case
     #[arg(value_name = "FIGURE")]
     figures: Vec<String>,
     /// Folder for the results; what an earlier call there has finished is not run again
     #[arg(short, long, value_name = "DIR", default_value = "results/paper")]
     out: PathBuf,
-    /// Replace files of the results that were edited since they were written, and files of others in their places
+    /// Replace files of the results that were edited since they were written, and files of others in their
+    /// places
     #[arg(long)]
     force: bool,
     /// Most runs at once [default: one per core]; results do not depend on it

@@ -27,7 +27,8 @@ use crate::print::print_message;
 use crate::signals::Signals;
 use crate::threads::set_threads;
 
-/// Draw the pictures of a run again, or the friction curves of one or several runs over each other, on axes of your choice
+/// Draw the pictures of a run again, or the friction curves of one or several runs over each other, on axes
+/// of your choice
 #[derive(Args)]
 #[command(after_help = "Examples:
   slipfront plot results/baseline
@@ -44,10 +45,12 @@ pub(crate) struct PlotCommand {
     /// Draw friction alone, in these units
     #[arg(long)]
     units: Option<UnitsName>,
-    /// Draw friction alone, against this [default: time, or where runs of different materials can be compared]
+    /// Draw friction alone, against this [default: time, or where runs of different materials can be
+    /// compared]
     #[arg(long)]
     against: Option<AgainstName>,
-    /// Draw maps of this field of one run alone; kymograph is the share of sliding blocks against place and time, over the whole run
+    /// Draw maps of this field of one run alone; kymograph is the share of sliding blocks against place and
+    /// time, over the whole run
     #[arg(long, value_name = "NAME", value_parser = PossibleValuesParser::new(FIELDS.map(|info| info.name).into_iter().chain([KYMOGRAPH])), conflicts_with_all = ["units", "against", "data"])]
     field: Option<String>,
     /// Draw friction alone, this wide, in mm [default: 85]
@@ -56,10 +59,12 @@ pub(crate) struct PlotCommand {
     /// Draw friction alone, this high, in mm
     #[arg(long, value_name = "MM", value_parser = millimetres, conflicts_with = "field")]
     height: Option<f64>,
-    /// Draw friction alone, with labels of this size, in pt [default: 8]; numbers, lines and marks grow with them
+    /// Draw friction alone, with labels of this size, in pt [default: 8]; numbers, lines and marks grow with
+    /// them
     #[arg(long, value_name = "PT", value_parser = points, conflicts_with = "field")]
     font_size: Option<f64>,
-    /// Draw friction alone, with this name of a run in the legend; once for each folder, and a last time for the record of --data
+    /// Draw friction alone, with this name of a run in the legend; once for each folder, and a last time for
+    /// the record of --data
     #[arg(long = "name", value_name = "TEXT", conflicts_with = "field")]
     names: Vec<String>,
     /// Draw friction alone, with this title of the horizontal axis; a character after _ is a subscript
@@ -71,7 +76,8 @@ pub(crate) struct PlotCommand {
     /// A measured record to draw with the curves, in SI units: a table of text (.csv)
     #[arg(long, value_name = "FILE", requires_all = ["x", "y"])]
     data: Option<PathBuf>,
-    /// Column of times of the record, or of displacements with `--against displacement`: name or number from 1
+    /// Column of times of the record, or of displacements with `--against displacement`: name or number from
+    /// 1
     #[arg(long, value_name = "COLUMN", requires = "data")]
     x: Option<String>,
     /// Column of forces of the record, or of coefficients if its unit is 1
@@ -105,7 +111,8 @@ pub(crate) struct PlotCommand {
     /// best, if nothing else fits about as well]
     #[arg(long, value_name = "NUMBER", requires = "data", allow_negative_numbers = true)]
     shift: Option<f64>,
-    /// Folder for the pictures [default: the run's own; results/overlay for several, for friction and for a field alone]
+    /// Folder for the pictures [default: the run's own; results/overlay for several, for friction and for a
+    /// field alone]
     #[arg(short, long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Replace pictures that stand there
@@ -426,8 +433,8 @@ pub(super) fn refuse_other_run(out: &Path) -> Result<(), Failure> {
     Err(Failure::input(anyhow::anyhow!(sentence)))
 }
 
-/// Refuses to replace files where the pictures go, unless they are equal, or pictures that the run in the folder has drawn
-/// there, if the new ones are its `own`.
+/// Refuses to replace files where the pictures go, unless they are equal, or pictures that the run in the
+/// folder has drawn there, if the new ones are its `own`.
 pub(super) fn refuse_to_replace(
     out: &Path,
     files: &[(String, &[u8])],
@@ -444,8 +451,8 @@ pub(super) fn refuse_to_replace(
     Ok(())
 }
 
-/// Reason for which a file cannot replace another, unless the run in the folder has drawn that one and the new file is its
-/// `own`.
+/// Reason for which a file cannot replace another, unless the run in the folder has drawn that one and the
+/// new file is its `own`.
 pub(super) fn in_the_way(
     out: &Path,
     name: &str,

@@ -36,7 +36,8 @@ use crate::signals::Signals;
 use crate::threads::{count_from_one, set_threads};
 use crate::wrap;
 
-/// Check that results are what was written: every file against its checksum, and results of many runs against the recorded runs
+/// Check that results are what was written: every file against its checksum, and results of many runs against
+/// the recorded runs
 #[derive(Args)]
 #[command(after_help = "Examples:
   slipfront verify results/baseline
@@ -51,8 +52,8 @@ pub(crate) struct VerifyCommand {
     /// Folders of results
     #[arg(required = true, value_name = "DIR")]
     folders: Vec<PathBuf>,
-    /// Run the case of each run folder again, in the folder for temporary files (TMPDIR), and compare every file but the
-    /// manifest
+    /// Run the case of each run folder again, in the folder for temporary files (TMPDIR), and compare every
+    /// file but the manifest
     #[arg(long, conflicts_with = "checksums")]
     rerun: bool,
     /// Compare files with their checksums, and derive nothing again
@@ -69,7 +70,8 @@ pub(crate) struct VerifyCommand {
 impl VerifyCommand {
     pub(crate) fn execute(self) -> Result<(), Failure> {
         set_threads(self.threads)?;
-        // A signal ends the work and not the process, so that nothing of it is left in the folder for temporary files.
+        // A signal ends the work and not the process, so that nothing of it is left in the folder for
+        // temporary files.
         let signals = Signals::catch().map_err(Failure::running)?;
         let (mut different, mut unusable, mut pictures, mut not_derived) = (0, 0, 0, 0);
         for folder in &self.folders {

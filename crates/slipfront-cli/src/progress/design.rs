@@ -30,7 +30,8 @@ impl DesignProgress {
     }
 }
 
-/// Text of the progress: runs done of this stage, the time left for search and verdict, the stage, and the best value so far.
+/// Text of the progress: runs done of this stage, the time left for search and verdict, the stage, and the
+/// best value so far.
 fn text(now: &SearchProgress, passed: Duration) -> String {
     let left = duration_left(now.work.left, now.work.here, passed);
     let left = left.map_or_else(String::new, |left| format!("  at most {left} left"));

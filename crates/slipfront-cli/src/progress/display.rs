@@ -89,13 +89,15 @@ impl ProgressDisplay {
     }
 }
 
-/// The time left for `more` things of which `here` were done in the time that has `passed`; empty where none was done.
+/// The time left for `more` things of which `here` were done in the time that has `passed`; empty where none
+/// was done.
 pub(crate) fn time_left(more: u64, here: u64, passed: Duration) -> String {
     let left = duration_left(more as f64, here as f64, passed);
     left.map_or_else(String::new, |left| format!("  {left} left"))
 }
 
-/// The time left for `more` work of which `here` was done in the time that has `passed`; none where none was done.
+/// The time left for `more` work of which `here` was done in the time that has `passed`; none where none was
+/// done.
 pub(super) fn duration_left(more: f64, here: f64, passed: Duration) -> Option<HumanDuration> {
     let seconds = more * passed.as_secs_f64() / here;
     let left = Duration::try_from_secs_f64(seconds).ok()?;

@@ -1,4 +1,5 @@
-//! Progress on stderr: of a texture, of a run, of a study, of a design, of a calibration, of the figures of the paper.
+//! Progress on stderr: of a texture, of a run, of a study, of a design, of a calibration, of the figures of
+//! the paper.
 
 pub(crate) mod calibrate;
 pub(crate) mod design;

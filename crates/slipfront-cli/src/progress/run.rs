@@ -84,7 +84,8 @@ impl RunProgress {
 }
 
 impl Steps {
-    /// The state of a run. Its rate is that of the steps of this process, which has run for the time `passed`.
+    /// The state of a run. Its rate is that of the steps of this process, which has run for the time
+    /// `passed`.
     fn text(&self, now: Place, mu_star: f64, passed: Duration) -> String {
         let percent = 100.0 * now.drive_steps as f64 / self.last as f64;
         let state = format!(
@@ -114,8 +115,8 @@ mod tests {
         }
     }
 
-    /// A resumed run counts its own steps: half of the rest took a minute, so that a minute is left, however much an earlier
-    /// process had done.
+    /// A resumed run counts its own steps: half of the rest took a minute, so that a minute is left, however
+    /// much an earlier process had done.
     #[test]
     fn a_resumed_run_counts_its_own_steps() {
         let steps = Steps {

@@ -25,8 +25,8 @@ impl StudyProgress {
     }
 }
 
-/// Runs done, their rate in this process, which has run for the time `passed`, the time left, failed runs, and the widest
-/// interval of a study that goes on until intervals are narrow.
+/// Runs done, their rate in this process, which has run for the time `passed`, the time left, failed runs,
+/// and the widest interval of a study that goes on until intervals are narrow.
 fn text(now: &Progress, passed: Duration) -> String {
     let failed = match now.failed {
         0 => String::new(),

@@ -17,8 +17,8 @@ use crate::failure::Failure;
 
 /// The ranks of a command, as one of them sees them.
 ///
-/// The ranks agree on the findings of each before they need each other, so that no rank waits for one that has given up.
-/// Functions that end with [`RankFailure`] end so on every rank.
+/// The ranks agree on the findings of each before they need each other, so that no rank waits for one that
+/// has given up. Functions that end with [`RankFailure`] end so on every rank.
 #[derive(Clone)]
 pub(crate) struct CommandRanks {
     program: &'static str,
@@ -98,7 +98,8 @@ impl CommandRanks {
         resume_command(self.program, folder)
     }
 
-    /// Description of the messages of this rank to the others per step, over `steps` steps; none for one rank.
+    /// Description of the messages of this rank to the others per step, over `steps` steps; none for one
+    /// rank.
     pub(crate) fn traffic(&self, steps: u64) -> Option<String> {
         (self.size() > 1 && steps > 0).then(|| self.communicator.per_step(steps))
     }

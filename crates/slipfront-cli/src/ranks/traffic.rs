@@ -89,8 +89,8 @@ mod tests {
     use super::*;
     use slipfront::communicator::Alone;
 
-    /// Messages are counted: of 3 and 5 numbers in every step, an empty one in the other direction, and a sum in every other
-    /// step.
+    /// Messages are counted: of 3 and 5 numbers in every step, an empty one in the other direction, and a sum
+    /// in every other step.
     #[test]
     fn what_is_given_is_counted() {
         let traffic = Traffic::count(Arc::new(Alone));

@@ -10,7 +10,8 @@ use crate::wrap::note;
 const MAX_ROWS: usize = 40;
 const MAX_NOTES: usize = 8;
 
-/// A row for static and for kinetic friction at all levels of the other axes; empty if no axis is one of directions.
+/// A row for static and for kinetic friction at all levels of the other axes; empty if no axis is one of
+/// directions.
 pub(crate) fn anisotropy(plan: &Plan, results: &StudyResults) -> String {
     let all = anisotropies(plan, results);
     let Some(first) = all.first() else {

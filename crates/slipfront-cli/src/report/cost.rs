@@ -8,7 +8,8 @@ use slipfront_run::times::instant;
 use super::summary::notes;
 use super::times::duration;
 
-/// The expected onset, the stability of the step, the cost and the warnings; `seconds` is the time that the run takes.
+/// The expected onset, the stability of the step, the cost and the warnings; `seconds` is the time that the
+/// run takes.
 pub(crate) fn cost(case: &Case, seconds: f64) -> String {
     let (loading, _) = loading(case);
     onset(case) + &loading + &scales(case) + &resources(case, seconds) + &notes(&warnings(case))
@@ -20,8 +21,9 @@ pub(super) fn warnings(case: &Case) -> Vec<String> {
     case.warnings().into_iter().chain(note).collect()
 }
 
-/// The time in which a slip front crosses the slider, about a block per t*, over the time in which the drive loads it, about
-/// 1/V*: the line of the report, and a note where the drive is the faster. A drive that is held waits for the front.
+/// The time in which a slip front crosses the slider, about a block per t*, over the time in which the drive
+/// loads it, about 1/V*: the line of the report, and a note where the drive is the faster. A drive that is
+/// held waits for the front.
 fn loading(case: &Case) -> (String, Option<String>) {
     let (lattice, drive) = (&case.model.lattice, &case.model.drive);
     if drive.is_held() {

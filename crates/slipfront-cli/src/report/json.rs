@@ -11,8 +11,9 @@ pub(crate) fn text_of(report: &Value) -> String {
     format!("{report:#}\n")
 }
 
-/// The physics and the cost of a case, with the names of `summary.json` where that has the same number; `seconds` is the time
-/// that the run takes. A number that is not finite, such as the critical size of slip that is stable at any size, is null.
+/// The physics and the cost of a case, with the names of `summary.json` where that has the same number;
+/// `seconds` is the time that the run takes. A number that is not finite, such as the critical size of slip
+/// that is stable at any size, is null.
 pub(crate) fn check(case: &Case, seconds: f64) -> Value {
     let (groups, lattice, plan) = (&case.groups, &case.model.lattice, &case.time_plan);
     let budget = &case.budget;

@@ -5,7 +5,8 @@ use slipfront_case::case::{Case, CaseLength};
 
 use slipfront_study::text_table::table;
 
-/// The table of the lengths of a case with the number of blocks that is enough for each, and the length that decides.
+/// The table of the lengths of a case with the number of blocks that is enough for each, and the length that
+/// decides.
 pub(crate) fn lengths(case: &Case) -> String {
     let rows: Vec<Vec<String>> = case.lengths().iter().map(|length| row(case, length)).collect();
     let decides = case.deciding_length();

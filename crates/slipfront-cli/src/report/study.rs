@@ -93,8 +93,8 @@ fn case_warnings(plan: &Plan) -> String {
         .collect()
 }
 
-/// The answer of a study: its main quantity at every point, notes, and the folder of tables and pictures, with the reasons
-/// for omissions.
+/// The answer of a study: its main quantity at every point, notes, and the folder of tables and pictures,
+/// with the reasons for omissions.
 pub(crate) fn study(plan: &Plan, results: &StudyResults, folder: &Path) -> String {
     let missing = why_no_pictures(&plan.axes).into_iter();
     let missing = missing.chain(quantities_without_pictures(plan, results));
@@ -147,7 +147,8 @@ fn points(plan: &Plan, results: &StudyResults) -> String {
     text + "\n"
 }
 
-/// The coverage of the texture as meshed at the points that are shown, if an axis asks for another one at any of them.
+/// The coverage of the texture as meshed at the points that are shown, if an axis asks for another one at any
+/// of them.
 fn meshed(plan: &Plan, shown: usize) -> Option<Vec<String>> {
     let coverage = MeshedCoverage::of(plan)?;
     let levels: Vec<Vec<usize>> = plan.points[..shown]

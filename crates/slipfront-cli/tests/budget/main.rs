@@ -1,5 +1,5 @@
-//! The memory and disk space of a run are those that were stated before it began. The allocator counts for a whole process: every
-//! test has its own.
+//! The memory and disk space of a run are those that were stated before it began. The allocator counts for a
+//! whole process: every test has its own.
 
 #![allow(clippy::unwrap_used)] // A helper that cannot do its work fails its test.
 
@@ -72,7 +72,8 @@ fn peak<T>(work: impl FnOnce() -> T) -> (f64, T) {
     (PEAK.load(Ordering::Relaxed) as f64, done)
 }
 
-/// Largest ratio of the stated memory to the taken one, beside what does not grow with a run: what takes less is not refused.
+/// Largest ratio of the stated memory to the taken one, beside what does not grow with a run: what takes less
+/// is not refused.
 const MARGIN: f64 = 1.5;
 
 /// Memory that is stated whatever a run is: the program itself, which no allocator sees, and pictures.
@@ -108,7 +109,8 @@ fn npy(descr: &str, data: impl Iterator<Item = u8>) -> Vec<u8> {
     bytes
 }
 
-/// Files that are read: coefficients and a mask of 400 x 400 blocks, and a mask of 4000 x 4000 pixels, half of each.
+/// Files that are read: coefficients and a mask of 400 x 400 blocks, and a mask of 4000 x 4000 pixels, half
+/// of each.
 fn write_inputs(folder: &Path) {
     let blocks = 400 * 400;
     let mu = npy("<f8", (0..blocks).flat_map(|_| 0.9f64.to_le_bytes()));
@@ -308,7 +310,8 @@ fn models(folder: &Path) {
     }
 }
 
-/// Ranks that make a case together take no more than a process that makes it alone, but for the buffers of those that read.
+/// Ranks that make a case together take no more than a process that makes it alone, but for the buffers of
+/// those that read.
 fn ranks(folder: &Path) {
     let text = "slider.blocks = [400, 400]\nfriction = { mu_static_field = 'mu.npy', mu_kinetic_field = 'mu.npy' }\n\
                 texture = [{ shape = 'mask', file = 'mask.png' }, { shape = 'mask', file = 'mask.npy' }]";
@@ -330,7 +333,8 @@ fn ranks(folder: &Path) {
         taken - before
     };
     let (alone, one, four) = (alone - before, on_ranks(1), on_ranks(4));
-    // The decoder of an image, the reader of a file and the texts of a case, which hardly grow with the lattice.
+    // The decoder of an image, the reader of a file and the texts of a case, which hardly grow with the
+    // lattice.
     let buffers = 256.0 * 1024.0;
     assert!(
         four <= alone + 4.0 * buffers,
@@ -512,8 +516,8 @@ fn on_threads<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> T {
     pool.unwrap().install(work)
 }
 
-/// Measures the memory of work on one thread and on two, and asserts that what is `said` of each is honest. The memory of the
-/// work is that of its pieces, which threads do each for itself.
+/// Measures the memory of work on one thread and on two, and asserts that what is `said` of each is honest.
+/// The memory of the work is that of its pieces, which threads do each for itself.
 fn assert_honest_on_threads(
     what: &str,
     fixed: f64,

@@ -33,8 +33,8 @@ fn workspace() -> Workspace {
     workspace
 }
 
-/// The blocks of an edge that a file names are driven as those of `attach` are, to the last bit, and a stiffness with its unit is the
-/// same as without. The run goes on from its own copy of the file.
+/// The blocks of an edge that a file names are driven as those of `attach` are, to the last bit, and a
+/// stiffness with its unit is the same as without. The run goes on from its own copy of the file.
 #[cfg(unix)]
 #[test]
 fn a_file_attaches_as_an_edge_does() {

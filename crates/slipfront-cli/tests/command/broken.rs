@@ -50,7 +50,8 @@ fn a_closed_pipe_is_no_failure() {
     assert!(workspace.exists("results/small/manifest.json"));
 }
 
-/// A full disk behind stdout loses messages and nothing else; a command whose only product is its output reports it.
+/// A full disk behind stdout loses messages and nothing else; a command whose only product is its output
+/// reports it.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_full_stdout_stops_no_work() {
@@ -182,7 +183,8 @@ fn threads_that_cannot_be_had_are_done_without() {
     let mut process = workspace.process("plot a -o drawn");
     let output = process.env("RAYON_NUM_THREADS", "99999").output().unwrap();
     assert!(output.status.success() && stderr(&output).is_empty());
-    // A user who has no other process and may have one: to become it takes rights that few have, and nothing is tested then.
+    // A user who has no other process and may have one: to become it takes rights that few have, and nothing
+    // is tested then.
     let anyone = "chmod 777 . && cp -R a of-anyone && chmod -R a+rwX of-anyone";
     assert!(workspace.shell(anyone).status.success());
     let as_other = "setpriv --reuid 64321 --clear-groups prlimit --nproc=1";
@@ -281,8 +283,8 @@ fn a_file_that_cannot_be_written_whole_is_not_there_at_all() {
     assert!(failed.len() >= 5, "only {failed:?} were hit");
 }
 
-/// Runs a line in a folder `disk` of its own size and number of files; returns the status and the messages. Mounting one
-/// takes rights that few have: nothing is tested then.
+/// Runs a line in a folder `disk` of its own size and number of files; returns the status and the messages.
+/// Mounting one takes rights that few have: nothing is tested then.
 #[cfg(target_os = "linux")]
 fn on_a_small_disk(workspace: &Workspace, options: &str, line: &str) -> Option<(i32, String)> {
     // A mount in a name space of its own goes away by itself.

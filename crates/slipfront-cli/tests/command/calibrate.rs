@@ -21,7 +21,8 @@ fn workspace() -> Workspace {
     workspace
 }
 
-/// The printed text is the written one, the case runs, and the files are those of any other call and of `verify`.
+/// The printed text is the written one, the case runs, and the files are those of any other call and of
+/// `verify`.
 #[test]
 fn a_calibration_is_told_and_found_again() {
     let workspace = workspace();
@@ -122,7 +123,8 @@ fn a_record_that_cannot_be_meant_is_refused_before_any_run() {
     );
 }
 
-/// A record that the model does not make has status 1, with all results and, also where nothing else is printed, a sentence.
+/// A record that the model does not make has status 1, with all results and, also where nothing else is
+/// printed, a sentence.
 #[test]
 fn a_foreign_record_is_refused_aloud() {
     let workspace = workspace();

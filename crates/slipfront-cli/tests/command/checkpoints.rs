@@ -1,4 +1,5 @@
-//! Runs that are stopped and resumed: the same bytes as without a stop, and never from a checkpoint that is not theirs.
+//! Runs that are stopped and resumed: the same bytes as without a stop, and never from a checkpoint that is
+//! not theirs.
 
 use std::fs::File;
 use std::io::{BufRead, BufReader};
@@ -54,7 +55,8 @@ static SPOT: LazyLock<Vec<u8>> = LazyLock::new(|| {
     workspace.read("spot.png")
 });
 
-/// The folder of a run of `slow.toml` without a stop, made once: results compared with it have the same bytes.
+/// The folder of a run of `slow.toml` without a stop, made once: results compared with it have the same
+/// bytes.
 static WHOLE: LazyLock<Files> = LazyLock::new(|| {
     let workspace = slow_workspace();
     workspace.succeed("run slow.toml -o whole");
@@ -126,7 +128,8 @@ fn a_warning_of_the_queue_stops_it(signal: &str, status: i32) {
     workspace.succeed("verify warned");
 }
 
-/// The case is read from a pipe in which nobody writes, so that the command never comes to look at the first signal.
+/// The case is read from a pipe in which nobody writes, so that the command never comes to look at the first
+/// signal.
 #[cfg(unix)]
 #[test]
 fn a_second_signal_ends_it_at_once() {
@@ -143,8 +146,8 @@ fn a_second_signal_ends_it_at_once() {
     assert!(matches!(status, Some(130 | 143)), "{status:?}");
 }
 
-/// Messages that cannot be printed are no failure: a full disk under the log, or a terminal that has gone, costs nothing
-/// else.
+/// Messages that cannot be printed are no failure: a full disk under the log, or a terminal that has gone,
+/// costs nothing else.
 #[cfg(target_os = "linux")]
 #[test]
 fn what_cannot_be_said_is_no_failure() {
@@ -318,7 +321,8 @@ fn sealed(mut bytes: Vec<u8>) -> Vec<u8> {
     bytes
 }
 
-/// Everything that can be wrong with the latest checkpoint, each refused with its sentence; the one before it goes on.
+/// Everything that can be wrong with the latest checkpoint, each refused with its sentence; the one before it
+/// goes on.
 #[test]
 fn a_checkpoint_that_is_not_whole_or_not_its_own_is_refused() {
     let workspace = slow_workspace();
@@ -391,7 +395,8 @@ fn a_checkpoint_that_is_not_whole_or_not_its_own_is_refused() {
     workspace.assert_same_run("whole", "halted");
 }
 
-/// A run that diverges does so again: there is nothing to go on with, and nothing of what others wrote is removed.
+/// A run that diverges does so again: there is nothing to go on with, and nothing of what others wrote is
+/// removed.
 #[test]
 fn a_resumed_run_that_diverges_leaves_its_case() {
     let workspace = Workspace::small();

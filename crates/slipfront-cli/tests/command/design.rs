@@ -13,7 +13,8 @@ fn verdict(workspace: &Workspace, folder: &str) -> Value {
     serde_json::from_slice(&workspace.read(&format!("{folder}/design.json"))).unwrap()
 }
 
-/// The printed text is the written one, the case runs with the texture, and the files are those of any other call.
+/// The printed text is the written one, the case runs with the texture, and the files are those of any other
+/// call.
 #[test]
 fn a_design_is_a_texture_that_other_commands_read() {
     let workspace = Workspace::new();

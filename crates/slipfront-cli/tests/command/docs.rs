@@ -1,5 +1,5 @@
-//! Every case in the book can be read, every command line is understood by the command, every link leads somewhere, every `unsafe` is
-//! listed, and no number is left to the mathematical library of the system.
+//! Every case in the book can be read, every command line is understood by the command, every link leads
+//! somewhere, every `unsafe` is listed, and no number is left to the mathematical library of the system.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -33,8 +33,8 @@ fn words(line: &str) -> Vec<String> {
     words
 }
 
-/// Arguments of `slipfront`, of `cargo run --release --` and, with any way to start it, of `slipfront-mpi`, whose `run`
-/// takes the same, in the `$` lines of the console blocks.
+/// Arguments of `slipfront`, of `cargo run --release --` and, with any way to start it, of `slipfront-mpi`,
+/// whose `run` takes the same, in the `$` lines of the console blocks.
 fn commands(page: &str) -> Vec<Vec<String>> {
     let mut found = Vec::new();
     let consoles = blocks(page).into_iter().filter(|(info, _)| info == "console");
@@ -49,7 +49,8 @@ fn commands(page: &str) -> Vec<Vec<String>> {
     found
 }
 
-/// Cases, or parts of cases, whose other keys have their defaults: the site opens them in the laboratory, but for those that name a file.
+/// Cases, or parts of cases, whose other keys have their defaults: the site opens them in the laboratory, but
+/// for those that name a file.
 #[test]
 fn every_case_in_the_book_can_be_read_and_shown() {
     let (mut read, mut shown, mut refused) = (0, 0, String::new());
@@ -98,7 +99,8 @@ fn every_command_in_the_book_is_understood() {
     let mut count = 0;
     for page in pages() {
         for arguments in commands(&std::fs::read_to_string(&page).unwrap()) {
-            // With --help at its end a line is parsed up to there and nothing is run: what is wrong is told first.
+            // With --help at its end a line is parsed up to there and nothing is run: what is wrong is told
+            // first.
             let parsed = Command::new(program())
                 .args(&arguments)
                 .arg("--help")
@@ -135,7 +137,8 @@ fn prose(page: &str) -> impl Iterator<Item = &str> {
     })
 }
 
-/// The anchor of a heading: small letters, a hyphen for each blank, nothing else but digits, hyphens and underscores.
+/// The anchor of a heading: small letters, a hyphen for each blank, nothing else but digits, hyphens and
+/// underscores.
 fn anchor(heading: &str) -> String {
     heading
         .trim()
@@ -321,7 +324,8 @@ fn every_unsafe_has_its_reason_and_stands_in_the_book() {
     );
 }
 
-/// Functions of the standard library that the mathematical library of the system computes: their last digits depend on the machine.
+/// Functions of the standard library that the mathematical library of the system computes: their last digits
+/// depend on the machine.
 const OF_THE_SYSTEM: [&str; 25] = [
     "acos", "acosh", "asin", "asinh", "atan", "atan2", "atanh", "cbrt", "cos", "cosh", "exp", "exp2",
     "exp_m1", "hypot", "ln", "ln_1p", "log", "log10", "log2", "powf", "sin", "sin_cos", "sinh", "tan",
@@ -347,7 +351,8 @@ fn lines_of_the_system(code: &str) -> Vec<usize> {
     (0..end).filter(|&k| calls(lines[k])).collect()
 }
 
-/// Sines, logarithms and the like of all that slipfront computes and writes come from libm, which is the same everywhere.
+/// Sines, logarithms and the like of all that slipfront computes and writes come from libm, which is the same
+/// everywhere.
 #[test]
 fn no_number_is_left_to_the_system() {
     let repository = repository();

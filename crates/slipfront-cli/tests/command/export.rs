@@ -1,4 +1,5 @@
-//! The command `slipfront export`: what a Process Run Crate must have, and what becomes of the folder. `tests/ro_crate` has crates validated.
+//! The command `slipfront export`: what a Process Run Crate must have, and what becomes of the folder.
+//! `tests/ro_crate` has crates validated.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -217,8 +218,8 @@ fn only_whole_runs_are_exported() {
     assert!(refused.contains("https://spdx.org/licenses"), "{refused}");
 }
 
-/// The fields of entries of BibTeX as BibTeX reads them: a value ends with the brace that closes its first one, and a backslash before a
-/// brace counts for nothing.
+/// The fields of entries of BibTeX as BibTeX reads them: a value ends with the brace that closes its first
+/// one, and a backslash before a brace counts for nothing.
 fn entries(bibtex: &str) -> Vec<BTreeMap<String, String>> {
     let mut found = Vec::new();
     for entry in bibtex.split_inclusive("\n}\n") {
@@ -241,7 +242,8 @@ fn entries(bibtex: &str) -> Vec<BTreeMap<String, String>> {
     found
 }
 
-/// Names of folders and authors are free; `tests/ro_crate/citations.py` has the entries read by other programs.
+/// Names of folders and authors are free; `tests/ro_crate/citations.py` has the entries read by other
+/// programs.
 #[test]
 fn any_name_can_be_cited() {
     let workspace = Workspace::small();

@@ -64,8 +64,8 @@ impl Workspace {
         files
     }
 
-    /// Makes the folder of a complete run one of a run that was killed before it wrote its manifest: a journal lists what the
-    /// manifest did.
+    /// Makes the folder of a complete run one of a run that was killed before it wrote its manifest: a
+    /// journal lists what the manifest did.
     pub(crate) fn interrupt(&self, folder: &str) {
         let manifest = format!("{folder}/manifest.json");
         let listed: serde_json::Value = serde_json::from_slice(&self.read(&manifest)).unwrap();

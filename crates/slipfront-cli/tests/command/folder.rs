@@ -174,7 +174,8 @@ fn odd_names_are_names() {
     ended_with(workspace.process("plot -o over").args([run, run]), 0);
 }
 
-/// A kill leaves a case, copies of what it reads, and files that were being written, but no manifest that lists them.
+/// A kill leaves a case, copies of what it reads, and files that were being written, but no manifest that
+/// lists them.
 #[test]
 fn force_takes_the_copies_of_a_killed_run_along() {
     let workspace = Workspace::masked();
@@ -195,8 +196,8 @@ fn force_takes_the_copies_of_a_killed_run_along() {
     assert_eq!(workspace.files("b").len(), 2);
 }
 
-/// Files that an interrupted run has not written stay, whatever their names: a file is the run's only if it has finished it,
-/// and if it is unchanged.
+/// Files that an interrupted run has not written stay, whatever their names: a file is the run's only if it
+/// has finished it, and if it is unchanged.
 #[test]
 fn what_an_interrupted_run_has_not_written_stays() {
     let workspace = Workspace::small();

@@ -115,7 +115,8 @@ fn a_case_that_is_no_file_is_refused() {
     assert!(workspace.fail("run binary.toml", 2).contains("not UTF-8"));
 }
 
-/// Text of editors that do not write UTF-8 is refused with the remedy, with and without a mark of its byte order.
+/// Text of editors that do not write UTF-8 is refused with the remedy, with and without a mark of its byte
+/// order.
 #[test]
 fn utf16_is_refused_by_its_name() {
     let workspace = Workspace::small();
@@ -269,7 +270,8 @@ fn what_no_machine_holds_is_refused_in_a_sentence() {
 #[test]
 fn a_limit_of_the_process_is_refused_in_a_sentence() {
     let workspace = Workspace::small();
-    // A million blocks take some 200 MB with their snapshots; the process itself less than 1 GB, its threads' stacks included.
+    // A million blocks take some 200 MB with their snapshots; the process itself less than 1 GB, its threads'
+    // stacks included.
     for (blocks, status) in [("[1000,1000]", 0), ("[16000,1000]", 2)] {
         let output = workspace.shell(&format!(
             "ulimit -v 2000000; RAYON_NUM_THREADS=2 exec {} check small.toml --set slider.blocks={blocks}",

@@ -89,8 +89,8 @@ fn it_serves_its_page_until_a_signal() {
 struct Desktop(Workspace);
 
 impl Desktop {
-    /// A desktop whose `xdg-open` notes the file that it should open, and stays as long as that note, as a browser does that
-    /// shows a page.
+    /// A desktop whose `xdg-open` notes the file that it should open, and stays as long as that note, as a
+    /// browser does that shows a page.
     fn new() -> Self {
         let desktop = Self(Workspace::small());
         let note = desktop.0.path("opened");

@@ -246,7 +246,8 @@ fn check_prints_groups_onset_and_cost_and_runs_nothing() {
     assert_eq!(workspace.files(".").len(), 1, "check has written something");
 }
 
-/// The blocks are those along the drive, an edge drive loads as slowly as its springs are few, and stiff blocks are passed faster.
+/// The blocks are those along the drive, an edge drive loads as slowly as its springs are few, and stiff
+/// blocks are passed faster.
 #[test]
 fn check_compares_crossing_and_loading() {
     let workspace = Workspace::small();
@@ -374,7 +375,8 @@ fn run_prints_physics_summary_and_where_everything_is() {
     }
 }
 
-/// Textured blocks slide from the start and a run says so; springs in contact do not count them, because they have none.
+/// Textured blocks slide from the start and a run says so; springs in contact do not count them, because they
+/// have none.
 #[test]
 fn a_run_says_that_textured_blocks_slide_from_the_start() {
     let workspace = Workspace::small();
@@ -409,8 +411,8 @@ fn a_run_says_that_textured_blocks_slide_from_the_start() {
     assert!(!said.contains(sentence), "{said}");
 }
 
-/// A total stiffness is reported as it is shared: springs of different stiffness are not counted by their relative
-/// stiffness.
+/// A total stiffness is reported as it is shared: springs of different stiffness are not counted by their
+/// relative stiffness.
 #[test]
 fn a_total_stiffness_is_told_as_it_is_shared() {
     let workspace = Workspace::small();

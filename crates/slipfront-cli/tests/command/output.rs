@@ -207,8 +207,8 @@ fn stop_after_onset_ends_the_run_there() {
     );
 }
 
-/// Static friction below kinetic friction is none: the stiff edge of this slider slips first, mu* stops a little at 0.518, and goes on
-/// rising to 0.548 in sliding.
+/// Static friction below kinetic friction is none: the stiff edge of this slider slips first, mu* stops a
+/// little at 0.518, and goes on rising to 0.548 in sliding.
 #[test]
 fn a_peak_below_the_sliding_that_follows_is_no_transition() {
     let workspace = Workspace::small();
@@ -249,8 +249,8 @@ fn a_later_mu_star_above_the_first_peak_is_told() {
     );
 }
 
-/// Drag of the damping, or a kinetic coefficient above the static one, makes steady sliding take more than the static
-/// strength of the blocks: a fall of mu* is then no loss of friction.
+/// Drag of the damping, or a kinetic coefficient above the static one, makes steady sliding take more than
+/// the static strength of the blocks: a fall of mu* is then no loss of friction.
 #[test]
 fn where_friction_loses_nothing_there_is_no_transition() {
     let workspace = Workspace::small();

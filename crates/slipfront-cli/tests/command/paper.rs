@@ -75,7 +75,8 @@ fn what_cannot_be_done_is_said_before_anything_is_written() {
     assert_eq!(std::fs::read_dir(workspace.path("paper")).unwrap().count(), 1);
 }
 
-/// Files of others stay: neither a page of somebody's nor a study is replaced by figures, nor figures by a study.
+/// Files of others stay: neither a page of somebody's nor a study is replaced by figures, nor figures by a
+/// study.
 #[test]
 fn what_others_have_written_stays() {
     let workspace = Workspace::new();

@@ -231,7 +231,8 @@ fn a_measured_record_finds_its_place() {
     assert!(said.contains("leave `--units star` out"), "{said}");
 }
 
-/// Size, letters, titles and names are as asked for: in the SVG in millimetres, in the PNG in pixels of 300 dots per inch.
+/// Size, letters, titles and names are as asked for: in the SVG in millimetres, in the PNG in pixels of 300
+/// dots per inch.
 #[test]
 fn pictures_have_the_size_and_the_names_that_are_asked_for() {
     let workspace = Workspace::small();
@@ -308,8 +309,8 @@ fn the_kymograph_is_a_field() {
     );
 }
 
-/// A record beside the curves is refused, and so is one whose shift is not clear: it fits another run as well, elsewhere, or
-/// is a plateau.
+/// A record beside the curves is refused, and so is one whose shift is not clear: it fits another run as
+/// well, elsewhere, or is a plateau.
 #[test]
 fn the_place_of_a_record_is_found_or_asked_for() {
     let workspace = Workspace::small();

@@ -82,8 +82,8 @@ fn with_cases() -> Workspace {
     workspace
 }
 
-/// Runs a line of a console in the shell; returns its results, or its errors where it has none. Progress, which depends on time, goes to
-/// stderr.
+/// Runs a line of a console in the shell; returns its results, or its errors where it has none. Progress,
+/// which depends on time, goes to stderr.
 fn run(workspace: &Workspace, line: &str) -> String {
     let output = workspace.shell(&format!("slipfront() {{ '{}' \"$@\"; }}\n{line}", program()));
     if output.stdout.is_empty() {
@@ -93,8 +93,8 @@ fn run(workspace: &Workspace, line: &str) -> String {
     }
 }
 
-/// Runs the consoles of a guide that show an output, or all of them, after the cases above them are written to the files that their first
-/// lines name; returns the number of outputs.
+/// Runs the consoles of a guide that show an output, or all of them, after the cases above them are written
+/// to the files that their first lines name; returns the number of outputs.
 fn check(name: &str, runs_all: bool) -> usize {
     check_in(&with_cases(), name, runs_all)
 }

@@ -1,5 +1,5 @@
-//! Folders of many runs: their files are compared with what was written and with what the runs give, and are not replaced once they
-//! were edited.
+//! Folders of many runs: their files are compared with what was written and with what the runs give, and are
+//! not replaced once they were edited.
 
 use std::process::Stdio;
 
@@ -118,7 +118,8 @@ fn a_design_that_ran_out_of_time_is_verified_to_the_last_file() {
     }
 }
 
-/// Figures that could not be derived again are named, and count as no success unless no more than checksums is asked for.
+/// Figures that could not be derived again are named, and count as no success unless no more than checksums
+/// is asked for.
 #[test]
 fn figures_whose_data_are_lost_are_not_taken_for_verified() {
     let workspace = Workspace::new();
@@ -183,7 +184,8 @@ fn pipes_and_endless_files_end_no_verification() {
     }
 }
 
-/// An archive may have been made read-only, by a mode that the copy in the folder for temporary files does not have.
+/// An archive may have been made read-only, by a mode that the copy in the folder for temporary files does
+/// not have.
 #[cfg(unix)]
 #[test]
 fn a_read_only_folder_is_verified_by_everybody() {

@@ -1,4 +1,5 @@
-//! The command `slipfront verify`: every change in a run folder is found, and a repeated run gives the same files.
+//! The command `slipfront verify`: every change in a run folder is found, and a repeated run gives the same
+//! files.
 
 use std::collections::BTreeMap;
 use std::process::Stdio;
@@ -67,7 +68,8 @@ fn every_changed_byte_is_seen() {
                 errors.contains("1 of 1 folder differs from what was written"),
                 "{errors}"
             );
-            // A case may be no case any more, besides; of a manifest that is not to be trusted nothing else is said.
+            // A case may be no case any more, besides; of a manifest that is not to be trusted nothing else
+            // is said.
             let lines: Vec<&str> = said.lines().collect();
             let expected = if name == "case.toml" { 1..=2 } else { 1..=1 };
             assert!(expected.contains(&lines.len()), "{said}");
@@ -222,8 +224,8 @@ fn what_is_no_run_folder_is_said_with_status_2() {
     workspace.fail("verify", 2);
 }
 
-/// Folders of pictures beside those of runs, which `slipfront plot` writes, are no reason to fail; alone there is nothing to
-/// verify, and a folder without a case is not one to be resumed.
+/// Folders of pictures beside those of runs, which `slipfront plot` writes, are no reason to fail; alone
+/// there is nothing to verify, and a folder without a case is not one to be resumed.
 #[test]
 fn folders_of_pictures_are_passed_over() {
     let workspace = workspace_with_a_run();
@@ -448,7 +450,8 @@ fn an_interrupted_repetition_leaves_nothing_behind() {
     assert_eq!(std::fs::read_dir(&temporary).unwrap().count(), 0);
 }
 
-/// A run is repeated twice at once: the second repetition neither waits for the first nor takes its folder away.
+/// A run is repeated twice at once: the second repetition neither waits for the first nor takes its folder
+/// away.
 #[cfg(unix)]
 #[test]
 fn a_run_is_repeated_twice_at_once() {

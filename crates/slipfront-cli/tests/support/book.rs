@@ -2,7 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-/// Folders without pages: of tools, of results, and of texts that become part of `docs/validation/family.md`, in which their links begin.
+/// Folders without pages: of tools, of results, and of texts that become part of `docs/validation/family.md`,
+/// in which their links begin.
 const WITHOUT_PAGES: [&str; 5] = [".git", "target", "results", "node_modules", "text"];
 
 /// The folder of the repository.

@@ -61,7 +61,8 @@ pub(crate) fn wait_for_signal_handlers(child: &Child) {
     }
 }
 
-/// Whether these tests were started under `nohup`, which tells the commands in them as well not to mind a terminal that closes.
+/// Whether these tests were started under `nohup`, which tells the commands in them as well not to mind a
+/// terminal that closes.
 pub(crate) fn ignores_hangup() -> bool {
     signal_mask("self", "SigIgn:").is_some_and(|mask| mask & 1 == 1)
 }

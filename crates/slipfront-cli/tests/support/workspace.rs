@@ -13,11 +13,12 @@ use super::process::{ended_with, program, stderr, stdout, wait_for};
 /// Files by their names, with their bytes.
 pub(crate) type Files = BTreeMap<String, Vec<u8>>;
 
-/// Largest number of bytes of a file that is read: a larger file is one of the empty files of a TiB that tests make.
+/// Largest number of bytes of a file that is read: a larger file is one of the empty files of a TiB that
+/// tests make.
 const MAX_READ_BYTES: u64 = 1 << 30;
 
-/// The folder of Linux for files in memory. What commands write there is not forced to a disk, for which half of the time of these tests
-/// would be spent.
+/// The folder of Linux for files in memory. What commands write there is not forced to a disk, for which half
+/// of the time of these tests would be spent.
 const IN_MEMORY: &str = "/dev/shm";
 
 /// The least number of bytes that must be free in memory: all tests together take less than a tenth of it.
@@ -138,8 +139,8 @@ impl Workspace {
         process.spawn().unwrap()
     }
 
-    /// Starts `run` and waits until it prints the physics of its case: from then on a signal stops it with a checkpoint, and no
-    /// longer while its texture is laid over the blocks.
+    /// Starts `run` and waits until it prints the physics of its case: from then on a signal stops it with a
+    /// checkpoint, and no longer while its texture is laid over the blocks.
     pub(crate) fn start_run(&self, line: &str) -> Child {
         let mut process = self.process(line);
         process.stdout(Stdio::piped()).stderr(Stdio::piped());

@@ -9,8 +9,8 @@ use crate::support::workspace::{Files, Workspace};
 
 /// The longest that a command may take: all of these end within a second on an idle machine.
 const MAX_SECONDS: u64 = 120;
-/// The most address space that a command may take, in KiB: 1 GiB, of which its threads reserve the greater part without
-/// using it.
+/// The most address space that a command may take, in KiB: 1 GiB, of which its threads reserve the greater
+/// part without using it.
 const MAX_MEMORY_KIB: u64 = 1 << 20;
 
 /// End of a command.
@@ -22,8 +22,8 @@ pub(crate) struct ExitedProcess {
 }
 
 impl Workspace {
-    /// Runs a line. A hang, a crash, a panic, too much memory, an unknown status and a failure without a sentence are
-    /// findings.
+    /// Runs a line. A hang, a crash, a panic, too much memory, an unknown status and a failure without a
+    /// sentence are findings.
     pub(crate) fn run_bounded(&self, line: &str) -> Result<ExitedProcess, String> {
         inspect(line, &self.bounded(&[], line))
     }

@@ -1,7 +1,7 @@
 //! A command gives no wrong answer that looks right, whatever happens to the files that it reads.
 //!
-//! Files with a checksum (results, records, findings) are refused or made again; files of a user (cases, studies, masks,
-//! arrays) are read as they are now, and recorded as such.
+//! Files with a checksum (results, records, findings) are refused or made again; files of a user (cases,
+//! studies, masks, arrays) are read as they are now, and recorded as such.
 
 use std::process::Command;
 use std::sync::OnceLock;
@@ -40,8 +40,8 @@ enum Damage {
 /// Files by their kinds.
 type Others = Vec<(String, Vec<u8>)>;
 
-/// Damage to a file: at most `most` cuts, flips and the like, and everything that can stand in its place, of which the short
-/// form also takes at most `most`.
+/// Damage to a file: at most `most` cuts, flips and the like, and everything that can stand in its place, of
+/// which the short form also takes at most `most`.
 fn damages(bytes: &[u8], chance: &mut Chance, most: usize) -> Vec<Damage> {
     let len = bytes.len();
     let mut all: Vec<Damage> = Vec::new();

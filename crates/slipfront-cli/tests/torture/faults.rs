@@ -366,8 +366,8 @@ fn of_those_who_read() {
     tally.close();
 }
 
-/// A failed look at a file is not taken for a missing file: a run that goes on reports the cause, or writes all of its
-/// files.
+/// A failed look at a file is not taken for a missing file: a run that goes on reports the cause, or writes
+/// all of its files.
 #[test]
 fn of_a_look_of_a_run_that_goes_on() {
     if watcher().is_none() {
@@ -429,10 +429,10 @@ fn renames_are_seen() {
     assert_eq!(ended.unwrap().unwrap().status, 0);
     let count = |start: &str| calls.iter().filter(|call| call.name.starts_with(start)).count();
     let files = workspace.files_if_any("out").len();
-    // So are folders: the one above the new folder of the run; the hidden one and that of the run with the journal; that of the
-    // run with the new folder of the inputs, then with its case, and that of the inputs; both again before the manifest, and that
-    // of the complete run after it; and the hidden one before its journal goes. The journal itself is synced for every file,
-    // before this takes its name.
+    // So are folders: the one above the new folder of the run; the hidden one and that of the run with the
+    // journal; that of the run with the new folder of the inputs, then with its case, and that of the inputs;
+    // both again before the manifest, and that of the complete run after it; and the hidden one before its
+    // journal goes. The journal itself is synced for every file, before this takes its name.
     assert_eq!((count("rename"), count("fsync")), (files, files + 10));
     let places = |start: &str| {
         let calls = calls.iter().enumerate();

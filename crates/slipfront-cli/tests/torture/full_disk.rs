@@ -1,5 +1,5 @@
-//! A disk that is too small for what a command writes: the command says so and leaves whole files, and goes on to the same answer
-//! when there is room.
+//! A disk that is too small for what a command writes: the command says so and leaves whole files, and goes
+//! on to the same answer when there is room.
 
 use std::process::Command;
 

@@ -11,7 +11,8 @@ use crate::support::workspace::{Files, Workspace};
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Job {
     pub(crate) name: &'static str,
-    /// Folder of a finished run that the job gets, beside an empty folder `out`; none for a job without such a folder.
+    /// Folder of a finished run that the job gets, beside an empty folder `out`; none for a job without such
+    /// a folder.
     pub(crate) given_run: Option<&'static str>,
     /// Command line of the first call.
     pub(crate) line: &'static str,

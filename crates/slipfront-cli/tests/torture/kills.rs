@@ -140,7 +140,8 @@ fn made(workspace: &Workspace) -> Vec<String> {
         .collect()
 }
 
-/// A crate is whole or not there, whatever ends the command; what a kill leaves has a hidden name, and the next call removes it.
+/// A crate is whole or not there, whatever ends the command; what a kill leaves has a hidden name, and the
+/// next call removes it.
 #[test]
 fn a_killed_export_leaves_no_crate() {
     let workspace = workspace();

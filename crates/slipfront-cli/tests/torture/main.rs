@@ -1,5 +1,6 @@
-//! Torture: the command is killed, its file-system calls fail, and the files that it reads are damaged. It must never give a
-//! wrong answer that looks right, never panic, never hang and never take memory without bound.
+//! Torture: the command is killed, its file-system calls fail, and the files that it reads are damaged. It
+//! must never give a wrong answer that looks right, never panic, never hang and never take memory without
+//! bound.
 //!
 //! `cargo test` takes a sample of the cases. All of them, with the numbers of cases tried:
 //!
@@ -7,7 +8,8 @@
 //! $ SLIPFRONT_TORTURE=long cargo test --release -p slipfront-cli --test torture -- --nocapture
 //! ```
 //!
-//! A number in place of `long`, such as 0.1, takes that share of them. The random choices follow from a seed, `SLIPFRONT_TORTURE_SEED`, which every failure names.
+//! A number in place of `long`, such as 0.1, takes that share of them. The random choices follow from a seed,
+//! `SLIPFRONT_TORTURE_SEED`, which every failure names.
 
 #![cfg(unix)]
 // Helpers of tests are not tests by themselves to clippy.

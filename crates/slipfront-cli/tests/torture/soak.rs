@@ -1,4 +1,5 @@
-//! Soak: ten times the steps take no more memory and no more disk, and the ledger of energy closes as well as before.
+//! Soak: ten times the steps take no more memory and no more disk, and the ledger of energy closes as well as
+//! before.
 //!
 //! `cargo test` goes to a million steps. Up to 10^8, with the figures:
 //!
@@ -22,7 +23,8 @@ struct Soaked {
 
 fn soak(workspace: &Workspace, duration_star: f64) -> Soaked {
     let out = format!("{duration_star:e}");
-    // On one thread the most is the same to a hundredth. On two, one run in four took a fifth less, by which of them drew what.
+    // On one thread the most is the same to a hundredth. On two, one run in four took a fifth less, by which
+    // of them drew what.
     let mut child = workspace.start(&format!(
         "run --quiet --threads 1 --set slider.blocks=[6,5] --set drive.v_star=0.1 --set time.duration_star={duration_star} --out {out}"
     ));
@@ -80,8 +82,8 @@ fn a_longer_run_takes_no_more() {
             let (most, was) = (1.25 * first.files[name] as f64 + 1024.0, first.files[name]);
             assert!((bytes as f64) < most, "{name}: {bytes} bytes after {was}");
         }
-        // Every step adds the same share to what is put in and to what is missing. Rounding alone, if it did not
-        // cancel, would add 1e-16 a step: 1e-8 in 10^8 of them.
+        // Every step adds the same share to what is put in and to what is missing. Rounding alone, if it did
+        // not cancel, would add 1e-16 a step: 1e-8 in 10^8 of them.
         let drift = (run.energy_error - first.energy_error).abs();
         assert!(
             drift < 0.1 * first.energy_error.abs(),

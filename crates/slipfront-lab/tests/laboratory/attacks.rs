@@ -226,7 +226,8 @@ fn huge_and_torn_messages_end_the_connection_alone() {
     let mut page = Page::open(&lab);
     let _ = page.socket.send(Message::text("x".repeat((8 << 20) + 1)));
     page.end();
-    // Frames are written by hand: a text of 2^40 bytes; pieces of a text that has no end; bytes that are no UTF-8; half a frame.
+    // Frames are written by hand: a text of 2^40 bytes; pieces of a text that has no end; bytes that are no
+    // UTF-8; half a frame.
     let endless: Vec<u8> = [0x01, 0xfe, 0xff, 0xff, 0, 0, 0, 0]
         .into_iter()
         .chain([b' '; 65535])
@@ -317,8 +318,8 @@ fn cases_beyond_what_is_shown_are_refused() {
     assert!(said.contains("PNG"), "{said}");
 }
 
-/// Tables within tables are read and freed by functions that call themselves: beyond some thousand there is no stack left, and the
-/// process is gone.
+/// Tables within tables are read and freed by functions that call themselves: beyond some thousand there is
+/// no stack left, and the process is gone.
 #[test]
 fn deep_keys_and_values_are_refused() {
     let lab = Served::new();
@@ -379,7 +380,8 @@ fn a_flood_does_not_fill_the_memory() {
     other.reply("case");
 }
 
-/// A value of JSON takes many times the memory of its text: a message of the largest length has no more of them than a page needs.
+/// A value of JSON takes many times the memory of its text: a message of the largest length has no more of
+/// them than a page needs.
 #[test]
 fn millions_of_values_are_no_request() {
     let lab = Served::new();
@@ -415,7 +417,8 @@ fn millions_of_values_are_no_request() {
     page.reply("case");
 }
 
-/// Small requests, pings, pieces of one byte, and sessions that begin and end at once, each in thousands: another page is served.
+/// Small requests, pings, pieces of one byte, and sessions that begin and end at once, each in thousands:
+/// another page is served.
 #[test]
 fn floods_of_small_things_keep_nobody_out() {
     let lab = Served::new();

@@ -49,7 +49,8 @@ fn ask_for_much(page: &mut Page) {
     }
 }
 
-/// An image of 2^28 white pixels in some ten kilobytes, and a case that reads it a hundred times, which takes minutes.
+/// An image of 2^28 white pixels in some ten kilobytes, and a case that reads it a hundred times, which takes
+/// minutes.
 #[cfg(target_os = "linux")]
 fn case_of_minutes() -> serde_json::Value {
     let mut image = Vec::new();
@@ -65,7 +66,8 @@ fn case_of_minutes() -> serde_json::Value {
     json!({ "do": "open", "source": { "toml": toml, "files": { "a.png": BASE64_STANDARD.encode(image) } } })
 }
 
-/// Processor time that the threads of sessions have taken, in hundredths of a second; none if there is no such thread.
+/// Processor time that the threads of sessions have taken, in hundredths of a second; none if there is no
+/// such thread.
 #[cfg(target_os = "linux")]
 fn time_of_sessions() -> Option<u64> {
     let tasks = std::fs::read_dir("/proc/self/task").unwrap();
@@ -92,7 +94,8 @@ fn a_page_that_is_gone_leaves_no_case_that_is_being_made() {
                 thread::sleep(Duration::from_millis(10));
             }
         };
-        // Requests that wait for the session are not read, so that a page whose requests wait is noticed in another way.
+        // Requests that wait for the session are not read, so that a page whose requests wait is noticed in
+        // another way.
         for waiting in [0, 40] {
             let lab = Served::new();
             let mut page = Page::open(&lab);

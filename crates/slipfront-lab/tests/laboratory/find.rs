@@ -1,4 +1,5 @@
-//! The search for a texture that is better than the painted one, whatever becomes of the page that asked for it.
+//! The search for a texture that is better than the painted one, whatever becomes of the page that asked for
+//! it.
 
 use std::time::{Duration, Instant};
 

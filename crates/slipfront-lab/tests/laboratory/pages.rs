@@ -56,7 +56,8 @@ fn the_numbers_are_those_of_a_run() {
     }
 }
 
-/// A run saved by the page has the bytes of `slipfront run`, except in the manifest, which names the program and the time.
+/// A run saved by the page has the bytes of `slipfront run`, except in the manifest, which names the program
+/// and the time.
 #[test]
 fn a_saved_run_has_the_bytes_of_the_command() {
     let lab = Served::new();

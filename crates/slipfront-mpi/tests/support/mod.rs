@@ -10,7 +10,8 @@ use std::io::ErrorKind;
 use std::path::Path;
 use std::process::{Command, Output};
 
-/// Open MPI's parameter for the seconds between the signal on which ranks are to end and the one that kills them.
+/// Open MPI's parameter for the seconds between the signal on which ranks are to end and the one that kills
+/// them.
 pub(crate) const SECONDS_TO_END: &str = "OMPI_MCA_odls_base_sigkill_timeout";
 
 /// The environment in which a test program finds the arguments of the command that it is to run.
@@ -23,15 +24,16 @@ pub(crate) fn mpirun(ranks: usize, program: impl AsRef<OsStr>) -> Command {
     command
 }
 
-/// The command mpirun, without a program to start yet. Ranks may be more than cores, and then give way to each other while
-/// they wait.
+/// The command mpirun, without a program to start yet. Ranks may be more than cores, and then give way to
+/// each other while they wait.
 pub(crate) fn launcher() -> Command {
     let mut command = Command::new("mpirun");
     command.args(["--allow-run-as-root", "--oversubscribe", "--bind-to", "none"]);
-    // A rank that waits for ever is a failure of the test, not of the machine on which it runs. Four ranks on two cores give way to
-    // whatever else works there at each of their steps, so that seconds become minutes.
+    // A rank that waits for ever is a failure of the test, not of the machine on which it runs. Four ranks on
+    // two cores give way to whatever else works there at each of their steps, so that seconds become minutes.
     command.args(["--timeout", "600", "--mca", "mpi_yield_when_idle", "1"]);
-    // Of ranks that end with another status than 0 mpirun kills at once what is left, and not after a second or two.
+    // Of ranks that end with another status than 0 mpirun kills at once what is left, and not after a second
+    // or two.
     command.env(SECONDS_TO_END, "0");
     command
 }
@@ -58,8 +60,8 @@ pub(crate) fn ranks_of_test(ranks: usize, test: &str) -> Command {
     command
 }
 
-/// Runs the plain command `slipfront`, which must succeed, in a folder, as a process of this test program, which has
-/// [`run_plain_command`] in a test named `plain_command`.
+/// Runs the plain command `slipfront`, which must succeed, in a folder, as a process of this test program,
+/// which has [`run_plain_command`] in a test named `plain_command`.
 pub(crate) fn run_plain(folder: &Path, line: &str) {
     let mut command = Command::new(std::env::current_exe().unwrap());
     command.args(only("plain_command")).env(ARGUMENTS, line);

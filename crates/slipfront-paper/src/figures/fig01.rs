@@ -1,5 +1,5 @@
-//! Fig. 1: the lattice of blocks and springs, the forces on a block, and the stiffness of the slider that follows from the
-//! springs.
+//! Fig. 1: the lattice of blocks and springs, the forces on a block, and the stiffness of the slider that
+//! follows from the springs.
 
 use slipfront_plot::{Sketch, Stroke, StrokeStyle};
 

@@ -93,8 +93,8 @@ fn histogram(label: &str, bins: &[[f64; 2]], values: &[f64]) -> Response {
     Response::of_values(label, &middles, &shares)
 }
 
-/// Distance of Kolmogorov and Smirnov between a sample and the standard Gaussian, times sqrt(n): below 1.36 with 95 %
-/// confidence if it is one.
+/// Distance of Kolmogorov and Smirnov between a sample and the standard Gaussian, times sqrt(n): below 1.36
+/// with 95 % confidence if it is one.
 fn distance_to_normal(mut sorted: Vec<f64>) -> f64 {
     let normal = Normal::standard();
     sorted.sort_by(f64::total_cmp);

@@ -59,7 +59,8 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
     Ok(())
 }
 
-/// Measures before the first slip: whether the stress is uniform and grows as k_s V* t*, and whether blocks move.
+/// Measures before the first slip: whether the stress is uniform and grows as k_s V* t*, and whether blocks
+/// move.
 fn before_slip(runner: &FigureRunner, main: &FigureRun, data: &mut FigureData) -> Result<(), PaperError> {
     let first = main.first_slip()?;
     let times: Vec<f64> = (1..=8).map(|k| first * f64::from(k) / 9.0).collect();
@@ -90,8 +91,9 @@ fn first_slip_rank(run: &FigureRun) -> Result<f64, PaperError> {
     Ok(1.0 + mu_static.iter().filter(|&&mu| mu < mu_static[first]).count() as f64)
 }
 
-/// Fall of the contact stress of the first block to slip in the 2 t* after its slip, over its rise in the 2 t* before. A
-/// wave goes over two blocks in that time, so that the fall is that of the block's own stress, not that of the slider's.
+/// Fall of the contact stress of the first block to slip in the 2 t* after its slip, over its rise in the 2
+/// t* before. A wave goes over two blocks in that time, so that the fall is that of the block's own stress,
+/// not that of the slider's.
 fn fall_over_rise(runner: &FigureRunner, run: &FigureRun) -> Result<f64, PaperError> {
     let (first, block) = (run.first_slip()?, run.first_block()?);
     // The last step at which the block still holds.

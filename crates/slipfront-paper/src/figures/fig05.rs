@@ -46,8 +46,8 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
     Ok(())
 }
 
-/// Distances of the curves of the smaller sizes from the mean curve of the largest. There is a run in each of the three
-/// sizes for each surface.
+/// Distances of the curves of the smaller sizes from the mean curve of the largest. There is a run in each of
+/// the three sizes for each surface.
 fn whole_curves(runs: &[FigureRun], data: &mut FigureData) {
     let [small, middle, large] =
         [0, 1, 2].map(|size| runs.iter().skip(size).step_by(3).collect::<Vec<&FigureRun>>());

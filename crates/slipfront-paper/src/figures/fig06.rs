@@ -1,4 +1,5 @@
-//! Fig. 6: onset time and number of time steps against speed, and the properties of the material that decide on the onset.
+//! Fig. 6: onset time and number of time steps against speed, and the properties of the material that decide
+//! on the onset.
 
 use crate::drawing::{Drawing, measured};
 use crate::error::PaperError;
@@ -87,7 +88,8 @@ fn material(sweep: &ParameterSweep, data: &mut FigureData) {
     let load = [named("P x 2"), named("mu_s x 2")].map(|number| number.value);
     data.value("least_factor_of_load", smallest(load));
     data.number("factor_of_speed", named("V x 2"));
-    // t* as printed has no l in it (D4): the same slider made of larger blocks would begin to slide later in it.
+    // t* as printed has no l in it (D4): the same slider made of larger blocks would begin to slide later in
+    // it.
     data.number("factor_of_block_size", named("l x 2"));
     data.number("onset_star_factor_of_block_size", star("l x 2"));
     let rows = names.iter().enumerate().map(|(k, name)| {

@@ -8,7 +8,8 @@ use crate::runner::FigureRunner;
 use crate::statistics::{largest, range, smallest};
 use crate::sweep::ParameterSweep;
 
-/// Difference of static friction that no longer counts: a tenth of the scatter from surface to surface, 0.015 (Fig. 12).
+/// Difference of static friction that no longer counts: a tenth of the scatter from surface to surface, 0.015
+/// (Fig. 12).
 const SAME: f64 = 0.0015;
 
 pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Result<(), PaperError> {
@@ -47,7 +48,8 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
 
 /// Static friction in steps from coarse to fine, the paper's among them (Eq. 13), at several speeds (D11).
 fn steps(sweep: &ParameterSweep, data: &mut FigureData) {
-    // At a speed: the steps and static friction in each, of which the first step is the paper's and the last the finest.
+    // At a speed: the steps and static friction in each, of which the first step is the paper's and the last
+    // the finest.
     let [slow, fast] = [0.01, 0.2].map(|v| sweep.level(v));
     let over_steps = |speed: usize, quantity: &str| -> Vec<f64> {
         let steps = 0..sweep.axis(1).len();
@@ -74,7 +76,8 @@ fn steps(sweep: &ParameterSweep, data: &mut FigureData) {
     data.value("paper_steps_in_one_that_does", largest(same) / paper_step);
 }
 
-/// Eq. 4 as printed: the step in which kinetic friction is as the paper has it, about R*, at several speeds (D11).
+/// Eq. 4 as printed: the step in which kinetic friction is as the paper has it, about R*, at several speeds
+/// (D11).
 fn literal(sweep: &ParameterSweep, data: &mut FigureData) {
     let (speeds, steps) = (sweep.axis(0), sweep.axis(1));
     let best: Vec<f64> = (0..speeds.len())

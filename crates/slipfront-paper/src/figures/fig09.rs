@@ -11,8 +11,8 @@ use crate::sweep::ParameterSweep;
 
 /// The dampings that are drawn.
 const DRAWN: [f64; 6] = [0.0, 0.03, 0.1, 0.3, 1.0, 3.0];
-/// Rise of N* from one damping to the next, in % of the blocks, from which on it is called a jump. In stick-slip N* rises by
-/// less than 3 from each to the next.
+/// Rise of N* from one damping to the next, in % of the blocks, from which on it is called a jump. In
+/// stick-slip N* rises by less than 3 from each to the next.
 const JUMP: f64 = 5.0;
 
 pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Result<(), PaperError> {
@@ -34,7 +34,8 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
     friction(&sweep, &runs, data)
 }
 
-/// The effect of damping on static and kinetic friction, on the number of sliding blocks and on the fluctuation of friction.
+/// The effect of damping on static and kinetic friction, on the number of sliding blocks and on the
+/// fluctuation of friction.
 fn friction(sweep: &ParameterSweep, runs: &[FigureRun], data: &mut FigureData) -> Result<(), PaperError> {
     let dampings = sweep.axis(0);
     let [statics, kinetics, sliding] = [

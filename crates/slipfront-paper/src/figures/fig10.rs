@@ -7,8 +7,8 @@ use crate::run::{FigureRun, curves, on_each};
 use crate::runner::FigureRunner;
 use crate::statistics::{largest, mean, rises};
 
-/// Ends of the windows of time, from the end of the transition on, over which the kinetic friction of the lowest R* is
-/// averaged: the end of the run, 8/V*, comes last.
+/// Ends of the windows of time, from the end of the transition on, over which the kinetic friction of the
+/// lowest R* is averaged: the end of the run, 8/V*, comes last.
 const WINDOW_ENDS: [f64; 6] = [150.0, 160.0, 180.0, 200.0, 220.0, 266.7];
 
 pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Result<(), PaperError> {

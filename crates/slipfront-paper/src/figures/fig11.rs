@@ -24,7 +24,8 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
     let places = on_each(&runs, FigureRun::first_block)?;
     let repeated = (0..places.len()).filter(|&k| places[..k].contains(&places[k]));
     data.value("repeated_first_places", repeated.count() as f64);
-    // The same random numbers with another spread: the first slip is expected at the same block, at another time.
+    // The same random numbers with another spread: the first slip is expected at the same block, at another
+    // time.
     let mut times = Vec::new();
     let mut moved = 0;
     for sigma in ["0.025", "0.05", "0.1"] {

@@ -50,7 +50,8 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
     kinetic(runner, data)
 }
 
-/// Share of fives of surfaces that are as close together as the paper's, at every point of the figure with a spread.
+/// Share of fives of surfaces that are as close together as the paper's, at every point of the figure with a
+/// spread.
 fn surfaces(runner: &mut FigureRunner, data: &mut FigureData) -> Result<(), PaperError> {
     let sweep = runner.study("fig12_surfaces")?;
     let farthest_of = |five: &[f64]| farthest(five, mean(five));
@@ -92,8 +93,8 @@ fn standard_deviation(sample: &[f64]) -> f64 {
     deviation(sample) * (n / (n - 1.0)).sqrt()
 }
 
-/// The share of fives whose scatter is below 0.015 at all points from this speed on, %. Fives are surfaces at equal distances
-/// in the list, which closes to a ring.
+/// The share of fives whose scatter is below 0.015 at all points from this speed on, %. Fives are surfaces at
+/// equal distances in the list, which closes to a ring.
 fn fives_within_percent(sweep: &ParameterSweep, first_speed: usize, scatter: Scatter) -> f64 {
     let points = (0..sweep.axis(0).len())
         .flat_map(|spread| (first_speed..sweep.axis(1).len()).map(move |speed| [spread, speed]));

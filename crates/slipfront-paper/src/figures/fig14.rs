@@ -74,8 +74,8 @@ fn nearness(run: &FigureRun, share: f64) -> f64 {
     mean_distance(slipped(run, share).unwrap_or_default()) / mean_distance(all)
 }
 
-/// Share of the local minima of mu_si that slip for the first time before the mean of their neighbours, %. Where fronts do
-/// not heed them it is one half.
+/// Share of the local minima of mu_si that slip for the first time before the mean of their neighbours, %.
+/// Where fronts do not heed them it is one half.
 fn early_minima(run: &FigureRun) -> f64 {
     let model = &run.case.model;
     let times = &run.record.first_slip_time_star;
@@ -100,7 +100,8 @@ fn first_at_rim(run: &FigureRun) -> f64 {
     100.0 * first.iter().filter(touches).count() as f64 / first.len() as f64
 }
 
-/// Difference of the times of first slip from those of the mirror image across the drive, over their range, %.
+/// Difference of the times of first slip from those of the mirror image across the drive, over their range,
+/// %.
 fn asymmetry(run: &FigureRun) -> f64 {
     let lattice = &run.case.model.lattice;
     let times = &run.record.first_slip_time_star;

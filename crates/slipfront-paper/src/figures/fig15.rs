@@ -60,7 +60,8 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
     starting_points(runner, data)
 }
 
-/// Places where slip begins before the peak without a texture, by the spread of the local static coefficients.
+/// Places where slip begins before the peak without a texture, by the spread of the local static
+/// coefficients.
 fn starting_points(runner: &FigureRunner, data: &mut FigureData) -> Result<(), PaperError> {
     let sweep = runner.plan("fig15_starts")?;
     let mut means = Vec::new();

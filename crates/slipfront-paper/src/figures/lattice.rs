@@ -16,7 +16,8 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
     Ok(())
 }
 
-/// Forces of the springs on all blocks (Eq. 3) after a uniform stretch by these multiples of the strain epsilon.
+/// Forces of the springs on all blocks (Eq. 3) after a uniform stretch by these multiples of the strain
+/// epsilon.
 fn forces(model: &Arc<Model>, [stretch_x, stretch_y]: [f64; 2]) -> Vec<[f64; 2]> {
     let lattice = &model.lattice;
     let mut state = State::at_rest(lattice.n_blocks());
@@ -68,7 +69,8 @@ mod tests {
         ))
     }
 
-    /// Each of n rows pulls with k_1 = 3/4 and each of n - 1 pairs of rows with its diagonals, (2/3) k_2 = 1/4.
+    /// Each of n rows pulls with k_1 = 3/4 and each of n - 1 pairs of rows with its diagonals, (2/3) k_2 =
+    /// 1/4.
     #[test]
     fn a_strip_lacks_a_quarter_of_a_row() {
         for n in [5, 25, 100] {

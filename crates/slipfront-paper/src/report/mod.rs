@@ -1,4 +1,5 @@
-//! The output of `slipfront paper`: pictures, tables, `claims.csv`, `report.html`, and the page of `docs/validation`.
+//! The output of `slipfront paper`: pictures, tables, `claims.csv`, `report.html`, and the page of
+//! `docs/validation`.
 
 mod html;
 mod markdown;

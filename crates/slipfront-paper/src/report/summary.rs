@@ -3,7 +3,8 @@
 use crate::claims::ClaimResult;
 use crate::paper::Paper;
 
-/// A table with a line for every claim, the number of claims with each verdict, and the verdicts that are not the expected ones.
+/// A table with a line for every claim, the number of claims with each verdict, and the verdicts that are not
+/// the expected ones.
 pub fn summary(paper: &Paper) -> String {
     let mut text = format!("{:>3}  {:<27}  {:<18}  claim\n", "no.", "verdict", "measured");
     for result in &paper.results {

@@ -1,4 +1,5 @@
-//! The paper on two random surfaces in place of five: every figure is drawn and every verdict is the expected one.
+//! The paper on two random surfaces in place of five: every figure is drawn and every verdict is the expected
+//! one.
 
 // A helper that cannot do its work fails its test.
 #![allow(clippy::unwrap_used)]

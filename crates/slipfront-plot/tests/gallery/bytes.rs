@@ -1,6 +1,7 @@
 //! A picture of every kind has the same bytes on every machine.
 //!
-//! The digests change with the look of the pictures, and with the version of the crate that compresses the PNG.
+//! The digests change with the look of the pictures, and with the version of the crate that compresses the
+//! PNG.
 
 use slipfront_plot::{
     Bar, BarChart, BarGroup, FieldMap, FieldMaps, FrictionAxes, FrictionCurve, HeatAxis, HeatMap, Instant,

@@ -1,5 +1,5 @@
-//! Pictures of every kind and of unusual shapes: no two texts overlap, none leaves the page, and of a single run no curve runs through
-//! one.
+//! Pictures of every kind and of unusual shapes: no two texts overlap, none leaves the page, and of a single
+//! run no curve runs through one.
 //!
 //! The pictures are written to the folder in `SLIPFRONT_GALLERY`, if it is set.
 
@@ -300,7 +300,8 @@ fn responses() {
     check("precursors", drawn(precursors, &["events", "exact"]));
 }
 
-/// Friction around the directions: equal in all, larger along one axis, with wide intervals, without a value in one.
+/// Friction around the directions: equal in all, larger along one axis, with wide intervals, without a value
+/// in one.
 #[test]
 fn polars() {
     let around = |label: &str, mean: &dyn Fn(f64) -> f64, half: f64| {

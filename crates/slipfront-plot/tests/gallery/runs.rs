@@ -20,8 +20,8 @@ fn through(points: &[(f64, f64)]) -> Vec<[f64; 3]> {
     points.windows(2).flat_map(between).collect()
 }
 
-/// A run through these points, with the highest of its rows as the peak, and with first slip, instants and the kinetic
-/// window from there on.
+/// A run through these points, with the highest of its rows as the peak, and with first slip, instants and
+/// the kinetic window from there on.
 pub(crate) fn run(
     points: &[(f64, f64)],
     first_slip: f64,

@@ -1,8 +1,9 @@
 //! The file of a checkpoint.
 //!
-//! A line of JSON holds the identity of the run and the sizes of the columns that follow it: raw little-endian numbers in
-//! the order of the whole lattice, each at a place that follows from this line, so that every rank writes and reads the
-//! numbers of its own rows. Behind them stand the state in postcard's binary form, and the checksum of all that.
+//! A line of JSON holds the identity of the run and the sizes of the columns that follow it: raw
+//! little-endian numbers in the order of the whole lattice, each at a place that follows from this line, so
+//! that every rank writes and reads the numbers of its own rows. Behind them stand the state in postcard's
+//! binary form, and the checksum of all that.
 
 use std::fs::File;
 use std::io::{BufRead, BufReader, BufWriter, Error, ErrorKind, Read, Seek, SeekFrom, Write};
@@ -66,8 +67,8 @@ impl Header {
         }
     }
 
-    /// Bytes of a file up to the end of the columns, of which `begin` stand before them; none if there are too many to
-    /// count.
+    /// Bytes of a file up to the end of the columns, of which `begin` stand before them; none if there are
+    /// too many to count.
     fn columns_end(&self, begin: u64) -> Option<u64> {
         let [blocks, fields] = self.columns.map(|columns| columns.bytes());
         begin.checked_add(blocks?)?.checked_add(fields?)
@@ -76,9 +77,10 @@ impl Header {
 
 /// Writes a checkpoint to a new file, each rank its own rows, and forces the file to the disk.
 ///
-/// On a file system that several machines share, one of them is sure to see what another has written from when that has closed the
-/// file on: each rank writes all that it has and closes the file before any of them reads it. None reads while it writes, which would
-/// let it write whole pages of memory, with what it takes for the numbers of others.
+/// On a file system that several machines share, one of them is sure to see what another has written from
+/// when that has closed the file on: each rank writes all that it has and closes the file before any of them
+/// reads it. None reads while it writes, which would let it write whole pages of memory, with what it takes
+/// for the numbers of others.
 pub(super) fn write(
     path: &Path,
     header: &Header,
@@ -124,7 +126,8 @@ fn of_first(communicator: &dyn Communicator, number: u64) -> u64 {
     of_first[0].cast_unsigned()
 }
 
-/// Makes the file with all but its columns and its checksum, the state from byte `end` on; returns it with its length.
+/// Makes the file with all but its columns and its checksum, the state from byte `end` on; returns it with
+/// its length.
 fn write_line_and_state(
     path: &Path,
     line: &[u8],
@@ -154,7 +157,8 @@ fn write_columns(mut file: File, begin: u64, running: &Running) -> std::io::Resu
     file.sync_all()
 }
 
-/// Reads a checkpoint of the case with this hash, all but its columns, whose bytes are compared with the checksum.
+/// Reads a checkpoint of the case with this hash, all but its columns, whose bytes are compared with the
+/// checksum.
 pub(super) fn read(
     path: &Path,
     case_blake3: &str,
@@ -249,7 +253,8 @@ fn open(path: &Path) -> std::io::Result<OpenCheckpoint> {
     })
 }
 
-/// Reads the state, which takes all bytes from `begin` to `end`; an error of [`ErrorKind::InvalidData`] if there is none.
+/// Reads the state, which takes all bytes from `begin` to `end`; an error of [`ErrorKind::InvalidData`] if
+/// there is none.
 fn read_state(mut file: &File, begin: u64, end: u64) -> std::io::Result<RunState> {
     file.seek(SeekFrom::Start(begin))?;
     let file = ErrorKeepingReader { file, error: None };

@@ -1,7 +1,8 @@
-//! Checkpoints of a run in its folder, from which it goes on after it was stopped, with the same bytes in every file.
+//! Checkpoints of a run in its folder, from which it goes on after it was stopped, with the same bytes in
+//! every file.
 //!
-//! A file takes its name when it is whole; the one before it is kept beside it. Any number of ranks writes the same bytes, each
-//! its own rows, and goes on from what any other number has written.
+//! A file takes its name when it is whole; the one before it is kept beside it. Any number of ranks writes
+//! the same bytes, each its own rows, and goes on from what any other number has written.
 
 mod error;
 mod file;
@@ -110,12 +111,13 @@ impl Checkpoints {
         self.started
     }
 
-    /// Saves the state of the run. The checkpoint that was the latest is kept as the one before, unless it is damaged;
-    /// whatever happens, one of the two is whole.
+    /// Saves the state of the run. The checkpoint that was the latest is kept as the one before, unless it is
+    /// damaged; whatever happens, one of the two is whole.
     pub fn save(&mut self, running: &Running, communicator: &dyn Communicator) -> std::io::Result<()> {
         let header = Header::new(&self.case_blake3, self.started, running);
         let is_first = communicator.rank() == 0;
-        // Another name for every step: machines that share a disk may take a name for the file that had it before.
+        // Another name for every step: machines that share a disk may take a name for the file that had it
+        // before.
         let temporary = format!("{}-{CHECKPOINT}", header.step);
         let temporary = self.unfinished.temporary().join(temporary);
         let written = file::write(&temporary, &header, running, communicator);
@@ -149,8 +151,8 @@ impl Checkpoints {
         sync_folder(self.unfinished.path())
     }
 
-    /// Reads the latest checkpoint of a run folder, or the one before it; nothing if the folder has neither. Where a kill
-    /// has left only the one before, it counts as the latest.
+    /// Reads the latest checkpoint of a run folder, or the one before it; nothing if the folder has neither.
+    /// Where a kill has left only the one before, it counts as the latest.
     pub fn load(
         folder: &Path,
         case: &Case,
@@ -252,7 +254,8 @@ mod tests {
         }
     }
 
-    /// Ranks that share a lattice save the bytes of one rank, at many instants of a run with all kinds of frames.
+    /// Ranks that share a lattice save the bytes of one rank, at many instants of a run with all kinds of
+    /// frames.
     #[test]
     fn ranks_that_share_a_lattice_save_the_bytes_of_one() {
         for text in [
@@ -338,8 +341,8 @@ mod tests {
         }
     }
 
-    /// Where machines share a disk, one of them may see for a while what others have replaced: another file, or one of another
-    /// layout or length.
+    /// Where machines share a disk, one of them may see for a while what others have replaced: another file,
+    /// or one of another layout or length.
     #[test]
     fn where_one_rank_sees_another_checkpoint_all_refuse_it() {
         let case = case();
@@ -373,7 +376,8 @@ mod tests {
         }
     }
 
-    /// Columns stand where the first line places them, and are read back with the same bits: numbers may be NaN.
+    /// Columns stand where the first line places them, and are read back with the same bits: numbers may be
+    /// NaN.
     #[test]
     fn columns_stand_where_the_first_line_tells() {
         let case = case();

@@ -1,4 +1,5 @@
-//! Citations of runs, of slipfront and of the article whose model it implements, as BibTeX and as a citation file (CFF 1.2.0).
+//! Citations of runs, of slipfront and of the article whose model it implements, as BibTeX and as a citation
+//! file (CFF 1.2.0).
 
 use jiff::Timestamp;
 use serde_json::json;
@@ -21,7 +22,8 @@ pub(super) const ARTICLE_YEAR: u16 = 2023;
 /// Remark in place of the names of the article's authors.
 const ARTICLE_NOTE: &str = "The model. The authors' names stand on the publisher's page of this DOI.";
 
-/// Entries of BibTeX: one for each run, one for slipfront and one for the article. Without an author the entries of runs have none.
+/// Entries of BibTeX: one for each run, one for slipfront and one for the article. Without an author the
+/// entries of runs have none.
 pub fn bibtex(runs: &[WholeRun], by: &Attribution) -> String {
     let mut text = String::new();
     for run in runs {
@@ -91,7 +93,8 @@ fn versions(runs: &[WholeRun]) -> String {
     versions.join(", ")
 }
 
-/// A text in which TeX reads every sign as it stands. BibTeX counts braces, also those behind a backslash, so that none stands alone.
+/// A text in which TeX reads every sign as it stands. BibTeX counts braces, also those behind a backslash, so
+/// that none stands alone.
 fn tex(text: &str) -> String {
     let sign = |c: char| match c {
         '&' | '%' | '$' | '#' | '_' => format!("\\{c}"),
@@ -106,7 +109,8 @@ fn tex(text: &str) -> String {
     text.chars().map(sign).collect()
 }
 
-/// A string of YAML: a string of JSON, with numbers for the signs that some readers of YAML refuse or take for ends of lines.
+/// A string of YAML: a string of JSON, with numbers for the signs that some readers of YAML refuse or take
+/// for ends of lines.
 fn quoted(text: &str) -> String {
     let is_refused = |c: char| {
         c.is_control() || matches!(c, '\u{2028}' | '\u{2029}' | '\u{feff}' | '\u{fffe}' | '\u{ffff}')

@@ -1,6 +1,8 @@
-//! Complete runs for other programs: as a Process Run Crate (RO-Crate) for data repositories, and as citations.
+//! Complete runs for other programs: as a Process Run Crate (RO-Crate) for data repositories, and as
+//! citations.
 //!
-//! A run does not know its author and licence. What the user does not give is reported as missing, and never made up.
+//! A run does not know its author and licence. What the user does not give is reported as missing, and never
+//! made up.
 
 mod attribution;
 mod citation;
@@ -23,12 +25,14 @@ pub use self::whole_run::WholeRun;
 use crate::clock;
 use crate::names::RO_CRATE;
 
-/// Describes runs as a Process Run Crate and returns the path of `ro-crate-metadata.json`: copies of them in the new folder `out`, or without
-/// `out` one run in its own folder, where `force` replaces an earlier description.
+/// Describes runs as a Process Run Crate and returns the path of `ro-crate-metadata.json`: copies of them in
+/// the new folder `out`, or without `out` one run in its own folder, where `force` replaces an earlier
+/// description.
 ///
 /// # Errors
-/// [`ExportError::NeedsFolder`] for several runs without `out`; [`ExportError::Interrupted`] after a stop; when a file or folder stands where one is to be made, when two runs have one
-/// name, and when the system refuses to read or write.
+/// [`ExportError::NeedsFolder`] for several runs without `out`; [`ExportError::Interrupted`] after a stop;
+/// when a file or folder stands where one is to be made, when two runs have one name, and when the system
+/// refuses to read or write.
 pub fn write_crate(
     runs: &[WholeRun],
     out: Option<&Path>,
@@ -43,7 +47,8 @@ pub fn write_crate(
     }
 }
 
-/// Describes a run in its own folder, in `ro-crate-metadata.json`, and returns the path of this file. It is not one of the run's files.
+/// Describes a run in its own folder, in `ro-crate-metadata.json`, and returns the path of this file. It is
+/// not one of the run's files.
 fn describe_in_place(run: &WholeRun, by: &Attribution, force: bool) -> Result<PathBuf, ExportError> {
     let path = run.folder.join(RO_CRATE);
     // A broken link is a file of the user as well.
@@ -55,8 +60,9 @@ fn describe_in_place(run: &WholeRun, by: &Attribution, force: bool) -> Result<Pa
     Ok(path)
 }
 
-/// Copies runs to a new folder, each to a folder of its name, describes them there in `ro-crate-metadata.json`, and returns the path of this
-/// file. The folder has its name when all of it is there.
+/// Copies runs to a new folder, each to a folder of its name, describes them there in
+/// `ro-crate-metadata.json`, and returns the path of this file. The folder has its name when all of it is
+/// there.
 fn crate_of_copies(
     runs: &[WholeRun],
     out: &Path,

@@ -4,7 +4,8 @@ use serde_json::{Value, json};
 use slipfront_case::case_file::{CaseFile, title_of};
 use slipfront_case::quantity::WrittenQuantity;
 
-/// Units in which quantities are given, each with its code in UN/CEFACT's Recommendation 20, which has none for a stiffness per area.
+/// Units in which quantities are given, each with its code in UN/CEFACT's Recommendation 20, which has none
+/// for a stiffness per area.
 const UNITS: [(&str, Option<&str>); 9] = [
     ("m", Some("MTR")),
     ("Pa", Some("PAL")),

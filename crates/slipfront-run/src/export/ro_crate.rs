@@ -1,7 +1,8 @@
-//! The metadata of a Process Run Crate 0.5 (<https://w3id.org/ro/wfrun/process/0.5>), a profile of RO-Crate 1.1.
+//! The metadata of a Process Run Crate 0.5 (<https://w3id.org/ro/wfrun/process/0.5>), a profile of RO-Crate
+//! 1.1.
 //!
-//! A run is a `CreateAction`: slipfront is its instrument; the case, the files that the case reads and the keys of the case are its
-//! objects; every other file of the run is a result.
+//! A run is a `CreateAction`: slipfront is its instrument; the case, the files that the case reads and the
+//! keys of the case are its objects; every other file of the run is a result.
 
 use std::path::Path;
 
@@ -23,7 +24,8 @@ const CONTEXT: &str = "https://w3id.org/ro/crate/1.1/context";
 const SPECIFICATION: &str = "https://w3id.org/ro/crate/1.1";
 const PROFILE: &str = "https://w3id.org/ro/wfrun/process/0.5";
 
-/// The file `ro-crate-metadata.json` of runs, each with the path of its folder in the crate: empty, or ending with a slash.
+/// The file `ro-crate-metadata.json` of runs, each with the path of its folder in the crate: empty, or ending
+/// with a slash.
 pub(super) fn metadata(runs: &[(&WholeRun, String)], by: &Attribution, published: Timestamp) -> Vec<u8> {
     let mut graph = Graph::default();
     let names: Vec<&str> = runs.iter().map(|(run, _)| run.name.as_str()).collect();
@@ -108,7 +110,8 @@ fn one_or_all(mut links: Vec<Value>) -> Value {
     }
 }
 
-/// A path as part of an address: every byte but letters, digits, `-._~` and the slashes between folders as `%` and its two digits.
+/// A path as part of an address: every byte but letters, digits, `-._~` and the slashes between folders as
+/// `%` and its two digits.
 fn encoded(path: &str) -> String {
     let byte = |byte: u8| match byte {
         b'A'..=b'Z' | b'a'..=b'z' | b'0'..=b'9' | b'-' | b'.' | b'_' | b'~' | b'/' => {

@@ -27,7 +27,8 @@ impl WholeRun {
     /// Reads a run folder and compares every file with its checksum.
     ///
     /// # Errors
-    /// [`ExportError::Run`] for a folder without a complete run, [`ExportError::Changed`] when a file has changed.
+    /// [`ExportError::Run`] for a folder without a complete run, [`ExportError::Changed`] when a file has
+    /// changed.
     pub fn read(folder: &Path) -> Result<Self, ExportError> {
         let run = inspect(folder)?;
         if let Some(difference) = verify_run(&run, &AtomicBool::new(false))?

@@ -47,14 +47,15 @@ pub struct FieldFrame {
     pub label: String,
     /// Number of the time step.
     pub step: u64,
-    /// One array per name in [`FieldsFile::names`], in the unit of [`FieldInfo::unit`](slipfront_case::field_info::FieldInfo::unit),
-    /// thinned by [`thin`] and row-major.
+    /// One array per name in [`FieldsFile::names`], in the unit of
+    /// [`FieldInfo::unit`](slipfront_case::field_info::FieldInfo::unit), thinned by [`thin`] and row-major.
     pub values: Vec<Vec<f32>>,
 }
 
 impl FieldFrame {
-    /// A dimensionless frame of these fields in the units of [`FieldInfo::unit`](slipfront_case::field_info::FieldInfo::unit).
-    /// The contact stress becomes tau_c*: it is divided by `contact_stress_max`, its largest value so far (see
+    /// A dimensionless frame of these fields in the units of
+    /// [`FieldInfo::unit`](slipfront_case::field_info::FieldInfo::unit). The contact stress becomes tau_c*:
+    /// it is divided by `contact_stress_max`, its largest value so far (see
     /// [`Simulation::contact_stress_max`](slipfront::Simulation::contact_stress_max)).
     pub fn in_si_units(
         frame: Frame,
@@ -105,8 +106,8 @@ pub struct FieldsFile<'a> {
     pub names: &'a [Field],
     /// Arrays that never change, of these rows.
     pub statics: StaticFields<'a>,
-    /// The instants, in order of time, each with the values of these rows; NetCDF wants each time once. The list may be
-    /// empty.
+    /// The instants, in order of time, each with the values of these rows; NetCDF wants each time once. The
+    /// list may be empty.
     pub frames: &'a [FieldFrame],
 }
 
@@ -139,8 +140,8 @@ impl FieldsFile<'_> {
     }
 }
 
-/// The contents of a `fields.nc`; every array is row-major and thinned to `columns() * rows()` values, unless it was reduced
-/// further or some rows alone were read.
+/// The contents of a `fields.nc`; every array is row-major and thinned to `columns() * rows()` values, unless
+/// it was reduced further or some rows alone were read.
 #[derive(Debug, Default, Clone, PartialEq)]
 pub struct FieldsData {
     /// Number of blocks along x, before thinning.

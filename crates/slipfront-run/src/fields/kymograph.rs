@@ -1,5 +1,5 @@
-//! The file `kymograph.nc`: the share of the blocks that slide, against place along the drive and time, in the format of
-//! `fields.nc`.
+//! The file `kymograph.nc`: the share of the blocks that slide, against place along the drive and time, in
+//! the format of `fields.nc`.
 
 use slipfront::PositionBins;
 use slipfront::observe::Kymograph;
@@ -96,7 +96,8 @@ pub struct KymographData {
     pub time_star: Vec<f64>,
     /// Places where the first bin begins and the last one ends, in m.
     pub places: [f64; 2],
-    /// The share of the blocks in contact of every bin that slide, row after row; NaN for a bin without contact.
+    /// The share of the blocks in contact of every bin that slide, row after row; NaN for a bin without
+    /// contact.
     pub sliding_share: Vec<f32>,
 }
 

@@ -2,15 +2,16 @@
 
 use super::netcdf3::{ATTRIBUTES, CdfVersion, DIMENSIONS, ExternalType, StoredNumber, VARIABLES};
 
-/// Most bytes of a variable, or of one record of it, in a file with 64-bit offsets. The format has room for twice as many,
-/// but not every reader: some keep the number with a sign.
+/// Most bytes of a variable, or of one record of it, in a file with 64-bit offsets. The format has room for
+/// twice as many, but not every reader: some keep the number with a sign.
 const OFFSET64_MAX_BYTES: u64 = i32::MAX as u64 - 3;
 
 /// The definition of a file, without the values of its variables.
 pub(super) struct Definition {
     /// Number of records.
     pub(super) records: usize,
-    /// Names and lengths; a length of 0 marks the dimension of the records, which comes first where it occurs.
+    /// Names and lengths; a length of 0 marks the dimension of the records, which comes first where it
+    /// occurs.
     pub(super) dimensions: Vec<(&'static str, usize)>,
     pub(super) attributes: Vec<Attribute>,
     pub(super) variables: Vec<Variable>,
@@ -157,7 +158,8 @@ impl Encoder {
         self.bytes.extend(number.to_be_bytes());
     }
 
-    /// Appends a count. A count that has 32 bits in one form fits, because no larger variable is written in it.
+    /// Appends a count. A count that has 32 bits in one form fits, because no larger variable is written in
+    /// it.
     fn count(&mut self, count: usize) {
         let bytes = (count as u64).to_be_bytes();
         self.bytes.extend(&bytes[bytes.len() - self.form.count_bytes()..]);

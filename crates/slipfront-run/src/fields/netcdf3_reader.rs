@@ -1,5 +1,5 @@
-//! The NetCDF-3 format, read only: every count of a header is compared with the bytes that are left before memory is
-//! reserved for its elements.
+//! The NetCDF-3 format, read only: every count of a header is compared with the bytes that are left before
+//! memory is reserved for its elements.
 
 use std::collections::HashSet;
 use std::io::{self, Read, SeekFrom};
@@ -87,7 +87,8 @@ impl<'f> NetCdf3Reader<'f> {
             total.checked_add(reader.bytes_at_once(variable)?.checked_next_multiple_of(4)?)
         });
         reader.record_bytes = record_bytes.ok_or_else(|| absurd("one record"))?;
-        // The number of records stands in the header alone: it counts only as far as the file holds their bytes.
+        // The number of records stands in the header alone: it counts only as far as the file holds their
+        // bytes.
         let held = file_bytes.checked_div(reader.record_bytes).unwrap_or(0);
         if records as u64 > held {
             return broken(format!(
@@ -120,8 +121,8 @@ impl<'f> NetCdf3Reader<'f> {
         }
     }
 
-    /// The values of a variable over exactly these dimensions that lie in `part`, which counts those of the whole variable,
-    /// or of one record of it if the first dimension is the record dimension.
+    /// The values of a variable over exactly these dimensions that lie in `part`, which counts those of the
+    /// whole variable, or of one record of it if the first dimension is the record dimension.
     pub(super) fn values(
         &mut self,
         name: &str,

@@ -15,14 +15,14 @@ use crate::run_files::RunFile;
 /// Range of all values of a variable.
 const WHOLE: Range<u64> = 0..u64::MAX;
 
-/// Reads a `fields.nc` that [`write_fields`](super::write_fields) has written. Variables that slipfront does not know are
-/// skipped.
+/// Reads a `fields.nc` that [`write_fields`](super::write_fields) has written. Variables that slipfront does
+/// not know are skipped.
 pub fn read_fields<'f>(file: impl Into<RunFile<'f>>) -> Result<FieldsData, FieldsError> {
     read_rows(file, 0..usize::MAX)
 }
 
-/// Reads these rows of a fields file alone, as far as it has them, counted from y = 0, for a file that is larger than the
-/// memory.
+/// Reads these rows of a fields file alone, as far as it has them, counted from y = 0, for a file that is
+/// larger than the memory.
 pub fn read_rows<'f>(file: impl Into<RunFile<'f>>, rows: Range<usize>) -> Result<FieldsData, FieldsError> {
     let file = file.into();
     let read = || all_of(&mut NetCdf3Reader::open(&file)?, &rows);
@@ -74,9 +74,10 @@ impl Reduction for Vec<f32> {
     }
 }
 
-/// Reads the data of a picture of one field, however long the file is: this field alone, at the snapshots that `choose`
-/// numbers from the letters of each, and of the constant arrays the texture alone, all [reduced](Reduction) while they are
-/// read. A reduced value counts as texture if more than half of its blocks do.
+/// Reads the data of a picture of one field, however long the file is: this field alone, at the snapshots
+/// that `choose` numbers from the letters of each, and of the constant arrays the texture alone, all
+/// [reduced](Reduction) while they are read. A reduced value counts as texture if more than half of its
+/// blocks do.
 pub fn read_maps<'f, R: Reduction>(
     file: impl Into<RunFile<'f>>,
     field: Field,
@@ -98,8 +99,8 @@ pub fn count_snapshots(path: &Path) -> Result<usize, FieldsError> {
     Ok(file.records)
 }
 
-/// The numbers of at most `most` snapshots with these letters: if there are more, those that have letters, or as many spread
-/// over the run.
+/// The numbers of at most `most` snapshots with these letters: if there are more, those that have letters, or
+/// as many spread over the run.
 pub fn few_of(labels: &[String], most: usize) -> Vec<usize> {
     let (count, shown) = (labels.len(), labels.len().min(most));
     let instants: Vec<usize> = (0..count).filter(|&k| !labels[k].is_empty()).collect();
@@ -109,8 +110,8 @@ pub fn few_of(labels: &[String], most: usize) -> Vec<usize> {
     }
 }
 
-/// Reads the times of the first slips in place of fields, [reduced](Reduction) while they are read, and the texture in the
-/// same way. The times are the one array of the one frame.
+/// Reads the times of the first slips in place of fields, [reduced](Reduction) while they are read, and the
+/// texture in the same way. The times are the one array of the one frame.
 pub fn read_first_slips<R: Reduction>(from: &RunFile<'_>) -> Result<FieldsData, FieldsError> {
     let read = || {
         let mut file = NetCdf3Reader::open(from)?;

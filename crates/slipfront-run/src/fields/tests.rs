@@ -418,7 +418,8 @@ fn the_file_is_as_readable_as_any_other_and_replaces_one_that_is_there() {
     assert!(read_fields(&path).is_ok());
 }
 
-/// Puts a new file in the place of an old one: some file systems wait for the disk when a file is emptied first.
+/// Puts a new file in the place of an old one: some file systems wait for the disk when a file is emptied
+/// first.
 fn replace(path: &Path, bytes: &[u8]) {
     let _ = fs::remove_file(path);
     fs::write(path, bytes).unwrap();
@@ -456,8 +457,8 @@ fn files_of_another_kind_are_refused() {
     }
 }
 
-/// A record dimension of a fixed length has no records, and no variable of them needs a byte more for each: without
-/// a look at the file, the number in the header alone would say how many frames to make.
+/// A record dimension of a fixed length has no records, and no variable of them needs a byte more for each:
+/// without a look at the file, the number in the header alone would say how many frames to make.
 #[test]
 fn instants_that_the_file_does_not_hold_are_refused() {
     let lattice = lattice();
@@ -488,8 +489,8 @@ fn with_one_more(bytes: &[u8], tag: &[u8; 8], more: &[u8], behind: usize) -> Vec
     bytes
 }
 
-/// Where nothing is a record, the whole of each array would be read for every instant that the header promises: the
-/// square of the file's length in memory.
+/// Where nothing is a record, the whole of each array would be read for every instant that the header
+/// promises: the square of the file's length in memory.
 #[test]
 fn instants_that_are_no_records_are_refused() {
     let lattice = lattice();
@@ -606,8 +607,8 @@ fn rows_that_are_written_apart_give_the_same_file() {
     }
 }
 
-/// The bytes of files of all kinds, the same in every version: with and without instants and fields, labels of other
-/// lengths, and an odd number of flags, which is filled up.
+/// The bytes of files of all kinds, the same in every version: with and without instants and fields, labels
+/// of other lengths, and an odd number of flags, which is filled up.
 #[test]
 fn the_bytes_of_a_file_are_pinned() {
     let lattice = lattice();

@@ -20,18 +20,21 @@ use crate::agree::agree_on_io;
 /// Number of bytes that are collected before they are written.
 const BUFFER: usize = 1 << 18;
 
-/// Padding of a variable of 16-bit numbers behind an odd number of them: the beginning of NetCDF's fill value.
+/// Padding of a variable of 16-bit numbers behind an odd number of them: the beginning of NetCDF's fill
+/// value.
 const SHORT_PADDING: [u8; 2] = [0x80, 0x01];
 
-/// Writes the future `fields.nc` at `path` to a temporary file in a folder on the same file system, each rank the rows that
-/// it holds.
+/// Writes the future `fields.nc` at `path` to a temporary file in a folder on the same file system, each rank
+/// the rows that it holds.
 ///
-/// The file is complete and on the disk, and takes its name when the first rank, which returns it, renames it (`persist`).
-/// Coordinates are the block centres in m and the time in s; fields are float32, constant arrays are float64.
+/// The file is complete and on the disk, and takes its name when the first rank, which returns it, renames it
+/// (`persist`). Coordinates are the block centres in m and the time in s; fields are float32, constant arrays
+/// are float64.
 ///
 /// # Errors
 ///
-/// [`FieldsError`] if an array does not have the length that the sizes ask for, or the file cannot be written in full, on any rank.
+/// [`FieldsError`] if an array does not have the length that the sizes ask for, or the file cannot be written
+/// in full, on any rank.
 pub fn write_fields(
     temporary: &Path,
     path: &Path,
@@ -69,8 +72,8 @@ pub fn write_fields(
     Ok(created)
 }
 
-/// A fields file whose layout is known, so that processes which hold some rows of the lattice each can write it
-/// together: one of them [creates](Self::create) it, and each [writes its rows](Self::write_rows) into it.
+/// A fields file whose layout is known, so that processes which hold some rows of the lattice each can write
+/// it together: one of them [creates](Self::create) it, and each [writes its rows](Self::write_rows) into it.
 pub struct FieldsWriter<'a> {
     file: &'a FieldsFile<'a>,
     header: HeaderBytes,

@@ -63,7 +63,8 @@ macro_rules! observers {
             [$(summary.$name.as_ref().map(|numbers| <$observer>::line(numbers, case))),*].into_iter().flatten()
         }
 
-        /// The quantities of studies among the numbers of the observers: their names, and the values that a run has.
+        /// The quantities of studies among the numbers of the observers: their names, and the values that a
+        /// run has.
         pub fn quantities(summary: &Summary) -> Vec<(&'static str, Option<f64>)> {
             [$(quantities_of::<$observer>(summary.$name.as_ref())),*].concat()
         }

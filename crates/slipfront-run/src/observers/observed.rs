@@ -16,7 +16,8 @@ pub(crate) trait Observed: Observer + Sized {
     /// Numbers under the name of the observer in `summary.json`.
     type Numbers: 'static;
 
-    /// Numbers that are quantities of studies, by name. The tables of a study have them only if one of its runs has them.
+    /// Numbers that are quantities of studies, by name. The tables of a study have them only if one of its
+    /// runs has them.
     const QUANTITIES: &'static [Quantity<Self::Numbers>] = &[];
 
     /// The table of what the observer has recorded, if the run writes one.

@@ -1,4 +1,5 @@
-//! The events of slip of a slider that is driven at an edge: their numbers, and the file `precursors.csv` with a row for each.
+//! The events of slip of a slider that is driven at an edge: their numbers, and the file `precursors.csv`
+//! with a row for each.
 
 use serde::{Deserialize, Serialize};
 use slipfront::Scales;
@@ -23,12 +24,13 @@ pub struct PrecursorSummary {
     pub crossing_time_star: Option<f64>,
     /// mu* at the beginning of the first event that crosses the whole slider.
     pub crossing_mu_star: Option<f64>,
-    /// Number of precursors: events before the one that crosses the whole slider, or all events if none crosses.
+    /// Number of precursors: events before the one that crosses the whole slider, or all events if none
+    /// crosses.
     pub precursor_count: usize,
     /// Length of the longest precursor, over that of the slider.
     pub precursor_length_max: Option<f64>,
-    /// mu* when the first event begins over mu* when the first one begins that crosses the whole slider: the load at nucleation over that
-    /// at the transition.
+    /// mu* when the first event begins over mu* when the first one begins that crosses the whole slider: the
+    /// load at nucleation over that at the transition.
     pub nucleation_load_ratio: Option<f64>,
 }
 
@@ -39,8 +41,8 @@ pub struct PrecursorRow {
     pub time_star: f64,
     /// Time in s at which the first block in contact slides.
     pub time_s: f64,
-    /// Largest distance from the driven edge at which a block in contact has slid, over the length of the slider: 1 for an
-    /// event that crosses it.
+    /// Largest distance from the driven edge at which a block in contact has slid, over the length of the
+    /// slider: 1 for an event that crosses it.
     pub length: f64,
     /// mu* when the event begins.
     pub mu_star_before: f64,

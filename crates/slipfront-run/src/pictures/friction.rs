@@ -1,4 +1,5 @@
-//! The picture of friction curves, on the axes that a user asks for or on which runs of different materials can be compared.
+//! The picture of friction curves, on the axes that a user asks for or on which runs of different materials
+//! can be compared.
 
 use std::path::PathBuf;
 
@@ -42,8 +43,8 @@ pub struct OverlaidRecord {
     pub label: String,
     /// The record: times or displacements, with forces or coefficients.
     pub record: MeasuredRecord,
-    /// Shift of the record's times or displacements, in SI units; if none is given, the shift with which it fits the first
-    /// run best.
+    /// Shift of the record's times or displacements, in SI units; if none is given, the shift with which it
+    /// fits the first run best.
     pub shift: Option<f64>,
 }
 
@@ -56,14 +57,16 @@ pub struct Fit {
     pub shift: f64,
     /// Number of points of the record.
     pub points: usize,
-    /// Distance between the record and each run; none for a run that has less than a tenth of the shorter of both in common with it.
+    /// Distance between the record and each run; none for a run that has less than a tenth of the shorter of
+    /// both in common with it.
     pub misfits: Vec<Option<Misfit>>,
 }
 
 /// Names and size of a picture of friction that differ from the usual ones.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FrictionLook {
-    /// Names of the runs in the legend, in their order, and then of a record; the folders where there are none.
+    /// Names of the runs in the legend, in their order, and then of a record; the folders where there are
+    /// none.
     pub names: Vec<String>,
     /// Title of the horizontal axis.
     pub x_label: Option<String>,
@@ -129,8 +132,9 @@ impl Scale {
 
 /// Draws the friction curves of run folders over each other.
 ///
-/// Without units and abscissa of their own, runs of different materials are drawn where they can be compared: if their mean
-/// local coefficients differ, as mu; if their units of time differ, against the path of the drive.
+/// Without units and abscissa of their own, runs of different materials are drawn where they can be compared:
+/// if their mean local coefficients differ, as mu; if their units of time differ, against the path of the
+/// drive.
 ///
 /// # Errors
 /// When a folder cannot be read, or its run lacks the requested data.
@@ -156,8 +160,8 @@ pub fn overlay(
 /// Draws the friction curves of run folders and a measured record over each other, in SI units.
 ///
 /// # Errors
-/// As for [`overlay`]; when the record has less than a tenth of the shorter of both in common with every curve, and when a shift that
-/// is not given could be one or another.
+/// As for [`overlay`]; when the record has less than a tenth of the shorter of both in common with every
+/// curve, and when a shift that is not given could be one or another.
 pub fn overlay_measured(
     folders: &[PathBuf],
     against: Against,
@@ -246,7 +250,8 @@ enum Rival {
     Same { own: f64, rival: f64 },
 }
 
-/// The shift with which a record fits the first curve best, if no other fits that curve, or another one, about as well.
+/// The shift with which a record fits the first curve best, if no other fits that curve, or another one,
+/// about as well.
 fn own_shift(record: Points, curves: &[FrictionCurve]) -> Result<f64, Rival> {
     let length = |xs: &[f64]| {
         let [from, to] = ends(xs);
@@ -438,7 +443,8 @@ fn dimensionless(
     Ok((scale, note.map(str::to_owned)))
 }
 
-/// Axes of newtons, or of coefficients, and of seconds or metres, with the prefixes that suit the largest numbers.
+/// Axes of newtons, or of coefficients, and of seconds or metres, with the prefixes that suit the largest
+/// numbers.
 fn in_si(runs: &[DrawnRun], against: Against, measure: Measure) -> Result<Scale, RunPictureError> {
     let turns = runs.iter().all(DrawnRun::is_rotation);
     if let Some(run) = runs.iter().find(|run| run.is_rotation() != turns) {

@@ -1,5 +1,5 @@
-//! The picture of the slip front: the time at which each block has first slipped, and the share of sliding blocks against
-//! place and time.
+//! The picture of the slip front: the time at which each block has first slipped, and the share of sliding
+//! blocks against place and time.
 
 use std::ops::Range;
 
@@ -80,7 +80,8 @@ fn space_time(kymograph: &KymographData, rows: Range<usize>, summary: &Summary) 
     }
 }
 
-/// The rows of a kymograph while the front passes, with a quarter of that time before and as much again after it.
+/// The rows of a kymograph while the front passes, with a quarter of that time before and as much again after
+/// it.
 fn rows_of_the_front(times: &[f64], summary: &Summary) -> Range<usize> {
     let from = summary.first_slip_time_star.unwrap_or(summary.onset_time_star);
     let passes = summary.front_duration_star.unwrap_or_default();

@@ -32,8 +32,8 @@ impl Reduction for CellMeans {
     }
 }
 
-/// Values mu* of snapshots: of an instant from the summary, else from its row of the series, which a thinned series may
-/// lack.
+/// Values mu* of snapshots: of an instant from the summary, else from its row of the series, which a thinned
+/// series may lack.
 pub(super) struct MuStar<'a> {
     instants: &'a [InstantSummary],
     /// Values mu* of the rows by steps.

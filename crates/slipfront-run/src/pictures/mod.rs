@@ -1,7 +1,8 @@
-//! The pictures of a run, drawn from its files, so that those of a run, of `slipfront plot` and of a page without a disk are equal.
+//! The pictures of a run, drawn from its files, so that those of a run, of `slipfront plot` and of a page
+//! without a disk are equal.
 //!
-//! No other module of this crate draws pictures: a program that writes a run calls [`write_run`] here, or [`complete`] after
-//! the results of several ranks.
+//! No other module of this crate draws pictures: a program that writes a run calls [`write_run`] here, or
+//! [`complete`] after the results of several ranks.
 
 pub mod error;
 mod files;
@@ -34,8 +35,8 @@ use crate::running::RunData;
 /// Largest number of bytes of the pixels of a picture whose size a user chooses.
 const PIXELS: f64 = 96.0 * 1024.0 * 1024.0;
 
-/// Memory in which the friction curves of these run folders are drawn, or all pictures of a single one, in bytes. What is read of a series
-/// or a kymograph takes less than four times its file.
+/// Memory in which the friction curves of these run folders are drawn, or all pictures of a single one, in
+/// bytes. What is read of a series or a kymograph takes less than four times its file.
 pub fn memory(folders: &[PathBuf]) -> Result<f64, RunPictureError> {
     let mut read = 0;
     for folder in folders {
@@ -46,9 +47,9 @@ pub fn memory(folders: &[PathBuf]) -> Result<f64, RunPictureError> {
     Ok(PICTURES + PIXELS + 4.0 * read as f64)
 }
 
-/// Writes the results of a run on one rank to its folder, where the case stands already, then the pictures and the manifest, which
-/// completes it. The fields are moved out of the data, which frees their memory before the pictures are drawn. After an error the
-/// folder is left without a manifest.
+/// Writes the results of a run on one rank to its folder, where the case stands already, then the pictures
+/// and the manifest, which completes it. The fields are moved out of the data, which frees their memory
+/// before the pictures are drawn. After an error the folder is left without a manifest.
 pub fn write_run(
     case: &Case,
     data: &mut RunData,
@@ -60,8 +61,8 @@ pub fn write_run(
     complete(case, folder, started, threads)
 }
 
-/// Draws the pictures of a run from its [results](crate::results::write), and writes the manifest, which completes its folder. After an
-/// error the folder is left without a manifest.
+/// Draws the pictures of a run from its [results](crate::results::write), and writes the manifest, which
+/// completes its folder. After an error the folder is left without a manifest.
 pub fn complete(
     case: &Case,
     mut folder: RunFolder,
@@ -75,8 +76,8 @@ pub fn complete(
     Ok(folder.complete(case, started, threads)?)
 }
 
-/// Draws the pictures of a run whose files are in memory, with its movie if that is asked for. Gives the files of the pictures, with the
-/// bytes that they have in the folder of a run.
+/// Draws the pictures of a run whose files are in memory, with its movie if that is asked for. Gives the
+/// files of the pictures, with the bytes that they have in the folder of a run.
 ///
 /// # Errors
 /// If a file of the run is missing or damaged, or cannot be drawn.
@@ -92,7 +93,8 @@ pub fn in_memory(
     Ok(drawn)
 }
 
-/// Draws the pictures of a run, with its movie if that is asked for, and hands over their files, each with its name.
+/// Draws the pictures of a run, with its movie if that is asked for, and hands over their files, each with
+/// its name.
 fn each_file(
     run: RunFiles,
     with_movie: bool,

@@ -44,15 +44,16 @@ pub enum MoviePace {
     PerSecond(f64),
 }
 
-/// Memory for making the movie of a run folder, in bytes. What is read of a series takes less than four times its file.
+/// Memory for making the movie of a run folder, in bytes. What is read of a series takes less than four times
+/// its file.
 pub fn memory(folder: &Path) -> Result<f64, RunPictureError> {
     let snapshots = fields::count_snapshots(&folder.join(FIELDS))?.min(MAX_PICTURES);
     let series = found(&folder.join(SERIES))?.map_or(0, |file| file.len());
     Ok(memory_of_movie(snapshots as f64, f64::INFINITY) + 4.0 * series as f64)
 }
 
-/// The movie of a run, of the given field or of the field whose maps are drawn; none if the run has kept no snapshot
-/// of it.
+/// The movie of a run, of the given field or of the field whose maps are drawn; none if the run has kept no
+/// snapshot of it.
 ///
 /// # Errors
 /// When a file cannot be read, or there are more than 1000 snapshots.

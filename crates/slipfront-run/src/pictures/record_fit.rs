@@ -19,19 +19,22 @@ pub struct Misfit {
     pub points: usize,
 }
 
-/// Part of the shorter of record and curve that both must have in common for a misfit: less of it tells nothing of them.
+/// Part of the shorter of record and curve that both must have in common for a misfit: less of it tells
+/// nothing of them.
 const LEAST_COMMON: f64 = 0.1;
 
 /// Misfit relative to the least one up to which another shift may be the right one as well.
 const AS_GOOD: f64 = 2.0;
 
-/// Difference between two shifts, relative to the shorter of record and curve, up to which they are one in a picture.
+/// Difference between two shifts, relative to the shorter of record and curve, up to which they are one in a
+/// picture.
 const SAME_SHIFT: f64 = 0.05;
 
 /// Largest number of shifts that are refined.
 const MAX_FITTING: usize = 8;
 
-/// Value at `x` of a curve whose abscissae never fall, between its points in proportion; none beyond its ends.
+/// Value at `x` of a curve whose abscissae never fall, between its points in proportion; none beyond its
+/// ends.
 fn value_at((xs, ys): Points, x: f64) -> Option<f64> {
     let after = xs.partition_point(|&other| other < x);
     let (&from, &to) = (xs.get(after.saturating_sub(1))?, xs.get(after)?);
@@ -43,8 +46,8 @@ fn value_at((xs, ys): Points, x: f64) -> Option<f64> {
     Some(y + share * (end - y))
 }
 
-/// Distance between a record, shifted, and a curve, over the points of the record within the curve; none if they have too little in
-/// common.
+/// Distance between a record, shifted, and a curve, over the points of the record within the curve; none if
+/// they have too little in common.
 pub(super) fn misfit((xs, ys): Points, curve: Points, shift: f64) -> Option<Misfit> {
     let ([from, to], [start, end]) = (ends(xs).map(|x| x + shift), ends(curve.0));
     if to.min(end) - from.max(start) < LEAST_COMMON * (to - from).min(end - start) {
@@ -69,8 +72,8 @@ pub(super) fn ends(values: &[f64]) -> [f64; 2] {
     [values.first(), values.last()].map(|end| end.copied().unwrap_or_default())
 }
 
-/// The shifts with the least [`misfit`], the best first, among those at which record and curve overlap by at least half of the
-/// shorter one. There is at least one.
+/// The shifts with the least [`misfit`], the best first, among those at which record and curve overlap by at
+/// least half of the shorter one. There is at least one.
 pub(super) fn fitting_shifts(record: Points, curve: Points) -> Vec<Fitting> {
     const POINTS: usize = 2000;
     const SHIFTS: u32 = 400;
@@ -126,8 +129,8 @@ fn refined(from: f64, to: f64, [low, high]: [f64; 2], badness: impl Fn(f64) -> f
     0.5 * (low + high)
 }
 
-/// The first of the `others` that fits about as well as the best shift, or better, and is not that shift; `length` is that of
-/// the shorter of record and curve.
+/// The first of the `others` that fits about as well as the best shift, or better, and is not that shift;
+/// `length` is that of the shorter of record and curve.
 pub(super) fn rival(best: Fitting, others: &[Fitting], length: f64) -> Option<Fitting> {
     let is_other = |other: &&Fitting| {
         (other.shift - best.shift).abs() > SAME_SHIFT * length && other.misfit <= AS_GOOD * best.misfit

@@ -18,9 +18,10 @@ pub(super) fn result_files() -> impl Iterator<Item = String> {
     files.chain(RunPicture::ALL.into_iter().flat_map(RunPicture::files))
 }
 
-/// The files of an earlier run in a folder, in the order in which they may be removed: the manifest first, so that the
-/// folder does not look complete, and the case last, which marks the folder as one of a run. The files are those that are
-/// `listed` and unchanged, whatever has become of the others, and those in the hidden subfolder.
+/// The files of an earlier run in a folder, in the order in which they may be removed: the manifest first, so
+/// that the folder does not look complete, and the case last, which marks the folder as one of a run. The
+/// files are those that are `listed` and unchanged, whatever has become of the others, and those in the
+/// hidden subfolder.
 pub(super) fn managed_files(folder: &Path, listed: &[ManifestFile]) -> Result<Vec<String>, FolderError> {
     let mut names = Vec::new();
     for name in listed_names(folder, listed)? {
@@ -44,7 +45,8 @@ pub(super) fn managed_bytes(folder: &Path, listed: &[ManifestFile]) -> Result<u6
     names.map(|name| length(folder.join(name))).sum()
 }
 
-/// Names that a run may write, each once, so that no file elsewhere is touched, whatever a manifest or a journal lists.
+/// Names that a run may write, each once, so that no file elsewhere is touched, whatever a manifest or a
+/// journal lists.
 fn listed_names(folder: &Path, listed: &[ManifestFile]) -> Result<Vec<String>, FolderError> {
     let copies = folder.join("inputs");
     let has_copies = is_folder(&copies).map_err(FolderError::read(&copies))?;
@@ -71,8 +73,8 @@ fn is_plain(name: &str) -> bool {
         && name.len() <= LONGEST
 }
 
-/// Refuses files at the names that a run will write, unless they are `managed`; and a hidden subfolder that is not
-/// slipfront's.
+/// Refuses files at the names that a run will write, unless they are `managed`; and a hidden subfolder that
+/// is not slipfront's.
 pub(super) fn refuse_unmanaged(
     folder: &Path,
     names: impl Iterator<Item = String>,

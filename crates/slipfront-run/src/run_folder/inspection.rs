@@ -26,7 +26,8 @@ pub struct Inspection {
 /// Owner and state of a folder.
 #[derive(Debug)]
 pub enum Contents {
-    /// A free folder: it does not exist, or holds no more than a run leaves that is killed before it has written its case.
+    /// A free folder: it does not exist, or holds no more than a run leaves that is killed before it has
+    /// written its case.
     Empty,
     /// A folder of somebody else.
     Foreign,
@@ -109,7 +110,8 @@ impl Inspection {
         Err(FolderError::NoRun { path, why })
     }
 
-    /// Every file that slipfront has written in the folder, from the manifest and the journal of a run that is not complete.
+    /// Every file that slipfront has written in the folder, from the manifest and the journal of a run that
+    /// is not complete.
     pub(super) fn listed(&self) -> Result<Vec<ManifestFile>, FolderError> {
         let mut listed = Unfinished::of(&self.path).listed()?;
         if let Contents::Complete(Ok(manifest)) = &self.contents {
@@ -132,8 +134,8 @@ impl Inspection {
     }
 }
 
-/// The case in a folder if it is a resolved one. Another case was not written by a run, and the files that it names may have
-/// no other copy.
+/// The case in a folder if it is a resolved one. Another case was not written by a run, and the files that it
+/// names may have no other copy.
 fn read_case(folder: &Path) -> Result<CaseFile, CaseDefect> {
     let path = folder.join(CASE);
     // A user may hand over a case through a pipe; in a folder of results it would block.

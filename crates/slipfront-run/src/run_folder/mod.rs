@@ -1,7 +1,8 @@
 //! The run folder: everything needed to read a run's results and to make them again.
 //!
-//! Files appear whole or not at all, and `manifest.json` comes last: where it stands, the run is complete. Slipfront's own
-//! files are those that the manifest lists, or the journal of a run that is not complete, with the hash that they have.
+//! Files appear whole or not at all, and `manifest.json` comes last: where it stands, the run is complete.
+//! Slipfront's own files are those that the manifest lists, or the journal of a run that is not complete,
+//! with the hash that they have.
 
 mod contents;
 pub mod inspection;
@@ -69,12 +70,12 @@ impl OpenedFolder {
         })
     }
 
-    /// Makes the folder ready for a run that reads these `inputs`: it is created, or is empty, or with `force` the files of
-    /// an earlier run are removed (and nothing else).
+    /// Makes the folder ready for a run that reads these `inputs`: it is created, or is empty, or with
+    /// `force` the files of an earlier run are removed (and nothing else).
     ///
     /// # Errors
-    /// When the folder holds other files, which includes foreign files in the place of the copies, or cannot be
-    /// written.
+    /// When the folder holds other files, which includes foreign files in the place of the copies, or cannot
+    /// be written.
     pub fn prepare(self, force: bool, inputs: &[Input]) -> Result<RunFolder, FolderError> {
         self.claim(force, inputs)?.take()
     }
@@ -122,8 +123,8 @@ impl OpenedFolder {
         })
     }
 
-    /// Takes over the folder of an interrupted run of this case: removes its results, which are written again. The case, the
-    /// files that it reads and the checkpoints stay.
+    /// Takes over the folder of an interrupted run of this case: removes its results, which are written
+    /// again. The case, the files that it reads and the checkpoints stay.
     ///
     /// # Errors
     /// When a file that the run has not written stands where its results go: then nothing is removed.
@@ -188,8 +189,8 @@ impl ClaimedFolder {
     }
 }
 
-/// Fails on all ranks, with the same words, unless each of them sees under its path the folder in which rank 0 is about to run.
-/// Every rank must ask.
+/// Fails on all ranks, with the same words, unless each of them sees under its path the folder in which rank
+/// 0 is about to run. Every rank must ask.
 ///
 /// # Errors
 /// When a rank does not; the sentence names it.
@@ -261,8 +262,8 @@ impl RunFolder {
         self.stop = stop;
     }
 
-    /// Ends a run that failed: removes the files that this process has written, if it began the run. A resumed run keeps its
-    /// case.
+    /// Ends a run that failed: removes the files that this process has written, if it began the run. A
+    /// resumed run keeps its case.
     pub fn discard(self) {
         if self.new {
             let names = self.written.iter().map(|file| &file.name).rev();
@@ -326,8 +327,8 @@ impl RunFolder {
         self.place_listed(copied, file)
     }
 
-    /// Makes a finished temporary file a file of the run: it is listed in the journal, and then takes its name, where no
-    /// foreign file stands in its place.
+    /// Makes a finished temporary file a file of the run: it is listed in the journal, and then takes its
+    /// name, where no foreign file stands in its place.
     pub fn place(&mut self, name: &str, file: TempPath) -> Result<(), FolderError> {
         let listed = ManifestFile::of_copy(name, &file).map_err(FolderError::write(&self.path.join(name)))?;
         self.place_listed(listed, file)
@@ -375,8 +376,9 @@ impl RunFolder {
         Ok(manifest)
     }
 
-    /// Makes a finished temporary file the manifest. Every other file has its name on the disk before, so that no power failure
-    /// leaves a manifest without the files that it lists, and the manifest has its own after.
+    /// Makes a finished temporary file the manifest. Every other file has its name on the disk before, so
+    /// that no power failure leaves a manifest without the files that it lists, and the manifest has its own
+    /// after.
     pub(crate) fn place_manifest(&mut self, file: TempPath) -> Result<(), FolderError> {
         self.sync()?;
         self.place(MANIFEST, file)?;
@@ -403,8 +405,8 @@ fn is_folder_behind(path: &Path) -> Result<bool, FolderError> {
     Ok(found.is_some_and(|found| found.is_dir()))
 }
 
-/// Locks a folder for one process. Some file systems of clusters have no locks, and some systems none of folders: the run
-/// goes on without.
+/// Locks a folder for one process. Some file systems of clusters have no locks, and some systems none of
+/// folders: the run goes on without.
 fn lock(path: &Path) -> Result<Option<File>, FolderError> {
     let Ok(folder) = File::open(path) else {
         return Ok(None);

@@ -1,5 +1,6 @@
-//! The hidden subfolder of a run folder, which holds everything that belongs to a run which is not complete: its journal,
-//! temporary files that are being written, and checkpoints. It is removed when the run is complete.
+//! The hidden subfolder of a run folder, which holds everything that belongs to a run which is not complete:
+//! its journal, temporary files that are being written, and checkpoints. It is removed when the run is
+//! complete.
 
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
@@ -34,7 +35,8 @@ impl Unfinished {
         self.path.join(TEMPORARY)
     }
 
-    /// Whether slipfront made the subfolder: the subfolder holds a journal, or nothing yet. A link is never slipfront's.
+    /// Whether slipfront made the subfolder: the subfolder holds a journal, or nothing yet. A link is never
+    /// slipfront's.
     ///
     /// # Errors
     /// When the system does not say.
@@ -71,7 +73,8 @@ impl Unfinished {
         make_folder(&self.path, run)?;
         let path = self.journal();
         let journal = Journal::open(&path).map_err(FolderError::write(&path))?;
-        // What it lists must not outlast it in a power failure, also where a process that was killed has made it.
+        // What it lists must not outlast it in a power failure, also where a process that was killed has made
+        // it.
         for folder in [&self.path, run] {
             sync_folder(folder).map_err(FolderError::write(folder))?;
         }
@@ -93,8 +96,8 @@ impl Unfinished {
         journal::read(&path).map_err(FolderError::read(&path))
     }
 
-    /// Files that may stand in the subfolder beside the journal, as paths in the run folder; none where it is not
-    /// slipfront's.
+    /// Files that may stand in the subfolder beside the journal, as paths in the run folder; none where it is
+    /// not slipfront's.
     pub(super) fn managed_files(&self) -> Result<Vec<String>, FolderError> {
         if !self.is_managed()? {
             return Ok(Vec::new());

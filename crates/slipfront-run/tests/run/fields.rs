@@ -1,5 +1,6 @@
-//! Fields files of known values: one of an ordinary lattice, one of a lattice so large that its arrays have more than 2
-//! and 4 GiB, and one that netCDF-C has written; and a kymograph. `tests/fields/run.sh` lets other programs read all but the third.
+//! Fields files of known values: one of an ordinary lattice, one of a lattice so large that its arrays have
+//! more than 2 and 4 GiB, and one that netCDF-C has written; and a kymograph. `tests/fields/run.sh` lets
+//! other programs read all but the third.
 
 use std::fs::{self, File};
 #[cfg(unix)]
@@ -20,8 +21,8 @@ use slipfront_run::fields::{
 use slipfront_run::running;
 use tempfile::TempDir;
 
-/// Value that is written for a block: a multiple of an eighth, which every type of the file holds exactly, different for
-/// different blocks, arrays and instants. `tests/fields/check.py` has the same formulas.
+/// Value that is written for a block: a multiple of an eighth, which every type of the file holds exactly,
+/// different for different blocks, arrays and instants. `tests/fields/check.py` has the same formulas.
 fn value(array: usize, row: usize, column: usize) -> f64 {
     ((31 * row + 17 * column + 1000 * array) % 4096) as f64 / 8.0
 }
@@ -61,8 +62,8 @@ fn small() -> ExpectedFields {
     }
 }
 
-/// A field of floats takes more than 2 GiB, an array of doubles more than 4 GiB, and the number of flags is odd. Rows in
-/// the middle and at the end lie behind both limits; the others are holes.
+/// A field of floats takes more than 2 GiB, an array of doubles more than 4 GiB, and the number of flags is
+/// odd. Rows in the middle and at the end lie behind both limits; the others are holes.
 #[cfg(unix)]
 fn large() -> ExpectedFields {
     let (nx, ny) = (30_001, 17_999);
@@ -144,8 +145,8 @@ fn a_small_file_is_read_back() {
     assert!(fs::read(&path).unwrap().starts_with(b"CDF\x02"));
 }
 
-/// A kymograph is read back, of a run of 30 x 4 blocks in which none slides at first and each does at some time. The bins
-/// are columns of blocks, of which one has no contact.
+/// A kymograph is read back, of a run of 30 x 4 blocks in which none slides at first and each does at some
+/// time. The bins are columns of blocks, of which one has no contact.
 #[test]
 fn a_kymograph_is_read_back() {
     let (_folder, path) = place("kymograph.nc");
@@ -192,8 +193,8 @@ fn assert_known(path: &Path, known: &ExpectedFields, rows: Range<usize>) {
     }
 }
 
-/// The small file as netCDF-C writes it with 64-bit data (`tests/fields/check.py`): the reader reads it, and never takes a
-/// part of it for the whole.
+/// The small file as netCDF-C writes it with 64-bit data (`tests/fields/check.py`): the reader reads it, and
+/// never takes a part of it for the whole.
 #[test]
 fn files_with_64_bit_data_of_another_program_are_read() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/fields/netcdf-c-64-bit-data.nc");

@@ -14,14 +14,14 @@ use slipfront_run::summary::Summary;
 
 /// Relative deviation that is accepted.
 ///
-/// A run gives the same bits every time and on every machine: the order of all sums is fixed, and no result depends on
-/// the system's mathematical library. So nothing has to be let pass today; 1e-9 leaves room for another order of
-/// summation, and is far below what any change of physics, scheme or random numbers does.
+/// A run gives the same bits every time and on every machine: the order of all sums is fixed, and no result
+/// depends on the system's mathematical library. So nothing has to be let pass today; 1e-9 leaves room for
+/// another order of summation, and is far below what any change of physics, scheme or random numbers does.
 ///
-/// After the onset the motion is chaotic, and a change of rounding comes back as a change of kinetic friction by
-/// its statistical scatter, a few percent. It is pinned as tightly all the same, because rounding does not
-/// change by itself: whoever reorders a sum on purpose, and sees all pins hold but those of kinetic friction, may renew
-/// these.
+/// After the onset the motion is chaotic, and a change of rounding comes back as a change of kinetic friction
+/// by its statistical scatter, a few percent. It is pinned as tightly all the same, because rounding does not
+/// change by itself: whoever reorders a sum on purpose, and sees all pins hold but those of kinetic friction,
+/// may renew these.
 const TOLERANCE: f64 = 1e-9;
 
 /// Folders of other tests, and of files that are not single cases.

@@ -8,13 +8,16 @@ use super::state::Session;
 const FOLLOW_INTERVAL: Duration = Duration::from_millis(100);
 
 impl Session {
-    /// Does what is due by `now`, some milliseconds of it at a time. Gives the time at which to be called again, which is `now` where more is
-    /// to be done at once, and none if there is nothing to do before the page asks for something.
+    /// Does what is due by `now`, some milliseconds of it at a time. Gives the time at which to be called
+    /// again, which is `now` where more is to be done at once, and none if there is nothing to do before the
+    /// page asks for something.
     ///
-    /// All times count from the same instant. The messages that have come are to be [handled](Self::handle) before.
+    /// All times count from the same instant. The messages that have come are to be [handled](Self::handle)
+    /// before.
     pub fn advance(&mut self, now: Duration) -> Option<Duration> {
         self.clock.end_slice(now);
-        // Changes that come while steps are taken wait for the picture, so that of many the case is made once.
+        // Changes that come while steps are taken wait for the picture, so that of many the case is made
+        // once.
         let is_changed = !self.is_stepping && self.has_edits();
         if is_changed {
             self.apply_edits();

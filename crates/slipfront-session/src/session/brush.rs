@@ -5,7 +5,8 @@ use slipfront::Lattice;
 /// Most points of a stroke in one message.
 const MAX_POINTS: usize = 4096;
 
-/// Makes the blocks whose middles are within `radius` of the line through `points` texture, or contact. Lengths are in blocks.
+/// Makes the blocks whose middles are within `radius` of the line through `points` texture, or contact.
+/// Lengths are in blocks.
 ///
 /// # Errors
 /// A sentence, if there are no points or too many of them, or they or the radius are out of all bounds.
@@ -64,7 +65,8 @@ mod tests {
     fn a_stroke_covers_the_middles_within_its_radius() {
         let lattice = Lattice::free(6, 3);
         let mut mask = [false; 18];
-        // Middles of the lowest row are 0.5 away from y = 0; those of i = 1, 2, 3 are within 1 of the ends in x.
+        // Middles of the lowest row are 0.5 away from y = 0; those of i = 1, 2, 3 are within 1 of the ends in
+        // x.
         stroke(&mut mask, &lattice, &[[1.5, 0.0], [3.5, 0.0]], 1.0, true).unwrap();
         let row = |mask: &[bool], j: usize| {
             mask[6 * j..][..6]

@@ -38,7 +38,8 @@ impl Clock {
         self.counted_steps += steps;
     }
 
-    /// Notes that steps are taken from `now` up to the next look at the clock, and that nothing else is done until then.
+    /// Notes that steps are taken from `now` up to the next look at the clock, and that nothing else is done
+    /// until then.
     pub(super) fn begin_slice(&mut self, steps: u64, now: Duration) {
         self.slice = Some((steps, now));
     }

@@ -1,4 +1,5 @@
-//! A search for a texture that is better than the painted one: begun, followed, and made the texture of the case.
+//! A search for a texture that is better than the painted one: begun, followed, and made the texture of the
+//! case.
 
 use std::time::Duration;
 
@@ -82,7 +83,8 @@ impl Session {
         self.host.reply(Reply::Found(found).json());
     }
 
-    /// Gives the outcome of the search once it has ended. Begins the comparison of the best texture once no more textures are tried.
+    /// Gives the outcome of the search once it has ended. Begins the comparison of the best texture once no
+    /// more textures are tried.
     fn outcome_of_search(&mut self) -> Option<Outcome> {
         let search = self.search.as_mut()?;
         let mut searched = None;

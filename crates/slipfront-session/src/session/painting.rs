@@ -46,8 +46,9 @@ impl Painting {
         })
     }
 
-    /// Paints the blocks within `radius` of the line through `points`, or brings them into contact. Where these lie in a shape, all
-    /// textures become the layer, since no texture takes another one away. Lengths are in blocks.
+    /// Paints the blocks within `radius` of the line through `points`, or brings them into contact. Where
+    /// these lie in a shape, all textures become the layer, since no texture takes another one away. Lengths
+    /// are in blocks.
     ///
     /// # Errors
     /// A sentence, if there is no such stroke.

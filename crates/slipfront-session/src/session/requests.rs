@@ -8,8 +8,8 @@ use crate::protocol::{Message, Reply, Request};
 use crate::{base64, zip};
 
 impl Session {
-    /// Does what a message asks for, and tells the page if it is refused. Changes of the case are run when the session next
-    /// [advances](Self::advance).
+    /// Does what a message asks for, and tells the page if it is refused. Changes of the case are run when
+    /// the session next [advances](Self::advance).
     pub fn handle(&mut self, message: Message) {
         let Message(request) = message;
         self.clock.disturb_slice();

@@ -11,8 +11,8 @@ impl Session {
         Duration::from_secs_f64(1.0 / self.view.frames_per_second)
     }
 
-    /// Takes some of the steps that are due until the next picture, or sends what is new when there are none left, or that picture is
-    /// due.
+    /// Takes some of the steps that are due until the next picture, or sends what is new when there are none
+    /// left, or that picture is due.
     pub(super) fn run_until_next_picture(&mut self, now: Duration) {
         if !self.view.visible || self.live.is_none() || self.host.is_full() {
             self.is_stepping = false;
@@ -32,8 +32,8 @@ impl Session {
         }
     }
 
-    /// Takes some of the steps that are due until the next picture; afterwards the session [is stepping](Self::is_stepping) if there may be
-    /// more of them.
+    /// Takes some of the steps that are due until the next picture; afterwards the session [is
+    /// stepping](Self::is_stepping) if there may be more of them.
     fn take_steps(&mut self, now: Duration) -> Result<(), String> {
         let next = self.clock.picture + self.picture_period();
         let Some(live) = &mut self.live else { return Ok(()) };
@@ -47,7 +47,8 @@ impl Session {
         if !self.is_stepping {
             let steps_per_second = self.view.pace_when(live.has_slipped()) / live.case().time_plan.dt_star;
             self.clock.due = if steps_per_second > 0.0 {
-                // What cannot be taken until the next picture is left out: the run is slower than asked for then.
+                // What cannot be taken until the next picture is left out: the run is slower than asked for
+                // then.
                 let since = self.clock.seconds_since_last_count(now);
                 (self.clock.due + steps_per_second * since).min(steps_per_second)
             } else {

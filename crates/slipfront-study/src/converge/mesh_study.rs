@@ -20,8 +20,8 @@ pub const MAX_LEVELS: u8 = 7;
 /// Number of surfaces of a mesh if coefficients scatter.
 const REPLICATES: i64 = 5;
 
-/// The study of a case on several meshes. The runs of a mesh differ by their seeds alone; if the case has textures, every
-/// run is paired with one without them.
+/// The study of a case on several meshes. The runs of a mesh differ by their seeds alone; if the case has
+/// textures, every run is paired with one without them.
 #[derive(Clone, Debug)]
 pub struct MeshStudy {
     /// The study, whose only axis is the size of the blocks.
@@ -31,11 +31,12 @@ pub struct MeshStudy {
 }
 
 impl MeshStudy {
-    /// The case on `levels` meshes, the second of which is its own, with `replicates` surfaces on each, by default 5 if
-    /// coefficients scatter, else 1.
+    /// The case on `levels` meshes, the second of which is its own, with `replicates` surfaces on each, by
+    /// default 5 if coefficients scatter, else 1.
     ///
     /// # Errors
-    /// When there are too few or too many meshes, when the case cannot be put on these blocks, or when no block of one mesh is textured.
+    /// When there are too few or too many meshes, when the case cannot be put on these blocks, or when no
+    /// block of one mesh is textured.
     pub fn new(case: &Case, levels: i64, replicates: Option<i64>) -> Result<Self, StudyError> {
         if !(i64::from(MIN_LEVELS)..=i64::from(MAX_LEVELS)).contains(&levels) {
             return Err(StudyError::Levels {

@@ -1,15 +1,16 @@
-//! The mesh error of a result: one slider on blocks of twice, once and half the size, and so on, as a study whose only axis
-//! is the size of the blocks.
+//! The mesh error of a result: one slider on blocks of twice, once and half the size, and so on, as a study
+//! whose only axis is the size of the blocks.
 //!
-//! For values `q_1, q_2, q_3` on three meshes, each with blocks of half the size of the one before, with `d = q_2 - q_1` and
-//! `e = q_3 - q_2`:
+//! For values `q_1, q_2, q_3` on three meshes, each with blocks of half the size of the one before, with
+//! `d = q_2 - q_1` and `e = q_3 - q_2`:
 //!
 //! ```text
 //! order p = log2(|d|/|e|), at least 1/2 and at most 2;  error of the mesh = max(|e|, max(|e|, |d|/4)/(2^p - 1))
 //! ```
 //!
-//! A last difference that is smaller than a method of second order leaves is an accident of the outlines as they are meshed: `|d|/4` stands in its
-//! place. No limit is claimed where the differences do not decrease, `|e| >= |d|`.
+//! A last difference that is smaller than a method of second order leaves is an accident of the outlines as
+//! they are meshed: `|d|/4` stands in its place. No limit is claimed where the differences do not decrease,
+//! `|e| >= |d|`.
 
 mod mesh_study;
 mod on_meshes;
@@ -67,7 +68,8 @@ pub fn write(
     Ok(found)
 }
 
-/// Writes the comparison of the meshes to a batch of files: as `convergence.json`, and as a text for a person.
+/// Writes the comparison of the meshes to a batch of files: as `convergence.json`, and as a text for a
+/// person.
 pub(crate) fn stage(plan: &Plan, results: &StudyResults, batch: &mut Batch) -> Result<OnMeshes, StudyError> {
     let [numbers, words] = CONVERGENCE;
     let found = OnMeshes::of(plan, results)?;

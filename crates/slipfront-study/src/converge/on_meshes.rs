@@ -133,8 +133,8 @@ pub struct OnMeshes {
     pub meshes: Vec<Mesh>,
     /// The quantities of which all meshes have a value.
     pub quantities: Vec<Convergence>,
-    /// Lengths of the material that equal the length of a block: with any of them every mesh is another material, and no
-    /// limit is one of this slider.
+    /// Lengths of the material that equal the length of a block: with any of them every mesh is another
+    /// material, and no limit is one of this slider.
     pub lengths_of_a_block: Vec<String>,
 }
 

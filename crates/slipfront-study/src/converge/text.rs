@@ -8,8 +8,9 @@ use crate::plan::Plan;
 use crate::text_table::table;
 use crate::warning_texts::warning_texts;
 
-/// The table of the results on every mesh, and a sentence on each quantity. Notes, in lines of at most `columns` characters,
-/// name lengths of the material that equal the length of a block, and the warnings about the cases.
+/// The table of the results on every mesh, and a sentence on each quantity. Notes, in lines of at most
+/// `columns` characters, name lengths of the material that equal the length of a block, and the warnings
+/// about the cases.
 pub fn text(plan: &Plan, found: &OnMeshes, columns: usize) -> String {
     let (quantities, lengths) = (&found.quantities, &found.lengths_of_a_block);
     let mut text = on_meshes(found) + "\n";

@@ -13,8 +13,8 @@ use slipfront_run::folder_error::FolderError;
 /// Folder of the copies.
 const FOLDER: &str = "inputs";
 
-/// The plain name of a file: its path below the case, or the last part of a path that leads elsewhere. A copy has the plain
-/// name of its original.
+/// The plain name of a file: its path below the case, or the last part of a path that leads elsewhere. A copy
+/// has the plain name of its original.
 pub(crate) fn plain_name(written: &str) -> String {
     let path = Path::new(written);
     let is_below = |part| matches!(part, Component::Normal(_) | Component::CurDir);

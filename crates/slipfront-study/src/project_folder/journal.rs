@@ -1,7 +1,7 @@
 //! Journals: a line for every run that has ended, appended and forced to the disk.
 //!
-//! A line that a crash cut short, or that was damaged later, fails its checksum, and its run counts as not done. Before
-//! anything is appended, a part of a line at the end of the file is cut off.
+//! A line that a crash cut short, or that was damaged later, fails its checksum, and its run counts as not
+//! done. Before anything is appended, a part of a line at the end of the file is cut off.
 
 use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{BufRead, BufReader, Read, Seek, SeekFrom, Write};
@@ -22,8 +22,8 @@ pub struct Journal {
 }
 
 impl Journal {
-    /// Opens the file of this name in a folder, unless another process has it open, and makes an empty one where there is
-    /// none. Returns the entries in it, and the number of lines that failed their checksum.
+    /// Opens the file of this name in a folder, unless another process has it open, and makes an empty one
+    /// where there is none. Returns the entries in it, and the number of lines that failed their checksum.
     pub fn open<T: JournalEntry>(folder: &Path, name: &str) -> Result<(Self, Vec<T>, usize), StudyError> {
         let path = folder.join(name);
         let mut file = open_locked(&path, folder)?;
@@ -40,7 +40,8 @@ impl Journal {
         Ok((Self { path, file }, lines.entries, lines.damaged))
     }
 
-    /// Reads the file of this name in a folder, whoever has it open: the entries in it, and the number of lines that failed their checksum.
+    /// Reads the file of this name in a folder, whoever has it open: the entries in it, and the number of
+    /// lines that failed their checksum.
     ///
     /// # Errors
     /// When the file cannot be read, or has no entries of this kind.
@@ -49,8 +50,8 @@ impl Journal {
         Ok((lines.entries, lines.damaged))
     }
 
-    /// Copies a file of entries of this kind, called `name`, from one folder to another. It is looked at before: what is no entry is
-    /// not copied, however long it is.
+    /// Copies a file of entries of this kind, called `name`, from one folder to another. It is looked at
+    /// before: what is no entry is not copied, however long it is.
     pub fn copy<T: JournalEntry>(from: &Path, to: &Path, name: &str) -> Result<(), StudyError> {
         let path = from.join(name);
         let bytes = JournalLines::<T>::read_at(&path)?.bytes;
@@ -191,8 +192,8 @@ impl<T: JournalEntry> JournalLines<T> {
         Ok(lines)
     }
 
-    /// Makes the file end with a line break, so that the next entry begins a line: an entry that lacks its line break gets
-    /// it, and a part of an entry is cut off.
+    /// Makes the file end with a line break, so that the next entry begins a line: an entry that lacks its
+    /// line break gets it, and a part of an entry is cut off.
     fn repair_end(&self, file: &mut File) -> std::io::Result<()> {
         match self.cut_at {
             Some(begin) => file.set_len(begin),

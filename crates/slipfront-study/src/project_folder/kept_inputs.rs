@@ -16,7 +16,8 @@ pub struct Given {
     pub text: String,
     /// Copies of the files that the text names.
     pub copies: Vec<Copy>,
-    /// Files that the command was given beside the text, such as measured records, by their names in the folder.
+    /// Files that the command was given beside the text, such as measured records, by their names in the
+    /// folder.
     pub others: Vec<(String, Vec<u8>)>,
 }
 
@@ -46,8 +47,8 @@ impl Given {
     /// Writes the files to a folder, in which `force` replaces files of others; results join them there.
     ///
     /// # Errors
-    /// When the folder holds another project, or files in their places that were edited or are not slipfront's; when the system refuses
-    /// to write.
+    /// When the folder holds another project, or files in their places that were edited or are not
+    /// slipfront's; when the system refuses to write.
     pub fn place(&self, kind: &ProjectKind, folder: &Path, force: bool) -> Result<ResultFiles, StudyError> {
         if self.differs_in(kind, folder) {
             return Err(StudyError::Changed {

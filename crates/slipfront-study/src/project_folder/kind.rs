@@ -29,7 +29,8 @@ impl ProjectKind {
         folder.join(self.file).exists() && folder.join(self.journal).exists()
     }
 
-    /// Loads a file of this kind by `parse`, which takes its text, its path, its name without the ending, and its folder.
+    /// Loads a file of this kind by `parse`, which takes its text, its path, its name without the ending, and
+    /// its folder.
     ///
     /// # Errors
     /// When the file cannot be read, or `parse` refuses its text.
@@ -67,8 +68,8 @@ impl ProjectKind {
         }
     }
 
-    /// Opens the journal in a folder, which is made where it is missing, unless another process works there; returns it, the runs in
-    /// it, and the number of its damaged lines.
+    /// Opens the journal in a folder, which is made where it is missing, unless another process works there;
+    /// returns it, the runs in it, and the number of its damaged lines.
     ///
     /// # Errors
     /// When another process has it open, when it is no journal of this kind, or when the system refuses.

@@ -49,8 +49,8 @@ pub(super) fn looks_like_ours(line: &[u8]) -> bool {
     line.get(CHECKSUM) == Some(&b' ') && line.get(CHECKSUM + 1) == Some(&b'{')
 }
 
-/// Whether the last line may be the beginning of an entry: it ends within the checksum, or consists of zeros, which a power cut
-/// can leave.
+/// Whether the last line may be the beginning of an entry: it ends within the checksum, or consists of zeros,
+/// which a power cut can leave.
 pub(super) fn may_begin_ours(line: &[u8]) -> bool {
     let (sum, blank) = line.split_at(line.len().min(CHECKSUM));
     let is_beginning = sum.iter().all(u8::is_ascii_hexdigit) && b" ".starts_with(blank);

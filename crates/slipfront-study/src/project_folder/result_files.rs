@@ -1,9 +1,11 @@
-//! The files of a results folder that slipfront has written, with their checksums in `checksums.json`: they take their names
-//! together, and a file that was edited since, or that somebody else has put there, is neither replaced nor removed.
+//! The files of a results folder that slipfront has written, with their checksums in `checksums.json`: they
+//! take their names together, and a file that was edited since, or that somebody else has put there, is
+//! neither replaced nor removed.
 //!
-//! All files of a batch are first written under hidden names. Then the list is written, with the checksums of the new files and of the
-//! files that they replace, and only then do they take their names. So whatever is found after a kill is known to be
-//! slipfront's, and the folder equals its list only when everything is there.
+//! All files of a batch are first written under hidden names. Then the list is written, with the checksums of
+//! the new files and of the files that they replace, and only then do they take their names. So whatever is
+//! found after a kill is known to be slipfront's, and the folder equals its list only when everything is
+//! there.
 
 use std::fs::File;
 use std::io::Write;
@@ -32,12 +34,14 @@ pub struct ResultFiles {
     force: bool,
     /// Files that the results are made from, which belong to every batch.
     given: Vec<ManifestFile>,
-    /// Names of files of the user in the folder, which the results are made from as well: they are neither replaced nor removed.
+    /// Names of files of the user in the folder, which the results are made from as well: they are neither
+    /// replaced nor removed.
     kept: Vec<String>,
 }
 
 impl ResultFiles {
-    /// The result files of a folder; `of` says what they are of, such as `study`. Edited and foreign files may be replaced by `force`.
+    /// The result files of a folder; `of` says what they are of, such as `study`. Edited and foreign files
+    /// may be replaced by `force`.
     pub fn new(folder: &Path, of: &'static str, force: bool) -> Self {
         Self {
             folder: folder.to_owned(),
@@ -48,7 +52,8 @@ impl ResultFiles {
         }
     }
 
-    /// Refuses a folder with files that were edited since they were written, before work begins whose results replace them.
+    /// Refuses a folder with files that were edited since they were written, before work begins whose results
+    /// replace them.
     ///
     /// # Errors
     /// When there are such files, unless they may be replaced.
@@ -73,7 +78,8 @@ impl ResultFiles {
         }
     }
 
-    /// The list in the folder; an empty one if there is none, or, where edited files are replaced, none that can be used.
+    /// The list in the folder; an empty one if there is none, or, where edited files are replaced, none that
+    /// can be used.
     fn list(&self) -> Result<Checksums, StudyError> {
         match Checksums::read(&self.folder) {
             Err(StudyError::Checksums { .. }) if self.force => Ok(Checksums::default()),
@@ -175,7 +181,8 @@ impl Batch {
         let staged = self.expect_folder(name).and_then(|()| {
             let stage = || {
                 make_folders(folder_of(&path))?;
-                // There may be more of them than can be open; whoever works in the folder keeps other processes out.
+                // There may be more of them than can be open; whoever works in the folder keeps other
+                // processes out.
                 let file = write_beside(&path, fill)?.into_temp_path();
                 let listed = ManifestFile::of_copy(name, &file)?;
                 Ok((file, listed))
@@ -205,7 +212,8 @@ impl Batch {
         self.replaceable = Some(name.to_owned());
     }
 
-    /// Copies files that cases read to the names that a study gives the copies. A user may also have put such a file there.
+    /// Copies files that cases read to the names that a study gives the copies. A user may also have put such
+    /// a file there.
     pub fn copy_all(&mut self, copies: &[Copy]) -> Result<(), StudyError> {
         for Copy { name, original, .. } in copies {
             let to = self.files.folder.join(name);
@@ -219,7 +227,8 @@ impl Batch {
         Ok(())
     }
 
-    /// Refuses a link or a file in the place of a folder of the file: it may lead to a folder that is not of these results.
+    /// Refuses a link or a file in the place of a folder of the file: it may lead to a folder that is not of
+    /// these results.
     fn expect_folder(&self, name: &str) -> Result<(), StudyError> {
         let folder = &self.files.folder;
         let path = folder.join(name);
@@ -253,12 +262,12 @@ impl Batch {
         self.put(others, false)
     }
 
-    /// Gives all files their names, and lists them with their checksums: the results are complete. Files that are there already with these
-    /// contents are left as they are.
+    /// Gives all files their names, and lists them with their checksums: the results are complete. Files that
+    /// are there already with these contents are left as they are.
     ///
     /// # Errors
-    /// When a file in the place of one of these, or a file of an earlier batch, was edited or is of somebody else, unless such files may
-    /// be replaced; then nothing is changed. When the system refuses to write.
+    /// When a file in the place of one of these, or a file of an earlier batch, was edited or is of somebody
+    /// else, unless such files may be replaced; then nothing is changed. When the system refuses to write.
     pub fn place(mut self, others: Others) -> Result<(), StudyError> {
         self.put(others, true)
     }

@@ -1,4 +1,5 @@
-//! Compares the folder of a project with the list of its files, then with the results that its recorded runs give.
+//! Compares the folder of a project with the list of its files, then with the results that its recorded runs
+//! give.
 
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
@@ -53,13 +54,13 @@ pub enum Extent {
 pub struct Derivation {
     /// The kind.
     pub kind: &'static ProjectKind,
-    /// Finds the results of a folder again in another one, until a stop, from a copy of its journal; returns the numbers of runs there before
-    /// and after, since runs that the journal lacks are made.
+    /// Finds the results of a folder again in another one, until a stop, from a copy of its journal; returns
+    /// the numbers of runs there before and after, since runs that the journal lacks are made.
     pub find_again: fn(folder: &Path, other: &Path, stop: &AtomicBool) -> Result<[usize; 2], StudyError>,
 }
 
-/// Compares the files of a folder with its list, and notes entries that are neither in the list nor among the `others`; the results are
-/// complete if the second value is true.
+/// Compares the files of a folder with its list, and notes entries that are neither in the list nor among the
+/// `others`; the results are complete if the second value is true.
 ///
 /// # Errors
 /// When the system does not say what the folder holds.
@@ -105,7 +106,8 @@ pub fn verify_checksums(
     Ok((verdict, list.is_complete))
 }
 
-/// Compares the folder of a project with its list, then with the results that follow from the runs in its journal.
+/// Compares the folder of a project with its list, then with the results that follow from the runs in its
+/// journal.
 pub(crate) fn verify_project(
     folder: &Path,
     derivation: &Derivation,
@@ -126,7 +128,8 @@ pub(crate) fn verify_project(
     Ok(verdict)
 }
 
-/// Compares the folder of a project with the results that are found in another folder from the runs in its journal.
+/// Compares the folder of a project with the results that are found in another folder from the runs in its
+/// journal.
 fn derive_from_runs(
     folder: &Path,
     derivation: &Derivation,

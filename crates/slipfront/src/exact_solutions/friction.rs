@@ -2,8 +2,8 @@
 
 use crate::friction::{Ageing, RateAndState, Weakening};
 
-/// Rate at which a small disturbance of steady sliding at `v` grows, of a block of mass 1 on a spring of stiffness `k`, with friction
-/// `mu_k F_n` = `kinetic` at rest and damping `Omega`: the larger real part of
+/// Rate at which a small disturbance of steady sliding at `v` grows, of a block of mass 1 on a spring of
+/// stiffness `k`, with friction `mu_k F_n` = `kinetic` at rest and damping `Omega`: the larger real part of
 ///
 /// ```text
 /// s^2 + (Omega + dF/dv) s + k = 0,   dF/dv = -kinetic (1 - ratio) v_c/(v_c + v)^2
@@ -24,8 +24,8 @@ pub fn weakening_growth(law: &Weakening, kinetic: f64, v: f64, k: f64, damping: 
     -0.5 * resistance + discriminant.sqrt()
 }
 
-/// Time at which a block slips that has been stuck since t = 0 and is pulled by a spring of stiffness `k` whose end rests
-/// until `hold` and then moves at `v`; its static friction of age 0 is 1, so that
+/// Time at which a block slips that has been stuck since t = 0 and is pulled by a spring of stiffness `k`
+/// whose end rests until `hold` and then moves at `v`; its static friction of age 0 is 1, so that
 ///
 /// ```text
 /// k v (t - hold) = 1 + beta ln(1 + t/tau)
@@ -48,7 +48,8 @@ pub fn ageing_slip_time(law: &Ageing, pull: f64, hold: f64, k: f64, v: f64) -> f
 fn slip_time(law: &Ageing, stopped_at: f64, pull: f64, hold: f64, k: f64, v: f64) -> f64 {
     let aged = |t: f64| 1.0 + law.beta * libm::log1p((t - stopped_at) / law.time);
     let excess = |t: f64| pull + k * v * (t - hold) - aged(t);
-    // The pull rises linearly, what it must reach more slowly from some time on: a bracket, then bisection to the last bit.
+    // The pull rises linearly, what it must reach more slowly from some time on: a bracket, then bisection to
+    // the last bit.
     let (mut low, mut high) = (hold, hold + 1.0);
     while excess(high) < 0.0 {
         (low, high) = (high, hold + 2.0 * (high - hold));
@@ -66,14 +67,15 @@ fn slip_time(law: &Ageing, stopped_at: f64, pull: f64, hold: f64, k: f64, v: f64
     }
 }
 
-/// A block that slides steadily at `v` while its drive stops: with `w^2 = k - Omega^2/4` it comes to rest after
+/// A block that slides steadily at `v` while its drive stops: with `w^2 = k - Omega^2/4` it comes to rest
+/// after
 ///
 /// ```text
 /// t_stop = (pi - atan(2 w/Omega))/w,   where its spring pulls with   F_stop = mu_k F_n - sqrt(k) v exp(-Omega t_stop/2)
 /// ```
 ///
-/// as the solution of `v'' + Omega v' + k v = 0`, `v(0) = v`, `v'(0) = 0`. It holds for `Omega^2 < 4 k`; a block with more damping
-/// creeps and never stops.
+/// as the solution of `v'' + Omega v' + k v = 0`, `v(0) = v`, `v'(0) = 0`. It holds for `Omega^2 < 4 k`; a
+/// block with more damping creeps and never stops.
 ///
 /// ```
 /// # use slipfront::exact_solutions::StopOfSteadySliding;
@@ -90,7 +92,8 @@ pub struct StopOfSteadySliding {
 }
 
 impl StopOfSteadySliding {
-    /// The stop of a block with kinetic friction `kinetic` = `mu_k F_n` on a drive spring of stiffness `k`; the mass is 1.
+    /// The stop of a block with kinetic friction `kinetic` = `mu_k F_n` on a drive spring of stiffness `k`;
+    /// the mass is 1.
     pub fn new(kinetic: f64, v: f64, k: f64, damping: f64) -> Self {
         let w = (k - 0.25 * damping * damping).sqrt();
         let time = (std::f64::consts::PI - libm::atan2(2.0 * w, damping)) / w;
@@ -100,15 +103,15 @@ impl StopOfSteadySliding {
         }
     }
 
-    /// Time of the next slip if the drive, stopped at `stopped`, moves on at `v` from `restarted` on: the age of the contact
-    /// counts from the stop of the block.
+    /// Time of the next slip if the drive, stopped at `stopped`, moves on at `v` from `restarted` on: the age
+    /// of the contact counts from the stop of the block.
     pub fn next_slip_time(&self, law: &Ageing, stopped: f64, restarted: f64, k: f64, v: f64) -> f64 {
         slip_time(law, stopped + self.time, self.pull, restarted, k, v)
     }
 }
 
-/// Friction above that of steady sliding at `v_2`, over `mu_s`, of a contact that slid steadily at `v_1` and is made to slide at `v_2`,
-/// after a slip of `x`:
+/// Friction above that of steady sliding at `v_2`, over `mu_s`, of a contact that slid steadily at `v_1` and
+/// is made to slide at `v_2`, after a slip of `x`:
 ///
 /// ```text
 /// mu - mu_ss = b ln[1 + (v_2/v_1 - 1) exp(-x/D_c)]
@@ -124,8 +127,8 @@ pub fn friction_after_speed_step(law: &RateAndState, v_1: f64, v_2: f64, x: f64)
     law.b * libm::log1p((v_2 / v_1 - 1.0) * libm::exp(-x / law.d_c))
 }
 
-/// Rate at which a small disturbance of steady sliding at `v` grows, of a block of mass 1 under the normal force `sigma` on a spring of
-/// stiffness `k`: the largest real part of the roots of
+/// Rate at which a small disturbance of steady sliding at `v` grows, of a block of mass 1 under the normal
+/// force `sigma` on a spring of stiffness `k`: the largest real part of the roots of
 ///
 /// ```text
 /// (s^2 + A s + k)(s + q) = sigma b s/D_c,   A = sigma a/v + Omega,   q = v/D_c
@@ -149,7 +152,8 @@ pub fn rate_and_state_growth(law: &RateAndState, sigma: f64, v: f64, k: f64, dam
         k * q,
     );
     let cubic = |s: f64| ((s + c2) * s + c1) * s + c0;
-    // It is positive at 0 and negative far to the left: the root between them by bisection, the others of what remains.
+    // It is positive at 0 and negative far to the left: the root between them by bisection, the others of
+    // what remains.
     let (mut low, mut high) = (-1.0 - c2.abs().max(c1.abs()).max(c0), 0.0);
     for _ in 0..200 {
         let middle = 0.5 * (low + high);
@@ -165,8 +169,9 @@ pub fn rate_and_state_growth(law: &RateAndState, sigma: f64, v: f64, k: f64, dam
     root.max(half + discriminant.sqrt())
 }
 
-/// Slip of a block without damping that weakens faster than its drive spring unloads, and jumps while the drive stands at its threshold.
-/// It comes to rest beyond the length `D_c = D/W` of weakening, where the spring has done as much work as friction:
+/// Slip of a block without damping that weakens faster than its drive spring unloads, and jumps while the
+/// drive stands at its threshold. It comes to rest beyond the length `D_c = D/W` of weakening, where the
+/// spring has done as much work as friction:
 ///
 /// ```text
 /// s = [D + sqrt(D^2 - k_s D D_c)]/k_s
@@ -185,9 +190,10 @@ pub fn slip_of_jump(drop: f64, weakening: f64, k: f64) -> f64 {
     (drop + (drop * drop - k * drop * (drop / weakening)).sqrt()) / k
 }
 
-/// First peak of friction over its mean in sliding of a rigid slider that is moved slowly, on springs whose thresholds are spread
-/// evenly over 1 - w to 1 + w, w <= 1/3. All springs are stretched alike until the weakest breaks, at 1 - w; later each is at all
-/// extensions alike, and bears half its threshold on average. A spring that keeps its threshold x breaks as often as 1/x:
+/// First peak of friction over its mean in sliding of a rigid slider that is moved slowly, on springs whose
+/// thresholds are spread evenly over 1 - w to 1 + w, w <= 1/3. All springs are stretched alike until the
+/// weakest breaks, at 1 - w; later each is at all extensions alike, and bears half its threshold on average.
+/// A spring that keeps its threshold x breaks as often as 1/x:
 ///
 /// ```text
 /// kept:   2 (1 - w)          drawn anew:   2 (1 - w)/(1 + w^2/3),   since the mean is <x^2>/(2 <x>)
@@ -205,8 +211,9 @@ pub fn static_over_kinetic_of_springs(w: f64, redrawn: bool) -> f64 {
     if redrawn { kept / (1.0 + w * w / 3.0) } else { kept }
 }
 
-/// Force on the first block of a chain of `n` at which its spring to the substrate breaks, over the threshold of that spring, in
-/// equilibrium: springs of stiffness `k` between the blocks, of stiffness `k_t` to the substrate.
+/// Force on the first block of a chain of `n` at which its spring to the substrate breaks, over the threshold
+/// of that spring, in equilibrium: springs of stiffness `k` between the blocks, of stiffness `k_t` to the
+/// substrate.
 ///
 /// ```text
 /// F/(mu_s F_n) = sinh(q n)/(2 sinh(q/2) cosh(q (n - 1/2))),   cosh q = 1 + k_t/(2 k)

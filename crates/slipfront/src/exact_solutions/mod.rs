@@ -222,7 +222,8 @@ impl SlipCycle {
         self.r_star * self.v_star * self.period()
     }
 
-    /// Energy lost to damping in one slip: the work of the drive, `V T` times the mean force, less the loss to friction.
+    /// Energy lost to damping in one slip: the work of the drive, `V T` times the mean force, less the loss
+    /// to friction.
     pub fn damping_loss(&self) -> f64 {
         self.v_star * self.period() * self.mean_force() - self.friction_loss()
     }
@@ -287,8 +288,8 @@ pub fn leapfrog_frequency(omega: f64, dt: f64) -> f64 {
     2.0 / dt * libm::asin(0.5 * omega * dt)
 }
 
-/// Growth rate `s` of an oscillation `x = A exp(s t) cos(w t + p)` from four of its values, each a time `apart` after the one before, about
-/// a quarter of a period; NaN of values that are no oscillation.
+/// Growth rate `s` of an oscillation `x = A exp(s t) cos(w t + p)` from four of its values, each a time
+/// `apart` after the one before, about a quarter of a period; NaN of values that are no oscillation.
 ///
 /// ```text
 /// q = (x_2^2 - x_1 x_3)/(x_1^2 - x_0 x_2) = exp(2 s apart),   since x_2 = p x_1 - q x_0
@@ -323,9 +324,8 @@ impl Facing {
     }
 }
 
-/// Force on a row at the edge of a straight groove over that of its own drive springs, before anything slips, on periodic
-/// edges: `n` rows of the groove, each held by its drive springs and by stiffness K to the
-/// next,
+/// Force on a row at the edge of a straight groove over that of its own drive springs, before anything slips,
+/// on periodic edges: `n` rows of the groove, each held by its drive springs and by stiffness K to the next,
 ///
 /// ```text
 /// F_edge = k_s V t [1 + (K/k_s)(1 - r)],   cosh q = 1 + k_s/(2 K),   r = cosh(q (n-1)/2)/cosh(q (n+1)/2)

@@ -2,8 +2,8 @@
 
 use crate::lattice::{K_DRIVE, K_STRAIGHT};
 
-/// Time of the first slip of a slider whose blocks differ in stiffness, without texture. Until then nothing has moved, so
-/// that
+/// Time of the first slip of a slider whose blocks differ in stiffness, without texture. Until then nothing
+/// has moved, so that
 ///
 /// ```text
 /// k_s,i V* t* = max(mu_si, mu_ki) F_n,i,   k_s,i = k_s E_i/E
@@ -24,7 +24,8 @@ pub fn graded_first_slip_time_star(limits: &[f64], stiffness: &[f64], v_star: f6
     extensions.fold(f64::INFINITY, f64::min) / (K_DRIVE * v_star)
 }
 
-/// A mode of two blocks: the square of its frequency, and the displacement of the second block over that of the first.
+/// A mode of two blocks: the square of its frequency, and the displacement of the second block over that of
+/// the first.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PairMode {
     /// Square of the frequency, `omega^2`.
@@ -33,8 +34,8 @@ pub struct PairMode {
     pub ratio: f64,
 }
 
-/// The modes of two blocks in a row, of moduli `E_1`, `E_2` and masses `m_1`, `m_2`, without friction. They are joined by a spring
-/// of the harmonic mean of both, and each has a drive spring as stiff as itself:
+/// The modes of two blocks in a row, of moduli `E_1`, `E_2` and masses `m_1`, `m_2`, without friction. They
+/// are joined by a spring of the harmonic mean of both, and each has a drive spring as stiff as itself:
 ///
 /// ```text
 /// m_i u_i'' = -k_s E_i u_i + k (u_j - u_i),   k = k_1 2 E_1 E_2/(E_1 + E_2)
@@ -59,15 +60,15 @@ pub fn pair_modes(stiffness: [f64; 2], masses: [f64; 2]) -> [PairMode; 2] {
     })
 }
 
-/// Rate at which the amplitude of a mode decays where a damper stands beside every spring between blocks (Kelvin-Voigt), of
-/// `eta = tau_v k`, while equal blocks swing a little and do not touch:
+/// Rate at which the amplitude of a mode decays where a damper stands beside every spring between blocks
+/// (Kelvin-Voigt), of `eta = tau_v k`, while equal blocks swing a little and do not touch:
 ///
 /// ```text
 /// (1/2) [Omega + tau_v (omega^2 - k_s)]
 /// ```
 ///
-/// `omega_squared`: squared frequency of the mode without dampers; dampers do not act on the part of it that comes from
-/// drive springs. `damping`: `Omega`.
+/// `omega_squared`: squared frequency of the mode without dampers; dampers do not act on the part of it that
+/// comes from drive springs. `damping`: `Omega`.
 ///
 /// ```
 /// use slipfront::exact_solutions::viscous_decay_rate;
@@ -78,8 +79,8 @@ pub fn viscous_decay_rate(omega_squared: f64, damping: f64, viscosity_time: f64)
     0.5 * (damping + viscosity_time * (omega_squared - K_DRIVE))
 }
 
-/// Rate at which the amplitude of a mode with dampers decays in steps of `dt` at `Omega` = 0. A damper acts by the velocity
-/// half a step before, so that the rate differs from [`viscous_decay_rate`]:
+/// Rate at which the amplitude of a mode with dampers decays in steps of `dt` at `Omega` = 0. A damper acts
+/// by the velocity half a step before, so that the rate differs from [`viscous_decay_rate`]:
 ///
 /// ```text
 /// -ln(1 - gamma dt)/(2 dt),   gamma = tau_v (omega^2 - k_s)
@@ -97,15 +98,17 @@ pub fn lagged_decay_rate(omega_squared: f64, viscosity_time: f64, dt: f64) -> f6
     -libm::log1p(-gamma * dt) / (2.0 * dt)
 }
 
-/// Largest mu* of a surface of two zones whose blocks do not pull at each other: a fraction `f` of the blocks has the static
-/// coefficient `mu_1`, the rest `mu_2 > mu_1`, both over `mu_s`, and kinetic friction is R* times as large. For `Omega* > sqrt(2)` a
-/// block that has slipped does not swing, and in the limit of a slow drive
+/// Largest mu* of a surface of two zones whose blocks do not pull at each other: a fraction `f` of the blocks
+/// has the static coefficient `mu_1`, the rest `mu_2 > mu_1`, both over `mu_s`, and kinetic friction is R*
+/// times as large. For `Omega* > sqrt(2)` a block that has slipped does not swing, and in the limit of a slow
+/// drive
 ///
 /// ```text
 /// mu* = max(mu_1, f R* mu_1 + (1 - f) mu_2)
 /// ```
 ///
-/// at the slip of the first or of the second zone. The faster drive adds the drag of the first zone, at most `f Omega V*`.
+/// at the slip of the first or of the second zone. The faster drive adds the drag of the first zone, at most
+/// `f Omega V*`.
 ///
 /// ```
 /// use slipfront::exact_solutions::composite_peak;

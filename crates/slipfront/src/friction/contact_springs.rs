@@ -13,8 +13,9 @@ use crate::state::State;
 use crate::surface::Surface;
 use crate::vector_field::{VectorField, dot};
 
-/// Springs between every block in contact and the substrate. A spring breaks at its static threshold and forms again without
-/// stress: `F_f = -k_t (u - a)`, where the anchor `a` becomes `u` when `k_t |u - a|` exceeds the threshold.
+/// Springs between every block in contact and the substrate. A spring breaks at its static threshold and
+/// forms again without stress: `F_f = -k_t (u - a)`, where the anchor `a` becomes `u` when `k_t |u - a|`
+/// exceeds the threshold.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactSprings {
     /// Stiffness `k_t` per block, in units of `E h`.
@@ -32,14 +33,16 @@ impl ContactSprings {
         ..Needs::NONE
     };
 
-    /// Pull of a drive through springs of stiffness `k` that loads springs in contact as far as rigid contacts are loaded by a pull of 1.
+    /// Pull of a drive through springs of stiffness `k` that loads springs in contact as far as rigid
+    /// contacts are loaded by a pull of 1.
     pub(super) fn pull_over_rigid(&self, k: f64) -> f64 {
         (k + self.stiffness) / self.stiffness
     }
 
-    /// Static threshold of the spring of a block that has broken `breaks` times; `number` is the number of the block in the
-    /// whole lattice. A spring that is drawn anew has the coefficient of a block in contact that seed, block and number of
-    /// breaks choose at random, so that thresholds keep their distribution, drawn or given.
+    /// Static threshold of the spring of a block that has broken `breaks` times; `number` is the number of
+    /// the block in the whole lattice. A spring that is drawn anew has the coefficient of a block in contact
+    /// that seed, block and number of breaks choose at random, so that thresholds keep their distribution,
+    /// drawn or given.
     fn threshold(&self, surface: &Surface, block: usize, number: usize, breaks: u64) -> f64 {
         match self.redraw {
             Some(seed) if breaks > 0 && !surface.textured[block] => {
@@ -91,7 +94,8 @@ impl SpringContact {
         if textured { 0.0 } else { self.law.stiffness }
     }
 
-    /// Lets those springs of some blocks that break at the present instant form again where their blocks are now.
+    /// Lets those springs of some blocks that break at the present instant form again where their blocks are
+    /// now.
     #[inline(always)]
     pub(super) fn form_again(
         &mut self,
@@ -128,9 +132,9 @@ impl SpringContact {
         }
     }
 
-    /// Forces of the springs of some blocks and velocities half a step later; a block counts as sliding in the step in which its spring
-    /// breaks. Such a spring pulls for the half of the step that lies before the break, which keeps the balance of energy to second
-    /// order.
+    /// Forces of the springs of some blocks and velocities half a step later; a block counts as sliding in
+    /// the step in which its spring breaks. Such a spring pulls for the half of the step that lies before the
+    /// break, which keeps the balance of energy to second order.
     #[inline(always)]
     pub(super) fn apply(
         &self,
@@ -169,8 +173,8 @@ impl SpringContact {
         }
     }
 
-    /// Adds the energies of the springs of some blocks: of the springs that hold, and of those that break at the present
-    /// instant. The sums have room for both.
+    /// Adds the energies of the springs of some blocks: of the springs that hold, and of those that break at
+    /// the present instant. The sums have room for both.
     #[inline(always)]
     pub(super) fn add_energies(
         &self,

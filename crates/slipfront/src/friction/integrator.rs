@@ -1,11 +1,12 @@
 //! The step of a velocity under forces and damping.
 
-/// Least component of a velocity, 2^-480 of its unit. Smaller ones become zero with their sign, so that mirrored problems
-/// keep mirrored bits.
+/// Least component of a velocity, 2^-480 of its unit. Smaller ones become zero with their sign, so that
+/// mirrored problems keep mirrored bits.
 ///
-/// A wave that runs into a large cavity has ahead of it, after n steps, velocities of some `(dt^2/n^2)^n` at n blocks: from a hundred blocks on
-/// they and their squares are subnormal numbers, with which processors compute slowly. Squares of what is left, and their products with small
-/// strains, are normal numbers, and sums over blocks do not notice what is not.
+/// A wave that runs into a large cavity has ahead of it, after n steps, velocities of some `(dt^2/n^2)^n` at
+/// n blocks: from a hundred blocks on they and their squares are subnormal numbers, with which processors
+/// compute slowly. Squares of what is left, and their products with small strains, are normal numbers, and
+/// sums over blocks do not notice what is not.
 pub(crate) const SMALLEST_VELOCITY: f64 = f64::from_bits((1023 - 480) << 52);
 
 /// Time step and damping (Eq. 5), centred in time so that stability does not depend on it.
@@ -39,7 +40,8 @@ impl Integrator {
         }
     }
 
-    /// Velocity at `t + dt/2` under a force alone (Eqs. 5-8): `(c- v + dt F/m)/c+`, without components below [`SMALLEST_VELOCITY`].
+    /// Velocity at `t + dt/2` under a force alone (Eqs. 5-8): `(c- v + dt F/m)/c+`, without components below
+    /// [`SMALLEST_VELOCITY`].
     #[inline(always)]
     pub(crate) fn accelerate(&self, velocity: [f64; 2], force: [f64; 2]) -> [f64; 2] {
         let one = |v: f64, f: f64| {

@@ -1,7 +1,8 @@
 //! The laws of friction, which act on a block where it touches the substrate.
 //!
-//! Each law is a file, which holds its parameters, says what it [`Needs`], and computes it in the general kernel, with the
-//! numbers that it remembers of every block. [`Friction`] and [`BandContact`] here have a row for each.
+//! Each law is a file, which holds its parameters, says what it [`Needs`], and computes it in the general
+//! kernel, with the numbers that it remembers of every block. [`Friction`] and [`BandContact`] here have a
+//! row for each.
 
 mod contact_springs;
 mod coulomb;
@@ -53,7 +54,8 @@ impl Friction {
         }
     }
 
-    /// Number of columns of a checkpoint that the law adds: numbers of a block that it remembers beside its velocity.
+    /// Number of columns of a checkpoint that the law adds: numbers of a block that it remembers beside its
+    /// velocity.
     pub fn n_columns(&self) -> usize {
         self.needs().columns
     }
@@ -63,13 +65,14 @@ impl Friction {
         !matches!(self, Self::RateAndState(_))
     }
 
-    /// Whether a block may take the threshold of any other block, so that every process must know all thresholds.
+    /// Whether a block may take the threshold of any other block, so that every process must know all
+    /// thresholds.
     pub fn lends_thresholds(&self) -> bool {
         matches!(self, Self::ContactSprings(law) if law.redraw.is_some())
     }
 
-    /// Stiffness of the contact that holds a block to the substrate until it slips, in units of `E h`; 0 for contacts that
-    /// do not yield.
+    /// Stiffness of the contact that holds a block to the substrate until it slips, in units of `E h`; 0 for
+    /// contacts that do not yield.
     pub(crate) fn contact_stiffness(&self) -> f64 {
         match self {
             Self::Coulomb(_) | Self::RateAndState(_) => 0.0,
@@ -90,8 +93,8 @@ impl Friction {
         self.coulomb()?.slip_weakening
     }
 
-    /// Mean friction of all blocks in steady sliding at `speed`, in units of `P mu_s l^2`. For springs in contact it is half
-    /// the mean of their thresholds, because they are torn off at all extensions alike.
+    /// Mean friction of all blocks in steady sliding at `speed`, in units of `P mu_s l^2`. For springs in
+    /// contact it is half the mean of their thresholds, because they are torn off at all extensions alike.
     pub(crate) fn steady_force(&self, surface: &Surface, speed: f64) -> f64 {
         match self {
             Self::Coulomb(law) => {
@@ -119,9 +122,10 @@ impl Friction {
         }
     }
 
-    /// Pull `F` of the drive springs of stiffness `k`, which rises as `k V t`, at which a block of this threshold slips on a
-    /// surface without texture. For springs in contact it is the pull that the whole slider would need if they did not
-    /// yield. Under rate and state no block slips at a moment; the pull is that of steady sliding.
+    /// Pull `F` of the drive springs of stiffness `k`, which rises as `k V t`, at which a block of this
+    /// threshold slips on a surface without texture. For springs in contact it is the pull that the whole
+    /// slider would need if they did not yield. Under rate and state no block slips at a moment; the pull is
+    /// that of steady sliding.
     pub(crate) fn first_slip_pull(&self, surface: &Surface, threshold: f64, k: f64, speed: f64) -> f64 {
         match self {
             Self::Coulomb(law) => law.first_slip_pull(surface, threshold, k, speed),
@@ -130,7 +134,8 @@ impl Friction {
         }
     }
 
-    /// Factor by which a drive through springs of stiffness `k` takes longer to load contacts that yield than rigid ones.
+    /// Factor by which a drive through springs of stiffness `k` takes longer to load contacts that yield than
+    /// rigid ones.
     pub(crate) fn loading_delay(&self, k: f64) -> f64 {
         match self {
             Self::Coulomb(_) | Self::RateAndState(_) => 1.0,
@@ -170,7 +175,8 @@ pub(crate) enum BandContact {
 }
 
 impl BandContact {
-    /// The memory of a law at the start. `first_block`: number of the first block of the band in the whole lattice.
+    /// The memory of a law at the start. `first_block`: number of the first block of the band in the whole
+    /// lattice.
     pub(crate) fn new(friction: &Friction, surface: &Surface, first_block: usize) -> Self {
         let n = surface.n_blocks();
         match friction {
@@ -180,8 +186,8 @@ impl BandContact {
         }
     }
 
-    /// The [`Friction::n_columns`] columns that a checkpoint keeps. Before and after the present instant is evaluated they
-    /// are equal.
+    /// The [`Friction::n_columns`] columns that a checkpoint keeps. Before and after the present instant is
+    /// evaluated they are equal.
     pub(crate) fn columns(&self) -> Vec<&[f64]> {
         match self {
             Self::Coulomb(thresholds) => thresholds.columns(),
@@ -209,8 +215,8 @@ impl BandContact {
         }
     }
 
-    /// Lets the law remember the motion of some blocks in the step before, which `forces` holds, before they move over a
-    /// step.
+    /// Lets the law remember the motion of some blocks in the step before, which `forces` holds, before they
+    /// move over a step.
     #[inline(always)]
     pub(crate) fn remember(
         &mut self,
@@ -231,8 +237,9 @@ impl BandContact {
         }
     }
 
-    /// Eqs. 4-7: friction and damping of some blocks, their velocities half a step later and whether they slide. `limits`:
-    /// static and kinetic thresholds of all blocks; `integrator`: one for each of these blocks.
+    /// Eqs. 4-7: friction and damping of some blocks, their velocities half a step later and whether they
+    /// slide. `limits`: static and kinetic thresholds of all blocks; `integrator`: one for each of these
+    /// blocks.
     #[inline(always)]
     pub(crate) fn apply(
         &mut self,
@@ -252,8 +259,8 @@ impl BandContact {
         }
     }
 
-    /// Adds the terms of [`ContactTotals`] of some blocks whose next velocities are known. The sums have room for two
-    /// numbers of each block.
+    /// Adds the terms of [`ContactTotals`] of some blocks whose next velocities are known. The sums have room
+    /// for two numbers of each block.
     #[inline(always)]
     pub(crate) fn add_up(
         &self,

@@ -5,9 +5,11 @@
 pub struct Needs {
     /// Whether the fused kernel computes the law; the general kernel computes every law.
     pub is_fused: bool,
-    /// Whether the law changes thresholds in the fused kernel, which then sweeps the blocks as heterogeneous ones.
+    /// Whether the law changes thresholds in the fused kernel, which then sweeps the blocks as heterogeneous
+    /// ones.
     pub varies: bool,
-    /// Number of columns of a checkpoint that the law adds: numbers per block that it remembers beside the velocity.
+    /// Number of columns of a checkpoint that the law adds: numbers per block that it remembers beside the
+    /// velocity.
     pub columns: usize,
     /// Whether contacts store energy, which is lost when they break.
     pub stores_energy: bool,

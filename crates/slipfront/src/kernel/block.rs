@@ -27,14 +27,16 @@ impl Block {
 
     /// Contact stress, `tau_c = |F_f + F_c|/l^2` (Eq. 10), in units of `P mu_s`.
     ///
-    /// For a stuck block `F_f + F_c = -F_s`: Eq. 10 then shows the pull of the block's own drive spring and hides the stress
-    /// concentration at the edge of a cavity. The [`traction`](Self::traction) shows this concentration.
+    /// For a stuck block `F_f + F_c = -F_s`: Eq. 10 then shows the pull of the block's own drive spring and
+    /// hides the stress concentration at the edge of a cavity. The [`traction`](Self::traction) shows this
+    /// concentration.
     #[inline]
     pub fn contact_stress(&self) -> f64 {
         length(add(self.force_friction, self.force_lattice))
     }
 
-    /// Traction, `|F_f|/l^2`, in units of `P mu_s`; without meaning over a texture, where nothing is in contact.
+    /// Traction, `|F_f|/l^2`, in units of `P mu_s`; without meaning over a texture, where nothing is in
+    /// contact.
     #[inline]
     pub fn traction(&self) -> f64 {
         length(self.force_friction)
@@ -74,7 +76,8 @@ impl Field {
         Field::Sliding,
     ];
 
-    /// The value at one block. [`Snapshot::read_field`](crate::Snapshot::read_field) reads all blocks, much faster.
+    /// The value at one block. [`Snapshot::read_field`](crate::Snapshot::read_field) reads all blocks, much
+    /// faster.
     #[inline]
     pub fn value(self, block: &Block, textured: bool) -> f64 {
         match self {

@@ -17,8 +17,8 @@ pub(crate) trait Engine: Send + Sync {
     /// Block `b` with the forces on it.
     fn block(&self, model: &Model, clock: &Clock, b: usize) -> Block;
 
-    /// Values of `field` in every `stride`-th row, several blocks of a row at a time: `write` is given the row, the column
-    /// of the first value, and the values.
+    /// Values of `field` in every `stride`-th row, several blocks of a row at a time: `write` is given the
+    /// row, the column of the first value, and the values.
     fn read_rows(
         &self,
         model: &Model,
@@ -28,8 +28,8 @@ pub(crate) trait Engine: Send + Sync {
         write: &mut dyn FnMut(usize, usize, &[f32]),
     );
 
-    /// Adds the blocks in contact of these rows to `counts`, each in its bin: those that slide if `sliding` is true, else
-    /// those that do not.
+    /// Adds the blocks in contact of these rows to `counts`, each in its bin: those that slide if `sliding`
+    /// is true, else those that do not.
     fn count_in_contact(&self, model: &Model, bins: &PositionBins, sliding: bool, counts: &mut [i64]);
 
     /// Displacement now and velocity half a step later of block `b`.
@@ -41,13 +41,15 @@ pub(crate) trait Engine: Send + Sync {
     /// A column of a checkpoint: its values of the blocks from `first` on.
     fn read_column(&self, column: BlockColumn, first: usize, values: &mut [f64]);
 
-    /// First-slip times of all blocks. Consumes the kernel, and frees its state before the times are allocated.
+    /// First-slip times of all blocks. Consumes the kernel, and frees its state before the times are
+    /// allocated.
     fn into_first_slips(self: Box<Self>) -> Vec<f64>;
 
     /// Largest square of a contact stress of a block in contact at any step so far.
     fn stress_square_max(&self, model: &Model, clock: &Clock) -> f64;
 
-    /// Power that the dampers between blocks take at the present step, `-sum F_v . v`; 0 for a kernel without dampers.
+    /// Power that the dampers between blocks take at the present step, `-sum F_v . v`; 0 for a kernel without
+    /// dampers.
     fn viscous_power(&self) -> f64 {
         0.0
     }
@@ -60,7 +62,7 @@ pub(crate) trait Engine: Send + Sync {
         ContactTotals::default()
     }
 
-    /// Reads a column of the memory of the law of friction for the blocks from `first` on, at the present t*; `column`
-    /// counts the law's own [`Friction::n_columns`](crate::friction::Friction::n_columns).
+    /// Reads a column of the memory of the law of friction for the blocks from `first` on, at the present t*;
+    /// `column` counts the law's own [`Friction::n_columns`](crate::friction::Friction::n_columns).
     fn read_memory(&self, time_star: f64, column: usize, first: usize, values: &mut [f64]);
 }

@@ -16,14 +16,15 @@ use crate::state::State;
 pub enum Kernel {
     /// The general kernel: one pass over the blocks per equation, for every model.
     General,
-    /// The fused kernel: one sweep for all equations. The general kernel computes the models that this one does not: [some
-    /// laws of friction](crate::Needs::is_fused), internal viscosity, and drives that rotate.
+    /// The fused kernel: one sweep for all equations. The general kernel computes the models that this one
+    /// does not: [some laws of friction](crate::Needs::is_fused), internal viscosity, and drives that rotate.
     #[default]
     Fused,
 }
 
-/// How a run is computed. Results have the same bits for any `threads`, `skips` and number of ranks. The two kernels agree to
-/// rounding up to the first slip; afterwards a difference in rounding can change which block slips first.
+/// How a run is computed. Results have the same bits for any `threads`, `skips` and number of ranks. The two
+/// kernels agree to rounding up to the first slip; afterwards a difference in rounding can change which block
+/// slips first.
 ///
 /// ```
 /// use slipfront::{Execution, Kernel};
@@ -38,13 +39,14 @@ pub enum Kernel {
 pub struct Execution {
     /// Kernel that computes the steps.
     pub kernel: Kernel,
-    /// Threads of the pool that share the blocks; useful from some ten thousand blocks on for the fused kernel, some
-    /// thousand for the general kernel. A thread that steps a simulation should belong to the pool (see `rayon::scope`): any
-    /// other thread waits at every step until it is woken.
+    /// Threads of the pool that share the blocks; useful from some ten thousand blocks on for the fused
+    /// kernel, some thousand for the general kernel. A thread that steps a simulation should belong to the
+    /// pool (see `rayon::scope`): any other thread waits at every step until it is woken.
     pub threads: usize,
     /// Whether blocks at rest are skipped until they can slip.
     pub skips: bool,
-    /// The connection with the ranks that share the lattice; [`Alone`] unless given. Each rank has a model of its own rows.
+    /// The connection with the ranks that share the lattice; [`Alone`] unless given. Each rank has a model of
+    /// its own rows.
     pub communicator: Arc<dyn Communicator>,
 }
 
@@ -55,8 +57,8 @@ impl Kernel {
         self.for_law(&model.friction, is_viscous, rotates)
     }
 
-    /// The kernel that computes models with this law of friction, with or without dampers and a rotation, when this one is
-    /// asked for.
+    /// The kernel that computes models with this law of friction, with or without dampers and a rotation,
+    /// when this one is asked for.
     pub fn for_law(self, friction: &Friction, has_dampers: bool, rotates: bool) -> Self {
         let is_fused = friction.needs().is_fused && !has_dampers && !rotates;
         if is_fused { self } else { Self::General }
@@ -94,7 +96,8 @@ impl Execution {
         }
     }
 
-    /// A kernel that continues from a checkpoint and its columns; none if the checkpoint is of another kernel.
+    /// A kernel that continues from a checkpoint and its columns; none if the checkpoint is of another
+    /// kernel.
     pub(crate) fn resume<E>(
         self,
         model: &Model,

@@ -1,10 +1,12 @@
-//! The vector instructions of the kernels: the widest of this processor, or narrower ones by choice. All give the same bits.
+//! The vector instructions of the kernels: the widest of this processor, or narrower ones by choice. All give
+//! the same bits.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use fearless_simd::Level;
 
-/// Names of vector instructions, narrow ones first: those that every processor has, and two that some processors for x86-64 have.
+/// Names of vector instructions, narrow ones first: those that every processor has, and two that some
+/// processors for x86-64 have.
 const NAMES: [&str; 3] = ["baseline", "AVX2", "AVX-512"];
 
 /// Place in [`NAMES`] of the widest instructions that kernels of this process may use.
@@ -40,8 +42,8 @@ pub(crate) fn level() -> Level {
     own
 }
 
-/// Name of the vector instructions that kernels use, the widest of this processor unless they were limited; results do not depend on
-/// them.
+/// Name of the vector instructions that kernels use, the widest of this processor unless they were limited;
+/// results do not depend on them.
 pub fn simd_width() -> &'static str {
     match level() {
         #[cfg(target_arch = "x86_64")]
@@ -52,8 +54,8 @@ pub fn simd_width() -> &'static str {
     }
 }
 
-/// Limits the kernels of this process that begin from now on to vector instructions of this name: `baseline` (SSE2 on x86-64), `AVX2`
-/// or `AVX-512`.
+/// Limits the kernels of this process that begin from now on to vector instructions of this name: `baseline`
+/// (SSE2 on x86-64), `AVX2` or `AVX-512`.
 ///
 /// # Errors
 /// If nothing has this name, or the processor lacks the instructions.

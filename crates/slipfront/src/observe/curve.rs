@@ -46,8 +46,8 @@ impl Curve {
         }
     }
 
-    /// Whether the recording can be the one that began as `new` and was called at every step until the drive had moved in
-    /// `drive_steps`.
+    /// Whether the recording can be the one that began as `new` and was called at every step until the drive
+    /// had moved in `drive_steps`.
     pub fn is_consistent_with(&self, new: &Self, drive_steps: u64) -> bool {
         let stride = new.stride.max(1);
         let of_stride = || (0..=drive_steps).step_by(stride as usize);

@@ -39,10 +39,11 @@ impl Energies {
     /// error = (work - (stored - stored at start) - losses)/(|work| + stored at start)
     /// ```
     ///
-    /// It falls with the square of the time step: the balance misses the kinetic energy that a block loses in the last step
-    /// of a slip, at most `(mu_k F_n dt)^2/2`. As long as no block stops, linear springs let the errors of the steps cancel but for the
-    /// first and the present one: with the force **F** of the springs between blocks and to the drive, and the change of velocity from
-    /// half a step before to half a step after,
+    /// It falls with the square of the time step: the balance misses the kinetic energy that a block loses in
+    /// the last step of a slip, at most `(mu_k F_n dt)^2/2`. As long as no block stops, linear springs let
+    /// the errors of the steps cancel but for the first and the present one: with the force **F** of the
+    /// springs between blocks and to the drive, and the change of velocity from half a step before to half a
+    /// step after,
     ///
     /// ```text
     /// missing = (dt/4) [(sum F . (v_after - v_before)) at the start - the same now]
@@ -58,7 +59,8 @@ impl Energies {
     }
 }
 
-/// The pull of the drive at one instant, and powers: of a constant force, of friction, of damping and of the dampers between blocks.
+/// The pull of the drive at one instant, and powers: of a constant force, of friction, of damping and of the
+/// dampers between blocks.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 struct Powers {
     /// Force along the path of the drive, `sum F_s . d`; for a rotation the torque over the largest radius.
@@ -87,8 +89,8 @@ impl Powers {
     }
 }
 
-/// Integrates powers over the steps by the trapezoidal rule. The work of the drive in a step, whose speed is constant within it, is
-/// `(F_n + F_n+1)/2 (X_n+1 - X_n)`, or torque times angle.
+/// Integrates powers over the steps by the trapezoidal rule. The work of the drive in a step, whose speed is
+/// constant within it, is `(F_n + F_n+1)/2 (X_n+1 - X_n)`, or torque times angle.
 #[derive(Debug, Default, Serialize, Deserialize)]
 pub struct Ledger {
     before: Option<Powers>,

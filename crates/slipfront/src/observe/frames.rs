@@ -22,8 +22,8 @@ pub struct Frame {
     pub drive_time_star: f64,
     /// Friction coefficient mu* and percentage N*.
     pub point: CurvePoint,
-    /// One array per field, row by row from y = 0, every `stride`-th block of each axis from the first on. The arrays are as
-    /// large as the lattice: code that serializes a frame writes them beside it.
+    /// One array per field, row by row from y = 0, every `stride`-th block of each axis from the first on.
+    /// The arrays are as large as the lattice: code that serializes a frame writes them beside it.
     #[serde(skip)]
     pub values: Vec<Vec<f32>>,
 }

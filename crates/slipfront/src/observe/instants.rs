@@ -1,9 +1,9 @@
 //! The instants A-F of Fig. 4, found while the run goes on.
 //!
-//! A: t* = 0.5/V*. B: first slip of a block in contact. C: the peak of mu*. D: the largest N* in
-//! [t_s*, t_s* + 2.5/V*]. E: the smallest mu* from D to the start of the kinetic window. F: the middle of that
-//! window. An instant that a later step may replace is kept as a candidate and overwritten. V* is the
-//! [loading speed](crate::Model::loading_speed).
+//! A: t* = 0.5/V*. B: first slip of a block in contact. C: the peak of mu*. D: the largest N* in [t_s*, t_s*
+//! + 2.5/V*]. E: the smallest mu* from D to the start of the kinetic window. F: the middle of that window. An
+//! instant that a later step may replace is kept as a candidate and overwritten. V* is the [loading
+//! speed](crate::Model::loading_speed).
 
 use serde::{Deserialize, Serialize};
 
@@ -69,11 +69,12 @@ impl Instants {
         self.frames.iter_mut().flatten()
     }
 
-    /// The instants that the run had, in the order of their letters. Without a transition there is no D and E, nor
-    /// when the run ends before the times among which they are chosen.
+    /// The instants that the run had, in the order of their letters. Without a transition there is no D and
+    /// E, nor when the run ends before the times among which they are chosen.
     pub fn found(mut self) -> Vec<(char, Frame)> {
         let shown = self.shown();
-        // From the last on: a frame is taken by the first of those that it shows, after the others have copied it.
+        // From the last on: a frame is taken by the first of those that it shows, after the others have
+        // copied it.
         let mut found: Vec<(char, Frame)> = (A..=F)
             .rev()
             .filter_map(|instant| {
@@ -90,8 +91,8 @@ impl Instants {
         found
     }
 
-    /// The instants that the run would have had if it ended now, and t* of the drive at each. C is a candidate until mu* has fallen far
-    /// enough, and so is F until then.
+    /// The instants that the run would have had if it ended now, and t* of the drive at each. C is a
+    /// candidate until mu* has fallen far enough, and so is F until then.
     pub fn by_now(&self) -> impl Iterator<Item = (char, f64)> {
         let shown = LETTERS.into_iter().zip(self.shown());
         shown.filter_map(|(letter, frame)| Some((letter, self.frames[frame?].as_ref()?.drive_time_star)))
@@ -143,7 +144,8 @@ impl Observer for Instants {
         let kinetic_from = self.kinetic.time_star(&now.peak, v_star);
         let middle = 0.5 * (kinetic_from + self.end_time_star);
         if now.peak.ended && !self.ended && middle > now.drive_time_star {
-            // The end of the peak moves the kinetic window: F was the middle of the window of a run without a transition.
+            // The end of the peak moves the kinetic window: F was the middle of the window of a run without a
+            // transition.
             self.valid[F] = false;
         }
         self.ended = now.peak.ended;

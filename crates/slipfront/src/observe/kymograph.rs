@@ -9,9 +9,10 @@ use crate::model::Model;
 use crate::position_bins::PositionBins;
 use crate::snapshot::Snapshot;
 
-/// Counts the blocks in contact that slide, in [bins of their place](PositionBins), at every [`Kymograph::INTERVAL`]-th step. There are at
-/// most [`Kymograph::MAX_ROWS`] rows of time: when they are full, they are added up in pairs, so that memory does not grow with the
-/// run. All numbers are whole and counted over all ranks.
+/// Counts the blocks in contact that slide, in [bins of their place](PositionBins), at every
+/// [`Kymograph::INTERVAL`]-th step. There are at most [`Kymograph::MAX_ROWS`] rows of time: when they are
+/// full, they are added up in pairs, so that memory does not grow with the run. All numbers are whole and
+/// counted over all ranks.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Kymograph {
     /// Blocks in contact of every bin.
@@ -38,12 +39,12 @@ impl Default for Kymograph {
 impl Kymograph {
     /// Largest number of rows.
     pub const MAX_ROWS: usize = 1024;
-    /// Steps from one count to the next: few enough that a front which takes some t* is resolved, and many enough that a run
-    /// takes no longer.
+    /// Steps from one count to the next: few enough that a front which takes some t* is resolved, and many
+    /// enough that a run takes no longer.
     pub const INTERVAL: u64 = 8;
 
-    /// Largest number of counts of a run of `last_step` steps: rows of time times bins of place, whatever the direction of
-    /// the drive.
+    /// Largest number of counts of a run of `last_step` steps: rows of time times bins of place, whatever the
+    /// direction of the drive.
     pub fn max_counts(lattice: &Lattice, last_step: u64) -> usize {
         let samples = last_step / Self::INTERVAL + 1;
         let rows = samples.min(Self::MAX_ROWS as u64) as usize;
@@ -60,8 +61,8 @@ impl Kymograph {
         &self.in_contact
     }
 
-    /// The rows, each with the middle of its instants, as a number of steps, and the share of the blocks in contact of every
-    /// bin that slide, NaN for a bin without contact.
+    /// The rows, each with the middle of its instants, as a number of steps, and the share of the blocks in
+    /// contact of every bin that slide, NaN for a bin without contact.
     pub fn rows(&self) -> impl Iterator<Item = (f64, Vec<f32>)> {
         let rows = self.sliding.chunks(self.in_contact.len().max(1));
         rows.zip(0..).map(|(sliding, row)| {

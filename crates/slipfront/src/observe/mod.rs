@@ -1,10 +1,11 @@
 //! Measurements on a run. Observers read [`Snapshot`](crate::Snapshot)s and change nothing.
 //!
-//! [`curve`]: mu*, N* and energies against time; [`summary`]: the kinetic friction coefficient; [`frames`]: fields at chosen
-//! steps; [`instants`]: fields at the instants A-F; [`energy`]: the energy balance; [`precursors`]: events of slip of a
-//! slider driven at an edge; [`Largest`]: the largest mu* until the drive has gone a stated path; [`cycles`]: peaks under a
-//! program of speeds; [`kymograph`]: sliding against place and time. [`front`] is found after a run from its first slips:
-//! where slip has begun, and how fast it has spread.
+//! [`curve`]: mu*, N* and energies against time; [`summary`]: the kinetic friction coefficient; [`frames`]:
+//! fields at chosen steps; [`instants`]: fields at the instants A-F; [`energy`]: the energy balance;
+//! [`precursors`]: events of slip of a slider driven at an edge; [`Largest`]: the largest mu* until the drive
+//! has gone a stated path; [`cycles`]: peaks under a program of speeds; [`kymograph`]: sliding against place
+//! and time. [`front`] is found after a run from its first slips: where slip has begun, and how fast it has
+//! spread.
 
 pub mod curve;
 pub mod cycles;

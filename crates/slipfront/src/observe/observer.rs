@@ -12,8 +12,8 @@ pub trait Observer {
     /// [`RunError::Observer`] ends the run.
     fn observe(&mut self, now: &Snapshot) -> Result<(), RunError>;
 
-    /// Whether the observer needs the stored energies after `drive_steps` steps of the drive, when the drive has just moved.
-    /// They are measured only at steps at which an observer needs them.
+    /// Whether the observer needs the stored energies after `drive_steps` steps of the drive, when the drive
+    /// has just moved. They are measured only at steps at which an observer needs them.
     fn needs_energies(&self, drive_steps: u64) -> bool {
         let _ = drive_steps;
         false

@@ -1,4 +1,5 @@
-//! Events of slip of a slider that is driven at an edge: precursors, which stop within it, and those that cross it.
+//! Events of slip of a slider that is driven at an edge: precursors, which stop within it, and those that
+//! cross it.
 
 use serde::{Deserialize, Serialize};
 
@@ -13,7 +14,8 @@ use crate::snapshot::Snapshot;
 pub struct SlipEvent {
     /// t* at which the event begins.
     pub from_star: f64,
-    /// Largest distance from the driven edge at which a block in contact has slid, over the length of the slider.
+    /// Largest distance from the driven edge at which a block in contact has slid, over the length of the
+    /// slider.
     pub length: f64,
     /// mu* at the beginning of the event.
     pub mu_star_before: f64,
@@ -61,7 +63,8 @@ impl Precursors {
         self.edge == new.edge && ended && is_rising
     }
 
-    /// Distance from the edge up to which blocks in contact slide from this instant on, over the length of the slider.
+    /// Distance from the edge up to which blocks in contact slide from this instant on, over the length of
+    /// the slider.
     fn length(&self, now: &Snapshot) -> f64 {
         let (lattice, edge) = (&now.model.lattice, self.edge);
         let first = lattice.blocks_of(&now.model.rows).start;

@@ -36,7 +36,8 @@ pub struct Kinetic {
     pub window_star: [f64; 2],
     /// mu_k*, the mean of mu*.
     pub mu_star: f64,
-    /// Standard error of mu_k* as an estimate of the mean over an infinite run, or why it cannot be estimated.
+    /// Standard error of mu_k* as an estimate of the mean over an infinite run, or why it cannot be
+    /// estimated.
     pub uncertainty: Result<f64, NoUncertainty>,
     /// Mean of mu_lateral_star.
     pub mu_lateral_star: f64,
@@ -54,17 +55,17 @@ pub enum NoUncertainty {
     },
     /// A program changes the speed of the drive: the run is no part of an infinite one.
     SpeedChanges,
-    /// The mean of the first half or of the first quarter differs by more than two standard errors from the mean of the
-    /// rest: mu* still drifts.
+    /// The mean of the first half or of the first quarter differs by more than two standard errors from the
+    /// mean of the rest: mu* still drifts.
     Drift {
         /// t* up to which the run should go.
         needed_time_star: f64,
     },
 }
 
-/// Keeps mu*, the friction across the drive and N* of the whole run as at most [`KineticHistory::BINS`] means over equal
-/// numbers of steps in which the drive moves, so that memory does not grow with the run. Its times are those of the drive.
-/// The observer must be called at every step.
+/// Keeps mu*, the friction across the drive and N* of the whole run as at most [`KineticHistory::BINS`] means
+/// over equal numbers of steps in which the drive moves, so that memory does not grow with the run. Its times
+/// are those of the drive. The observer must be called at every step.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct KineticHistory {
     steps_per_bin: u64,
@@ -84,8 +85,8 @@ impl KineticHistory {
     /// Largest number of means. A shorter run keeps every step.
     pub const BINS: u64 = 16_384;
 
-    /// An empty history of a run of `last_step` steps of the drive; [`u64::MAX`] for a run without an end. A run that goes on for longer
-    /// averages twice as many steps into each mean as often as it must.
+    /// An empty history of a run of `last_step` steps of the drive; [`u64::MAX`] for a run without an end. A
+    /// run that goes on for longer averages twice as many steps into each mean as often as it must.
     pub fn new(last_step: u64) -> Self {
         let steps_per_bin = if last_step == u64::MAX {
             1
@@ -100,8 +101,8 @@ impl KineticHistory {
         }
     }
 
-    /// Whether the history can be the one that began as `new` and was called at every step until the drive had moved in
-    /// `drive_steps`.
+    /// Whether the history can be the one that began as `new` and was called at every step until the drive
+    /// had moved in `drive_steps`.
     pub fn is_consistent_with(&self, new: &Self, drive_steps: u64) -> bool {
         let observed = drive_steps.saturating_add(1);
         let mut steps_per_bin = new.steps_per_bin;
@@ -149,8 +150,8 @@ impl KineticHistory {
         self.sliding_percent_max
     }
 
-    /// Means over the window from `from_star` to the end, at a [loading speed](crate::Model::loading_speed) of `v_star`;
-    /// none if the window is empty.
+    /// Means over the window from `from_star` to the end, at a [loading speed](crate::Model::loading_speed)
+    /// of `v_star`; none if the window is empty.
     pub fn kinetic(&self, from_star: f64, dt_star: f64, v_star: f64) -> Option<Kinetic> {
         let bin_time = self.steps_per_bin as f64 * dt_star;
         // The last bin does not count until all of its steps are done.
@@ -193,8 +194,8 @@ fn mean(x: &[f64]) -> f64 {
 /// A difference between parts of a window below this is no drift: it is less than the error of any time step.
 const NEGLIGIBLE_DRIFT: f64 = 1e-6;
 
-/// V* times the shortest window that gives a standard error. Shorter windows hide slow changes: across a groove friction
-/// still rises by 0.3 % after the transition, which does not show over 20/V*.
+/// V* times the shortest window that gives a standard error. Shorter windows hide slow changes: across a
+/// groove friction still rises by 0.3 % after the transition, which does not show over 20/V*.
 const LEAST_PATH: f64 = 40.0;
 
 /// Largest difference between parts of a window that is no drift, in standard errors.
@@ -214,9 +215,11 @@ fn uncertainty(x: &[f64], window_star: [f64; 2], v_star: f64) -> Result<f64, NoU
             needed_time_star: from + 1.01 * least,
         });
     }
-    // The scatter of the parts is that about the line of the whole: what drifts would itself pass for scatter.
+    // The scatter of the parts is that about the line of the whole: what drifts would itself pass for
+    // scatter.
     let level = without_line(x);
-    // What settles slowly shows itself in the first half, what has not settled when the window begins in the first quarter.
+    // What settles slowly shows itself in the first half, what has not settled when the window begins in the
+    // first quarter.
     for first in [x.len() / 2, x.len() / 4] {
         let difference = (mean(&x[..first]) - mean(&x[first..])).abs();
         let [one, other] = [&level[..first], &level[first..]].map(standard_error);
@@ -239,7 +242,8 @@ fn without_line(x: &[f64]) -> Vec<f64> {
     places().zip(x).map(residual).collect()
 }
 
-/// Largest number of values from which an autoregressive model is made: longer series are averaged over neighbours first.
+/// Largest number of values from which an autoregressive model is made: longer series are averaged over
+/// neighbours first.
 const MAX_VALUES: usize = 512;
 
 /// Terms of the autoregressive model over the root of the number of values.
@@ -251,16 +255,16 @@ const TERMS: f64 = 1.5;
 /// x_t = sum_i a_i x_t-i + noise,    i = 1 .. (3/2) sqrt(n)
 /// ```
 ///
-/// whose terms are found by Burg's recursion (Burg 1975), and whose autocovariances gamma(k) give the variance of the mean over just
-/// this window:
+/// whose terms are found by Burg's recursion (Burg 1975), and whose autocovariances gamma(k) give the
+/// variance of the mean over just this window:
 ///
 /// ```text
 /// se^2 = (1/n^2) sum_{|k| < n} (n - |k|) gamma(k)
 /// ```
 ///
-/// A slider that sticks and slips is anticorrelated: a rise in one cycle is a fall in the next, and the error falls as 1/n
-/// and not as 1/sqrt(n). Estimates from independent blocks do not see that, and criteria that spare terms of the model (of
-/// Akaike, of Schwarz) see less of it.
+/// A slider that sticks and slips is anticorrelated: a rise in one cycle is a fall in the next, and the error
+/// falls as 1/n and not as 1/sqrt(n). Estimates from independent blocks do not see that, and criteria that
+/// spare terms of the model (of Akaike, of Schwarz) see less of it.
 fn standard_error(x: &[f64]) -> f64 {
     let values: Vec<f64> = x.chunks_exact(x.len().div_ceil(MAX_VALUES)).map(mean).collect();
     let n = values.len() as f64;
@@ -334,7 +338,8 @@ mod tests {
         let x = noise(4096);
         let expected = (1.0 / 12.0 / 4096.0_f64).sqrt();
         let found = uncertainty(&x, [0.0, 1.0], 40.0).unwrap();
-        // The spectrum at frequency 0 of 48 terms over n/8 = 512 values has a relative error of sqrt(4 48/512), the root half of it.
+        // The spectrum at frequency 0 of 48 terms over n/8 = 512 values has a relative error of sqrt(4
+        // 48/512), the root half of it.
         assert!((found / expected - 1.0).abs() < 2.0 * 0.31, "{found} {expected}");
     }
 
@@ -403,7 +408,8 @@ mod tests {
         assert_eq!(KineticHistory::new(u64::MAX - 1).steps_per_bin, 1 << 50);
     }
 
-    /// x_k = noise_k - noise_k-1: the sum is the difference of two numbers, whose variance is 1/6, however long the series.
+    /// x_k = noise_k - noise_k-1: the sum is the difference of two numbers, whose variance is 1/6, however
+    /// long the series.
     #[test]
     fn what_rises_and_falls_back_has_an_error_that_falls_with_the_length() {
         let noise = noise(513);

@@ -1,5 +1,5 @@
-//! Loops that threads share out, with the names of rayon. Where a target has no threads, as WebAssembly in a Worker of a page, the same loops
-//! go from the first element to the last; results never depend on that.
+//! Loops that threads share out, with the names of rayon. Where a target has no threads, as WebAssembly in a
+//! Worker of a page, the same loops go from the first element to the last; results never depend on that.
 
 #[cfg(target_family = "wasm")]
 mod alone;

@@ -1,4 +1,5 @@
-//! The smallest textured feature and the smallest gap between two: lengths that a tool must make, and blocks must resolve.
+//! The smallest textured feature and the smallest gap between two: lengths that a tool must make, and blocks
+//! must resolve.
 
 use std::collections::HashMap;
 
@@ -20,17 +21,17 @@ pub struct Clearance {
 
 /// Corners by which cavities other than ellipses are measured: the radius is met within five millionths.
 const CORNERS: usize = 1024;
-/// Largest number of copies that are all compared with each other; of more, those next to each other in every pattern, and
-/// at its ends, are compared.
+/// Largest number of copies that are all compared with each other; of more, those next to each other in every
+/// pattern, and at its ends, are compared.
 const MANY: usize = 4096;
-/// Largest number of points, edges and boxes that are examined, which takes some tenths of a second; textures that need more
-/// have no result.
+/// Largest number of points, edges and boxes that are examined, which takes some tenths of a second; textures
+/// that need more have no result.
 const EFFORT: usize = 50_000_000;
 
-/// The smallest width of each shape and distance between two copies, before edges cut them. Shapes that overlap are one, and
-/// those that lie off the slider do not count. The width of a cavity is that of the largest circle in it, and of a mask
-/// these are its shortest runs of blocks along x and y. There is no result for more shapes than can be examined in some
-/// tenths of a second.
+/// The smallest width of each shape and distance between two copies, before edges cut them. Shapes that
+/// overlap are one, and those that lie off the slider do not count. The width of a cavity is that of the
+/// largest circle in it, and of a mask these are its shortest runs of blocks along x and y. There is no
+/// result for more shapes than can be examined in some tenths of a second.
 ///
 /// ```
 /// # use slipfront::Lattice;
@@ -95,7 +96,8 @@ fn least(found: &mut Option<f64>, value: Option<f64>) {
     }
 }
 
-/// The shortest runs of blocks along x and y that are inside a mask, and the shortest runs outside between two of these.
+/// The shortest runs of blocks along x and y that are inside a mask, and the shortest runs outside between
+/// two of these.
 fn runs(tile: &Tile) -> [Option<f64>; 2] {
     let [nx, ny] = tile.size;
     let mut found = [None, None];
@@ -207,8 +209,8 @@ fn form(lattice: &Lattice, texture: &Texture, all: bool) -> Option<(Form, Vec<[f
     Some((form, places(&texture.arrays, all)))
 }
 
-/// The places of arrays of arrays: all, or for each array the first three and the last line along both axes, with all
-/// distances between neighbours.
+/// The places of arrays of arrays: all, or for each array the first three and the last line along both axes,
+/// with all distances between neighbours.
 fn places(arrays: &[Array], all: bool) -> Vec<[f64; 2]> {
     let lines = |count: usize| (0..count).filter(move |&line| all || line < 3 || line + 1 == count);
     arrays.iter().fold(vec![[0.0; 2]], |outer, array| {
@@ -289,7 +291,8 @@ impl<'a> Copies<'a> {
         Ok(false)
     }
 
-    /// The smallest distance between two copies between which all blocks are in contact; none for copies that touch.
+    /// The smallest distance between two copies between which all blocks are in contact; none for copies that
+    /// touch.
     fn least_distance(
         &self,
         effort: &mut Effort,
@@ -440,7 +443,8 @@ mod tests {
         ));
         let square = Shape::Polygon(vec![[10.0, 10.0], [20.0, 10.0], [20.0, 13.0], [10.0, 13.0]]);
         assert!(is_near(of(&free, square, vec![], false), [3.0, nan]));
-        // Arms of 12 upright, at a slope of 2 to 3; between them the notch of a chevron is a corner, and no gap.
+        // Arms of 12 upright, at a slope of 2 to 3; between them the notch of a chevron is a corner, and no
+        // gap.
         let chevron = [
             [10.0, 12.0],
             [25.0, 22.0],
@@ -477,8 +481,8 @@ mod tests {
         Shape::Groove(groove).into()
     }
 
-    /// A part that a third shape covers is no gap between two others, nor is there one between grooves that cross or dimples
-    /// that merge.
+    /// A part that a third shape covers is no gap between two others, nor is there one between grooves that
+    /// cross or dimples that merge.
     #[test]
     fn gaps_are_not_looked_for_below_other_shapes() {
         let free = Lattice::free(60, 60);
@@ -494,7 +498,8 @@ mod tests {
         assert_eq!(gap(&[dimples.to_vec(), vec![across.clone()]].concat()), Some(1.0));
         let wide = groove(Orientation::Across, 8.0, 1.0);
         assert_eq!(gap(&[dimples.to_vec(), vec![wide]].concat()), None);
-        // Dimples in a row that overlap are one groove: those that are next but one do not have the middle one between them.
+        // Dimples in a row that overlap are one groove: those that are next but one do not have the middle
+        // one between them.
         let row = |pitch: f64| Texture {
             arrays: vec![Array {
                 count: [6, 1],
@@ -576,8 +581,8 @@ mod tests {
         }
     }
 
-    /// As many copies as are all held against each other, more of them, and as many textures of their own, with a groove
-    /// that reaches over all of them: none takes too long.
+    /// As many copies as are all held against each other, more of them, and as many textures of their own,
+    /// with a groove that reaches over all of them: none takes too long.
     #[test]
     fn many_shapes_are_measured_in_little_time() {
         let measured = |lattice: &Lattice, textures: &[Texture]| {

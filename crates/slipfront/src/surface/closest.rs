@@ -6,12 +6,14 @@ use super::contour::Ellipse;
 
 /// Largest length that is zero but for the rounding of coordinates: outlines that are so near touch.
 const TOUCHING: f64 = 1e-6;
-/// Number of directions of which the best is the first guess of the one in which two ellipses are farthest apart.
+/// Number of directions of which the best is the first guess of the one in which two ellipses are farthest
+/// apart.
 const DIRECTIONS: usize = 256;
-/// Number of times that the interval around this guess is cut by a third: to 1e-9 of it, beyond which the distance no longer
-/// changes.
+/// Number of times that the interval around this guess is cut by a third: to 1e-9 of it, beyond which the
+/// distance no longer changes.
 const CUTS: usize = 52;
-/// Corners of the polygon that stands for an ellipse in comparison with a polygon: its radius is met within five millionths.
+/// Corners of the polygon that stands for an ellipse in comparison with a polygon: its radius is met within
+/// five millionths.
 const CORNERS: usize = 1024;
 
 /// A closed outline.
@@ -77,7 +79,8 @@ impl Form {
         }
     }
 
-    /// The place where another form, shifted by `shift`, is nearest; none if it touches this one or overlaps it.
+    /// The place where another form, shifted by `shift`, is nearest; none if it touches this one or overlaps
+    /// it.
     pub(super) fn closest(
         &self,
         other: &Self,
@@ -144,8 +147,8 @@ fn farthest(ellipse: &Ellipse, direction: [f64; 2]) -> [f64; 2] {
     plus(ellipse.center, [u * c - v * s, u * s + v * c])
 }
 
-/// Two convex outlines are as far apart as their shadows on the line on which these are farthest from each other. Negative if the
-/// ellipses overlap.
+/// Two convex outlines are as far apart as their shadows on the line on which these are farthest from each
+/// other. Negative if the ellipses overlap.
 fn between_ellipses(one: &Ellipse, other: &Ellipse, shift: [f64; 2]) -> Closest {
     let from_one = less(plus(other.center, shift), one.center);
     let direction = |angle: f64| [libm::cos(angle), libm::sin(angle)];
@@ -211,7 +214,8 @@ fn is_inside(point: [f64; 2], corners: &[[f64; 2]], effort: &mut Effort) -> Resu
     Ok(crossed.count() % 2 == 1)
 }
 
-/// The point of an edge that is nearest to a point, as a share of the way along it that may lie beyond its ends.
+/// The point of an edge that is nearest to a point, as a share of the way along it that may lie beyond its
+/// ends.
 fn share_of(point: [f64; 2], [from, to]: [[f64; 2]; 2]) -> f64 {
     let along = less(to, from);
     dot(less(point, from), along) / dot(along, along)
@@ -304,10 +308,11 @@ fn without_straight(corners: &[[f64; 2]]) -> Vec<[f64; 2]> {
     (0..count).filter(turns).map(|at| corners[at]).collect()
 }
 
-/// The smallest distance of a corner of a polygon from an edge that it faces: across the inside, and across the outside.
+/// The smallest distance of a corner of a polygon from an edge that it faces: across the inside, and across
+/// the outside.
 ///
-/// A corner faces an edge if its distance from the line of the edge is the smallest or the largest beside it. Along a side that runs to a
-/// vertex the distance from the other side falls to nothing, and is no width.
+/// A corner faces an edge if its distance from the line of the edge is the smallest or the largest beside it.
+/// Along a side that runs to a vertex the distance from the other side falls to nothing, and is no width.
 pub(super) fn widths(corners: &[[f64; 2]], effort: &mut Effort) -> Result<[Option<f64>; 2], TooMuch> {
     let corners = without_straight(corners);
     let count = corners.len();
@@ -346,7 +351,8 @@ pub(super) fn widths(corners: &[[f64; 2]], effort: &mut Effort) -> Result<[Optio
             if !is_flat && (farther[0] > 0.0) != (farther[1] > 0.0) {
                 continue;
             }
-            // A side of the polygon itself is a width between two corners that turn alike, and a step between others.
+            // A side of the polygon itself is a width between two corners that turn alike, and a step between
+            // others.
             let foot_at = match share {
                 _ if share < TOUCHING => Some(start),
                 _ if share > 1.0 - TOUCHING => Some(end),
@@ -389,7 +395,8 @@ mod tests {
         found.map(|closest| closest.distance)
     }
 
-    /// Ellipses as their support functions have them, held against polygons of their corners, which are within 5e-6 of their size.
+    /// Ellipses as their support functions have them, held against polygons of their corners, which are
+    /// within 5e-6 of their size.
     #[test]
     fn ellipses_are_as_far_apart_as_their_corners() {
         for (degrees, shift) in [(0.0, [9.0, 3.0]), (35.0, [2.0, -8.0]), (80.0, [-7.0, 6.0])] {
@@ -491,8 +498,8 @@ mod tests {
                 );
             }
         }
-        // A lens between two arcs of radius 25 that meet in tips, 8 across where it is thickest and so as far as to 1 in 500; and
-        // an ellipse, whose ends are much narrower than its middle.
+        // A lens between two arcs of radius 25 that meet in tips, 8 across where it is thickest and so as far
+        // as to 1 in 500; and an ellipse, whose ends are much narrower than its middle.
         let arc = |k: u32, side: f64| {
             let half = (21.0_f64 / 25.0).acos();
             let angle = half * (f64::from(k) / 50.0 - 1.0);

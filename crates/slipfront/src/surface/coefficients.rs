@@ -26,8 +26,8 @@ impl Distribution {
     }
 }
 
-/// Local coefficients of every block, as if there were no texture. Draws may be negative: [`Surface`](super::Surface) sets
-/// such draws to 0, and counts those of blocks in contact.
+/// Local coefficients of every block, as if there were no texture. Draws may be negative:
+/// [`Surface`](super::Surface) sets such draws to 0, and counts those of blocks in contact.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Coefficients {
     /// Static coefficients `mu_si`, one per block.
@@ -52,7 +52,8 @@ pub const STREAMS: [(&str, u64); 2] = [
 impl Coefficients {
     /// Draws `mu_si` and `mu_ki` for `n_blocks` blocks, textured or not, in block order.
     ///
-    /// The standard normals depend on `seed` and the index of the block alone; mean and deviation shift and scale them.
+    /// The standard normals depend on `seed` and the index of the block alone; mean and deviation shift and
+    /// scale them.
     pub fn draw(n_blocks: usize, mu_static: Distribution, mu_kinetic: Distribution, seed: u64) -> Self {
         Self::draw_blocks(0..n_blocks, mu_static, mu_kinetic, seed)
     }
@@ -102,8 +103,8 @@ impl Coefficients {
         }
     }
 
-    /// Sets the coefficients of textured blocks and negative draws to 0. Returns the number of negative draws, static and
-    /// kinetic together, of blocks in contact.
+    /// Sets the coefficients of textured blocks and negative draws to 0. Returns the number of negative
+    /// draws, static and kinetic together, of blocks in contact.
     pub(super) fn restrict(&mut self, textured: &[bool]) -> usize {
         let restrict = |coefficients: &mut [f64]| -> usize {
             let pairs = coefficients.par_iter_mut().with_min_len(PART).zip(textured);
@@ -120,11 +121,12 @@ impl Coefficients {
     }
 }
 
-/// Largest number of blocks whose standard normals are kept. The normals of more blocks are drawn on several threads.
+/// Largest number of blocks whose standard normals are kept. The normals of more blocks are drawn on several
+/// threads.
 const MAX_KEPT: usize = 10_000;
 
-/// Number of blocks for which a thread draws at once: some tenths of a millisecond of work. Fewer are not worth waking a
-/// thread.
+/// Number of blocks for which a thread draws at once: some tenths of a millisecond of work. Fewer are not
+/// worth waking a thread.
 pub(super) const PART: usize = 1 << 13;
 
 /// Standard normals, with the seed and the blocks that they are drawn for.
@@ -142,8 +144,9 @@ const WORDS_PER_DRAW: u128 = 4;
 /// Row of the numbers that are drawn block by block; other rows belong to the nodes of a grid.
 const BY_BLOCK: u64 = 0;
 
-/// Standard normals of a row from draw `first` on, by Box and Muller from two uniforms each, so that draw n always has the same position
-/// in the stream. Sine and logarithm are those of `libm`, with the same bits on every machine.
+/// Standard normals of a row from draw `first` on, by Box and Muller from two uniforms each, so that draw n
+/// always has the same position in the stream. Sine and logarithm are those of `libm`, with the same bits on
+/// every machine.
 pub(super) fn standard_normals(
     seed: u64,
     stream: Stream,
@@ -240,8 +243,8 @@ mod tests {
         }
     }
 
-    /// Draws of some blocks are a part of those of all, whether these are kept or not, and wherever the generator, which makes
-    /// 64 words at a time, begins.
+    /// Draws of some blocks are a part of those of all, whether these are kept or not, and wherever the
+    /// generator, which makes 64 words at a time, begins.
     #[test]
     fn parts_of_a_lattice_draw_what_the_whole_does() {
         let wide = Distribution {

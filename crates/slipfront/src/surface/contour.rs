@@ -1,5 +1,5 @@
-//! Outlines of textures as closed curves within the slider, for files that other programs read. Free edges cut them, and beyond
-//! periodic ones they go on at the opposite edge. Lengths are in blocks.
+//! Outlines of textures as closed curves within the slider, for files that other programs read. Free edges
+//! cut them, and beyond periodic ones they go on at the opposite edge. Lengths are in blocks.
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 
@@ -35,12 +35,14 @@ pub struct Ellipse {
 pub enum Piece {
     /// A straight line between two points.
     Line([[f64; 2]; 2]),
-    /// The ellipse from one parameter to a larger one, a quarter of a turn later at most: see [`Ellipse::at`].
+    /// The ellipse from one parameter to a larger one, a quarter of a turn later at most: see
+    /// [`Ellipse::at`].
     Arc(Ellipse, [f64; 2]),
 }
 
 impl Ellipse {
-    /// The point of a parameter: `center + a cos(t) axis + b sin(t) axis'`, with the axis' a quarter turn to the left.
+    /// The point of a parameter: `center + a cos(t) axis + b sin(t) axis'`, with the axis' a quarter turn to
+    /// the left.
     ///
     /// ```
     /// # use slipfront::surface::Ellipse;
@@ -84,8 +86,8 @@ impl Piece {
     }
 }
 
-/// The outlines of all copies of a texture's shape, whether it is inverted or not; none for a mask, whose outlines are the edges of
-/// its blocks. A groove is a rectangle as long as the slider.
+/// The outlines of all copies of a texture's shape, whether it is inverted or not; none for a mask, whose
+/// outlines are the edges of its blocks. A groove is a rectangle as long as the slider.
 pub fn contours(lattice: &Lattice, texture: &Texture) -> Option<Vec<Contour>> {
     let grids = grids(&texture.arrays);
     let outlines = match &texture.shape {
@@ -220,7 +222,8 @@ impl HalfPlane {
         self.side * (point[self.axis] - self.limit) >= 0.0
     }
 
-    /// The part of a closed curve in the half-plane, closed again by lines along the limit (Sutherland and Hodgman).
+    /// The part of a closed curve in the half-plane, closed again by lines along the limit (Sutherland and
+    /// Hodgman).
     fn cut(&self, pieces: &[Piece]) -> Vec<Piece> {
         let mut kept: Vec<Piece> = Vec::new();
         for piece in pieces {

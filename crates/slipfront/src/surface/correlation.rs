@@ -1,14 +1,16 @@
-//! Friction coefficients that are alike over a length: means over blocks over a Gaussian random field that depends on the
-//! seed and the place in the slider (Eq. 1).
+//! Friction coefficients that are alike over a length: means over blocks over a Gaussian random field that
+//! depends on the seed and the place in the slider (Eq. 1).
 //!
-//! Standard normals z stand at the nodes of a grid whose pitch is a part of the correlation length xi, and not of a block:
+//! Standard normals z stand at the nodes of a grid whose pitch is a part of the correlation length xi, and
+//! not of a block:
 //!
 //! ```text
 //! g(x) = A sum_k z_k exp(-2 |x - x_k|^2/xi^2)     A^2 = 4 p_x p_y/(pi xi^2)
 //! ```
 //!
-//! has the variance 1 and the correlation `exp(-(r/xi)^2)`. Its mean over a rectangle is a sum of products of differences of error
-//! functions, one factor along x and one along y, so that means over the parts of a block have that over the block as their mean.
+//! has the variance 1 and the correlation `exp(-(r/xi)^2)`. Its mean over a rectangle is a sum of products of
+//! differences of error functions, one factor along x and one along y, so that means over the parts of a
+//! block have that over the block as their mean.
 
 use std::f64::consts::{FRAC_2_SQRT_PI, PI, SQRT_2};
 use std::ops::{Range, RangeInclusive};
@@ -17,20 +19,24 @@ use super::coefficients::{Coefficients, Distribution, Stream, standard_normals};
 use crate::lattice::{Edges, Lattice};
 use crate::parallel::*;
 
-/// Fewest nodes in a correlation length: the variance of the field then differs by 1e-9 of itself from place to place, with two by 2e-4.
+/// Fewest nodes in a correlation length: the variance of the field then differs by 1e-9 of itself from place
+/// to place, with two by 2e-4.
 const NODES_PER_LENGTH: f64 = 3.0;
 
-/// Reach of a node in pitches of `xi/3`: beyond it, from `sqrt(2) 13/3 = 6.1` on, the error function is 1 to the last bit.
+/// Reach of a node in pitches of `xi/3`: beyond it, from `sqrt(2) 13/3 = 6.1` on, the error function is 1 to
+/// the last bit.
 const REACH: f64 = 13.0;
 
-/// Share of a pitch by which it may exceed a third of the correlation length, so that the rounding of two lengths leaves the number of nodes
-/// as it is.
+/// Share of a pitch by which it may exceed a third of the correlation length, so that the rounding of two
+/// lengths leaves the number of nodes as it is.
 const ROUNDING: f64 = 1e-9;
 
-/// A Gaussian random field in the plane of the slider, of mean 0, variance 1 and correlation `exp(-(r/xi)^2)` over a distance r.
+/// A Gaussian random field in the plane of the slider, of mean 0, variance 1 and correlation `exp(-(r/xi)^2)`
+/// over a distance r.
 ///
-/// Its origin is the corner of the slider at x = 0, y = 0. Along a periodic axis it repeats, and a distance is any between the copies of two
-/// places; the pitch of its nodes divides the length of the axis there. Lengths are in blocks.
+/// Its origin is the corner of the slider at x = 0, y = 0. Along a periodic axis it repeats, and a distance
+/// is any between the copies of two places; the pitch of its nodes divides the length of the axis there.
+/// Lengths are in blocks.
 ///
 /// ```
 /// use slipfront::Lattice;
@@ -46,9 +52,9 @@ pub struct CorrelatedField {
 }
 
 impl CorrelatedField {
-    /// Correlation lengths that can be drawn, in blocks. Below the shortest length, means over neighbouring blocks are
-    /// correlated by 8 % and less, and more than 144 numbers are drawn for a block; above the longest length, the
-    /// differences of error functions are lost to rounding.
+    /// Correlation lengths that can be drawn, in blocks. Below the shortest length, means over neighbouring
+    /// blocks are correlated by 8 % and less, and more than 144 numbers are drawn for a block; above the
+    /// longest length, the differences of error functions are lost to rounding.
     pub const LENGTHS: RangeInclusive<f64> = 0.25..=1e5;
 
     /// The field of correlation length `length` under the blocks of a lattice.
@@ -67,7 +73,8 @@ impl CorrelatedField {
         self.axes[0].length
     }
 
-    /// Variance of the mean of the field over a block: `I^2`, but for copies beyond periodic edges, with [`deviation_along`].
+    /// Variance of the mean of the field over a block: `I^2`, but for copies beyond periodic edges, with
+    /// [`deviation_along`].
     pub fn variance_of_blocks(&self) -> f64 {
         self.axes
             .iter()
@@ -82,8 +89,9 @@ impl CorrelatedField {
     }
 }
 
-/// Factor by which the standard deviation of a field falls when it is averaged along an interval of a length, for a field
-/// correlated over `xi`: `I^(1/2)`, with `a = xi/length`; over a square of that side the factor is `I`.
+/// Factor by which the standard deviation of a field falls when it is averaged along an interval of a length,
+/// for a field correlated over `xi`: `I^(1/2)`, with `a = xi/length`; over a square of that side the factor
+/// is `I`.
 ///
 /// ```text
 /// I = sqrt(pi) a erf(1/a) - a^2 (1 - exp(-1/a^2))
@@ -100,11 +108,12 @@ pub fn deviation_along(a: f64) -> f64 {
 }
 
 impl Coefficients {
-    /// Draws `mu_si` and `mu_ki` for the blocks in some rows of the lattice of two fields of the same correlation length, independent of each
-    /// other: `mu_si = mean + deviation g_i`, with the mean g_i of the field over block i.
+    /// Draws `mu_si` and `mu_ki` for the blocks in some rows of the lattice of two fields of the same
+    /// correlation length, independent of each other: `mu_si = mean + deviation g_i`, with the mean g_i of
+    /// the field over block i.
     ///
-    /// The fields depend only on `seed`, the correlation length, the place and, along a periodic axis, its length: other
-    /// blocks and other rows find the same surface.
+    /// The fields depend only on `seed`, the correlation length, the place and, along a periodic axis, its
+    /// length: other blocks and other rows find the same surface.
     pub fn draw_correlated(
         field: &CorrelatedField,
         rows: &Range<usize>,
@@ -137,9 +146,9 @@ impl Coefficients {
     }
 }
 
-/// Adds the means `sum_m w_jm sum_n w_in z_mn` over the blocks of some rows, of which `first_row` is the first in `rows`.
-/// Both sums follow the order of the nodes, so that the bits of a block do not depend on the other blocks of the call.
-/// `normals` gives the standard normals of a row of nodes from a number on.
+/// Adds the means `sum_m w_jm sum_n w_in z_mn` over the blocks of some rows, of which `first_row` is the
+/// first in `rows`. Both sums follow the order of the nodes, so that the bits of a block do not depend on the
+/// other blocks of the call. `normals` gives the standard normals of a row of nodes from a number on.
 fn add_means<N: Iterator<Item = f64>>(
     columns: &Means,
     rows: &Means,
@@ -303,8 +312,8 @@ mod tests {
         Coefficients::draw_correlated(field, &(0..field.blocks[1]), UNIT, UNIT, seed).mu_static
     }
 
-    /// `F(n + 1) - 2 F(n) + F(n - 1)`, with `F'' = exp(-(s/a)^2)`: covariance of the means over two intervals of length 1 whose
-    /// beginnings are n apart, of a field correlated over a.
+    /// `F(n + 1) - 2 F(n) + F(n - 1)`, with `F'' = exp(-(s/a)^2)`: covariance of the means over two intervals
+    /// of length 1 whose beginnings are n apart, of a field correlated over a.
     fn covariance(a: f64, n: f64) -> f64 {
         let twice = |s: f64| 0.5 * a * (PI.sqrt() * s * libm::erf(s / a) + a * libm::exp(-(s / a).powi(2)));
         twice(n + 1.0) - 2.0 * twice(n) + twice(n - 1.0)
@@ -329,7 +338,8 @@ mod tests {
             .sum()
     }
 
-    /// Means over blocks are correlated as those of a field with the correlation `exp(-(r/xi)^2)` are, at every distance.
+    /// Means over blocks are correlated as those of a field with the correlation `exp(-(r/xi)^2)` are, at
+    /// every distance.
     #[test]
     fn means_are_correlated_as_the_field_says() {
         for a in [0.25, 0.3, 1.0, 4.0, 7.3, 30.0] {
@@ -342,7 +352,8 @@ mod tests {
         }
     }
 
-    /// Beyond the edges of a periodic axis stand copies; so do they within a field that is longer than the axis.
+    /// Beyond the edges of a periodic axis stand copies; so do they within a field that is longer than the
+    /// axis.
     #[test]
     fn a_periodic_field_is_correlated_with_its_copies() {
         for (blocks, a) in [(40, 4.0), (40, 7.3), (20, 15.0), (3, 0.25), (5, 2.0)] {
@@ -382,7 +393,8 @@ mod tests {
         let lattice = Lattice::free(30, 12);
         for length in [0.25, 1.0, 5.0, 90.0, 1e5] {
             let field = CorrelatedField::new(&lattice, length);
-            // The variance swings by 1e-9; the differences of error functions are rounded to 1e-16 of 1 and are 1/length.
+            // The variance swings by 1e-9; the differences of error functions are rounded to 1e-16 of 1 and
+            // are 1/length.
             let tolerance = 2e-9 + 1e-15 * length;
             let of_blocks = deviation_along(length).powi(4);
             assert!(
@@ -397,7 +409,8 @@ mod tests {
         }
     }
 
-    /// The mean of four children is their parent, on free and periodic axes, and of nine with other roundings.
+    /// The mean of four children is their parent, on free and periodic axes, and of nine with other
+    /// roundings.
     #[test]
     fn children_average_to_their_parent() {
         for edges in [Edges::Free, Edges::Periodic] {
@@ -416,7 +429,8 @@ mod tests {
                     let [i, j] = [parts * (b % nx), parts * (b / nx)];
                     let rows = (j..j + parts).map(|j| &fine[parts * nx * j + i..][..parts]);
                     let mean = rows.flatten().sum::<f64>() / (parts * parts) as f64;
-                    // Differences of error functions are rounded to 1e-16 of 1, are 1/length of it, and some 700 of them are added.
+                    // Differences of error functions are rounded to 1e-16 of 1, are 1/length of it, and some
+                    // 700 of them are added.
                     let tolerance = 1e-14 * (1.0 + length);
                     assert!(
                         (mean - parent).abs() < tolerance,
@@ -504,7 +518,8 @@ mod tests {
         check(apart, 0.0, "static and kinetic");
     }
 
-    /// The numbers are pinned: a change of them changes every surface ever published with a seed and a correlation length.
+    /// The numbers are pinned: a change of them changes every surface ever published with a seed and a
+    /// correlation length.
     #[test]
     fn the_first_means_of_seed_one_never_change() {
         let field = CorrelatedField::new(&Lattice::free(3, 1), 2.0);

@@ -5,15 +5,16 @@ use crate::lattice::Lattice;
 /// Distribution of the load of textured blocks, which carry none.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Load {
-    /// The blocks in contact carry the whole load: `F_n,i = p_i l^2 sum_all p/sum_contact p`, which is `P l^2 N/N_contact`
-    /// under an equal pressure. This is the paper's model.
+    /// The blocks in contact carry the whole load: `F_n,i = p_i l^2 sum_all p/sum_contact p`, which is
+    /// `P l^2 N/N_contact` under an equal pressure. This is the paper's model.
     Redistributed,
     /// Every block in contact carries `p_i l^2`; the load of the textured blocks is lost. For comparison.
     Kept,
 }
 
 impl Load {
-    /// Normal force on a block in contact over `p_i l^2`, from the sums of pressures over all blocks and over those in contact.
+    /// Normal force on a block in contact over `p_i l^2`, from the sums of pressures over all blocks and over
+    /// those in contact.
     pub(super) fn factor(self, [all, contact]: [f64; 2]) -> f64 {
         match self {
             Load::Redistributed => all / contact,
@@ -29,8 +30,8 @@ pub struct Contact {
     pub load: Load,
     /// Scale of all forces, `mu_s`.
     pub mu_static_mean: f64,
-    /// Local pressure `p_i/P` of every block that this process holds, before the load of textured ones is distributed; 1 if there
-    /// are none.
+    /// Local pressure `p_i/P` of every block that this process holds, before the load of textured ones is
+    /// distributed; 1 if there are none.
     pub pressure: Option<Vec<f64>>,
     /// Friction that does not depend on the load.
     pub adhesion: Adhesion,
@@ -57,8 +58,8 @@ impl Contact {
     }
 }
 
-/// Pressure that rises along an axis, `p/P = 1 + slope (2 x/L - 1)` at the middle of every block of some rows; its mean over the
-/// lattice is `P`.
+/// Pressure that rises along an axis, `p/P = 1 + slope (2 x/L - 1)` at the middle of every block of some
+/// rows; its mean over the lattice is `P`.
 ///
 /// ```
 /// use slipfront::Lattice;

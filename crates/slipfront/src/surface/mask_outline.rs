@@ -4,15 +4,15 @@
 
 use std::collections::BTreeSet;
 
-/// An edge between a textured block, on its left, and another one: y and x of the corner where it starts, and the
-/// index of its direction.
+/// An edge between a textured block, on its left, and another one: y and x of the corner where it starts, and
+/// the index of its direction.
 type PixelEdge = (usize, usize, usize);
 
 /// The directions from a corner: right, up, left, down.
 const DIRECTIONS: [(isize, isize); 4] = [(1, 0), (0, 1), (-1, 0), (0, -1)];
 
-/// The lines between textured and other blocks, in blocks: each a chain of corners joined by straight lines, as long as
-/// possible. A closed chain ends where it starts; a chain that meets the lattice's edge is open.
+/// The lines between textured and other blocks, in blocks: each a chain of corners joined by straight lines,
+/// as long as possible. A closed chain ends where it starts; a chain that meets the lattice's edge is open.
 ///
 /// `textured` holds `nx` times `ny` blocks, row 0 at y = 0.
 pub fn outline(textured: &[bool], nx: usize, ny: usize) -> Vec<Vec<(usize, usize)>> {

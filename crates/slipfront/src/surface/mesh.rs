@@ -1,5 +1,5 @@
-//! Textured blocks: those whose centre lies inside the outline of any texture. Outlines wrap around periodic axes and are
-//! clipped at free edges. A rank meshes its own rows and no others.
+//! Textured blocks: those whose centre lies inside the outline of any texture. Outlines wrap around periodic
+//! axes and are clipped at free edges. A rank meshes its own rows and no others.
 
 use std::convert::Infallible;
 use std::ops::Range;
@@ -26,8 +26,8 @@ pub fn mesh(lattice: &Lattice, textures: &[Texture]) -> Meshed {
     meshed
 }
 
-/// Meshes some rows as [`mesh`] does, with textures that may take long: `watch` gets the share that is done, row of blocks
-/// by row of blocks, and its error ends the meshing.
+/// Meshes some rows as [`mesh`] does, with textures that may take long: `watch` gets the share that is done,
+/// row of blocks by row of blocks, and its error ends the meshing.
 pub fn mesh_watched<E>(
     lattice: &Lattice,
     rows: &Range<usize>,
@@ -71,8 +71,8 @@ pub fn copies_overlap(lattice: &Lattice, texture: &Texture) -> bool {
     mask.overlaps
 }
 
-/// Least distance of crossings that have the same order around every centre: coordinates of up to 10^7 blocks are rounded by
-/// 10^-9.
+/// Least distance of crossings that have the same order around every centre: coordinates of up to 10^7 blocks
+/// are rounded by 10^-9.
 const DISTINCT: f64 = 1e-6;
 
 /// The largest distance between neighbouring lines of a grid.
@@ -107,7 +107,8 @@ impl<'a> Mask<'a> {
         }
     }
 
-    /// Marks the blocks inside any of the copies of a shape; returns whether a copy extends beyond a free edge.
+    /// Marks the blocks inside any of the copies of a shape; returns whether a copy extends beyond a free
+    /// edge.
     fn cover_copies<E>(
         &mut self,
         shape: &Shape,
@@ -168,8 +169,8 @@ impl<'a> Mask<'a> {
 
     /// Marks the blocks of a row inside any of the outlines around `centers`, which are at most `gap` apart.
     ///
-    /// Where all neighbours overlap, their union is one interval from the first to the last, and the work does not grow with
-    /// their number.
+    /// Where all neighbours overlap, their union is one interval from the first to the last, and the work
+    /// does not grow with their number.
     fn cover_row(
         &mut self,
         row: isize,
@@ -210,8 +211,8 @@ impl<'a> Mask<'a> {
         }
     }
 
-    /// Marks the blocks of a row from where one outline is entered to where another, or the same, is left; each is given by x of
-    /// its centre and x of the crossing.
+    /// Marks the blocks of a row from where one outline is entered to where another, or the same, is left;
+    /// each is given by x of its centre and x of the crossing.
     fn cover_interval(&mut self, row: isize, sweep: &Sweep, [enter, leave]: [(f64, f64); 2]) {
         let Lattice { nx, edges, .. } = *self.lattice;
         // Clipped afterwards: a block at a free edge may lie far inside.
@@ -326,7 +327,8 @@ impl<'a> Mask<'a> {
     }
 }
 
-/// Blocks along one axis whose centre k + 1/2 lies in [from, to); outside the lattice only along a periodic axis.
+/// Blocks along one axis whose centre k + 1/2 lies in [from, to); outside the lattice only along a periodic
+/// axis.
 fn blocks_between(from: f64, to: f64, count: usize, edges: Edges) -> Range<isize> {
     let (mut first, mut end) = ((from - 0.5).ceil(), (to - 0.5).ceil());
     if from.is_infinite() || to.is_infinite() || edges == Edges::Free {
@@ -520,8 +522,8 @@ mod tests {
         assert!(meshed.textured[lattice.block(10, 15)] && meshed.textured[lattice.block(50, 45)]);
     }
 
-    /// A staggered pattern of whole and half blocks repeats itself after a row and half a column, and covers as many blocks as
-    /// one cavity for each of its places.
+    /// A staggered pattern of whole and half blocks repeats itself after a row and half a column, and covers
+    /// as many blocks as one cavity for each of its places.
     #[test]
     fn a_staggered_pattern_repeats_itself_exactly() {
         let lattice = Lattice::with_edges(48, 40, [Edges::Periodic; 2]);
@@ -633,7 +635,8 @@ mod tests {
             assert!(meshed.clipped.is_empty());
             for (b, textured) in meshed.textured.iter().enumerate() {
                 let (i, j) = lattice.column_row(b);
-                // A quarter of a cell is one and a half blocks: even rows of cells go to the left by one, odd ones to the right by two.
+                // A quarter of a cell is one and a half blocks: even rows of cells go to the left by one, odd
+                // ones to the right by two.
                 let shift = match (staggered, j / 3 % 2) {
                     (false, _) => 0,
                     (true, 0) => 23,

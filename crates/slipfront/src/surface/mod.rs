@@ -1,8 +1,9 @@
 //! The sliding surface: local friction coefficients, texture and load of every block.
 //!
-//! [`Coefficients`] are drawn by block or from a [`CorrelatedField`], or given; [`mesh`] finds the textured blocks, and the
-//! [`Load`] is distributed over the blocks in contact; [`Surface::new`] makes the friction thresholds of all blocks from the
-//! three, and [`Surface::of_ranks`] does so for the blocks that a rank holds.
+//! [`Coefficients`] are drawn by block or from a [`CorrelatedField`], or given; [`mesh`] finds the textured
+//! blocks, and the [`Load`] is distributed over the blocks in contact; [`Surface::new`] makes the friction
+//! thresholds of all blocks from the three, and [`Surface::of_ranks`] does so for the blocks that a rank
+//! holds.
 
 mod clearance;
 mod closest;
@@ -56,8 +57,8 @@ pub struct Surface {
 }
 
 impl Surface {
-    /// A surface on which the coefficients of textured blocks, and negative ones, are set to 0 and the load, at first equal
-    /// on all blocks, is distributed.
+    /// A surface on which the coefficients of textured blocks, and negative ones, are set to 0 and the load,
+    /// at first equal on all blocks, is distributed.
     ///
     /// `mu_static_mean` is the scale of all forces. Fails when no block is left in contact.
     pub fn new(
@@ -70,8 +71,9 @@ impl Surface {
         Self::of_ranks(coefficients, textured, contact, &Slider::default(), &Alone)
     }
 
-    /// The surface under the blocks of `slider` that this rank holds, called by all `ranks` of a lattice at once. Numbers of
-    /// the whole surface have the same bits on all ranks, for any number of them. Fails when no block is left in contact.
+    /// The surface under the blocks of `slider` that this rank holds, called by all `ranks` of a lattice at
+    /// once. Numbers of the whole surface have the same bits on all ranks, for any number of them. Fails when
+    /// no block is left in contact.
     ///
     /// # Panics
     /// Unless coefficients, texture and pressures are of the same number of blocks.
@@ -145,8 +147,8 @@ impl Surface {
         }
     }
 
-    /// Equal coefficients for all blocks and no texture. Coefficients are in units of their static mean, so that `mu_static`
-    /// is 1 in the model of the paper.
+    /// Equal coefficients for all blocks and no texture. Coefficients are in units of their static mean, so
+    /// that `mu_static` is 1 in the model of the paper.
     pub fn uniform(lattice: &Lattice, mu_static: f64, mu_kinetic: f64) -> Self {
         let n = lattice.n_blocks();
         let coefficients = Coefficients::given(vec![mu_static; n], vec![mu_kinetic; n]);
@@ -211,7 +213,8 @@ impl Surface {
         self.whole.n_contact
     }
 
-    /// Negative draws of coefficients that were set to 0, static and kinetic together, of all blocks of the whole surface in contact.
+    /// Negative draws of coefficients that were set to 0, static and kinetic together, of all blocks of the
+    /// whole surface in contact.
     pub fn negative_draws(&self) -> usize {
         self.whole.negative_draws
     }
@@ -239,23 +242,24 @@ impl Surface {
         self.whole.sum_pressure[0] / self.whole.n_blocks as f64
     }
 
-    /// Mean kinetic friction over all blocks that exist, textured ones included: `mean(mu_ki F_n,i + tau_ak l^2)` in units of `P mu_s l^2`.
+    /// Mean kinetic friction over all blocks that exist, textured ones included:
+    /// `mean(mu_ki F_n,i + tau_ak l^2)` in units of `P mu_s l^2`.
     pub fn mean_kinetic_force(&self) -> f64 {
         let whole = &self.whole;
         let sum = whole.sum_kinetic_pressure / self.contact.mu_static_mean * self.load_factor;
         (sum + whole.n_contact as f64 * self.contact.adhesion.of_kinetic) / whole.n_blocks as f64
     }
 
-    /// Mean static threshold over all blocks that exist, textured ones included: `mean(mu_si F_n,i + tau_as l^2)` in units
-    /// of `P mu_s l^2`.
+    /// Mean static threshold over all blocks that exist, textured ones included:
+    /// `mean(mu_si F_n,i + tau_as l^2)` in units of `P mu_s l^2`.
     pub fn mean_static_force(&self) -> f64 {
         let whole = &self.whole;
         let sum = whole.sum_static_pressure / self.contact.mu_static_mean * self.load_factor;
         (sum + whole.n_contact as f64 * self.contact.adhesion.of_static) / whole.n_blocks as f64
     }
 
-    /// Load of a block in contact over its load if every block touched: `N/N_contact` for an even pressure; 1 if the load of
-    /// textured blocks is not redistributed.
+    /// Load of a block in contact over its load if every block touched: `N/N_contact` for an even pressure; 1
+    /// if the load of textured blocks is not redistributed.
     pub fn load_factor(&self) -> f64 {
         self.load_factor
     }
@@ -270,8 +274,9 @@ impl Surface {
         self.whole.n_contact as f64 * self.contact.adhesion.of_kinetic / self.whole.n_blocks as f64
     }
 
-    /// The smallest force that makes a block in contact slip, the larger of its static threshold and its kinetic friction
-    /// (D12), over the whole surface; each over the relative stiffness of the drive spring that exerts it.
+    /// The smallest force that makes a block in contact slip, the larger of its static threshold and its
+    /// kinetic friction (D12), over the whole surface; each over the relative stiffness of the drive spring
+    /// that exerts it.
     pub fn min_slip_threshold(&self) -> f64 {
         self.min_slip_threshold
     }

@@ -1,8 +1,8 @@
 //! Closed outlines that can be cut by a horizontal line, once or on grids of centres.
 //!
-//! The cut of a line with an outline depends only on the height of its centre, but for a shift along x. So the cut is found
-//! once for all outlines of a row of a grid, and each of its ends is placed with the rounding of an outline that stands
-//! there alone.
+//! The cut of a line with an outline depends only on the height of its centre, but for a shift along x. So
+//! the cut is found once for all outlines of a row of a grid, and each of its ends is placed with the
+//! rounding of an outline that stands there alone.
 
 use super::pattern::Crossings;
 
@@ -218,8 +218,9 @@ impl Sweep<'_> {
         }
     }
 
-    /// Whether a point between two crossings is inside the outline around this x. An ellipse excludes its outline and is tested
-    /// by a formula that rounds symmetrically, so that its mesh is as symmetric as the ellipse; polygons are half-open.
+    /// Whether a point between two crossings is inside the outline around this x. An ellipse excludes its
+    /// outline and is tested by a formula that rounds symmetrically, so that its mesh is as symmetric as the
+    /// ellipse; polygons are half-open.
     pub(super) fn contains(&self, center: f64, [x, y]: [f64; 2]) -> bool {
         match self.curve {
             Curve::Ellipse {

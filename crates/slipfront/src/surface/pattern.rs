@@ -4,8 +4,8 @@ use crate::lattice::Lattice;
 
 /// An array of places around a middle, in columns and rows.
 ///
-/// Odd rows of a staggered array are shifted by half a column against the even ones, a quarter each way: with rows
-/// `sqrt(3)/2` columns apart, every place has six neighbours at one distance.
+/// Odd rows of a staggered array are shifted by half a column against the even ones, a quarter each way: with
+/// rows `sqrt(3)/2` columns apart, every place has six neighbours at one distance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Array {
     /// Columns and rows.
@@ -75,8 +75,8 @@ impl Array {
     }
 }
 
-/// Places at every crossing of vertical lines, whose x come first, and horizontal ones, whose y follow; both in rising order, and
-/// none empty.
+/// Places at every crossing of vertical lines, whose x come first, and horizontal ones, whose y follow; both
+/// in rising order, and none empty.
 pub(super) type Crossings = [Vec<f64>; 2];
 
 /// The places of arrays of arrays, as shifts from the middle of all places.

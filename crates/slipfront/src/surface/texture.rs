@@ -16,8 +16,8 @@ use crate::vector_field::unit_vector;
 pub struct Texture {
     /// The shape.
     pub shape: Shape,
-    /// Places of the copies: every place of the first array holds the second one, and so on. Without an array the shape
-    /// stands alone.
+    /// Places of the copies: every place of the first array holds the second one, and so on. Without an array
+    /// the shape stands alone.
     pub arrays: Vec<Array>,
     /// Whether all blocks but those inside the copies are textured: the shapes are pillars.
     pub inverted: bool,
@@ -47,8 +47,8 @@ pub enum Shape {
 }
 
 impl Shape {
-    /// Number of copies of the shape that cover different places: copies of a groove beside each other count, copies along
-    /// it do not.
+    /// Number of copies of the shape that cover different places: copies of a groove beside each other count,
+    /// copies along it do not.
     pub fn n_copies(&self, arrays: &[Array]) -> usize {
         match self {
             Self::Groove(groove) => groove.shifts(&grids(arrays)).len(),
@@ -56,8 +56,8 @@ impl Shape {
         }
     }
 
-    /// Distance from the origin up to which the shape reaches, in blocks, or somewhat more; 0 for a mask, which lies in the
-    /// slider.
+    /// Distance from the origin up to which the shape reaches, in blocks, or somewhat more; 0 for a mask,
+    /// which lies in the slider.
     pub fn reach(&self) -> f64 {
         let farthest = |lengths: &[f64]| lengths.iter().copied().map(f64::abs).fold(0.0, f64::max);
         match self {
@@ -86,12 +86,14 @@ pub struct Tile {
     pub size: [usize; 2],
     /// The known rows of the mask: all, or for a mask that covers the lattice the rows that are meshed.
     pub rows: Range<usize>,
-    /// Whether each block of the known rows is inside, row by row in rising y; several textures may have the same mask.
+    /// Whether each block of the known rows is inside, row by row in rising y; several textures may have the
+    /// same mask.
     pub blocks: Arc<Vec<bool>>,
 }
 
 impl Tile {
-    /// First blocks of the copies of a mask of this size: blocks of the lattice, which may lie beyond its edges.
+    /// First blocks of the copies of a mask of this size: blocks of the lattice, which may lie beyond its
+    /// edges.
     pub fn starts(lattice: &Lattice, size: [usize; 2], arrays: &[Array]) -> Vec<[isize; 2]> {
         let places = |[columns, heights]: &Crossings| -> Vec<[f64; 2]> {
             let rows = heights.iter();
@@ -210,8 +212,9 @@ impl Groove {
     }
 }
 
-/// Number of vertices of a semi-polygon's outline. The vertices lie on the curve, and the chords between them differ from it
-/// by less than `lambda (1 + s) (2 pi/4096)^2/8`, a ten-thousandth of a block at `lambda` = 100.
+/// Number of vertices of a semi-polygon's outline. The vertices lie on the curve, and the chords between them
+/// differ from it by less than `lambda (1 + s) (2 pi/4096)^2/8`, a ten-thousandth of a block at `lambda` =
+/// 100.
 const OUTLINE_VERTICES: usize = 4096;
 
 impl Cavity {

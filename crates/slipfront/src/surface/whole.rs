@@ -31,13 +31,14 @@ pub(super) struct Whole {
 /// Number of blocks that a thread adds up at once.
 const PART: usize = 1 << 16;
 
-/// Number of sums over blocks: `mu_si`, `mu_ki`, `mu_ki p_i/P`, `p_i/P`, `p_i/P` of a block in contact, and `mu_si p_i/P`.
+/// Number of sums over blocks: `mu_si`, `mu_ki`, `mu_ki p_i/P`, `p_i/P`, `p_i/P` of a block in contact, and
+/// `mu_si p_i/P`.
 const SUMS: usize = 6;
 
 impl Whole {
     /// Finds the numbers together with all other ranks that hold a part of the surface, from coefficients as
-    /// [restricted](Coefficients::restrict), the number of negative draws, and local pressures in units of `P`, 1 everywhere
-    /// if there are none. Blocks that do not exist count as textured.
+    /// [restricted](Coefficients::restrict), the number of negative draws, and local pressures in units of
+    /// `P`, 1 everywhere if there are none. Blocks that do not exist count as textured.
     pub(super) fn find(
         coefficients: &Coefficients,
         negative_draws: usize,
@@ -139,7 +140,8 @@ mod tests {
             sum_pressure: [n as f64, (n - 3) as f64],
         };
         assert_eq!(found, expected);
-        // Half the pressure on every other block, from the first on; of those without contact, one has the whole.
+        // Half the pressure on every other block, from the first on; of those without contact, one has the
+        // whole.
         let pressure: Vec<f64> = (0..n).map(|b| if b % 2 == 0 { 0.5 } else { 1.0 }).collect();
         let found = Whole::find(&coefficients, 0, &textured, Some(&pressure), None, &Alone);
         let all = 0.5 * (n.div_ceil(2)) as f64 + (n / 2) as f64;

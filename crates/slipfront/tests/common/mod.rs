@@ -259,8 +259,8 @@ fn part(body: &slipfront::Slider, blocks: Range<usize>) -> slipfront::Slider {
     }
 }
 
-/// A heterogeneous slider of `n` blocks: moduli from 0.25 to 1, densities from 0.5 to 1.5; one block in nine does not exist
-/// if it has an outline.
+/// A heterogeneous slider of `n` blocks: moduli from 0.25 to 1, densities from 0.5 to 1.5; one block in nine
+/// does not exist if it has an outline.
 pub(crate) fn varied(n: usize, has_outline: bool) -> slipfront::Slider {
     let wave = |k: f64, low: f64, high: f64| -> Vec<f64> {
         let one = |b: usize| 0.5 * (low + high) + 0.5 * (high - low) * (k * b as f64 + 2.0).sin();

@@ -9,13 +9,13 @@ use crate::common::{self, Slider, cavity, groove};
 use crate::fields::assert_fields_match_blocks;
 use crate::{bits, fused, general, go, has_room};
 
-/// Rounding errors differ by 1e-16 per spring and step, and a slip amplifies them somewhat: to about 1e-14 up to the end of the
-/// first peak, in displacements and velocities of the order of 1.
+/// Rounding errors differ by 1e-16 per spring and step, and a slip amplifies them somewhat: to about 1e-14 up
+/// to the end of the first peak, in displacements and velocities of the order of 1.
 const ROUNDING: f64 = 1e-13;
 
-/// The fused kernel rounds every term of a sum to 2^-52 of a bound on it. Terms are squares of speeds and of differences of
-/// displacement between neighbours, and their bounds, at speeds of 1, at most 4000: the square of what such speeds add to a
-/// difference until it is measured again, times the inverse of the time step.
+/// The fused kernel rounds every term of a sum to 2^-52 of a bound on it. Terms are squares of speeds and of
+/// differences of displacement between neighbours, and their bounds, at speeds of 1, at most 4000: the square
+/// of what such speeds add to a difference until it is measured again, times the inverse of the time step.
 const ROUNDING_OF_TERMS: f64 = 1e-12;
 
 fn largest(a: &VectorField) -> f64 {
@@ -81,7 +81,8 @@ fn assert_alike(fused: &Simulation, general: &Simulation) {
     }
 }
 
-/// Both kernels through up to `steps` steps, or until the first peak has ended; energies are measured at some of the steps.
+/// Both kernels through up to `steps` steps, or until the first peak has ended; energies are measured at some
+/// of the steps.
 pub(crate) fn assert_same(model: &Model, dt_star: f64, state: Option<&State>, steps: u64) {
     let run = |execution| Simulation::new(model.clone(), dt_star, state.cloned(), execution);
     let (mut fused, mut general) = (run(fused()), run(general()));
@@ -121,8 +122,9 @@ pub(crate) fn assert_same(model: &Model, dt_star: f64, state: Option<&State>, st
     }
 }
 
-/// Sizes equal and close to those of a vector, of the shortest row, and of a tile; and rows of 24 blocks in so many tiles that
-/// these begin at every position of the ring buffer of springs, which is 37 vectors long then.
+/// Sizes equal and close to those of a vector, of the shortest row, and of a tile; and rows of 24 blocks in
+/// so many tiles that these begin at every position of the ring buffer of springs, which is 37 vectors long
+/// then.
 #[test_matrix(
     [
         [1, 1], [1, 20], [20, 1], [5, 7], [13, 11], [14, 9], [16, 16], [17, 3], [25, 25], [64, 40], [3, 400],
@@ -149,7 +151,8 @@ fn lattices_of_every_shape(blocks: [usize; 2], edges: [Edges; 2], degrees: f64) 
     assert_same(&slider.model(), slider.dt_star, None, slider.steps(5.0));
 }
 
-/// Strains for which spring forces come from either series or the square root, and all other parameters of a step.
+/// Strains for which spring forces come from either series or the square root, and all other parameters of a
+/// step.
 #[test_matrix(
     [0.0, 1e-6, 1e-4, 1e-3, 1e-2],
     [0.0, 0.1, 3.0],
@@ -221,8 +224,9 @@ fn a_state_in_motion(blocks: [usize; 2], edges: [Edges; 2], epsilon: f64) {
     assert_same(&slider.model(), slider.dt_star, Some(&state), 100);
 }
 
-/// The kernels agree far beyond the first peak: friction does not amplify differences, so that the kernels would diverge only
-/// if the force on a block came so close to its threshold that rounding decides whether it slips.
+/// The kernels agree far beyond the first peak: friction does not amplify differences, so that the kernels
+/// would diverge only if the force on a block came so close to its threshold that rounding decides whether it
+/// slips.
 #[test_matrix([[25, 25], [64, 30]], [(0.03, 0.1, 0.5), (0.2, 0.0, 0.25), (0.3, 0.0, 0.0)], [1e-6, 1e-2])]
 fn whole_runs(blocks: [usize; 2], (v_star, omega_star, r_star): (f64, f64, f64), epsilon: f64) {
     let slider = Slider {

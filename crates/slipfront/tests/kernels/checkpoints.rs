@@ -1,5 +1,5 @@
-//! Checkpoints of the general kernel, of observers, and of another lattice. Checkpoints of the fused kernel are tested in
-//! `executions.rs`.
+//! Checkpoints of the general kernel, of observers, and of another lattice. Checkpoints of the fused kernel
+//! are tested in `executions.rs`.
 
 use std::sync::Arc;
 
@@ -152,8 +152,8 @@ fn is_kept(friction: Friction, every: u64) {
     assert!(remembered.iter().all(differs), "there is nothing to remember");
 }
 
-/// A run without stops and one in parts, each of which continues from a checkpoint of the run and of its observers.
-/// Observers have seen every instant exactly once.
+/// A run without stops and one in parts, each of which continues from a checkpoint of the run and of its
+/// observers. Observers have seen every instant exactly once.
 #[test_matrix([general(), fused()], [1, 13, 250], [slipfront::Slider::default(), unequal(false)])]
 fn observers_see_every_instant_once(execution: Execution, piece: u64, body: slipfront::Slider) {
     let slider = Slider {
@@ -227,7 +227,8 @@ fn a_checkpoint_of_another_kernel_does_not_fit() {
     assert!(resumed(&simulation, &model, dt_star, general()).is_none());
 }
 
-/// Drives at an edge, by a program and in rotation, and what is observed of them, go on as if they had not been stopped.
+/// Drives at an edge, by a program and in rotation, and what is observed of them, go on as if they had not
+/// been stopped.
 #[test_matrix([false, true], [1, 7])]
 fn other_drives_and_their_observers(turns: bool, every: u64) {
     let slider = Slider {

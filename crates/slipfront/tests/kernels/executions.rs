@@ -1,4 +1,5 @@
-//! The fused kernel gives the same bits on any number of threads, with and without skipping, and across checkpoints.
+//! The fused kernel gives the same bits on any number of threads, with and without skipping, and across
+//! checkpoints.
 
 use slipfront::surface::{Orientation, Texture};
 use slipfront::{Drive, Edges, Execution, FrictionLaw, Lattice, Model, Simulation, State, Surface};
@@ -43,9 +44,9 @@ pub(crate) fn state(simulation: &Simulation) -> [Vec<u64>; 4] {
     [displacement.x, displacement.y, velocity.x, velocity.y].map(|field| bits(&field))
 }
 
-/// The fused kernel on one thread without skipping against all other ways to execute it, among them runs in parts of so many
-/// steps; energies are measured at some of the steps. Sums are compared at every step, whole states at every seventh and at the
-/// last: a difference stays in the state.
+/// The fused kernel on one thread without skipping against all other ways to execute it, among them runs in
+/// parts of so many steps; energies are measured at some of the steps. Sums are compared at every step, whole
+/// states at every seventh and at the last: a difference stays in the state.
 pub(crate) fn assert_same_bits(model: &Model, dt_star: f64, from: Option<&State>, steps: u64) {
     // One of the pool steps them: another thread would sleep and be woken at every step.
     rayon::scope(|_| assert_same_bits_in_pool(model, dt_star, from, steps));
@@ -166,9 +167,9 @@ fn a_state_in_motion(edges: [Edges; 2], epsilon: f64) {
     assert_same_bits(&slider.model(), slider.dt_star, Some(&from), 300);
 }
 
-/// A tile of 16 rows is at rest. In its first row a block with a larger threshold than all others is about to slip. It does so
-/// one step after a block in the last row of the tile below, which pushes it: the largest contact stress is that of its last
-/// step at rest.
+/// A tile of 16 rows is at rest. In its first row a block with a larger threshold than all others is about to
+/// slip. It does so one step after a block in the last row of the tile below, which pushes it: the largest
+/// contact stress is that of its last step at rest.
 #[test]
 fn the_largest_stress_may_be_that_of_the_last_step_at_rest() {
     let lattice = Lattice::free(16, 32);
@@ -189,7 +190,8 @@ fn the_largest_stress_may_be_that_of_the_last_step_at_rest() {
     let dt_star = 0.5;
     let mut surface = Surface::uniform(&lattice, 20.0, 20.0);
     let firm = model(surface.clone());
-    // Thresholds that the pushing block reaches after 50 steps and the pushed one after 80, if nothing pushes it.
+    // Thresholds that the pushing block reaches after 50 steps and the pushed one after 80, if nothing pushes
+    // it.
     for (b, steps) in [(pushing, 50.0), (stored, 80.0)] {
         let block = Simulation::new(firm.clone(), dt_star, Some(from.clone()), fused())
             .snapshot()

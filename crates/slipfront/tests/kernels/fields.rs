@@ -38,8 +38,8 @@ pub(crate) fn assert_fields_match_blocks(simulation: &Simulation) {
     }
 }
 
-/// Rows of one and of several strips, tiles and bands; blocks that stick and slide; every kind of springs. A simulation that
-/// has just been resumed is read before its first step.
+/// Rows of one and of several strips, tiles and bands; blocks that stick and slide; every kind of springs. A
+/// simulation that has just been resumed is read before its first step.
 #[test_matrix(
     [[1, 1], [7, 1], [1, 9], [25, 25], [120, 3], [250, 6], [30, 90]],
     [

@@ -30,7 +30,8 @@ fn model(lattice: Lattice) -> Model {
     Model::new(lattice, surface, drive, scales::damping(0.1), 1e-6, law)
 }
 
-/// More blocks than are handed over at once, in parts that end within rows and at their ends, and within bands.
+/// More blocks than are handed over at once, in parts that end within rows and at their ends, and within
+/// bands.
 #[test_matrix(
     [(300, 300, Edges::Free), (1, 70_000, Edges::Free), (70_001, 3, Edges::Periodic)],
     [

@@ -1,5 +1,5 @@
-//! All kernels and ways to execute them compared: the fused kernel agrees with the general to rounding, and has the same bits
-//! on any number of threads, with and without skipping.
+//! All kernels and ways to execute them compared: the fused kernel agrees with the general to rounding, and
+//! has the same bits on any number of threads, with and without skipping.
 
 #![allow(clippy::unwrap_used)] // A helper that cannot do its work fails its test.
 #![allow(clippy::needless_pass_by_value)] // Values of a test are passed to it as they are written.
@@ -31,8 +31,8 @@ fn general() -> Execution {
     }
 }
 
-/// Makes one step, or with `energies` steps until the drive has moved, including steps in which it stands; then the stored
-/// energies are known.
+/// Makes one step, or with `energies` steps until the drive has moved, including steps in which it stands;
+/// then the stored energies are known.
 fn go(simulation: &mut Simulation, energies: bool) {
     if energies {
         let next = simulation.snapshot().drive_steps + 1;

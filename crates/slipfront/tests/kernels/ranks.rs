@@ -1,5 +1,5 @@
-//! A lattice that several ranks share has the same bits as on one, whatever their number, threads and skipping, and goes on from a
-//! checkpoint on any other number of ranks.
+//! A lattice that several ranks share has the same bits as on one, whatever their number, threads and
+//! skipping, and goes on from a checkpoint on any other number of ranks.
 
 use std::convert::Infallible;
 use std::ops::Range;
@@ -18,8 +18,8 @@ use crate::common::{Slider, cavity, groove};
 use crate::executions::{shown, state};
 use crate::{bits, columns, fused, go, has_room, sliders};
 
-/// Results of a rank: at every step the numbers that all know, its own state at some steps, and at the end its first slips
-/// and fields.
+/// Results of a rank: at every step the numbers that all know, its own state at some steps, and at the end
+/// its first slips and fields.
 struct Shown {
     steps: Vec<Vec<u64>>,
     states: Vec<[Vec<u64>; 4]>,

@@ -79,8 +79,8 @@ fn every_vector_width_gives_the_same_bits() {
     }
 }
 
-/// The bounds on displacements and their differences are never too small, and too large by at most three times the distance that the
-/// fastest block, at a speed below 1.5, moves between two measurements.
+/// The bounds on displacements and their differences are never too small, and too large by at most three
+/// times the distance that the fastest block, at a speed below 1.5, moves between two measurements.
 #[test]
 fn displacements_are_bounded() {
     let model = model(Lattice::free(30, 30), 0.3, 20.0, 1e-3);
@@ -158,8 +158,8 @@ fn slow_drives_are_mostly_rest() {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 200, failure_persistence: None, ..ProptestConfig::default() })]
 
-    /// Displaced blocks at rest are skipped until the first slips, and are not swept much too early if the force on every
-    /// block grows.
+    /// Displaced blocks at rest are skipped until the first slips, and are not swept much too early if the
+    /// force on every block grows.
     #[test]
     fn rest_ends_in_time(
         u in prop::collection::vec([-0.1..0.1_f64, -0.1..0.1_f64], 9),

@@ -1,4 +1,5 @@
-//! Velocities so small that their squares would be subnormal numbers are zero, in both kernels and however they are executed.
+//! Velocities so small that their squares would be subnormal numbers are zero, in both kernels and however
+//! they are executed.
 
 use slipfront::surface::Orientation;
 use slipfront::testing::FusedKernel;
@@ -14,8 +15,8 @@ const SMALLEST: f64 = 3.203_806_5e-145;
 /// Steps in which a wave from an edge comes further into the groove than numbers reach.
 const STEPS: u64 = 130;
 
-/// A wide groove, whose blocks swing on their drive springs: waves run into it from its edges and from the corners of the
-/// slider; only the corners move blocks across the drive.
+/// A wide groove, whose blocks swing on their drive springs: waves run into it from its edges and from the
+/// corners of the slider; only the corners move blocks across the drive.
 fn grooved(degrees: f64) -> Slider {
     Slider {
         blocks: [280, 12],

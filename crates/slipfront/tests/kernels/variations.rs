@@ -1,5 +1,5 @@
-//! Heterogeneous sliders, kinetic friction that weakens and drives by a program on the fused kernel: it agrees with the
-//! general kernel to rounding, and has the same bits however it is executed.
+//! Heterogeneous sliders, kinetic friction that weakens and drives by a program on the fused kernel: it
+//! agrees with the general kernel to rounding, and has the same bits however it is executed.
 
 use std::sync::Arc;
 

@@ -94,8 +94,9 @@ fn adhesion_does_not_age() {
     assert!(-1e-9 < late && late < 0.1 + 1e-9, "late by {late}");
 }
 
-/// The age counts from the stop of the block, which lies after that of the drive. A stop is placed to first order in the step: its
-/// time within a step, the pull there within k V of that, and so the next slip within two steps and the step in which it is seen.
+/// The age counts from the stop of the block, which lies after that of the drive. A stop is placed to first
+/// order in the step: its time within a step, the pull there within k V of that, and so the next slip within
+/// two steps and the step in which it is seen.
 #[test_matrix([0.3, 0.6, 1.2], [0.05, 0.01])]
 fn after_steady_sliding_age_counts_from_the_stop(omega_star: f64, dt: f64) {
     let damping = scales::damping(omega_star);

@@ -12,8 +12,8 @@ const V_STAR: f64 = 0.005;
 const OMEGA_STAR: f64 = 1.5;
 const DT_STAR: f64 = 0.1;
 
-/// 10 x 10 blocks, of which the first `weak` rows have `mu_1`, the others `mu_2`; apart from each other, so that nothing joins them,
-/// or not.
+/// 10 x 10 blocks, of which the first `weak` rows have `mu_1`, the others `mu_2`; apart from each other, so
+/// that nothing joins them, or not.
 fn model(weak: usize, [mu_1, mu_2]: [f64; 2], r_star: f64, apart: bool) -> Model {
     let step = if apart { 2 } else { 1 };
     let size = 10 * step;
@@ -40,7 +40,8 @@ fn largest(model: &Model) -> f64 {
     simulation.peak().largest.mu_star
 }
 
-/// The drag of the zone that slides already adds at most f Omega V*, and a slip is seen at most the pull of one step late.
+/// The drag of the zone that slides already adds at most f Omega V*, and a slip is seen at most the pull of
+/// one step late.
 #[test_matrix([2, 5, 8], [[0.5, 1.0], [0.8, 1.0], [0.3, 1.5]], [0.2, 0.6])]
 fn the_largest_friction_of_zones_apart(weak: usize, mu: [f64; 2], r_star: f64) {
     let f = weak as f64 / 10.0;

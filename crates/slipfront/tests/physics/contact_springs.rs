@@ -40,8 +40,9 @@ fn the_level_of_sliding_is_half_the_mean_threshold(w: f64, redraw: Option<u64>) 
     assert!((model.steady_level(&Alone) - (0.5 + damping * v_star)).abs() < 1e-12);
 }
 
-/// Until the first spring breaks the slider moves as one against all of them: k_t u = k_t k_s V t/(k_t + k_s) in equilibrium, about which it
-/// swings by the jerk of the start, at most V/w_0 with w_0^2 = k_s + k_t; the step adds V dt.
+/// Until the first spring breaks the slider moves as one against all of them: k_t u = k_t k_s V t/(k_t + k_s)
+/// in equilibrium, about which it swings by the jerk of the start, at most V/w_0 with w_0^2 = k_s + k_t; the
+/// step adds V dt.
 #[test]
 fn the_weakest_spring_breaks_first() {
     let law = ContactSprings {

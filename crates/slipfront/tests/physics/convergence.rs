@@ -199,8 +199,8 @@ fn motion_with_friction_is_of_first_order() {
     assert_order(&steps, &errors, 1.0, 0.15);
 }
 
-/// The error of the energy balance: in the last step of every slip the block loses at most (mu_k F_n dt)^2/2, so that the error
-/// is of second order although the times of the events are of first.
+/// The error of the energy balance: in the last step of every slip the block loses at most (mu_k F_n dt)^2/2,
+/// so that the error is of second order although the times of the events are of first.
 #[test]
 fn energy_closes_to_second_order() {
     let steps = [0.1, 0.05, 0.025, 0.0125];

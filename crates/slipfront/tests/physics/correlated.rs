@@ -18,8 +18,8 @@ enum Draw {
     Alike(f64),
 }
 
-/// mu_s* of one physical slider on `n` x `n` blocks: the mount per area, damping and speed in SI units and the length of weakening are
-/// those of 50 x 50 blocks.
+/// mu_s* of one physical slider on `n` x `n` blocks: the mount per area, damping and speed in SI units and
+/// the length of weakening are those of 50 x 50 blocks.
 fn static_friction(n: usize, draw: Draw, seed: u64) -> f64 {
     let finer = n as f64 / 50.0;
     let by_block = matches!(draw, Draw::ByBlock);
@@ -52,9 +52,10 @@ fn static_friction(n: usize, draw: Draw, seed: u64) -> f64 {
     simulation.snapshot().peak.mu_star
 }
 
-/// A surface that is alike over a tenth of the slider has a static friction that finer blocks do not change: means over
-/// blocks, springs and weakening are of second order in the size of a block, so that its changes fall to a quarter. With
-/// coefficients drawn by block it goes on changing, although their means over areas scatter alike on all blocks.
+/// A surface that is alike over a tenth of the slider has a static friction that finer blocks do not change:
+/// means over blocks, springs and weakening are of second order in the size of a block, so that its changes
+/// fall to a quarter. With coefficients drawn by block it goes on changing, although their means over areas
+/// scatter alike on all blocks.
 #[test]
 fn static_friction_of_correlated_coefficients_converges() {
     let changes = |draw: Draw| {

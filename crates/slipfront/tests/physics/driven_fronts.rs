@@ -21,9 +21,10 @@ fn chain(kappa: f64, tau: f64) -> Model {
     Model::new(lattice, surface, drive, 0.0, 0.0, FrictionLaw::Projection)
 }
 
-/// A block that slides `s` far is pulled back by its drive spring by `k_s s`: fronts are slower than without, and under a low
-/// prestress slower than sound. No closed form is known. The speeds are those that an independent integration of the same chain
-/// gave, to the digits that they have; a front takes a whole number of steps from block to block, hence half a step more.
+/// A block that slides `s` far is pulled back by its drive spring by `k_s s`: fronts are slower than without,
+/// and under a low prestress slower than sound. No closed form is known. The speeds are those that an
+/// independent integration of the same chain gave, to the digits that they have; a front takes a whole number
+/// of steps from block to block, hence half a step more.
 #[test_matrix(
     [
         (1.0 / 3.0, 0.3, 0.9025), (1.0 / 3.0, 0.4, 1.006), (1.0 / 3.0, 0.5, 1.104), (1.0 / 3.0, 0.6, 1.218),
@@ -52,7 +53,8 @@ fn drive_springs_slow_fronts_down((kappa, tau, expected): (f64, f64, f64)) {
     );
 }
 
-/// Without drive springs the same chain has the closed form `v = c/sqrt(1 - tau^2)`, which it approaches as they soften.
+/// Without drive springs the same chain has the closed form `v = c/sqrt(1 - tau^2)`, which it approaches as
+/// they soften.
 #[test_matrix([0.6, 0.8])]
 fn soft_drive_springs_change_little(tau: f64) {
     let speeds = [1e-4, 0.0].map(|kappa| {

@@ -21,8 +21,8 @@ fn driven_at(edge: Edge, slider: &Slider, total: f64) -> Model {
     model
 }
 
-/// Until the first slip only the driven blocks feel the drive: `mu* = K V t/N`, and the first of them slips when its own spring
-/// pulls with its threshold, at most a step late.
+/// Until the first slip only the driven blocks feel the drive: `mu* = K V t/N`, and the first of them slips
+/// when its own spring pulls with its threshold, at most a step late.
 #[test_matrix([Edge::Left, Edge::Right, Edge::Bottom, Edge::Top], [0.5, 30.0])]
 fn the_weakest_driven_block_slips_first(edge: Edge, total: f64) {
     let slider = Slider {
@@ -60,8 +60,8 @@ fn the_weakest_driven_block_slips_first(edge: Edge, total: f64) {
     assert_eq!(now.first_slip_time_star()[weakest], now.time_star);
 }
 
-/// Springs on all blocks that are together as stiff as those of an edge load as fast, and the times that count in the
-/// loading are equal to the last bit.
+/// Springs on all blocks that are together as stiff as those of an edge load as fast, and the times that
+/// count in the loading are equal to the last bit.
 #[test]
 fn waiting_times_are_counted_in_the_speed_of_loading() {
     let slider = Slider::default();
@@ -71,9 +71,10 @@ fn waiting_times_are_counted_in_the_speed_of_loading() {
     assert!((model.loading_speed() / expected - 1.0).abs() < 1e-15);
 }
 
-/// In steady sliding the blocks move with the drive, and mu* is the level of a slider driven everywhere: the forces on all blocks
-/// add up to the same. Overdamped, so that it is reached: alone, the drive springs would let deviations decay at K/(N Omega), and the
-/// slider along its length at (pi/2 n_x)^2 k_1/Omega; both in series are waited for until what is left is exp(-12).
+/// In steady sliding the blocks move with the drive, and mu* is the level of a slider driven everywhere: the
+/// forces on all blocks add up to the same. Overdamped, so that it is reached: alone, the drive springs would
+/// let deviations decay at K/(N Omega), and the slider along its length at (pi/2 n_x)^2 k_1/Omega; both in
+/// series are waited for until what is left is exp(-12).
 #[test]
 fn the_level_of_steady_sliding_does_not_depend_on_the_place_of_the_drive() {
     let slider = Slider {
@@ -97,7 +98,8 @@ fn the_level_of_steady_sliding_does_not_depend_on_the_place_of_the_drive() {
     );
 }
 
-/// The work of the drive at an edge is stored or lost. Blocks that stop make the balance fall short with the square of the step.
+/// The work of the drive at an edge is stored or lost. Blocks that stop make the balance fall short with the
+/// square of the step.
 #[test]
 fn energy_is_accounted_for() {
     let error = |dt_star: f64| {
@@ -121,7 +123,8 @@ fn energy_is_accounted_for() {
         assert!(energies.work > 1.0 && energies.friction_loss > 0.4 * energies.work);
         energies.error().abs()
     };
-    // The order of the method is two; events at other steps scatter its constant, so that a factor of 8 of the 16 is asked for.
+    // The order of the method is two; events at other steps scatter its constant, so that a factor of 8 of
+    // the 16 is asked for.
     let (coarse, fine) = (error(0.1), error(0.025));
     assert!(coarse < 1e-2 && fine < coarse / 8.0, "{coarse:e} {fine:e}");
 }
@@ -152,8 +155,8 @@ fn chain() -> Slider {
     }
 }
 
-/// A mirrored slider that is driven at the other edge from the other side is the mirror image, with the same bits, events included,
-/// whether it is pulled or pushed.
+/// A mirrored slider that is driven at the other edge from the other side is the mirror image, with the same
+/// bits, events included, whether it is pulled or pushed.
 #[test_case(eventful(), 3.0, [180.0, 0.0], 5000)]
 #[test_case(chain(), 0.242 / 128.0, [0.0, 180.0], 100_000)]
 fn the_mirror_image_of_an_edge_is_the_edge_opposite(
@@ -185,9 +188,10 @@ fn the_mirror_image_of_an_edge_is_the_edge_opposite(
     assert_eq!(left.1.events(), right.1.events());
 }
 
-/// The load of a chain that has been crossed grows no further: at mu_s = 0.7 and mu_k = 0.45 it is never farther from 0.45 than by the
-/// threshold of the last block, what the driven one gains before it slips again, and what the drive adds while sound goes there and
-/// back. `slipfront family` holds the events before to as much.
+/// The load of a chain that has been crossed grows no further: at mu_s = 0.7 and mu_k = 0.45 it is never
+/// farther from 0.45 than by the threshold of the last block, what the driven one gains before it slips
+/// again, and what the drive adds while sound goes there and back. `slipfront family` holds the events before
+/// to as much.
 #[test_matrix([0.0, 0.833, -0.833])]
 fn a_chain_that_was_crossed_bears_no_more_than_kinetic_friction(slope: f64) {
     let n = 100;

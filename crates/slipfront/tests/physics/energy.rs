@@ -1,5 +1,5 @@
-//! Energy: the work of the drive is stored in blocks and springs or lost to friction and damping. For one block each loss is
-//! known exactly.
+//! Energy: the work of the drive is stored in blocks and springs or lost to friction and damping. For one
+//! block each loss is known exactly.
 
 use slipfront::communicator::Alone;
 use slipfront::exact_solutions::SlipCycle;
@@ -18,9 +18,9 @@ fn energies(model: &Model, dt: f64, steps: u64, state: State) -> Vec<Energies> {
     curve.rows.iter().map(|row| row.energies).collect()
 }
 
-/// Through onset and far beyond. The balance misses the kinetic energy that a block loses in the last step of a slip, at most
-/// (mu_k F_n dt)^2/2 = 5e-5, in slips that dissipate R V T = 1 each: a few 1e-5. It is less where strong damping lets few blocks
-/// stop.
+/// Through onset and far beyond. The balance misses the kinetic energy that a block loses in the last step of
+/// a slip, at most (mu_k F_n dt)^2/2 = 5e-5, in slips that dissipate R V T = 1 each: a few 1e-5. It is less
+/// where strong damping lets few blocks stop.
 #[test_case(Slider { dt_star: 0.02, ..Slider::default() }, 5e-5; "baseline")]
 #[test_case(Slider { dt_star: 0.02, omega_star: 0.0, ..Slider::default() }, 5e-5; "undamped")]
 #[test_case(Slider { dt_star: 0.02, omega_star: 3.0, ..Slider::default() }, 1e-5; "steady")]
@@ -51,8 +51,9 @@ fn the_ledger_closes(slider: Slider, bound: f64) {
     assert!(worst < bound, "closes to {worst}");
 }
 
-/// While all blocks slide the balance misses what the first step and the present one make of it, and nothing adds up in between. The
-/// bound is for the rounding of 400 steps of sums over 20 blocks, each of some units of the last place.
+/// While all blocks slide the balance misses what the first step and the present one make of it, and nothing
+/// adds up in between. The bound is for the rounding of 400 steps of sums over 20 blocks, each of some units
+/// of the last place.
 #[test]
 fn errors_of_sliding_cancel_between_the_first_step_and_the_present_one() {
     let slider = Slider {
@@ -153,8 +154,8 @@ fn losses_of_one_slip(omega_star: f64, v_star: f64) {
     }
 }
 
-/// A block with friction alone moves by v^2/(2 mu_k) and loses all of (1/2) v^2 to friction; one with damping alone moves by
-/// v/Omega and loses (1/2) v^2 to damping.
+/// A block with friction alone moves by v^2/(2 mu_k) and loses all of (1/2) v^2 to friction; one with damping
+/// alone moves by v/Omega and loses (1/2) v^2 to damping.
 #[test_case(0.5, 0.0; "friction")]
 #[test_case(0.0, 0.4; "damping")]
 fn a_thrown_block_loses_all_its_energy_to_the_one_loss(kinetic: f64, omega: f64) {
@@ -218,8 +219,8 @@ fn a_constant_force_does_work() {
     );
     let dt = 0.01;
     let last = *energies(&model, dt, 1000, State::at_rest(1)).last().unwrap();
-    // Uniformly accelerated by 0.5 - 0.2 from t = -dt/2 on: displacement a t^2/2, work 0.5 per displacement, 0.2 of it to
-    // friction.
+    // Uniformly accelerated by 0.5 - 0.2 from t = -dt/2 on: displacement a t^2/2, work 0.5 per displacement,
+    // 0.2 of it to friction.
     let way = 0.5 * 0.3 * 10.0_f64.powi(2);
     assert!(
         (last.work / (0.5 * way) - 1.0).abs() < 2.0 * dt

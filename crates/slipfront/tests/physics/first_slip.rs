@@ -116,9 +116,10 @@ fn friction_balances_all_other_forces_until_then() {
     assert!(now.point.mu_lateral_star.abs() < 1e-15 && now.point.n_sliding == 0);
 }
 
-/// One block of 41 x 41 touches, under its own load alone. The others are free and push it with the force of their drive springs, so that it
-/// slips earlier by [`springs_on_a_lone_block`] than it would by its own. The drive is slow and damping critical for the slider as a whole: its
-/// viscous force, Omega V of the blocks that move, is 1e-3 of the threshold for each, and a step 1e-3 of the time.
+/// One block of 41 x 41 touches, under its own load alone. The others are free and push it with the force of
+/// their drive springs, so that it slips earlier by [`springs_on_a_lone_block`] than it would by its own. The
+/// drive is slow and damping critical for the slider as a whole: its viscous force, Omega V of the blocks
+/// that move, is 1e-3 of the threshold for each, and a step 1e-3 of the time.
 #[test]
 fn a_block_that_touches_alone_bears_its_neighbours_drive_too() {
     let lattice = Lattice::free(41, 41);
@@ -142,7 +143,8 @@ fn a_block_that_touches_alone_bears_its_neighbours_drive_too() {
     assert!((found / exact - 1.0).abs() < 5e-3, "{found}, exactly {exact}");
 }
 
-/// By the formula of the onset: blocks that all touch, few that touch, and blocks whose load was not redistributed.
+/// By the formula of the onset: blocks that all touch, few that touch, and blocks whose load was not
+/// redistributed.
 #[test]
 fn an_onset_is_expected_between_that_of_lone_blocks_and_that_of_blocks_by_themselves() {
     let model = Slider::default().model();
@@ -157,7 +159,8 @@ fn an_onset_is_expected_between_that_of_lone_blocks_and_that_of_blocks_by_themse
     assert!((to / (20.0 * usual) - 1.0).abs() < 1e-14);
 }
 
-/// 2.5/V* of a slow drive, a block per t* of a fast one, and the swing on soft springs; springs in contact share the path of the drive.
+/// 2.5/V* of a slow drive, a block per t* of a fast one, and the swing on soft springs; springs in contact
+/// share the path of the drive.
 #[test]
 fn a_transition_takes_no_longer_than_loading_crossing_or_a_swing() {
     let slow = Slider::default().model();

@@ -60,9 +60,10 @@ fn a_front_runs_at_its_speed(tau: f64, (rows, direction, stiffness): (usize, [f6
     );
 }
 
-/// The speed of a run, which is found from planes over its first slips. Under a low prestress the front must be started, by five
-/// columns that move at the start, and gathers speed over columns that are the more, the lower it is; the median leaves them out where
-/// the strip is several times as long. The rest is half a step as above.
+/// The speed of a run, which is found from planes over its first slips. Under a low prestress the front must
+/// be started, by five columns that move at the start, and gathers speed over columns that are the more, the
+/// lower it is; the median leaves them out where the strip is several times as long. The rest is half a step
+/// as above.
 #[test_matrix(
     [0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9],
     [

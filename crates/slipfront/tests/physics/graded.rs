@@ -51,8 +51,8 @@ fn fields_of_ones_change_no_bit(edges: [Edges; 2], law: FrictionLaw) {
     );
 }
 
-/// Moduli, masses and all friction times four, by powers of two: the same motion, to the last bit, as the plain slider has in the
-/// same kernel; mu* is four times as large.
+/// Moduli, masses and all friction times four, by powers of two: the same motion, to the last bit, as the
+/// plain slider has in the same kernel; mu* is four times as large.
 #[test]
 fn a_heavier_stiffer_and_rougher_slider_moves_the_same() {
     let plain = common::Slider {
@@ -75,14 +75,15 @@ fn a_heavier_stiffer_and_rougher_slider_moves_the_same() {
         other.step();
         assert_eq!(one.state(), other.state(), "step {step}");
         let [one, other] = [&one, &other].map(|simulation| simulation.snapshot().point.mu_star);
-        // The terms of the sums are rounded to quanta that follow their bounds: 2^-51 of displacements of up to 20.
+        // The terms of the sums are rounded to quanta that follow their bounds: 2^-51 of displacements of up
+        // to 20.
         assert!((4.0 * one - other).abs() < 1e-13, "step {step}: {one} {other}");
     }
     assert!(one.peak().ended);
 }
 
-/// Nothing moves before the first slip, which is seen at most a step late, and the first block to slip is the one whose
-/// spring is first stretched far enough.
+/// Nothing moves before the first slip, which is seen at most a step late, and the first block to slip is the
+/// one whose spring is first stretched far enough.
 #[test_matrix([0.0, 0.05, 0.3])]
 fn the_block_with_the_least_threshold_for_its_spring_slips_first(sigma: f64) {
     let slider = common::Slider {
@@ -149,8 +150,8 @@ fn two_blocks_have_the_modes_of_their_moduli_and_masses(
     }
 }
 
-/// Steady sliding has mu* = mean(mu_k F_n) + Omega V* mean(m), whatever the stiffness. The slowest motion left decays at
-/// k_s min(E)/(Omega max(m)) = 0.027 at least, so that it is gone to rounding at t* = 1200.
+/// Steady sliding has mu* = mean(mu_k F_n) + Omega V* mean(m), whatever the stiffness. The slowest motion
+/// left decays at k_s min(E)/(Omega max(m)) = 0.027 at least, so that it is gone to rounding at t* = 1200.
 #[test_matrix([0.05, 0.1])]
 fn heavier_blocks_raise_the_drag(v_star: f64) {
     let slider = common::Slider {
@@ -181,7 +182,8 @@ fn heavier_blocks_raise_the_drag(v_star: f64) {
     );
 }
 
-/// The balance misses, as for equal blocks, the kinetic energy of the last step of a slip, of the second order in dt.
+/// The balance misses, as for equal blocks, the kinetic energy of the last step of a slip, of the second
+/// order in dt.
 #[test]
 fn the_ledger_closes() {
     let slider = common::Slider {

@@ -38,8 +38,8 @@ fn step_until(simulation: &mut Simulation, slides: bool) {
     }
 }
 
-/// One block jumps where the force of its spring first exceeds the threshold, `k_s X > S`, and slides where the drive stands
-/// to `s = 2 (k_s X - K)/k_s`.
+/// One block jumps where the force of its spring first exceeds the threshold, `k_s X > S`, and slides where
+/// the drive stands to `s = 2 (k_s X - K)/k_s`.
 #[test_matrix([0.001, 0.03, 1.0], [0.01, 0.1])]
 fn one_block_jumps_while_the_drive_stands(v_star: f64, dt: f64) {
     let model = one_block(v_star, KINETIC);
@@ -70,7 +70,8 @@ fn one_block_jumps_while_the_drive_stands(v_star: f64, dt: f64) {
     assert_eq!(simulation.snapshot().drive_steps, first + 1);
 }
 
-/// The path is V dt times the number of steps before which nothing in contact slid; textured blocks slide from the start and do not count.
+/// The path is V dt times the number of steps before which nothing in contact slid; textured blocks slide
+/// from the start and do not count.
 #[test]
 fn the_path_is_a_count_of_steps() {
     let slider = Slider {
@@ -148,7 +149,8 @@ fn a_drive_that_stands_does_no_work() {
     assert!(energies.error().abs() < 5e-3, "{}", energies.error());
 }
 
-/// The peak is the largest mu* until the stated step of the drive, whatever falls before it, and the run that stops at the onset ends there.
+/// The peak is the largest mu* until the stated step of the drive, whatever falls before it, and the run that
+/// stops at the onset ends there.
 #[test_matrix([400, 900])]
 fn the_largest_counts(onset_steps: u64) {
     let slider = Slider {
@@ -258,11 +260,12 @@ fn reduction(v_star: f64) -> f64 {
     100.0 * (1.0 - mu_static(&textured) / mu_static(&slider))
 }
 
-/// Slow loading has a limit, 31.8 % for steps of 0.1 and Omega* = 0.1, which an independent program found at V* = 0.0002. At a constant speed of
-/// 0.01 it is 34.7 %.
+/// Slow loading has a limit, 31.8 % for steps of 0.1 and Omega* = 0.1, which an independent program found at
+/// V* = 0.0002. At a constant speed of 0.01 it is 34.7 %.
 #[test]
 fn the_reduction_by_a_circle_has_a_slow_limit() {
     let found = reduction(0.01);
-    // The load grows by 0.375 V* dt* a step, by which each event is late; 0.3 points are what such events scatter by.
+    // The load grows by 0.375 V* dt* a step, by which each event is late; 0.3 points are what such events
+    // scatter by.
     assert!((found - 31.8).abs() < 0.3, "{found}");
 }

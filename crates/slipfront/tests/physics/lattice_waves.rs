@@ -120,8 +120,8 @@ fn a_damped_wave_obeys_the_scheme(omega_star: f64) {
     }
 }
 
-/// Long waves: c_P^2 = 9/8 and c_S^2 = 3/8 in every direction, the speeds of plane stress at nu = 1/3. Checked on the
-/// simulation's own frequency, whose deviation is O(a^2 + b^2), below 1e-4 here.
+/// Long waves: c_P^2 = 9/8 and c_S^2 = 3/8 in every direction, the speeds of plane stress at nu = 1/3.
+/// Checked on the simulation's own frequency, whose deviation is O(a^2 + b^2), below 1e-4 here.
 #[test_matrix([(1, 0), (1, 1), (2, 1), (0, 1), (1, 3)], [(0, 3.0 / 8.0), (1, 9.0 / 8.0)])]
 fn long_waves_are_those_of_an_isotropic_sheet(mode: (u32, u32), (branch, c_squared): (usize, f64)) {
     let n = 512.0;
@@ -176,7 +176,8 @@ fn growth(dt: f64, omega_star: f64, steps: usize) -> f64 {
 #[test_matrix([0.0, 0.1, 1.0, 3.0, 30.0])]
 fn stability_does_not_depend_on_damping(omega_star: f64) {
     assert!((dt_star_limit() - 0.9058).abs() < 5e-5);
-    // Undamped, the oscillation just below the limit beats with an amplitude of 1/sqrt(1 - (dt/limit)^2) = 22.
+    // Undamped, the oscillation just below the limit beats with an amplitude of 1/sqrt(1 - (dt/limit)^2) =
+    // 22.
     assert!(growth(0.999 * dt_star_limit(), omega_star, 6000) < 30.0);
     assert!(growth(1.01 * dt_star_limit(), omega_star, 6000) > 1e6);
 }

@@ -16,8 +16,9 @@ fn adhesive(of_static: f64) -> Adhesion {
     }
 }
 
-/// Nothing moves before the first slip, so that its force is `k_s V t` on every block and the block with the least threshold
-/// slips first: `k_s V t = min_i (mu_si p_i/P + tau_a/(P mu_s))`. The slip is seen at most a step late.
+/// Nothing moves before the first slip, so that its force is `k_s V t` on every block and the block with the
+/// least threshold slips first: `k_s V t = min_i (mu_si p_i/P + tau_a/(P mu_s))`. The slip is seen at most a
+/// step late.
 #[test_matrix([None, Some((0, 0.8)), Some((1, -0.5))], [0.0, 0.4])]
 fn the_weakest_block_slips_first(pressure: Option<(usize, f64)>, adhesion: f64) {
     let slider = Slider {
@@ -65,9 +66,9 @@ fn adhesion_adds_to_static_friction_without_texture(adhesion: f64) {
     assert!(-1e-12 < below + pull && below < pull, "{peak}");
 }
 
-/// Only the adhesive part feels how much of the surface a groove leaves: the load is redistributed, the area is not. The first
-/// slip comes at `k_s V t f = N/N_c + tau_a/(P mu_s)`, f the factor of the edge; later by a step at most, and by the drag of
-/// the five free rows, Omega V* each at most, half of which each edge bears.
+/// Only the adhesive part feels how much of the surface a groove leaves: the load is redistributed, the area
+/// is not. The first slip comes at `k_s V t f = N/N_c + tau_a/(P mu_s)`, f the factor of the edge; later by a
+/// step at most, and by the drag of the five free rows, Omega V* each at most, half of which each edge bears.
 #[test_matrix([(Facing::Across, Orientation::Across), (Facing::Along, Orientation::Along)], [0.25, 1.0])]
 fn adhesion_is_not_redistributed((facing, orientation): (Facing, Orientation), adhesion: f64) {
     let slider = Slider {

@@ -1,5 +1,5 @@
-//! Exact answers: every law of the model that has a closed solution, orders of convergence, and claims of the paper, on the fused kernel.
-//! `physics_on_general` runs tests of both kernels on the general one.
+//! Exact answers: every law of the model that has a closed solution, orders of convergence, and claims of the
+//! paper, on the fused kernel. `physics_on_general` runs tests of both kernels on the general one.
 
 #![allow(clippy::unwrap_used)] // A helper that cannot do its work fails its test.
 #![allow(clippy::needless_pass_by_value)] // Values of a test are passed to it as they are written.

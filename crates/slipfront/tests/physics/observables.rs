@@ -155,8 +155,9 @@ fn time_is_a_product() {
     );
 }
 
-/// Beyond the limit of stability a run diverges, and names the block that has gone farthest: by then speeds have squares that are
-/// infinite, and displacements are still finite. Strains as large as the last two stiffen springs beyond the step's limit.
+/// Beyond the limit of stability a run diverges, and names the block that has gone farthest: by then speeds
+/// have squares that are infinite, and displacements are still finite. Strains as large as the last two
+/// stiffen springs beyond the step's limit.
 #[test_matrix([(1.0, 0.0), (1.0, 1e-6), (0.9, 1.0), (0.9, 1e3)])]
 fn a_diverging_run_is_reported((dt_star, epsilon): (f64, f64)) {
     let slider = Slider {
@@ -265,8 +266,8 @@ fn mu_star_is_the_mean_pull_along_and_across_the_drive() {
     assert!(lateral > 1e-4, "there is something across to be seen: {lateral}");
 }
 
-/// D is searched for up to t_s* + 2.5/V* and E up to the kinetic window, and later values do not count. The later part of
-/// the curve is invented, because N* and mu* of a real run seldom reach such values again.
+/// D is searched for up to t_s* + 2.5/V* and E up to the kinetic window, and later values do not count. The
+/// later part of the curve is invented, because N* and mu* of a real run seldom reach such values again.
 #[test]
 fn what_comes_after_the_windows_is_neither_d_nor_e() {
     let slider = Slider {
@@ -351,9 +352,10 @@ fn a_run_without_an_end_is_a_run_of_known_length_that_has_not_ended() {
     assert!(history.kinetic(200.0, slider.dt_star, slider.v_star).is_some());
 }
 
-/// Bars that an evolutionary search has placed such that mu* ripples just above the level of sliding, at 0.5005 and falls half-way to it,
-/// a fifth below its peak: a rule that takes any fall of half-way for the end of the first peak finds 0.5005. (Four bars of three blocks,
-/// 600 tries; L = 0.5, and a surface without texture has 1.)
+/// Bars that an evolutionary search has placed such that mu* ripples just above the level of sliding, at
+/// 0.5005 and falls half-way to it, a fifth below its peak: a rule that takes any fall of half-way for the
+/// end of the first peak finds 0.5005. (Four bars of three blocks, 600 tries; L = 0.5, and a surface without
+/// texture has 1.)
 #[test]
 fn a_search_that_cheats_the_first_peak_is_not_rewarded() {
     let lattice = Lattice::free(50, 50);
@@ -390,7 +392,8 @@ fn a_search_that_cheats_the_first_peak_is_not_rewarded() {
         peak.ended && peak.mu_star > 0.59 && peak.mu_star == peak.largest.mu_star,
         "{peak:?}"
     );
-    // Whoever takes the largest mu* until a path finds the ripple if the path ends there, and the peak if it goes as far as the run.
+    // Whoever takes the largest mu* until a path finds the ripple if the path ends there, and the peak if it
+    // goes as far as the run.
     let (mut until_the_fall, mut until_the_end) = (Largest::until(0.005 * fall), Largest::until(3.0));
     at_rest(&model, 0.1)
         .run(

@@ -1,4 +1,5 @@
-//! Laws of friction against a second implementation, written down block by block from their equations, over random small lattices.
+//! Laws of friction against a second implementation, written down block by block from their equations, over
+//! random small lattices.
 
 use slipfront::surface::{Coefficients, Load};
 use slipfront::{
@@ -55,7 +56,8 @@ fn norm(a: [f64; 2]) -> f64 {
 }
 
 impl World {
-    /// Force of all springs on a body: the pull of its drive spring, and k (r - d) along each spring to a neighbour.
+    /// Force of all springs on a body: the pull of its drive spring, and k (r - d) along each spring to a
+    /// neighbour.
     fn force(&self, body: &Body, t: f64) -> [f64; 2] {
         let mut force = [0, 1].map(|axis| 0.375 * (self.velocity[axis] * t - body.u[axis]));
         for other in &self.bodies {
@@ -135,7 +137,8 @@ impl World {
                         }
                     });
                     body.slides = high > law.slip_speed;
-                    // The solution of the linear equation for theta; d_c/speed alone would be huge where it creeps.
+                    // The solution of the linear equation for theta; d_c/speed alone would be huge where it
+                    // creeps.
                     let x = high * dt / law.d_c;
                     let time = if x > 0.0 { -dt * (-x).exp_m1() / x } else { dt };
                     body.theta = body.theta * (-x).exp() + time;
@@ -183,8 +186,9 @@ const RATE_AND_STATE: Friction = Friction::RateAndState(RateAndState {
     slip_speed: 0.02,
 });
 
-/// The extension of a spring is found as the difference of nearly equal lengths over epsilon, 1e-3: to 1e-13 of the unit. Over some
-/// hundred steps of motion that is sensitive to what begins it, the difference stays below 1e-8.
+/// The extension of a spring is found as the difference of nearly equal lengths over epsilon, 1e-3: to 1e-13
+/// of the unit. Over some hundred steps of motion that is sensitive to what begins it, the difference stays
+/// below 1e-8.
 #[test_matrix(
     [
         coulomb(Some(WEAKENING), None), coulomb(None, Some(AGEING)), coulomb(Some(WEAKENING), Some(AGEING)),

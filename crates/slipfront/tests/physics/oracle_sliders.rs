@@ -1,5 +1,5 @@
-//! The model of heterogeneous blocks, outlines and viscosity once more, in the fewest lines: every pair of blocks is
-//! examined.
+//! The model of heterogeneous blocks, outlines and viscosity once more, in the fewest lines: every pair of
+//! blocks is examined.
 
 use proptest::prelude::*;
 use slipfront::communicator::Alone;
@@ -173,7 +173,8 @@ fn case() -> impl Strategy<Value = Case> {
                 });
                 Case {
                     size: [nx, ny],
-                    // The fewest blocks along a periodic axis are three; with four, the nearest image is the only neighbour.
+                    // The fewest blocks along a periodic axis are three; with four, the nearest image is the
+                    // only neighbour.
                     periodic: [
                         wraps[0] && nx > 3 && !has_outline,
                         wraps[1] && ny > 3 && !has_outline,
@@ -204,8 +205,8 @@ fn case() -> impl Strategy<Value = Case> {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(300))]
 
-    /// The tolerance is rounding: 1e-16 per operation, times the 1e3 by which lengths cancel over the strain of 1e-3, grows
-    /// little in 40 steps.
+    /// The tolerance is rounding: 1e-16 per operation, times the 1e3 by which lengths cancel over the strain
+    /// of 1e-3, grows little in 40 steps.
     #[test]
     fn an_independent_program_agrees(case in case()) {
         let (found, expected) = (case.simulate(40), case.run(40));

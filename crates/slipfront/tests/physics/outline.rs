@@ -12,7 +12,8 @@ fn within(exists: Vec<bool>) -> Slider {
     Slider::new(None, None, Some(Outline::new(exists, &Alone)), &Alone)
 }
 
-/// A rectangle that is cut out of a larger lattice moves as a lattice of its own, to the last bit, in all that is measured.
+/// A rectangle that is cut out of a larger lattice moves as a lattice of its own, to the last bit, in all
+/// that is measured.
 #[test_matrix([0.0, 0.2], [0.0, 2.0])]
 fn a_rectangle_cut_out_is_a_smaller_lattice(viscosity_time: f64, omega_star: f64) {
     let viscous = |slider| Slider {
@@ -117,7 +118,8 @@ fn discs_are_round() {
         }
         let area = disc.iter().filter(|&&exists| exists).count() as f64;
         let circle = 0.25 * std::f64::consts::PI * (across * across) as f64;
-        // Gauss: the error is less than the number of blocks that the rim crosses, 4 per unit of the diameter.
+        // Gauss: the error is less than the number of blocks that the rim crosses, 4 per unit of the
+        // diameter.
         assert!((area - circle).abs() < 4.0 * across as f64);
     }
     // As in the torsion of 20 blocks across: sum r^2/(r_max sum r) = 0.7577.

@@ -105,8 +105,8 @@ fn a_groove_without_any_scatter() {
 }
 
 /// Grooves on periodic edges climb again, higher than the first peak, in the next cycle, so that the rule of
-/// the first peak matters. By how much depends on the step, since nothing breaks the symmetry along the groove:
-/// 1.3 % at 0.02, 2.3 % at 0.1, 4 % in model.md.
+/// the first peak matters. By how much depends on the step, since nothing breaks the symmetry along the
+/// groove: 1.3 % at 0.02, 2.3 % at 0.1, 4 % in model.md.
 #[test]
 fn a_groove_on_periodic_edges_climbs_higher_later() {
     let slider = Slider {
@@ -249,8 +249,8 @@ fn static_friction_falls_with_scatter(sigma_static_star: f64, claimed: f64, scat
     );
 }
 
-/// Over five random surfaces the paper finds a deviation of less than 0.015. This holds for the standard deviation, 0.013
-/// here; the farthest of five may lie 0.024 from their mean.
+/// Over five random surfaces the paper finds a deviation of less than 0.015. This holds for the standard
+/// deviation, 0.013 here; the farthest of five may lie 0.024 from their mean.
 #[test]
 fn five_surfaces_deviate_by_less_than_0_015() {
     let found: Vec<f64> = (1..=5)

@@ -43,7 +43,8 @@ const SLIDERS: [Scales; 4] = [
     },
 ];
 
-/// A rigid slider of thickness `h` on a mount of stiffness `K` per area swings with `sqrt(K/(rho h))`, whatever the size of its blocks.
+/// A rigid slider of thickness `h` on a mount of stiffness `K` per area swings with `sqrt(K/(rho h))`,
+/// whatever the size of its blocks.
 #[test]
 fn a_mount_sets_a_frequency_that_no_block_does() {
     let (thickness, per_area) = (2e-3, 1e13);
@@ -110,9 +111,9 @@ fn without_strain_the_groups_alone_decide(slider: usize) {
     assert!(found < 1e-12, "{found}");
 }
 
-/// Sliders with strains of their own, from 1e-6 to 9e-6, agree to first order in the strain. The stretch between neighbours,
-/// e = 0.1 to 1, changes the force of a spring by eps e^2, and mu* by the mean of that over slipping and stuck blocks: 1e-4
-/// eps here, bounded by 1e-3 of the strain.
+/// Sliders with strains of their own, from 1e-6 to 9e-6, agree to first order in the strain. The stretch
+/// between neighbours, e = 0.1 to 1, changes the force of a spring by eps e^2, and mu* by the mean of that
+/// over slipping and stuck blocks: 1e-4 eps here, bounded by 1e-3 of the strain.
 #[test_matrix([1, 2, 3])]
 fn a_small_strain_changes_little(slider: usize) {
     let (one, other) = (&SLIDERS[0], &SLIDERS[slider]);

@@ -8,8 +8,9 @@ use test_case::test_matrix;
 
 use crate::common::{Slider, at_rest};
 
-/// One column in contact, which does not slip, and textured blocks on both sides, which the mount pulls along. Where the drive has
-/// stopped and all is at rest, `D = X - u` of the mount falls off from the column by `cosh` towards the free ends, with
+/// One column in contact, which does not slip, and textured blocks on both sides, which the mount pulls
+/// along. Where the drive has stopped and all is at rest, `D = X - u` of the mount falls off from the column
+/// by `cosh` towards the free ends, with
 ///
 /// ```text
 /// 2 cosh(kappa) - 2 = k_s/K_el

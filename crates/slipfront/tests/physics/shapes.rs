@@ -6,8 +6,8 @@ use test_case::test_matrix;
 
 use crate::common::{Slider, at_rest, from_state};
 
-/// Forces of the lattice alone at a given displacement. If nothing else acts on blocks at rest, their velocities after a step
-/// of 1 have the same bits as the forces.
+/// Forces of the lattice alone at a given displacement. If nothing else acts on blocks at rest, their
+/// velocities after a step of 1 have the same bits as the forces.
 fn lattice_forces(lattice: Lattice, u: VectorField, epsilon: f64) -> VectorField {
     let n = lattice.n_blocks();
     let model = Model::new(
@@ -29,7 +29,8 @@ fn lattice_forces(lattice: Lattice, u: VectorField, epsilon: f64) -> VectorField
     let force = simulation.state().velocity;
     for b in 0..n {
         let shown = simulation.snapshot().block(b).force_lattice;
-        // Recomputed forces may differ from those of the sweep by rounding: by 1e-16 of each of eight springs.
+        // Recomputed forces may differ from those of the sweep by rounding: by 1e-16 of each of eight
+        // springs.
         let differs = (0..2).any(|axis| (shown[axis] - force.at(b)[axis]).abs() > 1e-14);
         assert!(!differs, "block {b} shows {shown:?}, moved by {:?}", force.at(b));
     }
@@ -159,7 +160,8 @@ fn chains_along_x_and_along_y_are_the_same() {
     );
 }
 
-/// Straight springs resist motion across a chain only to second order, so that each block slips as if it were alone.
+/// Straight springs resist motion across a chain only to second order, so that each block slips as if it were
+/// alone.
 #[test]
 fn a_chain_pulled_across_is_a_row_of_single_blocks() {
     let slider = Slider {

@@ -50,7 +50,8 @@ fn weakening_model(
     Model::new(lattice, surface, drive, damping, 0.0, friction)
 }
 
-/// A block that weakens more slowly than its drive spring unloads follows the drive without a jump, `s = (k_s X - S)/(k_s - W)`.
+/// A block that weakens more slowly than its drive spring unloads follows the drive without a jump,
+/// `s = (k_s X - S)/(k_s - W)`.
 #[test]
 fn a_block_on_a_stiff_spring_does_not_jump() {
     let (weakening, speed, damping) = (0.25, 1e-5, 0.5);
@@ -99,8 +100,8 @@ const JUMP: f64 = 1e-3;
 /// Speed of the drive while blocks slip.
 const SLOW: f64 = 1e-7;
 
-/// Blocks at their threshold between blocks that cannot slip jump if and only if `W - k_s` is above the least eigenvalue of the stiffness
-/// matrix of the springs along the drive, clamped at their rim.
+/// Blocks at their threshold between blocks that cannot slip jump if and only if `W - k_s` is above the least
+/// eigenvalue of the stiffness matrix of the springs along the drive, clamped at their rim.
 fn assert_jumps_above(blocks: [usize; 2], can_slip: &dyn Fn(usize, usize) -> bool, eigenvalue: f64) {
     let k = K_DIAGONAL;
     for (share, jumps) in [(0.98, false), (1.02, true)] {
@@ -114,7 +115,8 @@ fn assert_jumps_above(blocks: [usize; 2], can_slip: &dyn Fn(usize, usize) -> boo
             0.3,
             &[(1e-3, fast), (SLOW, f64::INFINITY)],
         );
-        // While stable, a mode slips by at most k_s/(0.02 lambda) of the path, times its largest part. It must not reach D_c.
+        // While stable, a mode slips by at most k_s/(0.02 lambda) of the path, times its largest part. It
+        // must not reach D_c.
         let length = (WHOLE - KINETIC) / weakening;
         let path = 0.3 * length * 0.02 * eigenvalue / k;
         let highest = highest_speed(&model, path);
@@ -132,8 +134,9 @@ fn chains_jump_from_a_critical_size_on(n: usize) {
     assert_jumps_above([n + 2, 1], &|i, _| (1..=n).contains(&i), eigenvalue);
 }
 
-/// The least eigenvalue of the matrix of the springs along x of `n` x `n` blocks between clamped ones, by power iteration of a shifted
-/// matrix: straight springs along x pull with k_1, straight ones across not at all, diagonal ones with k_2/2 each.
+/// The least eigenvalue of the matrix of the springs along x of `n` x `n` blocks between clamped ones, by
+/// power iteration of a shifted matrix: straight springs along x pull with k_1, straight ones across not at
+/// all, diagonal ones with k_2/2 each.
 fn least_eigenvalue_along(n: usize) -> f64 {
     let index = |i: isize, j: isize| {
         let within = |i: isize| (0..n as isize).contains(&i);
@@ -178,8 +181,8 @@ fn a_patch_jumps_by_the_springs_along_the_drive() {
     assert_jumps_above([5, 5], &inside, eigenvalue);
 }
 
-/// The balance of energy closes, and the energy of weakening is a part of the loss to friction: at the end, where all blocks
-/// have slipped far, `(S - K) D_c/2` of each, whatever the step.
+/// The balance of energy closes, and the energy of weakening is a part of the loss to friction: at the end,
+/// where all blocks have slipped far, `(S - K) D_c/2` of each, whatever the step.
 #[test_matrix([0.2, 0.05], [None, Some(20.0)])]
 fn the_balance_of_energy_closes(dt_star: f64, healing_time: Option<f64>) {
     let blocks = [20, 16];
@@ -201,8 +204,8 @@ fn the_balance_of_energy_closes(dt_star: f64, healing_time: Option<f64>) {
         .run(Stop::at_step(slider.steps(12.0)), &mut observers)
         .unwrap();
     let (surface, last) = (&model.surface, curve.rows[curve.rows.len() - 1].energies);
-    // What the balance misses falls with the square of the step: (mu_k F_n dt)^2/2 = dt^2/8 at most of every stop, some of each block, over
-    // the work of some units of each.
+    // What the balance misses falls with the square of the step: (mu_k F_n dt)^2/2 = dt^2/8 at most of every
+    // stop, some of each block, over the work of some units of each.
     let bound = 0.01 * dt_star * dt_star;
     assert!(last.error().abs() < bound, "{}", last.error());
     let most: f64 = (0..model.lattice.n_blocks())
@@ -224,8 +227,9 @@ fn the_balance_of_energy_closes(dt_star: f64, healing_time: Option<f64>) {
     }
 }
 
-/// mu_s* of one physical slider on `n` x `n` blocks: the mount per area, damping and speed in SI units, the length of
-/// weakening and a square hole of 9 %, if it has one, are those of 60 x 60 blocks, with five blocks in a critical size.
+/// mu_s* of one physical slider on `n` x `n` blocks: the mount per area, damping and speed in SI units, the
+/// length of weakening and a square hole of 9 %, if it has one, are those of 60 x 60 blocks, with five blocks
+/// in a critical size.
 fn static_friction(n: usize, has_hole: bool) -> f64 {
     let finer = n as f64 / 60.0;
     let slider = Slider {
@@ -260,8 +264,8 @@ fn static_friction(n: usize, has_hole: bool) -> f64 {
     simulation.snapshot().peak.mu_star
 }
 
-/// Where the critical size has five blocks, static friction and what the hole changes about it are those of finer meshes within 2 %:
-/// with strength that falls at once they change by a tenth from level to level.
+/// Where the critical size has five blocks, static friction and what the hole changes about it are those of
+/// finer meshes within 2 %: with strength that falls at once they change by a tenth from level to level.
 #[test]
 fn static_friction_converges() {
     let levels = [60, 80, 100].map(|n| {

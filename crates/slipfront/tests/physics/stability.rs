@@ -31,8 +31,9 @@ fn growth(model: &Model, dt: f64, steps: usize) -> f64 {
     largest
 }
 
-/// Equal blocks with periodic edges have a wave that reaches the bound: it is strict. Just below the limit the undamped oscillation
-/// beats with an amplitude of 1/sqrt(1 - (dt/limit)^2) = 22 at 0.999 of it, of each of the waves that make up the start.
+/// Equal blocks with periodic edges have a wave that reaches the bound: it is strict. Just below the limit
+/// the undamped oscillation beats with an amplitude of 1/sqrt(1 - (dt/limit)^2) = 22 at 0.999 of it, of each
+/// of the waves that make up the start.
 #[test_case(0.0, 0.9058)]
 #[test_case(0.365, 0.6295)]
 #[test_case(2.0, 0.21025)]
@@ -64,8 +65,9 @@ fn stiffness_over_density_decides(stiffness: f64, density: f64, limit: f64) {
     assert!((found - limit).abs() < 5e-5, "{found}");
 }
 
-/// The bound is safe for heterogeneous blocks. A light block among heavy ones swings alone, at half of what the bound takes
-/// of its neighbours: the bound is too strict by the square root of 2, or by 2 where the dampers decide.
+/// The bound is safe for heterogeneous blocks. A light block among heavy ones swings alone, at half of what
+/// the bound takes of its neighbours: the bound is too strict by the square root of 2, or by 2 where the
+/// dampers decide.
 #[test_matrix([0.0, 0.2], [0.02, 0.5])]
 fn the_bound_of_unequal_blocks_is_safe(viscosity_time: f64, lightest: f64) {
     let mut slider = varied(24, false);

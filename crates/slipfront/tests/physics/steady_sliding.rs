@@ -7,9 +7,9 @@ use test_case::test_case;
 
 use crate::common::{Slider, cavity};
 
-/// Every block slides and the slider settles on the level exponentially, at the slowest with k_s/Omega = 0.014 to 0.2 per
-/// unit of time: by 20/V* the transition has decayed below 1e-9. (At Omega* = 1 a few blocks of much friction go on sticking
-/// for very long, which the paper's claim tests allow for.)
+/// Every block slides and the slider settles on the level exponentially, at the slowest with k_s/Omega =
+/// 0.014 to 0.2 per unit of time: by 20/V* the transition has decayed below 1e-9. (At Omega* = 1 a few blocks
+/// of much friction go on sticking for very long, which the paper's claim tests allow for.)
 #[test_case(Slider { omega_star: 2.0, ..Slider::default() })]
 #[test_case(Slider { omega_star: 3.0, ..Slider::default() })]
 #[test_case(Slider { omega_star: 3.0, v_star: 0.1, ..Slider::default() })]

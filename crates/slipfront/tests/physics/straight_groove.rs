@@ -13,9 +13,9 @@ fn the_closed_form_has_the_tabulated_values(facing: Facing, factor: f64) {
     assert!((groove_edge_factor(facing, 5) - factor).abs() < 5e-7);
 }
 
-/// The blocks of the groove follow the drive with a constant lag and an oscillation that damping removes, so that
-/// the *rate* at which the load of an edge row grows is exact: 1e-9 is rounding over the time between two
-/// instants.
+/// The blocks of the groove follow the drive with a constant lag and an oscillation that damping removes, so
+/// that the *rate* at which the load of an edge row grows is exact: 1e-9 is rounding over the time between
+/// two instants.
 #[test_matrix(
     [(Facing::Across, Orientation::Across), (Facing::Along, Orientation::Along)],
     [1, 2, 5, 8],

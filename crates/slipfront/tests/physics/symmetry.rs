@@ -187,7 +187,8 @@ fn every_symmetry_of_the_square_is_exact(
     );
 }
 
-/// Symmetry holds for heterogeneous sliders, some of whose blocks do not exist, with dampers beside their springs.
+/// Symmetry holds for heterogeneous sliders, some of whose blocks do not exist, with dampers beside their
+/// springs.
 #[test_matrix([(false, 1), (false, 2), (true, 0), (true, 1)], [0.0, 0.3], [true, false])]
 fn sliders_of_unequal_blocks_too((mirror, quarters): (bool, usize), viscosity_time: f64, has_outline: bool) {
     let blocks = [8, 13];

@@ -52,8 +52,8 @@ fn blocks_in_contact_carry_the_whole_load() {
     }
 }
 
-/// A textured block has no friction, so that it moves as soon as any force acts: in the first step after t = 0.
-/// N* counts it, first-slip times do not.
+/// A textured block has no friction, so that it moves as soon as any force acts: in the first step after t =
+/// 0. N* counts it, first-slip times do not.
 #[test_matrix([FrictionLaw::Projection, FrictionLaw::Reversal])]
 fn textured_blocks_move_at_once(law: FrictionLaw) {
     let slider = Slider { law, ..textured() };
@@ -111,8 +111,8 @@ fn contact_stress_and_traction_of_stuck_blocks() {
     assert!((total - now.point.mu_star).abs() < 1e-13);
 }
 
-/// The scale of tau_c* is the largest over blocks in contact and steps, at every step. The recomputed
-/// stress of a sliding block may differ by rounding: by some 1e-16 of its forces, which are of the order of 1.
+/// The scale of tau_c* is the largest over blocks in contact and steps, at every step. The recomputed stress
+/// of a sliding block may differ by rounding: by some 1e-16 of its forces, which are of the order of 1.
 #[test]
 fn the_largest_contact_stress_is_over_blocks_in_contact_and_all_steps() {
     let slider = textured();
@@ -152,8 +152,8 @@ fn two_readings_of_the_law_agree_and_the_literal_one_does_not() {
     assert!(!literal.peak.ended);
 }
 
-/// The peak with a frictionless groove, next to which blocks stop and start often, does not depend on the friction law
-/// either.
+/// The peak with a frictionless groove, next to which blocks stop and start often, does not depend on the
+/// friction law either.
 #[test]
 fn two_readings_agree_beside_a_groove() {
     let with = |law| {
@@ -169,7 +169,8 @@ fn two_readings_agree_beside_a_groove() {
     assert!(difference < 1e-3, "{difference}");
 }
 
-/// However large the stress of a block over a texture is, the largest contact stress is that of blocks in contact.
+/// However large the stress of a block over a texture is, the largest contact stress is that of blocks in
+/// contact.
 #[test]
 fn the_largest_contact_stress_leaves_textured_blocks_out() {
     let slider = textured();

@@ -34,8 +34,9 @@ fn radii(model: &Model) -> Vec<f64> {
         .collect()
 }
 
-/// A uniform slider slips at its largest radius first, at `sum r^2/(r_max sum r)` of the torque that it can bear: for a disc of 20
-/// blocks across 0.7577, near the 3/4 of a continuous one. The torque is seen within the rise of one step.
+/// A uniform slider slips at its largest radius first, at `sum r^2/(r_max sum r)` of the torque that it can
+/// bear: for a disc of 20 blocks across 0.7577, near the 3/4 of a continuous one. The torque is seen within
+/// the rise of one step.
 #[test_case([20, 20], disc(20))]
 #[test_case([12, 7], slipfront::Slider::default())]
 fn the_rim_slips_first(blocks: [usize; 2], body: slipfront::Slider) {
@@ -80,8 +81,8 @@ fn the_rim_slips_first(blocks: [usize; 2], body: slipfront::Slider) {
     );
 }
 
-/// Thresholds in proportion to the radius are reached everywhere at once, up to rounding: the whole disc slips within a step, at the
-/// torque that it can bear.
+/// Thresholds in proportion to the radius are reached everywhere at once, up to rounding: the whole disc
+/// slips within a step, at the torque that it can bear.
 #[test]
 fn a_disc_of_thresholds_in_proportion_to_the_radius_slips_at_once() {
     let slider = Slider {
@@ -117,9 +118,11 @@ fn a_disc_of_thresholds_in_proportion_to_the_radius_slips_at_once() {
     assert_eq!(simulation.snapshot().totals.n_slipping, model.surface.n_contact());
 }
 
-/// Steady rotation: kinetic friction along the circles and damping, `[sum mu_k F_n r + Omega V sum r^2/r_max]/sum r`. All motions
-/// of the lattice are overdamped, Omega > 2 sqrt(6.5 k_1), so that the slow blocks next to the middle do not stick. Across its circle a block at the speed v moves as if damped by `Omega + mu_k F_n/v`, and returns at k_s over
-/// this; the slowest, next to the middle, is waited for until exp(-25) is left.
+/// Steady rotation: kinetic friction along the circles and damping,
+/// `[sum mu_k F_n r + Omega V sum r^2/r_max]/sum r`. All motions of the lattice are overdamped, Omega > 2
+/// sqrt(6.5 k_1), so that the slow blocks next to the middle do not stick. Across its circle a block at the
+/// speed v moves as if damped by `Omega + mu_k F_n/v`, and returns at k_s over this; the slowest, next to the
+/// middle, is waited for until exp(-25) is left.
 #[test]
 fn the_level_of_steady_rotation_is_that_of_friction_and_damping() {
     let slider = Slider {
@@ -176,8 +179,8 @@ fn a_quarter_turn_changes_nothing() {
     }
 }
 
-/// Work is torque times angle: exact while the springs alone take it; afterwards the balance misses what blocks lose when they stop,
-/// with the square of the step.
+/// Work is torque times angle: exact while the springs alone take it; afterwards the balance misses what
+/// blocks lose when they stop, with the square of the step.
 #[test]
 fn the_ledger_closes_in_rotation() {
     let slider = Slider {

@@ -36,7 +36,8 @@ fn damped(viscosity_time: f64) -> Slider {
     }
 }
 
-/// Amplitude after each step of the standing wave of this mode, from 1 with a velocity of 0 half a step before.
+/// Amplitude after each step of the standing wave of this mode, from 1 with a velocity of 0 half a step
+/// before.
 fn amplitudes(
     mode: (u32, u32),
     branch: usize,
@@ -83,8 +84,8 @@ fn a_mode_obeys_the_scheme(mode: (u32, u32), branch: usize, omega_star: f64, tim
     }
 }
 
-/// Exactly the rate of the lagged force, which is of first order in the step. It is read off amplitudes about a radian apart, so
-/// that it is as exact as they are: 1e-12.
+/// Exactly the rate of the lagged force, which is of first order in the step. It is read off amplitudes about
+/// a radian apart, so that it is as exact as they are: 1e-12.
 #[test_matrix([(1, 0), (2, 1), (6, 4)], [0, 1])]
 fn modes_decay_at_their_rate(mode: (u32, u32), branch: usize) {
     let time = 0.1;
@@ -102,7 +103,8 @@ fn modes_decay_at_their_rate(mode: (u32, u32), branch: usize) {
     assert!((order - 1.0).abs() < 0.01, "order {order}");
 }
 
-/// With both dampings, in the limit: half the sum of both. The step of 1e-3 leaves an error of first order, gamma dt/2 < 2e-4.
+/// With both dampings, in the limit: half the sum of both. The step of 1e-3 leaves an error of first order,
+/// gamma dt/2 < 2e-4.
 #[test]
 fn both_dampings_add() {
     let (dt, time, omega_star) = (1e-3, 0.05, 0.2);
@@ -112,8 +114,8 @@ fn both_dampings_add() {
     assert!((rate / exact - 1.0).abs() < 2e-4, "{rate}, exactly {exact}");
 }
 
-/// Dampers act in pairs: the momentum of a slider that nothing holds is conserved. Its change is the rounding of sums over 120
-/// blocks and 400 steps.
+/// Dampers act in pairs: the momentum of a slider that nothing holds is conserved. Its change is the rounding
+/// of sums over 120 blocks and 400 steps.
 #[test_matrix([0.0, 0.02], [false, true])]
 fn momentum_is_conserved(epsilon: f64, has_outline: bool) {
     let slider = Slider {
@@ -169,8 +171,9 @@ fn a_rigid_translation_feels_nothing() {
     assert_eq!(run(0.0), run(0.3));
 }
 
-/// Without friction, what was stored at the start is stored, or lost to one of both dampings. Kinetic energy is the mean of two half
-/// steps, so that what is missing is dt^2/4 times the difference of sum F^2/m: of second order, at any time.
+/// Without friction, what was stored at the start is stored, or lost to one of both dampings. Kinetic energy
+/// is the mean of two half steps, so that what is missing is dt^2/4 times the difference of sum F^2/m: of
+/// second order, at any time.
 #[test]
 fn dampers_take_what_is_missing() {
     let worst = |dt: f64| {
@@ -199,8 +202,8 @@ fn dampers_take_what_is_missing() {
     assert!(fine < 1e-4);
 }
 
-/// The balance closes through onset and far beyond, as without dampers: it misses the kinetic energy of the last step of a
-/// slip.
+/// The balance closes through onset and far beyond, as without dampers: it misses the kinetic energy of the
+/// last step of a slip.
 #[test]
 fn the_ledger_closes_with_friction() {
     let slider = common::Slider {

@@ -29,9 +29,9 @@ fn measured_growth(v: f64, damping: f64, dt: f64) -> f64 {
     growth_of_disturbance(&model, dt, [0.0, 2.4])
 }
 
-/// Friction is taken at the speed half a step before, F(v - dt v'/2), as if the mass were m - (dF/dv) dt/2: the rate is
-/// smaller by that share, and half the step leaves half the error, to terms of the next order (a fifth of the share, 10 % of
-/// the ratio). The test covers both sides of dF/dv + Omega = 0.
+/// Friction is taken at the speed half a step before, F(v - dt v'/2), as if the mass were m - (dF/dv) dt/2:
+/// the rate is smaller by that share, and half the step leaves half the error, to terms of the next order (a
+/// fifth of the share, 10 % of the ratio). The test covers both sides of dF/dv + Omega = 0.
 #[test_case(0.2, 0.0)]
 #[test_case(0.2, 0.2)]
 #[test_case(0.2, 0.4)]

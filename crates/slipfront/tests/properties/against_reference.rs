@@ -39,7 +39,8 @@ struct Options {
     constant_force: [f64; 2],
     /// Scale of forces over the mean static coefficient.
     mu_static_mean: f64,
-    /// Size of displacements and velocities at the start, and which of the blocks have a velocity: every n-th.
+    /// Size of displacements and velocities at the start, and which of the blocks have a velocity: every
+    /// n-th.
     start: Option<(f64, usize)>,
     /// Whether the reference is given the state of the kernel before each step.
     follows: bool,
@@ -84,9 +85,9 @@ fn friction() -> impl Strategy<Value = Friction> {
 }
 
 prop_compose! {
-    /// Parameters with which friction is felt at all speeds: where `ln(2 V_0) - (mu_0 + b ln(V_0 theta/D_c))/a` is large
-    /// there is next to none, and the library finds speeds to an absolute error of the exponential of that times the last
-    /// place alone.
+    /// Parameters with which friction is felt at all speeds: where
+    /// `ln(2 V_0) - (mu_0 + b ln(V_0 theta/D_c))/a` is large there is next to none, and the library finds
+    /// speeds to an absolute error of the exponential of that times the last place alone.
     fn rate_and_state()(
         a in 0.005..0.03,
         b_over_a in 0.0..3.0,
@@ -264,8 +265,9 @@ impl Setting {
         ]
     }
 
-    /// Whether every step begins in the state of the kernel. This is necessary where an error does not stay small by itself:
-    /// where friction falls with speed, or follows the direction of a velocity that may be nearly zero.
+    /// Whether every step begins in the state of the kernel. This is necessary where an error does not stay
+    /// small by itself: where friction falls with speed, or follows the direction of a velocity that may be
+    /// nearly zero.
     fn takes_single_steps(&self) -> bool {
         let keeps_errors_small = match self.model.friction {
             Friction::Coulomb(coulomb) => {
@@ -314,10 +316,10 @@ struct Tolerance {
 }
 
 impl Tolerance {
-    /// A force is a sum of some ten terms, each found in a few operations, all of which round to half of the last place of the largest:
-    /// 32 last places. In a step a velocity changes by it times dt/(m c_+), and so does what is lost of it to the next; in n steps that
-    /// begin where the one before has ended, velocities gather n such errors and displacements n^2, since no law that is followed so
-    /// amplifies them.
+    /// A force is a sum of some ten terms, each found in a few operations, all of which round to half of the
+    /// last place of the largest: 32 last places. In a step a velocity changes by it times dt/(m c_+), and so
+    /// does what is lost of it to the next; in n steps that begin where the one before has ended, velocities
+    /// gather n such errors and displacements n^2, since no law that is followed so amplifies them.
     fn new(setting: &Setting, state: &State, step: u64) -> Self {
         let (model, slider) = (&setting.model, setting.model.slider());
         let blocks = || (0..model.lattice.n_blocks()).filter(|&b| slider.exists(b));
@@ -348,8 +350,9 @@ impl Tolerance {
         };
         let force = 32.0 * f64::EPSILON * largest * steps;
         let velocity = force * setting.dt / lightest;
-        // Terms of sums are rounded to a last place of their bounds. Those on speeds assume that springs are stretched as far as blocks may
-        // have moved since displacements were measured, which is done every 16 steps.
+        // Terms of sums are rounded to a last place of their bounds. Those on speeds assume that springs are
+        // stretched as far as blocks may have moved since displacements were measured, which is done every 16
+        // steps.
         let gap = distance + path + 2.0 * 16.0 * setting.dt * speed;
         let highest = speed + (10.0 * gap + bears) * setting.dt / lightest;
         let powers = heaviest * (1.0 + model.damping * setting.dt) / setting.dt * highest * highest;
@@ -447,9 +450,9 @@ fn agree(what: &str, found: f64, expected: f64, tolerance: f64) -> TestCaseResul
     Ok(())
 }
 
-/// Whether rounding decides if a block slides: a block that no friction holds, and that moves by no more than rounding,
-/// since the forces on it cancel or a wave has just come to it. For other blocks it decides with a chance of 1e-13 per block
-/// and step, where a force comes so close to a threshold.
+/// Whether rounding decides if a block slides: a block that no friction holds, and that moves by no more than
+/// rounding, since the forces on it cancel or a wave has just come to it. For other blocks it decides with a
+/// chance of 1e-13 per block and step, where a force comes so close to a threshold.
 fn is_undecided(model: &Model, state: &State, reference: &Reference, tolerance: &Tolerance) -> bool {
     let is_tiny = |[x, y]: [f64; 2]| {
         let speed = x.hypot(y);
@@ -574,7 +577,8 @@ fn compare_sums(row: &CurveRow, reference: &Reference, tolerance: &Tolerance) ->
     )
 }
 
-/// Both kernels take single steps from arbitrary states, and chains of them, as the reference does, whatever the options.
+/// Both kernels take single steps from arbitrary states, and chains of them, as the reference does, whatever
+/// the options.
 #[test]
 fn kernels_agree_with_the_reference() {
     let reached = RefCell::new(BTreeMap::<&str, usize>::new());

@@ -291,8 +291,8 @@ proptest! {
         prop_assert_eq!(now.totals.n_slipping, (0..n).filter(slips).count());
     }
 
-    /// Friction on a sliding block is mu_k F_n against its motion. On a stuck one it balances the other forces and never exceeds
-    /// max(mu_s, mu_k) F_n unless the block has just stopped.
+    /// Friction on a sliding block is mu_k F_n against its motion. On a stuck one it balances the other
+    /// forces and never exceeds max(mu_s, mu_k) F_n unless the block has just stopped.
     #[test]
     fn friction_stays_in_its_bounds(slider in slider()) {
         prop_assume!(has_contact(&slider));
@@ -320,8 +320,8 @@ proptest! {
         }
     }
 
-    /// The number of threads and skipping change no bit, and the general kernel agrees to rounding, from rest and from a state
-    /// in motion.
+    /// The number of threads and skipping change no bit, and the general kernel agrees to rounding, from rest
+    /// and from a state in motion.
     #[test]
     fn kernels_and_executions_agree(
         slider in slider(), lattice in lattice_below(41), moves in any::<bool>(),
@@ -355,7 +355,8 @@ proptest! {
             let size = |v: &VectorField| v.x.iter().chain(&v.y).fold(1.0_f64, |most, x| x.abs().max(most));
             for (a, b) in [(&here.displacement, &exact.displacement), (&here.velocity, &exact.velocity)] {
                 let far = (0..n).map(|k| (a.x[k] - b.x[k]).abs().max((a.y[k] - b.y[k]).abs())).fold(0.0, f64::max);
-                // Rounding errors of 1e-16 in each of hundreds of steps, which add up where nothing dissipates energy.
+                // Rounding errors of 1e-16 in each of hundreds of steps, which add up where nothing
+                // dissipates energy.
                 prop_assert!(far < 1e-12 * size(b), "step {}: {:e} apart", step, far);
             }
         }

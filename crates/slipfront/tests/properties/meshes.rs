@@ -28,11 +28,12 @@ prop_compose! {
     }
 }
 
-/// Whether the centre of a block lies inside a cavity with this centre; the block may lie beyond a periodic edge.
+/// Whether the centre of a block lies inside a cavity with this centre; the block may lie beyond a periodic
+/// edge.
 type IsInside = Box<dyn Fn([isize; 2]) -> bool>;
 
-/// Eq. 17 as printed, for one cavity: the formula of an ellipse, or the crossings of a polygon of 4096 vertices with the row of
-/// the block, of which an odd number lies left of its centre.
+/// Eq. 17 as printed, for one cavity: the formula of an ellipse, or the crossings of a polygon of 4096
+/// vertices with the row of the block, of which an odd number lies left of its centre.
 fn inside(cavity: &Cavity, [x, y]: [f64; 2], rows: std::ops::Range<isize>) -> IsInside {
     let Cavity { lambda, w, .. } = *cavity;
     let s = f64::from(cavity.s);
@@ -137,7 +138,8 @@ fn places(arrays: &[Array]) -> Vec<[f64; 2]> {
 prop_compose! {
     fn array()(
         count in [1..5_usize, 1..5_usize],
-        // In quarters of four blocks, so that the shifts of staggered rows are on the grid of the coordinates too.
+        // In quarters of four blocks, so that the shifts of staggered rows are on the grid of the coordinates
+        // too.
         spacing in [coordinate(0.5..9.0), coordinate(0.5..9.0)],
         staggered in any::<bool>(),
     ) -> Array {

@@ -1,4 +1,5 @@
-//! Surfaces that several ranks make, each its own rows, compared with the surface that one process makes alone.
+//! Surfaces that several ranks make, each its own rows, compared with the surface that one process makes
+//! alone.
 
 use proptest::prelude::*;
 use slipfront::Surface;
@@ -72,7 +73,8 @@ proptest! {
         prop_assert_eq!(surface.min_slip_threshold(), thresholds.fold(f64::INFINITY, f64::min));
         let mean = (0..n).map(|b| surface.kinetic_force(b)).sum::<f64>() / n as f64;
         let largest = (0..n).map(|b| surface.kinetic_force(b)).fold(0.0, f64::max);
-        // Each of n terms is rounded by 2^-51 of the largest, and each of n plain additions by 2^-53 of a sum of at most n.
+        // Each of n terms is rounded by 2^-51 of the largest, and each of n plain additions by 2^-53 of a sum
+        // of at most n.
         let bound = largest * (2f64.powi(-50) + n as f64 * 2f64.powi(-52));
         prop_assert!((surface.mean_kinetic_force() - mean).abs() <= bound);
     }

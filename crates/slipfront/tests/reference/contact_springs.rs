@@ -7,8 +7,8 @@ use slipfront::{ContactSprings, Surface};
 use super::step::{Motion, Update};
 use super::vector::{Vector, length, sum, times};
 
-/// Coefficient of the spring of block `b` that has broken `breaks` times: its own, or with `redraw` that of a block in contact which the
-/// random stream of seed, block and number of breaks chooses.
+/// Coefficient of the spring of block `b` that has broken `breaks` times: its own, or with `redraw` that of a
+/// block in contact which the random stream of seed, block and number of breaks chooses.
 pub(crate) fn coefficient(law: &ContactSprings, surface: &Surface, b: usize, breaks: u64) -> f64 {
     let Some(seed) = law.redraw.filter(|_| breaks > 0) else {
         return surface.mu_static[b];
@@ -27,8 +27,8 @@ pub(crate) fn coefficient(law: &ContactSprings, surface: &Surface, b: usize, bre
     }
 }
 
-/// The update of a block whose spring is stretched by `stretch = u - a`, and whether the spring breaks: `F_f = -k_t (u - a)`, of one that
-/// breaks for half of the step.
+/// The update of a block whose spring is stretched by `stretch = u - a`, and whether the spring breaks:
+/// `F_f = -k_t (u - a)`, of one that breaks for half of the step.
 pub(crate) fn update(
     law: &ContactSprings,
     motion: &Motion,

@@ -1,4 +1,5 @@
-//! Static and kinetic friction with memory (Eq. 4), in its three readings; weakening with speed and with slip, and ageing.
+//! Static and kinetic friction with memory (Eq. 4), in its three readings; weakening with speed and with
+//! slip, and ageing.
 
 use slipfront::{Ageing, FrictionLaw, SlipWeakening, Weakening};
 
@@ -17,8 +18,8 @@ pub(crate) fn aged(law: Option<Ageing>, age: f64) -> f64 {
     law.map_or(1.0, |law| 1.0 + law.beta * (1.0 + age / law.time).ln())
 }
 
-/// Strength of a block while it is stuck and while it slides after a slip `s`: `f = K + (S - K) max(0, 1 - s/D_c)` for both,
-/// unless `K >= S`.
+/// Strength of a block while it is stuck and while it slides after a slip `s`:
+/// `f = K + (S - K) max(0, 1 - s/D_c)` for both, unless `K >= S`.
 pub(crate) fn after_slip(law: Option<SlipWeakening>, [holds, slows]: [f64; 2], slip: f64) -> [f64; 2] {
     match law {
         Some(law) if holds > slows => [slows + (holds - slows) * (1.0 - slip / law.length).max(0.0); 2],
@@ -32,7 +33,8 @@ pub(crate) fn is_whole_again(law: Option<SlipWeakening>, stuck_for: f64) -> bool
         .is_some_and(|time| stuck_for >= time)
 }
 
-/// The update of a block on which `force` acts beside friction, which bears `holds` while it is stuck and `slows` while it slides.
+/// The update of a block on which `force` acts beside friction, which bears `holds` while it is stuck and
+/// `slows` while it slides.
 pub(crate) fn update(law: FrictionLaw, motion: &Motion, force: Vector, holds: f64, slows: f64) -> Update {
     match law {
         FrictionLaw::Projection => projection(motion, force, holds, slows),
@@ -49,7 +51,8 @@ fn stuck(force: Vector) -> Update {
     }
 }
 
-/// Moreau's time-stepping: kinetic friction takes `q = dt mu_k F_n/(m c_+)` from the velocity that the block would have without it.
+/// Moreau's time-stepping: kinetic friction takes `q = dt mu_k F_n/(m c_+)` from the velocity that the block
+/// would have without it.
 fn projection(motion: &Motion, force: Vector, holds: f64, slows: f64) -> Update {
     if motion.is_at_rest() && length(force) <= holds {
         return stuck(force);
@@ -65,8 +68,8 @@ fn projection(motion: &Motion, force: Vector, holds: f64, slows: f64) -> Update 
     }
 }
 
-/// Explicit friction along `-v`, along minus the force for a block that starts; a block whose velocity turns round within the static
-/// threshold sticks.
+/// Explicit friction along `-v`, along minus the force for a block that starts; a block whose velocity turns
+/// round within the static threshold sticks.
 fn reversal(motion: &Motion, force: Vector, holds: f64, slows: f64) -> Update {
     let starts = motion.is_at_rest();
     // D12: what does not overcome kinetic friction does not start.

@@ -73,8 +73,8 @@ pub(crate) fn spring_force(stiffness: f64, path: f64, direction: Vector, displac
     times(stiffness, difference(times(path, direction), displacement))
 }
 
-/// The constant force beside the drive spring of block `b`, in proportion to its stiffness: along x and y, of a rotation along the
-/// direction **g** of the block and across it.
+/// The constant force beside the drive spring of block `b`, in proportion to its stiffness: along x and y, of
+/// a rotation along the direction **g** of the block and across it.
 pub(crate) fn constant_force(model: &Model, b: usize, direction: Vector) -> Vector {
     let [along, across] = model.drive.constant_force;
     let force = match model.drive.rotation {

@@ -3,7 +3,8 @@
 use slipfront::Surface;
 use slipfront::surface::{Contact, Load};
 
-/// Normal forces, in units of `P l^2`: `F_n,i = p_i (sum_all p)/(sum_contact p)` on blocks in contact, 0 over a texture.
+/// Normal forces, in units of `P l^2`: `F_n,i = p_i (sum_all p)/(sum_contact p)` on blocks in contact, 0 over
+/// a texture.
 ///
 /// With [`Load::Kept`] the blocks in contact bear `p_i` alone. Blocks that do not exist have no pressure.
 pub(crate) fn normal_forces(surface: &Surface, contact: &Contact, exists: &[bool]) -> Vec<f64> {

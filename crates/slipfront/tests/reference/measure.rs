@@ -49,8 +49,8 @@ impl Reference<'_> {
         self.blocks.iter().filter(|block| block.exists).count() as f64
     }
 
-    /// mu* and the component to the left of the drive (Eq. 9): of a translation `sum F_s . d/N`, of a rotation `sum F_s . (z x r)/sum r`,
-    /// the torque over the sum of radii.
+    /// mu* and the component to the left of the drive (Eq. 9): of a translation `sum F_s . d/N`, of a
+    /// rotation `sum F_s . (z x r)/sum r`, the torque over the sum of radii.
     pub(crate) fn mu_star(&self) -> [f64; 2] {
         let over = match self.model.drive.rotation {
             None => self.n_blocks(),
@@ -159,7 +159,8 @@ impl Reference<'_> {
         }
     }
 
-    /// Adds the step that ends at t_n, by the trapezoidal rule: the work of the drive is `(F_n-1 + F_n)/2 (X_n - X_n-1)`.
+    /// Adds the step that ends at t_n, by the trapezoidal rule: the work of the drive is
+    /// `(F_n-1 + F_n)/2 (X_n - X_n-1)`.
     pub(super) fn add_losses(&mut self) {
         let now = self.powers();
         let broken = self.broken_energy();

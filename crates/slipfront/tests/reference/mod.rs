@@ -1,7 +1,8 @@
-//! The model of `docs/model.md`, to be read beside the paper: one thread, plain loops, one function per equation, every option.
+//! The model of `docs/model.md`, to be read beside the paper: one thread, plain loops, one function per
+//! equation, every option.
 //!
-//! Lattices, surfaces and parameters come from the library; every force, threshold, friction and sum is computed here. Units
-//! are those of the library (Eq. 11).
+//! Lattices, surfaces and parameters come from the library; every force, threshold, friction and sum is
+//! computed here. Units are those of the library (Eq. 11).
 
 mod contact_springs;
 mod coulomb;
@@ -152,7 +153,8 @@ impl<'a> Reference<'a> {
         reference
     }
 
-    /// Puts blocks where a state has them; its velocities become those half a step after t_n. The memory stays.
+    /// Puts blocks where a state has them; its velocities become those half a step after t_n. The memory
+    /// stays.
     pub(crate) fn move_to(&mut self, state: &State) {
         let [u, v] = [&state.displacement, &state.velocity];
         for b in 0..self.blocks.len() {
@@ -177,8 +179,8 @@ impl<'a> Reference<'a> {
         !self.model.drive.is_held() || !(0..self.blocks.len()).any(slips)
     }
 
-    /// From t_n to t_n+1, in which the drive moves or stands: the displacements (Eq. 8), the memory of contacts, and all
-    /// that belongs to the new instant.
+    /// From t_n to t_n+1, in which the drive moves or stands: the displacements (Eq. 8), the memory of
+    /// contacts, and all that belongs to the new instant.
     pub(crate) fn step(&mut self, drive_moves: bool) {
         self.step += 1;
         self.drive_steps_before = self.drive_steps;
@@ -196,7 +198,8 @@ impl<'a> Reference<'a> {
         self.evaluate();
     }
 
-    /// Finds forces at t_n (Eqs. 2, 3), friction (Eq. 4), velocities half a step later (Eqs. 5 to 8), and the measures.
+    /// Finds forces at t_n (Eqs. 2, 3), friction (Eq. 4), velocities half a step later (Eqs. 5 to 8), and the
+    /// measures.
     fn evaluate(&mut self) {
         for b in 0..self.blocks.len() {
             self.force_drive[b] = self.drive_force(b);

@@ -3,12 +3,14 @@
 use super::lattice::Spring;
 use super::vector::{Vector, difference, dot, length, sum, times, unit};
 
-/// Vector **r** = **d** + eps **e** along a spring whose ends have moved apart by **e** = u_j - u_i, in blocks.
+/// Vector **r** = **d** + eps **e** along a spring whose ends have moved apart by **e** = u_j - u_i, in
+/// blocks.
 fn current(spring: &Spring, apart: Vector, epsilon: f64) -> Vector {
     sum(spring.rest, times(epsilon, apart))
 }
 
-/// Extension over the strain of the load, `(r - d)/eps = (2 d.e + eps e^2)/(r + d)`, without a difference of nearly equal lengths.
+/// Extension over the strain of the load, `(r - d)/eps = (2 d.e + eps e^2)/(r + d)`, without a difference of
+/// nearly equal lengths.
 fn extension(spring: &Spring, apart: Vector, epsilon: f64) -> f64 {
     let (r, d) = (length(current(spring, apart, epsilon)), length(spring.rest));
     (2.0 * dot(spring.rest, apart) + epsilon * dot(apart, apart)) / (r + d)
@@ -25,7 +27,8 @@ pub(crate) fn elastic_force(b: usize, springs: &[Spring], displacements: &[Vecto
     force
 }
 
-/// Force of the dampers on block `b`, for velocities half a step before: `F_v = sum_j tau_v k_ij (e_ij . (v_j - v_i)) e_ij`.
+/// Force of the dampers on block `b`, for velocities half a step before:
+/// `F_v = sum_j tau_v k_ij (e_ij . (v_j - v_i)) e_ij`.
 pub(crate) fn damper_force(
     b: usize,
     springs: &[Spring],

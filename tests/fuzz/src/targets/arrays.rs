@@ -62,7 +62,8 @@ pub(crate) const MASK_PNG: Target = Target {
     files: &["cases/herringbone.png", "docs/images/texture-mask.png"],
     dictionary: Some("png.dict"),
     max_bytes: 8192,
-    // The decoder's own buffers, some rows of the image: it may be a single one, with 8 x 1040 pixels in a byte of the file.
+    // The decoder's own buffers, some rows of the image: it may be a single one, with 8 x 1040 pixels in a
+    // byte of the file.
     memory: Memory {
         bytes: 4 << 20,
         per_byte: 2 * 8 * 1040,
@@ -317,7 +318,8 @@ fn zip(files: &[(String, Vec<u8>)]) -> Vec<u8> {
 /// A tag of a TIFF file with its numbers.
 type TiffTag = (u16, Vec<u32>);
 
-/// A picture of 16 bits with these tags more, whose `data` stands at byte 8; the next picture stands at `next`, 0 for none.
+/// A picture of 16 bits with these tags more, whose `data` stands at byte 8; the next picture stands at
+/// `next`, 0 for none.
 fn tiff([width, height]: [u32; 2], own: Vec<TiffTag>, data: &[u8], next: u32) -> Vec<u8> {
     /// Type of a number of 32 bits.
     const LONG: u16 = 4;

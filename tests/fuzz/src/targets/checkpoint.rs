@@ -21,8 +21,8 @@ use crate::checks::readable;
 use crate::scratch;
 use crate::target::{Memory, Target, Time};
 
-/// The first byte chooses one of [`CASES`]. The rest is read as it is, then with the right checksum, then with the right
-/// header as well, but for its columns; a run is resumed if the file can be read.
+/// The first byte chooses one of [`CASES`]. The rest is read as it is, then with the right checksum, then
+/// with the right header as well, but for its columns; a run is resumed if the file can be read.
 pub(crate) const CHECKPOINTS: Target = Target {
     name: "checkpoint",
     check: checkpoint,

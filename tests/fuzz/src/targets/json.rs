@@ -1,4 +1,5 @@
-//! The JSON files of a run folder: the summary, the manifest with its checksum, and the journal of a run that is not complete.
+//! The JSON files of a run folder: the summary, the manifest with its checksum, and the journal of a run that
+//! is not complete.
 
 use std::sync::atomic::AtomicBool;
 
@@ -246,8 +247,8 @@ fn check_manifest(input: &[u8]) {
     manifest(&with_checksum(input));
 }
 
-/// A manifest that can be read is equal when written and read again; no file outside of its folder is touched, whatever it
-/// lists.
+/// A manifest that can be read is equal when written and read again; no file outside of its folder is
+/// touched, whatever it lists.
 fn manifest(bytes: &[u8]) {
     let folder = scratch::folder("manifests/run");
     let beside = scratch::file("manifests/keep", b"kept");
@@ -313,7 +314,8 @@ fn journals() -> Vec<Vec<u8>> {
 
 const FINISHED: &[u8] = b"{}\n";
 
-/// No file outside of the folder of a journal is touched, whatever it lists, and none in it that is not listed as it is.
+/// No file outside of the folder of a journal is touched, whatever it lists, and none in it that is not
+/// listed as it is.
 fn check_journal(input: &[u8]) {
     let folder = scratch::folder("journals/run");
     let beside = scratch::file("journals/keep", b"kept");

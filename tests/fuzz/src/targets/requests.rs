@@ -1,7 +1,8 @@
 //! Messages of the laboratory's page, each to a session that has had those before it.
 //!
-//! An input that begins with a brace holds messages as they are, one in a line. The bytes of any other input choose messages
-//! of every kind, with keys of the case and others, long paths, nested values, huge numbers, shapes, images.
+//! An input that begins with a brace holds messages as they are, one in a line. The bytes of any other input
+//! choose messages of every kind, with keys of the case and others, long paths, nested values, huge numbers,
+//! shapes, images.
 
 use std::thread;
 
@@ -24,9 +25,9 @@ pub(crate) const REQUESTS: Target = Target {
     files: &[],
     dictionary: Some("requests.dict"),
     max_bytes: 2048,
-    // Eight runs of the 18 MB that opening 12 x 9 blocks was measured to take: the case and its twin, those of the case before until they
-    // have ended, one that is saved, one repeated, and two of a search. A message holds its text several times, and its tables take some
-    // tens of bytes a value.
+    // Eight runs of the 18 MB that opening 12 x 9 blocks was measured to take: the case and its twin, those
+    // of the case before until they have ended, one that is saved, one repeated, and two of a search. A
+    // message holds its text several times, and its tables take some tens of bytes a value.
     memory: Memory {
         bytes: 8 * 18_000_000,
         per_byte: 2048,
@@ -37,7 +38,8 @@ pub(crate) const REQUESTS: Target = Target {
     long,
 };
 
-/// Messages with many of each thing that they may have, and with long and deep ones, each to a session with a case.
+/// Messages with many of each thing that they may have, and with long and deep ones, each to a session with a
+/// case.
 fn long() -> Vec<Vec<u8>> {
     let open = "{\"do\":\"open\",\"source\":{\"toml\":\"slider.blocks = [12, 9]\"}}\n";
     let message = |begin: &str, piece: &str, end: &str| many(&format!("{open}{begin}"), piece, end);
@@ -84,8 +86,8 @@ fn long() -> Vec<Vec<u8>> {
     ]
 }
 
-/// Stack of the thread that answers: an eighth of that of a page's own thread, so that excessive use shows early. A stack
-/// that overflows ends the process.
+/// Stack of the thread that answers: an eighth of that of a page's own thread, so that excessive use shows
+/// early. A stack that overflows ends the process.
 const STACK: usize = 256 << 10;
 
 /// Most messages of an input.
@@ -106,7 +108,8 @@ fn requests(input: &[u8]) {
     };
     // An abort leaves no other trace of what has led to it: see run.sh.
     scratch::file("requests-input", input);
-    // A file and no folder: names are looked at, and no run goes to its end, of which pictures would take all the time.
+    // A file and no folder: names are looked at, and no run goes to its end, of which pictures would take all
+    // the time.
     let results = scratch::file("results", b"");
     thread::scope(|scope| {
         let session = thread::Builder::new().stack_size(STACK);

@@ -78,7 +78,8 @@ pub(crate) fn events_csv(count: u32) -> Vec<u8> {
     precursors::to_csv(&events, &scales).unwrap()
 }
 
-/// Events that are read have the numbers that stand there: written as a row of the same columns they are read again as equal.
+/// Events that are read have the numbers that stand there: written as a row of the same columns they are read
+/// again as equal.
 fn events(input: &[u8]) {
     let rows = match precursors::read_csv(scratch::file("run/precursors.csv", input)) {
         Ok(rows) => rows,

@@ -1,4 +1,5 @@
-//! The mean height of every block: over the points that it covers, each weighted with the area that lies in it.
+//! The mean height of every block: over the points that it covers, each weighted with the area that lies in
+//! it.
 
 use std::ops::Range;
 
@@ -7,15 +8,16 @@ use super::quantum::Quantum;
 
 /// Heights that are averaged over blocks, point after point.
 ///
-/// Both grids are stretched over the same rectangle, so that along an axis with `p` points and `b` blocks, point k lies
-/// between k b and (k + 1) b, and block i between i p and (i + 1) p of the same whole units, so that the area they share is
-/// exact. Sums of whole quanta are exact, too: blocks over equal heights have equal means, wherever they lie.
+/// Both grids are stretched over the same rectangle, so that along an axis with `p` points and `b` blocks,
+/// point k lies between k b and (k + 1) b, and block i between i p and (i + 1) p of the same whole units, so
+/// that the area they share is exact. Sums of whole quanta are exact, too: blocks over equal heights have
+/// equal means, wherever they lie.
 pub(super) struct Averages {
     points: [usize; 2],
     blocks: [usize; 2],
     quantum: Quantum,
-    /// Sums of quanta times areas, row after row of blocks in rising y: sums of numbers below 2^53 times at most 2^28
-    /// points.
+    /// Sums of quanta times areas, row after row of blocks in rising y: sums of numbers below 2^53 times at
+    /// most 2^28 points.
     sums: Vec<i128>,
     /// Sums of the present line, over its blocks along x.
     of_line: Vec<i128>,

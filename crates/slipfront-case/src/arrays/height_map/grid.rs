@@ -1,4 +1,5 @@
-//! The common result of the readers of all formats: the points of a height map, and the properties that its file states.
+//! The common result of the readers of all formats: the points of a height map, and the properties that its
+//! file states.
 
 use std::path::Path;
 

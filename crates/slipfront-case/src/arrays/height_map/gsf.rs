@@ -1,4 +1,5 @@
-//! Gwyddion simple fields: lines of text, padded with zeros to a multiple of four bytes, then 32-bit numbers, the top row first.
+//! Gwyddion simple fields: lines of text, padded with zeros to a multiple of four bytes, then 32-bit numbers,
+//! the top row first.
 
 use std::io::{BufRead, Seek, SeekFrom};
 use std::path::Path;

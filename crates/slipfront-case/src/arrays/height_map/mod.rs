@@ -1,7 +1,7 @@
 //! Measured topography: height maps of many formats, as the mean height of every block, and their roughness.
 //!
-//! A file is read twice, for its mean and for the deviations from it, so that only a line of it, a strip or tile, or a MiB
-//! of numbers is in memory.
+//! A file is read twice, for its mean and for the deviations from it, so that only a line of it, a strip or
+//! tile, or a MiB of numbers is in memory.
 
 mod averages;
 mod grid;
@@ -58,12 +58,13 @@ pub struct HeightMap {
 
 /// Reads the height map called `path`, and averages it over the blocks of a room.
 ///
-/// An array, `.npy` or `.csv`, begins with the row of the smallest y, every other file with the top row, which lies at the
-/// largest y.
+/// An array, `.npy` or `.csv`, begins with the row of the smallest y, every other file with the top row,
+/// which lies at the largest y.
 ///
 /// # Errors
-/// [`ArrayError`] if the file is of another format or has more than 2^28 points or 2^20 along a side, a height is missing, a unit
-/// stands neither in the file nor in `units` or stands in both, or the map has not the shape of the blocks.
+/// [`ArrayError`] if the file is of another format or has more than 2^28 points or 2^20 along a side, a
+/// height is missing, a unit stands neither in the file nor in `units` or stands in both, or the map has not
+/// the shape of the blocks.
 pub fn height_map(
     path: &Path,
     source: &mut (impl BufRead + Seek),
@@ -197,7 +198,8 @@ fn height_unit(path: &Path, grid: &HeightGrid, units: &HeightMapUnits) -> Result
     }
 }
 
-/// Refuses a map whose sides have another ratio than those of the blocks, by more than half a block of the longer side.
+/// Refuses a map whose sides have another ratio than those of the blocks, by more than half a block of the
+/// longer side.
 fn keep_aspect(path: &Path, size: [f64; 2], room: &Room) -> Result<(), ArrayError> {
     let blocks = room.blocks;
     let aspect = size[0] / size[1];

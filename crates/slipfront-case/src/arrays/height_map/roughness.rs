@@ -10,8 +10,8 @@ pub(super) struct HeightRange {
 /// The mean height and the range of points that come one after the other.
 #[derive(Default)]
 pub(super) struct Mean {
-    /// The first height, from which the others are counted so that a map far above its zero loses no digits, and the range
-    /// of all heights.
+    /// The first height, from which the others are counted so that a map far above its zero loses no digits,
+    /// and the range of all heights.
     first: Option<(f64, HeightRange)>,
     sum: f64,
     count: f64,

@@ -1,4 +1,5 @@
-//! Heights as the grey levels of a TIFF picture, of 16 bits or more, in strips or tiles. The top row lies at the largest y.
+//! Heights as the grey levels of a TIFF picture, of 16 bits or more, in strips or tiles. The top row lies at
+//! the largest y.
 
 use std::io::{BufRead, Seek};
 use std::ops::Range;
@@ -14,7 +15,8 @@ use crate::arrays::error::{ArrayError, broken, contents_error};
 
 /// The largest strip or tile, in bytes.
 const PIECE_MAX_BYTES: usize = 1 << 26;
-/// Largest width of a tile that is wider than its picture: all of its columns are decoded, however few of them the picture has.
+/// Largest width of a tile that is wider than its picture: all of its columns are decoded, however few of
+/// them the picture has.
 const TILE_MAX_WIDTH: u32 = 1 << 10;
 /// Value of the tag for grey levels that rise towards black.
 const WHITE_IS_ZERO: u32 = 0;

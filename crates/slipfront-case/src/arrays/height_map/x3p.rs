@@ -1,9 +1,9 @@
-//! X3P files (ISO 25178-72): a zip archive of `main.xml`, which describes the points, and of a file with their heights in metres,
-//! row by row.
+//! X3P files (ISO 25178-72): a zip archive of `main.xml`, which describes the points, and of a file with
+//! their heights in metres, row by row.
 //!
-//! ISO 25178-72 counts y along with the rows and says nothing of how a surface is shown. Programs show the first row on top,
-//! and write it so into other formats. The first row therefore lies at the largest y, so that no file is the mirror image of
-//! another.
+//! ISO 25178-72 counts y along with the rows and says nothing of how a surface is shown. Programs show the
+//! first row on top, and write it so into other formats. The first row therefore lies at the largest y, so
+//! that no file is the mirror image of another.
 
 use std::io::{BufRead, Read, Seek};
 use std::path::Path;
@@ -18,7 +18,8 @@ use slipfront_base::text::truncated;
 
 /// Largest length of `main.xml`: a description takes a few thousand bytes.
 const XML_MAX_BYTES: u64 = 1 << 20;
-/// Most nodes of `main.xml`: elements, comments and the texts between them. A description takes a few hundred.
+/// Most nodes of `main.xml`: elements, comments and the texts between them. A description takes a few
+/// hundred.
 const NODES_MAX: u32 = 1 << 16;
 /// Most namespaces of `main.xml`, and most attributes of one of its elements. A description takes a few.
 const NAMES_MAX: usize = 64;
@@ -102,7 +103,8 @@ pub(super) fn read(
     })
 }
 
-/// Refuses a map in which a point was not measured: one bit for every point says so, the lowest of a byte first.
+/// Refuses a map in which a point was not measured: one bit for every point says so, the lowest of a byte
+/// first.
 fn all_valid(path: &Path, stored: &mut dyn Read, n_points: usize) -> Result<(), ArrayError> {
     let mut piece = [0; 4096];
     let mut first = 0;
@@ -246,8 +248,9 @@ impl Description {
     }
 }
 
-/// Refuses XML with many namespaces or attributes: the parser compares each with all others of its element, and each element with all
-/// namespaces around it, so that its time would grow with the cube of the length of the text.
+/// Refuses XML with many namespaces or attributes: the parser compares each with all others of its element,
+/// and each element with all namespaces around it, so that its time would grow with the cube of the length of
+/// the text.
 ///
 /// # Errors
 /// What there is too much of, with both numbers.
@@ -258,7 +261,8 @@ fn limit_names(xml: &str) -> Result<(), String> {
             "`main.xml` declares {namespaces} namespaces, and at most {NAMES_MAX} are read"
         ));
     }
-    // No value of an attribute contains a `<`, so that all attributes of an element stand before the next one.
+    // No value of an attribute contains a `<`, so that all attributes of an element stand before the next
+    // one.
     let begins_value = |after: &&str| after.trim_start().starts_with(['"', '\'']);
     let of_element = |piece: &str| piece.split('=').skip(1).filter(begins_value).count();
     let attributes = xml.split('<').map(of_element).max().unwrap_or(0);

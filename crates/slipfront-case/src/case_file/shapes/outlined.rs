@@ -30,7 +30,7 @@ pub(crate) trait Outlined {
     /// The value of the key `coverage`, % of the whole area, if the size of the shape is given by it.
     fn coverage(&self) -> Option<f64>;
 
-    /// The shape in blocks, and the area of all copies as asked for, % of the area of the blocks that exist, if it is known
-    /// before the shape is meshed.
+    /// The shape in blocks, and the area of all copies as asked for, % of the area of the blocks that exist,
+    /// if it is known before the shape is meshed.
     fn in_blocks(&self, on: &Blocks) -> (surface::Shape, Option<f64>);
 }

@@ -22,7 +22,8 @@ use crate::print::{print, print_message};
 use crate::progress::run::RunProgress;
 use crate::report;
 
-/// Takes a run to its end and writes its results to the folder of its checkpoints, which the first rank holds.
+/// Takes a run to its end and writes its results to the folder of its checkpoints, which the first rank
+/// holds.
 pub(super) fn complete(
     mut running: Running,
     folder: Option<RunFolder>,
@@ -40,7 +41,8 @@ pub(super) fn complete(
             Ok(Some(reason)) => break reason,
             Ok(None) => {}
             Err(error) => {
-                // It would diverge again: there is nothing to go on with. All ranks see it at once, by sums over the lattice.
+                // It would diverge again: there is nothing to go on with. All ranks see it at once, by sums
+                // over the lattice.
                 if let Some(folder) = folder {
                     folder.discard();
                 }

@@ -47,16 +47,19 @@ pub(crate) struct RunCommand {
     /// Replace the files of an earlier run in that folder, and nothing else
     #[arg(long)]
     force: bool,
-    /// Wall time from one checkpoint to the next, such as 30s or 1h, or off; at least 99 times as long as one takes to save
+    /// Wall time from one checkpoint to the next, such as 30s or 1h, or off; at least 99 times as long as one
+    /// takes to save
     #[arg(long, value_name = "TIME", default_value = "5min")]
     checkpoint: Interval,
-    /// Go on with the run in this folder where its latest checkpoint was saved; a complete run is left as it is
+    /// Go on with the run in this folder where its latest checkpoint was saved; a complete run is left as it
+    /// is
     #[arg(long, value_name = "DIR", conflicts_with_all = ["case", "overrides", "seed", "out", "force"])]
     resume: Option<PathBuf>,
     /// Go on from the checkpoint before the latest one
     #[arg(long, requires = "resume")]
     previous: bool,
-    /// Draw neither pictures nor a movie; `slipfront plot` and `slipfront movie` make them from the files of the run
+    /// Draw neither pictures nor a movie; `slipfront plot` and `slipfront movie` make them from the files of
+    /// the run
     #[arg(long)]
     no_pictures: bool,
     /// Most threads to use [default: one per core]; results do not depend on it
@@ -107,8 +110,8 @@ impl RunCommand {
         complete(running, folder, checkpoints, options)
     }
 
-    /// The options that all ranks must share. Each rank may have its own threads and folder, and the options on printing
-    /// count on the first rank.
+    /// The options that all ranks must share. Each rank may have its own threads and folder, and the options
+    /// on printing count on the first rank.
     fn shared_options(&self) -> NamedInputs {
         let flag = |is_given: bool| if is_given { "given" } else { "not given" }.to_owned();
         let options = [
@@ -160,8 +163,8 @@ fn claim_folder(
         .map_err(|error| with_free_folder(error, out))
 }
 
-/// Writes the case and its inputs to the folder of a new run, in the place of an earlier one, so that the run can go on if
-/// it is stopped. A signal ends the copying, and leaves nothing of it.
+/// Writes the case and its inputs to the folder of a new run, in the place of an earlier one, so that the run
+/// can go on if it is stopped. A signal ends the copying, and leaves nothing of it.
 fn begin_folder(claimed: ClaimedFolder, case: &Case, signals: &Signals) -> Result<RunFolder, Failure> {
     let mut folder = claimed.take().map_err(Failure::input)?;
     folder.stop_on(Arc::clone(&signals.stop));
@@ -196,8 +199,8 @@ fn with_free_folder(error: FolderError, out: &Path) -> Failure {
     }
 }
 
-/// Refuses a folder that holds the case to be run, or a file that it reads, where the results go: with `--force` the file
-/// would be replaced, and lost if the run fails.
+/// Refuses a folder that holds the case to be run, or a file that it reads, where the results go: with
+/// `--force` the file would be replaced, and lost if the run fails.
 fn refuse_to_replace(path: Option<&Path>, case: &Case, out: &Path) -> Result<(), Failure> {
     let inputs = case.inputs.iter().map(|input| input.original.as_path());
     let replaced = path.into_iter().chain(inputs).find(|path| {

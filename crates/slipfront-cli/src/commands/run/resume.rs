@@ -192,8 +192,8 @@ fn load(
     }
 }
 
-/// Failure of a checkpoint that cannot be used, with the remedy. All ranks refuse it; the first one, which prints, looks for
-/// the remedy.
+/// Failure of a checkpoint that cannot be used, with the remedy. All ranks refuse it; the first one, which
+/// prints, looks for the remedy.
 fn refused(
     ranks: &CommandRanks,
     error: &CheckpointError,

@@ -21,7 +21,8 @@ pub(crate) struct Merge {
     /// Folder of the united study
     #[arg(short, long, value_name = "DIR")]
     out: PathBuf,
-    /// Replace files of the results that were edited since they were written, and files of others in their places
+    /// Replace files of the results that were edited since they were written, and files of others in their
+    /// places
     #[arg(long)]
     force: bool,
     /// Show no tables
@@ -33,7 +34,8 @@ impl Merge {
     pub(crate) fn execute(self) -> Result<(), Failure> {
         set_threads(None)?;
         let mut folders = self.shards.clone();
-        // Merging may be repeated: the folder then holds a study, which must be the one that the shards belong to.
+        // Merging may be repeated: the folder then holds a study, which must be the one that the shards
+        // belong to.
         folders.extend(is_study(&self.out).then(|| self.out.clone()));
         refuse_foreign(&folders).map_err(Failure::input)?;
         let study = study_of(&self.shards[0]).map_err(Failure::input)?;

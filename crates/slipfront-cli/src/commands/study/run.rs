@@ -27,7 +27,8 @@ pub(crate) struct StudyRun {
     /// Folder for the results [default: results/ and the name of the study]
     #[arg(short, long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Replace files of the results that were edited since they were written, and files of others in their places
+    /// Replace files of the results that were edited since they were written, and files of others in their
+    /// places
     #[arg(long)]
     force: bool,
     /// Most runs at once [default: one per core]; results do not depend on it
@@ -107,8 +108,8 @@ impl StudyRun {
     }
 }
 
-/// Refuses the folder of the study file itself if that names its base by a path: the results contain the study with its base
-/// written out, which would replace the file.
+/// Refuses the folder of the study file itself if that names its base by a path: the results contain the
+/// study with its base written out, which would replace the file.
 fn refuse_to_replace(path: &Path, file: &StudyFile, out: &Path) -> Result<(), Failure> {
     if !file.has_base_file() || !is_same(path, &out.join("study.toml")) {
         return Ok(());

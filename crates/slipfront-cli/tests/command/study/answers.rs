@@ -16,7 +16,8 @@ fn adaptive(half_width: &str, max: &str) -> String {
     SMALL.replace("replicates = 3", &until)
 }
 
-/// A key of the base that `--set` changes gives the bytes of a study file that has it so, and the folder holds that study.
+/// A key of the base that `--set` changes gives the bytes of a study file that has it so, and the folder
+/// holds that study.
 #[test]
 fn keys_of_the_base_can_be_set() {
     let workspace = Workspace::with_study(SMALL);
@@ -97,7 +98,8 @@ fn any_number_of_threads_gives_the_same_bytes() {
     );
 }
 
-/// Tables have columns of precursors where a run has some, with the values of its summary, and none otherwise.
+/// Tables have columns of precursors where a run has some, with the values of its summary, and none
+/// otherwise.
 #[test]
 fn tables_tell_of_precursors() {
     let study = |list: &str| {
@@ -328,8 +330,8 @@ fn pictures_are_those_that_the_axes_ask_for() {
     );
 }
 
-/// Quantities are numbers: curves and a map with the unit of their ticks, and the meaning of the intervals. Where there are
-/// no curves, the plan and the answer say why.
+/// Quantities are numbers: curves and a map with the unit of their ticks, and the meaning of the intervals.
+/// Where there are no curves, the plan and the answer say why.
 #[test]
 fn axes_of_quantities_are_drawn_in_their_unit() {
     let study = |levels: [usize; 2]| {
@@ -375,7 +377,8 @@ fn axes_of_quantities_are_drawn_in_their_unit() {
     assert!(!workspace.results("out").has("static_friction_star.svg"));
 }
 
-/// Directions are drawn around a centre and listed in a table of their own, which belongs to the study as the others do.
+/// Directions are drawn around a centre and listed in a table of their own, which belongs to the study as the
+/// others do.
 #[test]
 fn directions_have_a_polar_picture_and_their_table() {
     let study = |key: &str| {
@@ -436,7 +439,8 @@ fn directions_have_a_polar_picture_and_their_table() {
     assert!(!many.has("friction_polar.svg") && many.table("anisotropy.csv").len() == 10);
 }
 
-/// Runs without a transition are pointed out: the largest mu* of a run which never slid must not enter a mean.
+/// Runs without a transition are pointed out: the largest mu* of a run which never slid must not enter a
+/// mean.
 #[test]
 fn runs_without_a_transition_are_pointed_out() {
     let workspace = Workspace::with_study(&SMALL.replace("stop = \"after_onset\"", "duration_star = 25"));
@@ -498,7 +502,8 @@ fn runs_without_a_transition_are_pointed_out() {
     assert!(row("0.08").contains("none"), "{said}");
 }
 
-/// A study of which no run has its main quantity does not end as one that has an answer; a part of it may lack what the others have.
+/// A study of which no run has its main quantity does not end as one that has an answer; a part of it may
+/// lack what the others have.
 #[test]
 fn a_study_without_an_answer_has_status_1() {
     let workspace = Workspace::with_study(&SMALL.replace("stop = \"after_onset\"", "duration_star = 5"));
@@ -528,9 +533,9 @@ fn a_study_without_an_answer_has_status_1() {
     workspace.succeed("study study.toml --quiet -o other");
 }
 
-/// A tenth of a random surface touches, and mu* goes up and down about the level of sliding for ever. On the second seed it takes 130 t* to fall
-/// half-way, where the drive needs 83 to load the slider: that is creep, however long the run. `duration_star = "auto"` leaves time for the kinetic
-/// window all the same.
+/// A tenth of a random surface touches, and mu* goes up and down about the level of sliding for ever. On the
+/// second seed it takes 130 t* to fall half-way, where the drive needs 83 to load the slider: that is creep,
+/// however long the run. `duration_star = "auto"` leaves time for the kinetic window all the same.
 #[test]
 fn a_slider_that_creeps_has_no_static_friction() {
     const SIDE: usize = 30;
@@ -615,8 +620,8 @@ fn what_deserves_a_word_is_said_once() {
     }
 }
 
-/// Coverages are drawn and listed as they are meshed: of 25 columns, 5 % are one and 15 % are three, 4 and 12 %. A study
-/// that asks for these has the same runs, and the same pictures.
+/// Coverages are drawn and listed as they are meshed: of 25 columns, 5 % are one and 15 % are three, 4 and 12
+/// %. A study that asks for these has the same runs, and the same pictures.
 #[test]
 fn coverages_are_drawn_and_told_as_they_are_meshed() {
     let study = |axes: &str| {
@@ -679,8 +684,8 @@ fn coverages_are_drawn_and_told_as_they_are_meshed() {
     }
 }
 
-/// 5 and 6 % of 25 columns are one column: a note names the points that are drawn at one place, and a map keeps its columns
-/// apart.
+/// 5 and 6 % of 25 columns are one column: a note names the points that are drawn at one place, and a map
+/// keeps its columns apart.
 #[test]
 fn coverages_that_are_meshed_to_one_are_told() {
     let workspace = Workspace::with_study(
@@ -710,7 +715,8 @@ fn an_axis_that_changes_nothing_is_pointed_out() {
     assert!(said.contains("9 points, 1 replicate: at most 9 runs"), "{said}");
     let output = workspace.output("study study.toml -o out --threads 1");
     assert!(stderr(&output).contains(note), "{}", stderr(&output));
-    // So it is: of nine points six repeat what the others found, but for the digits that the strain of the load moves.
+    // So it is: of nine points six repeat what the others found, but for the digits that the strain of the
+    // load moves.
     let rows = workspace.results("out").table("runs.csv");
     let found: BTreeSet<String> = rows
         .iter()
@@ -772,7 +778,8 @@ fn runs_without_the_number_that_decides_do_not_count_for_it() {
     assert_eq!((row["n"].as_str(), row["narrow_enough"].as_str()), ("0", "false"));
 }
 
-/// The tables of the guides on slow loading, soft springs, smaller blocks and dimples on steel hold what their studies give.
+/// The tables of the guides on slow loading, soft springs, smaller blocks and dimples on steel hold what
+/// their studies give.
 #[test]
 fn the_guides_have_the_reductions_of_their_studies() {
     let repository = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");

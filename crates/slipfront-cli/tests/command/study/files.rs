@@ -125,7 +125,8 @@ fn copies_do_not_overwrite_what_is_still_to_be_copied() {
         let copied = std::fs::read_to_string(workspace.path("out/inputs").join(copy)).unwrap();
         assert_eq!(copied, table(value), "{copy}");
     }
-    // A copy had another name from then on, and the runs that were still to come read what they are recorded by.
+    // A copy had another name from then on, and the runs that were still to come read what they are recorded
+    // by.
     workspace.write("fresh/study.toml", twice("'../one/mu.csv', '../two/mu.csv'"));
     workspace.succeed("study fresh/study.toml -o fresh_out");
     let points = |folder: &str| std::fs::read_to_string(workspace.path(folder).join("points.csv")).unwrap();

@@ -136,7 +136,8 @@ fn a_changed_study_leaves_no_tables_of_what_it_was() {
     workspace.study("out").assert_same(&workspace.study("fresh"));
 }
 
-/// The results folder holds the study with its base inside, which is no place for the only file that names the base.
+/// The results folder holds the study with its base inside, which is no place for the only file that names
+/// the base.
 #[test]
 fn a_study_file_that_names_its_base_is_not_replaced() {
     let workspace = Workspace::with_study(SMALL);

@@ -116,8 +116,8 @@ fn a_full_disk_ends_it_with_a_sentence_and_it_goes_on() {
     full.assert_same(&workspace.study("whole"));
 }
 
-/// A study that the system refuses memory or threads is refused before it begins, as a run is, and does not abort on the
-/// way.
+/// A study that the system refuses memory or threads is refused before it begins, as a run is, and does not
+/// abort on the way.
 #[cfg(target_os = "linux")]
 #[test]
 fn what_the_system_does_not_give_is_refused_before_it_begins() {

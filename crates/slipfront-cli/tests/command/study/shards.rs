@@ -46,7 +46,8 @@ fn run_folders_that_shards_kept_are_taken_over() {
         let out = format!("part{part}");
         workspace.succeed(&format!("study study.toml --shard {part}/2 -o {out}"));
     }
-    // What kills left: of an earlier try, of a run in the folder, and of one in a shard which another one holds whole.
+    // What kills left: of an earlier try, of a run in the folder, and of one in a shard which another one
+    // holds whole.
     workspace.write("merged/runs.jsonl", "");
     let hash = blake3::hash(b"an old case").to_hex();
     let journal = format!("{{\"name\":\"case.toml\",\"bytes\":11,\"blake3\":\"{hash}\"}}\n");

@@ -92,7 +92,8 @@ fn run_folders_of_a_study_are_verified_too() {
     );
 }
 
-/// Records of something else are reported as such, as after a new version of the program, whose runs would differ.
+/// Records of something else are reported as such, as after a new version of the program, whose runs would
+/// differ.
 #[test]
 fn records_of_something_else_are_called_so() {
     let workspace = Workspace::with_study(SMALL);
@@ -154,7 +155,8 @@ fn single_runs_are_repeated_and_studies_are_not() {
     );
 }
 
-/// Lists of tables stand last in a table that TOML writes in full; the columns follow the study as it was written.
+/// Lists of tables stand last in a table that TOML writes in full; the columns follow the study as it was
+/// written.
 #[test]
 fn the_study_in_the_folder_has_its_axes_in_order() {
     let workspace = Workspace::with_study(

@@ -23,7 +23,8 @@ fn name(file: &str, keys: &Keys) -> String {
     format!("{file} {keys:?}")
 }
 
-/// The runs that a number is made of: pairs of its own and of the one it is relative to, one for each surface.
+/// The runs that a number is made of: pairs of its own and of the one it is relative to, one for each
+/// surface.
 fn parts(number: &Number) -> Vec<(Keys, Option<Keys>)> {
     let on = |seed: Option<&u64>| {
         let mut keys = number.set.clone();

@@ -29,7 +29,8 @@ impl Said {
 
     /// Tells whether the number in the text is `value` rounded to as many digits as the text has.
     pub(crate) fn is(&self, value: f64) -> bool {
-        // Rounding moves by half of the last place; what a decimal fraction lacks as a double is far below a billionth of it.
+        // Rounding moves by half of the last place; what a decimal fraction lacks as a double is far below a
+        // billionth of it.
         (value - self.value).abs() <= self.last_place * (0.5 + 1e-9)
     }
 }

@@ -17,8 +17,8 @@ pub struct Ageing {
 }
 
 impl Ageing {
-    /// Needs of ageing: the threshold at the present age, whether age counts, and the time at which the block stopped, which
-    /// is remembered.
+    /// Needs of ageing: the threshold at the present age, whether age counts, and the time at which the block
+    /// stopped, which is remembered.
     pub(super) const NEEDS: Needs = Needs {
         is_fused: false,
         columns: 1,
@@ -37,25 +37,28 @@ impl Ageing {
         self.beta * libm::log1p(age / self.time)
     }
 
-    /// Static threshold `mu_s(t) F_n + tau_a l^2` of a block that has been stuck for `age`, from that of age 0. Adhesion does not
-    /// age: the law is one of the coefficient.
+    /// Static threshold `mu_s(t) F_n + tau_a l^2` of a block that has been stuck for `age`, from that of age
+    /// 0. Adhesion does not age: the law is one of the coefficient.
     ///
-    /// The operations have this order in every kernel: `x = age/tau`, `g = beta log1p(x)`, `m = max(S - tau_a l^2, 0)`, `S + g m`.
+    /// The operations have this order in every kernel: `x = age/tau`, `g = beta log1p(x)`,
+    /// `m = max(S - tau_a l^2, 0)`, `S + g m`.
     #[inline(always)]
     fn static_limit(&self, young: f64, adhesion: f64, age: f64) -> f64 {
         young + self.growth(age) * (young - adhesion).max(0.0)
     }
 
-    /// Pull at which a block slips that has been stuck since the pull was 0, if the pull rises at `rate` and the threshold
-    /// is above kinetic friction.
+    /// Pull at which a block slips that has been stuck since the pull was 0, if the pull rises at `rate` and
+    /// the threshold is above kinetic friction.
     pub(super) fn first_slip_pull(&self, young: f64, adhesion: f64, rate: f64) -> f64 {
-        // The threshold grows more slowly than the pull, from a pull at which it is higher: each round comes nearer.
+        // The threshold grows more slowly than the pull, from a pull at which it is higher: each round comes
+        // nearer.
         let aged = |pull: f64| self.static_limit(young, adhesion, pull / rate);
         (0..MAX_ROUNDS).fold(young, |pull, _| aged(pull))
     }
 }
 
-/// Rounds after which a fixed point that is approached by at least a factor of 2 in each is found to the last bit.
+/// Rounds after which a fixed point that is approached by at least a factor of 2 in each is found to the last
+/// bit.
 const MAX_ROUNDS: usize = 60;
 
 /// Static thresholds of the blocks of a band at their present ages.
@@ -81,8 +84,8 @@ impl Aged {
         }
     }
 
-    /// Finds the static thresholds of the blocks that are stuck and whose force exceeds the threshold of age 0: only there
-    /// does age matter.
+    /// Finds the static thresholds of the blocks that are stuck and whose force exceeds the threshold of age
+    /// 0: only there does age matter.
     #[inline(always)]
     pub(super) fn update(
         &mut self,
@@ -115,7 +118,8 @@ impl Aged {
         }
     }
 
-    /// Notes the blocks that stop now. A step that is evaluated again from the same velocities notes the same blocks.
+    /// Notes the blocks that stop now. A step that is evaluated again from the same velocities notes the same
+    /// blocks.
     #[inline(always)]
     pub(super) fn note_stops(
         &mut self,

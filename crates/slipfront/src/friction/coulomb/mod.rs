@@ -62,13 +62,15 @@ impl Coulomb {
             .and(self.slip_weakening.map(|law| law.needs()))
     }
 
-    /// Kinetic friction in steady sliding at `speed`, from the kinetic friction `at_rest`, of which a part is `adhesion`.
+    /// Kinetic friction in steady sliding at `speed`, from the kinetic friction `at_rest`, of which a part is
+    /// `adhesion`.
     pub(super) fn steady_force(&self, at_rest: f64, adhesion: f64, speed: f64) -> f64 {
         self.weakening
             .map_or(at_rest, |law| law.kinetic_force(at_rest, adhesion, speed))
     }
 
-    /// Pull of drive springs of stiffness `k`, which rises as `k V t`, at which a block of this threshold slips.
+    /// Pull of drive springs of stiffness `k`, which rises as `k V t`, at which a block of this threshold
+    /// slips.
     pub(super) fn first_slip_pull(&self, surface: &Surface, threshold: f64, k: f64, speed: f64) -> f64 {
         let adhesion = surface.adhesion().of_static;
         self.ageing.map_or(threshold, |law| {
@@ -77,7 +79,8 @@ impl Coulomb {
     }
 }
 
-/// Coulomb's law of the blocks of a band, with thresholds of the present step where they differ from those of the surface.
+/// Coulomb's law of the blocks of a band, with thresholds of the present step where they differ from those of
+/// the surface.
 #[derive(Debug)]
 pub(crate) struct CoulombContact {
     law: FrictionLaw,
@@ -121,8 +124,8 @@ impl CoulombContact {
         }
     }
 
-    /// Finds friction, the next velocities and the blocks that slide, among some blocks. `limits`: static thresholds of age
-    /// 0 and kinetic thresholds at rest.
+    /// Finds friction, the next velocities and the blocks that slide, among some blocks. `limits`: static
+    /// thresholds of age 0 and kinetic thresholds at rest.
     #[inline(always)]
     pub(super) fn apply(
         &mut self,

@@ -1,7 +1,8 @@
 //! The friction law with memory (Eq. 4, D1, D2), damping included, in its three readings.
 //!
-//! From the velocity of a block, the forces on it and its thresholds at t_n, a law finds the velocity half a step later, the
-//! friction force and whether the block slides. The general kernel calls it once per block and step.
+//! From the velocity of a block, the forces on it and its thresholds at t_n, a law finds the velocity half a
+//! step later, the friction force and whether the block slides. The general kernel calls it once per block
+//! and step.
 
 use serde::{Deserialize, Serialize};
 
@@ -71,7 +72,8 @@ impl LawReading for Projection {
         let stays = is_zero(block.velocity) & (dot(force, force) <= block.static_limit * block.static_limit);
         let free = integrator.accelerate(block.velocity, force);
         let speed = length(free);
-        // The fraction of the free velocity that friction removes. It is NaN if both are zero, and `slides` is false then.
+        // The fraction of the free velocity that friction removes. It is NaN if both are zero, and `slides`
+        // is false then.
         let removed_fraction = integrator.force_to_velocity * block.kinetic_force / speed;
         let remaining = 1.0 - removed_fraction;
         let slides = !stays & (remaining > 0.0);

@@ -12,7 +12,8 @@ use crate::vector_field::{VectorField, length};
 /// f(s) = K + (S - K) max(0, 1 - s/D_c)
 /// ```
 ///
-/// sliding or about to, with its whole static and kinetic thresholds `S` and `K`. Where `K >= S` nothing falls.
+/// sliding or about to, with its whole static and kinetic thresholds `S` and `K`. Where `K >= S` nothing
+/// falls.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SlipWeakening {
     /// Slip `D_c` over which strength falls, in units of `P mu_s l^2/(E h)`.
@@ -22,8 +23,9 @@ pub struct SlipWeakening {
 }
 
 impl SlipWeakening {
-    /// Needs of slip weakening: the slip, both thresholds at present, and with healing the time of the last motion and the
-    /// share lost before it healed. The fused kernel keeps the fall of strength in place of the static threshold.
+    /// Needs of slip weakening: the slip, both thresholds at present, and with healing the time of the last
+    /// motion and the share lost before it healed. The fused kernel keeps the fall of strength in place of
+    /// the static threshold.
     pub(super) fn needs(&self) -> Needs {
         let columns = if self.healing_time.is_some() { 3 } else { 1 };
         Needs {
@@ -60,7 +62,8 @@ impl SlipWeakening {
         1.0 - left * left
     }
 
-    /// Energy that weakening has taken of a block whose strength can fall by `drop = max(S - K, 0)`, the integral of `f - K` over its slip:
+    /// Energy that weakening has taken of a block whose strength can fall by `drop = max(S - K, 0)`, the
+    /// integral of `f - K` over its slip:
     ///
     /// ```text
     /// Phi = (S - K) D_c/2 (share lost by the present slip + shares lost before it healed)
@@ -84,7 +87,8 @@ pub(super) struct Slipped {
     pub(super) static_limit: Vec<f64>,
     pub(super) kinetic_force: Vec<f64>,
     slip: Vec<f64>,
-    /// Time t* of the last motion of each block, and the shares lost before it healed; present only with healing.
+    /// Time t* of the last motion of each block, and the shares lost before it healed; present only with
+    /// healing.
     healing: Option<[Vec<f64>; 2]>,
 }
 
@@ -124,8 +128,8 @@ impl Slipped {
         }
     }
 
-    /// Finds the thresholds at the present slip from the whole ones. A step that is evaluated again finds the same
-    /// thresholds.
+    /// Finds the thresholds at the present slip from the whole ones. A step that is evaluated again finds the
+    /// same thresholds.
     #[inline(always)]
     pub(super) fn update(
         &mut self,

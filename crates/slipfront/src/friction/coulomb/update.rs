@@ -7,8 +7,8 @@ use crate::forces::{Forces, part, part_mut};
 use crate::friction::integrator::Integrator;
 use crate::state::State;
 
-/// Applies the friction law to some blocks: finds friction, velocities and the blocks that slide from thresholds, velocities
-/// and forces.
+/// Applies the friction law to some blocks: finds friction, velocities and the blocks that slide from
+/// thresholds, velocities and forces.
 #[inline(always)]
 pub(super) fn friction_forces<L: LawReading>(
     law: &L,

@@ -39,11 +39,11 @@ impl Weakening {
         (1.0 - self.ratio) * (speed / (self.critical_speed + speed))
     }
 
-    /// Kinetic friction `mu_k(v) F_n + tau_ak l^2` at `speed`, from the kinetic friction `at_rest`. Adhesion does not
-    /// weaken: the law is one of the coefficient.
+    /// Kinetic friction `mu_k(v) F_n + tau_ak l^2` at `speed`, from the kinetic friction `at_rest`. Adhesion
+    /// does not weaken: the law is one of the coefficient.
     ///
-    /// The operations have this order in every kernel: `x = v/(v_c + v)`, `s = (1 - ratio) x`, `m = max(K - tau_ak l^2, 0)`,
-    /// `K - s m`.
+    /// The operations have this order in every kernel: `x = v/(v_c + v)`, `s = (1 - ratio) x`,
+    /// `m = max(K - tau_ak l^2, 0)`, `K - s m`.
     #[inline(always)]
     pub(super) fn kinetic_force(&self, at_rest: f64, adhesion: f64, speed: f64) -> f64 {
         at_rest - self.lost_share(speed) * (at_rest - adhesion).max(0.0)

@@ -14,8 +14,9 @@ use crate::state::State;
 use crate::surface::Surface;
 use crate::vector_field::{VectorField, length};
 
-/// Rate and state with Dieterich's law of the state: `mu = mu_0 + a ln(V/V_0) + b ln(V_0 theta/D_c)`, `dtheta/dt = 1 - V theta/D_c`; coefficients
-/// over `mu_s`. The logarithm of the speed is regularised at V = 0,
+/// Rate and state with Dieterich's law of the state: `mu = mu_0 + a ln(V/V_0) + b ln(V_0 theta/D_c)`,
+/// `dtheta/dt = 1 - V theta/D_c`; coefficients over `mu_s`. The logarithm of the speed is regularised at V =
+/// 0,
 ///
 /// ```text
 /// mu = a asinh(V/(2 V_0) exp((mu_0 + b ln(V_0 theta/D_c))/a))
@@ -115,8 +116,8 @@ impl RateAndState {
         theta * decay + dt * mean_decay
     }
 
-    /// Takes the states of some blocks forward by `dt` at constant speed: [`evolve`](Self::evolve) for several blocks at
-    /// once.
+    /// Takes the states of some blocks forward by `dt` at constant speed: [`evolve`](Self::evolve) for
+    /// several blocks at once.
     #[inline(always)]
     fn evolve_all<const BLOCKS: usize>(&self, theta: &mut [f64; BLOCKS], speed: &[f64; BLOCKS], dt: f64) {
         // Slip over a step is nearly always short, which takes no exponential.
@@ -134,7 +135,8 @@ impl RateAndState {
         }
     }
 
-    /// The speeds after a step and the friction of some blocks, whose speeds would be `free` without friction and were `before`:
+    /// The speeds after a step and the friction of some blocks, whose speeds would be `free` without friction
+    /// and were `before`:
     ///
     /// ```text
     /// v + g F_n mu(v, theta) = free
@@ -157,8 +159,9 @@ impl RateAndState {
         slide(self.a, [free, before], &log_factor, normal_force, g)
     }
 
-    /// Stiffness per block below which steady sliding of a block at `speed` under the normal force `sigma` is unstable (Rice and
-    /// Ruina 1983, with inertia and damping), in units of `E h`, for blocks of mass `m` = 1:
+    /// Stiffness per block below which steady sliding of a block at `speed` under the normal force `sigma` is
+    /// unstable (Rice and Ruina 1983, with inertia and damping), in units of `E h`, for blocks of mass `m` =
+    /// 1:
     ///
     /// ```text
     /// k_c = max(0, [(b - a) sigma - m Omega V]/D_c [1 + m V^2/((sigma a + m Omega V) D_c)])
@@ -222,7 +225,8 @@ impl StateContact {
         }
     }
 
-    /// Friction and the velocities half a step later of some blocks. A block counts as sliding above the slip speed.
+    /// Friction and the velocities half a step later of some blocks. A block counts as sliding above the slip
+    /// speed.
     #[inline(always)]
     pub(super) fn apply(
         &self,
@@ -321,7 +325,8 @@ mod tests {
         slip_speed: 1e-3,
     };
 
-    /// Speeds, speeds before, states and loads of blocks that creep, slide, begin to, stop, float, or are no block.
+    /// Speeds, speeds before, states and loads of blocks that creep, slide, begin to, stop, float, or are no
+    /// block.
     const BLOCKS: [[f64; 4]; 12] = [
         [0.03, 0.03, 16.7, 1.0],
         [0.03, 0.029, 16.0, 1.0],
@@ -371,8 +376,9 @@ mod tests {
         );
     }
 
-    /// At the speed that is found, friction is that of the law, and both together take the block from its free speed. A
-    /// speed is as exact as `w`, of some hundreds; and friction and free speed cancel where the law is steep.
+    /// At the speed that is found, friction is that of the law, and both together take the block from its
+    /// free speed. A speed is as exact as `w`, of some hundreds; and friction and free speed cancel where the
+    /// law is steep.
     #[test]
     fn speed_and_friction_fulfil_the_law() {
         for a in [0.01, 0.1, 1e-3] {

@@ -2,16 +2,17 @@
 
 use crate::elementary::{exp, ln};
 
-/// Bound on logarithms and arguments: above it `asinh x = ln(2 x)` to the last bit for the logarithm of x, and `sinh` has
-/// one exponential for the argument.
+/// Bound on logarithms and arguments: above it `asinh x = ln(2 x)` to the last bit for the logarithm of x,
+/// and `sinh` has one exponential for the argument.
 pub(super) const LARGE: f64 = 20.0;
 
-/// Limit on the steps of an iteration, which no solution reaches: far from the root each step takes two units off the
-/// unknown, which begins less than 16 above it or 7 below for any `a` of 1e-8 and more, and comes no farther beyond it than
-/// 22; the last few steps triple the digits.
+/// Limit on the steps of an iteration, which no solution reaches: far from the root each step takes two units
+/// off the unknown, which begins less than 16 above it or 7 below for any `a` of 1e-8 and more, and comes no
+/// farther beyond it than 22; the last few steps triple the digits.
 const MAX_STEPS: usize = 40;
 
-/// Size of a step after which the error, which is below the third power of the step, is beyond the last digit.
+/// Size of a step after which the error, which is below the third power of the step, is beyond the last
+/// digit.
 const LAST_STEP: f64 = 1e-5;
 
 /// The speed before is a good guess of the next if it is more than this share of the speed without friction.
@@ -32,8 +33,8 @@ pub(super) struct Sliding<const BLOCKS: usize> {
     pub(super) friction: [f64; BLOCKS],
 }
 
-/// Speeds after a step and magnitudes of friction of some blocks under `mu = a asinh(V e^L)`, whose speeds would be `free` without
-/// friction and were `before`:
+/// Speeds after a step and magnitudes of friction of some blocks under `mu = a asinh(V e^L)`, whose speeds
+/// would be `free` without friction and were `before`:
 ///
 /// ```text
 /// v + g F_n a asinh(v e^L) = free
@@ -45,8 +46,9 @@ pub(super) struct Sliding<const BLOCKS: usize> {
 /// h(w) = (e^(w - L) - e^-(w + L))/2 + g F_n a w - free = 0
 /// ```
 ///
-/// It is solved by Halley's method, from the speed before, or, if this was much less, from the speed without friction. After a
-/// [`LAST_STEP`] a block stays where it is: it has the same bits whatever blocks are beside it.
+/// It is solved by Halley's method, from the speed before, or, if this was much less, from the speed without
+/// friction. After a [`LAST_STEP`] a block stays where it is: it has the same bits whatever blocks are beside
+/// it.
 #[inline(always)]
 pub(super) fn slide<const BLOCKS: usize>(
     a: f64,
@@ -56,7 +58,8 @@ pub(super) fn slide<const BLOCKS: usize>(
     g: &[f64; BLOCKS],
 ) -> Sliding<BLOCKS> {
     let zeros = [0.0; BLOCKS];
-    // Nothing holds a block over a texture, and nothing moves one that would not move without friction: others take their place.
+    // Nothing holds a block over a texture, and nothing moves one that would not move without friction:
+    // others take their place.
     let is_held = |k: usize| (free[k] > MIN_SPEED) & (normal_force[k] > 0.0);
     let mut equations = Equations {
         target: zeros,
@@ -86,8 +89,8 @@ pub(super) fn slide<const BLOCKS: usize>(
         let w = roots.w[k].max(0.0);
         let friction = normal_force[k] * a * w;
         let [sinh, cosh] = sinh_and_cosh(roots.rising[k], roots.falling[k]);
-        // Rounding leaves an error of cosh(w) e^-L, in units of the last place, in the one, and of these in the other: where friction has
-        // nearly vanished sinh is the difference of two large numbers.
+        // Rounding leaves an error of cosh(w) e^-L, in units of the last place, in the one, and of these in
+        // the other: where friction has nearly vanished sinh is the difference of two large numbers.
         let left = (equations.target[k] - equations.per_unit[k] * w).max(0.0);
         let is_left = cosh > equations.target[k] + equations.per_unit[k];
         let speed = if is_left { left } else { sinh };
@@ -119,8 +122,8 @@ struct Roots<const BLOCKS: usize> {
 }
 
 impl<const BLOCKS: usize> Roots<BLOCKS> {
-    /// Initial guesses of the roots: those that belong to the speeds `guess` or to the speeds without friction, and none
-    /// beyond the friction that stops a block.
+    /// Initial guesses of the roots: those that belong to the speeds `guess` or to the speeds without
+    /// friction, and none beyond the friction that stops a block.
     #[inline(always)]
     fn near(equations: &Equations<BLOCKS>, guess: &[f64; BLOCKS]) -> Self {
         let Equations {
@@ -167,7 +170,8 @@ impl<const BLOCKS: usize> Roots<BLOCKS> {
         }
     }
 
-    /// Takes a step of Halley's method towards each root that is not found yet; returns whether there was such a root.
+    /// Takes a step of Halley's method towards each root that is not found yet; returns whether there was
+    /// such a root.
     #[inline(always)]
     fn improve(&mut self, equations: &Equations<BLOCKS>) -> bool {
         let Equations {

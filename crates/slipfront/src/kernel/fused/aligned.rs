@@ -27,8 +27,8 @@ impl Aligned {
     }
 }
 
-/// Cache lines to fetch ahead of their use. On a lattice larger than the cache the sweep would otherwise wait for memory: it
-/// reads more arrays than processors fetch ahead by themselves.
+/// Cache lines to fetch ahead of their use. On a lattice larger than the cache the sweep would otherwise wait
+/// for memory: it reads more arrays than processors fetch ahead by themselves.
 #[derive(Clone, Copy)]
 pub(super) struct CacheLines(*const i8);
 

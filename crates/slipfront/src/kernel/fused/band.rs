@@ -31,13 +31,15 @@ pub(super) struct TileState {
     pub(super) sums: Sums<i64, f64>,
     /// Whether an element of the tile moves, ghosts included.
     pub(super) moving: bool,
-    /// Whether the first active steps and energies of the tile's vectors are known, so that they can be swept one by one.
+    /// Whether the first active steps and energies of the tile's vectors are known, so that they can be swept
+    /// one by one.
     pub(super) settled: bool,
     /// The first step at which a block of the tile may slip if nothing around it moves; 0 if unknown.
     pub(super) active_from_step: u64,
     /// Largest u_x, -u_x, u_y, -u_y of the tile's blocks at the latest measurement.
     pub(super) extent: [f64; 4],
-    /// Largest difference of u_x and of u_y between the tile's blocks and their neighbours at the latest measurement.
+    /// Largest difference of u_x and of u_y between the tile's blocks and their neighbours at the latest
+    /// measurement.
     pub(super) difference: [f64; 2],
     /// Whether a block of the tile has moved since the latest measurement.
     pub(super) displacements_are_old: bool,
@@ -54,7 +56,8 @@ pub(super) struct TileTask {
     pub(super) touched: u32,
     /// Whether the active vectors are few, and are swept one by one.
     pub(super) sparse: bool,
-    /// Whether all vectors are swept and few are touched, so that from now on they can be swept one by one, or not at all.
+    /// Whether all vectors are swept and few are touched, so that from now on they can be swept one by one,
+    /// or not at all.
     pub(super) settles: bool,
     /// Whether the tile's springs to the next row are needed, by the tile itself or by one to the north.
     pub(super) needs_springs: bool,
@@ -62,8 +65,8 @@ pub(super) struct TileTask {
 
 /// Consecutive tiles with the arrays by which one thread takes them through a step.
 ///
-/// Indices of the arrays count from the first element of the front halo; those of arrays without halos from the first
-/// element of the band.
+/// Indices of the arrays count from the first element of the front halo; those of arrays without halos from
+/// the first element of the band.
 #[derive(Debug)]
 pub(super) struct Band {
     /// Index of the first tile.
@@ -76,9 +79,11 @@ pub(super) struct Band {
     pub(super) tasks: Vec<TileTask>,
     /// Sums over the band's tiles after the latest sweep.
     pub(super) sums: Sums<i128, f64, u64>,
-    /// The first step at which a block of the band may slip if nothing around it moves; 0 if unknown or something moves.
+    /// The first step at which a block of the band may slip if nothing around it moves; 0 if unknown or
+    /// something moves.
     pub(super) next_active_step: u64,
-    /// Largest [`TileState::extent`] and [`TileState::difference`] of the band's tiles at the latest measurement.
+    /// Largest [`TileState::extent`] and [`TileState::difference`] of the band's tiles at the latest
+    /// measurement.
     pub(super) extent: [f64; 4],
     pub(super) difference: [f64; 2],
     /// Number of elements before and after the band whose displacements it keeps, see [`halo`].
@@ -96,7 +101,8 @@ pub(super) struct Band {
     /// The step of the first slip in contact, or [`NEVER`].
     pub(super) first_slip: Vec<u32>,
     // A byte for each vector says at once whether all eight elements have a spring, or none moves.
-    /// Masks of the elements that have a spring to the east, north, north-east and north-west; with the front halo.
+    /// Masks of the elements that have a spring to the east, north, north-east and north-west; with the front
+    /// halo.
     pub(super) masks: [Vec<u8>; 4],
     /// Mask of the elements that are blocks.
     pub(super) blocks: Vec<u8>,
@@ -110,7 +116,8 @@ pub(super) struct Band {
     pub(super) slipped: Vec<u8>,
     // Two numbers by which a settled tile needs no look at its resting vectors: when each must be swept, and
     // what it has given to the tile's sum of energies, which is replaced then.
-    /// The first step at which a block of each vector may slip; 0 for a touched vector. Known in settled tiles.
+    /// The first step at which a block of each vector may slip; 0 for a touched vector. Known in settled
+    /// tiles.
     pub(super) active_from_step: Vec<u64>,
     /// Energy of the springs of each vector, as in [`Sums`]. Known in settled tiles.
     pub(super) lattice_energy: Vec<i64>,
@@ -118,16 +125,16 @@ pub(super) struct Band {
     pub(super) variations: Option<Variations>,
     /// Thresholds of a law of friction under which they change.
     pub(super) thresholds: Option<Thresholds>,
-    /// Arrays of intermediate results. The lock is held while fields are read; a sweep, which runs alone, takes the arrays
-    /// without it.
+    /// Arrays of intermediate results. The lock is held while fields are read; a sweep, which runs alone,
+    /// takes the arrays without it.
     scratch: Mutex<Scratch>,
     /// Elements from a row to the next.
     pub(super) stride: usize,
 }
 
-// A spring to the next row acts on the block at its lower end now, and on the one at its upper end a row later.
-// It is computed once, and waits in between in a ring buffer, the only intermediate result that is longer than a
-// tile. Element k and what its springs join, and where these springs are:
+// A spring to the next row acts on the block at its lower end now, and on the one at its upper end a row
+// later. It is computed once, and waits in between in a ring buffer, the only intermediate result that is
+// longer than a tile. Element k and what its springs join, and where these springs are:
 //
 //   k-stride-1  k-stride  k-stride+1 ............ k ............ k+stride-1  k+stride  k+stride+1
 //   springs from these to k, computed             its own,       the row above, which has moved
@@ -136,10 +143,10 @@ pub(super) struct Band {
 //   | 0 .. 15 .......... behind ................. own ......................... | 0 .. 15 |
 //                        read from here on        written, then read              mirror of the beginning
 //
-// Element k has the place k modulo the length of the ring. That is a row and a block, a tile, and a vector for
-// what is rounded to whole vectors: a tile writes over nothing that it reads. Own places are whole vectors, so
-// that none of them wraps around. Those behind begin anywhere, and may extend over the end: the mirror repeats
-// the beginning there.
+// Element k has the place k modulo the length of the ring. That is a row and a block, a tile, and a vector
+// for what is rounded to whole vectors: a tile writes over nothing that it reads. Own places are whole
+// vectors, so that none of them wraps around. Those behind begin anywhere, and may extend over the end: the
+// mirror repeats the beginning there.
 /// Intermediate results on the way through the tiles, which are not needed later.
 #[derive(Debug, Default)]
 pub(super) struct Scratch {
@@ -158,7 +165,8 @@ pub(super) struct Scratch {
 /// Marks a block that has not slipped, in place of the step of its first slip.
 pub(super) const NEVER: u32 = u32::MAX;
 
-/// Number of elements that are repeated after the end of the ring buffer, for vectors that extend over its end.
+/// Number of elements that are repeated after the end of the ring buffer, for vectors that extend over its
+/// end.
 const MIRROR: usize = 2 * LANES;
 
 /// Number of elements in as many whole vectors as hold `elements`.
@@ -171,8 +179,8 @@ pub(super) fn halo(layout: &Layout) -> usize {
     whole_vectors(layout.stride + 1 + LANES)
 }
 
-/// Masks of the springs of each element that exist, along the four bonds: for the `halo` of elements before `first`, and for
-/// `len` elements from there on.
+/// Masks of the springs of each element that exist, along the four bonds: for the `halo` of elements before
+/// `first`, and for `len` elements from there on.
 fn spring_masks(
     layout: &Layout,
     model: &Model,
@@ -295,8 +303,8 @@ impl Band {
         self.scratch.get_mut().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// The elements before the band and after it whose displacements it keeps. Its last vector may extend beyond the last
-    /// row.
+    /// The elements before the band and after it whose displacements it keeps. Its last vector may extend
+    /// beyond the last row.
     pub(super) fn halos(&self, layout: &Layout) -> [Range<isize>; 2] {
         let (first, halo) = (self.first as isize, self.halo as isize);
         let end = first + self.len.min(layout.len() - self.first) as isize;
@@ -330,7 +338,8 @@ impl Band {
         }
     }
 
-    /// Adds the blocks in contact of the band to `counts`, each in its bin: those that move, or those that do not.
+    /// Adds the blocks in contact of the band to `counts`, each in its bin: those that move, or those that do
+    /// not.
     pub(super) fn count_in_contact(
         &self,
         layout: &Layout,
@@ -358,8 +367,8 @@ impl Band {
         [ux + move_dt * vx, uy + move_dt * vy]
     }
 
-    /// One step of the scheduled tiles: displacements to t_n, forces there, velocities to t_n + dt/2. The halos contain the
-    /// displacements at t_n of the elements around the band.
+    /// One step of the scheduled tiles: displacements to t_n, forces there, velocities to t_n + dt/2. The
+    /// halos contain the displacements at t_n of the elements around the band.
     #[inline(always)]
     pub(super) fn sweep<S: Simd, G: Geometry>(
         &mut self,
@@ -414,8 +423,8 @@ impl Band {
                 self.settle(simd, &step, t, &scratch);
             }
             if task.was_skipped != 0 {
-                // The step of largest stress was the last that was skipped, or the first, which the sweep before has measured: at
-                // the present one the block may slide already.
+                // The step of largest stress was the last that was skipped, or the first, which the sweep
+                // before has measured: at the present one the block may slide already.
                 let before = self.resting_stress_square(t, task.was_skipped, &step.before());
                 let stress_square = &mut self.tiles[t].sums.stress_square;
                 *stress_square = stress_square.max(before);
@@ -449,8 +458,8 @@ impl Band {
         (self.stride + MIRROR).div_ceil(TILE)
     }
 
-    /// Moves the blocks of a tile (Eq. 8), `u += dt v`, if the tile moves. A function of its own, compiled once for all
-    /// formulas of springs.
+    /// Moves the blocks of a tile (Eq. 8), `u += dt v`, if the tile moves. A function of its own, compiled
+    /// once for all formulas of springs.
     #[inline(never)]
     fn advance_tile<S: Simd>(&mut self, simd: S, step: &Step, quanta: &Quanta, t: usize) {
         simd.vectorize(
@@ -481,8 +490,8 @@ impl Band {
         }
     }
 
-    /// Forces of the springs to the next row of the elements `from..to`, into the ring buffer. A function of its own,
-    /// compiled once for all that call it.
+    /// Forces of the springs to the next row of the elements `from..to`, into the ring buffer. A function of
+    /// its own, compiled once for all that call it.
     #[inline(never)]
     pub(super) fn upward<S: Simd, G: Geometry>(
         &self,
@@ -541,8 +550,8 @@ impl Band {
         }
     }
 
-    /// Forces and velocities of a tile, and its energies if they are needed. Its springs to the next row and those of the row below
-    /// are in the ring buffer.
+    /// Forces and velocities of a tile, and its energies if they are needed. Its springs to the next row and
+    /// those of the row below are in the ring buffer.
     #[inline(always)]
     fn tile<S: Simd, G: Geometry>(
         &mut self,
@@ -567,7 +576,8 @@ impl Band {
         self.tiles[t].sums.lattice_energy = lattice_energy;
     }
 
-    /// Eqs. 2 and 4-7 in a tile whose lattice forces are known. A function of its own, compiled once for all formulas of springs.
+    /// Eqs. 2 and 4-7 in a tile whose lattice forces are known. A function of its own, compiled once for all
+    /// formulas of springs.
     #[inline(never)]
     fn friction_of_tile<S: Simd, const ENERGY: bool, const DIFFER: bool>(
         &mut self,
@@ -675,8 +685,8 @@ impl Band {
         sum
     }
 
-    /// Input of [`friction`] (Eqs. 2 and 4-7) for some elements of a tile, whose lattice forces are at `place` in the
-    /// scratch array. `next`: the elements that need friction next, and those that move next.
+    /// Input of [`friction`] (Eqs. 2 and 4-7) for some elements of a tile, whose lattice forces are at
+    /// `place` in the scratch array. `next`: the elements that need friction next, and those that move next.
     #[inline(always)]
     pub(super) fn friction_loop<'a, S: Simd, const DIFFER: bool>(
         &'a mut self,
@@ -751,8 +761,8 @@ impl Band {
         times_factor::<S, G>(simd, force, factors, 0)
     }
 
-    /// Factors of the springs along a bond of the `n` elements from `first` on, counted from the front halo; empty where all
-    /// springs are alike.
+    /// Factors of the springs along a bond of the `n` elements from `first` on, counted from the front halo;
+    /// empty where all springs are alike.
     #[inline(always)]
     pub(super) fn spring_factors<G: Geometry>(&self, bond: usize, first: usize, n: usize) -> Chunks<'_> {
         match &self.variations {
@@ -761,7 +771,8 @@ impl Band {
         }
     }
 
-    /// Number of steps for which vector `v` at rest can be skipped; its lattice forces are at `place` in the scratch array.
+    /// Number of steps for which vector `v` at rest can be skipped; its lattice forces are at `place` in the
+    /// scratch array.
     #[inline(always)]
     pub(super) fn steps_until_slip<S: Simd>(
         &self,
@@ -795,8 +806,8 @@ impl Band {
         steps_until_slip(simd, &step, &blocks)
     }
 
-    /// Measures displacements and their differences along springs, in the tiles in or next to which anything has moved since the
-    /// latest measurement.
+    /// Measures displacements and their differences along springs, in the tiles in or next to which anything
+    /// has moved since the latest measurement.
     #[inline(always)]
     pub(super) fn measure_displacements<S: Simd>(&mut self, simd: S) {
         (self.extent, self.difference) = ([f64::NEG_INFINITY; 4], [0.0; 2]);
@@ -842,8 +853,8 @@ impl Band {
         tile.displacements_are_old = false;
     }
 
-    /// Springs of vector `v` to the east, north, north-east and north-west: masks of those that exist, and the positions of
-    /// their other ends.
+    /// Springs of vector `v` to the east, north, north-east and north-west: masks of those that exist, and
+    /// the positions of their other ends.
     #[inline(always)]
     pub(super) fn springs_of(&self, v: usize) -> [(u8, usize); 4] {
         let here = self.halo + v * LANES;
@@ -889,8 +900,9 @@ impl Scratch {
         self.upward[0].x.len() - MIRROR
     }
 
-    /// Divides the elements `from..to` at the end of the ring buffer, where their own springs or those of the row below, `stride`
-    /// elements before, wrap around: first element, end, and the two positions in the buffer.
+    /// Divides the elements `from..to` at the end of the ring buffer, where their own springs or those of the
+    /// row below, `stride` elements before, wrap around: first element, end, and the two positions in the
+    /// buffer.
     #[inline(always)]
     fn ring_segments(
         &self,

@@ -1,4 +1,5 @@
-//! Consecutive elements through one step, eight at a time: springs (Eq. 3), then drive, friction and damping (Eqs. 2, 4-7).
+//! Consecutive elements through one step, eight at a time: springs (Eq. 3), then drive, friction and damping
+//! (Eqs. 2, 4-7).
 //!
 //! Each of these is a loop of its own: processors overlap more iterations of short loops than of a long one.
 
@@ -70,8 +71,8 @@ pub(super) fn zero_missing<S: Simd>(simd: S, present: u8, a: Vec2x8<S>) -> Vec2x
     or_else(simd, present, a, [splat(simd, 0.0); 2])
 }
 
-/// Takes `other` in the lanes where a bit of `present` is 0. Few vectors have such bits, so that without AVX-512 the test is
-/// cheaper than the mask.
+/// Takes `other` in the lanes where a bit of `present` is 0. Few vectors have such bits, so that without
+/// AVX-512 the test is cheaper than the mask.
 #[inline(always)]
 pub(super) fn or_else<S: Simd>(simd: S, present: u8, a: Vec2x8<S>, other: Vec2x8<S>) -> Vec2x8<S> {
     if present == u8::MAX {
@@ -81,9 +82,9 @@ pub(super) fn or_else<S: Simd>(simd: S, present: u8, a: Vec2x8<S>, other: Vec2x8
     }
 }
 
-/// Eq. 3: the springs to the next row, each computed once for the blocks at its two ends, from the displacements of the
-/// blocks and of their neighbours along the three bonds. `force` is the force on the lower blocks; masks mark the springs
-/// that exist.
+/// Eq. 3: the springs to the next row, each computed once for the blocks at its two ends, from the
+/// displacements of the blocks and of their neighbours along the three bonds. `force` is the force on the
+/// lower blocks; masks mark the springs that exist.
 #[inline(always)]
 pub(super) fn upward_springs<S: Simd, G: Geometry>(
     simd: S,
@@ -128,10 +129,12 @@ pub(super) fn upward_springs<S: Simd, G: Geometry>(
     }
 }
 
-/// Eq. 3: the sum of all eight springs of every block. Opposite neighbours are paired, straight ones before diagonal ones,
-/// so that the trajectory of a rotated or mirrored problem is the rotated or mirrored trajectory, with the same bits.
+/// Eq. 3: the sum of all eight springs of every block. Opposite neighbours are paired, straight ones before
+/// diagonal ones, so that the trajectory of a rotated or mirrored problem is the rotated or mirrored
+/// trajectory, with the same bits.
 ///
-/// `west`: forces of the springs to the east of the eight elements before these; becomes those of the last eight elements.
+/// `west`: forces of the springs to the east of the eight elements before these; becomes those of the last
+/// eight elements.
 #[inline(always)]
 pub(super) fn lattice_forces<S: Simd, G: Geometry>(
     simd: S,
@@ -175,8 +178,8 @@ pub(super) fn lattice_forces<S: Simd, G: Geometry>(
     *west = before;
 }
 
-/// Squares of the forces of eight blocks' springs to the east, north, north-east and north-west, over the factors of springs that
-/// may differ.
+/// Squares of the forces of eight blocks' springs to the east, north, north-east and north-west, over the
+/// factors of springs that may differ.
 #[inline(always)]
 fn squares_over_factors<S: Simd, G: Geometry>(
     simd: S,
@@ -199,8 +202,8 @@ fn squares_over_factors<S: Simd, G: Geometry>(
     [over(0), over(1), over(2), over(3)]
 }
 
-/// Energy times `2 k_1` of the springs of eight blocks to the east, north, north-east and north-west, from the squares of their
-/// forces: see [`integers`].
+/// Energy times `2 k_1` of the springs of eight blocks to the east, north, north-east and north-west, from
+/// the squares of their forces: see [`integers`].
 #[inline(always)]
 fn spring_energies<S: Simd>(
     simd: S,
@@ -216,7 +219,8 @@ fn spring_energies<S: Simd>(
     integers(energies, splat(simd, quantum.shift()))
 }
 
-/// Sum of the energies of a vector's springs to the east, north, north-east and north-west, in quanta of [`Sums`].
+/// Sum of the energies of a vector's springs to the east, north, north-east and north-west, in quanta of
+/// [`Sums`].
 #[inline(always)]
 pub(super) fn vector_energy<S: Simd, G: Geometry>(
     simd: S,
@@ -301,23 +305,25 @@ pub(super) struct FrictionLoop<'a> {
     pub(super) variation: Variation<'a>,
 }
 
-/// Sums over the blocks of a tile, as integers of type `I` in their [`Quanta`], and maxima. While the tile is swept, both are one
-/// number for each of eight lanes.
+/// Sums over the blocks of a tile, as integers of type `I` in their [`Quanta`], and maxima. While the tile is
+/// swept, both are one number for each of eight lanes.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Sums<I, M, N = u32> {
-    /// Sum of weighted displacements, `sum w (u - c)`, with the relative stiffness w of the drive springs and the centre c
-    /// of the window.
+    /// Sum of weighted displacements, `sum w (u - c)`, with the relative stiffness w of the drive springs and
+    /// the centre c of the window.
     pub(super) displacement: [I; 2],
     /// Sum of weighted velocities, `sum w v(t + dt/2)`.
     pub(super) velocity: [I; 2],
-    /// Four times `sum m v^2` at t_n, with v the mean of the half steps: `sum m (v(t - dt/2) + v(t + dt/2))^2`.
+    /// Four times `sum m v^2` at t_n, with v the mean of the half steps:
+    /// `sum m (v(t - dt/2) + v(t + dt/2))^2`.
     pub(super) motion_square: I,
     /// Twice the power that friction takes at t_n, `sum -F_f . (v(t - dt/2) + v(t + dt/2))`.
     pub(super) friction_work: I,
-    /// Energy of the springs times `2 k_1`, at steps at which energies are needed. The sum is found vector by vector, not in
-    /// lanes.
+    /// Energy of the springs times `2 k_1`, at steps at which energies are needed. The sum is found vector by
+    /// vector, not in lanes.
     pub(super) lattice_energy: I,
-    /// Sum for the kinetic energy, `sum m (v(t - dt/2)^2 + v(t + dt/2)^2)`, at steps at which energies are needed.
+    /// Sum for the kinetic energy, `sum m (v(t - dt/2)^2 + v(t + dt/2)^2)`, at steps at which energies are
+    /// needed.
     pub(super) velocity_squares: I,
     /// Sum for the energy of the drive springs, `sum w (u - c)^2`, at steps at which energies are needed.
     pub(super) displacement_square: I,
@@ -331,7 +337,8 @@ pub(super) struct Sums<I, M, N = u32> {
     pub(super) slipping: N,
 }
 
-/// Numbers that [`integers`] adds for the sums of every step, and the centres of the displacements, for each of eight lanes.
+/// Numbers that [`integers`] adds for the sums of every step, and the centres of the displacements, for each
+/// of eight lanes.
 #[derive(Clone, Copy)]
 struct Shifts<S: Simd> {
     centres: Vec2x8<S>,
@@ -576,8 +583,8 @@ fn rest<S: Simd>(
         ) == u8::MAX
 }
 
-/// The first part of the friction law: drive (Eq. 2), damping (Eq. 5), and the velocity without friction, for vectors that
-/// do not [`rest`].
+/// The first part of the friction law: drive (Eq. 2), damping (Eq. 5), and the velocity without friction, for
+/// vectors that do not [`rest`].
 #[inline(always)]
 fn free_motion<S: Simd, const DIFFER: bool>(simd: S, step: Step, arrays: &mut FrictionLoop) {
     let n = arrays.free_speed.len();
@@ -616,8 +623,8 @@ fn free_motion<S: Simd, const DIFFER: bool>(simd: S, step: Step, arrays: &mut Fr
     }
 }
 
-/// Eqs. 2 and 4-7 by Moreau's time-stepping: the operations of [`crate::friction::Projection`], eight blocks at a time, and all
-/// sums that observers need at every step.
+/// Eqs. 2 and 4-7 by Moreau's time-stepping: the operations of [`crate::friction::Projection`], eight blocks
+/// at a time, and all sums that observers need at every step.
 #[inline(always)]
 pub(super) fn friction<S: Simd, const ENERGY: bool, const DIFFER: bool>(
     simd: S,

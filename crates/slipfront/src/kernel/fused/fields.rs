@@ -1,6 +1,6 @@
-//! Forces and fields that a sweep does not keep, found again from displacements and velocities, by the exact spring law
-//! whatever formula the sweep used: the forces on one block, and one field of all blocks, tile after tile, with the same
-//! bits.
+//! Forces and fields that a sweep does not keep, found again from displacements and velocities, by the exact
+//! spring law whatever formula the sweep used: the forces on one block, and one field of all blocks, tile
+//! after tile, with the same bits.
 
 use fearless_simd::{Simd, SimdBase, SimdFloat};
 
@@ -60,8 +60,8 @@ fn lattice_force(model: &Model, b: usize, u: [f64; 2], displacement: impl Fn(usi
     [(e[0] + n[0]) + (ne[0] + nw[0]), (e[1] + n[1]) + (ne[1] + nw[1])]
 }
 
-/// Friction `F_f` of the projection law: kinetic friction against the velocity that the update left; for a stuck block minus
-/// the sum of the other forces.
+/// Friction `F_f` of the projection law: kinetic friction against the velocity that the update left; for a
+/// stuck block minus the sum of the other forces.
 fn friction(kinetic_force: f64, velocity: [f64; 2], drive: [f64; 2], lattice: [f64; 2]) -> [f64; 2] {
     if velocity == [0.0, 0.0] {
         return [-(drive[0] + lattice[0]), -(drive[1] + lattice[1])];
@@ -71,8 +71,8 @@ fn friction(kinetic_force: f64, velocity: [f64; 2], drive: [f64; 2], lattice: [f
     [-per_velocity * velocity[0], -per_velocity * velocity[1]]
 }
 
-/// Values of `field` in every `stride`-th row, several blocks of a row at a time: `write` is given the row, the column of the
-/// first value, and the values.
+/// Values of `field` in every `stride`-th row, several blocks of a row at a time: `write` is given the row,
+/// the column of the first value, and the values.
 #[inline(always)]
 pub(super) fn read_rows<S: Simd, G: Geometry>(
     simd: S,
@@ -147,8 +147,8 @@ fn round(values: &mut [f32; TILE], exact: &[f64]) {
     }
 }
 
-/// Contact stress `|F_f + F_c|` (Eq. 10) or traction `|F_f|` in a tile, with friction as for one block. `forces` holds the
-/// kinetic friction of every element, and is overwritten by the result.
+/// Contact stress `|F_f + F_c|` (Eq. 10) or traction `|F_f|` in a tile, with friction as for one block.
+/// `forces` holds the kinetic friction of every element, and is overwritten by the result.
 #[inline(always)]
 fn stresses<S: Simd, G: Geometry>(
     simd: S,

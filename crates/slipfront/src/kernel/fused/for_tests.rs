@@ -4,8 +4,8 @@ use super::layout::VECTORS;
 use super::*;
 use crate::communicator::Alone;
 
-/// The fused kernel by itself, on one thread of one rank: tests choose the width of its vectors, and read its bounds and the
-/// steps up to which it rests.
+/// The fused kernel by itself, on one thread of one rank: tests choose the width of its vectors, and read its
+/// bounds and the steps up to which it rests.
 #[derive(Debug)]
 pub struct FusedKernel {
     model: Model,
@@ -20,8 +20,8 @@ impl FusedKernel {
         levels().len()
     }
 
-    /// Begins in a given state, or at rest. Vectors have the widest of all widths unless `width` names another, counted from
-    /// the narrowest on; tiles at rest are skipped if `skips` is set.
+    /// Begins in a given state, or at rest. Vectors have the widest of all widths unless `width` names
+    /// another, counted from the narrowest on; tiles at rest are skipped if `skips` is set.
     ///
     /// # Panics
     /// If there is no such width.
@@ -42,8 +42,8 @@ impl FusedKernel {
         &self.model
     }
 
-    /// Makes the next step, at first step 0, under a drive that moves in every step. Returns the sums over all blocks, with
-    /// the stored energies if `energies` is set.
+    /// Makes the next step, at first step 0, under a drive that moves in every step. Returns the sums over
+    /// all blocks, with the stored energies if `energies` is set.
     pub fn step(&mut self, energies: bool) -> Totals {
         let start = Clock::start(self.kernel.dt_star);
         let clock = self.latest.map_or(start, |latest| latest.next(true));

@@ -1,9 +1,10 @@
 //! Where the blocks of the lattice are stored in the arrays of the fused kernel.
 //!
-//! Rows follow one another in one array of elements, so that the neighbours of element e are always e + 1, e + stride and
-//! e + stride +- 1, whatever the row, and vectors of eight elements may contain the end of a row. Springs that do not exist at a
-//! free edge are masked. Along a periodic x axis every row has a ghost at either end, a copy of the block at its other end.
-//! Elements that are no blocks never move, because their threshold is infinite, and are excluded from all sums.
+//! Rows follow one another in one array of elements, so that the neighbours of element e are always e + 1, e
+//! + stride and e + stride +- 1, whatever the row, and vectors of eight elements may contain the end of a
+//! row. Springs that do not exist at a free edge are masked. Along a periodic x axis every row has a ghost at
+//! either end, a copy of the block at its other end. Elements that are no blocks never move, because their
+//! threshold is infinite, and are excluded from all sums.
 
 use std::ops::Range;
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -17,7 +18,8 @@ pub(super) const TILE: usize = 256;
 /// Number of vectors in a tile: one bit each in a `u32`.
 pub(super) const VECTORS: usize = TILE / LANES;
 
-/// Least number of elements in a row: a vector must not contain two blocks that a spring to the next row joins.
+/// Least number of elements in a row: a vector must not contain two blocks that a spring to the next row
+/// joins.
 const MIN_ROW_ELEMENTS: usize = 16;
 
 #[derive(Clone, Copy, Debug)]
@@ -55,7 +57,8 @@ impl Layout {
         self.rows * self.lattice.nx
     }
 
-    /// Number of tiles. The last is shorter; only its last vector is filled up with elements that are no blocks.
+    /// Number of tiles. The last is shorter; only its last vector is filled up with elements that are no
+    /// blocks.
     pub(super) fn n_tiles(&self) -> usize {
         self.len().div_ceil(TILE)
     }
@@ -100,7 +103,8 @@ impl Layout {
         [(first - 1, last), (last + 1, first)]
     }
 
-    /// The blocks among these elements, row after row: the row, the column of the first, and which of the elements they are.
+    /// The blocks among these elements, row after row: the row, the column of the first, and which of the
+    /// elements they are.
     pub(super) fn rows_among(
         &self,
         elements: Range<usize>,
@@ -125,7 +129,8 @@ impl Layout {
         self.lattice.edges[1] == Edges::Periodic
     }
 
-    /// Whether other ranks hold the rows below the first and above the last of the stored rows, as neighbours of these.
+    /// Whether other ranks hold the rows below the first and above the last of the stored rows, as neighbours
+    /// of these.
     pub(super) fn has_neighbours(&self) -> [bool; 2] {
         if self.rows == self.lattice.ny {
             return [false; 2];
@@ -139,15 +144,15 @@ impl Layout {
         self.is_periodic_along_y() && self.rows == self.lattice.ny
     }
 
-    /// Row and column of an element, ghosts included; the row counts from the first stored row, the column from the first
-    /// ghost.
+    /// Row and column of an element, ghosts included; the row counts from the first stored row, the column
+    /// from the first ghost.
     pub(super) fn row_column(&self, element: isize) -> (isize, usize) {
         let stride = self.stride as isize;
         (element.div_euclid(stride), element.rem_euclid(stride) as usize)
     }
 
-    /// Column and row of the lattice of the block `lanes` elements after a place of [`row_column`](Self::row_column), which is in the
-    /// same row or the next.
+    /// Column and row of the lattice of the block `lanes` elements after a place of
+    /// [`row_column`](Self::row_column), which is in the same row or the next.
     pub(super) fn place_after(&self, row: usize, column: usize, lanes: usize) -> (usize, usize) {
         let column = column + lanes;
         match column.checked_sub(self.stride) {
@@ -156,8 +161,8 @@ impl Layout {
         }
     }
 
-    /// Column and row of the lattice of the block at an element, or of the block that is copied there; none beyond a free
-    /// edge or between the rows. The element may lie before the first or after the last row.
+    /// Column and row of the lattice of the block at an element, or of the block that is copied there; none
+    /// beyond a free edge or between the rows. The element may lie before the first or after the last row.
     pub(super) fn place(&self, element: isize) -> Option<[usize; 2]> {
         let (nx, ny) = (self.lattice.nx, self.lattice.ny as isize);
         let (row, column) = self.row_column(element);
@@ -169,8 +174,8 @@ impl Layout {
         is_stored.then(|| [(column + nx - self.ghosts) % nx, j as usize])
     }
 
-    /// Springs of an element to the east, north, north-east and north-west: whether the lattice has them. The element may
-    /// lie before the first or after the last row.
+    /// Springs of an element to the east, north, north-east and north-west: whether the lattice has them. The
+    /// element may lie before the first or after the last row.
     pub(super) fn springs(&self, element: isize) -> [bool; 4] {
         let ghosts = self.ghosts as isize;
         let (nx, ny) = (self.lattice.nx as isize, self.lattice.ny as isize);
@@ -184,8 +189,8 @@ impl Layout {
         [east, north && is_stored, north && east, north && west]
     }
 
-    /// The elements from `from` to `to`, each piece with its first element. Elements before the first row or after the last
-    /// are left out, or taken from the other end if the axis is periodic.
+    /// The elements from `from` to `to`, each piece with its first element. Elements before the first row or
+    /// after the last are left out, or taken from the other end if the axis is periodic.
     pub(super) fn pieces(
         &self,
         from: isize,
@@ -209,8 +214,8 @@ impl Layout {
         })
     }
 
-    /// Marks the vectors that contain the elements from `first` to `last`, which may lie outside, or neighbours of these
-    /// elements: see [`mark_vectors`].
+    /// Marks the vectors that contain the elements from `first` to `last`, which may lie outside, or
+    /// neighbours of these elements: see [`mark_vectors`].
     pub(super) fn mark_around(&self, first: isize, last: isize, masks: &[AtomicU32]) {
         let (n, stride) = (self.len() as isize, self.stride as isize);
         for row in [-stride, 0, stride] {

@@ -1,18 +1,20 @@
 //! The fast kernel: the equations of [`general`](super::general) in one sweep over the blocks.
 //!
-//! Blocks are stored row after row in one array ([`layout`]), divided into tiles of 256 elements. A sweep takes tile after tile
-//! through a step ([`band`]): displacements, springs, friction and all sums, eight blocks at a time ([`blocks`]), each spring
-//! once. Spring forces come from a series where that is as exact as the square root ([`springs`]). A tile at rest with nothing
-//! moving around it is skipped until one of its blocks can slip ([`rest`]). Every thread sweeps a band of tiles.
+//! Blocks are stored row after row in one array ([`layout`]), divided into tiles of 256 elements. A sweep
+//! takes tile after tile through a step ([`band`]): displacements, springs, friction and all sums, eight
+//! blocks at a time ([`blocks`]), each spring once. Spring forces come from a series where that is as exact
+//! as the square root ([`springs`]). A tile at rest with nothing moving around it is skipped until one of its
+//! blocks can slip ([`rest`]). Every thread sweeps a band of tiles.
 //!
-//! A step must read displacement, velocity and two thresholds of every block and write displacement and velocity: 80 bytes,
-//! which bounds the speed on a lattice larger than the cache (`examples/large_step.rs`). Spring forces pass through a ring
-//! buffer that stays in the cache.
+//! A step must read displacement, velocity and two thresholds of every block and write displacement and
+//! velocity: 80 bytes, which bounds the speed on a lattice larger than the cache (`examples/large_step.rs`).
+//! Spring forces pass through a ring buffer that stays in the cache.
 //!
 //! A rank holds some rows and the displacements of the rows beside them ([`neighbours`]).
 //!
-//! The trajectory has the same bits for any number of ranks and threads and any SIMD width, whether vectors are skipped or not:
-//! sums are sums of integers ([`quanta`]), and the choice between series and square root is made for the whole lattice.
+//! The trajectory has the same bits for any number of ranks and threads and any SIMD width, whether vectors
+//! are skipped or not: sums are sums of integers ([`quanta`]), and the choice between series and square root
+//! is made for the whole lattice.
 
 mod aligned;
 mod band;
@@ -183,8 +185,9 @@ impl Fused {
         kernel
     }
 
-    /// Continues from a checkpoint. Every tile is swept at the next step, including those that could be skipped: both give
-    /// the same bits. The step of the checkpoint counts as one in which all tiles were swept.
+    /// Continues from a checkpoint. Every tile is swept at the next step, including those that could be
+    /// skipped: both give the same bits. The step of the checkpoint counts as one in which all tiles were
+    /// swept.
     pub(crate) fn resume<E>(
         model: &Model,
         dt_star: f64,
@@ -225,8 +228,9 @@ impl Fused {
         })
     }
 
-    /// Chooses the formula for springs in a step by the bound on all strains; returns it, and whether sums have other quanta
-    /// than before. The function must be called at every step, swept or not, so that skipping does not change the choice.
+    /// Chooses the formula for springs in a step by the bound on all strains; returns it, and whether sums
+    /// have other quanta than before. The function must be called at every step, swept or not, so that
+    /// skipping does not change the choice.
     fn choose_springs(&mut self, model: &Model, step: &Step) -> (Springs, bool) {
         let bounds = &mut self.motion_bounds;
         if step.number.is_multiple_of(MEASUREMENT_INTERVAL) {
@@ -262,8 +266,8 @@ impl Fused {
         (springs, self.motion_bounds.move_ranges())
     }
 
-    /// Makes the sweep to a step. Bands that need nothing of other ranks are swept while the rows beside this rank's are on
-    /// their way.
+    /// Makes the sweep to a step. Bands that need nothing of other ranks are swept while the rows beside this
+    /// rank's are on their way.
     fn sweep(&mut self, model: &Model, step: Step, springs: Springs, renews_sums: bool, energies: bool) {
         let schedule = SweepConditions {
             number: step.number,
@@ -312,8 +316,9 @@ impl Fused {
         self.sum_bands(&quanta);
     }
 
-    /// Displacements beyond the ends of every band, as they will be after moving by `move_dt`: for `all` elements of this
-    /// rank, or for those that move. Displacements beyond a free edge stay zero: no spring leads there.
+    /// Displacements beyond the ends of every band, as they will be after moving by `move_dt`: for `all`
+    /// elements of this rank, or for those that move. Displacements beyond a free edge stay zero: no spring
+    /// leads there.
     fn fill_halos(&mut self, move_dt: f64, all: bool) {
         if self.bands.len() == 1 && !self.layout.wraps_along_y() {
             return;
@@ -328,7 +333,8 @@ impl Fused {
         }
     }
 
-    /// Exchanges with other ranks the numbers that the first step needs, also the first step after a checkpoint.
+    /// Exchanges with other ranks the numbers that the first step needs, also the first step after a
+    /// checkpoint.
     fn begin(&mut self, model: &Model) {
         self.has_begun = true;
         self.write_own_rows(0.0);
@@ -357,8 +363,8 @@ impl Fused {
         }
     }
 
-    /// Writes the displacements that the rows at the ends of this rank will have after moving by `move_dt`, for the
-    /// neighbouring ranks.
+    /// Writes the displacements that the rows at the ends of this rank will have after moving by `move_dt`,
+    /// for the neighbouring ranks.
     fn write_own_rows(&mut self, move_dt: f64) {
         let (stride, len) = (self.layout.stride, self.layout.len());
         for (end, first) in [0, len - stride].into_iter().enumerate() {
@@ -400,8 +406,8 @@ impl Fused {
         (band, element - self.bands[band].first)
     }
 
-    /// Copies displacements and velocities to the ghosts from their blocks: from `all` blocks, or from those that were
-    /// swept.
+    /// Copies displacements and velocities to the ghosts from their blocks: from `all` blocks, or from those
+    /// that were swept.
     fn copy_ghosts(&mut self, all: bool) {
         if !self.layout.has_ghosts() {
             return;
@@ -493,8 +499,8 @@ impl Engine for Fused {
             self.begin(model);
         }
         let (springs, windows_moved) = self.choose_springs(model, &step);
-        // Skipped tiles keep their sums and the energy of their springs. After a change of quanta or formula they must be found
-        // anew, to have the same bits.
+        // Skipped tiles keep their sums and the energy of their springs. After a change of quanta or formula
+        // they must be found anew, to have the same bits.
         let springs_changed = windows_moved || self.springs != Some(springs);
         if !self.skips || springs_changed || number >= self.active_from_step {
             self.sweep(model, step, springs, springs_changed, energies);
@@ -624,8 +630,8 @@ impl Engine for Fused {
     }
 }
 
-/// Least number of tiles in a band of several: more bands than threads share out the work more evenly, but each finds the
-/// springs of the row before it once more.
+/// Least number of tiles in a band of several: more bands than threads share out the work more evenly, but
+/// each finds the springs of the row before it once more.
 const MIN_BAND_TILES: usize = 1024;
 
 /// The tiles of every band, and the bands that need nothing of other ranks.

@@ -6,7 +6,8 @@ use std::sync::Arc;
 use super::layout::Layout;
 use crate::communicator::Communicator;
 
-/// Displacements of the row below the first of this rank and of the row above the last, ghosts included; none beyond a free edge.
+/// Displacements of the row below the first of this rank and of the row above the last, ghosts included; none
+/// beyond a free edge.
 pub(super) struct Neighbours {
     pub(super) communicator: Arc<dyn Communicator>,
     /// The first and the last row of this rank, which are sent to the ranks below and above.
@@ -15,7 +16,8 @@ pub(super) struct Neighbours {
     rows: [Vec<[f64; 2]>; 2],
     /// Rows of the ranks below and above before the latest exchange.
     before: [Vec<[f64; 2]>; 2],
-    /// Elements of the rows beside this rank that have moved in the latest exchange, counted from the first of this rank.
+    /// Elements of the rows beside this rank that have moved in the latest exchange, counted from the first
+    /// of this rank.
     pub(super) moved: Vec<isize>,
 }
 

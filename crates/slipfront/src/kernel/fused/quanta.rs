@@ -1,5 +1,5 @@
-//! The quanta of all sums over blocks: see [`FixedPoint`]. They follow from bounds on the terms, and these from the extent
-//! of displacements and the highest speed, which every rank and thread knows.
+//! The quanta of all sums over blocks: see [`FixedPoint`]. They follow from bounds on the terms, and these
+//! from the extent of displacements and the highest speed, which every rank and thread knows.
 
 use super::step::Step;
 use super::variations::LargestFactors;
@@ -66,7 +66,8 @@ fn highest_speed(step: &Step, bounds: &MotionBounds, largest: &LargestFactors) -
         let [low, high] = bounds.range(axis);
         let position = step.drive_position[axis];
         let stretch = (position - low).abs().max((position - high).abs());
-        // The force of a spring is at most its stiffness times the difference of the displacements of its ends.
+        // The force of a spring is at most its stiffness times the difference of the displacements of its
+        // ends.
         force += largest.modulus * 4.0 * (K_STRAIGHT + K_DIAGONAL) * bounds.spring_difference(axis)
             + largest.drive_spring * (step.k_drive * stretch + step.constant_force[axis].abs());
     }

@@ -1,7 +1,8 @@
 //! How long blocks at rest will stay at rest.
 //!
-//! While a block and its neighbours are stuck, the force on it grows by that of its drive spring alone, linearly:
-//! `F(t) = F + k_s V t`. It slips when `|F(t)|` passes its threshold `T = max(mu_s, mu_k) F_n` (D12):
+//! While a block and its neighbours are stuck, the force on it grows by that of its drive spring alone,
+//! linearly: `F(t) = F + k_s V t`. It slips when `|F(t)|` passes its threshold `T = max(mu_s, mu_k) F_n`
+//! (D12):
 //!
 //! ```text
 //! c t^2 + 2 a t = T^2 - F^2,   a = F . k_s V,   c = (k_s V)^2
@@ -27,8 +28,9 @@ pub(super) struct RestingVector<S: Simd> {
 
 /// Number of steps from `step` until the first of the blocks can slip, or somewhat less.
 ///
-/// With a drive at an angle it is zero if one component of the drive force on a block shrinks while the other grows. So the
-/// contact stress of a skipped block is always largest at the first or at the last skipped step.
+/// With a drive at an angle it is zero if one component of the drive force on a block shrinks while the other
+/// grows. So the contact stress of a skipped block is always largest at the first or at the last skipped
+/// step.
 #[inline(always)]
 pub(super) fn steps_until_slip<S: Simd>(simd: S, step: &Step, blocks: &RestingVector<S>) -> u64 {
     // The growth is that until the speed of the drive changes next; who calls this looks no further.
@@ -62,8 +64,8 @@ pub(super) fn steps_until_slip<S: Simd>(simd: S, step: &Step, blocks: &RestingVe
     // A block without drive spring waits for its neighbours.
     let waits = drive_spring.simd_eq(zero) & room.simd_gt(zero);
     let time = waits.select(splat(simd, f64::INFINITY), time);
-    // Forces have rounding errors of some units of their last place: the result is shortened by the time in which the load
-    // grows by that, and by two steps for the rounding of the root and of the division.
+    // Forces have rounding errors of some units of their last place: the result is shortened by the time in
+    // which the load grows by that, and by two steps for the rounding of the root and of the division.
     let distance = step.drive_position[0].abs() + step.drive_position[1].abs();
     let noise = 1e-13 * (1.0 + step.k_drive * distance) / growth_square.sqrt();
     let noise = waits.select(zero, splat(simd, noise) / drive_spring);

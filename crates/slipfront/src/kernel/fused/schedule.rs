@@ -1,5 +1,5 @@
-//! The schedule of a sweep: the work on every tile of a band, which is none if nothing moves in it or around it and none of
-//! its blocks may slip.
+//! The schedule of a sweep: the work on every tile of a band, which is none if nothing moves in it or around
+//! it and none of its blocks may slip.
 
 use std::sync::atomic::{AtomicU32, Ordering};
 
@@ -13,7 +13,8 @@ const MAX_SPARSE_VECTORS: u32 = 14;
 /// Largest number of touched vectors of a tile after whose sweep its vectors are swept one by one.
 const MAX_SETTLING_VECTORS: u32 = 9;
 
-/// Number of moving vectors in a tile above which all around it are marked, instead of those around each vector.
+/// Number of moving vectors in a tile above which all around it are marked, instead of those around each
+/// vector.
 const MAX_MARKED_VECTORS: usize = 10;
 
 /// Conditions common to all tiles in a sweep.
@@ -32,7 +33,8 @@ pub(super) struct SweepConditions {
 }
 
 impl Band {
-    /// Marks all vectors that contain a moving element or a neighbour of one: for every tile of the rank one bit per vector.
+    /// Marks all vectors that contain a moving element or a neighbour of one: for every tile of the rank one
+    /// bit per vector.
     pub(super) fn mark_touched(&self, layout: &Layout, touched: &[AtomicU32]) {
         let mark = |from: usize, to: usize| {
             layout.mark_around((self.first + from) as isize, (self.first + to) as isize, touched);

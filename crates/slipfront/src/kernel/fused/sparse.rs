@@ -1,7 +1,9 @@
-//! Tiles in which little moves: vectors of eight blocks are swept alone, with the same bits as in a sweep of the whole tile.
+//! Tiles in which little moves: vectors of eight blocks are swept alone, with the same bits as in a sweep of
+//! the whole tile.
 //!
-//! A vector is swept if one of its blocks or a neighbour of one moves, or if one of its blocks may slip. It computes all eight
-//! springs of its blocks itself. Sums over the tile are integers, so that they can be kept up to date by differences.
+//! A vector is swept if one of its blocks or a neighbour of one moves, or if one of its blocks may slip. It
+//! computes all eight springs of its blocks itself. Sums over the tile are integers, so that they can be kept
+//! up to date by differences.
 
 use fearless_simd::{Simd, SimdBase};
 
@@ -101,8 +103,9 @@ impl Band {
         })
     }
 
-    /// Drive, friction and damping (Eqs. 2 and 4-7) in the active vectors of a settled tile, whose lattice forces follow
-    /// each other in the scratch array. A function of its own, compiled once for all formulas of springs.
+    /// Drive, friction and damping (Eqs. 2 and 4-7) in the active vectors of a settled tile, whose lattice
+    /// forces follow each other in the scratch array. A function of its own, compiled once for all formulas
+    /// of springs.
     #[inline(never)]
     fn friction_of_vectors<S: Simd, const DIFFER: bool>(
         &mut self,
@@ -141,8 +144,8 @@ impl Band {
         );
     }
 
-    /// Finds the numbers by which vectors of a tile can be swept alone, after a sweep of the whole tile with its energies. A
-    /// function of its own, compiled once for all formulas of springs.
+    /// Finds the numbers by which vectors of a tile can be swept alone, after a sweep of the whole tile with
+    /// its energies. A function of its own, compiled once for all formulas of springs.
     #[inline(never)]
     pub(super) fn settle<S: Simd>(&mut self, simd: S, step: &Step, t: usize, scratch: &Scratch) {
         simd.vectorize(
@@ -190,7 +193,8 @@ impl Band {
         load_vec2(simd, chunks(&self.displacement, first, LANES), 0)
     }
 
-    /// Force of the springs along `bond` of the eight elements from `first` on, whose other ends begin at `there`.
+    /// Force of the springs along `bond` of the eight elements from `first` on, whose other ends begin at
+    /// `there`.
     #[inline(always)]
     fn springs_between<S: Simd, G: Geometry>(
         &self,
@@ -227,7 +231,8 @@ impl Band {
         ]
     }
 
-    /// Lattice forces (Eq. 3) on eight blocks, to a place in the scratch array; returns the energy of their springs.
+    /// Lattice forces (Eq. 3) on eight blocks, to a place in the scratch array; returns the energy of their
+    /// springs.
     #[inline(always)]
     fn vector_forces<S: Simd, G: Geometry>(
         &self,

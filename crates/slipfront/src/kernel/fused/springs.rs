@@ -1,4 +1,5 @@
-//! The force of a stretched spring (Eq. 3), eight at a time: by the square root, or by a series that is as exact.
+//! The force of a stretched spring (Eq. 3), eight at a time: by the square root, or by a series that is as
+//! exact.
 
 use fearless_simd::{Simd, SimdFloat, f64x8};
 
@@ -10,8 +11,8 @@ pub(super) trait Geometry: Copy {
     /// Whether springs, masses or anything else differs from block to block.
     const BLOCKS_DIFFER: bool = false;
 
-    /// Force of the spring along `bond` on a block, as [`Bond::force`]; `e` is the displacement of the neighbour less that of
-    /// the block.
+    /// Force of the spring along `bond` on a block, as [`Bond::force`]; `e` is the displacement of the
+    /// neighbour less that of the block.
     fn force<S: Simd>(self, simd: S, bond: &Bond, e: Vec2x8<S>) -> Vec2x8<S>;
 }
 
@@ -82,8 +83,8 @@ const G: [f64; 8] = [
 ];
 
 impl<const DEGREE: usize> Series<DEGREE> {
-    /// Largest `|z|` at which the series is exact to rounding: `2 |z|^(DEGREE + 1) <= 2^-54`, a quarter of a unit in the
-    /// last place.
+    /// Largest `|z|` at which the series is exact to rounding: `2 |z|^(DEGREE + 1) <= 2^-54`, a quarter of a
+    /// unit in the last place.
     pub(super) fn strain_limit() -> f64 {
         libm::exp2(-55.0 / (DEGREE + 1) as f64)
     }
@@ -155,7 +156,8 @@ mod tests {
         })
     }
 
-    /// Asserts that both formulas agree with [`Bond::force`]: each has a rounding error of some units of the last place.
+    /// Asserts that both formulas agree with [`Bond::force`]: each has a rounding error of some units of the
+    /// last place.
     fn assert_same<const DEGREE: usize>(bond: &Bond, e: [f64; 2], epsilon: f64) {
         let exact = bond.force(e, epsilon);
         let by_root = force(SquareRoot { epsilon }, bond, e);

@@ -21,7 +21,8 @@ pub(super) struct Step {
     position_before: [f64; 2],
     /// The first step at which the drive may change its speed next.
     pub(super) next_change: u64,
-    /// Growth per time of the force of a drive spring on a block at rest, `k_s V`; a drive that is held loads more slowly.
+    /// Growth per time of the force of a drive spring on a block at rest, `k_s V`; a drive that is held loads
+    /// more slowly.
     pub(super) force_growth: [f64; 2],
     pub(super) constant_force: [f64; 2],
     pub(super) integrator: Integrator,

@@ -34,7 +34,8 @@ struct Slipped {
     /// Kinetic impulses of the strength that falls with slip.
     drops: Aligned,
     slip: Aligned,
-    /// t* of the last motion of an element, and the shares that it has lost before it healed; present only with healing.
+    /// t* of the last motion of an element, and the shares that it has lost before it healed; present only
+    /// with healing.
     healing: Option<[Aligned; 2]>,
 }
 
@@ -67,7 +68,8 @@ impl Thresholds {
         matches!(self.law, ChangingLaw::Slip(_))
     }
 
-    /// Sets the largest fall of friction of an element from the threshold at which it first slips, as an impulse.
+    /// Sets the largest fall of friction of an element from the threshold at which it first slips, as an
+    /// impulse.
     pub(super) fn set_drop(&mut self, k: usize, impulse: f64) {
         if let ChangingLaw::Slip(slipped) = &mut self.law {
             slipped.drops[k] = impulse;
@@ -83,8 +85,9 @@ impl Thresholds {
         }
     }
 
-    /// Finds the kinetic impulses of some elements, which have moved at these velocities in the step that ends now, from the
-    /// impulses of slow sliding without slip. Where friction follows speed, the inverse masses of the blocks count.
+    /// Finds the kinetic impulses of some elements, which have moved at these velocities in the step that
+    /// ends now, from the impulses of slow sliding without slip. Where friction follows speed, the inverse
+    /// masses of the blocks count.
     #[inline(always)]
     pub(super) fn update<S: Simd>(
         &mut self,
@@ -128,8 +131,8 @@ impl Thresholds {
         }
     }
 
-    /// Number of an element in a column of a checkpoint at t*; the element moves or is stuck. An element that has healed
-    /// since it was last swept has the numbers that its next sweep finds.
+    /// Number of an element in a column of a checkpoint at t*; the element moves or is stuck. An element that
+    /// has healed since it was last swept has the numbers that its next sweep finds.
     pub(super) fn memory(&self, column: usize, k: usize, is_moving: bool, time_star: f64) -> f64 {
         let ChangingLaw::Slip(Slipped {
             law, slip, healing, ..
@@ -155,7 +158,8 @@ impl Thresholds {
 }
 
 impl Slipped {
-    /// Kinetic impulses at the slip of some elements: the operations of [`SlipWeakening::share_left`], eight elements at a time.
+    /// Kinetic impulses at the slip of some elements: the operations of [`SlipWeakening::share_left`], eight
+    /// elements at a time.
     #[inline(always)]
     fn weaken<S: Simd>(
         &mut self,
@@ -204,9 +208,9 @@ impl Slipped {
     }
 }
 
-/// Kinetic impulses at these velocities, from the impulses of slow sliding: the operations of [`Weakening::kinetic_force`].
-/// `adhesive` is the impulse of adhesion on a block of mass 1. Elements that are no blocks have infinite impulses, which
-/// become NaN and hold them as well.
+/// Kinetic impulses at these velocities, from the impulses of slow sliding: the operations of
+/// [`Weakening::kinetic_force`]. `adhesive` is the impulse of adhesion on a block of mass 1. Elements that
+/// are no blocks have infinite impulses, which become NaN and hold them as well.
 #[inline(always)]
 fn weaken<S: Simd>(
     simd: S,

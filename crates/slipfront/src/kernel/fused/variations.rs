@@ -1,7 +1,8 @@
 //! Heterogeneous sliders: springs, drive springs and masses that differ from block to block.
 //!
-//! Where all blocks are alike none of it is stored or computed: the sweep is compiled for both kinds of slider ([`Geometry`]).
-//! An outline needs nothing of it, either: blocks outside are elements that are no blocks, and their springs are masked.
+//! Where all blocks are alike none of it is stored or computed: the sweep is compiled for both kinds of
+//! slider ([`Geometry`]). An outline needs nothing of it, either: blocks outside are elements that are no
+//! blocks, and their springs are masked.
 //!
 //! [`Geometry`]: super::springs::Geometry
 
@@ -18,8 +19,8 @@ use crate::moduli::Moduli;
 /// Numbers of the elements of a band.
 #[derive(Debug)]
 pub(super) struct Variations {
-    /// Stiffness of the springs to the east, north, north-east and north-west over the stiffness of their bonds; with the
-    /// front halo.
+    /// Stiffness of the springs to the east, north, north-east and north-west over the stiffness of their
+    /// bonds; with the front halo.
     pub(super) springs: [Aligned; 4],
     /// Stiffness of the drive springs over `k_s`.
     pub(super) drive_springs: Aligned,

@@ -22,7 +22,8 @@ use crate::vector_field::VectorField;
 /// Blocks of a part, unless a row has more.
 const PART: usize = 512;
 
-/// Blocks of each part but the last. A part has whole rows, so that no neighbour in the row of a block lies in a later part.
+/// Blocks of each part but the last. A part has whole rows, so that no neighbour in the row of a block lies
+/// in a later part.
 fn part_len(model: &Model) -> usize {
     let nx = model.lattice.nx;
     (PART / nx).max(1) * nx
@@ -101,7 +102,8 @@ pub(super) struct Band {
     kinetic_force: Vec<f64>,
     driven: DrivenBlocks,
     pub(super) contact: BandContact,
-    /// Relative stiffness of the spring of every block of the rows along each bond, for a heterogeneous slider.
+    /// Relative stiffness of the spring of every block of the rows along each bond, for a heterogeneous
+    /// slider.
     relative_springs: Option<[Vec<f64>; 4]>,
     dampers: Option<Dampers>,
     pub(super) sums: BandSums,
@@ -156,7 +158,8 @@ impl Band {
         }
     }
 
-    /// Finds the values that follow from the memory of the law of friction, after a checkpoint has restored it.
+    /// Finds the values that follow from the memory of the law of friction, after a checkpoint has restored
+    /// it.
     pub(super) fn resume(&mut self, model: &Model) {
         self.contact.resume(&model.surface, &mut self.static_limit);
     }
@@ -173,7 +176,8 @@ impl Band {
         }
     }
 
-    /// Finds the forces on the blocks and their next velocities, unless these are known, and adds up the `sums` over them.
+    /// Finds the forces on the blocks and their next velocities, unless these are known, and adds up the
+    /// `sums` over them.
     #[inline(always)]
     pub(super) fn evaluate(&mut self, model: &Model, clock: &Clock, is_known: bool, sums: BandSums) {
         self.sums = sums;
@@ -191,8 +195,8 @@ impl Band {
         }
     }
 
-    /// Adds up the energies of the blocks and the drive springs, and finds those of the springs between blocks row by row, after the
-    /// next velocities are known.
+    /// Adds up the energies of the blocks and the drive springs, and finds those of the springs between
+    /// blocks row by row, after the next velocities are known.
     #[inline(always)]
     pub(super) fn add_energies(&mut self, model: &Model, drive_time_star: f64, sums: [RunningSum; 3]) {
         self.energy_sums = sums;
@@ -280,8 +284,8 @@ impl Band {
         }
     }
 
-    /// Friction and damping of some blocks, and their velocities half a step later (Eqs. 4-7). `integrator`: one for each of
-    /// these blocks.
+    /// Friction and damping of some blocks, and their velocities half a step later (Eqs. 4-7). `integrator`:
+    /// one for each of these blocks.
     #[inline(always)]
     fn apply_friction(
         &mut self,
@@ -296,7 +300,8 @@ impl Band {
             .apply(&model.surface, blocks, limits, now, integrator, forces);
     }
 
-    /// Counts the blocks that slide among some blocks, and those of them in contact; notes the first slips of the latter.
+    /// Counts the blocks that slide among some blocks, and those of them in contact; notes the first slips of
+    /// the latter.
     #[inline(always)]
     fn count(&mut self, model: &Model, blocks: &Range<usize>, time_star: f64) {
         let n = blocks.len();

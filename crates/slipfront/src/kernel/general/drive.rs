@@ -105,8 +105,8 @@ impl DrivenBlocks {
         add_weighted(sum, squares, relative(model, blocks), &mut scratch.products);
     }
 
-    /// Adds the two components of a vector over some blocks, weighted with the relative stiffness of the springs; for a
-    /// rotation the components along the direction at each block and to its left.
+    /// Adds the two components of a vector over some blocks, weighted with the relative stiffness of the
+    /// springs; for a rotation the components along the direction at each block and to its left.
     #[inline(always)]
     pub(super) fn add(
         &self,

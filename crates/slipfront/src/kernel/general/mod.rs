@@ -1,12 +1,13 @@
 //! The general kernel: it computes every option of the model, one pass over the blocks per equation.
 //!
-//! The passes go over one part of the blocks after the other, so that what one has found is in the cache for the next.
-//! A step moves the blocks (Eq. 8), finds the forces on them (Eqs. 2, 3) and lets friction and damping act (Eqs. 4-7).
-//! Forces of opposite neighbours are summed in pairs, straight ones before diagonal ones, so that the trajectory of a rotated
-//! or mirrored problem is the rotated or mirrored trajectory, with the same bits.
+//! The passes go over one part of the blocks after the other, so that what one has found is in the cache for
+//! the next. A step moves the blocks (Eq. 8), finds the forces on them (Eqs. 2, 3) and lets friction and
+//! damping act (Eqs. 4-7). Forces of opposite neighbours are summed in pairs, straight ones before diagonal
+//! ones, so that the trajectory of a rotated or mirrored problem is the rotated or mirrored trajectory, with
+//! the same bits.
 //!
-//! Threads share out bands of rows. Between the passes that move the blocks and those that find the forces on them, bands tell each
-//! other, and ranks too, how their first and last rows move.
+//! Threads share out bands of rows. Between the passes that move the blocks and those that find the forces on
+//! them, bands tell each other, and ranks too, how their first and last rows move.
 
 mod band;
 mod drive;
@@ -77,8 +78,8 @@ impl BandOfRank {
         (self.model.as_ref().unwrap_or(of_rank), &mut self.band)
     }
 
-    /// Blocks of the band among the `count` blocks of the rank from `first` on: their places in the band, and among the
-    /// `count` blocks.
+    /// Blocks of the band among the `count` blocks of the rank from `first` on: their places in the band, and
+    /// among the `count` blocks.
     fn common(&self, first: usize, count: usize) -> Option<[Range<usize>; 2]> {
         let both = first.max(self.blocks.start)..(first + count).min(self.blocks.end);
         let from = |start: usize| both.start - start..both.end - start;
@@ -87,8 +88,8 @@ impl BandOfRank {
 }
 
 impl General {
-    /// Begins in a given state, or at rest; the blocks are divided among `threads`. All `ranks` of a lattice must call this together, and
-    /// then the same functions.
+    /// Begins in a given state, or at rest; the blocks are divided among `threads`. All `ranks` of a lattice
+    /// must call this together, and then the same functions.
     pub(crate) fn new(
         model: &Model,
         dt_star: f64,
@@ -264,8 +265,8 @@ impl General {
         }
     }
 
-    /// Sum over all rows of the whole lattice, given the numbers of the rows of every band. The order is equal for any
-    /// number of bands and ranks, and so are the bits.
+    /// Sum over all rows of the whole lattice, given the numbers of the rows of every band. The order is
+    /// equal for any number of bands and ranks, and so are the bits.
     fn sum_rows<'a>(&self, model: &Model, of_bands: impl Iterator<Item = &'a [f64]>) -> f64 {
         // Every rank knows the numbers of its rows and has zeros elsewhere, so that integer sums of the bits
         // bring them together; then all add the same numbers in the same order.

@@ -9,8 +9,8 @@ use crate::moduli::Moduli;
 use crate::state::State;
 use crate::vector_field::VectorField;
 
-/// The rows of a band, and the row below and the row above if other bands hold these: the input of the forces of the springs
-/// between blocks. With one band, all rows of the lattice.
+/// The rows of a band, and the row below and the row above if other bands hold these: the input of the forces
+/// of the springs between blocks. With one band, all rows of the lattice.
 pub(super) struct Rows {
     /// Lattice of these rows, with free ends.
     pub(super) lattice: Lattice,
@@ -86,8 +86,8 @@ impl Rows {
         }
     }
 
-    /// The motion of the first and the last row of this band, one component after the other, for the bands below and above; nothing
-    /// where there is none.
+    /// The motion of the first and the last row of this band, one component after the other, for the bands
+    /// below and above; nothing where there is none.
     pub(super) fn read_ends(&self, own: &State, ends: &mut [Vec<f64>; 2]) {
         let Some(Beside { has, has_dampers, .. }) = &self.beside else {
             return;
@@ -131,8 +131,8 @@ impl Rows {
         self.own.start + blocks.start..self.own.start + blocks.end
     }
 
-    /// Blocks behind the first of this band along a bond that no blocks before it are: those of the row below, or where a
-    /// periodic axis begins those of the last row.
+    /// Blocks behind the first of this band along a bond that no blocks before it are: those of the row
+    /// below, or where a periodic axis begins those of the last row.
     pub(super) fn behind(&self) -> Range<usize> {
         let last_row = self.lattice.block(0, self.lattice.ny - 1)..self.lattice.n_blocks();
         match self.lattice.edges[1] {
@@ -141,8 +141,8 @@ impl Rows {
         }
     }
 
-    /// Stiffness of the spring from every block along `bond` over the stiffness of the bond; 0 for the blocks of the row
-    /// above.
+    /// Stiffness of the spring from every block along `bond` over the stiffness of the bond; 0 for the blocks
+    /// of the row above.
     pub(super) fn springs_along(&self, moduli: &Moduli, bond: &Bond) -> Vec<f64> {
         let Lattice { nx, ny, .. } = self.lattice;
         let Range { start: below, end } = self.own_rows();

@@ -10,9 +10,9 @@ use crate::model::Model;
 use crate::state::State;
 use crate::vector_field::VectorField;
 
-/// Eq. 3: `F_c = sum_j k_ij (r_ij - d_ij) e_ij` over the eight neighbours, every spring computed once. Called for some
-/// blocks after the blocks before them. `relative`: stiffness of each spring over that of its bond, for a heterogeneous
-/// slider.
+/// Eq. 3: `F_c = sum_j k_ij (r_ij - d_ij) e_ij` over the eight neighbours, every spring computed once. Called
+/// for some blocks after the blocks before them. `relative`: stiffness of each spring over that of its bond,
+/// for a heterogeneous slider.
 #[inline(always)]
 pub(super) fn lattice_forces(
     model: &Model,
@@ -30,8 +30,8 @@ pub(super) fn lattice_forces(
     sum_all(rows, blocks, &spring, relative, force, springs);
 }
 
-/// Forces of dampers beside all springs (Kelvin-Voigt), `F_v = sum_j tau_v k_ij (e_ij . (v_j - v_i)) e_ij`, with the
-/// velocities half a step before. Arguments as for [`lattice_forces`].
+/// Forces of dampers beside all springs (Kelvin-Voigt), `F_v = sum_j tau_v k_ij (e_ij . (v_j - v_i)) e_ij`,
+/// with the velocities half a step before. Arguments as for [`lattice_forces`].
 #[inline(always)]
 pub(super) fn damper_forces(
     model: &Model,
@@ -125,7 +125,8 @@ fn difference(field: &VectorField, b: usize, other: usize) -> [f64; 2] {
     [field.x[other] - field.x[b], field.y[other] - field.y[b]]
 }
 
-/// Sums the forces along the bonds of every block, times `relative`. Forces along the bonds of the blocks before are known.
+/// Sums the forces along the bonds of every block, times `relative`. Forces along the bonds of the blocks
+/// before are known.
 #[inline(always)]
 fn sum_all(
     rows: &Rows,
@@ -170,7 +171,8 @@ fn between(blocks: &Range<usize>, first: usize, end: usize) -> Range<usize> {
     first.max(blocks.start).min(end)..end
 }
 
-/// Force on some blocks along `bond`; zero where a free edge leaves its neighbour out, as `force` is at the beginning.
+/// Force on some blocks along `bond`; zero where a free edge leaves its neighbour out, as `force` is at the
+/// beginning.
 #[inline(always)]
 fn along_bond(
     lattice: &Lattice,
@@ -179,8 +181,8 @@ fn along_bond(
     connection: &impl Connection,
     force: &mut VectorField,
 ) {
-    // In block order the neighbours of all blocks are equally far away: one loop for all rows. What it finds at the ends of
-    // the rows is replaced afterwards.
+    // In block order the neighbours of all blocks are equally far away: one loop for all rows. What it finds
+    // at the ends of the rows is replaced afterwards.
     let (n, shift) = (lattice.n_blocks(), lattice.shift(bond));
     let inside = between(blocks, blocks.start, n.saturating_sub(shift));
     let neighbours = inside.start + shift..inside.end + shift;
@@ -195,7 +197,8 @@ fn along_bond(
     if let Some(i) = column {
         replace(lattice, 0, in_column(lattice, blocks, i), bond, connection, force);
     }
-    // Beyond a free edge there is no neighbour: the forces there are zero from the beginning, and no loop writes them.
+    // Beyond a free edge there is no neighbour: the forces there are zero from the beginning, and no loop
+    // writes them.
     if bond.offset[1] == 1 && lattice.edges[1] == Edges::Periodic {
         let top = between(blocks, lattice.block(0, lattice.ny - 1), n);
         replace(lattice, 1, top, bond, connection, force);
@@ -230,7 +233,8 @@ fn replace(
     }
 }
 
-/// Adds the eight springs of some blocks: along each bond that to the neighbour ahead, less that of the neighbour behind.
+/// Adds the eight springs of some blocks: along each bond that to the neighbour ahead, less that of the
+/// neighbour behind.
 #[inline(always)]
 fn sum_springs(lattice: &Lattice, blocks: &Range<usize>, springs: [&[f64]; 4], total: &mut [f64]) {
     // One loop for all rows again, from the first block whose neighbours behind it all have indices from 0.
@@ -269,7 +273,8 @@ fn sum_springs(lattice: &Lattice, blocks: &Range<usize>, springs: [&[f64]; 4], t
         between(blocks, 0, lattice.nx).for_each(&mut replace);
     }
     match lattice.edges[0] {
-        // Beyond free edges the loop found springs of force zero, which is right; it begins after the first block of the second row.
+        // Beyond free edges the loop found springs of force zero, which is right; it begins after the first
+        // block of the second row.
         Edges::Free => {
             let firsts = [0, lattice.nx].into_iter();
             firsts.filter(|b| blocks.contains(b)).for_each(replace);
@@ -300,9 +305,9 @@ fn add_bottom_row(own: [&[f64]; 4], before: &[f64], total: &mut [f64]) {
     }
 }
 
-/// Energies of the springs between blocks at displacements `u`: along each bond one number for every row of this band.
-/// `relative`: stiffness of each spring over that of its bond, for a heterogeneous slider. `row`: room for the energies of a
-/// row.
+/// Energies of the springs between blocks at displacements `u`: along each bond one number for every row of
+/// this band. `relative`: stiffness of each spring over that of its bond, for a heterogeneous slider. `row`:
+/// room for the energies of a row.
 #[inline(always)]
 pub(super) fn row_energies(
     rows: &Rows,
@@ -321,8 +326,8 @@ pub(super) fn row_energies(
     found
 }
 
-/// The energy of the springs along one bond of one row. No part of it is a closure, which might be compiled without the
-/// vector instructions of the step.
+/// The energy of the springs along one bond of one row. No part of it is a closure, which might be compiled
+/// without the vector instructions of the step.
 #[inline(always)]
 fn row_energy(
     rows: &Rows,
@@ -333,7 +338,8 @@ fn row_energy(
     row: &mut [f64],
 ) -> f64 {
     let (lattice, bond) = (&rows.lattice, &Bond::ALL[number]);
-    // One block of the row may have its neighbour beyond the end of the row. The neighbours of all others are equally far away.
+    // One block of the row may have its neighbour beyond the end of the row. The neighbours of all others are
+    // equally far away.
     let (end, first) = match bond.offset[0] {
         1 => (Some(lattice.nx - 1), 0),
         -1 => (Some(0), 1),

@@ -22,8 +22,8 @@ impl WeightedScratch {
     }
 }
 
-/// Adds a term for each of some blocks times its weight; all weights are 1 if there are none. The sum has room for the
-/// products.
+/// Adds a term for each of some blocks times its weight; all weights are 1 if there are none. The sum has
+/// room for the products.
 #[inline(always)]
 pub(super) fn add_weighted(
     sum: &mut RunningSum,

@@ -1,5 +1,5 @@
-//! The slip front, found after a run from the times at which the blocks in contact have first slipped: where slip nucleates, how
-//! fast its front runs, and how long it takes to pass.
+//! The slip front, found after a run from the times at which the blocks in contact have first slipped: where
+//! slip nucleates, how fast its front runs, and how long it takes to pass.
 
 mod nucleation;
 mod speed;
@@ -13,17 +13,18 @@ const SITE_MIN_BLOCKS: usize = 9;
 /// Smallest nucleation site as a share of all blocks in contact: one in this many.
 const SITE_MIN_SHARE: usize = 100;
 
-/// Least share of the windows through which a front passes, for it to have a speed. Through random times that are alike over
-/// as many blocks as a window has, a front passes in less than a fifth of the windows.
+/// Least share of the windows through which a front passes, for it to have a speed. Through random times that
+/// are alike over as many blocks as a window has, a front passes in less than a fifth of the windows.
 const LEAST_SHARE: f64 = 0.5;
 
 /// How slip has spread over a slider.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Front {
-    /// The blocks at which slip has nucleated, the earliest first; of several at once the one with the lowest index.
+    /// The blocks at which slip has nucleated, the earliest first; of several at once the one with the lowest
+    /// index.
     pub nucleations: Vec<usize>,
-    /// Speed of the front, in blocks per unit of time; none where a front passes through less than half of the windows, as if all
-    /// blocks slip at once or each by itself.
+    /// Speed of the front, in blocks per unit of time; none where a front passes through less than half of
+    /// the windows, as if all blocks slip at once or each by itself.
     pub speed: Option<Quantiles>,
     /// Share of the windows through which a front passes; none if there is no window.
     pub share: Option<f64>,
@@ -31,8 +32,8 @@ pub struct Front {
     pub duration: f64,
 }
 
-/// Quantiles of some numbers, interpolated linearly between neighbours: of n numbers in rising order the share q lies at the place
-/// q (n - 1), counted from 0.
+/// Quantiles of some numbers, interpolated linearly between neighbours: of n numbers in rising order the
+/// share q lies at the place q (n - 1), counted from 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Quantiles {
     /// Quantile of 5 %.
@@ -44,27 +45,28 @@ pub struct Quantiles {
 }
 
 impl Front {
-    /// The front of a lattice whose blocks have first slipped at `times`, NaN for blocks that have not slipped or have no
-    /// contact; `n_contact` blocks are in contact. None if no block has slipped.
+    /// The front of a lattice whose blocks have first slipped at `times`, NaN for blocks that have not
+    /// slipped or have no contact; `n_contact` blocks are in contact. None if no block has slipped.
     ///
-    /// Slip nucleates in clusters of neighbours that have slipped, which grow block by block in the order of time (of blocks
-    /// that slip at once in that of their indices). Where clusters meet, the oldest takes the others in. A cluster that
-    /// reaches
+    /// Slip nucleates in clusters of neighbours that have slipped, which grow block by block in the order of
+    /// time (of blocks that slip at once in that of their indices). Where clusters meet, the oldest takes the
+    /// others in. A cluster that reaches
     ///
     /// ```text
     /// max(9, n_contact/100) blocks
     /// ```
     ///
-    /// or all of them before an older one takes it in is a nucleation site, unless its blocks have slipped at once; its
-    /// place is its first block. A smaller cluster is taken in by a site whatever its age: a block that slips alone and
-    /// early nucleates nothing.
+    /// or all of them before an older one takes it in is a nucleation site, unless its blocks have slipped at
+    /// once; its place is its first block. A smaller cluster is taken in by a site whatever its age: a block
+    /// that slips alone and early nucleates nothing.
     ///
-    /// The front runs at `1/|g|`, with the slope g of the plane that fits best (in the sense of least squares) to the times
-    /// of 7 x 7 blocks around one that has slipped; 7 blocks in a chain. There are windows around all blocks but those in
-    /// which slip nucleates, and those where too few have slipped: fewer than 25, or 5 times the number of rows (or columns)
-    /// of a lattice that has fewer than five. A front passes through a window where the plane explains half of the variance
-    /// of the times, and g turns by no more than 60 degrees to the windows 3 blocks away along either axis: where two fronts
-    /// meet, it does.
+    /// The front runs at `1/|g|`, with the slope g of the plane that fits best (in the sense of least
+    /// squares) to the times of 7 x 7 blocks around one that has slipped; 7 blocks in a chain. There are
+    /// windows around all blocks but those in which slip nucleates, and those where too few have slipped:
+    /// fewer than 25, or 5 times the number of rows (or columns) of a lattice that has fewer than five. A
+    /// front passes through a window where the plane explains half of the variance of the times, and g turns
+    /// by no more than 60 degrees to the windows 3 blocks away along either axis: where two fronts meet, it
+    /// does.
     ///
     /// ```
     /// use slipfront::{Lattice, observe::Front};

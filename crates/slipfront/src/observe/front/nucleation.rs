@@ -18,8 +18,8 @@ const NEIGHBOURS: [[isize; 2]; 8] = [
     [1, 1],
 ];
 
-/// The first block of every cluster that has reached `least` blocks, not all at once, before an older one took it in, in the
-/// order of time.
+/// The first block of every cluster that has reached `least` blocks, not all at once, before an older one
+/// took it in, in the order of time.
 pub(super) fn nucleations(lattice: &Lattice, times: &[f64], least: usize) -> Vec<usize> {
     assert!(times.len() < NOT_YET as usize, "blocks are numbered with 32 bits");
     let slipped = times.iter().zip(0..).filter(|(time, _)| !time.is_nan());
@@ -46,7 +46,8 @@ pub(super) fn nucleations(lattice: &Lattice, times: &[f64], least: usize) -> Vec
                 }
             }
         }
-        // What has not become a site is taken in whatever its age: a block that slips alone and early nucleates nothing.
+        // What has not become a site is taken in whatever its age: a block that slips alone and early
+        // nucleates nothing.
         let by_age = |one: &&(f64, u32), other: &&(f64, u32)| earlier(one, other);
         let oldest_site = met
             .iter()

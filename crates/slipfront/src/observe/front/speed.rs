@@ -8,11 +8,12 @@ const REACH: usize = 3;
 /// Least number of blocks of a window that have slipped, for each of its rows, up to five of them.
 const LEAST_PER_ROW: usize = 5;
 
-/// Least share of the variance of the times in a window that a plane explains where a front passes. White noise reaches it in one of
-/// ten million windows, and a front whose blocks are early and late by twice the time in which it passes one (rms) in half of them.
+/// Least share of the variance of the times in a window that a plane explains where a front passes. White
+/// noise reaches it in one of ten million windows, and a front whose blocks are early and late by twice the
+/// time in which it passes one (rms) in half of them.
 const LEAST_EXPLAINED: f64 = 0.5;
-/// Least cosine of the angle by which a front turns from a window to those around it, 60 degrees. Where two fronts meet, the
-/// direction turns by more.
+/// Least cosine of the angle by which a front turns from a window to those around it, 60 degrees. Where two
+/// fronts meet, the direction turns by more.
 const LEAST_COSINE: f64 = 0.5;
 
 /// Passages of the front through windows.
@@ -56,7 +57,8 @@ pub(super) fn passages(lattice: &Lattice, times: &[f64], nucleations: &[usize]) 
     }
 }
 
-/// Whether the front has another direction in one of the windows that lie as far from that of a block, along either axis, as its edge.
+/// Whether the front has another direction in one of the windows that lie as far from that of a block, along
+/// either axis, as its edge.
 fn turns(lattice: &Lattice, axes: &[WindowAxis; 2], slopes: &[[f64; 2]], block: usize) -> bool {
     let (i, j) = lattice.column_row(block);
     let [along, across] = axes.each_ref().map(|axis| axis.reach as isize);
@@ -67,7 +69,8 @@ fn turns(lattice: &Lattice, axes: &[WindowAxis; 2], slopes: &[[f64; 2]], block: 
     around.any(|other| {
         let [one, other] = [slopes[block], slopes[other]];
         let lengths = (dot(one, one) * dot(other, other)).sqrt();
-        // Of a window without a plane this is not a number, and a level one has no direction: neither says that the front turns.
+        // Of a window without a plane this is not a number, and a level one has no direction: neither says
+        // that the front turns.
         dot(one, other) < LEAST_COSINE * lengths
     })
 }
@@ -76,8 +79,8 @@ fn turns(lattice: &Lattice, axes: &[WindowAxis; 2], slopes: &[[f64; 2]], block: 
 struct WindowAxis {
     count: usize,
     is_periodic: bool,
-    /// Blocks from the middle of a window to its edge, fewer on a short axis: on a periodic one no block stands in a window
-    /// twice.
+    /// Blocks from the middle of a window to its edge, fewer on a short axis: on a periodic one no block
+    /// stands in a window twice.
     reach: usize,
 }
 
@@ -172,7 +175,8 @@ impl WindowSums {
         ]
     }
 
-    /// Slope g of the plane `t = a + g . r` of least squares; for blocks in a row the one that does not rise across it.
+    /// Slope g of the plane `t = a + g . r` of least squares; for blocks in a row the one that does not rise
+    /// across it.
     fn slope(&self) -> [f64; 2] {
         // n^2 times the variances and covariances.
         let [xx, xy, yy] = [
@@ -189,7 +193,8 @@ impl WindowSums {
         [xt, yt].map(|g| g / (xx + yy))
     }
 
-    /// Share R^2 of the variance of the times that the plane of this slope explains; none for a window that slips at once.
+    /// Share R^2 of the variance of the times that the plane of this slope explains; none for a window that
+    /// slips at once.
     fn explained(&self, slope: [f64; 2]) -> f64 {
         let variance = f64::from(self.n) * self.tt - self.t * self.t;
         if variance > 0.0 {

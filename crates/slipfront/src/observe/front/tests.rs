@@ -71,8 +71,8 @@ fn a_straight_front_has_its_speed_everywhere() {
     }
 }
 
-/// A circle is bent within a window: at the distance R the mean slope is less by the mean square of the distance across the
-/// front, 4, over 2 R^2. Half of the windows lie beyond R = 20, where that is 0.5 %.
+/// A circle is bent within a window: at the distance R the mean slope is less by the mean square of the
+/// distance across the front, 4, over 2 R^2. Half of the windows lie beyond R = 20, where that is 0.5 %.
 #[test]
 fn a_round_front_has_its_speed() {
     let lattice = Lattice::free(61, 61);
@@ -90,9 +90,10 @@ fn a_round_front_has_its_speed() {
     assert!(speed.low >= 0.6 && speed.high < 1.2 * 0.6, "{speed:?}");
 }
 
-/// Noise of a whole time between neighbours: differences of neighbours are wrong by far, planes are not. The slope of a plane over
-/// 49 blocks has a standard error of (1/sqrt(12))/sqrt(49 * 4) = 2 % of 1/c per component; across the front it adds
-/// (2 %)^2/2 to the mean, and the median over windows is known ten times better than one of them.
+/// Noise of a whole time between neighbours: differences of neighbours are wrong by far, planes are not. The
+/// slope of a plane over 49 blocks has a standard error of (1/sqrt(12))/sqrt(49 * 4) = 2 % of 1/c per
+/// component; across the front it adds (2 %)^2/2 to the mean, and the median over windows is known ten times
+/// better than one of them.
 #[test]
 fn noise_does_not_hide_the_speed() {
     let lattice = Lattice::free(60, 60);
@@ -141,7 +142,8 @@ fn two_fronts_begin_at_two_sites() {
 fn a_site_has_nine_blocks_or_one_in_a_hundred() {
     let sites = |n: usize, second: usize, blocks: f64| {
         let lattice = Lattice::free(n, 1);
-        // From the first block on to the right, and from `second` on to the left, over so many blocks; then what is left.
+        // From the first block on to the right, and from `second` on to the left, over so many blocks; then
+        // what is left.
         let times = times_of(&lattice, |x, _| {
             let back = second as f64 - x;
             if (0.0..blocks).contains(&back) {
@@ -154,7 +156,8 @@ fn a_site_has_nine_blocks_or_one_in_a_hundred() {
     };
     assert_eq!(sites(100, 50, 9.0), [0, 50]);
     assert_eq!(sites(100, 50, 8.0), [0, 50][..1]);
-    // One in a hundred of 2000 are 20. The clusters meet over the blocks beside the younger one, which takes none of them before.
+    // One in a hundred of 2000 are 20. The clusters meet over the blocks beside the younger one, which takes
+    // none of them before.
     assert_eq!(sites(2000, 1000, 20.0), [0, 1000]);
     assert_eq!(sites(2000, 1000, 19.0), [0]);
 }
@@ -192,8 +195,9 @@ fn smoothed(values: &[f64], n: usize, size: usize) -> Vec<f64> {
     (0..values.len()).map(mean).collect()
 }
 
-/// White noise, and noise that is alike over 3, 5 and 7 blocks, as many as a window has: planes explain half of it by chance, the more
-/// often the more it is alike, yet in less than half as many windows as a speed takes.
+/// White noise, and noise that is alike over 3, 5 and 7 blocks, as many as a window has: planes explain half
+/// of it by chance, the more often the more it is alike, yet in less than half as many windows as a speed
+/// takes.
 #[test]
 fn no_front_passes_through_noise() {
     let n = 60;
@@ -212,8 +216,9 @@ fn no_front_passes_through_noise() {
     }
 }
 
-/// Where fronts meet, a plane lies across both and is too level: with those windows the median of two fronts would be right, but the
-/// fastest 5 % more than twice too fast. A circle of radius R is bent by 4/(2 R^2): 1 % half-way to where they meet.
+/// Where fronts meet, a plane lies across both and is too level: with those windows the median of two fronts
+/// would be right, but the fastest 5 % more than twice too fast. A circle of radius R is bent by 4/(2 R^2): 1
+/// % half-way to where they meet.
 #[test]
 fn windows_in_which_fronts_meet_are_left_out() {
     let speed = 1.633;
@@ -305,7 +310,8 @@ fn periodic_edges_are_no_edges() {
     }
 }
 
-/// Sites are those of clusters that are coloured anew at every meeting, over random times with ties and holes.
+/// Sites are those of clusters that are coloured anew at every meeting, over random times with ties and
+/// holes.
 #[test]
 fn sites_are_those_of_a_plain_search() {
     let mut state = 7;
