@@ -1,9 +1,9 @@
 //! The instants A-F of Fig. 4, found while the run goes on.
 //!
-//! A: t* = 0.5/V*. B: first slip of a block in contact. C: the peak of mu*. D: the largest N* in [t_s*, t_s*
-//! + 2.5/V*]. E: the smallest mu* from D to the start of the kinetic window. F: the middle of that window. An
-//! instant that a later step may replace is kept as a candidate and overwritten. V* is the [loading
-//! speed](crate::Model::loading_speed).
+//! A: t* = 0.5/V*. B: first slip of a block in contact. C: the peak of mu*. D: the largest N* in
+//! [t_s*, t_s* + 2.5/V*]. E: the smallest mu* from D to the start of the kinetic window. F: the middle of
+//! that window. An instant that a later step may replace is kept as a candidate and overwritten. V* is the
+//! [loading speed](crate::Model::loading_speed).
 
 use serde::{Deserialize, Serialize};
 

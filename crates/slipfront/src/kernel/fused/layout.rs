@@ -1,7 +1,7 @@
 //! Where the blocks of the lattice are stored in the arrays of the fused kernel.
 //!
-//! Rows follow one another in one array of elements, so that the neighbours of element e are always e + 1, e
-//! + stride and e + stride +- 1, whatever the row, and vectors of eight elements may contain the end of a
+//! Rows follow one another in one array of elements, so that the neighbours of element e are always e + 1,
+//! e + stride and e + stride +- 1, whatever the row, and vectors of eight elements may contain the end of a
 //! row. Springs that do not exist at a free edge are masked. Along a periodic x axis every row has a ghost at
 //! either end, a copy of the block at its other end. Elements that are no blocks never move, because their
 //! threshold is infinite, and are excluded from all sums.
