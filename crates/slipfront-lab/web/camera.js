@@ -1,5 +1,6 @@
-// @ts-check Which part of the slider the field shows: a block is `scale` pixels wide, and the block
-// coordinates `x`, `y` are in the middle.
+// @ts-check
+// Which part of the slider the field shows: a block is `scale` pixels wide, and the block coordinates `x`,
+// `y` are in the middle.
 
 const MAX_ZOOM = 64;
 

@@ -1,5 +1,6 @@
-// @ts-check Colours from 0 (dark) to 1 (bright), 256 of six hexadecimal digits each: those of the crate
-// colorous, as in the pictures of a run.
+// @ts-check
+// Colours from 0 (dark) to 1 (bright), 256 of six hexadecimal digits each: those of the crate colorous, as in
+// the pictures of a run.
 
 export const COLOURMAPS = {
   viridis: [

@@ -1,5 +1,6 @@
-// @ts-check Sliders and number fields of the quantities that the server offers, each in both forms:
-// dimensionless and with its unit.
+// @ts-check
+// Sliders and number fields of the quantities that the server offers, each in both forms: dimensionless and
+// with its unit.
 import { change, gradual } from './edit.js';
 import { find, make, rewrite } from './element.js';
 import { notice } from './notices.js';

@@ -1,5 +1,6 @@
-// @ts-check The curves mu*(t*) and N*(t*), with the instants, the beginnings of legs, the slider without
-// texture and a recorded curve.
+// @ts-check
+// The curves mu*(t*) and N*(t*), with the instants, the beginnings of legs, the slider without texture and a
+// recorded curve.
 import vendored from './vendor/uPlot.esm.js';
 import { atMost, find } from './element.js';
 import { rowsOf } from './letters.js';

@@ -1,5 +1,6 @@
-// @ts-check The live field: takes pictures as they come, draws when there is something new and the browser is
-// about to show it.
+// @ts-check
+// The live field: takes pictures as they come, draws when there is something new and the browser is about to
+// show it.
 import { Camera } from './camera.js';
 import { drawBar, table } from './colours.js';
 import { atMost, find, make, onPress } from './element.js';

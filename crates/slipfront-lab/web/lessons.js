@@ -1,5 +1,6 @@
-// @ts-check Lessons: a text beside the running simulation, with buttons that change it. Their structure
-// stands in lessons.json, their words in lessons.en.json, every number of a text in lesson_numbers.json.
+// @ts-check
+// Lessons: a text beside the running simulation, with buttons that change it. Their structure stands in
+// lessons.json, their words in lessons.en.json, every number of a text in lesson_numbers.json.
 import { jsonOf, textOf } from './assets.js';
 import { change } from './edit.js';
 import { find, make, onPress } from './element.js';

@@ -1,5 +1,6 @@
-// @ts-check The simulation as WebAssembly, of a page without a server: index.html begins with this script, so
-// that it is loaded and compiled while all others are.
+// @ts-check
+// The simulation as WebAssembly, of a page without a server: index.html begins with this script, so that it
+// is loaded and compiled while all others are.
 import { bytesOf, isAlone, textOf } from './assets.js';
 
 /** A module without a function, of which one instruction is of SIMD. */

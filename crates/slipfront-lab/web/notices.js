@@ -1,5 +1,6 @@
-// @ts-check Sentences for the reader: what was refused, what failed, whether there is a connection. They can
-// be dismissed and are read out.
+// @ts-check
+// Sentences for the reader: what was refused, what failed, whether there is a connection. They can be
+// dismissed and are read out.
 import { isAlone } from './assets.js';
 import { atMost, find, make } from './element.js';
 import { fixed } from './quantity.js';

@@ -1,5 +1,6 @@
-// @ts-check The numbers of the run: static friction against the slider without texture, live; and those of
-// the summary at its end.
+// @ts-check
+// The numbers of the run: static friction against the slider without texture, live; and those of the summary
+// at its end.
 import { send } from './connection.js';
 import { find, make, onPress } from './element.js';
 import { announce } from './notices.js';

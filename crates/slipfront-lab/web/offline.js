@@ -1,5 +1,6 @@
-// @ts-check Lets a page without a server open without a network too, once it was opened. A page that is one
-// file needs nothing for that.
+// @ts-check
+// Lets a page without a server open without a network too, once it was opened. A page that is one file needs
+// nothing for that.
 import { isAlone, isSingle } from './assets.js';
 
 /** Keeps the files of the page, where the browser can: on https, or on this machine. */

@@ -1,5 +1,6 @@
-// @ts-check What is drawn above the field: outlines, handles, the brush, the cursor of the keyboard. Points
-// are in blocks.
+// @ts-check
+// What is drawn above the field: outlines, handles, the brush, the cursor of the keyboard. Points are in
+// blocks.
 import { handles } from './shapes.js';
 import { presentCase, state } from './store.js';
 import { colour } from './theme.js';

@@ -1,6 +1,7 @@
-// @ts-check The field as a WebGL2 picture with one pixel for each block: bytes in one texture, their colours
-// in another. The browser enlarges it: without a graphics card that takes half the time of drawing every
-// pixel of the screen here.
+// @ts-check
+// The field as a WebGL2 picture with one pixel for each block: bytes in one texture, their colours in
+// another. The browser enlarges it: without a graphics card that takes half the time of drawing every pixel
+// of the screen here.
 
 const CORNERS = `#version 300 es
 void main() {

@@ -1,5 +1,6 @@
-// @ts-check How this page and the server prove to each other that they know the token, without telling it:
-// once the server has ended, somebody else may answer on its port.
+// @ts-check
+// How this page and the server prove to each other that they know the token, without telling it: once the
+// server has ended, somebody else may answer on its port.
 //
 // The tab keeps a name and the key that the token gives for it, and not the token, which other tabs have
 // their keys from: what answers on the port after a reload can read whatever a tab keeps.

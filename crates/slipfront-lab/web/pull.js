@@ -1,5 +1,6 @@
-// @ts-check How the slider is pulled: an arrow in the field tells whither, and a drawing from the side shows
-// the far end of the spring, which moves steadily, and the slider, which waits until friction gives way.
+// @ts-check
+// How the slider is pulled: an arrow in the field tells whither, and a drawing from the side shows the far
+// end of the spring, which moves steadily, and the slider, which waits until friction gives way.
 import { find } from './element.js';
 import { on, state } from './store.js';
 import { say } from './text.js';

@@ -1,5 +1,6 @@
-// @ts-check Which case is open: that of the address, of the command line, or after a lost connection the one
-// that was shown.
+// @ts-check
+// Which case is open: that of the address, of the command line, or after a lost connection the one that was
+// shown.
 import { send } from './connection.js';
 import { readLink } from './link.js';
 import { next, on, put, state } from './store.js';

@@ -1,5 +1,6 @@
-// @ts-check `[[texture]]` tables as the case file has them (docs/reference/case-file.md): made, moved, sized
-// and turned. Nothing is changed in place.
+// @ts-check
+// `[[texture]]` tables as the case file has them (docs/reference/case-file.md): made, moved, sized and
+// turned. Nothing is changed in place.
 import { length, metres } from './quantity.js';
 
 /** @import { CaseReply, Texture } from '../types/protocol' */

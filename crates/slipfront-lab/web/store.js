@@ -1,6 +1,7 @@
-// @ts-check What the page knows of the simulation, by topic, and who wants to hear when it changes. Topics
-// are the names of the server's messages (`case`, `numbers`, ...) and of what the page decides itself
-// (`view`, `tool`, `selected`, ...).
+// @ts-check
+// What the page knows of the simulation, by topic, and who wants to hear when it changes. Topics are the
+// names of the server's messages (`case`, `numbers`, ...) and of what the page decides itself (`view`,
+// `tool`, `selected`, ...).
 
 /** @import { State, Topics } from '../types/page' */
 /** @import { CaseReply } from '../types/protocol' */

@@ -1,5 +1,6 @@
-// @ts-check The tools of the field: probe and move, brush, eraser, new shapes. They work the same by pointer
-// and by keyboard.
+// @ts-check
+// The tools of the field: probe and move, brush, eraser, new shapes. They work the same by pointer and by
+// keyboard.
 import { send } from './connection.js';
 import { change, gradual, newGesture } from './edit.js';
 import { atMost, find, make } from './element.js';

@@ -1,5 +1,6 @@
-// @ts-check The session in a Worker of this page, as WebAssembly: there is no server and no disk. Work beside
-// it, and runs that are saved, have Workers of their own.
+// @ts-check
+// The session in a Worker of this page, as WebAssembly: there is no server and no disk. Work beside it, and
+// runs that are saved, have Workers of their own.
 import { isSingle, textOf } from './assets.js';
 import { download } from './element.js';
 import { loading, loadPictures } from './module.js';
