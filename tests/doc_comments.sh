@@ -14,13 +14,20 @@ if [ $# -eq 0 ]; then
   set -- '*.rs' '*.py'
 fi
 
+# Files with this ending among the folders or files.
+files() {
+  local ending=$1
+  shift
+  git ls-files --cached --others --exclude-standard -- "$@" | grep "\\.$ending\$" || true
+}
+
 # Comments of Rust, as `file:line: text` with the lines of each joined; without examples in code and the
 # headings of sections. The first lines of docstrings of Python likewise.
 comments() {
-  git ls-files --cached --others --exclude-standard -- "$@" | grep '\.py$' | while read -r file; do
+  files py "$@" | while read -r file; do
     [ ! -f "$file" ] || awk -v file="$file" 'sub(/^ *"""/, "") && $0 != "" { sub(/"""$/, ""); print file ":" NR ": " $0 }' "$file"
   done
-  git ls-files --cached --others --exclude-standard -- "$@" | grep '\.rs$' | while read -r file; do
+  files rs "$@" | while read -r file; do
     [ ! -f "$file" ] || awk -v file="$file" '
       function flush() { if (text != "") print file ":" first ":" text; text = ""; code = 0 }
       match($0, /^[ \t]*\/\/[\/!]/) && $0 !~ /^[ \t]*\/\/\/\// {
@@ -48,12 +55,12 @@ done < <(comments "$@" | grep -E "^[^:]*:[0-9]+: *(($pronoun)( |,|\.|:|$)|($lean
 while IFS= read -r heading; do
   echo "$heading"
   found=$((found + 1))
-done < <(git ls-files --cached --others --exclude-standard -- "$@" | grep '\.rs$' | xargs -r grep -nE '^ *//[/!] # (Errors|Panics) +[^ ]' || true)
+done < <(files rs "$@" | xargs -r grep -nE '^ *//[/!] # (Errors|Panics) +[^ ]' || true)
 # Rust is ASCII here: a byte is a character.
 while IFS= read -r wide; do
   echo "$wide: wider than 110"
   found=$((found + 1))
-done < <(git ls-files --cached --others --exclude-standard -- "$@" | grep '\.rs$' | grep -v /text/ | while read -r file; do
+done < <(files rs "$@" | while read -r file; do
   [ ! -f "$file" ] || awk -v file="$file" '
     !/^[ \t]*\/\// { code = 0; next }
     /^[ \t]*\/\/[\/!]? *```/ { code = !code; next }

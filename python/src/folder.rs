@@ -29,7 +29,7 @@ use slipfront_study::verify::{has_records, verify as verify_folder};
 use crate::case::{Case, make};
 use crate::errors::{FolderError, folder_error};
 use crate::process::detached;
-use crate::record;
+use crate::run_data;
 use crate::simulation::Simulation;
 
 /// The folder of the temporary folders of this process; it is removed with the last reference to it.
@@ -124,15 +124,15 @@ pub(crate) fn read_run<'py>(py: Python<'py>, folder: PathBuf) -> PyResult<(Case,
     let numbers = summary::read_summary(&folder).map_err(folder_error)?;
     read.set_item("summary", summary::summary_json(&numbers))?;
     let rows = series::read_csv(folder.join(SERIES)).map_err(folder_error)?;
-    read.set_item("series", record::series(py, &rows)?)?;
+    read.set_item("series", run_data::series(py, &rows)?)?;
     let data = fields::read_fields(folder.join(FIELDS)).map_err(folder_error)?;
-    read.set_item("fields", record::fields(py, data)?)?;
+    read.set_item("fields", run_data::fields(py, data)?)?;
     let kymograph = folder.join(KYMOGRAPH);
     if kymograph.exists() {
         let data = fields::read_kymograph(&kymograph).map_err(folder_error)?;
-        read.set_item("kymograph", record::kymograph(py, data)?)?;
+        read.set_item("kymograph", run_data::kymograph(py, data)?)?;
     }
-    read.set_item("tables", record::tables(py, RunFiles::Folder(&folder))?)?;
+    read.set_item("tables", run_data::tables(py, RunFiles::Folder(&folder))?)?;
     Ok((case, read))
 }
 

@@ -19,7 +19,7 @@ mod folder;
 mod map;
 mod pickle;
 mod process;
-mod record;
+mod run_data;
 mod simulation;
 mod study;
 
@@ -51,7 +51,7 @@ fn _slipfront(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("FolderError", py.get_type::<errors::FolderError>())?;
     module.add_class::<case::Case>()?;
     module.add_class::<simulation::Simulation>()?;
-    module.add_class::<record::RunData>()?;
+    module.add_class::<run_data::RunData>()?;
     module.add_class::<study::Study>()?;
     module.add_class::<design::Design>()?;
     module.add_class::<calibrate::Calibration>()?;

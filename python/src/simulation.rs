@@ -23,7 +23,7 @@ use crate::arrays::{rows, stacked};
 use crate::case::Case;
 use crate::errors::{CaseError, RunError};
 use crate::process::{LOOK_EVERY, check_process, detached};
-use crate::record::{RunData, series};
+use crate::run_data::{RunData, series};
 
 /// A run in progress, which only one thread can use at a time.
 #[pyclass(module = "slipfront._slipfront")]

@@ -19,7 +19,7 @@ use slipfront_study::{
 use crate::case::{Case, make};
 use crate::errors::{folder_error, study_error};
 use crate::process::{detached, watched};
-use crate::record::RunData;
+use crate::run_data::RunData;
 
 /// A study whose every point is a valid case.
 #[pyclass(frozen, module = "slipfront._slipfront")]

@@ -397,7 +397,7 @@ impl CalibrationFolder {
 
 /// The part of the findings that decides whether they promise anything.
 #[derive(Deserialize)]
-struct Refusal {
+struct Judgement {
     is_refused: bool,
 }
 
@@ -409,8 +409,8 @@ impl CalibrationFolder {
     pub fn expect_own_records(&self) -> Result<(), StudyError> {
         let [numbers, words] = FOUND.map(|name| self.path().join(name));
         match read_numbers(&numbers)? {
-            Refusal { is_refused: false } => Ok(()),
-            Refusal { is_refused: true } => Err(StudyError::Refused { path: words }),
+            Judgement { is_refused: false } => Ok(()),
+            Judgement { is_refused: true } => Err(StudyError::Refused { path: words }),
         }
     }
 }

@@ -29,16 +29,16 @@ impl RunJournal {
     /// Name of the journal in its folder.
     pub const FILE: &str = RUN_JOURNAL;
 
-    /// Opens the records of a study folder, unless another process has them open; a folder without them gets
-    /// an empty file.
+    /// Opens the journal of a study folder, unless another process has it open; a folder without one gets an
+    /// empty file.
     pub fn open(folder: &Path) -> Result<Self, StudyError> {
         Journal::open(folder, RUN_JOURNAL).map(Self::of)
     }
 
     /// The runs of a journal that was opened.
-    pub(crate) fn of((journal, records, damaged): (Journal, Vec<FinishedRun>, usize)) -> Self {
-        // Each record is dropped before the next is looked at.
-        let results = records.into_iter().map(|record| entry(&record));
+    pub(crate) fn of((journal, runs, damaged): (Journal, Vec<FinishedRun>, usize)) -> Self {
+        // Each run is dropped before the next is looked at.
+        let results = runs.into_iter().map(|run| result_of(&run));
         Self {
             state: Mutex::new(JournalState {
                 journal,
@@ -64,41 +64,41 @@ impl RunJournal {
         self.state().results.len()
     }
 
-    /// Whether the file has no records.
+    /// Whether no runs are recorded.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// Appends finished runs that are not recorded yet and waits until they are on the disk; earlier records
+    /// Appends finished runs that are not recorded yet and waits until they are on the disk; earlier ones
     /// stay whole.
-    pub fn append(&self, records: &[FinishedRun]) -> Result<(), StudyError> {
+    pub fn append(&self, runs: &[FinishedRun]) -> Result<(), StudyError> {
         let JournalState { journal, results } = &mut *self.state();
         // Studies that share the file may have made the same run at the same time.
-        let unknown = records.iter().filter(|record| !results.contains_key(&record.id));
+        let unknown = runs.iter().filter(|run| !results.contains_key(&run.id));
         journal.append(unknown)?;
-        results.extend(records.iter().map(entry));
+        results.extend(runs.iter().map(result_of));
         Ok(())
     }
 
-    /// Appends the records of another folder that are not here yet, and returns their number.
+    /// Appends the runs of another folder that are not here yet, and returns their number.
     pub fn merge(&mut self, folder: &Path) -> Result<usize, StudyError> {
-        let (mut records, damaged) = Journal::read::<FinishedRun>(folder, RUN_JOURNAL)?;
+        let (mut runs, damaged) = Journal::read::<FinishedRun>(folder, RUN_JOURNAL)?;
         self.damaged += damaged;
-        records.retain(|record| self.get(&record.id).is_none());
+        runs.retain(|run| self.get(&run.id).is_none());
         // Their lines need not be in memory all at once.
-        for some in records.chunks(LINES_AT_ONCE) {
+        for some in runs.chunks(LINES_AT_ONCE) {
             self.append(some)?;
         }
-        Ok(records.len())
+        Ok(runs.len())
     }
 }
 
-/// The part of a record that is kept in memory.
-fn entry(record: &FinishedRun) -> (String, RunResult) {
-    (record.id.clone(), record.outcome.result())
+/// Identity and result of a run, which are kept in memory.
+fn result_of(run: &FinishedRun) -> (String, RunResult) {
+    (run.id.clone(), run.outcome.result())
 }
 
-/// Number of records whose lines are written at once: each time waits for the disk.
+/// Number of runs whose lines are written at once: each time waits for the disk.
 const LINES_AT_ONCE: usize = 1000;
 
 #[cfg(test)]
@@ -110,7 +110,7 @@ mod tests {
     use crate::finished_run::Outcome;
     use crate::project_folder::to_line;
 
-    fn record(id: &str) -> FinishedRun {
+    fn finished(id: &str) -> FinishedRun {
         FinishedRun {
             id: id.to_owned(),
             wall_time_s: 0.5,
@@ -121,8 +121,8 @@ mod tests {
     /// A line that lacks its line break alone is whole.
     #[test]
     fn a_line_cut_short_anywhere_is_not_run_and_does_not_harm_the_next() {
-        let whole = to_line(&record("a"));
-        let next = to_line(&record("b"));
+        let whole = to_line(&finished("a"));
+        let next = to_line(&finished("b"));
         // Every place would be a thousand waits for the disk.
         for cut in (0..40)
             .chain((40..next.len() - 1).step_by(97))
@@ -135,30 +135,30 @@ mod tests {
                 [&whole[..], &next[..cut]].concat(),
             )
             .unwrap();
-            let records = RunJournal::open(folder.path()).unwrap();
+            let journal = RunJournal::open(folder.path()).unwrap();
             assert_eq!(
-                (records.len(), records.get("b").is_some()),
+                (journal.len(), journal.get("b").is_some()),
                 (1 + left, left == 1),
                 "cut at {cut}"
             );
-            records.append(&[record("c")]).unwrap();
-            drop(records);
-            let records = RunJournal::open(folder.path()).unwrap();
-            assert_eq!((records.len(), records.damaged), (2 + left, 0), "cut at {cut}");
+            journal.append(&[finished("c")]).unwrap();
+            drop(journal);
+            let journal = RunJournal::open(folder.path()).unwrap();
+            assert_eq!((journal.len(), journal.damaged), (2 + left, 0), "cut at {cut}");
             // The first line of all may be cut as well.
             std::fs::write(folder.path().join(RUN_JOURNAL), &next[..cut]).unwrap();
-            drop(records);
-            let records = RunJournal::open(folder.path()).unwrap();
-            assert_eq!(records.len(), left, "cut at {cut}");
+            drop(journal);
+            let journal = RunJournal::open(folder.path()).unwrap();
+            assert_eq!(journal.len(), left, "cut at {cut}");
         }
     }
 
     #[test]
     fn a_flipped_bit_spoils_its_own_line_only() {
         let lines = [
-            to_line(&record("a")),
-            to_line(&record("b")),
-            to_line(&record("c")),
+            to_line(&finished("a")),
+            to_line(&finished("b")),
+            to_line(&finished("c")),
         ]
         .concat();
         let middle = lines.len() / 2;
@@ -167,8 +167,8 @@ mod tests {
             damaged[middle] ^= 1 << bit;
             let folder = tempfile::tempdir().unwrap();
             std::fs::write(folder.path().join(RUN_JOURNAL), damaged).unwrap();
-            let (records, damaged) = Journal::read::<FinishedRun>(folder.path(), RUN_JOURNAL).unwrap();
-            let ids: Vec<&str> = records.iter().map(|record| record.id.as_str()).collect();
+            let (runs, damaged) = Journal::read::<FinishedRun>(folder.path(), RUN_JOURNAL).unwrap();
+            let ids: Vec<&str> = runs.iter().map(|run| run.id.as_str()).collect();
             assert_eq!(ids, ["a", "c"]);
             assert!(damaged >= 1);
         }
@@ -202,32 +202,32 @@ mod tests {
     #[test]
     fn what_never_ends_is_refused() {
         let (folder, other) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
-        let mut records = RunJournal::open(other.path()).unwrap();
+        let mut journal = RunJournal::open(other.path()).unwrap();
         let path = folder.path().join(RUN_JOURNAL);
-        let refused = |records: &mut RunJournal| {
+        let refused = |journal: &mut RunJournal| {
             let opened = RunJournal::open(folder.path());
             assert!(matches!(opened, Err(StudyError::NotJournal { .. })), "{opened:?}");
-            assert!(records.merge(folder.path()).is_err());
+            assert!(journal.merge(folder.path()).is_err());
         };
         File::create(&path).unwrap().set_len(1 << 40).unwrap();
-        refused(&mut records);
+        refused(&mut journal);
         std::fs::remove_file(&path).unwrap();
         std::os::unix::fs::symlink("/dev/zero", &path).unwrap();
-        refused(&mut records);
+        refused(&mut journal);
     }
 
-    /// Studies that share the records may make the same run at the same time.
+    /// Studies that share the journal may make the same run at the same time.
     #[test]
     fn a_run_is_recorded_once() {
         let folder = tempfile::tempdir().unwrap();
-        let records = RunJournal::open(folder.path()).unwrap();
+        let journal = RunJournal::open(folder.path()).unwrap();
         std::thread::scope(|scope| {
             for other in ["b", "c"] {
-                let records = &records;
-                scope.spawn(move || records.append(&[record("a"), record(other)]).unwrap());
+                let journal = &journal;
+                scope.spawn(move || journal.append(&[finished("a"), finished(other)]).unwrap());
             }
         });
-        assert_eq!(records.len(), 3);
+        assert_eq!(journal.len(), 3);
         let lines = std::fs::read_to_string(folder.path().join(RUN_JOURNAL)).unwrap();
         assert_eq!(lines.lines().count(), 3);
     }
@@ -237,12 +237,12 @@ mod tests {
         let (one, other) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
         RunJournal::open(one.path())
             .unwrap()
-            .append(&[record("a")])
+            .append(&[finished("a")])
             .unwrap();
-        let mut records = RunJournal::open(other.path()).unwrap();
-        records.append(&[record("b")]).unwrap();
-        assert_eq!(records.merge(one.path()).unwrap(), 1);
-        assert_eq!(records.merge(one.path()).unwrap(), 0);
-        assert_eq!(records.len(), 2);
+        let mut journal = RunJournal::open(other.path()).unwrap();
+        journal.append(&[finished("b")]).unwrap();
+        assert_eq!(journal.merge(one.path()).unwrap(), 1);
+        assert_eq!(journal.merge(one.path()).unwrap(), 0);
+        assert_eq!(journal.len(), 2);
     }
 }

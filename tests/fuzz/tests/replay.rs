@@ -67,7 +67,7 @@ replay! {
     csv_table
     mask_png
     height_map
-    records
+    run_journal
     figure_cache
     checkpoint
     fields

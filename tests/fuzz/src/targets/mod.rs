@@ -9,8 +9,8 @@ mod json;
 mod kymograph;
 mod plot;
 mod quantity;
-mod records;
 mod requests;
+mod run_journal;
 mod series;
 mod study;
 
@@ -26,7 +26,7 @@ pub const TARGETS: [Target; 20] = [
     arrays::CSV_TABLE,
     arrays::MASK_PNG,
     arrays::HEIGHT_MAP,
-    records::RECORDS,
+    run_journal::RUN_JOURNAL,
     figure_cache::FIGURE_CACHE,
     checkpoint::CHECKPOINTS,
     fields::FIELDS,

@@ -1,4 +1,4 @@
-//! Records of finished runs, one line each with a checksum.
+//! The journal of a study: finished runs, one line each with a checksum.
 
 use slipfront_study::{FinishedRun, Outcome, RunJournal};
 
@@ -9,9 +9,9 @@ use crate::scratch;
 use crate::target::{Memory, Target, Time};
 
 /// The file as it is, then with the right checksum in every line.
-pub(crate) const RECORDS: Target = Target {
-    name: "records",
-    check: records,
+pub(crate) const RUN_JOURNAL: Target = Target {
+    name: "run_journal",
+    check: run_journal,
     generated,
     files: &[],
     dictionary: Some("json.dict"),
@@ -26,7 +26,7 @@ pub(crate) const RECORDS: Target = Target {
     long,
 };
 
-fn record(id: &str, outcome: Outcome) -> FinishedRun {
+fn finished(id: &str, outcome: Outcome) -> FinishedRun {
     FinishedRun {
         id: id.to_owned(),
         wall_time_s: 0.25,
@@ -35,10 +35,10 @@ fn record(id: &str, outcome: Outcome) -> FinishedRun {
 }
 
 fn generated() -> Vec<Vec<u8>> {
-    let done = record("0123456789abcdef", Outcome::Done(Box::new(summary())));
-    let plain = record("a", Outcome::Done(Box::default()));
-    let failed = record("b", Outcome::Failed("the run diverged at step 12".to_owned()));
-    let line = |record: &FinishedRun| with_checksum(serde_json::to_string(record).unwrap().as_bytes());
+    let done = finished("0123456789abcdef", Outcome::Done(Box::new(summary())));
+    let plain = finished("a", Outcome::Done(Box::default()));
+    let failed = finished("b", Outcome::Failed("the run diverged at step 12".to_owned()));
+    let line = |run: &FinishedRun| with_checksum(serde_json::to_string(run).unwrap().as_bytes());
     vec![
         line(&done),
         line(&failed),
@@ -48,7 +48,7 @@ fn generated() -> Vec<Vec<u8>> {
     ]
 }
 
-/// Files of many records and of long ones.
+/// Files of many runs and of long ones.
 fn long() -> Vec<Vec<u8>> {
     let failed = |id: &str| {
         format!("0123456789abcdef {{\"id\":\"{id}\",\"wall_time_s\":1,\"outcome\":{{\"Failed\":\"\"}}}}\n")
@@ -72,33 +72,33 @@ fn without_checksum(line: &[u8]) -> &[u8] {
     }
 }
 
-fn records(input: &[u8]) {
+fn run_journal(input: &[u8]) {
     drop(open(input));
     let lines: Vec<&[u8]> = input.split(|&byte| byte == b'\n').map(without_checksum).collect();
     let file: Vec<u8> = lines.iter().flat_map(|json| with_checksum(json)).collect();
-    let Some(records) = open(&file) else { return };
+    let Some(journal) = open(&file) else { return };
     let mut whole = 0;
     for json in &lines {
-        let Ok(record) = serde_json::from_slice::<FinishedRun>(json) else {
+        let Ok(run) = serde_json::from_slice::<FinishedRun>(json) else {
             continue;
         };
         whole += 1;
-        assert!(records.get(&record.id).is_some(), "{}", record.id);
-        // A record is written as it was read.
-        let printed = serde_json::to_string(&record).unwrap();
+        assert!(journal.get(&run.id).is_some(), "{}", run.id);
+        // A run is written as it was read.
+        let printed = serde_json::to_string(&run).unwrap();
         let again: FinishedRun = serde_json::from_str(&printed).unwrap();
-        assert_eq!(again, record);
+        assert_eq!(again, run);
         assert_eq!(serde_json::to_string(&again).unwrap(), printed);
     }
-    assert_eq!(records.damaged, lines.len() - whole);
+    assert_eq!(journal.damaged, lines.len() - whole);
 }
 
-/// Opens a file of records, appends a record, and demands that all records are there when it is opened again.
+/// Opens a journal, appends a run, and demands that all runs are there when it is opened again.
 fn open(file: &[u8]) -> Option<RunJournal> {
-    let folder = scratch::folder("records");
+    let folder = scratch::folder("run_journal");
     std::fs::write(folder.join(RunJournal::FILE), file).unwrap();
-    let records = match RunJournal::open(&folder) {
-        Ok(records) => records,
+    let journal = match RunJournal::open(&folder) {
+        Ok(journal) => journal,
         Err(error) => {
             readable(&error);
             // A file that is refused is left unchanged.
@@ -106,11 +106,11 @@ fn open(file: &[u8]) -> Option<RunJournal> {
             return None;
         }
     };
-    let before = records.len();
-    let one_more = record("one more", Outcome::Failed(String::new()));
-    let known = usize::from(records.get(&one_more.id).is_some());
-    records.append(&[one_more]).unwrap();
-    drop(records);
+    let before = journal.len();
+    let one_more = finished("one more", Outcome::Failed(String::new()));
+    let known = usize::from(journal.get(&one_more.id).is_some());
+    journal.append(&[one_more]).unwrap();
+    drop(journal);
     let mut again = RunJournal::open(&folder).unwrap();
     let damaged = again.damaged;
     assert_eq!(again.len(), before + 1 - known);
