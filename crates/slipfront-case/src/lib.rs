@@ -12,6 +12,7 @@ pub mod case_file;
 pub mod field_info;
 pub mod quantity;
 pub mod same;
+pub mod table;
 pub mod texture_file;
 
 /// BLAKE3 hash of the sources of this crate.

@@ -1,0 +1,41 @@
+//! Reasons for which a text is no table of numbers.
+
+use std::io;
+
+use slipfront_base::text::truncated;
+
+/// Reason for which a table cannot be read: a sentence that goes on after the name of the file.
+#[derive(Debug, thiserror::Error)]
+#[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
+pub enum TableError {
+    #[error("cannot be read: {0}")]
+    Read(#[from] io::Error),
+    #[error("is {0}, not a table of text: save the table as text, such as .csv, and name that file")]
+    Binary(&'static str),
+    #[error(
+        "has {found} fields in line {line} and {names} names in line {header}: {remedy}"
+    )]
+    TooManyFields {
+        header: u64,
+        names: usize,
+        line: u64,
+        found: usize,
+        remedy: &'static str,
+    },
+    #[error("can be read in two ways: {0}")]
+    Ambiguous(String),
+    #[error("has a thousands separator in line {line}, {}: write the number without it", quoted(text))]
+    Thousands { line: u64, text: String },
+    #[error(
+        "has a field that begins in line {line} and goes over several lines: remove the quotation mark with which it begins"
+    )]
+    OpenQuote { line: u64 },
+    #[error("has more than {most} bytes in line {line}: write one row in every line")]
+    LongLine { line: u64, most: u64 },
+    #[error("has {lines} lines, and no line {wanted} with names")]
+    NoHeader { wanted: u64, lines: u64 },
+}
+
+fn quoted(text: &str) -> String {
+    format!("{:?}", truncated(text))
+}

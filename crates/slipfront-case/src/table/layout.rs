@@ -1,0 +1,446 @@
+//! Where a table has its names, its units and its numbers, and how they are written.
+
+use std::borrow::Cow;
+use std::io::Read;
+
+use slipfront_base::number_format::count;
+use slipfront_base::text::truncated;
+
+use super::encoding::Encoding;
+use super::error::TableError;
+use super::fields::fields;
+use super::number::{clock_time, has_groups, number};
+
+/// Separators that are looked for; among those that fit as well the first.
+const SEPARATORS: [char; 4] = [';', '\t', ',', ' '];
+
+/// Properties of a table that its reader states, in place of those that would be found.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct TableOptions {
+    /// Line of the names, from 1; 0 if there are none.
+    pub header_line: Option<u64>,
+    /// Decimal sign, a point or a comma.
+    pub decimal: Option<char>,
+    /// Separator of fields: a comma, a semicolon, a tab or blanks.
+    pub separator: Option<char>,
+}
+
+/// A line with a text for each column.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct NamedLine {
+    /// Number of the line, from 1.
+    pub line: u64,
+    /// Texts of the columns.
+    pub texts: Vec<String>,
+}
+
+/// Where a table has its names, its units and its numbers, and how they are written.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TableLayout {
+    /// Encoding of the text.
+    pub encoding: Encoding,
+    /// Separator of fields.
+    pub separator: char,
+    /// Decimal sign, a point or a comma.
+    pub decimal: char,
+    /// Names of the columns.
+    pub names: Option<NamedLine>,
+    /// Units of the columns, in a line below their names.
+    pub units: Option<NamedLine>,
+    /// Number of the line with which the rows begin, from 1.
+    pub first_line: u64,
+    /// Number of columns.
+    pub columns: usize,
+    /// Lines above the names that are neither blank nor comments: their number, and the text of the first.
+    above: Option<(usize, String)>,
+}
+
+/// A line of the head that is neither blank nor a comment.
+struct Line<'t> {
+    number: u64,
+    text: &'t str,
+    fields: Vec<Cow<'t, str>>,
+}
+
+/// A way to read a table.
+struct Reading {
+    layout: TableLayout,
+    /// Fields of rows that are numbers, less those that are not.
+    score: i64,
+}
+
+impl TableLayout {
+    /// Finds the layout of the table that begins with `head`, all of it if it is short.
+    ///
+    /// ```
+    /// use slipfront_case::table::{TableLayout, TableOptions};
+    ///
+    /// let head = "Operator;none\n\nt;F\ns;mN\n0;0,5\n2;1,25\n";
+    /// let layout = TableLayout::find(head.as_bytes(), TableOptions::default())?;
+    /// assert_eq!((layout.separator, layout.decimal, layout.first_line), (';', ',', 5));
+    /// let took = "line 3 names 2 columns; units in line 4: s; mN; decimal commas; 1 line above ignored, \"Operator;none\"";
+    /// assert_eq!(layout.took().as_deref(), Some(took));
+    /// # Ok::<_, slipfront_case::table::TableError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// When the head is no text, can be read in two ways, or does not have what `options` states.
+    pub fn find(head: &[u8], options: TableOptions) -> Result<Self, TableError> {
+        binary(head).map_or(Ok(()), |kind| Err(TableError::Binary(kind)))?;
+        let encoding = Encoding::of(head);
+        let mut text = String::new();
+        encoding.decoded(head).read_to_string(&mut text)?;
+        // A line that the head cuts is left out, unless there is no other.
+        let is_cut = head.len() as u64 >= super::HEAD_BYTES;
+        let text = match text.rfind('\n') {
+            Some(end) if is_cut => &text[..end],
+            _ => &text,
+        };
+        let stated = sep_line(text);
+        let separators: Vec<char> = match options.separator.or(stated) {
+            Some(separator) => vec![separator],
+            None => SEPARATORS.to_vec(),
+        };
+        let mut readings = Vec::new();
+        for separator in separators {
+            let decimals: &[char] = match options.decimal {
+                Some(decimal) => &[decimal],
+                None if separator == ',' => &['.'],
+                None => &['.', ','],
+            };
+            for &decimal in decimals {
+                readings.push(Reading::of(text, encoding, [separator, decimal], options)?);
+            }
+        }
+        best(readings, text, options)
+    }
+
+    /// What was found in the table beyond names in its first line, commas between fields and decimal points:
+    /// a sentence without its stop.
+    pub fn took(&self) -> Option<String> {
+        let mut took = Vec::new();
+        match &self.names {
+            Some(names) if names.line != 1 => {
+                took.push(format!("line {} names {}", names.line, count(self.columns, "column")));
+            }
+            None if self.above.is_some() => {
+                took.push(format!("no line names the columns; rows begin in line {}", self.first_line));
+            }
+            _ => {}
+        }
+        if let Some(units) = &self.units {
+            took.push(format!("units in line {}: {}", units.line, truncated(&units.texts.join("; "))));
+        }
+        if self.decimal == ',' {
+            took.push("decimal commas".to_owned());
+        }
+        if let Some(encoding) = self.encoding.unusual() {
+            took.push(format!("{encoding} text"));
+        }
+        if let Some((lines, first)) = &self.above {
+            took.push(format!("{} above ignored, {first:?}", count(*lines, "line")));
+        }
+        (!took.is_empty()).then(|| took.join("; "))
+    }
+
+    /// Drops empty fields at the end of a row, and refuses one that has more fields than there are names.
+    pub(super) fn fit(&self, line: u64, fields: &mut Vec<Cow<'_, str>>) -> Result<(), TableError> {
+        let Some(names) = &self.names else { return Ok(()) };
+        while fields.len() > names.texts.len() && fields.last().is_some_and(|field| field.is_empty()) {
+            fields.pop();
+        }
+        if fields.len() <= names.texts.len() {
+            return Ok(());
+        }
+        Err(TableError::TooManyFields {
+            header: names.line,
+            names: names.texts.len(),
+            line,
+            found: fields.len(),
+            remedy: match self.separator {
+                ',' => {
+                    "a comma that separates cannot be a decimal sign too; write decimal points, or separate fields by semicolons"
+                }
+                _ => "write as many names as fields",
+            },
+        })
+    }
+}
+
+impl Reading {
+    /// The text with this separator and decimal sign.
+    fn of(
+        text: &str,
+        encoding: Encoding,
+        [separator, decimal]: [char; 2],
+        options: TableOptions,
+    ) -> Result<Self, TableError> {
+        let is_number = |field: &Cow<'_, str>| number(field, decimal).is_some() || clock_time(field).is_some();
+        let lines: Vec<Line> = text
+            .lines()
+            .zip(1..)
+            .filter(|(text, _)| !text.trim().is_empty() && !text.trim_start().starts_with('#'))
+            .map(|(text, number)| Line {
+                number,
+                text,
+                fields: trimmed(fields(text, separator).unwrap_or_default()),
+            })
+            .filter(|line| !line.fields.is_empty())
+            .collect();
+        let numbers = |line: &Line| line.fields.iter().filter(|field| is_number(field)).count();
+        // Rows are the longest sequence of lines with as many fields, at least half of which are numbers.
+        let is_row = |line: &Line| 2 * numbers(line) >= line.fields.len();
+        let sequences = lines.chunk_by(|a, b| is_row(a) && is_row(b) && a.fields.len() == b.fields.len());
+        let rows = sequences.filter(|lines| is_row(&lines[0])).rev();
+        let longest = rows.max_by_key(|lines| lines.len()).unwrap_or_default();
+        let columns = longest.first().map_or(0, |line| line.fields.len());
+        // Columns of numbers are those that most of these rows have.
+        let in_most = |column: &usize| 2 * longest.iter().filter(|line| is_number(&line.fields[*column])).count() > longest.len();
+        let of_numbers: Vec<usize> = (0..columns).filter(in_most).collect();
+        let has_all = |line: &&Line| {
+            line.fields.len() == columns && of_numbers.iter().all(|&column| is_number(&line.fields[column]))
+        };
+        let first = lines.iter().position(|line| has_all(&line)).unwrap_or(lines.len());
+        let score = lines[first..]
+            .iter()
+            .filter(|line| line.fields.len() == columns)
+            .map(|line| 2 * numbers(line) as i64 - line.fields.len() as i64)
+            .sum();
+
+        let n_lines = text.lines().count() as u64;
+        let names = match options.header_line {
+            Some(0) => None,
+            Some(wanted) => Some(lines.iter().position(|line| line.number == wanted).ok_or({
+                TableError::NoHeader {
+                    wanted,
+                    lines: n_lines,
+                }
+            })?),
+            // Names are texts of which there are as many as columns, or more.
+            None => (0..first)
+                .rev()
+                .find(|&at| lines[at].fields.len() >= columns && numbers(&lines[at]) == 0),
+        };
+        let has_units = |at: usize| {
+            let line = lines.get(at)?;
+            let are_units = line.fields.len() <= columns.max(1)
+                && numbers(line) == 0
+                && line.fields.iter().all(|field| is_unit(field));
+            are_units.then_some(at)
+        };
+        let (names, units) = match names {
+            // The nearest line of texts may be that of the units.
+            Some(at) if options.header_line.is_none() && at > 0 && has_units(at).is_some() => {
+                let above = &lines[at - 1];
+                match above.fields.len() >= columns && numbers(above) == 0 {
+                    true => (Some(at - 1), Some(at)),
+                    false => (Some(at), None),
+                }
+            }
+            Some(at) => (Some(at), has_units(at + 1)),
+            None => (None, None),
+        };
+        let named = |at: usize| NamedLine {
+            line: lines[at].number,
+            texts: lines[at].fields.iter().map(ToString::to_string).collect(),
+        };
+        let last = units.or(names);
+        let first_line = match last {
+            Some(at) => lines[at].number + 1,
+            None => lines.get(first).map_or(1, |line| line.number),
+        };
+        let above = &lines[..names.unwrap_or(first)];
+        let layout = TableLayout {
+            encoding,
+            separator,
+            decimal,
+            columns: names.map_or(columns, |at| lines[at].fields.len()),
+            names: names.map(named),
+            units: units.map(named),
+            first_line,
+            above: above.first().map(|line| (above.len(), truncated(line.text))),
+        };
+        Ok(Self { layout, score })
+    }
+}
+
+/// The reading of which most fields are numbers.
+fn best(readings: Vec<Reading>, text: &str, options: TableOptions) -> Result<TableLayout, TableError> {
+    // Among readings that fit as well the first is taken: `max_by_key` would take the last.
+    let found = readings.into_iter().rev().max_by_key(|reading| (reading.score, reading.layout.columns));
+    let Some(Reading { layout, .. }) = found else {
+        // A separator and a decimal sign are always tried.
+        return Err(TableError::Ambiguous("it is empty".to_owned()));
+    };
+    let rows = text.lines().zip(1..).skip(layout.first_line as usize - 1);
+    let rows = rows.filter(|(line, _)| !line.trim_start().starts_with('#'));
+    let mut grouped = None;
+    let (mut is_decimal, mut has_whole, mut doubled, mut n_rows) = (options.decimal.is_some(), false, 0, 0_usize);
+    for (line, at) in rows {
+        let fields = trimmed(fields(line, layout.separator).unwrap_or_default());
+        for field in &fields {
+            let has_sign = field.contains(layout.decimal);
+            is_decimal |= has_sign && !has_groups(field, layout.decimal);
+            has_whole |= !has_sign && field.parse::<i64>().is_ok();
+            if layout.decimal == ',' && has_groups(field, ',') {
+                grouped.get_or_insert_with(|| (at, field.to_string()));
+            }
+        }
+        n_rows += usize::from(!fields.is_empty());
+        doubled += usize::from(is_doubled(&fields));
+    }
+    if let Some((line, field)) = grouped.filter(|_| has_whole || !is_decimal)
+        && options.decimal.is_none()
+    {
+        let plain = field.replace(',', "");
+        let decimal = field.replace(',', ".");
+        return Err(TableError::Ambiguous(format!(
+            "{field:?} in line {line} is {plain} with a comma between thousands and {decimal} with a decimal comma; \
+             say which, or write the numbers without it"
+        )));
+    }
+    // Without names nothing tells that `0,500,0,0175` has two numbers and not four.
+    if layout.separator == ',' && layout.names.is_none() && options.separator.is_none() && n_rows > 1 && doubled == n_rows {
+        return Err(TableError::Ambiguous(
+            "its commas can separate whole numbers, or be decimal commas too, since numbers begin with 0; write decimal points, \
+             or separate fields by semicolons"
+                .to_owned(),
+        ));
+    }
+    Ok(layout)
+}
+
+/// Whether fields are whole numbers by pairs, of which the second has the form of decimals.
+fn is_doubled(fields: &[Cow<'_, str>]) -> bool {
+    let is_whole = |field: &Cow<'_, str>| field.parse::<i64>().is_ok();
+    let is_padded = |field: &Cow<'_, str>| field.len() > 1 && field.starts_with('0');
+    !fields.is_empty()
+        && fields.len().is_multiple_of(2)
+        && fields.iter().all(is_whole)
+        && fields.iter().skip(1).step_by(2).all(|field| field.len() > 1)
+        && fields.iter().skip(1).step_by(2).any(is_padded)
+}
+
+/// Fields without the empty ones at the end.
+fn trimmed(mut fields: Vec<Cow<'_, str>>) -> Vec<Cow<'_, str>> {
+    while fields.last().is_some_and(|field| field.is_empty()) {
+        fields.pop();
+    }
+    fields
+}
+
+/// Whether a text can be the unit of a column, such as `N`, `(mm)`, `[-]`, `m/s^2` or nothing.
+fn is_unit(text: &str) -> bool {
+    const WORDS: [&str; 24] = [
+        "s", "sec", "ms", "us", "min", "h", "m", "mm", "um", "nm", "cm", "n", "mn", "kn", "gf", "kgf", "v", "mv", "%", "1", "-",
+        "rpm", "c", "k",
+    ];
+    let bare = text.trim_matches(['(', ')', '[', ']']).trim();
+    let is_bracketed = bare.len() + 2 <= text.len();
+    let small = bare.to_lowercase().replace(['\u{b5}', '\u{3bc}'], "u");
+    let small = small.trim_start_matches('\u{b0}');
+    text.is_empty()
+        || (is_bracketed && bare.len() <= 8)
+        || WORDS.contains(&small)
+        || (small.contains('/') && small.split('/').all(|part| WORDS.contains(&part)))
+}
+
+/// The separator that a first line `sep=;` of Excel states.
+fn sep_line(text: &str) -> Option<char> {
+    let first = text.lines().next()?.trim_matches('"');
+    let mut stated = first.strip_prefix("sep=")?.chars();
+    stated.next().filter(|separator| SEPARATORS.contains(separator))
+}
+
+/// What a file is that is no text, by its first bytes.
+fn binary(head: &[u8]) -> Option<&'static str> {
+    match head {
+        [b'P', b'K', 3, 4, ..] => Some("a workbook or an archive"),
+        [0xd0, 0xcf, 0x11, 0xe0, ..] => Some("a workbook or a document of an old format"),
+        [0x1f, 0x8b, ..] => Some("a compressed file"),
+        [b'%', b'P', b'D', b'F', ..] => Some("a PDF document"),
+        [0x89, b'P', b'N', b'G', ..] => Some("an image"),
+        _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use test_case::test_case;
+
+    use super::*;
+
+    fn find(text: &str) -> Result<TableLayout, String> {
+        TableLayout::find(text.as_bytes(), TableOptions::default()).map_err(|error| error.to_string())
+    }
+
+    /// The separator, the decimal sign, the lines of names and units, and the first line of rows.
+    fn found(text: &str) -> (char, char, [Option<u64>; 2], u64) {
+        let layout = find(text).unwrap();
+        let lines = [&layout.names, &layout.units].map(|line| line.as_ref().map(|line| line.line));
+        (layout.separator, layout.decimal, lines, layout.first_line)
+    }
+
+    #[test_case("t,F\n0,1\n1,2\n", (',', '.', [Some(1), None], 2); "plain")]
+    #[test_case("0 500\n2 1000\n", (' ', '.', [None, None], 1); "blanks without names")]
+    #[test_case("0,5 1,5\n2,5 1,0\n", (' ', ',', [None, None], 1); "decimal commas and blanks")]
+    #[test_case("0, 500\n2, 1000\n", (',', '.', [None, None], 1); "commas and blanks")]
+    #[test_case("n\tt / ms\tF / mN\n1\t0\t500\n2\t2\t1000\n", ('\t', '.', [Some(1), None], 2); "tabs")]
+    #[test_case("\"Time, s\",\"Force, N\"\n0,1\n1,2\n", (',', '.', [Some(1), None], 2); "quotes")]
+    #[test_case("t,F,x\n0,0.5,a\n2,1,b\n", (',', '.', [Some(1), None], 2); "a column of texts")]
+    #[test_case("sep=;\nt;F\n0;1\n1;2\n", (';', '.', [Some(2), None], 3); "separator stated")]
+    #[test_case("t;F\n(s);[N]\n0;1,5\n1;2,5\n", (';', ',', [Some(1), Some(2)], 3); "units")]
+    #[test_case("Speed;5\nDate;2024-01-01\n\nt;F\ns;N\n\n0;1,5\n1;2,5\n", (';', ',', [Some(4), Some(5)], 6); "instrument")]
+    #[test_case("A: x\nB\n0 1\n1 2\n", (' ', '.', [Some(1), None], 2); "names in two words are names")]
+    #[test_case("X\tY\tComment\n0\t1\n1\t2\n", ('\t', '.', [Some(1), None], 2); "more names than fields")]
+    #[test_case("t,F\n0,1\n", (',', '.', [Some(1), None], 2); "one row")]
+    #[test_case("t,F\n", (',', '.', [Some(1), None], 2); "names alone")]
+    #[test_case("t;F\n12:00:01;0,5\n12:00:02;0,6\n", (';', ',', [Some(1), None], 2); "time of the day")]
+    fn layouts_are_found(text: &str, wanted: (char, char, [Option<u64>; 2], u64)) {
+        assert_eq!(found(text), wanted);
+    }
+
+    #[test_case("t;F\n1;997\n2;1,050\n", "\"1,050\" in line 3 is 1050 with a comma between thousands and 1.050 with a decimal comma"; "thousands")]
+    #[test_case("0,000,0,0000\n0,500,0,0175\n", "its commas can separate whole numbers"; "no names")]
+    #[test_case("PK\u{3}\u{4}xl/", "is a workbook or an archive"; "workbook")]
+    fn what_can_be_read_in_two_ways_is_refused(text: &str, sentence: &str) {
+        let error = find(text).unwrap_err();
+        assert!(error.contains(sentence), "{error}");
+    }
+
+    #[test]
+    fn options_decide() {
+        let text = "t;F\n1;997\n2;1,050\n";
+        let options = TableOptions {
+            decimal: Some(','),
+            ..TableOptions::default()
+        };
+        assert_eq!(TableLayout::find(text.as_bytes(), options).unwrap().decimal, ',');
+        let header = |header_line| {
+            let options = TableOptions {
+                header_line: Some(header_line),
+                ..TableOptions::default()
+            };
+            TableLayout::find(b"a,b\nc,d\n0,1\n1,2\n", options)
+        };
+        assert_eq!(header(1).unwrap().names.unwrap().texts, ["a", "b"]);
+        assert_eq!(header(0).unwrap().names, None);
+        assert!(header(9).unwrap_err().to_string().contains("no line 9"));
+    }
+
+    #[test_case(Encoding::Utf16Le; "low byte first")]
+    #[test_case(Encoding::Utf16Be; "high byte first")]
+    fn utf_16_is_read_with_its_mark_and_without(encoding: Encoding) {
+        for mark in ["", "\u{feff}"] {
+            let units = format!("{mark}t (\u{b5}s);F\n0;1\n1;2\n").encode_utf16().collect::<Vec<u16>>();
+            let bytes = units.iter().flat_map(|unit| match encoding {
+                Encoding::Utf16Le => unit.to_le_bytes(),
+                _ => unit.to_be_bytes(),
+            });
+            let bytes: Vec<u8> = bytes.collect();
+            let layout = TableLayout::find(&bytes, TableOptions::default()).unwrap();
+            assert_eq!(layout.encoding, encoding);
+            assert_eq!(layout.names.unwrap().texts, ["t (\u{b5}s)", "F"]);
+        }
+    }
+}

@@ -1,0 +1,26 @@
+//! Tables of text as instruments and programs write them: measured records, height maps, fields of
+//! coefficients.
+//!
+//! ```text
+//! bytes -> text (encoding) -> lines -> fields (separator) -> numbers (decimal sign)
+//! ```
+//!
+//! A [`TableLayout`] is found from the beginning of a table: its encoding, its separator, its decimal sign,
+//! the lines with names and units, and where the numbers begin. It says what it took, and refuses a table
+//! that can be read in two ways. A [`TableRows`] then reads line after line.
+
+mod encoding;
+mod error;
+mod fields;
+mod layout;
+mod number;
+mod rows;
+
+pub use encoding::Encoding;
+pub use error::TableError;
+pub use layout::{NamedLine, TableLayout, TableOptions};
+pub use number::{clock_time, number};
+pub use rows::TableRows;
+
+/// Number of bytes at the beginning of a table from which its layout is found.
+pub const HEAD_BYTES: u64 = 1 << 20;
