@@ -56,7 +56,7 @@ impl Calibration {
         let opened = detached(py, || {
             let records = self.file.read(&records)?;
             self.file.check_memory(&records, threads)?;
-            let notes = records.iter().filter_map(SampledRecord::note).collect();
+            let notes = records.iter().flat_map(SampledRecord::notes).collect();
             let folder = CalibrationFolder::open(&folder, training.as_deref(), &self.file, records, force)?;
             Ok((folder, notes))
         })?;

@@ -118,7 +118,9 @@ fn set_up() -> Result<(SetUp, f64), Box<dyn Error>> {
         x,
         along: Measure::Time,
         of: Measure::Coefficient,
+        took: None,
         footer: None,
+        averaged: None,
     };
     let grid = SamplePoints::of(&record).ok_or("no grid")?;
     let conditions = vec![Conditions {

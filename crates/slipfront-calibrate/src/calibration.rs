@@ -266,7 +266,9 @@ mod tests {
             x,
             along: Measure::Time,
             of,
+            took: None,
             footer: None,
+            averaged: None,
         };
         SamplePoints::of(&record).unwrap()
     }

@@ -8,6 +8,7 @@ use slipfront_base::number_format::{are, with_si_prefix};
 use slipfront_case::case::{Case, PROGRAM};
 use slipfront_case::case_file::{CaseError, KeyKind, Override, key, names_of, whole};
 use slipfront_case::key_rows;
+use slipfront_case::table::{DecimalSign, FieldSeparator, TableOptions};
 use slipfront_run::folder_error::FolderError;
 use slipfront_run::measured::{Measure, MeasuredRecord};
 use slipfront_run::run_curve::steps_to;
@@ -67,6 +68,12 @@ key_rows! {
         x_unit: Option<String> = key("", KeyKind::Special("")).without("that in the header"),
         /// Unit of `y`.
         y_unit: Option<String> = key("", KeyKind::Special("")).without("that in the header"),
+        /// Line with the names of the columns, from 1; 0 if none has.
+        header_line: Option<u64> = key("", KeyKind::Special("")).without("found"),
+        /// Decimal sign of the numbers.
+        decimal: Option<DecimalSign> = key("", KeyKind::Words(names_of::<DecimalSign>)).without("found"),
+        /// What separates fields.
+        separator: Option<FieldSeparator> = key("", KeyKind::Words(names_of::<FieldSeparator>)).without("found"),
         /// Quantity of the first column: time, or displacement of the drive. Both begin at 0 where the drive
         /// does.
         against: Against = key("\"time\"", KeyKind::Words(names_of::<Against>)),
@@ -143,10 +150,9 @@ pub struct SampledRecord {
 }
 
 impl SampledRecord {
-    /// A sentence about lines of the record that were passed over, if there are some.
-    pub fn note(&self) -> Option<String> {
-        let footer = self.measured.footer.as_ref()?;
-        Some(format!("{footer}: passed over"))
+    /// Sentences on how the record was read, and on lines that were passed over.
+    pub fn notes(&self) -> impl Iterator<Item = String> {
+        self.measured.notes()
     }
 }
 
@@ -154,6 +160,15 @@ impl CalibrationKeys {
     /// The columns of records, as the file names them.
     pub fn columns(&self) -> [&str; 2] {
         [&self.x, &self.y]
+    }
+
+    /// How the tables of records are written, as far as the file says.
+    fn table(&self) -> TableOptions {
+        TableOptions {
+            header_line: self.header_line,
+            decimal: self.decimal.map(DecimalSign::sign),
+            separator: self.separator.map(FieldSeparator::sign),
+        }
     }
 }
 
@@ -273,7 +288,7 @@ impl CalibrationFile {
 
     fn read_record(&self, path: &Path) -> Result<SampledRecord, StudyError> {
         let keys = &self.keys;
-        let columns = MeasuredColumns::new(keys.columns(), [&keys.x_unit, &keys.y_unit]);
+        let columns = MeasuredColumns::new(keys.columns(), [&keys.x_unit, &keys.y_unit], keys.table());
         let along = match keys.against {
             Against::Time => Measure::Time,
             Against::Displacement => Measure::Displacement,

@@ -143,7 +143,9 @@ mod tests {
             y,
             along: Measure::Time,
             of: Measure::Coefficient,
+            took: None,
             footer: None,
+            averaged: None,
         }
     }
 
@@ -171,7 +173,9 @@ mod tests {
             y: vec![1.0; 100],
             along: Measure::Time,
             of: Measure::Force,
+            took: None,
             footer: None,
+            averaged: None,
         };
         assert_eq!(SamplePoints::of(&still), None);
         assert_eq!(SamplePoints::of(&record(MIN_VALUES - 1)), None);

@@ -107,7 +107,9 @@ mod tests {
                 x,
                 along: Measure::Displacement,
                 of: Measure::Force,
+                took: None,
                 footer: None,
+                averaged: None,
             };
             Conditions {
                 overrides: vec![Override::new("drive.v_star", &toml::Value::from(speed))],

@@ -20,6 +20,7 @@ mod progress;
 mod ranks;
 mod report;
 mod signals;
+mod table_args;
 mod threads;
 mod wrap;
 

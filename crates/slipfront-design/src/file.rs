@@ -7,6 +7,7 @@ use slipfront_case::case::{Case, PROGRAM, Ranks};
 use slipfront_case::case_file::{CaseError, CaseFile, KeyKind, Override, key, names_of, whole};
 use slipfront_case::key_rows;
 use slipfront_case::quantity::{Force, Length};
+use slipfront_case::table::TableOptions;
 use slipfront_case::texture_file::textured_blocks;
 use slipfront_run::measured::Measure;
 use toml::{Table, Value};
@@ -457,7 +458,11 @@ impl DesignFile {
             return Err(self.project.error("wish.curve", sentence).into());
         }
         let path = self.project.base.folder.join(&keys.file);
-        let columns = MeasuredColumns::new([&keys.x, &keys.y], [&keys.x_unit, &keys.y_unit]);
+        let columns = MeasuredColumns::new(
+            [&keys.x, &keys.y],
+            [&keys.x_unit, &keys.y_unit],
+            TableOptions::default(),
+        );
         let record = columns.read(&path, Measure::Displacement);
         let record = record.map_err(|sentence| self.project.error("wish.curve", sentence))?;
         if let Some(footer) = record.footer {

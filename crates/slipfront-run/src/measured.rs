@@ -1,14 +1,15 @@
 //! A measured record: two columns of a table, such as force against time.
 
-use std::io::{BufRead, BufReader, Read};
+use std::io::Read;
 use std::path::{Path, PathBuf};
 
-use csv::ByteRecord;
 use slipfront_base::disk::open_limited;
-use slipfront_base::number_format::count;
+use slipfront_base::number_format::{count, with_si_prefix};
 use slipfront_base::text::{display_path, truncated};
-use slipfront_case::arrays::{separator, table_reader};
-use slipfront_case::quantity::{Duration, Force, Length, QuantityError};
+use slipfront_case::quantity::{Duration, Force, Length};
+use slipfront_case::table::{
+    HEAD_BYTES, TableError, TableLayout, TableOptions, TableRows, clock_time, number,
+};
 use thiserror::Error;
 
 /// A column as a user names it.
@@ -37,8 +38,18 @@ pub enum Measure {
 #[derive(Debug, Error)]
 #[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
 pub enum MeasuredError {
-    #[error("cannot read {}: {source}", display_path(path))]
-    Read { path: PathBuf, source: csv::Error },
+    #[error("{} {source}", display_path(path))]
+    Table { path: PathBuf, source: TableError },
+    #[error(
+        "{} has `{name}` in several columns, {columns}: give the number of the one that is meant, such as {number}",
+        display_path(path)
+    )]
+    Several {
+        path: PathBuf,
+        name: String,
+        columns: String,
+        number: usize,
+    },
     #[error("{} has no column `{name}`: {known}", display_path(path))]
     Column {
         path: PathBuf,
@@ -72,11 +83,6 @@ pub enum MeasuredError {
         column: String,
     },
     #[error(
-        "the field that ends in line {line} of {} goes over several lines: remove the quotation mark with which it begins",
-        display_path(path)
-    )]
-    Lines { path: PathBuf, line: u64 },
-    #[error(
         "line {line} of {}: the time or displacement falls, from {before} to {value} in SI units; a record goes forwards",
         display_path(path)
     )]
@@ -93,8 +99,38 @@ pub enum MeasuredError {
     TooShort { path: PathBuf, found: usize },
 }
 
-/// Number of bytes at the beginning of a table in which the separator is looked for.
-const HEAD_BYTES: u64 = 1 << 16;
+/// Largest step back of displacements, as a share of the whole path, that is taken for the noise of a sensor.
+const MOST_NOISE: f64 = 0.01;
+
+/// Largest number of bytes of a line of a record.
+const LINE_MAX_BYTES: u64 = 1 << 20;
+
+/// Units in the words of instruments, and their sizes in SI units.
+const UNIT_WORDS: [(Measure, &str, f64); 22] = [
+    (Measure::Time, "sec", 1.0),
+    (Measure::Time, "secs", 1.0),
+    (Measure::Time, "second", 1.0),
+    (Measure::Time, "seconds", 1.0),
+    (Measure::Time, "Sec", 1.0),
+    (Measure::Time, "msec", 1e-3),
+    (Measure::Time, "usec", 1e-6),
+    (Measure::Time, "min", 60.0),
+    (Measure::Time, "minutes", 60.0),
+    (Measure::Time, "h", 3600.0),
+    (Measure::Displacement, "micron", 1e-6),
+    (Measure::Displacement, "microns", 1e-6),
+    (Measure::Displacement, "inch", 0.0254),
+    // Standard gravity, 9.80665 m/s^2.
+    (Measure::Force, "gf", 9.80665e-3),
+    (Measure::Force, "kgf", 9.80665),
+    (Measure::Force, "lbf", 4.448_221_615_260_5),
+    (Measure::Coefficient, "1", 1.0),
+    (Measure::Coefficient, "-", 1.0),
+    (Measure::Coefficient, "\u{2013}", 1.0),
+    (Measure::Coefficient, "\u{2212}", 1.0),
+    (Measure::Coefficient, "", 1.0),
+    (Measure::Coefficient, "%", 0.01),
+];
 
 /// Two columns in SI units, of which the first never falls.
 #[derive(Clone, Debug, PartialEq)]
@@ -107,16 +143,18 @@ pub struct MeasuredRecord {
     pub along: Measure,
     /// Whether the ordinates are forces or coefficients.
     pub of: Measure,
+    /// How the table was read, if it is not a plain one: a sentence without its stop.
+    pub took: Option<String>,
     /// Which lines at the end of the table have no numbers, if there are some: a sentence without its stop.
     pub footer: Option<String>,
+    /// How displacements with the noise of a sensor were averaged, if they were: a sentence without its stop.
+    pub averaged: Option<String>,
 }
 
-/// A line without a number in one of the columns.
-struct NoNumber {
-    /// Number of bytes of the table up to the end of the line.
-    end: u64,
-    text: String,
-    column: String,
+/// Where two columns stand, and what their numbers are multiplied by to be in SI units.
+struct Found {
+    places: [usize; 2],
+    factors: [f64; 2],
 }
 
 impl Measure {
@@ -130,33 +168,53 @@ impl Measure {
         }
     }
 
-    /// The size of a unit in SI units.
-    fn factor(self, unit: &str) -> Result<f64, QuantityError> {
+    /// The size of a unit in SI units, as instruments write it.
+    fn factor(self, unit: &str) -> Option<f64> {
         let one = format!("1 {unit}");
-        match self {
-            Self::Time => one.parse::<Duration>().map(|time| time.si()),
-            Self::Displacement => one.parse::<Length>().map(|length| length.si()),
-            Self::Force => one.parse::<Force>().map(|force| force.si()),
-            Self::Coefficient if unit == "1" => Ok(1.0),
-            Self::Coefficient => Err(QuantityError::Unit {
-                text: unit.to_owned(),
-                why: "a coefficient has the unit 1",
-            }),
-        }
+        let read = match self {
+            Self::Time => one.parse::<Duration>().ok().map(|time| time.si()),
+            Self::Displacement => one.parse::<Length>().ok().map(|length| length.si()),
+            Self::Force => one.parse::<Force>().ok().map(|force| force.si()),
+            Self::Coefficient => None,
+        };
+        let words = || {
+            let of = UNIT_WORDS
+                .iter()
+                .find(|(measure, word, _)| *measure == self && *word == unit);
+            of.map(|(_, _, size)| *size)
+        };
+        read.or_else(words)
+    }
+
+    /// A sentence about a unit that is none of this quantity.
+    fn no_such_unit(self, unit: &str) -> String {
+        let one = format!("1 {unit}");
+        let why = match self {
+            Self::Time => one.parse::<Duration>().err().map(|why| why.to_string()),
+            Self::Displacement => one.parse::<Length>().err().map(|why| why.to_string()),
+            Self::Force => one.parse::<Force>().err().map(|why| why.to_string()),
+            Self::Coefficient => None,
+        };
+        why.unwrap_or_else(|| format!("a coefficient has the unit 1 or %, and not {unit:?}"))
     }
 }
 
 impl MeasuredRecord {
-    /// Reads two columns of a table whose fields are separated by commas, semicolons, tabs or blanks; unless
-    /// commas separate, numbers may have decimal commas. Empty lines, and those that begin with `#`, count as
-    /// none; lines without numbers at the end are passed over, and named. The first column is along times or
-    /// displacements; the second has forces, or coefficients if its unit is 1.
+    /// Reads two columns of a table of text; its layout is [found](TableLayout::find) where `options` do not
+    /// state it. Empty lines, and those that begin with `#`, count as none; lines without numbers at the end
+    /// are passed over, and named. The first column is along times or displacements; times of the day are
+    /// counted in seconds from the first. The second has forces, or coefficients if its unit is 1.
     ///
     /// # Errors
     /// When the table cannot be read, has not these columns, or lacks numbers in them before its end; when no
     /// unit is known.
-    pub fn read(path: &Path, columns: [&Column; 2], along: Measure) -> Result<Self, MeasuredError> {
-        Self::read_from(&|| open_limited(path, u64::MAX), path, columns, along)
+    pub fn read(
+        path: &Path,
+        columns: [&Column; 2],
+        along: Measure,
+        options: TableOptions,
+    ) -> Result<Self, MeasuredError> {
+        Self::read_from(&|| open_limited(path, u64::MAX), path, columns, along, options)
     }
 
     /// Reads two columns of a table that is in memory, as [`read`](Self::read) does those of a file; messages
@@ -169,8 +227,9 @@ impl MeasuredRecord {
         path: &Path,
         columns: [&Column; 2],
         along: Measure,
+        options: TableOptions,
     ) -> Result<Self, MeasuredError> {
-        Self::read_from(&|| Ok(bytes), path, columns, along)
+        Self::read_from(&|| Ok(bytes), path, columns, along, options)
     }
 
     /// Reads two columns of the table that `open` opens from its beginning, each time that it is called.
@@ -179,94 +238,69 @@ impl MeasuredRecord {
         path: &Path,
         columns: [&Column; 2],
         along: Measure,
+        options: TableOptions,
     ) -> Result<Self, MeasuredError> {
-        let failed = |source: csv::Error| MeasuredError::Read {
+        let failed = |source: TableError| MeasuredError::Table {
             path: path.to_owned(),
             source,
         };
         let mut head = Vec::new();
         let read = open().and_then(|table| table.take(HEAD_BYTES).read_to_end(&mut head));
         read.map_err(|source| failed(source.into()))?;
-        let separator = separator(&head);
-        let mut table = table_reader(open().map_err(|source| failed(source.into()))?, separator);
-        let (mut places, mut factors) = ([0; 2], [1.0; 2]);
+        let layout = TableLayout::find(&head, options).map_err(failed)?;
         let mut record = Self {
             x: Vec::new(),
             y: Vec::new(),
             along,
             of: Measure::Force,
+            took: layout
+                .took()
+                .map(|took| format!("{}: {took}", display_path(path))),
             footer: None,
+            averaged: None,
         };
+        let Found { places, factors } = record.columns(&layout, path, columns)?;
+        let source = open().map_err(|source| failed(source.into()))?;
+        let mut rows = TableRows::new(source, &layout, LINE_MAX_BYTES);
+        let decimal = layout.decimal;
+        let mut midnight = None;
+        let mut first_fall = None;
         // The first line without numbers behind the last one that has some, and how many there are.
         let mut footer: Option<(NoNumber, usize)> = None;
-        let mut row = ByteRecord::new();
-        let mut is_first = true;
-        while table.read_byte_record(&mut row).map_err(failed)? {
-            let fields: Vec<String> = row
-                .iter()
-                .map(|field| {
-                    String::from_utf8_lossy(field)
-                        .trim_start_matches('\u{feff}')
-                        .to_owned()
-                })
-                .filter(|field| separator != b' ' || !field.is_empty())
-                .collect();
-            let number = |field: &str| number(field, separator);
-            if std::mem::take(&mut is_first) {
-                let has_names = fields
-                    .iter()
-                    .any(|field| !field.is_empty() && number(field).is_none());
-                let names = if has_names { &fields[..] } else { &[] };
-                for (k, column) in columns.into_iter().enumerate() {
-                    places[k] = place(path, column, names, fields.len())?;
-                }
-                let [x, y] = places.map(|place| names.get(place));
-                if unit_of(columns[1], y) == Some("1") {
-                    record.of = Measure::Coefficient;
-                }
-                factors = [
-                    factor(path, columns[0], x, along, "x")?,
-                    factor(path, columns[1], y, record.of, "y")?,
-                ];
-                if has_names {
-                    continue;
-                }
-            }
-            let end = table.position().byte();
-            if row.as_slice().contains(&b'\n') {
-                let (path, line) = (path.to_owned(), line_at(open, end).map_err(failed)?);
-                return Err(MeasuredError::Lines { path, line });
-            }
-            if fields.iter().all(String::is_empty) {
+        while let Some((line, fields)) = rows.next_row().map_err(failed)? {
+            if fields.iter().all(|field| field.is_empty()) {
                 continue;
             }
-            let values = [0, 1].map(|k| number(fields.get(places[k])?).map(|value| factors[k] * value));
-            let [Some(x), Some(y)] = values else {
-                let without = usize::from(values[0].is_some());
+            let mut value = |k: usize| {
+                let field = fields.get(places[k])?;
+                let clock = clock_time(field).filter(|_| k == 0 && along == Measure::Time);
+                if let Some(clock) = clock {
+                    return Some(clock - *midnight.get_or_insert(clock));
+                }
+                let value = number(field, decimal).filter(|value| value.is_finite())?;
+                Some(factors[k] * value)
+            };
+            let (Some(x), Some(y)) = (value(0), value(1)) else {
+                let without = usize::from(value(0).is_some());
                 let first = || NoNumber {
-                    end,
-                    text: truncated(&fields.join(&char::from(separator).to_string())),
+                    line,
+                    text: truncated(&fields.join(&layout.separator.to_string())),
                     column: columns[without].name.clone(),
                 };
                 footer.get_or_insert_with(|| (first(), 0)).1 += 1;
                 continue;
             };
             if let Some((line, _)) = footer {
-                return Err(line.error(open, path));
+                return Err(line.error(path));
             }
             if let Some(&before) = record.x.last().filter(|before| x < **before) {
-                return Err(MeasuredError::Falls {
-                    path: path.to_owned(),
-                    line: line_at(open, end).map_err(failed)?,
-                    before,
-                    value: x,
-                });
+                first_fall.get_or_insert((line, before, x));
             }
             record.x.push(x);
             record.y.push(y);
         }
         match (record.x.len(), footer) {
-            (0..2, Some((line, _))) => return Err(line.error(open, path)),
+            (0..2, Some((line, _))) => return Err(line.error(path)),
             (found @ 0..2, None) => {
                 let path = path.to_owned();
                 return Err(MeasuredError::TooShort { path, found });
@@ -277,129 +311,253 @@ impl MeasuredRecord {
                     "{} ends with {} without numbers, from line {} on",
                     display_path(path),
                     count(lines, "line"),
-                    line_at(open, first.end).map_err(failed)?
+                    first.line
                 ));
             }
         }
+        if let Some((line, before, value)) = first_fall {
+            record.average_over_noise().ok_or_else(|| MeasuredError::Falls {
+                path: path.to_owned(),
+                line,
+                before,
+                value,
+            })?;
+        }
         Ok(record)
     }
+
+    /// Replaces displacements that go back by the noise of their sensor, and the friction there, by their
+    /// means over bins as wide as the largest step back; none if these are no displacements, or go back by
+    /// more than a noise would.
+    fn average_over_noise(&mut self) -> Option<()> {
+        let first = *self.x.first()?;
+        let (mut largest, mut back) = (first, 0.0_f64);
+        for &x in &self.x {
+            largest = largest.max(x);
+            back = back.max(largest - x);
+        }
+        if self.along != Measure::Displacement || back > MOST_NOISE * (largest - first) {
+            return None;
+        }
+        let least = self.x.iter().copied().fold(first, f64::min);
+        // Sums of displacements and friction, and the number of points, of every bin that has some.
+        let mut bins = std::collections::BTreeMap::<u64, [f64; 3]>::new();
+        for (&x, &y) in self.x.iter().zip(&self.y) {
+            let bin = bins.entry(((x - least) / back) as u64).or_default();
+            *bin = [bin[0] + x, bin[1] + y, bin[2] + 1.0];
+        }
+        let points = self.x.len();
+        self.x = bins.values().map(|[x, _, n]| x / n).collect();
+        self.y = bins.values().map(|[_, y, n]| y / n).collect();
+        self.averaged = Some(format!(
+            "displacements go back by up to {}, as those of a sensor with noise: {} are averaged over bins of this width to {}",
+            with_si_prefix(back, "m"),
+            count(points, "point"),
+            self.x.len()
+        ));
+        Some(())
+    }
+
+    /// Sentences for a reader of the record: how the table was read, and which lines were passed over.
+    pub fn notes(&self) -> impl Iterator<Item = String> {
+        let footer = self
+            .footer
+            .as_ref()
+            .map(|footer| format!("{footer}: passed over"));
+        [self.took.clone(), footer, self.averaged.clone()]
+            .into_iter()
+            .flatten()
+    }
+
+    /// Finds two columns of a table, and what the second has.
+    fn columns(
+        &mut self,
+        layout: &TableLayout,
+        path: &Path,
+        columns: [&Column; 2],
+    ) -> Result<Found, MeasuredError> {
+        let names: Vec<ColumnName> = match &layout.names {
+            Some(names) => names.texts.iter().map(|name| ColumnName::of(name)).collect(),
+            None => Vec::new(),
+        };
+        let mut places = [0; 2];
+        for (place, column) in places.iter_mut().zip(columns) {
+            *place = place_of(path, column, &names, layout.columns)?;
+        }
+        // The line of units counts where the name has none.
+        let below = |place: usize| {
+            layout
+                .units
+                .as_ref()?
+                .texts
+                .get(place)
+                .map(|text| without_brackets(text))
+        };
+        let units = [0, 1].map(|k| {
+            let in_name = names.get(places[k]).and_then(|name| name.unit.clone());
+            in_name.or_else(|| below(places[k]).map(str::to_owned))
+        });
+        let [_, given] = columns.map(|column| column.unit.as_deref());
+        if Measure::Coefficient
+            .factor(given.or(units[1].as_deref()).unwrap_or("N"))
+            .is_some()
+        {
+            self.of = Measure::Coefficient;
+        }
+        let shown = |k: usize| {
+            names
+                .get(places[k])
+                .map_or(columns[k].name.as_str(), |name| name.whole)
+        };
+        let factor =
+            |k: usize, measure, axis| factor(path, columns[k], shown(k), units[k].as_deref(), measure, axis);
+        let factors = [factor(0, self.along, "x")?, factor(1, self.of, "y")?];
+        Ok(Found { places, factors })
+    }
+}
+
+/// A line without a number in one of the columns.
+struct NoNumber {
+    line: u64,
+    text: String,
+    column: String,
 }
 
 impl NoNumber {
-    /// The error about this line of a table.
-    fn error<R: Read>(self, open: &impl Fn() -> std::io::Result<R>, path: &Path) -> MeasuredError {
-        match line_at(open, self.end) {
-            Ok(line) => MeasuredError::NoNumber {
-                path: path.to_owned(),
-                line,
-                text: self.text,
-                column: self.column,
-            },
-            Err(source) => MeasuredError::Read {
-                path: path.to_owned(),
-                source,
-            },
+    fn error(self, path: &Path) -> MeasuredError {
+        let Self { line, text, column } = self;
+        MeasuredError::NoNumber {
+            path: path.to_owned(),
+            line,
+            text,
+            column,
         }
     }
 }
 
-/// Number of the line that ends, with its terminator if it has one, at the byte `end` of a table. The reader
-/// of tables counts no lines that are empty, comments or end as those of Windows.
-fn line_at<R: Read>(open: &impl Fn() -> std::io::Result<R>, end: u64) -> csv::Result<u64> {
-    let mut before = BufReader::new(open()?.take(end.saturating_sub(1)));
-    let mut line = 1;
-    loop {
-        let bytes = before.fill_buf()?;
-        if bytes.is_empty() {
-            return Ok(line);
+/// The name of a column, with its unit if it has one.
+struct ColumnName<'t> {
+    whole: &'t str,
+    bare: &'t str,
+    unit: Option<String>,
+}
+
+impl<'t> ColumnName<'t> {
+    /// The parts of a name such as `Force (N)`, `force [N]`, `F / N`, `t/s`, `Time, s`, `Zeit in s`, `force_n`.
+    fn of(whole: &'t str) -> Self {
+        let in_brackets = [('(', ')'), ('[', ']')].into_iter().find_map(|(open, close)| {
+            let (bare, rest) = whole.split_once(open)?;
+            Some((bare.trim(), rest.strip_suffix(close)?.trim()))
+        });
+        // Elsewhere what stands behind is a unit only if it is known: `F_max` and `Fx/Fz` have none.
+        let behind = || {
+            [" / ", "/", ", ", " in ", "_"].into_iter().find_map(|sign| {
+                let (bare, unit) = whole.rsplit_once(sign)?;
+                let (bare, unit) = (bare.trim(), unit.trim());
+                (!bare.is_empty() && (is_known(unit) || sign == " / ")).then_some((bare, unit))
+            })
+        };
+        let (bare, unit) = match in_brackets.or_else(behind) {
+            Some((bare, unit)) => (bare, Some(unit.to_owned())),
+            None => (whole, None),
+        };
+        Self { whole, bare, unit }
+    }
+}
+
+/// A unit without the brackets around it.
+fn without_brackets(text: &str) -> &str {
+    text.trim_matches(['(', ')', '[', ']']).trim()
+}
+
+/// Whether a unit is one of a quantity that a column can have, or is written as these are in names: small.
+fn is_known(unit: &str) -> bool {
+    let measures = [
+        Measure::Time,
+        Measure::Displacement,
+        Measure::Force,
+        Measure::Coefficient,
+    ];
+    !unit.is_empty()
+        && (measures.into_iter().any(|measure| measure.factor(unit).is_some())
+            || ["n", "kn", "mn"].contains(&unit))
+}
+
+/// Position of a column among `n`: the one of exactly this name, else the one of this name without its unit
+/// or in other letters, else the one of this number.
+fn place_of(
+    path: &Path,
+    column: &Column,
+    names: &[ColumnName<'_>],
+    n: usize,
+) -> Result<usize, MeasuredError> {
+    let wanted = column.name.trim();
+    let small = wanted.to_lowercase();
+    let is_named: [&dyn Fn(&ColumnName) -> bool; 4] = [
+        &|name| name.whole == wanted,
+        &|name| name.bare == wanted,
+        &|name| name.whole.to_lowercase() == small,
+        &|name| name.bare.to_lowercase() == small,
+    ];
+    for is_named in is_named {
+        let places: Vec<usize> = (0..names.len())
+            .filter(|&place| is_named(&names[place]))
+            .collect();
+        match places.as_slice() {
+            [] => {}
+            [place] => return Ok(*place),
+            places => {
+                let numbers: Vec<String> = places.iter().map(|place| (place + 1).to_string()).collect();
+                return Err(MeasuredError::Several {
+                    path: path.to_owned(),
+                    name: truncated(wanted),
+                    columns: numbers.join(", "),
+                    number: places[0] + 1,
+                });
+            }
         }
-        line += bytes.iter().filter(|&&byte| byte == b'\n').count() as u64;
-        let read = bytes.len();
-        before.consume(read);
     }
-}
-
-/// A finite number, with a decimal point, or a decimal comma where commas separate nothing.
-fn number(field: &str, separator: u8) -> Option<f64> {
-    let value = match separator {
-        b',' => field.parse(),
-        _ => field.replace(',', ".").parse(),
-    };
-    value.ok().filter(|value: &f64| value.is_finite())
-}
-
-/// Position of a column among `n`, which have `names` if the list is not empty.
-fn place(path: &Path, column: &Column, names: &[String], n: usize) -> Result<usize, MeasuredError> {
-    let wanted = column.name.to_lowercase();
-    let is_named = |name: &String| {
-        let name = name.to_lowercase();
-        name == wanted || split_unit(&name).0 == wanted
-    };
-    if let Some(place) = names.iter().position(is_named) {
-        return Ok(place);
-    }
-    match column.name.parse::<usize>() {
+    match wanted.parse::<usize>() {
         Ok(number) if (1..=n).contains(&number) => Ok(number - 1),
         _ => Err(MeasuredError::Column {
             path: path.to_owned(),
-            name: truncated(&column.name),
+            name: truncated(wanted),
             known: match names {
                 [] => format!("it has no header; its columns are 1 to {n}"),
-                names => format!("its columns are {}, or 1 to {n}", truncated(&names.join(", "))),
+                names => {
+                    let names: Vec<&str> = names.iter().map(|name| name.whole).collect();
+                    format!("its columns are {}, or 1 to {n}", truncated(&names.join(", ")))
+                }
             },
         }),
     }
 }
 
-/// A column's name without its unit, and the unit: `Force (N)`, `force [N]`, `F / N`, `force_n`.
-fn split_unit(name: &str) -> (&str, Option<&str>) {
-    let in_brackets = [('(', ')'), ('[', ']')].into_iter().find_map(|(open, close)| {
-        let (before, rest) = name.split_once(open)?;
-        Some((before.trim(), rest.strip_suffix(close)?.trim()))
-    });
-    let behind = || {
-        name.split_once(" / ")
-            .map(|(before, unit)| (before.trim(), unit.trim()))
-    };
-    let suffix = || name.rsplit_once('_');
-    match in_brackets.or_else(behind).or_else(suffix) {
-        Some((before, unit)) => (before, Some(unit)),
-        None => (name, None),
-    }
-}
-
-/// The unit of a column: the given one, or the one in its header.
-fn unit_of<'a>(column: &'a Column, header: Option<&'a String>) -> Option<&'a str> {
-    let in_header = || split_unit(header?).1;
-    column.unit.as_deref().or_else(in_header)
-}
-
-/// The size of the unit of a column in SI units.
+/// The size of the unit of a column in SI units: of the unit that was given, else of the one in the table.
 fn factor(
     path: &Path,
     column: &Column,
-    header: Option<&String>,
+    shown: &str,
+    in_table: Option<&str>,
     measure: Measure,
     axis: &'static str,
 ) -> Result<f64, MeasuredError> {
-    let shown = || truncated(header.unwrap_or(&column.name));
+    let shown = || truncated(shown);
     if let Some(unit) = &column.unit {
-        return measure.factor(unit).map_err(|error| MeasuredError::Unit {
+        return measure.factor(unit).ok_or_else(|| MeasuredError::Unit {
             path: path.to_owned(),
             column: shown(),
-            why: error.to_string(),
+            why: measure.no_such_unit(unit),
         });
     }
-    let unit = unit_of(column, header);
     // Units of names are written small: force_n, time_ms. Where case decides, as between mN and MN, the unit
     // has to be given.
-    let as_written = |unit: &str| measure.factor(unit).ok();
     let of_name = |unit: &str| match (measure, unit) {
         (Measure::Force, "n") => Some(1.0),
         (Measure::Force, "kn") => Some(1e3),
         _ => None,
     };
-    let found = unit.and_then(|unit| as_written(unit).or_else(|| of_name(unit)));
+    let found = in_table.and_then(|unit| measure.factor(unit).or_else(|| of_name(unit)));
     found.ok_or_else(|| MeasuredError::NoUnit {
         path: path.to_owned(),
         column: shown(),
@@ -407,10 +565,26 @@ fn factor(
         example: match measure {
             Measure::Time => "ms",
             Measure::Displacement => "um",
+            Measure::Force if means_a_coefficient(column, &shown()) => "1",
             Measure::Force => "N",
             Measure::Coefficient => "1",
         },
     })
+}
+
+/// Whether a column has the usual name of a friction coefficient.
+fn means_a_coefficient(column: &Column, shown: &str) -> bool {
+    const NAMES: [&str; 7] = [
+        "mu",
+        "\u{3bc}",
+        "\u{b5}",
+        "cof",
+        "coefficient",
+        "friction coefficient",
+        "coefficient of friction",
+    ];
+    let is_one = |name: &str| NAMES.contains(&name.trim().to_lowercase().as_str());
+    is_one(&column.name) || is_one(shown)
 }
 
 #[cfg(test)]
@@ -427,7 +601,7 @@ mod tests {
             name: names[k].to_owned(),
             unit: units[k].map(str::to_owned),
         });
-        MeasuredRecord::read(&path, [&x, &y], Measure::Time)
+        MeasuredRecord::read(&path, [&x, &y], Measure::Time, TableOptions::default())
     }
 
     #[test_case("time_ms,force_n\n0,0.5\n2,1\n", ["time_ms", "force"]; "names")]
@@ -439,6 +613,65 @@ mod tests {
         let record = read(text, names, [None; 2]).unwrap();
         assert_eq!(record.x, [0.0, 0.002]);
         assert_eq!(record.y, [0.5, 1.0]);
+    }
+
+    #[test_case("Instrument: X\nOperator: none\n\nt (ms),F (N)\n0,0.5\n2,1\n", ["t", "F"], "line 4 names 2 columns; 2 lines above ignored, \"Instrument: X\""; "instrument")]
+    #[test_case("t;F\nms;mN\n0;500,0\n2;1000,0\n", ["t", "F"], "units in line 2: ms; mN; decimal commas"; "units")]
+    #[test_case("Zeit in msec\tKraft, N\n0\t0.5\n2\t1\n", ["Zeit", "kraft"], ""; "units in words")]
+    #[test_case("mu_raw,mu (-),t/ms\n9,0.5,0\n9,1,2\n", ["t", "mu"], ""; "exact names first")]
+    #[test_case("t (ms),COF ()\n0,0.5\n2,1\n", ["t", "COF"], ""; "no unit")]
+    #[test_case("Time [ms],COF [%]\n0,50\n2,100\n", ["Time", "COF"], ""; "percent")]
+    #[test_case("time;F (N)\n23:00:01,000;0,5\n23:00:01,002;1,0\n", ["time", "F"], "decimal commas"; "time of the day")]
+    fn what_was_taken_is_said(text: &str, names: [&str; 2], took: &str) {
+        let record = read(text, names, [names[0].eq("time").then_some("s"), None]).unwrap();
+        assert!(
+            (record.x[1] - 0.002).abs() < 1e-9,
+            "a time of the day is rounded to 2^-37 s: {:?}",
+            record.x
+        );
+        assert_eq!(record.y, [0.5, 1.0]);
+        let said = record.notes().collect::<String>();
+        assert!(
+            said.ends_with(took) && said.is_empty() == took.is_empty(),
+            "{said}"
+        );
+    }
+
+    /// Displacements go forwards by 2.5 um and back by 0.5 um by turns: means over bins keep the friction,
+    /// which is that of the displacement.
+    #[test]
+    fn displacements_with_noise_are_averaged_and_others_refused() {
+        let of = |noise: f64| {
+            let line = |k: usize| {
+                let x = k as f64 + if k % 2 == 0 { 0.0 } else { -noise };
+                format!("{x},{}\n", 0.5 + 1e-3 * x)
+            };
+            let text = "u (um),mu (1)\n".to_owned() + &(0..1000).map(line).collect::<String>();
+            let [x, y] = ["u", "mu"].map(|name| Column {
+                name: name.to_owned(),
+                unit: None,
+            });
+            let along = Measure::Displacement;
+            MeasuredRecord::parse(
+                text.as_bytes(),
+                Path::new("u.csv"),
+                [&x, &y],
+                along,
+                TableOptions::default(),
+            )
+        };
+        let record = of(1.5).unwrap();
+        assert!(record.x.is_sorted() && record.x.len() < 1000);
+        for (x, y) in record.x.iter().zip(&record.y) {
+            // Friction is linear in displacement, and so are its means: to rounding.
+            assert!((y - 0.5 - 1e3 * x).abs() < 1e-12, "{x} {y}");
+        }
+        let note = record.notes().last().unwrap();
+        assert!(
+            note.starts_with("displacements go back by up to 500 nm"),
+            "{note}"
+        );
+        assert!(of(30.0).unwrap_err().to_string().contains("falls"));
     }
 
     #[test]
@@ -476,6 +709,11 @@ mod tests {
     )]
     #[test_case("time_s,force_n\n0,1\n1,1\n1,\"2\n2,2\n", ["time", "force"], "goes over several lines"; "quote")]
     #[test_case("time_s,force_n\n1,1\n0,2\n", ["time", "force"], "falls, from 1 to 0"; "order")]
+    #[test_case("t (s),mu (1)\n0,000,0,0000\n0,500,0,0175\n", ["t", "mu"], "has 4 fields in line 2 and 2 names in line 1: a comma that separates cannot be a decimal sign too"; "decimal commas between commas")]
+    #[test_case("t (s),mu (1),t (s),mu (1)\n0,100,0,0.5\n1,101,1,0.5\n", ["1", "mu"], "has `mu` in several columns, 2, 4: give the number"; "a name twice")]
+    #[test_case("t (s),COF\n0,0.5\n1,0.5\n", ["t", "COF"], "such as `--y-unit 1`"; "coefficient without unit")]
+    #[test_case("t (s);F_max (N)\n0;1\n1;2\n", ["t", "F"], "has no column `F`"; "the beginning of a name")]
+    #[test_case("t (s);F (N)\n1;997\n2;1,050\n", ["t", "F"], "can be read in two ways: \"1,050\" in line 3"; "thousands")]
     #[test_case("time_s,force_n\n1,1\n", ["time", "force"], "has 1 lines of numbers"; "short")]
     #[test_case("time_s,force_n\n", ["time", "force"], "has 0 lines of numbers"; "header alone")]
     fn what_is_wrong_is_said(text: &str, names: [&str; 2], sentence: &str) {

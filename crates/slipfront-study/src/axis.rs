@@ -210,7 +210,17 @@ impl Axis {
             }
         }
         let mut seen = HashSet::new();
-        if let Some(twice) = self.levels.iter().find(|level| !seen.insert(&level.overrides)) {
+        // 5 and 5.0 are one number.
+        let value = |set: &Override| match set.value() {
+            Value::Integer(number) => (number as f64).to_string(),
+            Value::Float(number) => number.to_string(),
+            other => other.to_string(),
+        };
+        let values = |level: &Level| -> Vec<(String, String)> {
+            let sets = level.overrides.iter();
+            sets.map(|set| (set.key().to_owned(), value(set))).collect()
+        };
+        if let Some(twice) = self.levels.iter().find(|level| !seen.insert(values(level))) {
             let labels = twice.labels.join(", ");
             return Err(format!(
                 "the level {labels} stands twice on the axis of `{columns}`: keep one"
@@ -658,6 +668,7 @@ mod tests {
     #[test]
     fn a_level_twice_is_refused_and_repeated_numbers_are_names() {
         assert!(axis("key = 'a.b'\nlist = [1, 2, 1]").is_err());
+        assert!(axis("key = 'a.b'\nlist = [5, 5.0, 10]").is_err());
         let zipped = axis("zip = { 'a.b' = [1, 1], 'c.d' = [1, 2] }").unwrap();
         assert_eq!(zipped.spacing, Spacing::Named);
     }

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use slipfront_case::table::TableOptions;
 use slipfront_run::measured::{Column, Measure, MeasuredError, MeasuredRecord};
 
 /// Columns of a table, by their names or numbers, and their units where the header has none.
@@ -11,11 +12,13 @@ pub struct MeasuredColumns {
     pub x: Column,
     /// Forces, or coefficients if their unit is 1.
     pub y: Column,
+    /// How the table is written, where it should not be found.
+    pub options: TableOptions,
 }
 
 impl MeasuredColumns {
     /// Columns of these names or numbers, and their units.
-    pub fn new([x, y]: [&str; 2], [x_unit, y_unit]: [&Option<String>; 2]) -> Self {
+    pub fn new([x, y]: [&str; 2], [x_unit, y_unit]: [&Option<String>; 2], options: TableOptions) -> Self {
         let column = |name: &str, unit: &Option<String>| Column {
             name: name.to_owned(),
             unit: unit.clone(),
@@ -23,6 +26,7 @@ impl MeasuredColumns {
         Self {
             x: column(x, x_unit),
             y: column(y, y_unit),
+            options,
         }
     }
 
@@ -31,7 +35,7 @@ impl MeasuredColumns {
     /// # Errors
     /// A sentence on why the table is no record.
     pub fn read(&self, path: &Path, along: Measure) -> Result<MeasuredRecord, String> {
-        let read = MeasuredRecord::read(path, [&self.x, &self.y], along);
+        let read = MeasuredRecord::read(path, [&self.x, &self.y], along, self.options);
         read.map_err(|error| Self::sentence(error, path))
     }
 
@@ -40,7 +44,7 @@ impl MeasuredColumns {
     /// # Errors
     /// A sentence on why the table is no record.
     pub fn parse(&self, bytes: &[u8], path: &Path, along: Measure) -> Result<MeasuredRecord, String> {
-        let read = MeasuredRecord::parse(bytes, path, [&self.x, &self.y], along);
+        let read = MeasuredRecord::parse(bytes, path, [&self.x, &self.y], along, self.options);
         read.map_err(|error| Self::sentence(error, path))
     }
 

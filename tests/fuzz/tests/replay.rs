@@ -67,6 +67,7 @@ replay! {
     csv_table
     mask_png
     height_map
+    measured
     run_journal
     figure_cache
     checkpoint

@@ -156,7 +156,9 @@ fn set_up() -> SetUp {
         x,
         along: Measure::Time,
         of: Measure::Coefficient,
+        took: None,
         footer: None,
+        averaged: None,
     };
     SetUp {
         base,

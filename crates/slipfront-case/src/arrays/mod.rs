@@ -26,7 +26,6 @@ pub use height_map::{HeightMap, HeightMapUnits, Room, Roughness, height_map};
 pub use mask::{mask_png, png_of_mask};
 pub use npy::{mask_npy, npy_of_mask};
 pub use slab::Slab;
-pub use table::{reader as table_reader, separator};
 
 use error::{contents_error, unknown_extension};
 use slipfront_base::disk::open_regular;
@@ -86,8 +85,8 @@ pub fn limit_length_of_height_map(path: &Path, found: u64) -> Result<(), ArrayEr
 /// Reads one number per block of some rows from a `.npy` or `.csv` file called `path`.
 ///
 /// A `.npy` file has the shape (ny, nx), any real, integer or boolean type, either byte order and either
-/// memory order. A `.csv` file has `ny` lines of `nx` numbers with a decimal point, separated by commas,
-/// semicolons, tabs or blanks; blank lines and lines that start with `#` are skipped. Returns the values in
+/// memory order. A `.csv` file has `ny` lines of `nx` numbers, separated by commas, semicolons, tabs or blanks,
+/// with decimal points, or decimal commas where no commas separate; blank lines and lines that start with `#` are skipped. Returns the values in
 /// row-major order, the smallest y first, in the unit of the file; a friction coefficient has none.
 ///
 /// # Errors

@@ -1,14 +1,13 @@
 //! Tables of numbers as text (`.csv`).
 
-use std::io::{BufRead, Read, Seek, Take};
+use std::io::{BufRead, Seek};
 use std::path::Path;
 
-use csv::{ErrorKind, ReaderBuilder, StringRecord, Trim};
-
-use super::error::{ArrayError, broken, contents_error, value_error};
+use super::error::{ArrayError, contents_error, value_error};
 use super::head::length_and_head;
 use super::pixels::{SIDE_MAX, limit_pixels};
 use super::slab::Slab;
+use crate::table::{HEAD_BYTES, TableError, TableLayout, TableOptions, TableRows, number};
 
 /// Total length of comment lines among which the separator is searched.
 pub(super) const PREAMBLE_MAX_BYTES: u64 = 1 << 20;
@@ -30,30 +29,30 @@ pub(super) fn values(
 ) -> Result<Vec<f64>, ArrayError> {
     let Slab { nx, ny, ref rows } = *slab;
     let line_max = PREAMBLE_MAX_BYTES.saturating_add((nx as u64).saturating_mul(NUMBER_MAX_BYTES));
-    let (length, mut lines) = TableLines::of(path, source, line_max)?;
+    let (length, layout) = layout_of(path, source)?;
+    let mut lines = TableRows::new(source, &layout, line_max);
     // A number and what separates it from the next take two bytes at the least.
     let mut values = Vec::with_capacity(slab.n_blocks().min(length as usize / 2 + 1));
     let mut row = 0;
     // Whoever reads the last row sees that there is no other.
     while row < rows.end || rows.end == ny {
-        if !lines.next()? {
+        let Some((line, fields)) = lines.next_row().map_err(table_error(path))? else {
             break;
-        }
+        };
         if row == ny {
             let found = format!("more than {ny} lines of numbers");
             return Err(wrong_shape(path, &found, nx, ny));
         }
         if rows.contains(&row) {
-            let found = lines.fields().count();
-            if found != nx {
-                let found = format!("{found} numbers in line {}", lines.number());
+            if fields.len() != nx {
+                let found = format!("{} numbers in line {line}", fields.len());
                 return Err(wrong_shape(path, &found, nx, ny));
             }
-            for (column, field) in lines.fields().enumerate() {
+            for (column, field) in fields.iter().enumerate() {
                 let at = [row, column];
-                let value = number(path, field, at, lines.number())?;
+                let value = number_at(path, field, layout.decimal, at, line)?;
                 if is_wrong(value) {
-                    let value = format!("{value} in line {},", lines.number());
+                    let value = format!("{value} in line {line},");
                     return Err(value_error(path, &value, at, wanted));
                 }
                 values.push(value);
@@ -74,20 +73,20 @@ pub(super) fn rows(
     source: &mut (impl BufRead + Seek),
     mut take: impl FnMut([usize; 2], &[f64]) -> Result<(), ArrayError>,
 ) -> Result<[u64; 2], ArrayError> {
-    let (_, mut lines) = TableLines::of(path, source, LINE_MAX_BYTES)?;
+    let (_, layout) = layout_of(path, source)?;
+    let mut lines = TableRows::new(source, &layout, LINE_MAX_BYTES);
     let mut values = Vec::new();
     let (mut columns, mut row) = (None, 0);
-    while lines.next()? {
+    while let Some((line, fields)) = lines.next_row().map_err(table_error(path))? {
         values.clear();
-        for (column, field) in lines.fields().enumerate() {
-            values.push(number(path, field, [row, column], lines.number())?);
+        for (column, field) in fields.iter().enumerate() {
+            values.push(number_at(path, field, layout.decimal, [row, column], line)?);
         }
         let wanted = *columns.get_or_insert(values.len());
         if values.len() != wanted {
             let problem = format!(
-                "has {} numbers in line {}, where the lines before have {wanted}; write as many in every line",
-                values.len(),
-                lines.number()
+                "has {} numbers in line {line}, where the lines before have {wanted}; write as many in every line",
+                values.len()
             );
             return Err(contents_error(path, problem));
         }
@@ -98,103 +97,40 @@ pub(super) fn rows(
     Ok([columns.unwrap_or(0) as u64, row as u64])
 }
 
-/// The lines of a table that hold numbers, one after the other.
-struct TableLines<'a, R> {
-    path: &'a Path,
-    table: csv::Reader<Take<R>>,
-    /// Largest number of bytes of a line, with comments before it.
-    line_max: u64,
-    separator: u8,
-    record: StringRecord,
+/// Number of fields of the first row.
+pub(super) fn columns(path: &Path, source: &mut (impl BufRead + Seek)) -> Result<usize, ArrayError> {
+    let (_, layout) = layout_of(path, source)?;
+    let mut lines = TableRows::new(source, &layout, LINE_MAX_BYTES);
+    let first = lines.next_row().map_err(table_error(path))?;
+    Ok(first.map_or(0, |(_, fields)| fields.len()))
 }
 
-impl<'a, R: BufRead + Seek> TableLines<'a, &'a mut R> {
-    /// Opens a table with lines of at most `line_max` bytes; returns its length in bytes and its lines.
-    fn of(path: &'a Path, source: &'a mut R, line_max: u64) -> Result<(u64, Self), ArrayError> {
-        let (length, preamble) = length_and_head(path, source, PREAMBLE_MAX_BYTES)?;
-        let separator = separator(&preamble);
-        let lines = Self {
-            path,
-            table: reader(source.take(line_max), separator),
-            line_max,
-            separator,
-            record: StringRecord::new(),
-        };
-        Ok((length, lines))
-    }
+/// The length of a table in bytes, and how it is written. Every line has numbers: one with names is a row
+/// that is refused.
+fn layout_of(path: &Path, source: &mut (impl BufRead + Seek)) -> Result<(u64, TableLayout), ArrayError> {
+    let (length, head) = length_and_head(path, source, HEAD_BYTES)?;
+    let layout = TableLayout::find(&head, TableOptions::default()).map_err(table_error(path))?;
+    Ok((length, layout.of_numbers_alone()))
+}
 
-    /// Goes to the next line, if there is one.
-    fn next(&mut self) -> Result<bool, ArrayError> {
-        loop {
-            self.table.get_mut().set_limit(self.line_max);
-            let is_there = self.table.read_record(&mut self.record).map_err(|error| {
-                let detail = error.to_string();
-                match error.into_kind() {
-                    ErrorKind::Io(source) => ArrayError::read(self.path)(source),
-                    _ => broken(self.path, ".csv", &detail),
-                }
-            })?;
-            if self.table.get_ref().limit() == 0 {
-                let problem = format!(
-                    "has more than {} bytes in line {}, and no line of its numbers takes as many: write one row in every line",
-                    self.line_max,
-                    self.number()
-                );
-                return Err(contents_error(self.path, problem));
-            }
-            // The csv crate gives an empty record for a comment that ends the file without a line break.
-            let is_blank = self.fields().nth(1).is_none() && self.fields().all(str::is_empty);
-            if !is_there || !is_blank {
-                return Ok(is_there);
-            }
-        }
-    }
-
-    /// The fields of the line. Numbers in columns are padded with several blanks.
-    fn fields(&self) -> impl Iterator<Item = &str> {
-        let is_field = |field: &&str| self.separator != b' ' || !field.is_empty();
-        self.record.iter().filter(is_field)
-    }
-
-    /// The number of the line in the file.
-    fn number(&self) -> u64 {
-        self.record.position().map_or(0, csv::Position::line)
+/// An error of a table about the file of this path.
+fn table_error(path: &Path) -> impl Fn(TableError) -> ArrayError {
+    move |error| match error {
+        TableError::Read(source) => ArrayError::read(path)(source),
+        error => contents_error(path, error.to_string()),
     }
 }
 
 /// The number of a field in the row and column `at`, which stand in this line of the file.
-fn number(path: &Path, field: &str, at: [usize; 2], line: u64) -> Result<f64, ArrayError> {
-    field.parse().map_err(|_| {
+fn number_at(path: &Path, field: &str, decimal: char, at: [usize; 2], line: u64) -> Result<f64, ArrayError> {
+    number(field, decimal).ok_or_else(|| {
         let field = format!("`{}` in line {line},", excerpt(field));
-        value_error(path, &field, at, "a number with a decimal point")
+        let wanted = match decimal {
+            '.' => "a number with a decimal point",
+            _ => "a number with a decimal comma, as others of the table have,",
+        };
+        value_error(path, &field, at, wanted)
     })
-}
-
-/// Reads a table of text line by line; `#` begins a comment.
-pub fn reader<R: Read>(source: R, separator: u8) -> csv::Reader<R> {
-    ReaderBuilder::new()
-        .has_headers(false)
-        .flexible(true)
-        .comment(Some(b'#'))
-        .trim(Trim::All)
-        .delimiter(separator)
-        .from_reader(source)
-}
-
-/// Separator of the fields of the first line that is no comment, from the beginning of a table: a semicolon,
-/// a tab, a comma or a blank.
-///
-/// The semicolon comes before the comma, so that a decimal comma is recognised.
-pub fn separator(preamble: &[u8]) -> u8 {
-    const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
-    let preamble = preamble.strip_prefix(BYTE_ORDER_MARK).unwrap_or(preamble);
-    let mut lines = preamble.split(|&byte| byte == b'\n').map(<[u8]>::trim_ascii);
-    let numbers = lines.find(|line| !line.is_empty() && !line.starts_with(b"#"));
-    let separators = [b';', b'\t', b',', b' '];
-    separators
-        .into_iter()
-        .find(|byte| numbers.unwrap_or_default().contains(byte))
-        .unwrap_or(b',')
 }
 
 fn wrong_shape(path: &Path, found: &str, nx: usize, ny: usize) -> ArrayError {

@@ -28,6 +28,8 @@ pub struct Topography {
     pub roughness: Roughness,
     /// The least height of a block that touches, m.
     pub contact_height: f64,
+    /// Sentences on what makes the map doubtful.
+    pub notes: Vec<String>,
 }
 
 /// The blocks over which a height map is laid.
@@ -105,6 +107,7 @@ impl Ground<'_> {
             blocks: self.size,
             roughness: read.roughness,
             contact_height,
+            notes: read.notes,
         };
         Ok((tile, topography, asked))
     }

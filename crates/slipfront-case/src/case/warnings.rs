@@ -186,6 +186,8 @@ impl Case {
         }
         for topography in &report.topographies {
             warnings.extend(self.other_scale(topography));
+            let notes = topography.notes.iter();
+            warnings.extend(notes.map(|note| format!("{}: {note}", topography.file)));
         }
         for (texture, number) in self.file.texture.iter().zip(1..) {
             warnings.extend(self.seam(&texture.pattern, number));

@@ -34,7 +34,13 @@ impl Encoding {
             _ => {}
         }
         // Text of any of these tables is mostly ASCII, of which every second byte of UTF-16 is zero.
-        let zeros = |first: usize| head.iter().skip(first).step_by(2).filter(|byte| **byte == 0).count();
+        let zeros = |first: usize| {
+            head.iter()
+                .skip(first)
+                .step_by(2)
+                .filter(|byte| **byte == 0)
+                .count()
+        };
         let (even, odd) = (zeros(0), zeros(1));
         if head.len() > 3 && (even + odd) * 10 > head.len() * 4 {
             return if odd > even { Self::Utf16Le } else { Self::Utf16Be };
@@ -59,6 +65,14 @@ impl Encoding {
             .encoding(encoding)
             .strip_bom(true)
             .build(source)
+    }
+
+    /// The text of these bytes; what is none is replaced.
+    pub(crate) fn text(self, bytes: &[u8]) -> String {
+        let mut text = String::new();
+        // Nothing fails where bytes are in memory, and all that is decoded is UTF-8.
+        let _ = self.decoded(bytes).read_to_string(&mut text);
+        text
     }
 
     /// The name of the encoding, unless it is the usual one.

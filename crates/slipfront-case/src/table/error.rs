@@ -12,9 +12,7 @@ pub enum TableError {
     Read(#[from] io::Error),
     #[error("is {0}, not a table of text: save the table as text, such as .csv, and name that file")]
     Binary(&'static str),
-    #[error(
-        "has {found} fields in line {line} and {names} names in line {header}: {remedy}"
-    )]
+    #[error("has {found} fields in line {line} and {names} names in line {header}: {remedy}")]
     TooManyFields {
         header: u64,
         names: usize,
@@ -24,7 +22,10 @@ pub enum TableError {
     },
     #[error("can be read in two ways: {0}")]
     Ambiguous(String),
-    #[error("has a thousands separator in line {line}, {}: write the number without it", quoted(text))]
+    #[error(
+        "has a thousands separator in line {line}, {}: write the number without it",
+        quoted(text)
+    )]
     Thousands { line: u64, text: String },
     #[error(
         "has a field that begins in line {line} and goes over several lines: remove the quotation mark with which it begins"

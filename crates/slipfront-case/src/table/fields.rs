@@ -18,8 +18,8 @@ pub(super) fn fields(line: &str, separator: char) -> Result<Vec<Cow<'_, str>>, O
                 (field, behind.split_once(separator).map(|(_, behind)| behind))
             }
             None => match rest.split_once(separator) {
-                Some((field, behind)) => (Cow::Borrowed(field.trim()), Some(behind)),
-                None => (Cow::Borrowed(rest.trim()), None),
+                Some((field, behind)) => (Cow::Borrowed(bare(field)), Some(behind)),
+                None => (Cow::Borrowed(bare(rest)), None),
             },
         };
         if separator != ' ' || !field.is_empty() {
@@ -30,6 +30,11 @@ pub(super) fn fields(line: &str, separator: char) -> Result<Vec<Cow<'_, str>>, O
             None => return Ok(fields),
         }
     }
+}
+
+/// A field without blanks around it, nor marks of the byte order, which files that were joined have inside.
+fn bare(field: &str) -> &str {
+    field.trim_matches(|character: char| character.is_whitespace() || character == '\u{feff}')
 }
 
 /// Whether a character stands around a field without being a part of it.

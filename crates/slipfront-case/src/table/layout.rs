@@ -1,8 +1,8 @@
 //! Where a table has its names, its units and its numbers, and how they are written.
 
 use std::borrow::Cow;
-use std::io::Read;
 
+use serde::Deserialize;
 use slipfront_base::number_format::count;
 use slipfront_base::text::truncated;
 
@@ -13,6 +13,52 @@ use super::number::{clock_time, has_groups, number};
 
 /// Separators that are looked for; among those that fit as well the first.
 const SEPARATORS: [char; 4] = [';', '\t', ',', ' '];
+
+/// Decimal sign of numbers, as files name it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum DecimalSign {
+    /// `0.5`.
+    Point,
+    /// `0,5`.
+    Comma,
+}
+
+/// Separator of fields, as files name it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum FieldSeparator {
+    /// `1,2`.
+    Comma,
+    /// `1;2`.
+    Semicolon,
+    /// Tabulators.
+    Tab,
+    /// One blank or several.
+    Blank,
+}
+
+impl DecimalSign {
+    /// The sign itself.
+    pub fn sign(self) -> char {
+        match self {
+            Self::Point => '.',
+            Self::Comma => ',',
+        }
+    }
+}
+
+impl FieldSeparator {
+    /// The separator itself.
+    pub fn sign(self) -> char {
+        match self {
+            Self::Comma => ',',
+            Self::Semicolon => ';',
+            Self::Tab => '\t',
+            Self::Blank => ' ',
+        }
+    }
+}
 
 /// Properties of a table that its reader states, in place of those that would be found.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -88,14 +134,8 @@ impl TableLayout {
     pub fn find(head: &[u8], options: TableOptions) -> Result<Self, TableError> {
         binary(head).map_or(Ok(()), |kind| Err(TableError::Binary(kind)))?;
         let encoding = Encoding::of(head);
-        let mut text = String::new();
-        encoding.decoded(head).read_to_string(&mut text)?;
-        // A line that the head cuts is left out, unless there is no other.
-        let is_cut = head.len() as u64 >= super::HEAD_BYTES;
-        let text = match text.rfind('\n') {
-            Some(end) if is_cut => &text[..end],
-            _ => &text,
-        };
+        let text = encoding.text(head);
+        let text = looked_at(&text, head.len() as u64 >= super::HEAD_BYTES);
         let stated = sep_line(text);
         let separators: Vec<char> = match options.separator.or(stated) {
             Some(separator) => vec![separator],
@@ -121,15 +161,26 @@ impl TableLayout {
         let mut took = Vec::new();
         match &self.names {
             Some(names) if names.line != 1 => {
-                took.push(format!("line {} names {}", names.line, count(self.columns, "column")));
+                took.push(format!(
+                    "line {} names {}",
+                    names.line,
+                    count(self.columns, "column")
+                ));
             }
             None if self.above.is_some() => {
-                took.push(format!("no line names the columns; rows begin in line {}", self.first_line));
+                took.push(format!(
+                    "no line names the columns; rows begin in line {}",
+                    self.first_line
+                ));
             }
             _ => {}
         }
         if let Some(units) = &self.units {
-            took.push(format!("units in line {}: {}", units.line, truncated(&units.texts.join("; "))));
+            took.push(format!(
+                "units in line {}: {}",
+                units.line,
+                truncated(&units.texts.join("; "))
+            ));
         }
         if self.decimal == ',' {
             took.push("decimal commas".to_owned());
@@ -141,6 +192,17 @@ impl TableLayout {
             took.push(format!("{} above ignored, {first:?}", count(*lines, "line")));
         }
         (!took.is_empty()).then(|| took.join("; "))
+    }
+
+    /// The layout of a table of which every line has numbers.
+    pub(crate) fn of_numbers_alone(self) -> Self {
+        Self {
+            names: None,
+            units: None,
+            first_line: 1,
+            above: None,
+            ..self
+        }
     }
 
     /// Drops empty fields at the end of a row, and refuses one that has more fields than there are names.
@@ -175,7 +237,8 @@ impl Reading {
         [separator, decimal]: [char; 2],
         options: TableOptions,
     ) -> Result<Self, TableError> {
-        let is_number = |field: &Cow<'_, str>| number(field, decimal).is_some() || clock_time(field).is_some();
+        let is_number =
+            |field: &Cow<'_, str>| number(field, decimal).is_some() || clock_time(field).is_some();
         let lines: Vec<Line> = text
             .lines()
             .zip(1..)
@@ -195,12 +258,21 @@ impl Reading {
         let longest = rows.max_by_key(|lines| lines.len()).unwrap_or_default();
         let columns = longest.first().map_or(0, |line| line.fields.len());
         // Columns of numbers are those that most of these rows have.
-        let in_most = |column: &usize| 2 * longest.iter().filter(|line| is_number(&line.fields[*column])).count() > longest.len();
+        let in_most = |column: &usize| {
+            2 * longest
+                .iter()
+                .filter(|line| is_number(&line.fields[*column]))
+                .count()
+                > longest.len()
+        };
         let of_numbers: Vec<usize> = (0..columns).filter(in_most).collect();
         let has_all = |line: &&Line| {
             line.fields.len() == columns && of_numbers.iter().all(|&column| is_number(&line.fields[column]))
         };
-        let first = lines.iter().position(|line| has_all(&line)).unwrap_or(lines.len());
+        let first = lines
+            .iter()
+            .position(|line| has_all(&line))
+            .unwrap_or(lines.len());
         let score = lines[first..]
             .iter()
             .filter(|line| line.fields.len() == columns)
@@ -219,7 +291,14 @@ impl Reading {
             // Names are texts of which there are as many as columns, or more.
             None => (0..first)
                 .rev()
-                .find(|&at| lines[at].fields.len() >= columns && numbers(&lines[at]) == 0),
+                .find(|&at| lines[at].fields.len() >= columns && numbers(&lines[at]) == 0)
+                // Fewer names than columns are an error of the rows, and not a line of an instrument.
+                .or_else(|| {
+                    let at = first.checked_sub(1)?;
+                    let are_names =
+                        separator != ' ' && lines[at].fields.len() > 1 && numbers(&lines[at]) == 0;
+                    are_names.then_some(at)
+                }),
         };
         let has_units = |at: usize| {
             let line = lines.get(at)?;
@@ -267,7 +346,10 @@ impl Reading {
 /// The reading of which most fields are numbers.
 fn best(readings: Vec<Reading>, text: &str, options: TableOptions) -> Result<TableLayout, TableError> {
     // Among readings that fit as well the first is taken: `max_by_key` would take the last.
-    let found = readings.into_iter().rev().max_by_key(|reading| (reading.score, reading.layout.columns));
+    let found = readings
+        .into_iter()
+        .rev()
+        .max_by_key(|reading| (reading.score, reading.layout.columns));
     let Some(Reading { layout, .. }) = found else {
         // A separator and a decimal sign are always tried.
         return Err(TableError::Ambiguous("it is empty".to_owned()));
@@ -275,7 +357,8 @@ fn best(readings: Vec<Reading>, text: &str, options: TableOptions) -> Result<Tab
     let rows = text.lines().zip(1..).skip(layout.first_line as usize - 1);
     let rows = rows.filter(|(line, _)| !line.trim_start().starts_with('#'));
     let mut grouped = None;
-    let (mut is_decimal, mut has_whole, mut doubled, mut n_rows) = (options.decimal.is_some(), false, 0, 0_usize);
+    let (mut is_decimal, mut has_whole, mut doubled, mut n_rows) =
+        (options.decimal.is_some(), false, 0, 0_usize);
     for (line, at) in rows {
         let fields = trimmed(fields(line, layout.separator).unwrap_or_default());
         for field in &fields {
@@ -300,7 +383,12 @@ fn best(readings: Vec<Reading>, text: &str, options: TableOptions) -> Result<Tab
         )));
     }
     // Without names nothing tells that `0,500,0,0175` has two numbers and not four.
-    if layout.separator == ',' && layout.names.is_none() && options.separator.is_none() && n_rows > 1 && doubled == n_rows {
+    if layout.separator == ','
+        && layout.names.is_none()
+        && options.separator.is_none()
+        && n_rows > 1
+        && doubled == n_rows
+    {
         return Err(TableError::Ambiguous(
             "its commas can separate whole numbers, or be decimal commas too, since numbers begin with 0; write decimal points, \
              or separate fields by semicolons"
@@ -309,6 +397,26 @@ fn best(readings: Vec<Reading>, text: &str, options: TableOptions) -> Result<Tab
     }
     Ok(layout)
 }
+
+/// The beginning of a text that shows how the table is written: comments, and lines of [`LOOKED_AT`] bytes. The
+/// last line of a text that `is_cut` is left out, unless there is no other.
+fn looked_at(text: &str, is_cut: bool) -> &str {
+    let (mut end, mut counted) = (0, 0);
+    for line in text.split_inclusive('\n') {
+        let is_whole = line.ends_with('\n') || !is_cut;
+        if end > 0 && (counted > LOOKED_AT || !is_whole) {
+            break;
+        }
+        end += line.len();
+        if !line.trim_start().starts_with('#') {
+            counted += line.len();
+        }
+    }
+    &text[..end]
+}
+
+/// Number of bytes of lines without comments from which a layout is found.
+const LOOKED_AT: usize = 1 << 14;
 
 /// Whether fields are whole numbers by pairs, of which the second has the form of decimals.
 fn is_doubled(fields: &[Cow<'_, str>]) -> bool {
@@ -332,8 +440,8 @@ fn trimmed(mut fields: Vec<Cow<'_, str>>) -> Vec<Cow<'_, str>> {
 /// Whether a text can be the unit of a column, such as `N`, `(mm)`, `[-]`, `m/s^2` or nothing.
 fn is_unit(text: &str) -> bool {
     const WORDS: [&str; 24] = [
-        "s", "sec", "ms", "us", "min", "h", "m", "mm", "um", "nm", "cm", "n", "mn", "kn", "gf", "kgf", "v", "mv", "%", "1", "-",
-        "rpm", "c", "k",
+        "s", "sec", "ms", "us", "min", "h", "m", "mm", "um", "nm", "cm", "n", "mn", "kn", "gf", "kgf", "v",
+        "mv", "%", "1", "-", "rpm", "c", "k",
     ];
     let bare = text.trim_matches(['(', ')', '[', ']']).trim();
     let is_bracketed = bare.len() + 2 <= text.len();
@@ -432,7 +540,9 @@ mod tests {
     #[test_case(Encoding::Utf16Be; "high byte first")]
     fn utf_16_is_read_with_its_mark_and_without(encoding: Encoding) {
         for mark in ["", "\u{feff}"] {
-            let units = format!("{mark}t (\u{b5}s);F\n0;1\n1;2\n").encode_utf16().collect::<Vec<u16>>();
+            let units = format!("{mark}t (\u{b5}s);F\n0;1\n1;2\n")
+                .encode_utf16()
+                .collect::<Vec<u16>>();
             let bytes = units.iter().flat_map(|unit| match encoding {
                 Encoding::Utf16Le => unit.to_le_bytes(),
                 _ => unit.to_be_bytes(),

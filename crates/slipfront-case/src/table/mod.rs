@@ -18,7 +18,7 @@ mod rows;
 
 pub use encoding::Encoding;
 pub use error::TableError;
-pub use layout::{NamedLine, TableLayout, TableOptions};
+pub use layout::{DecimalSign, FieldSeparator, NamedLine, TableLayout, TableOptions};
 pub use number::{clock_time, number};
 pub use rows::TableRows;
 

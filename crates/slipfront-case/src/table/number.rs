@@ -34,7 +34,12 @@ pub fn number(field: &str, decimal: char) -> Option<f64> {
 pub fn clock_time(field: &str) -> Option<f64> {
     let mut parts = field.split(':');
     let (hours, minutes, seconds) = (parts.next()?, parts.next()?, parts.next()?);
-    let whole = |text: &str, most: u32| text.parse::<u32>().ok().filter(|number| *number <= most).map(f64::from);
+    let whole = |text: &str, most: u32| {
+        text.parse::<u32>()
+            .ok()
+            .filter(|number| *number <= most)
+            .map(f64::from)
+    };
     let seconds = number(&seconds.replace(',', "."), '.').filter(|seconds| (0.0..60.0).contains(seconds))?;
     parts
         .next()

@@ -61,8 +61,7 @@ impl<'l, R: Read> TableRows<'l, R> {
         // Decoded text is UTF-8.
         let text = str::from_utf8(&self.line).unwrap_or_default();
         let text = text.trim_end_matches(['\r', '\n']);
-        let mut fields =
-            fields(text, self.layout.separator).map_err(|_| TableError::OpenQuote { line })?;
+        let mut fields = fields(text, self.layout.separator).map_err(|_| TableError::OpenQuote { line })?;
         self.layout.fit(line, &mut fields)?;
         Ok(Some((line, fields)))
     }

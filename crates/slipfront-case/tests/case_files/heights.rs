@@ -528,7 +528,7 @@ fn damaged_fields_and_tables_are_refused() {
         (
             "a.jpg",
             "",
-            "name a file that ends in .npy, .csv, .gsf, .x3p, .png or .tif",
+            "name a file that ends in .npy, .csv (.txt, .dat, .asc), .gsf, .x3p, .png or .tif",
         ),
     ] {
         let said = read_bytes(name, text.as_bytes()).unwrap_err().to_string();
@@ -799,4 +799,71 @@ fn a_height_map_may_be_finer_than_blocks() {
         .unwrap_err()
         .to_string();
     assert!(said.contains("grey levels of 1 bits"), "{said}");
+}
+
+/// Units of a file that states none.
+const OF_CASE: HeightMapUnits = HeightMapUnits {
+    height: Some(1e-6),
+    pixel: SIZE,
+};
+
+fn read_here(name: &str, units: HeightMapUnits, blocks: [usize; 2]) -> HeightMap {
+    read(&folder().join(name), units, blocks).unwrap()
+}
+
+/// The text export of Gwyddion states its size and its unit in comments, and begins with the top row: it is
+/// the surface of the simple field of the same data, whose numbers are rounded to 2^-24, and these to five
+/// digits: heights of 2e-7 m to 5e-12 m.
+#[test]
+fn the_text_export_of_gwyddion_is_its_simple_field() {
+    let [text, field] = ["gwyddion.csv", "gwyddion.gsf"].map(|name| read_here(name, OWN, [20, 20]));
+    assert_eq!((text.points, field.points), ([20, 20], [20, 20]));
+    for (of_text, of_field) in text.blocks.iter().zip(&field.blocks) {
+        assert!((of_text - of_field).abs() < 6e-12, "{of_text} {of_field}");
+    }
+    assert!((text.size[0] - 1e-5).abs() < 1e-18);
+}
+
+/// The same numbers with decimal commas between semicolons, and as UTF-16.
+#[test]
+fn tables_of_any_encoding_and_decimal_sign_are_one_map() {
+    let [commas, utf_16] = ["decimal_comma.csv", "utf16.csv"].map(|name| read_here(name, OF_CASE, [20, 20]));
+    assert_eq!(commas.roughness, utf_16.roughness);
+    // numpy: mean |z - mean z| of the table.
+    assert!(
+        (commas.roughness.sa - 8.466e-8).abs() < 5e-12,
+        "to the digits of the reference: {}",
+        commas.roughness.sa
+    );
+}
+
+#[test]
+fn a_list_of_points_on_a_grid_is_a_map() {
+    let map = read_here("points.csv", OF_CASE, [4, 4]);
+    assert_eq!(map.points, [4, 4]);
+    // The first points of the list are those of the smallest y.
+    for (height, wanted) in map
+        .blocks
+        .iter()
+        .zip([0.0, -0.14e-6, 0.1939e-6, -0.0376e-6, -0.0769e-6])
+    {
+        assert!((height - wanted).abs() < 1e-15, "{height} {wanted}");
+    }
+}
+
+#[test_case("tilted.csv", OF_CASE, [20, 20], "a plane takes 100 % of the variance"; "tilt")]
+#[test_case("other_md5.x3p", OWN, [50, 50], "the checksum of its heights is "; "checksum")]
+fn what_makes_a_map_doubtful_is_said(name: &str, units: HeightMapUnits, blocks: [usize; 2], note: &str) {
+    let map = read_here(name, units, blocks);
+    assert!(
+        map.notes.len() == 1 && map.notes[0].starts_with(note),
+        "{:?}",
+        map.notes
+    );
+}
+
+#[test]
+fn files_of_an_x3p_archive_may_lie_in_a_folder() {
+    let [plain, in_folder] = ["other_md5.x3p", "in_folder.x3p"].map(|name| read_here(name, OWN, [50, 50]));
+    assert_eq!(plain.blocks, in_folder.blocks);
 }

@@ -56,7 +56,7 @@ impl CalibrateCommand {
         file.check_memory(&records, threads).map_err(Failure::input)?;
         let out = self.out.unwrap_or_else(|| Path::new("results").join(file.name()));
         let training = self.training.as_deref();
-        let notes: Vec<String> = records.iter().filter_map(SampledRecord::note).collect();
+        let notes: Vec<String> = records.iter().flat_map(SampledRecord::notes).collect();
         // A signal leaves nothing of what is copied to the folder.
         let signals = Signals::catch().map_err(Failure::running)?;
         let folder = CalibrationFolder::open(&out, training, &file, records, self.force);

@@ -24,7 +24,9 @@ use slipfront_study::verify::has_records;
 
 use crate::failure::Failure;
 use crate::print::print_message;
+use crate::print_stderr::print_notes;
 use crate::signals::Signals;
+use crate::table_args::TableArgs;
 use crate::threads::set_threads;
 
 /// Draw the pictures of a run again, or the friction curves of one or several runs over each other, on axes
@@ -89,6 +91,8 @@ pub(crate) struct PlotCommand {
     /// Unit of the column of forces [default: that in its header]
     #[arg(long, value_name = "UNIT", requires = "data")]
     y_unit: Option<String>,
+    #[command(flatten)]
+    table: TableArgs,
     /// Factor of the forces: -1 turns their sign
     #[arg(
         long,
@@ -277,9 +281,7 @@ impl PlotCommand {
             }
             (_, Some(path)) => {
                 let measured = self.measured(path).map_err(Failure::input)?;
-                if let Some(footer) = &measured.record.footer {
-                    print_message(&format!("note: {footer}: passed over\n"));
-                }
+                print_notes(measured.record.notes());
                 overlay_measured(
                     folders,
                     self.against().unwrap_or_default(),
@@ -303,7 +305,7 @@ impl PlotCommand {
             Some(Against::Displacement) => Measure::Displacement,
             Some(Against::Time) | None => Measure::Time,
         };
-        let mut record = MeasuredRecord::read(path, [&x, &y], along)?;
+        let mut record = MeasuredRecord::read(path, [&x, &y], along, self.table.options())?;
         for y in &mut record.y {
             *y = self.y_factor * *y + self.y_offset;
         }

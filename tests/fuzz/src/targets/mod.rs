@@ -7,6 +7,7 @@ mod fields;
 mod figure_cache;
 mod json;
 mod kymograph;
+mod measured;
 mod plot;
 mod quantity;
 mod requests;
@@ -17,7 +18,7 @@ mod study;
 use crate::target::Target;
 
 /// All targets, in the order in which a run reads and writes their files.
-pub const TARGETS: [Target; 20] = [
+pub const TARGETS: [Target; 21] = [
     case::CASE_FILE,
     case::CASE,
     study::STUDY_FILE,
@@ -26,6 +27,7 @@ pub const TARGETS: [Target; 20] = [
     arrays::CSV_TABLE,
     arrays::MASK_PNG,
     arrays::HEIGHT_MAP,
+    measured::MEASURED,
     run_journal::RUN_JOURNAL,
     figure_cache::FIGURE_CACHE,
     checkpoint::CHECKPOINTS,

@@ -20,7 +20,7 @@ pub(super) struct Line<'a> {
 pub(super) type Take<'a> = dyn FnMut(&Line) -> Result<(), ArrayError> + 'a;
 
 /// Properties of the points that a file states.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub(super) struct HeightGrid {
     /// Points along x and along y.
     pub(super) points: [usize; 2],
@@ -30,6 +30,8 @@ pub(super) struct HeightGrid {
     pub(super) pixel: Option<[f64; 2]>,
     /// Height in m of the value 1, if the file states it.
     pub(super) height_unit: Option<f64>,
+    /// A sentence on what makes the file doubtful.
+    pub(super) note: Option<String>,
 }
 
 /// Number of points along x and along y from a header, unless there are too many.

@@ -9,6 +9,7 @@ mod gsf;
 mod image;
 mod quantum;
 mod roughness;
+mod text;
 mod tiff;
 mod x3p;
 
@@ -20,9 +21,9 @@ pub use roughness::Roughness;
 use self::averages::Averages;
 use self::grid::{HeightGrid, Line, Take, points};
 use self::quantum::Quantum;
-use self::roughness::{Mean, Moments};
+use self::roughness::{HeightRange, Mean, Moments, PlaneSums};
 use super::error::{ArrayError, contents_error, extension, unknown_extension};
-use super::{npy, table};
+use super::npy;
 use slipfront_base::number_format::{four_digits, with_si_prefix};
 
 /// Units of a height map that the case states, m; a unit that the file states too is refused.
@@ -52,14 +53,16 @@ pub struct HeightMap {
     pub size: [f64; 2],
     /// Roughness of all points.
     pub roughness: Roughness,
+    /// Sentences on what makes the map doubtful.
+    pub notes: Vec<String>,
     /// The mean height of every block, m, row after row in rising y.
     pub blocks: Vec<f64>,
 }
 
 /// Reads the height map called `path`, and averages it over the blocks of a room.
 ///
-/// An array, `.npy` or `.csv`, begins with the row of the smallest y, every other file with the top row,
-/// which lies at the largest y.
+/// An array, `.npy` or a table of text, begins with the row of the smallest y, every other file with the top
+/// row, which lies at the largest y; so does the text export of Gwyddion.
 ///
 /// # Errors
 /// [`ArrayError`] if the file is of another format or has more than 2^28 points or 2^20 along a side, a
@@ -90,7 +93,7 @@ pub fn height_map(
     let of_all = mean.of_all();
     let found = of_all.filter(|(mean, range)| (range.highest - range.lowest).is_finite() && mean.is_finite());
     let (mean, range) = found.ok_or_else(too_far_apart)?;
-    let mut moments = Moments::default();
+    let (mut moments, mut plane) = (Moments::default(), PlaneSums::default());
     let mut averages = Averages::new(points, room.blocks, Quantum::of(range));
     let mut deviations = Vec::new();
     read(path, source, &mut |line| {
@@ -103,6 +106,7 @@ pub fn height_map(
         deviations.clear();
         deviations.extend(line.heights.iter().map(|height| height - mean));
         moments.add(&deviations);
+        plane.add(line.row, line.column, &deviations);
         averages.add(&Line {
             row: if grid.top_first {
                 points[1] - 1 - line.row
@@ -121,13 +125,56 @@ pub fn height_map(
     {
         return Err(too_far_apart());
     }
+    let mut notes = Vec::from_iter(grid.note);
+    notes.extend(doubts(&roughness, plane.share(points), range, size, unit));
     Ok(HeightMap {
         points,
         size,
         roughness,
+        notes,
         blocks: averages.means().map(|mean| mean * unit).collect(),
     })
 }
+
+/// Sentences on what makes a map doubtful: a tilt, heights that cannot be, and values that are none.
+fn doubts(
+    roughness: &Roughness,
+    share_of_plane: f64,
+    range: HeightRange,
+    size: [f64; 2],
+    unit: f64,
+) -> Vec<String> {
+    let mut doubts = Vec::new();
+    if share_of_plane > LARGE_TILT {
+        doubts.push(format!(
+            "a plane takes {} % of the variance of its heights, so that one side touches: level the map",
+            four_digits(100.0 * share_of_plane)
+        ));
+    }
+    let height = (range.highest - range.lowest) * unit;
+    if height > size[0].max(size[1]) {
+        doubts.push(format!(
+            "its heights range over {}, more than it is wide: look at `height_unit` and `pixel_size`",
+            with_si_prefix(height, "m")
+        ));
+    }
+    if height > FAR_OFF * roughness.sq {
+        doubts.push(format!(
+            "a few of its heights lie far off all others, from {} to {} in the unit of the file, as marks of points that were not \
+             measured do: replace them",
+            four_digits(range.lowest),
+            four_digits(range.highest)
+        ));
+    }
+    doubts
+}
+
+/// Share of the variance above which a map is taken for tilted: a plane takes three quarters of that of a
+/// single step in the middle.
+const LARGE_TILT: f64 = 0.9;
+/// Range of heights over their root mean square above which some are taken for no heights: that of normal
+/// heights is 12 where there are a thousand million points.
+const FAR_OFF: f64 = 50.0;
 
 /// Reads all points of a file.
 fn read(path: &Path, source: &mut (impl BufRead + Seek), take: &mut Take) -> Result<HeightGrid, ArrayError> {
@@ -135,13 +182,13 @@ fn read(path: &Path, source: &mut (impl BufRead + Seek), take: &mut Take) -> Res
     let take_line = |[row, column]: [usize; 2], heights: &[f64]| take(&Line { row, column, heights });
     let [nx, ny] = match extension(path).as_str() {
         "npy" => npy::rows(path, source, take_line)?,
-        "csv" => table::rows(path, source, take_line)?,
+        "csv" | "txt" | "dat" | "asc" => return text::read(path, source, take),
         "gsf" => return gsf::read(path, source, take),
         "x3p" => return x3p::read(path, source, take),
         "png" => return image::read(path, source, take),
         "tif" | "tiff" => return tiff::read(path, source, take),
         other => {
-            let known = ".npy, .csv, .gsf, .x3p, .png or .tif";
+            let known = ".npy, .csv (.txt, .dat, .asc), .gsf, .x3p, .png or .tif";
             return Err(unknown_extension(path, other, known));
         }
     };
@@ -150,6 +197,7 @@ fn read(path: &Path, source: &mut (impl BufRead + Seek), take: &mut Take) -> Res
         top_first: false,
         pixel: None,
         height_unit: None,
+        note: None,
     })
 }
 

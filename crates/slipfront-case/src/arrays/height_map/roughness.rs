@@ -59,6 +59,46 @@ pub struct Roughness {
     pub sku: Option<f64>,
 }
 
+/// The sums that a plane through the deviations z from the mean takes: of z times the column and the row.
+#[derive(Default)]
+pub(super) struct PlaneSums {
+    along: [f64; 2],
+    square: f64,
+}
+
+impl PlaneSums {
+    /// Adds points of a row of a map, the first of them in the column `column`.
+    pub(super) fn add(&mut self, row: usize, column: usize, deviations: &[f64]) {
+        let (mut sum, mut weighted) = (0.0, 0.0);
+        for (at, z) in (column..).zip(deviations) {
+            sum += z;
+            weighted += at as f64 * z;
+            self.square += z * z;
+        }
+        self.along[0] += weighted;
+        self.along[1] += row as f64 * sum;
+    }
+
+    /// The share of the variance that the plane of least squares takes from a map of so many points: over a
+    /// whole grid columns and rows are orthogonal, and
+    ///
+    /// ```text
+    /// share = [(sum z x)^2/sum x^2 + (sum z y)^2/sum y^2]/sum z^2,   x and y from the middle
+    /// ```
+    pub(super) fn share(&self, points: [usize; 2]) -> f64 {
+        let [nx, ny] = points.map(|count| count as f64);
+        // The sum of (i - (n - 1)/2)^2 over i = 0 ... n - 1, for every line across.
+        let squares = [nx * (nx * nx - 1.0) / 12.0 * ny, ny * (ny * ny - 1.0) / 12.0 * nx];
+        let taken = self.along.iter().zip(squares).filter(|(_, square)| *square > 0.0);
+        let taken: f64 = taken.map(|(sum, square)| sum * sum / square).sum();
+        if self.square > 0.0 {
+            taken / self.square
+        } else {
+            0.0
+        }
+    }
+}
+
 /// Sums over the deviations from the mean: of their size, and of their second, third and fourth power.
 #[derive(Default)]
 pub(super) struct Moments {

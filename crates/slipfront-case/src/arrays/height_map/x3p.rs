@@ -9,6 +9,7 @@ use std::io::{BufRead, Read, Seek};
 use std::path::Path;
 
 use flate2::read::DeflateDecoder;
+use md5::{Digest, Md5};
 use rawzip::{CompressionMethod, RECOMMENDED_BUFFER_SIZE, ZipArchive};
 use roxmltree::{Document, Node, ParsingOptions};
 
@@ -41,7 +42,7 @@ pub(super) fn read(
             let Some(entry) = entries.next_entry().map_err(said)? else {
                 return Err(refuse(&format!("its archive has no `{}`", truncated(name))));
             };
-            if entry.file_path().as_ref().eq_ignore_ascii_case(name.as_bytes()) {
+            if is_called(entry.file_path().as_ref(), name) {
                 break (entry.wayfinder(), entry.compression_method());
             }
         };
@@ -80,9 +81,13 @@ pub(super) fn read(
     let number = description.number;
     let mut bytes = vec![0; number.size() * nx];
     let mut heights = vec![0.0; nx];
+    let mut checksum = Md5::new();
     entry(&description.data, &mut |stored| {
         for row in 0..ny {
             let read = stored.read_exact(&mut bytes);
+            if read.is_ok() {
+                checksum.update(&bytes);
+            }
             read.map_err(|error| refuse(&format!("`{}`: {error}", description.data)))?;
             for (height, bytes) in heights.iter_mut().zip(bytes.chunks_exact(number.size())) {
                 *height = number.decode(bytes) * description.increment + description.offset;
@@ -100,7 +105,19 @@ pub(super) fn read(
         top_first: true,
         pixel: Some(description.pixel),
         height_unit: Some(1.0),
+        note: description.other_checksum(&checksum.finalize()),
     })
+}
+
+/// Whether a file of an archive has this name, in the archive itself or in a folder that holds all of its
+/// files: programs write both.
+fn is_called(file: &[u8], name: &str) -> bool {
+    let is_name = |file: &[u8]| file.eq_ignore_ascii_case(name.as_bytes());
+    let below_folder = file
+        .iter()
+        .position(|&byte| byte == b'/')
+        .map(|at| &file[at + 1..]);
+    is_name(file) || below_folder.is_some_and(is_name)
 }
 
 /// Refuses a map in which a point was not measured: one bit for every point says so, the lowest of a byte
@@ -169,9 +186,23 @@ struct Description {
     data: String,
     /// The file with a bit for every point that tells whether it was measured, if there is one.
     valid: Option<String>,
+    /// MD5 of the file with the heights, in hexadecimal digits, if the description has it.
+    checksum: Option<String>,
 }
 
 impl Description {
+    /// A sentence on a checksum of the heights that is not the one of the description.
+    fn other_checksum(&self, found: &[u8]) -> Option<String> {
+        let stated = self.checksum.as_ref()?;
+        let found: String = found.iter().map(|byte| format!("{byte:02x}")).collect();
+        (!stated.eq_ignore_ascii_case(&found)).then(|| {
+            format!(
+                "the checksum of its heights is {found}, and `main.xml` has {}: the file was damaged or edited",
+                truncated(stated)
+            )
+        })
+    }
+
     fn of(path: &Path, xml: &str) -> Result<Self, ArrayError> {
         let refuse = |detail: &str| broken(path, ".x3p", detail);
         limit_names(xml).map_err(|detail| refuse(&detail))?;
@@ -244,6 +275,7 @@ impl Description {
             offset: text(offset).map_or(Ok(0.0), |text| number(offset, text))?,
             data: data.to_owned(),
             valid: text("Record3/DataLink/ValidPointsLink").map(str::to_owned),
+            checksum: text("Record3/DataLink/MD5ChecksumPointData").map(str::to_owned),
         })
     }
 }

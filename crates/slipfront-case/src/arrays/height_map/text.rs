@@ -1,0 +1,191 @@
+//! Height maps as text: a matrix of heights, the text export of Gwyddion, whose comments state its units, or a
+//! list of points x, y, z on a regular grid.
+
+use std::io::{BufRead, Seek};
+use std::path::Path;
+
+use slipfront_base::text::truncated;
+
+use super::grid::{HeightGrid, Line, Take, points};
+use crate::arrays::error::{ArrayError, contents_error};
+use crate::arrays::head::length_and_head;
+use crate::arrays::table;
+use crate::quantity::Length;
+use crate::table::{Encoding, HEAD_BYTES};
+
+pub(super) fn read(
+    path: &Path,
+    source: &mut (impl BufRead + Seek),
+    take: &mut Take,
+) -> Result<HeightGrid, ArrayError> {
+    let (_, head) = length_and_head(path, source, HEAD_BYTES)?;
+    let stated = Stated::of(path, &head)?;
+    let list = match table::columns(path, source)? {
+        3 => PointList::of(path, source)?,
+        _ => None,
+    };
+    source.rewind().map_err(ArrayError::read(path))?;
+    if let Some(list) = list {
+        table::rows(path, source, |_, point| {
+            let [column, row] = [0, 1].map(|axis| list.place(axis, point[axis]));
+            take(&Line {
+                row,
+                column,
+                heights: &point[2..],
+            })
+        })?;
+        return Ok(HeightGrid {
+            points: list.points(),
+            top_first: false,
+            pixel: None,
+            height_unit: None,
+            note: None,
+        });
+    }
+    let take_line = |[row, column]: [usize; 2], heights: &[f64]| take(&Line { row, column, heights });
+    let [nx, ny] = table::rows(path, source, take_line)?;
+    let points = points(path, "table", nx, ny)?;
+    let pixel = stated.as_ref().and_then(|stated| stated.size);
+    Ok(HeightGrid {
+        points,
+        top_first: stated.is_some(),
+        pixel: pixel.map(|[x, y]| [x / points[0] as f64, y / points[1] as f64]),
+        height_unit: stated.and_then(|stated| stated.height_unit),
+        note: None,
+    })
+}
+
+/// What the comments of a text export of Gwyddion state. Its first row is the top one.
+struct Stated {
+    /// Size along x and along y, m.
+    size: Option<[f64; 2]>,
+    /// Height of the value 1, m.
+    height_unit: Option<f64>,
+}
+
+impl Stated {
+    /// Reads the comments of a table that begins with `head`; none if they are not those of Gwyddion.
+    fn of(path: &Path, head: &[u8]) -> Result<Option<Self>, ArrayError> {
+        let text = Encoding::of(head).text(head);
+        let comments = text.lines().map_while(|line| line.trim().strip_prefix('#'));
+        let comments: Vec<(&str, &str)> = comments.filter_map(|line| line.split_once(':')).collect();
+        let value = |name: &str| {
+            let of_name = comments.iter().find(|(key, _)| key.trim() == name);
+            of_name.map(|(_, value)| value.trim())
+        };
+        if value("Channel").is_none() && (value("Width").is_none() || value("Height").is_none()) {
+            return Ok(None);
+        }
+        let length = |name: &str, text: &str| {
+            let length = text.replace(',', ".").parse::<Length>();
+            length.map(|length| length.si()).map_err(|error| {
+                contents_error(
+                    path,
+                    format!("has `{name}: {}` in its comments: {error}", truncated(text)),
+                )
+            })
+        };
+        let side = |name: &str| value(name).map(|text| length(name, text)).transpose();
+        let unit = |unit: &str| length("Value units", &format!("1 {unit}"));
+        Ok(Some(Self {
+            size: side("Width")?
+                .zip(side("Height")?)
+                .map(|(width, height)| [width, height]),
+            height_unit: value("Value units").map(unit).transpose()?,
+        }))
+    }
+}
+
+/// The coordinates of a list of points that form a regular grid.
+struct PointList {
+    /// Rising coordinates along x and along y.
+    axes: [Vec<f64>; 2],
+}
+
+impl PointList {
+    /// The coordinates of a table of three columns, if the first two are those of a regular grid: a map that
+    /// is three points wide has other numbers there.
+    fn of(path: &Path, source: &mut (impl BufRead + Seek)) -> Result<Option<Self>, ArrayError> {
+        source.rewind().map_err(ArrayError::read(path))?;
+        let (mut axes, mut n_points) = ([Vec::new(), Vec::new()], 0_usize);
+        let mut is_list = true;
+        table::rows(path, source, |_, point| {
+            n_points += 1;
+            for (axis, &coordinate) in axes.iter_mut().zip(point) {
+                let place = axis.partition_point(|other: &f64| *other < coordinate);
+                // Coordinates of a grid are far fewer than its points.
+                if axis.get(place) != Some(&coordinate) && axis.len() < MOST_COORDINATES {
+                    axis.insert(place, coordinate);
+                }
+            }
+            is_list &= point.iter().all(|number| number.is_finite());
+            Ok(())
+        })?;
+        let list = Self { axes };
+        let [nx, ny] = list.points();
+        let is_grid = nx > 1
+            && ny > 1
+            && nx.saturating_mul(ny) == n_points
+            && list.axes.iter().all(|axis| is_even(axis));
+        Ok((is_list && is_grid).then_some(list))
+    }
+
+    fn points(&self) -> [usize; 2] {
+        [0, 1].map(|axis| self.axes[axis].len())
+    }
+
+    /// The number of a coordinate along an axis.
+    fn place(&self, axis: usize, coordinate: f64) -> usize {
+        self.axes[axis].partition_point(|other| *other < coordinate)
+    }
+}
+
+/// Most coordinates along an axis of a list of points.
+const MOST_COORDINATES: usize = 1 << 14;
+
+/// Whether coordinates are evenly spaced, to a tenth of their spacing: they are written with few digits.
+fn is_even(axis: &[f64]) -> bool {
+    let step = (axis[axis.len() - 1] - axis[0]) / (axis.len() - 1) as f64;
+    axis.iter()
+        .enumerate()
+        .all(|(at, coordinate)| (coordinate - axis[0] - step * at as f64).abs() < 0.1 * step)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::io::Cursor;
+
+    use super::*;
+
+    fn read_text(text: &str) -> (HeightGrid, Vec<(usize, usize, f64)>) {
+        let mut points = Vec::new();
+        let grid = read(Path::new("m.csv"), &mut Cursor::new(text), &mut |line| {
+            let heights = line.heights.iter().enumerate();
+            points.extend(heights.map(|(k, &height)| (line.row, line.column + k, height)));
+            Ok(())
+        });
+        (grid.unwrap(), points)
+    }
+
+    #[test]
+    fn the_text_export_of_gwyddion_states_its_units() {
+        let text = "# Channel: Topography\n# Width: 10.00 \u{b5}m\n# Height: 5,00 \u{b5}m\n# Value units: nm\n1\t2\n3\t4\n";
+        let (grid, points) = read_text(text);
+        assert!(grid.top_first);
+        assert_eq!((grid.pixel, grid.height_unit), (Some([5e-6, 2.5e-6]), Some(1e-9)));
+        assert_eq!(points, [(0, 0, 1.0), (0, 1, 2.0), (1, 0, 3.0), (1, 1, 4.0)]);
+    }
+
+    #[test]
+    fn points_on_a_grid_are_read_in_any_order() {
+        let (grid, points) = read_text("0.5 0 2\n0 0 1\n0 0.5 3\n0.5 0.5 4\n0 1 5\n0.5 1 6\n");
+        assert_eq!(grid.points, [2, 3]);
+        assert_eq!(points[..3], [(0, 1, 2.0), (0, 0, 1.0), (1, 0, 3.0)]);
+    }
+
+    #[test]
+    fn a_map_of_three_columns_is_one() {
+        let (grid, _) = read_text("0 1 2\n3 4 5\n0 2 1\n7 8 9\n");
+        assert_eq!(grid.points, [3, 4]);
+    }
+}

@@ -1,0 +1,50 @@
+//! Options on how the table of a measured record is written.
+
+use clap::{Args, ValueEnum};
+use slipfront_case::table::{DecimalSign, FieldSeparator, TableOptions};
+
+/// How a table is written, where it should not be found.
+#[derive(Args)]
+pub(crate) struct TableArgs {
+    /// Line of the record with the names of its columns, from 1; 0 if none has [default: found]
+    #[arg(long, value_name = "LINE", requires = "data")]
+    header_line: Option<u64>,
+    /// Decimal sign of the record [default: found]
+    #[arg(long, value_name = "SIGN", requires = "data")]
+    decimal: Option<Decimal>,
+    /// What separates the fields of the record [default: found]
+    #[arg(long, value_name = "NAME", requires = "data")]
+    separator: Option<Separator>,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum Decimal {
+    Point,
+    Comma,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum Separator {
+    Comma,
+    Semicolon,
+    Tab,
+    Blank,
+}
+
+impl TableArgs {
+    pub(crate) fn options(&self) -> TableOptions {
+        TableOptions {
+            header_line: self.header_line,
+            decimal: self.decimal.map(|decimal| match decimal {
+                Decimal::Point => DecimalSign::Point.sign(),
+                Decimal::Comma => DecimalSign::Comma.sign(),
+            }),
+            separator: self.separator.map(|separator| match separator {
+                Separator::Comma => FieldSeparator::Comma.sign(),
+                Separator::Semicolon => FieldSeparator::Semicolon.sign(),
+                Separator::Tab => FieldSeparator::Tab.sign(),
+                Separator::Blank => FieldSeparator::Blank.sign(),
+            }),
+        }
+    }
+}
