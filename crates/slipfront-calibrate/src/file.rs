@@ -72,7 +72,7 @@ key_rows! {
         header_line: Option<u64> = key("", KeyKind::Special("")).without("found"),
         /// Decimal sign of the numbers.
         decimal: Option<DecimalSign> = key("", KeyKind::Words(names_of::<DecimalSign>)).without("found"),
-        /// What separates fields.
+        /// Separator of fields.
         separator: Option<FieldSeparator> = key("", KeyKind::Words(names_of::<FieldSeparator>)).without("found"),
         /// Quantity of the first column: time, or displacement of the drive. Both begin at 0 where the drive
         /// does.

@@ -12,7 +12,7 @@ pub(crate) struct TableArgs {
     /// Decimal sign of the record [default: found]
     #[arg(long, value_name = "SIGN", requires = "data")]
     decimal: Option<Decimal>,
-    /// What separates the fields of the record [default: found]
+    /// Separator of the fields of the record [default: found]
     #[arg(long, value_name = "NAME", requires = "data")]
     separator: Option<Separator>,
 }

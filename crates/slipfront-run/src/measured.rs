@@ -443,7 +443,8 @@ struct ColumnName<'t> {
 }
 
 impl<'t> ColumnName<'t> {
-    /// The parts of a name such as `Force (N)`, `force [N]`, `F / N`, `t/s`, `Time, s`, `Zeit in s`, `force_n`.
+    /// The parts of a name such as `Force (N)`, `force [N]`, `F / N`, `t/s`, `Time, s`, `Zeit in s`,
+    /// `force_n`.
     fn of(whole: &'t str) -> Self {
         let in_brackets = [('(', ')'), ('[', ']')].into_iter().find_map(|(open, close)| {
             let (bare, rest) = whole.split_once(open)?;
@@ -643,7 +644,7 @@ mod tests {
     fn displacements_with_noise_are_averaged_and_others_refused() {
         let of = |noise: f64| {
             let line = |k: usize| {
-                let x = k as f64 + if k % 2 == 0 { 0.0 } else { -noise };
+                let x = k as f64 + if k.is_multiple_of(2) { 0.0 } else { -noise };
                 format!("{x},{}\n", 0.5 + 1e-3 * x)
             };
             let text = "u (um),mu (1)\n".to_owned() + &(0..1000).map(line).collect::<String>();

@@ -85,9 +85,10 @@ pub fn limit_length_of_height_map(path: &Path, found: u64) -> Result<(), ArrayEr
 /// Reads one number per block of some rows from a `.npy` or `.csv` file called `path`.
 ///
 /// A `.npy` file has the shape (ny, nx), any real, integer or boolean type, either byte order and either
-/// memory order. A `.csv` file has `ny` lines of `nx` numbers, separated by commas, semicolons, tabs or blanks,
-/// with decimal points, or decimal commas where no commas separate; blank lines and lines that start with `#` are skipped. Returns the values in
-/// row-major order, the smallest y first, in the unit of the file; a friction coefficient has none.
+/// memory order. A `.csv` file has `ny` lines of `nx` numbers, separated by commas, semicolons, tabs or
+/// blanks, with decimal points, or decimal commas where no commas separate; blank lines and lines that start
+/// with `#` are skipped. Returns the values in row-major order, the smallest y first, in the unit of the
+/// file; a friction coefficient has none.
 ///
 /// # Errors
 /// [`ArrayError`] if the file is of another format or shape, or has a value that is not finite or is below

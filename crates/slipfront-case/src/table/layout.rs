@@ -11,6 +11,9 @@ use super::error::TableError;
 use super::fields::fields;
 use super::number::{clock_time, has_groups, number};
 
+/// Number of bytes at the beginning of a table from which its layout is found.
+pub const HEAD_BYTES: u64 = 1 << 20;
+
 /// Separators that are looked for; among those that fit as well the first.
 const SEPARATORS: [char; 4] = [';', '\t', ',', ' '];
 
@@ -135,7 +138,7 @@ impl TableLayout {
         binary(head).map_or(Ok(()), |kind| Err(TableError::Binary(kind)))?;
         let encoding = Encoding::of(head);
         let text = encoding.text(head);
-        let text = looked_at(&text, head.len() as u64 >= super::HEAD_BYTES);
+        let text = looked_at(&text, head.len() as u64 >= HEAD_BYTES);
         let stated = sep_line(text);
         let separators: Vec<char> = match options.separator.or(stated) {
             Some(separator) => vec![separator],
@@ -155,7 +158,7 @@ impl TableLayout {
         best(readings, text, options)
     }
 
-    /// What was found in the table beyond names in its first line, commas between fields and decimal points:
+    /// Properties of the table beyond names in its first line, commas between fields and decimal points:
     /// a sentence without its stop.
     pub fn took(&self) -> Option<String> {
         let mut took = Vec::new();
@@ -398,8 +401,8 @@ fn best(readings: Vec<Reading>, text: &str, options: TableOptions) -> Result<Tab
     Ok(layout)
 }
 
-/// The beginning of a text that shows how the table is written: comments, and lines of [`LOOKED_AT`] bytes. The
-/// last line of a text that `is_cut` is left out, unless there is no other.
+/// The beginning of a text that shows how the table is written: comments, and lines of [`LOOKED_AT`] bytes.
+/// The last line of a text that `is_cut` is left out, unless there is no other.
 fn looked_at(text: &str, is_cut: bool) -> &str {
     let (mut end, mut counted) = (0, 0);
     for line in text.split_inclusive('\n') {
@@ -460,7 +463,7 @@ fn sep_line(text: &str) -> Option<char> {
     stated.next().filter(|separator| SEPARATORS.contains(separator))
 }
 
-/// What a file is that is no text, by its first bytes.
+/// The kind of a file that is no text, by its first bytes.
 fn binary(head: &[u8]) -> Option<&'static str> {
     match head {
         [b'P', b'K', 3, 4, ..] => Some("a workbook or an archive"),

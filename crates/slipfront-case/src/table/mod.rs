@@ -18,9 +18,6 @@ mod rows;
 
 pub use encoding::Encoding;
 pub use error::TableError;
-pub use layout::{DecimalSign, FieldSeparator, NamedLine, TableLayout, TableOptions};
+pub use layout::{HEAD_BYTES, DecimalSign, FieldSeparator, NamedLine, TableLayout, TableOptions};
 pub use number::{clock_time, number};
 pub use rows::TableRows;
-
-/// Number of bytes at the beginning of a table from which its layout is found.
-pub const HEAD_BYTES: u64 = 1 << 20;

@@ -1,5 +1,5 @@
-//! Height maps as text: a matrix of heights, the text export of Gwyddion, whose comments state its units, or a
-//! list of points x, y, z on a regular grid.
+//! Height maps as text: a matrix of heights, the text export of Gwyddion, whose comments state its units, or
+//! a list of points x, y, z on a regular grid.
 
 use std::io::{BufRead, Seek};
 use std::path::Path;
@@ -55,7 +55,7 @@ pub(super) fn read(
     })
 }
 
-/// What the comments of a text export of Gwyddion state. Its first row is the top one.
+/// Statements in the comments of a text export of Gwyddion. Its first row is the top one.
 struct Stated {
     /// Size along x and along y, m.
     size: Option<[f64; 2]>,
