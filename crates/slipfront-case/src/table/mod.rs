@@ -18,6 +18,6 @@ mod rows;
 
 pub use encoding::Encoding;
 pub use error::TableError;
-pub use layout::{HEAD_BYTES, DecimalSign, FieldSeparator, NamedLine, TableLayout, TableOptions};
+pub use layout::{DecimalSign, FieldSeparator, HEAD_BYTES, NamedLine, TableLayout, TableOptions};
 pub use number::{clock_time, number};
 pub use rows::TableRows;
