@@ -24,7 +24,6 @@ use slipfront_study::verify::has_records;
 
 use crate::failure::Failure;
 use crate::print::print_message;
-use crate::print_stderr::print_notes;
 use crate::signals::Signals;
 use crate::table_args::TableArgs;
 use crate::threads::set_threads;
@@ -281,7 +280,9 @@ impl PlotCommand {
             }
             (_, Some(path)) => {
                 let measured = self.measured(path).map_err(Failure::input)?;
-                print_notes(measured.record.notes());
+                for note in measured.record.notes() {
+                    print_message(&format!("note: {note}\n"));
+                }
                 overlay_measured(
                     folders,
                     self.against().unwrap_or_default(),
