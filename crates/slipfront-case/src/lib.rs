@@ -14,6 +14,7 @@ pub mod quantity;
 pub mod same;
 pub mod table;
 pub mod texture_file;
+pub mod xml;
 
 /// BLAKE3 hash of the sources of this crate.
 pub const SOURCE_HASH: &str = env!("SLIPFRONT_SOURCE_HASH");

@@ -1,5 +1,7 @@
 //! A measured record: two columns of a table, such as force against time.
 
+mod workbook;
+
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
@@ -40,6 +42,8 @@ pub enum Measure {
 pub enum MeasuredError {
     #[error("{} {source}", display_path(path))]
     Table { path: PathBuf, source: TableError },
+    #[error("{} {why}", display_path(path))]
+    Workbook { path: PathBuf, why: String },
     #[error(
         "{} has `{name}` in several columns, {columns}: give the number of the one that is meant, such as {number}",
         display_path(path)
@@ -102,6 +106,9 @@ pub enum MeasuredError {
 /// Largest step back of displacements, as a share of the whole path, that is taken for the noise of a sensor.
 const MOST_NOISE: f64 = 0.01;
 
+/// Length of a day, s.
+const DAY: f64 = 86_400.0;
+
 /// Largest number of bytes of a line of a record.
 const LINE_MAX_BYTES: u64 = 1 << 20;
 
@@ -154,7 +161,9 @@ pub struct MeasuredRecord {
 /// Where two columns stand, and what their numbers are multiplied by to be in SI units.
 struct Found {
     places: [usize; 2],
-    factors: [f64; 2],
+    /// Of abscissae; or why their unit is not known, which does not matter to times of the day.
+    x_factor: Result<f64, MeasuredError>,
+    y_factor: f64,
 }
 
 impl Measure {
@@ -214,7 +223,8 @@ impl MeasuredRecord {
         along: Measure,
         options: TableOptions,
     ) -> Result<Self, MeasuredError> {
-        Self::read_from(&|| open_limited(path, u64::MAX), path, columns, along, options)
+        let open = || Ok(Box::new(open_limited(path, u64::MAX)?) as Box<dyn Read>);
+        Self::read_from(&open, path, columns, along, options)
     }
 
     /// Reads two columns of a table that is in memory, as [`read`](Self::read) does those of a file; messages
@@ -229,12 +239,12 @@ impl MeasuredRecord {
         along: Measure,
         options: TableOptions,
     ) -> Result<Self, MeasuredError> {
-        Self::read_from(&|| Ok(bytes), path, columns, along, options)
+        Self::read_from(&|| Ok(Box::new(bytes)), path, columns, along, options)
     }
 
     /// Reads two columns of the table that `open` opens from its beginning, each time that it is called.
-    fn read_from<R: Read>(
-        open: &impl Fn() -> std::io::Result<R>,
+    fn read_from<'t>(
+        open: &dyn Fn() -> std::io::Result<Box<dyn Read + 't>>,
         path: &Path,
         columns: [&Column; 2],
         along: Measure,
@@ -247,6 +257,20 @@ impl MeasuredRecord {
         let mut head = Vec::new();
         let read = open().and_then(|table| table.take(HEAD_BYTES).read_to_end(&mut head));
         read.map_err(|source| failed(source.into()))?;
+        if workbook::is_workbook(&head) {
+            let mut bytes = Vec::new();
+            let read = open().and_then(|book| book.take(workbook::MOST_BYTES + 1).read_to_end(&mut bytes));
+            read.map_err(|source| failed(source.into()))?;
+            let sheet = workbook::sheet(&bytes).map_err(|why| MeasuredError::Workbook {
+                path: path.to_owned(),
+                why,
+            })?;
+            let mut record = Self::parse(sheet.text.as_bytes(), path, columns, along, options)?;
+            let took = record.took.take();
+            let took = took.unwrap_or_else(|| display_path(path).to_string());
+            record.took = Some(format!("{took}; sheet {:?} of the workbook", sheet.name));
+            return Ok(record);
+        }
         let layout = TableLayout::find(&head, options).map_err(failed)?;
         let mut record = Self {
             x: Vec::new(),
@@ -259,11 +283,16 @@ impl MeasuredRecord {
             footer: None,
             averaged: None,
         };
-        let Found { places, factors } = record.columns(&layout, path, columns)?;
+        let Found {
+            places,
+            x_factor,
+            y_factor,
+        } = record.columns(&layout, path, columns)?;
         let source = open().map_err(|source| failed(source.into()))?;
         let mut rows = TableRows::new(source, &layout, LINE_MAX_BYTES);
         let decimal = layout.decimal;
-        let mut midnight = None;
+        let (mut clocks, mut midnights) = (None, 0.0);
+        let mut has_numbers = false;
         let mut first_fall = None;
         // The first line without numbers behind the last one that has some, and how many there are.
         let mut footer: Option<(NoNumber, usize)> = None;
@@ -275,10 +304,24 @@ impl MeasuredRecord {
                 let field = fields.get(places[k])?;
                 let clock = clock_time(field).filter(|_| k == 0 && along == Measure::Time);
                 if let Some(clock) = clock {
-                    return Some(clock - *midnight.get_or_insert(clock));
+                    let (first, last) = clocks.get_or_insert((clock, clock));
+                    // A clock that goes back by more than half a day has passed midnight.
+                    while clock + midnights < *last - 0.5 * DAY {
+                        midnights += DAY;
+                    }
+                    *last = clock + midnights;
+                    return Some(*last - *first);
                 }
                 let value = number(field, decimal).filter(|value| value.is_finite())?;
-                Some(factors[k] * value)
+                has_numbers |= k == 0;
+                Some(
+                    value
+                        * if k == 0 {
+                            *x_factor.as_ref().unwrap_or(&1.0)
+                        } else {
+                            y_factor
+                        },
+                )
             };
             let (Some(x), Some(y)) = (value(0), value(1)) else {
                 let without = usize::from(value(0).is_some());
@@ -298,6 +341,9 @@ impl MeasuredRecord {
             }
             record.x.push(x);
             record.y.push(y);
+        }
+        if has_numbers {
+            x_factor?;
         }
         match (record.x.len(), footer) {
             (0..2, Some((line, _))) => return Err(line.error(path)),
@@ -411,8 +457,11 @@ impl MeasuredRecord {
         };
         let factor =
             |k: usize, measure, axis| factor(path, columns[k], shown(k), units[k].as_deref(), measure, axis);
-        let factors = [factor(0, self.along, "x")?, factor(1, self.of, "y")?];
-        Ok(Found { places, factors })
+        Ok(Found {
+            places,
+            x_factor: factor(0, self.along, "x"),
+            y_factor: factor(1, self.of, "y")?,
+        })
     }
 }
 
@@ -624,7 +673,7 @@ mod tests {
     #[test_case("Time [ms],COF [%]\n0,50\n2,100\n", ["Time", "COF"], ""; "percent")]
     #[test_case("time;F (N)\n23:00:01,000;0,5\n23:00:01,002;1,0\n", ["time", "F"], "decimal commas"; "time of the day")]
     fn what_was_taken_is_said(text: &str, names: [&str; 2], took: &str) {
-        let record = read(text, names, [names[0].eq("time").then_some("s"), None]).unwrap();
+        let record = read(text, names, [None; 2]).unwrap();
         assert!(
             (record.x[1] - 0.002).abs() < 1e-9,
             "a time of the day is rounded to 2^-37 s: {:?}",
@@ -673,6 +722,33 @@ mod tests {
             "{note}"
         );
         assert!(of(30.0).unwrap_err().to_string().contains("falls"));
+    }
+
+    #[test_case(include_bytes!("../tests/workbooks/record.xlsx"), "Zeit"; "xlsx")]
+    #[test_case(include_bytes!("../tests/workbooks/record.xlsx"), "Uhr"; "xlsx with dates")]
+    #[test_case(include_bytes!("../tests/workbooks/record.ods"), "Zeit"; "ods")]
+    #[test_case(include_bytes!("../tests/workbooks/record.ods"), "Uhr"; "ods with times")]
+    fn workbooks_are_read(book: &[u8], time: &str) {
+        let [x, y] = [time, "Reibkraft"].map(|name| Column {
+            name: name.to_owned(),
+            unit: None,
+        });
+        let path = Path::new("book");
+        let record =
+            MeasuredRecord::parse(book, path, [&x, &y], Measure::Time, TableOptions::default()).unwrap();
+        assert_eq!(record.y, [500.0, 750.5, 1001.0, 1251.5].map(|force| 1e-3 * force));
+        for (k, x) in record.x.iter().enumerate() {
+            // Seconds from 1900 as a double have 5e-7 s.
+            assert!((x - 0.25 * k as f64).abs() < 1e-6, "{x}");
+        }
+        let took = record.took.unwrap();
+        assert!(took.ends_with("; sheet \"Daten\" of the workbook"), "{took}");
+    }
+
+    #[test]
+    fn a_clock_passes_midnight() {
+        let record = read("t,F (N)\n23:59:59,1\n00:00:01,2\n", ["t", "F"], [None; 2]).unwrap();
+        assert_eq!(record.x, [0.0, 2.0]);
     }
 
     #[test]

@@ -22,7 +22,7 @@ use std::io::{BufRead, Seek};
 use std::path::Path;
 
 pub use error::{ArrayError, extension};
-pub use height_map::{HeightMap, HeightMapUnits, Room, Roughness, height_map};
+pub use height_map::{HeightMap, HeightMapUnits, Preparation, Room, Roughness, height_map};
 pub use mask::{mask_png, png_of_mask};
 pub use npy::{mask_npy, npy_of_mask};
 pub use slab::Slab;

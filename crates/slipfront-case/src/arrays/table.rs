@@ -66,15 +66,16 @@ pub(super) fn values(
     Ok(values)
 }
 
-/// Reads a table of any size row after row, and returns its columns and rows. `take` gets each row, with its
-/// number and the column 0.
+/// Reads a table of any size row after row, below what an instrument wrote above its numbers, and returns its
+/// columns and rows. `take` gets each row, with its number and the column 0.
 pub(super) fn rows(
     path: &Path,
     source: &mut (impl BufRead + Seek),
+    layout: &TableLayout,
     mut take: impl FnMut([usize; 2], &[f64]) -> Result<(), ArrayError>,
 ) -> Result<[u64; 2], ArrayError> {
-    let (_, layout) = layout_of(path, source)?;
-    let mut lines = TableRows::new(source, &layout, LINE_MAX_BYTES);
+    source.rewind().map_err(ArrayError::read(path))?;
+    let mut lines = TableRows::new(source, layout, LINE_MAX_BYTES);
     let mut values = Vec::new();
     let (mut columns, mut row) = (None, 0);
     while let Some((line, fields)) = lines.next_row().map_err(table_error(path))? {
@@ -97,20 +98,18 @@ pub(super) fn rows(
     Ok([columns.unwrap_or(0) as u64, row as u64])
 }
 
-/// Number of fields of the first row.
-pub(super) fn columns(path: &Path, source: &mut (impl BufRead + Seek)) -> Result<usize, ArrayError> {
-    let (_, layout) = layout_of(path, source)?;
-    let mut lines = TableRows::new(source, &layout, LINE_MAX_BYTES);
-    let first = lines.next_row().map_err(table_error(path))?;
-    Ok(first.map_or(0, |(_, fields)| fields.len()))
-}
-
 /// The length of a table in bytes, and how it is written. Every line has numbers: one with names is a row
 /// that is refused.
 fn layout_of(path: &Path, source: &mut (impl BufRead + Seek)) -> Result<(u64, TableLayout), ArrayError> {
     let (length, head) = length_and_head(path, source, HEAD_BYTES)?;
     let layout = TableLayout::find(&head, TableOptions::default()).map_err(table_error(path))?;
     Ok((length, layout.of_numbers_alone()))
+}
+
+/// How a table is written that begins with `head`, and may have lines above its numbers.
+pub(super) fn layout_of_map(path: &Path, head: &[u8]) -> Result<TableLayout, ArrayError> {
+    let layout = TableLayout::find(head, TableOptions::default()).map_err(table_error(path))?;
+    Ok(layout.without_names())
 }
 
 /// An error of a table about the file of this path.

@@ -343,6 +343,7 @@ fn lines_longer_than_their_numbers_are_refused() {
         &path,
         &mut source(),
         &HeightMapUnits::default(),
+        &Preparation::default(),
         &room,
     ));
     assert!(text.contains("has more than 8388608 bytes in line 1"), "{text}");

@@ -7,8 +7,8 @@ use slipfront::{Edges, Lattice};
 
 use super::files::Watch;
 use super::inputs::Inputs;
-use crate::arrays::{self, HeightMapUnits, Room, Roughness, Slab};
-use crate::case_file::{Bearing, CaseError, CaseFile, HeightMap, Pitch};
+use crate::arrays::{self, HeightMapUnits, Preparation, Room, Roughness, Slab};
+use crate::case_file::{Bearing, CaseError, CaseFile, HeightMap, Level, Missing, Pitch};
 use crate::quantity::Length;
 
 /// A height map as it was read and laid over blocks.
@@ -67,11 +67,15 @@ impl Ground<'_> {
             blocks: self.size,
             is_place: !self.arrays.is_empty(),
         };
+        let preparation = Preparation {
+            missing: map.missing.map(Missing::value),
+            is_levelled: map.level == Some(Level::Plane),
+        };
         let key = format!("texture.{index}.file");
         let read = inputs.read_height_map(file, &key, &map.file, watch, |path, source| {
-            arrays::height_map(path, source, &units, &room)
+            arrays::height_map(path, source, &units, &preparation, &room)
         })?;
-        let standing = self.standing(&read.blocks);
+        let mut standing = self.standing(&read.blocks);
         let asked = match map.bearing {
             Bearing::Percent(percent) => {
                 let laid = match self.exists {
@@ -82,10 +86,15 @@ impl Ground<'_> {
             }
             Bearing::Depth(_) => None,
         };
-        let contact_height = contact_height(standing, map).ok_or_else(|| {
+        let contact_height = contact_height(&mut standing, map).ok_or_else(|| {
             let sentence = "no block of the slider lies in a place of its pattern: change its `pitch` or `array`, or the outline";
             file.source.error(&key, sentence)
         })?;
+        let touching = standing.iter().filter(|height| **height >= contact_height);
+        let mut notes = read.notes;
+        if touching.take(2).count() == 1 && standing.len() > 1 {
+            notes.push("only its highest block touches: all load rests on it".to_owned());
+        }
         // Of a map that covers the slider, a rank needs its own rows.
         let slab = if self.size == [inputs.slab.nx, inputs.slab.ny] {
             inputs.slab.clone()
@@ -107,7 +116,7 @@ impl Ground<'_> {
             blocks: self.size,
             roughness: read.roughness,
             contact_height,
-            notes: read.notes,
+            notes,
         };
         Ok((tile, topography, asked))
     }
@@ -146,7 +155,7 @@ impl Ground<'_> {
 
 /// The least height, m, at which some blocks touch, at least one of them; none if there is no block. A share
 /// is turned into the height of a block, so that all blocks of equal height touch or none does.
-fn contact_height(mut heights: Vec<f64>, map: &HeightMap) -> Option<f64> {
+fn contact_height(heights: &mut [f64], map: &HeightMap) -> Option<f64> {
     let highest = heights.iter().copied().reduce(f64::max)?;
     Some(match &map.bearing {
         Bearing::Percent(percent) => {

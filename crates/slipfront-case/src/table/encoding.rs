@@ -1,10 +1,7 @@
 //! The encoding of a table.
 
-use std::io::Read;
+use std::io::{self, Read};
 use std::str::from_utf8;
-
-use encoding_rs::{UTF_16BE, UTF_16LE, WINDOWS_1252};
-use encoding_rs_io::{DecodeReaderBytes, DecodeReaderBytesBuilder};
 
 /// Encoding of a text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -54,25 +51,64 @@ impl Encoding {
     }
 
     /// The text of a source as UTF-8, without the mark of its byte order.
-    pub(super) fn decoded<R: Read>(self, source: R) -> DecodeReaderBytes<R, Vec<u8>> {
-        let encoding = match self {
-            Self::Utf8 => None,
-            Self::Utf16Le => Some(UTF_16LE),
-            Self::Utf16Be => Some(UTF_16BE),
-            Self::Windows1252 => Some(WINDOWS_1252),
-        };
-        DecodeReaderBytesBuilder::new()
-            .encoding(encoding)
-            .strip_bom(true)
-            .build(source)
+    pub(super) fn decoded<R: Read>(self, source: R) -> DecodedText<R> {
+        DecodedText {
+            encoding: self,
+            source,
+            bytes: Vec::new(),
+            text: String::new(),
+            taken: 0,
+            is_start: true,
+        }
     }
 
     /// The text of these bytes; what is none is replaced.
     pub(crate) fn text(self, bytes: &[u8]) -> String {
-        let mut text = String::new();
-        // Nothing fails where bytes are in memory, and all that is decoded is UTF-8.
-        let _ = self.decoded(bytes).read_to_string(&mut text);
-        text
+        let mut text = Vec::new();
+        // Nothing fails where bytes are in memory.
+        let _ = self.decoded(bytes).read_to_end(&mut text);
+        String::from_utf8_lossy(&text).into_owned()
+    }
+
+    /// Moves the characters that `bytes` begin with to the end of `text`; those that are cut stay, unless
+    /// nothing follows them.
+    fn decode(self, bytes: &mut Vec<u8>, text: &mut String, is_end: bool) {
+        let of_units = |unit: fn([u8; 2]) -> u16| {
+            let (pairs, _) = bytes.as_chunks();
+            let mut units = Vec::from_iter(pairs.iter().map(|pair| unit(*pair)));
+            // The first half of a pair waits for the second.
+            if !is_end && units.last().is_some_and(|unit| (0xd800..0xdc00).contains(unit)) {
+                units.pop();
+            }
+            units
+        };
+        let taken = match self {
+            Self::Utf8 => {
+                let whole = match from_utf8(bytes) {
+                    Err(error) if error.error_len().is_none() && !is_end => error.valid_up_to(),
+                    _ => bytes.len(),
+                };
+                text.push_str(&String::from_utf8_lossy(&bytes[..whole]));
+                whole
+            }
+            Self::Windows1252 => {
+                text.extend(bytes.iter().map(|byte| match byte {
+                    0x80..0xa0 => WINDOWS_1252[usize::from(byte - 0x80)],
+                    byte => char::from(*byte),
+                }));
+                bytes.len()
+            }
+            Self::Utf16Le | Self::Utf16Be => {
+                let units = of_units(match self {
+                    Self::Utf16Le => u16::from_le_bytes,
+                    _ => u16::from_be_bytes,
+                });
+                let decoded = char::decode_utf16(units.iter().copied());
+                text.extend(decoded.map(|found| found.unwrap_or(char::REPLACEMENT_CHARACTER)));
+                2 * units.len()
+            }
+        };
+        bytes.drain(..taken);
     }
 
     /// The name of the encoding, unless it is the usual one.
@@ -82,5 +118,100 @@ impl Encoding {
             Self::Utf16Le | Self::Utf16Be => Some("UTF-16"),
             Self::Windows1252 => Some("Latin-1"),
         }
+    }
+}
+
+/// Characters of the code page 1252 from 0x80 to 0x9f, where it differs from Latin-1.
+const WINDOWS_1252: [char; 32] = [
+    '\u{20ac}', '\u{81}', '\u{201a}', '\u{192}', '\u{201e}', '\u{2026}', '\u{2020}', '\u{2021}', '\u{2c6}',
+    '\u{2030}', '\u{160}', '\u{2039}', '\u{152}', '\u{8d}', '\u{17d}', '\u{8f}', '\u{90}', '\u{2018}',
+    '\u{2019}', '\u{201c}', '\u{201d}', '\u{2022}', '\u{2013}', '\u{2014}', '\u{2dc}', '\u{2122}', '\u{161}',
+    '\u{203a}', '\u{153}', '\u{9d}', '\u{17e}', '\u{178}',
+];
+
+/// Number of bytes that are decoded at once.
+const CHUNK: usize = 1 << 16;
+
+/// A text as UTF-8 while it is read. Libraries that decode bring tables of all encodings, which would make
+/// the page's module a tenth larger.
+pub(super) struct DecodedText<R> {
+    encoding: Encoding,
+    source: R,
+    /// Bytes of a character that is cut.
+    bytes: Vec<u8>,
+    /// Decoded text, of which the first `taken` bytes were given away.
+    text: String,
+    taken: usize,
+    is_start: bool,
+}
+
+impl<R: Read> Read for DecodedText<R> {
+    fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
+        while self.taken == self.text.len() {
+            (self.taken, self.text) = (0, std::mem::take(&mut self.text));
+            self.text.clear();
+            let before = self.bytes.len();
+            self.bytes.resize(before + CHUNK, 0);
+            let read = self.source.read(&mut self.bytes[before..]);
+            self.bytes.truncate(before + *read.as_ref().unwrap_or(&0));
+            let is_end = read? == 0;
+            self.encoding.decode(&mut self.bytes, &mut self.text, is_end);
+            if self.is_start && !self.text.is_empty() {
+                self.is_start = false;
+                self.taken = self.text.len() - self.text.trim_start_matches('\u{feff}').len();
+            }
+            if is_end && self.taken == self.text.len() {
+                return Ok(0);
+            }
+        }
+        let mut rest = &self.text.as_bytes()[self.taken..];
+        let read = rest.read(into)?;
+        self.taken += read;
+        Ok(read)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use test_case::test_case;
+
+    use super::*;
+
+    /// Bytes that come one by one.
+    struct OneByOne<'b>(&'b [u8]);
+
+    impl Read for OneByOne<'_> {
+        fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
+            let n = into.len().min(1);
+            self.0.read(&mut into[..n])
+        }
+    }
+
+    const TEXT: &str = "\u{feff}t (\u{b5}s);\u{20ac} \u{1f600}\n";
+
+    fn utf_16(bytes: fn(u16) -> [u8; 2]) -> Vec<u8> {
+        TEXT.encode_utf16().flat_map(bytes).collect()
+    }
+
+    #[test_case(Encoding::Utf8, TEXT.as_bytes(); "utf 8")]
+    #[test_case(Encoding::Utf16Le, &utf_16(u16::to_le_bytes); "utf 16, low byte first")]
+    #[test_case(Encoding::Utf16Be, &utf_16(u16::to_be_bytes); "utf 16, high byte first")]
+    fn characters_may_be_cut(encoding: Encoding, bytes: &[u8]) {
+        let mut text = String::new();
+        encoding
+            .decoded(OneByOne(bytes))
+            .read_to_string(&mut text)
+            .unwrap();
+        assert_eq!(text, TEXT.trim_start_matches('\u{feff}'));
+    }
+
+    #[test]
+    fn what_is_no_character_is_replaced() {
+        assert_eq!(
+            Encoding::Windows1252.text(b"\xb5\x80\x96"),
+            "\u{b5}\u{20ac}\u{2013}"
+        );
+        assert_eq!(Encoding::Utf8.text(b"a\xc2"), "a\u{fffd}");
+        assert_eq!(Encoding::Utf16Le.text(b"a\0\x3d\xd8"), "a\u{fffd}");
     }
 }

@@ -102,6 +102,8 @@ pub struct TableLayout {
     pub columns: usize,
     /// Lines above the names that are neither blank nor comments: their number, and the text of the first.
     above: Option<(usize, String)>,
+    /// Lines above the first one with numbers alone, likewise.
+    above_numbers: Option<(u64, usize, String)>,
 }
 
 /// A line of the head that is neither blank nor a comment.
@@ -204,6 +206,21 @@ impl TableLayout {
             units: None,
             first_line: 1,
             above: None,
+            ..self
+        }
+    }
+
+    /// The layout of a table whose rows begin with the first line of numbers, whatever stands above.
+    pub(crate) fn without_names(self) -> Self {
+        let (first_line, above) = match self.above_numbers.clone() {
+            Some((line, lines, first)) => (line, Some((lines, first))),
+            None => (1, None),
+        };
+        Self {
+            names: None,
+            units: None,
+            first_line,
+            above,
             ..self
         }
     }
@@ -332,6 +349,10 @@ impl Reading {
             None => lines.get(first).map_or(1, |line| line.number),
         };
         let above = &lines[..names.unwrap_or(first)];
+        // What an instrument writes above a matrix has fewer fields, or fewer numbers.
+        let is_of_matrix =
+            |line: &Line| 2 * numbers(line) > line.fields.len() && 2 * line.fields.len() >= columns;
+        let first_of_matrix = lines.iter().position(is_of_matrix).unwrap_or(0);
         let layout = TableLayout {
             encoding,
             separator,
@@ -341,6 +362,10 @@ impl Reading {
             units: units.map(named),
             first_line,
             above: above.first().map(|line| (above.len(), truncated(line.text))),
+            above_numbers: (first_of_matrix > 0).then(|| {
+                let line = lines[first_of_matrix].number;
+                (line, first_of_matrix, truncated(lines[0].text))
+            }),
         };
         Ok(Self { layout, score })
     }

@@ -23,28 +23,56 @@ pub fn number(field: &str, decimal: char) -> Option<f64> {
     }
 }
 
-/// Seconds from midnight of a time of the day, such as `10:04:31` or `10:04:31,250`.
+/// Seconds from midnight of a time of the day, such as `10:04:31`, `10:04:31,250` or `1:04:31 PM`; behind a
+/// date, such as `2024-01-31T10:04:31` or `31.01.2024 10:04:31`, seconds from the first midnight of 2000. Of a
+/// date with slashes whose year stands last nobody knows which number is the month: it counts for nothing.
 ///
 /// ```
 /// use slipfront_case::table::clock_time;
 ///
 /// assert_eq!(clock_time("00:01:02.5"), Some(62.5));
+/// assert_eq!(clock_time("2000-03-01 00:00:01"), Some(60.0 * 86_400.0 + 1.0));
 /// assert_eq!(clock_time("1:2"), None);
 /// ```
 pub fn clock_time(field: &str) -> Option<f64> {
-    let mut parts = field.split(':');
+    let is_half = |half: &&str| ["AM", "PM"].iter().any(|known| half.eq_ignore_ascii_case(known));
+    let (rest, half) = match field.rsplit_once(' ').filter(|(_, half)| is_half(half)) {
+        Some((rest, half)) => (rest, Some(half)),
+        None => (field, None),
+    };
+    let (date, clock) = match rest.split_once([' ', 'T']) {
+        Some((date, clock)) => (day(date)?, clock.trim()),
+        None => (0, rest),
+    };
+    let mut parts = clock.split(':');
     let (hours, minutes, seconds) = (parts.next()?, parts.next()?, parts.next()?);
-    let whole = |text: &str, most: u32| {
-        text.parse::<u32>()
-            .ok()
-            .filter(|number| *number <= most)
-            .map(f64::from)
+    let whole = |text: &str, most: u32| text.parse::<u32>().ok().filter(|number| *number <= most);
+    let hours = match half {
+        Some(half) => whole(hours, 12)? % 12 + 12 * u32::from(half.eq_ignore_ascii_case("PM")),
+        None => whole(hours, u32::MAX)?,
     };
     let seconds = number(&seconds.replace(',', "."), '.').filter(|seconds| (0.0..60.0).contains(seconds))?;
-    parts
-        .next()
-        .is_none()
-        .then_some(3600.0 * whole(hours, u32::MAX)? + 60.0 * whole(minutes, 59)? + seconds)
+    let whole = 86_400.0 * date as f64 + 3600.0 * f64::from(hours) + 60.0 * f64::from(whole(minutes, 59)?);
+    parts.next().is_none().then_some(whole + seconds)
+}
+
+/// Days of a date from 2000-01-01 in the Gregorian calendar.
+fn day(date: &str) -> Option<i64> {
+    let mut parts = date.split(['-', '/', '.']).map(|part| part.parse::<i64>().ok());
+    let numbers = [parts.next()??, parts.next()??, parts.next()??];
+    let [year, month, day] = match numbers {
+        [year, ..] if year > 31 => numbers,
+        [day, month, year] if date.contains('.') => [year, month, day],
+        _ => return Some(0),
+    };
+    let is_date = (1..=12).contains(&month) && (1..=31).contains(&day) && (0..=9999).contains(&year);
+    if !is_date || parts.next().is_some() {
+        return None;
+    }
+    // The day of the Julian count: years begin in March, so that the day of a leap year comes last.
+    let early = (14 - month) / 12;
+    let (year, month) = (year + 4800 - early, month + 12 * early - 3);
+    Some(day + (153 * month + 2) / 5 + 365 * year + year / 4 - year / 100 + year / 400 - 32_045 - 2_451_545)
 }
 
 /// Whether a field can be a number with a thousands separator: groups of three digits behind one to three, of
@@ -63,4 +91,24 @@ pub(super) fn has_groups(field: &str, separator: char) -> bool {
             group.len() == 3 && is_digits(group)
         })
         && n > 0
+}
+
+#[cfg(test)]
+mod tests {
+    use test_case::test_case;
+
+    use super::clock_time;
+
+    #[test_case("12:00:00 AM", Some(0.0); "midnight")]
+    #[test_case("12:00:01 pm", Some(43_201.0); "noon")]
+    #[test_case("13:00:00 PM", None; "no hour of a half day")]
+    #[test_case("2000-01-01T00:00:00", Some(0.0); "first")]
+    #[test_case("2000/02/29 00:00:00", Some(59.0 * 86_400.0); "leap day")]
+    #[test_case("1.3.2001 0:00:02,5", Some(425.0 * 86_400.0 + 2.5); "day first")]
+    #[test_case("1/2/2024 00:00:03", Some(3.0); "month not known")]
+    #[test_case("2024-13-01 00:00:00", None; "no month")]
+    #[test_case("Probe 00:00:00", None; "no date")]
+    fn times_of_the_day(field: &str, seconds: Option<f64>) {
+        assert_eq!(clock_time(field), seconds);
+    }
 }

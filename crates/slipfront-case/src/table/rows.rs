@@ -3,8 +3,7 @@
 use std::borrow::Cow;
 use std::io::{BufRead, BufReader, Read};
 
-use encoding_rs_io::DecodeReaderBytes;
-
+use super::encoding::DecodedText;
 use super::error::TableError;
 use super::fields::fields;
 use super::layout::TableLayout;
@@ -12,7 +11,7 @@ use super::layout::TableLayout;
 /// The rows of numbers of a table, below its lines of names and units, without comments and blank lines.
 pub struct TableRows<'l, R: Read> {
     layout: &'l TableLayout,
-    text: BufReader<DecodeReaderBytes<R, Vec<u8>>>,
+    text: BufReader<DecodedText<R>>,
     /// Largest number of bytes of a line.
     line_max: u64,
     line: Vec<u8>,

@@ -7,8 +7,8 @@ use std::path::{Path, PathBuf};
 use serde_json::Value;
 use slipfront::testing::Threads;
 use slipfront_case::arrays::{
-    self, ArrayError, HeightMap, HeightMapUnits, Room, Slab, height_map, limit_length_of_height_map, open,
-    png_of_mask,
+    self, ArrayError, HeightMap, HeightMapUnits, Preparation, Room, Slab, height_map,
+    limit_length_of_height_map, open, png_of_mask,
 };
 use slipfront_case::case::{Case, Ranks};
 use slipfront_case::case_file::CaseFile;
@@ -26,7 +26,7 @@ fn read(path: &Path, units: HeightMapUnits, blocks: [usize; 2]) -> Result<Height
         blocks,
         is_place: false,
     };
-    height_map(path, &mut source, &units, &room)
+    height_map(path, &mut source, &units, &Preparation::default(), &room)
 }
 
 fn reference() -> Value {
@@ -242,6 +242,8 @@ fn what_stands_beside_grey_levels_is_told() {
     }
 }
 
+const MASKED: &str = "<DataLink><PointDataLink>bindata/data.bin</PointDataLink><ValidPointsLink>valid.bin</ValidPointsLink></DataLink>";
+
 /// A zip archive of files that are stored as they are.
 fn zip(files: &[(&str, &[u8])]) -> Vec<u8> {
     let mut bytes = Vec::new();
@@ -312,9 +314,8 @@ fn damaged_x3p_files_are_refused() {
         .flat_map(|z: &f64| z.to_le_bytes())
         .collect();
     let flat = [0; 32];
-    let valid = "<DataLink><PointDataLink>bindata/data.bin</PointDataLink><ValidPointsLink>valid.bin</ValidPointsLink></DataLink>";
     let whole = description(floats, LINKED);
-    let masked = description(floats, valid);
+    let masked = description(floats, MASKED);
     for (files, sentence) in [
         (vec![("a.txt", &b""[..])], "its archive has no `main.xml`"),
         (
@@ -866,4 +867,152 @@ fn what_makes_a_map_doubtful_is_said(name: &str, units: HeightMapUnits, blocks: 
 fn files_of_an_x3p_archive_may_lie_in_a_folder() {
     let [plain, in_folder] = ["other_md5.x3p", "in_folder.x3p"].map(|name| read_here(name, OWN, [50, 50]));
     assert_eq!(plain.blocks, in_folder.blocks);
+}
+
+/// A map of text, whose values are micrometres half a micrometre apart, over as many blocks as it has points.
+fn prepared(text: &str, preparation: Preparation) -> Result<HeightMap, String> {
+    let lines = text
+        .lines()
+        .filter(|line| line.starts_with(|sign: char| sign.is_ascii_digit()));
+    let blocks = [text.lines().last().unwrap().split(',').count(), lines.count()];
+    let room = Room {
+        blocks,
+        is_place: false,
+    };
+    let mut source = Cursor::new(text);
+    height_map(Path::new("a.csv"), &mut source, &OF_CASE, &preparation, &room)
+        .map_err(|error| error.to_string())
+}
+
+/// Heights 2 x + 3 y and a checkerboard of 0 and 1 on it: four rows of four, over which a checkerboard has
+/// neither a mean slope along x nor along y but for its parity, which cancels.
+#[test]
+fn a_map_is_levelled_by_its_plane() {
+    let board = |x: usize, y: usize| ((x / 2 + y / 2) % 2) as f64;
+    let row = |y: usize| {
+        let heights = (0..4).map(|x| (2.0 * x as f64 + 3.0 * y as f64 + board(x, y)).to_string());
+        heights.collect::<Vec<_>>().join(",") + "\n"
+    };
+    let text: String = (0..4).map(row).collect();
+    let level = Preparation {
+        is_levelled: true,
+        ..Preparation::default()
+    };
+    let map = prepared(&text, level).unwrap();
+    let mean = map.blocks.iter().sum::<f64>() / 16.0;
+    for (at, height) in map.blocks.iter().enumerate() {
+        let wanted = 1e-6 * (board(at % 4, at / 4) - 0.5);
+        // Sixteen numbers below 20 um are added with rounding errors of 2^-53 each.
+        assert!((height - mean - wanted).abs() < 1e-19, "{at}: {height}");
+    }
+    assert!((map.roughness.sa - 0.5e-6).abs() < 1e-19);
+    assert!(map.notes.is_empty(), "{:?}", map.notes);
+    assert!(prepared(&text, Preparation::default()).unwrap().notes[0].starts_with("a plane takes"));
+}
+
+#[test_case("0,1,-999,3\n4,5,6,9\n", -999.0; "number")]
+#[test_case("0,1,nan,3\n4,5,6,9\n", f64::NAN; "no number")]
+fn points_that_were_not_measured_count_for_nothing(text: &str, missing: f64) {
+    let preparation = Preparation {
+        missing: Some(missing),
+        ..Preparation::default()
+    };
+    let room = Room {
+        blocks: [2, 1],
+        is_place: false,
+    };
+    let mut source = Cursor::new(text);
+    let map = height_map(Path::new("a.csv"), &mut source, &OF_CASE, &preparation, &room).unwrap();
+    // The mean of 0, 1, 4 and 5, and of 3, 6 and 9, in micrometres.
+    assert_eq!(map.blocks, [2.5 * 1e-6, 6.0 * 1e-6]);
+    let note = "1 of its 8 points were not measured: blocks have the mean of the others";
+    assert_eq!(map.notes[0], note);
+    let refused = prepared(text, preparation).unwrap_err();
+    assert!(
+        refused.contains("no measured point in the block in column 2 and row 0"),
+        "{refused}"
+    );
+}
+
+#[test]
+fn points_that_an_x3p_leaves_out_may_be_missing() {
+    let masked = description("<DataType>D</DataType>", MASKED);
+    let heights: Vec<u8> = [1.0_f64, 2.0, 3.0, 4.0]
+        .iter()
+        .flat_map(|z| z.to_le_bytes())
+        .collect();
+    let bytes = zip(&[
+        ("main.xml", masked.as_bytes()),
+        ("bindata/data.bin", &heights),
+        ("valid.bin", &[0b1011]),
+    ]);
+    let room = Room {
+        blocks: [1, 1],
+        is_place: false,
+    };
+    let preparation = Preparation {
+        missing: Some(f64::NAN),
+        ..Preparation::default()
+    };
+    let map = height_map(
+        Path::new("a.x3p"),
+        &mut Cursor::new(&bytes),
+        &OWN,
+        &preparation,
+        &room,
+    )
+    .unwrap();
+    // The third point is none; the sum is divided once more than 7/3 is.
+    assert!((map.blocks[0] - 7.0 / 3.0).abs() < 1e-15);
+}
+
+#[test_case("h=2 w=3\n1,2,4\n3,5,9\n", "no line names the columns; rows begin in line 2; 1 line above ignored, \"h=2 w=3\""; "size")]
+#[test_case("Width,3\nUnit,um\n\n1,2,4\n3,5,9\n", "no line names the columns; rows begin in line 4; 2 lines above ignored, \"Width,3\""; "instrument")]
+fn lines_above_a_matrix_are_passed_over_and_told(text: &str, note: &str) {
+    let map = prepared(&text[..], Preparation::default()).unwrap();
+    assert_eq!(map.points, [3, 2]);
+    assert_eq!(map.notes[0], note);
+}
+
+#[test]
+fn a_first_row_of_coordinates_is_told() {
+    let axis: Vec<String> = (0..9).map(|x| (0.5 * f64::from(x)).to_string()).collect();
+    let heights: Vec<String> = (0..9).map(|x| (x * x % 5).to_string()).collect();
+    let text = format!("{}\n{}\n", axis.join(","), heights.join(","));
+    let notes = prepared(&text, Preparation::default()).unwrap().notes;
+    assert!(
+        notes[0].starts_with("its first row goes evenly from 0.5 to 4"),
+        "{notes:?}"
+    );
+}
+
+#[test]
+fn a_list_may_leave_points_out_and_has_none_twice() {
+    let list = |text: &str, missing| {
+        let preparation = Preparation {
+            missing,
+            ..Preparation::default()
+        };
+        let room = Room {
+            blocks: [1, 1],
+            is_place: false,
+        };
+        let map = height_map(
+            Path::new("a.csv"),
+            &mut Cursor::new(text),
+            &OF_CASE,
+            &preparation,
+            &room,
+        );
+        map.map_err(|error| error.to_string())
+    };
+    let text = "X,Y,Z\n0,0,1\n1,0,2\n0,1,6\n";
+    assert_eq!(list(text, Some(f64::NAN)).unwrap().blocks, [3.0 * 1e-6]);
+    assert!(
+        list(text, None)
+            .unwrap_err()
+            .contains("has NaN in row 1, column 1")
+    );
+    let twice = list("0,0,1\n1,0,2\n0,1,6\n0,0,1\n", None).unwrap_err();
+    assert!(twice.contains("has the point 0, 0 twice"), "{twice}");
 }

@@ -7,9 +7,9 @@ use slipfront::{Edges, StopReason};
 use slipfront_case::case_file::{
     Ageing, AgeingLaw, Along, Arrangement, Array, Attached, AttachedEdge, AutoOr, AutoOrStiffness, Bearing,
     CaseFile, Cavity, CavitySize, Center, ContactModel, Count, Damping, Drive, DriveSpeed, DriveStiffness,
-    Friction, Grade, Groove, GrooveSize, HeightMap, KineticFriction, Law, Load, Loading, Mask, Motion,
-    Outline, Output, Pattern, Pitch, Polygon, Profile, RunTime, Shape, Slider, SlipWeakeningLength,
-    Snapshots, Source, SpeedSegment, Texture, Time, TimeStep, Velocity, VelocityLaw,
+    Friction, Grade, Groove, GrooveSize, HeightMap, KineticFriction, Law, Level, Load, Loading, Mask,
+    Missing, Motion, Outline, Output, Pattern, Pitch, Polygon, Profile, RunTime, Shape, Slider,
+    SlipWeakeningLength, Snapshots, Source, SpeedSegment, Texture, Time, TimeStep, Velocity, VelocityLaw,
 };
 use slipfront_case::quantity::{Kind, Length, Quantity};
 
@@ -358,15 +358,21 @@ fn height_map() -> impl Strategy<Value = Shape> {
     ];
     let units = (prop::option::of(length()), prop::option::of(pixel_size));
     let file = file(&["npy", "csv", "gsf", "x3p", "png", "tif", "tiff"]);
-    (file, bearing, units).prop_map(|(file, (bearing, reference), (height_unit, pixel_size))| {
-        Shape::HeightMap(HeightMap {
-            file,
-            bearing,
-            reference,
-            height_unit,
-            pixel_size,
-        })
-    })
+    let missing = prop_oneof![Just(Missing::Nan), (-1e9..1e9).prop_map(Missing::Value)];
+    let preparation = (prop::option::of(Just(Level::Plane)), prop::option::of(missing));
+    (file, bearing, units, preparation).prop_map(
+        |(file, (bearing, reference), (height_unit, pixel_size), (level, missing))| {
+            Shape::HeightMap(HeightMap {
+                file,
+                bearing,
+                reference,
+                height_unit,
+                pixel_size,
+                level,
+                missing,
+            })
+        },
+    )
 }
 
 fn texture() -> impl Strategy<Value = Texture> {

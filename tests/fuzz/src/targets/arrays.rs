@@ -5,7 +5,7 @@ use std::path::Path;
 
 use png::{BitDepth, ColorType, Encoder};
 use slipfront_case::arrays;
-use slipfront_case::arrays::{ArrayError, HeightMapUnits, Room, Slab, mask_npy, png_of_mask};
+use slipfront_case::arrays::{ArrayError, HeightMapUnits, Preparation, Room, Slab, mask_npy, png_of_mask};
 
 use crate::checks::readable;
 use crate::long::{LONG_BYTES, many, nested};
@@ -493,9 +493,18 @@ fn height_map(input: &[u8]) {
     for ending in ["csv", "gsf", "npy", "png", "tif", "x3p"] {
         let path = format!("map.{ending}");
         // A file that says nothing of its units is asked about them, and then answered.
-        for units in [HeightMapUnits::default(), UNITS] {
+        let plain = Preparation::default();
+        let treated = Preparation {
+            missing: Some(f64::NAN),
+            is_levelled: true,
+        };
+        for (units, preparation) in [
+            (HeightMapUnits::default(), plain),
+            (UNITS, plain),
+            (UNITS, treated),
+        ] {
             let mut source = Cursor::new(input);
-            match arrays::height_map(Path::new(&path), &mut source, &units, &room) {
+            match arrays::height_map(Path::new(&path), &mut source, &units, &preparation, &room) {
                 Err(error) => readable(&error),
                 Ok(map) => {
                     assert_eq!(map.blocks.len(), NX * NY);

@@ -21,6 +21,8 @@ pub(super) struct Averages {
     sums: Vec<i128>,
     /// Sums of the present line, over its blocks along x.
     of_line: Vec<i128>,
+    /// Areas of points in every block that were not measured; empty as long as there are none.
+    gaps: Vec<i128>,
 }
 
 impl Averages {
@@ -31,6 +33,7 @@ impl Averages {
             quantum,
             sums: vec![0; blocks[0] * blocks[1]],
             of_line: vec![0; blocks[0]],
+            gaps: Vec::new(),
         }
     }
 
@@ -49,6 +52,16 @@ impl Averages {
         let columns = touched(0, line.column..line.column + line.heights.len());
         self.of_line[columns.clone()].fill(0);
         for (point, &height) in (line.column..).zip(line.heights) {
+            if height.is_nan() {
+                self.gaps.resize(self.sums.len(), 0);
+                for row in touched(1, line.row..line.row + 1) {
+                    for column in touched(0, point..point + 1) {
+                        self.gaps[row * blocks[0] + column] +=
+                            common(0, point, column) * common(1, line.row, row);
+                    }
+                }
+                continue;
+            }
             let quanta = i128::from(self.quantum.count(height));
             for block in touched(0, point..point + 1) {
                 self.of_line[block] += quanta * common(0, point, block);
@@ -63,10 +76,15 @@ impl Averages {
         }
     }
 
-    /// The means, in rising y.
+    /// The means, in rising y; no number for a block without a measured point.
     pub(super) fn means(self) -> impl Iterator<Item = f64> {
         let area = self.points[0] as i128 * self.points[1] as i128;
-        self.sums.into_iter().map(move |sum| {
+        let gaps = self.gaps.into_iter().chain(std::iter::repeat(0));
+        self.sums.into_iter().zip(gaps).map(move |(sum, gap)| {
+            let area = area - gap;
+            if area == 0 {
+                return f64::NAN;
+            }
             // Apart, so that the mean of equal heights is their own.
             let (whole, rest) = (sum / area, sum % area);
             self.quantum.height(whole as f64 + rest as f64 / area as f64)

@@ -30,8 +30,8 @@ pub(super) struct HeightGrid {
     pub(super) pixel: Option<[f64; 2]>,
     /// Height in m of the value 1, if the file states it.
     pub(super) height_unit: Option<f64>,
-    /// A sentence on what makes the file doubtful.
-    pub(super) note: Option<String>,
+    /// Sentences on how the file was read, and what makes it doubtful.
+    pub(super) notes: Vec<String>,
 }
 
 /// Number of points along x and along y from a header, unless there are too many.

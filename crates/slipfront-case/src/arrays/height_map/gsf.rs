@@ -77,7 +77,7 @@ impl<'a> GsfHeader<'a> {
             top_first: true,
             pixel,
             height_unit: self.in_metres("ZUnits")?,
-            note: None,
+            notes: Vec::new(),
         })
     }
 

@@ -4,6 +4,7 @@
 //! tile, or a MiB of numbers is in memory.
 
 mod averages;
+mod axis;
 mod grid;
 mod gsf;
 mod image;
@@ -19,9 +20,10 @@ use std::path::Path;
 pub use roughness::Roughness;
 
 use self::averages::Averages;
+use self::axis::FirstLines;
 use self::grid::{HeightGrid, Line, Take, points};
 use self::quantum::Quantum;
-use self::roughness::{HeightRange, Mean, Moments, PlaneSums};
+use self::roughness::{HeightRange, Mean, Moments, Plane, PlaneSums};
 use super::error::{ArrayError, contents_error, extension, unknown_extension};
 use super::npy;
 use slipfront_base::number_format::{four_digits, with_si_prefix};
@@ -33,6 +35,22 @@ pub struct HeightMapUnits {
     pub height: Option<f64>,
     /// Distance of neighbouring points along x and along y.
     pub pixel: Option<[f64; 2]>,
+}
+
+/// Treatment of heights before they are averaged.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Preparation {
+    /// The value of points that were not measured, which count for nothing; it may be no number (NaN).
+    pub missing: Option<f64>,
+    /// Whether the plane of least squares is subtracted.
+    pub is_levelled: bool,
+}
+
+impl Preparation {
+    fn is_missing(&self, height: f64) -> bool {
+        self.missing
+            .is_some_and(|missing| height == missing || (height.is_nan() && missing.is_nan()))
+    }
 }
 
 /// The blocks over which a height map is laid.
@@ -51,7 +69,7 @@ pub struct HeightMap {
     pub points: [usize; 2],
     /// True size of the map along x and along y, m.
     pub size: [f64; 2],
-    /// Roughness of all points.
+    /// Roughness of all points that were measured, of levelled heights if they are.
     pub roughness: Roughness,
     /// Sentences on what makes the map doubtful.
     pub notes: Vec<String>,
@@ -72,48 +90,72 @@ pub fn height_map(
     path: &Path,
     source: &mut (impl BufRead + Seek),
     units: &HeightMapUnits,
+    preparation: &Preparation,
     room: &Room,
 ) -> Result<HeightMap, ArrayError> {
-    let mut mean = Mean::default();
-    let grid = read(path, source, &mut |line| {
-        let gap = line.heights.iter().position(|height| !height.is_finite());
-        gap.map_or(Ok(()), |gap| Err(not_measured(path, line, gap)))?;
+    let too_far_apart = || {
+        let problem = "has heights too far apart to be averaged: look at its numbers".to_owned();
+        contents_error(path, problem)
+    };
+    let range_of = |mean: &Mean| {
+        let of_all = mean.of_all();
+        let is_finite = |range: HeightRange| (range.highest - range.lowest).is_finite();
+        let found = of_all.filter(|(mean, range)| is_finite(*range) && mean.is_finite());
+        found.ok_or_else(too_far_apart)
+    };
+    let (mut mean, mut edges) = (Mean::default(), FirstLines::default());
+    let grid = read(path, source, preparation, &mut |line| {
         mean.add(line.heights);
+        edges.add(line);
         Ok(())
     })?;
     let (pixel, unit) = (pixel(path, &grid, units)?, height_unit(path, &grid, units)?);
     let points = grid.points;
     let size = [0, 1].map(|axis| points[axis] as f64 * pixel[axis]);
     keep_aspect(path, size, room)?;
+    let n_missing = points[0] * points[1] - mean.count();
+    let (mut middle, mut range) = range_of(&mean)?;
 
-    let too_far_apart = || {
-        let problem = "has heights too far apart to be averaged: look at its numbers".to_owned();
-        contents_error(path, problem)
-    };
-    let of_all = mean.of_all();
-    let found = of_all.filter(|(mean, range)| (range.highest - range.lowest).is_finite() && mean.is_finite());
-    let (mean, range) = found.ok_or_else(too_far_apart)?;
-    let (mut moments, mut plane) = (Moments::default(), PlaneSums::default());
+    let mut plane = Plane::default();
+    if preparation.is_levelled {
+        let mut sums = PlaneSums::new(points);
+        read(path, source, preparation, &mut |line| {
+            sums.add(line, middle);
+            Ok(())
+        })?;
+        plane = sums.plane();
+        let (mut levelled, mut heights) = (Mean::default(), Vec::new());
+        read(path, source, preparation, &mut |line| {
+            plane.subtract(line, &mut heights);
+            levelled.add(&heights);
+            Ok(())
+        })?;
+        (middle, range) = range_of(&levelled)?;
+    }
+    let (mut moments, mut sums) = (Moments::default(), PlaneSums::new(points));
     let mut averages = Averages::new(points, room.blocks, Quantum::of(range));
-    let mut deviations = Vec::new();
-    read(path, source, &mut |line| {
+    let mut heights = Vec::new();
+    read(path, source, preparation, &mut |line| {
         if line.row >= points[1] || line.column + line.heights.len() > points[0] {
             return Err(contents_error(
                 path,
                 "changed while it was read: try again".to_owned(),
             ));
         }
-        deviations.clear();
-        deviations.extend(line.heights.iter().map(|height| height - mean));
-        moments.add(&deviations);
-        plane.add(line.row, line.column, &deviations);
+        plane.subtract(line, &mut heights);
+        let levelled = Line {
+            heights: &heights,
+            ..*line
+        };
+        moments.add(&heights, middle);
+        sums.add(&levelled, middle);
         averages.add(&Line {
             row: if grid.top_first {
                 points[1] - 1 - line.row
             } else {
                 line.row
             },
-            ..*line
+            ..levelled
         });
         Ok(())
     })?;
@@ -125,14 +167,33 @@ pub fn height_map(
     {
         return Err(too_far_apart());
     }
-    let mut notes = Vec::from_iter(grid.note);
-    notes.extend(doubts(&roughness, plane.share(points), range, size, unit));
+    let blocks: Vec<f64> = averages.means().map(|mean| mean * unit).collect();
+    if let Some(gap) = blocks.iter().position(|mean| mean.is_nan()) {
+        let [nx, _] = room.blocks;
+        let problem = format!(
+            "has no measured point in the block in column {} and row {} (both counted from 0, row 0 at y = 0): fill its gaps by \
+             interpolation before, or take larger blocks",
+            gap % nx,
+            gap / nx
+        );
+        return Err(contents_error(path, problem));
+    }
+    let mut notes = grid.notes;
+    notes.extend(edges.doubt());
+    if n_missing > 0 {
+        notes.push(format!(
+            "{} of its {} points were not measured: blocks have the mean of the others",
+            n_missing,
+            points[0] * points[1]
+        ));
+    }
+    notes.extend(doubts(&roughness, sums.plane().share, range, size, unit));
     Ok(HeightMap {
         points,
         size,
         roughness,
         notes,
-        blocks: averages.means().map(|mean| mean * unit).collect(),
+        blocks,
     })
 }
 
@@ -147,7 +208,7 @@ fn doubts(
     let mut doubts = Vec::new();
     if share_of_plane > LARGE_TILT {
         doubts.push(format!(
-            "a plane takes {} % of the variance of its heights, so that one side touches: level the map",
+            "a plane takes {} % of the variance of its heights, so that one side touches: level the map, as `level = \"plane\"` does",
             four_digits(100.0 * share_of_plane)
         ));
     }
@@ -160,10 +221,10 @@ fn doubts(
     }
     if height > FAR_OFF * roughness.sq {
         doubts.push(format!(
-            "a few of its heights lie far off all others, from {} to {} in the unit of the file, as marks of points that were not \
-             measured do: replace them",
-            four_digits(range.lowest),
-            four_digits(range.highest)
+            "a few of its heights lie far off all others, from {lowest} to {highest} in the unit of the file, as marks of points that \
+             were not measured do: leave them out, as `missing = {lowest}` or `missing = {highest}` does",
+            lowest = range.lowest,
+            highest = range.highest
         ));
     }
     doubts
@@ -176,19 +237,49 @@ const LARGE_TILT: f64 = 0.9;
 /// heights is 12 where there are a thousand million points.
 const FAR_OFF: f64 = 50.0;
 
-/// Reads all points of a file.
-fn read(path: &Path, source: &mut (impl BufRead + Seek), take: &mut Take) -> Result<HeightGrid, ArrayError> {
+/// Reads all points of a file. Those that are missing are taken as no numbers; all others are finite.
+fn read(
+    path: &Path,
+    source: &mut (impl BufRead + Seek),
+    preparation: &Preparation,
+    take: &mut Take,
+) -> Result<HeightGrid, ArrayError> {
+    let mut marked = Vec::new();
+    read_file(path, source, preparation, &mut |line| {
+        marked.clear();
+        for (column, &height) in (line.column..).zip(line.heights) {
+            let is_missing = preparation.is_missing(height);
+            if !is_missing && !height.is_finite() {
+                return Err(not_measured(path, height, [line.row, column]));
+            }
+            marked.push(if is_missing { f64::NAN } else { height });
+        }
+        take(&Line {
+            heights: &marked,
+            ..*line
+        })
+    })
+}
+
+/// Reads all points of a file as they stand there.
+fn read_file(
+    path: &Path,
+    source: &mut (impl BufRead + Seek),
+    preparation: &Preparation,
+    take: &mut Take,
+) -> Result<HeightGrid, ArrayError> {
     source.rewind().map_err(ArrayError::read(path))?;
     let take_line = |[row, column]: [usize; 2], heights: &[f64]| take(&Line { row, column, heights });
     let [nx, ny] = match extension(path).as_str() {
         "npy" => npy::rows(path, source, take_line)?,
         "csv" | "txt" | "dat" | "asc" => return text::read(path, source, take),
         "gsf" => return gsf::read(path, source, take),
-        "x3p" => return x3p::read(path, source, take),
+        "x3p" => return x3p::read(path, source, preparation.is_missing(f64::NAN), take),
         "png" => return image::read(path, source, take),
         "tif" | "tiff" => return tiff::read(path, source, take),
         other => {
-            let known = ".npy, .csv (.txt, .dat, .asc), .gsf, .x3p, .png or .tif";
+            let known = ".npy, .csv (.txt, .dat, .asc), .gsf, .x3p, .png or .tif; Gwyddion and the Python package SurfaceTopography \
+                         write them from files of instruments";
             return Err(unknown_extension(path, other, known));
         }
     };
@@ -197,17 +288,18 @@ fn read(path: &Path, source: &mut (impl BufRead + Seek), take: &mut Take) -> Res
         top_first: false,
         pixel: None,
         height_unit: None,
-        note: None,
+        notes: Vec::new(),
     })
 }
 
-fn not_measured(path: &Path, line: &Line, gap: usize) -> ArrayError {
+fn not_measured(path: &Path, height: f64, [row, column]: [usize; 2]) -> ArrayError {
+    let remedy = match height.is_nan() {
+        true => ", or leave them out with `missing = \"nan\"`",
+        false => "",
+    };
     let problem = format!(
-        "has {} in row {}, column {} (both counted from 0), where a height is wanted: fill points that were not measured by \
-         interpolation before",
-        line.heights[gap],
-        line.row,
-        line.column + gap
+        "has {height} in row {row}, column {column} (both counted from 0), where a height is wanted: fill points that were not \
+         measured by interpolation before{remedy}"
     );
     contents_error(path, problem)
 }

@@ -1,4 +1,7 @@
-//! Parameters of ISO 25178-2 of the heights as they stand in the file, neither levelled nor filtered.
+//! Parameters of ISO 25178-2 of heights that are not filtered, and the plane of least squares through them.
+//! Points that are no numbers were not measured, and count for nothing.
+
+use super::grid::Line;
 
 /// The lowest and the highest of some heights.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -14,12 +17,14 @@ pub(super) struct Mean {
     /// and the range of all heights.
     first: Option<(f64, HeightRange)>,
     sum: f64,
-    count: f64,
+    count: usize,
 }
 
 impl Mean {
     pub(super) fn add(&mut self, heights: &[f64]) {
-        let Some(&start) = heights.first() else { return };
+        let Some(&start) = heights.iter().find(|height| !height.is_nan()) else {
+            return;
+        };
         let (first, range) = self.first.get_or_insert((
             start,
             HeightRange {
@@ -27,18 +32,26 @@ impl Mean {
                 highest: start,
             },
         ));
-        for &height in heights {
+        let (mut sum, mut count) = (0.0, 0);
+        for &height in heights.iter().filter(|height| !height.is_nan()) {
             range.lowest = range.lowest.min(height);
             range.highest = range.highest.max(height);
+            sum += height - *first;
+            count += 1;
         }
-        self.sum += heights.iter().map(|height| height - *first).sum::<f64>();
-        self.count += heights.len() as f64;
+        self.sum += sum;
+        self.count += count;
+    }
+
+    /// Number of points.
+    pub(super) fn count(&self) -> usize {
+        self.count
     }
 
     /// Mean and range, if there is a height.
     pub(super) fn of_all(&self) -> Option<(f64, HeightRange)> {
         self.first
-            .map(|(first, range)| (first + self.sum / self.count, range))
+            .map(|(first, range)| (first + self.sum / self.count as f64, range))
     }
 }
 
@@ -59,42 +72,95 @@ pub struct Roughness {
     pub sku: Option<f64>,
 }
 
-/// The sums that a plane through the deviations z from the mean takes: of z times the column and the row.
-#[derive(Default)]
+/// A plane through a map, in heights per column and per row from its middle, and a height there.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Plane {
+    middle: [f64; 2],
+    slopes: [f64; 2],
+    /// The share of the variance of the heights that the plane takes.
+    pub(super) share: f64,
+}
+
+impl Plane {
+    /// The heights of a line above the plane, which goes through zero in the middle of the map.
+    pub(super) fn subtract(&self, line: &Line, heights: &mut Vec<f64>) {
+        heights.clear();
+        let across = self.slopes[1] * (line.row as f64 - self.middle[1]);
+        let of_plane = |column: usize| self.slopes[0] * (column as f64 - self.middle[0]) + across;
+        let levelled = (line.column..).zip(line.heights);
+        heights.extend(levelled.map(|(column, height)| height - of_plane(column)));
+    }
+}
+
+/// Sums over the points of a map, of products of their column x and row y, from the middle, and their height
+/// z.
 pub(super) struct PlaneSums {
-    along: [f64; 2],
-    square: f64,
+    middle: [f64; 2],
+    count: f64,
+    /// Sums of x, y and z.
+    of: [f64; 3],
+    /// Sums of xx, xy, yy, xz, yz and zz.
+    products: [f64; 6],
 }
 
 impl PlaneSums {
-    /// Adds points of a row of a map, the first of them in the column `column`.
-    pub(super) fn add(&mut self, row: usize, column: usize, deviations: &[f64]) {
-        let (mut sum, mut weighted) = (0.0, 0.0);
-        for (at, z) in (column..).zip(deviations) {
-            sum += z;
-            weighted += at as f64 * z;
-            self.square += z * z;
+    /// The sums of a map of so many points.
+    pub(super) fn new(points: [usize; 2]) -> Self {
+        Self {
+            middle: points.map(|count| (count as f64 - 1.0) / 2.0),
+            count: 0.0,
+            of: [0.0; 3],
+            products: [0.0; 6],
         }
-        self.along[0] += weighted;
-        self.along[1] += row as f64 * sum;
     }
 
-    /// The share of the variance that the plane of least squares takes from a map of so many points: over a
-    /// whole grid columns and rows are orthogonal, and
+    /// Adds the points of a line, with their heights from `mean`.
+    pub(super) fn add(&mut self, line: &Line, mean: f64) {
+        let y = line.row as f64 - self.middle[1];
+        for (column, height) in (line.column..).zip(line.heights) {
+            let (x, z) = (column as f64 - self.middle[0], height - mean);
+            if z.is_nan() {
+                continue;
+            }
+            self.count += 1.0;
+            for (sum, value) in self.of.iter_mut().zip([x, y, z]) {
+                *sum += value;
+            }
+            for (sum, product) in self
+                .products
+                .iter_mut()
+                .zip([x * x, x * y, y * y, x * z, y * z, z * z])
+            {
+                *sum += product;
+            }
+        }
+    }
+
+    /// The plane of least squares: with S the sums of products of deviations from the means,
     ///
     /// ```text
-    /// share = [(sum z x)^2/sum x^2 + (sum z y)^2/sum y^2]/sum z^2,   x and y from the middle
+    /// Sxx a + Sxy b = Sxz,   Sxy a + Syy b = Syz,   share = (a Sxz + b Syz)/Szz
     /// ```
-    pub(super) fn share(&self, points: [usize; 2]) -> f64 {
-        let [nx, ny] = points.map(|count| count as f64);
-        // The sum of (i - (n - 1)/2)^2 over i = 0 ... n - 1, for every line across.
-        let squares = [nx * (nx * nx - 1.0) / 12.0 * ny, ny * (ny * ny - 1.0) / 12.0 * nx];
-        let taken = self.along.iter().zip(squares).filter(|(_, square)| *square > 0.0);
-        let taken: f64 = taken.map(|(sum, square)| sum * sum / square).sum();
-        if self.square > 0.0 {
-            taken / self.square
-        } else {
-            0.0
+    pub(super) fn plane(&self) -> Plane {
+        let [x, y, z] = self.of;
+        let about = |product: usize, a: f64, b: f64| self.products[product] - a * b / self.count.max(1.0);
+        let [xx, xy, yy] = [about(0, x, x), about(1, x, y), about(2, y, y)];
+        let [xz, yz, zz] = [about(3, x, z), about(4, y, z), about(5, z, z)];
+        let ratio = |sum: f64, of: f64| if of > 0.0 { sum / of } else { 0.0 };
+        let determinant = xx * yy - xy * xy;
+        // Points on one line have no plane, and may have a slope along it.
+        let slopes = match determinant > 1e-12 * xx * yy {
+            true => [
+                (xz * yy - yz * xy) / determinant,
+                (yz * xx - xz * xy) / determinant,
+            ],
+            false if xx > yy => [ratio(xz, xx), 0.0],
+            false => [0.0, ratio(yz, yy)],
+        };
+        Plane {
+            middle: self.middle,
+            slopes,
+            share: ratio(slopes[0] * xz + slopes[1] * yz, zz),
         }
     }
 }
@@ -107,10 +173,13 @@ pub(super) struct Moments {
 }
 
 impl Moments {
-    pub(super) fn add(&mut self, deviations: &[f64]) {
-        let mut sums = [0.0; 4];
-        for z in deviations {
+    /// Adds heights, as deviations from their mean.
+    pub(super) fn add(&mut self, heights: &[f64], mean: f64) {
+        let (mut sums, mut count) = ([0.0; 4], 0.0);
+        for height in heights.iter().filter(|height| !height.is_nan()) {
+            let z = height - mean;
             let square = z * z;
+            count += 1.0;
             for (sum, term) in sums
                 .iter_mut()
                 .zip([z.abs(), square, square * z, square * square])
@@ -118,7 +187,7 @@ impl Moments {
                 *sum += term;
             }
         }
-        self.count += deviations.len() as f64;
+        self.count += count;
         for (sum, of_line) in self.sums.iter_mut().zip(sums) {
             *sum += of_line;
         }

@@ -11,7 +11,7 @@ use crate::arrays::error::{ArrayError, contents_error};
 use crate::arrays::head::length_and_head;
 use crate::arrays::table;
 use crate::quantity::Length;
-use crate::table::{Encoding, HEAD_BYTES};
+use crate::table::{Encoding, HEAD_BYTES, TableLayout};
 
 pub(super) fn read(
     path: &Path,
@@ -20,30 +20,47 @@ pub(super) fn read(
 ) -> Result<HeightGrid, ArrayError> {
     let (_, head) = length_and_head(path, source, HEAD_BYTES)?;
     let stated = Stated::of(path, &head)?;
-    let list = match table::columns(path, source)? {
-        3 => PointList::of(path, source)?,
-        _ => None,
-    };
-    source.rewind().map_err(ArrayError::read(path))?;
-    if let Some(list) = list {
-        table::rows(path, source, |_, point| {
+    let layout = table::layout_of_map(path, &head)?;
+    let notes = Vec::from_iter(layout.took());
+    if layout.columns == 3
+        && let Some(list) = PointList::of(path, source, &layout)?
+    {
+        let [nx, ny] = list.points();
+        let mut is_seen = vec![false; nx * ny];
+        table::rows(path, source, &layout, |_, point| {
             let [column, row] = [0, 1].map(|axis| list.place(axis, point[axis]));
+            let is_second = is_seen.get_mut(row * nx + column);
+            if is_second.is_none_or(|seen| std::mem::replace(seen, true)) {
+                let [x, y] = [point[0], point[1]];
+                return Err(contents_error(
+                    path,
+                    format!("has the point {x}, {y} twice: remove one"),
+                ));
+            }
             take(&Line {
                 row,
                 column,
                 heights: &point[2..],
             })
         })?;
+        // Lists leave out what was not measured.
+        for (at, _) in is_seen.iter().enumerate().filter(|(_, seen)| !**seen) {
+            take(&Line {
+                row: at / nx,
+                column: at % nx,
+                heights: &[f64::NAN],
+            })?;
+        }
         return Ok(HeightGrid {
-            points: list.points(),
+            points: [nx, ny],
             top_first: false,
             pixel: None,
             height_unit: None,
-            note: None,
+            notes,
         });
     }
     let take_line = |[row, column]: [usize; 2], heights: &[f64]| take(&Line { row, column, heights });
-    let [nx, ny] = table::rows(path, source, take_line)?;
+    let [nx, ny] = table::rows(path, source, &layout, take_line)?;
     let points = points(path, "table", nx, ny)?;
     let pixel = stated.as_ref().and_then(|stated| stated.size);
     Ok(HeightGrid {
@@ -51,7 +68,7 @@ pub(super) fn read(
         top_first: stated.is_some(),
         pixel: pixel.map(|[x, y]| [x / points[0] as f64, y / points[1] as f64]),
         height_unit: stated.and_then(|stated| stated.height_unit),
-        note: None,
+        notes,
     })
 }
 
@@ -105,11 +122,14 @@ struct PointList {
 impl PointList {
     /// The coordinates of a table of three columns, if the first two are those of a regular grid: a map that
     /// is three points wide has other numbers there.
-    fn of(path: &Path, source: &mut (impl BufRead + Seek)) -> Result<Option<Self>, ArrayError> {
-        source.rewind().map_err(ArrayError::read(path))?;
+    fn of(
+        path: &Path,
+        source: &mut (impl BufRead + Seek),
+        layout: &TableLayout,
+    ) -> Result<Option<Self>, ArrayError> {
         let (mut axes, mut n_points) = ([Vec::new(), Vec::new()], 0_usize);
         let mut is_list = true;
-        table::rows(path, source, |_, point| {
+        table::rows(path, source, layout, |_, point| {
             n_points += 1;
             for (axis, &coordinate) in axes.iter_mut().zip(point) {
                 let place = axis.partition_point(|other: &f64| *other < coordinate);
@@ -118,14 +138,16 @@ impl PointList {
                     axis.insert(place, coordinate);
                 }
             }
-            is_list &= point.iter().all(|number| number.is_finite());
+            is_list &= point[..2].iter().all(|number| number.is_finite());
             Ok(())
         })?;
         let list = Self { axes };
         let [nx, ny] = list.points();
         let is_grid = nx > 1
             && ny > 1
-            && nx.saturating_mul(ny) == n_points
+            // Some points may be left out: fewer than a quarter, such that two rows of any map are no list.
+            && n_points <= nx.saturating_mul(ny)
+            && 3 * nx.saturating_mul(ny) <= 4 * n_points
             && list.axes.iter().all(|axis| is_even(axis));
         Ok((is_list && is_grid).then_some(list))
     }

@@ -104,7 +104,7 @@ pub(super) fn read(
         top_first: true,
         pixel: None,
         height_unit: None,
-        note: None,
+        notes: Vec::new(),
     })
 }
 

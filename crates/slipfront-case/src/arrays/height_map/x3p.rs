@@ -11,23 +11,23 @@ use std::path::Path;
 use flate2::read::DeflateDecoder;
 use md5::{Digest, Md5};
 use rawzip::{CompressionMethod, RECOMMENDED_BUFFER_SIZE, ZipArchive};
-use roxmltree::{Document, Node, ParsingOptions};
+use roxmltree::Node;
 
 use super::grid::{HeightGrid, Line, Take, points};
 use crate::arrays::error::{ArrayError, broken, contents_error};
+use crate::xml;
 use slipfront_base::text::truncated;
 
 /// Largest length of `main.xml`: a description takes a few thousand bytes.
 const XML_MAX_BYTES: u64 = 1 << 20;
-/// Most nodes of `main.xml`: elements, comments and the texts between them. A description takes a few
-/// hundred.
+/// Most nodes of `main.xml`: a description takes a few hundred.
 const NODES_MAX: u32 = 1 << 16;
-/// Most namespaces of `main.xml`, and most attributes of one of its elements. A description takes a few.
-const NAMES_MAX: usize = 64;
 
+/// Reads the points of a file. Where a map may have gaps, points that were not measured are no numbers.
 pub(super) fn read(
     path: &Path,
     source: &mut (impl BufRead + Seek),
+    has_gaps: bool,
     take: &mut Take,
 ) -> Result<HeightGrid, ArrayError> {
     let refuse = |detail: &str| broken(path, ".x3p", detail);
@@ -75,9 +75,18 @@ pub(super) fn read(
     })?;
     let description = Description::of(path, &xml)?;
     let [nx, ny] = description.points;
+    let mut valid = Vec::new();
     if let Some(name) = &description.valid {
-        entry(name, &mut |stored| all_valid(path, stored, nx * ny))?;
+        entry(name, &mut |stored| {
+            valid = valid_points(path, stored, nx * ny, has_gaps)?;
+            Ok(())
+        })?;
     }
+    let is_valid = |point: usize| {
+        valid
+            .get(point / 8)
+            .is_none_or(|bits| bits >> (point % 8) & 1 == 1)
+    };
     let number = description.number;
     let mut bytes = vec![0; number.size() * nx];
     let mut heights = vec![0.0; nx];
@@ -89,8 +98,11 @@ pub(super) fn read(
                 checksum.update(&bytes);
             }
             read.map_err(|error| refuse(&format!("`{}`: {error}", description.data)))?;
-            for (height, bytes) in heights.iter_mut().zip(bytes.chunks_exact(number.size())) {
-                *height = number.decode(bytes) * description.increment + description.offset;
+            for (column, bytes) in bytes.chunks_exact(number.size()).enumerate() {
+                heights[column] = match is_valid(row * nx + column) {
+                    true => number.decode(bytes) * description.increment + description.offset,
+                    false => f64::NAN,
+                };
             }
             take(&Line {
                 row,
@@ -105,7 +117,7 @@ pub(super) fn read(
         top_first: true,
         pixel: Some(description.pixel),
         height_unit: Some(1.0),
-        note: description.other_checksum(&checksum.finalize()),
+        notes: Vec::from_iter(description.other_checksum(&checksum.finalize())),
     })
 }
 
@@ -120,27 +132,28 @@ fn is_called(file: &[u8], name: &str) -> bool {
     is_name(file) || below_folder.is_some_and(is_name)
 }
 
-/// Refuses a map in which a point was not measured: one bit for every point says so, the lowest of a byte
-/// first.
-fn all_valid(path: &Path, stored: &mut dyn Read, n_points: usize) -> Result<(), ArrayError> {
-    let mut piece = [0; 4096];
-    let mut first = 0;
-    while first < n_points {
-        let bits = (n_points - first).min(8 * piece.len());
-        let bytes = &mut piece[..bits.div_ceil(8)];
-        let read = stored.read_exact(bytes);
-        read.map_err(|error| broken(path, ".x3p", &format!("its list of valid points: {error}")))?;
-        let is_valid = |bit: usize| bytes[bit / 8] >> (bit % 8) & 1 == 1;
-        if let Some(bit) = (0..bits).find(|&bit| !is_valid(bit)) {
+/// Which points were measured: one bit for every point says so, the lowest of a byte first. A map with gaps
+/// is refused, unless it may have some.
+fn valid_points(
+    path: &Path,
+    stored: &mut dyn Read,
+    n_points: usize,
+    has_gaps: bool,
+) -> Result<Vec<u8>, ArrayError> {
+    let mut bytes = vec![0; n_points.div_ceil(8)];
+    let read = stored.read_exact(&mut bytes);
+    read.map_err(|error| broken(path, ".x3p", &format!("its list of valid points: {error}")))?;
+    let mut points = 0..n_points;
+    match points.find(|point| !has_gaps && bytes[point / 8] >> (point % 8) & 1 == 0) {
+        None => Ok(bytes),
+        Some(gap) => {
             let problem = format!(
-                "says that point {} (counted from 0) was not measured: fill such points by interpolation before",
-                first + bit
+                "says that point {gap} (counted from 0) was not measured: fill such points by interpolation before, or leave them \
+                 out with `missing = \"nan\"`"
             );
-            return Err(contents_error(path, problem));
+            Err(contents_error(path, problem))
         }
-        first += bits;
     }
-    Ok(())
 }
 
 /// Type of the numbers that store heights.
@@ -205,13 +218,7 @@ impl Description {
 
     fn of(path: &Path, xml: &str) -> Result<Self, ArrayError> {
         let refuse = |detail: &str| broken(path, ".x3p", detail);
-        limit_names(xml).map_err(|detail| refuse(&detail))?;
-        let options = ParsingOptions {
-            nodes_limit: NODES_MAX,
-            ..ParsingOptions::default()
-        };
-        let document = Document::parse_with_options(xml, options);
-        let document = document.map_err(|error| refuse(&format!("`main.xml` is no XML ({error})")))?;
+        let document = xml::parse("main.xml", xml, NODES_MAX).map_err(|detail| refuse(&detail))?;
         let root = document.root_element();
         let text = |place: &str| text_at(root, place);
         let wanted = |place: &str| text(place).ok_or_else(|| refuse(&format!("`main.xml` has no {place}")));
@@ -278,32 +285,6 @@ impl Description {
             checksum: text("Record3/DataLink/MD5ChecksumPointData").map(str::to_owned),
         })
     }
-}
-
-/// Refuses XML with many namespaces or attributes: the parser compares each with all others of its element,
-/// and each element with all namespaces around it, so that its time would grow with the cube of the length of
-/// the text.
-///
-/// # Errors
-/// What there is too much of, with both numbers.
-fn limit_names(xml: &str) -> Result<(), String> {
-    let namespaces = xml.matches("xmlns").count();
-    if namespaces > NAMES_MAX {
-        return Err(format!(
-            "`main.xml` declares {namespaces} namespaces, and at most {NAMES_MAX} are read"
-        ));
-    }
-    // No value of an attribute contains a `<`, so that all attributes of an element stand before the next
-    // one.
-    let begins_value = |after: &&str| after.trim_start().starts_with(['"', '\'']);
-    let of_element = |piece: &str| piece.split('=').skip(1).filter(begins_value).count();
-    let attributes = xml.split('<').map(of_element).max().unwrap_or(0);
-    if attributes > NAMES_MAX {
-        return Err(format!(
-            "an element of `main.xml` has {attributes} attributes, and at most {NAMES_MAX} are read"
-        ));
-    }
-    Ok(())
 }
 
 /// The text of an element below another one, such as `Record1/Axes`, if it is there and not empty.

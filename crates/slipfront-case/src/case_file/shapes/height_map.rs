@@ -6,6 +6,8 @@ use crate::case_file::check::Check;
 use crate::case_file::error::CaseError;
 use crate::case_file::key::{COORDINATE, COVERAGE, Key, KeyKind, SIZE, key};
 use crate::case_file::pattern::{PITCH, Pitch};
+use crate::case_file::probe::names_of;
+use crate::case_file::values::{WordOrNumber, some_word};
 use crate::key_rows;
 use crate::quantity::Length;
 
@@ -43,6 +45,60 @@ key_rows! {
         pub height_unit: Option<Length> = key("", SIZE),
         /// Distance of neighbouring points, if the file does not have it.
         pub pixel_size: Option<Pitch> = key("", PITCH),
+        /// What is subtracted before heights are compared: the plane of least squares.
+        #[serde(default, deserialize_with = "some_word")]
+        pub level: Option<Level> = key("", KeyKind::Words(names_of::<Level>)),
+        /// Value of points that were not measured, a number or `"nan"`: a block has the mean of its others.
+        pub missing: Option<Missing> = key("", KeyKind::Special("a number or `\"nan\"`")),
+    }
+}
+
+/// The key `level`: what is subtracted from heights.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Level {
+    /// The plane of least squares.
+    Plane,
+}
+
+/// The key `missing`: the value of points that were not measured.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "WordOrNumber", into = "WordOrNumber")]
+pub enum Missing {
+    /// This number.
+    Value(f64),
+    /// The word `"nan"`: whatever is no number.
+    Nan,
+}
+
+impl Missing {
+    /// The value itself; NaN for what is no number.
+    pub(crate) fn value(self) -> f64 {
+        match self {
+            Self::Value(value) => value,
+            Self::Nan => f64::NAN,
+        }
+    }
+}
+
+impl TryFrom<WordOrNumber> for Missing {
+    type Error = &'static str;
+
+    fn try_from(value: WordOrNumber) -> Result<Self, Self::Error> {
+        match value {
+            WordOrNumber::Number(number) if number.is_finite() => Ok(Self::Value(number)),
+            WordOrNumber::Word(word) if word == "nan" => Ok(Self::Nan),
+            _ => Err("expected a finite number or \"nan\""),
+        }
+    }
+}
+
+impl From<Missing> for WordOrNumber {
+    fn from(value: Missing) -> Self {
+        match value {
+            Missing::Value(number) => Self::Number(number),
+            Missing::Nan => Self::Word("nan".to_owned()),
+        }
     }
 }
 

@@ -14,7 +14,7 @@ use serde::Serialize;
 
 pub use self::cavity::{Cavity, CavitySize, Center};
 pub use self::groove::{Groove, GrooveSize};
-pub use self::height_map::{Bearing, HeightMap};
+pub use self::height_map::{Bearing, HeightMap, Level, Missing};
 pub use self::mask::{DEFAULT_THRESHOLD, Mask};
 pub(crate) use self::outlined::{Blocks, Outlined};
 pub use self::polygon::Polygon;
