@@ -87,10 +87,14 @@ impl Unknown {
     /// use slipfront_calibrate::Unknown;
     /// let damping = Unknown::new("slider.omega_star", 0.01, 1.0, true)?;
     /// assert!((damping.at(0.5) - 0.1).abs() < 1e-15 && (damping.share_of(0.1) - 0.5).abs() < 1e-15);
+    /// assert_eq!(Unknown::new("friction.mu_static", 0.3, 0.9, false)?.at(1.0), 0.9);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn at(&self, share: f64) -> f64 {
-        if self.is_logarithmic {
+        // The end of the range as it is written: 0.3 + (0.9 - 0.3) is another number than 0.9.
+        if share == 1.0 {
+            self.to
+        } else if self.is_logarithmic {
             self.from * libm::exp(share * libm::log(self.to / self.from))
         } else {
             self.from + share * (self.to - self.from)

@@ -142,6 +142,12 @@ impl Checked for [u32; 2] {
 impl Checked for String {
     fn complaint(&self, kind: &KeyKind) -> Option<String> {
         let KeyKind::File(formats) = kind else { return None };
+        if self.contains(char::is_control) {
+            // The backslashes of C:\new\table.csv and what follows them are such a sign.
+            return Some(format!(
+                "{self:?}: it has signs that are not printed; a path of Windows has single quotes, such as 'C:\\new\\table.csv', or /"
+            ));
+        }
         let ending = Path::new(self).extension().and_then(|ending| ending.to_str());
         let ending = ending.unwrap_or_default();
         let is_known = formats.iter().any(|format| ending.eq_ignore_ascii_case(format));

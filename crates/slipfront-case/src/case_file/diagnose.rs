@@ -76,6 +76,19 @@ fn advice_on_words(source: &Source, span: &Range<usize>, message: &str) -> Optio
             "{quote} is a quotation mark of printed text: a text stands in straight ones, such as \"100 kPa\""
         ));
     }
+    if [
+        "too few unicode value digits",
+        "missing escaped value",
+        "value is out of range",
+    ]
+    .iter()
+    .any(|start| message.starts_with(start))
+    {
+        return Some(
+            "behind a backslash stands the code of a sign: a path of Windows has single quotes, such as 'C:\\data\\map.csv', or /"
+                .to_owned(),
+        );
+    }
     let words: Vec<&str> = marked.split_whitespace().collect();
     if words.len() > 1 && words.iter().all(|word| word.parse::<f64>().is_ok()) {
         let list = words.join(", ");
