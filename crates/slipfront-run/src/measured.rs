@@ -432,12 +432,11 @@ impl MeasuredRecord {
         }
         // The line of units counts where the name has none.
         let below = |place: usize| {
-            layout
-                .units
-                .as_ref()?
-                .texts
-                .get(place)
-                .map(|text| without_brackets(text))
+            let unit = layout.units.as_ref()?.texts.get(place);
+            let unit = unit.map_or("", |text| without_brackets(text));
+            // No unit in such a line is the unit 1, of a coefficient.
+            let is_bare = names.get(place).is_some_and(|name| is_coefficient(name.bare));
+            (!unit.is_empty() || is_bare).then_some(unit)
         };
         let units = [0, 1].map(|k| {
             let in_name = names.get(places[k]).and_then(|name| name.unit.clone());
@@ -451,9 +450,8 @@ impl MeasuredRecord {
             self.of = Measure::Coefficient;
         }
         let shown = |k: usize| {
-            names
-                .get(places[k])
-                .map_or(columns[k].name.as_str(), |name| name.whole)
+            let named = names.get(places[k]).filter(|name| !name.whole.is_empty());
+            named.map_or(columns[k].name.as_str(), |name| name.whole)
         };
         let factor =
             |k: usize, measure, axis| factor(path, columns[k], shown(k), units[k].as_deref(), measure, axis);
@@ -615,15 +613,18 @@ fn factor(
         example: match measure {
             Measure::Time => "ms",
             Measure::Displacement => "um",
-            Measure::Force if means_a_coefficient(column, &shown()) => "1",
+            Measure::Force if is_coefficient(&column.name) || is_coefficient(&shown()) => "1",
+            // Gram-force of instruments, and not a mass.
+            Measure::Force if in_table == Some("g") => "gf",
+            Measure::Force if in_table == Some("kg") => "kgf",
             Measure::Force => "N",
             Measure::Coefficient => "1",
         },
     })
 }
 
-/// Whether a column has the usual name of a friction coefficient.
-fn means_a_coefficient(column: &Column, shown: &str) -> bool {
+/// Whether a name is a usual one of a friction coefficient.
+fn is_coefficient(name: &str) -> bool {
     const NAMES: [&str; 7] = [
         "mu",
         "\u{3bc}",
@@ -633,8 +634,7 @@ fn means_a_coefficient(column: &Column, shown: &str) -> bool {
         "friction coefficient",
         "coefficient of friction",
     ];
-    let is_one = |name: &str| NAMES.contains(&name.trim().to_lowercase().as_str());
-    is_one(&column.name) || is_one(shown)
+    NAMES.contains(&name.trim().to_lowercase().as_str())
 }
 
 #[cfg(test)]

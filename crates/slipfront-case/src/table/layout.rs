@@ -173,10 +173,7 @@ impl TableLayout {
                 ));
             }
             None if self.above.is_some() => {
-                took.push(format!(
-                    "no line names the columns; rows begin in line {}",
-                    self.first_line
-                ));
+                took.push(format!("rows of numbers begin in line {}", self.first_line));
             }
             _ => {}
         }
@@ -263,6 +260,7 @@ impl Reading {
             .lines()
             .zip(1..)
             .filter(|(text, _)| !text.trim().is_empty() && !text.trim_start().starts_with('#'))
+            .filter(|(line, number)| *number > 1 || sep_line(line).is_none())
             .map(|(text, number)| Line {
                 number,
                 text,
@@ -286,8 +284,13 @@ impl Reading {
                 > longest.len()
         };
         let of_numbers: Vec<usize> = (0..columns).filter(in_most).collect();
+        // What stands in a column that rows leave empty is a word of an instrument.
+        let is_empty = |column: &usize| longest.iter().all(|line| line.fields[*column].is_empty());
+        let of_nothing: Vec<usize> = (0..columns).filter(is_empty).collect();
         let has_all = |line: &&Line| {
-            line.fields.len() == columns && of_numbers.iter().all(|&column| is_number(&line.fields[column]))
+            line.fields.len() == columns
+                && of_numbers.iter().all(|&column| is_number(&line.fields[column]))
+                && of_nothing.iter().all(|&column| line.fields[column].is_empty())
         };
         let first = lines
             .iter()
@@ -322,9 +325,15 @@ impl Reading {
         };
         let has_units = |at: usize| {
             let line = lines.get(at)?;
+            let known = line.fields.iter().filter(|field| is_unit(field)).count();
+            // Quantities of an instrument have units that are no matter here, such as those of temperatures.
             let are_units = line.fields.len() <= columns.max(1)
                 && numbers(line) == 0
-                && line.fields.iter().all(|field| is_unit(field));
+                && 2 * known > line.fields.len()
+                && line
+                    .fields
+                    .iter()
+                    .all(|field| field.chars().count() <= UNIT_MAX_CHARS);
             are_units.then_some(at)
         };
         let (names, units) = match names {
@@ -465,11 +474,14 @@ fn trimmed(mut fields: Vec<Cow<'_, str>>) -> Vec<Cow<'_, str>> {
     fields
 }
 
+/// Largest number of characters of a unit.
+const UNIT_MAX_CHARS: usize = 10;
+
 /// Whether a text can be the unit of a column, such as `N`, `(mm)`, `[-]`, `m/s^2` or nothing.
 fn is_unit(text: &str) -> bool {
-    const WORDS: [&str; 24] = [
-        "s", "sec", "ms", "us", "min", "h", "m", "mm", "um", "nm", "cm", "n", "mn", "kn", "gf", "kgf", "v",
-        "mv", "%", "1", "-", "rpm", "c", "k",
+    const WORDS: [&str; 26] = [
+        "s", "sec", "ms", "us", "min", "h", "m", "mm", "um", "nm", "cm", "n", "mn", "kn", "gf", "kgf", "g",
+        "kg", "v", "mv", "%", "1", "-", "rpm", "c", "k",
     ];
     let bare = text.trim_matches(['(', ')', '[', ']']).trim();
     let is_bracketed = bare.len() + 2 <= text.len();
@@ -531,6 +543,7 @@ mod tests {
     #[test_case("X\tY\tComment\n0\t1\n1\t2\n", ('\t', '.', [Some(1), None], 2); "more names than fields")]
     #[test_case("t,F\n0,1\n", (',', '.', [Some(1), None], 2); "one row")]
     #[test_case("t,F\n", (',', '.', [Some(1), None], 2); "names alone")]
+    #[test_case("X0\t0,5\t0,5\n***End***\nX_Value\tF\tu\tComment\n\t0,5\t0,1\n\t0,6\t0,2\n", ('\t', ',', [Some(3), None], 4); "an empty column")]
     #[test_case("t;F\n12:00:01;0,5\n12:00:02;0,6\n", (';', ',', [Some(1), None], 2); "time of the day")]
     fn layouts_are_found(text: &str, wanted: (char, char, [Option<u64>; 2], u64)) {
         assert_eq!(found(text), wanted);

@@ -529,7 +529,7 @@ fn damaged_fields_and_tables_are_refused() {
         (
             "a.jpg",
             "",
-            "name a file that ends in .npy, .csv (.txt, .dat, .asc), .gsf, .x3p, .png or .tif",
+            "name a file that ends in .npy, .csv (.txt, .dat, .asc, .xyz), .gsf, .x3p, .png or .tif",
         ),
     ] {
         let said = read_bytes(name, text.as_bytes()).unwrap_err().to_string();
@@ -966,8 +966,8 @@ fn points_that_an_x3p_leaves_out_may_be_missing() {
     assert!((map.blocks[0] - 7.0 / 3.0).abs() < 1e-15);
 }
 
-#[test_case("h=2 w=3\n1,2,4\n3,5,9\n", "no line names the columns; rows begin in line 2; 1 line above ignored, \"h=2 w=3\""; "size")]
-#[test_case("Width,3\nUnit,um\n\n1,2,4\n3,5,9\n", "no line names the columns; rows begin in line 4; 2 lines above ignored, \"Width,3\""; "instrument")]
+#[test_case("h=2 w=3\n1,2,4\n3,5,9\n", "rows of numbers begin in line 2; 1 line above ignored, \"h=2 w=3\""; "size")]
+#[test_case("Width,3\nUnit,um\n\n1,2,4\n3,5,9\n", "rows of numbers begin in line 4; 2 lines above ignored, \"Width,3\""; "instrument")]
 fn lines_above_a_matrix_are_passed_over_and_told(text: &str, note: &str) {
     let map = prepared(&text[..], Preparation::default()).unwrap();
     assert_eq!(map.points, [3, 2]);

@@ -109,6 +109,21 @@ fn check_in(workspace: &Workspace, name: &str, runs_all: bool) -> usize {
         if let Some(file) = file {
             workspace.write(file, lines.join("\n"));
         }
+        // A file of an instrument has its name, and its encoding where it is another, behind `text`.
+        match info.split_whitespace().collect::<Vec<_>>()[..] {
+            ["text", file] => workspace.write(file, lines.join("\n")),
+            ["text", file, "utf-16"] => {
+                let units = "\u{feff}".encode_utf16().collect::<Vec<_>>().into_iter();
+                let units = units.chain(
+                    lines
+                        .iter()
+                        .flat_map(|line| line.encode_utf16().chain([0xa]))
+                        .collect::<Vec<_>>(),
+                );
+                workspace.write(file, units.flat_map(u16::to_le_bytes).collect::<Vec<u8>>());
+            }
+            _ => {}
+        }
         if info != "console" {
             continue;
         }
@@ -171,12 +186,23 @@ fn the_way_from_an_experiment_shows_what_is_printed() {
     assert!(check("experiment.md", false) >= 5);
 }
 
+#[test]
+fn files_of_instruments_are_read_as_shown() {
+    assert!(check("instruments.md", true) >= 12);
+}
+
 /// Every other guide, most of which show no output.
 #[test]
 fn other_guides_show_what_is_printed() {
     for entry in std::fs::read_dir(repository().join("docs/guide")).unwrap() {
         let name = entry.unwrap().file_name().into_string().unwrap();
-        let have_a_test = ["getting-started.md", "textures.md", "experiment.md", "studies.md"];
+        let have_a_test = [
+            "getting-started.md",
+            "textures.md",
+            "experiment.md",
+            "instruments.md",
+            "studies.md",
+        ];
         if name.ends_with(".md") && !have_a_test.contains(&name.as_str()) {
             check(&name, false);
         }

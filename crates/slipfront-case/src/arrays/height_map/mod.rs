@@ -272,13 +272,13 @@ fn read_file(
     let take_line = |[row, column]: [usize; 2], heights: &[f64]| take(&Line { row, column, heights });
     let [nx, ny] = match extension(path).as_str() {
         "npy" => npy::rows(path, source, take_line)?,
-        "csv" | "txt" | "dat" | "asc" => return text::read(path, source, take),
+        "csv" | "txt" | "dat" | "asc" | "xyz" => return text::read(path, source, take),
         "gsf" => return gsf::read(path, source, take),
         "x3p" => return x3p::read(path, source, preparation.is_missing(f64::NAN), take),
         "png" => return image::read(path, source, take),
         "tif" | "tiff" => return tiff::read(path, source, take),
         other => {
-            let known = ".npy, .csv (.txt, .dat, .asc), .gsf, .x3p, .png or .tif; Gwyddion and the Python package SurfaceTopography \
+            let known = ".npy, .csv (.txt, .dat, .asc, .xyz), .gsf, .x3p, .png or .tif; Gwyddion and the Python package SurfaceTopography \
                          write them from files of instruments";
             return Err(unknown_extension(path, other, known));
         }

@@ -1,9 +1,10 @@
-//! Height maps as text: a matrix of heights, the text export of Gwyddion, whose comments state its units, or
-//! a list of points x, y, z on a regular grid.
+//! Height maps as text: a matrix of heights, with or without statements of its program on units above, or a
+//! list of points x, y, z on a regular grid.
 
 use std::io::{BufRead, Seek};
 use std::path::Path;
 
+use slipfront_base::number_format::with_si_prefix;
 use slipfront_base::text::truncated;
 
 use super::grid::{HeightGrid, Line, Take, points};
@@ -21,7 +22,13 @@ pub(super) fn read(
     let (_, head) = length_and_head(path, source, HEAD_BYTES)?;
     let stated = Stated::of(path, &head)?;
     let layout = table::layout_of_map(path, &head)?;
-    let notes = Vec::from_iter(layout.took());
+    let mut notes = Vec::from_iter(layout.took());
+    if let Some((pixel, unit)) = stated.pixel.zip(stated.height_unit) {
+        let [pixel, unit] = [pixel, unit].map(|length| with_si_prefix(length, "m"));
+        notes.push(format!(
+            "lines above its rows state a pixel of {pixel} and a height of {unit} for the value 1"
+        ));
+    }
     if layout.columns == 3
         && let Some(list) = PointList::of(path, source, &layout)?
     {
@@ -62,56 +69,95 @@ pub(super) fn read(
     let take_line = |[row, column]: [usize; 2], heights: &[f64]| take(&Line { row, column, heights });
     let [nx, ny] = table::rows(path, source, &layout, take_line)?;
     let points = points(path, "table", nx, ny)?;
-    let pixel = stated.as_ref().and_then(|stated| stated.size);
+    let of_size = stated
+        .size
+        .map(|[x, y]| [x / points[0] as f64, y / points[1] as f64]);
     Ok(HeightGrid {
         points,
-        top_first: stated.is_some(),
-        pixel: pixel.map(|[x, y]| [x / points[0] as f64, y / points[1] as f64]),
-        height_unit: stated.and_then(|stated| stated.height_unit),
+        top_first: stated.top_first,
+        pixel: of_size.or(stated.pixel.map(|pixel| [pixel; 2])),
+        height_unit: stated.height_unit,
         notes,
     })
 }
 
-/// Statements in the comments of a text export of Gwyddion. Its first row is the top one.
+/// Statements of a program above the heights that it wrote.
+#[derive(Default)]
 struct Stated {
-    /// Size along x and along y, m.
+    /// Whether the first row is the top one.
+    top_first: bool,
+    /// Size of the map along x and along y, m.
     size: Option<[f64; 2]>,
+    /// Distance of neighbouring points, m.
+    pixel: Option<f64>,
     /// Height of the value 1, m.
     height_unit: Option<f64>,
 }
 
 impl Stated {
-    /// Reads the comments of a table that begins with `head`; none if they are not those of Gwyddion.
-    fn of(path: &Path, head: &[u8]) -> Result<Option<Self>, ArrayError> {
+    /// Reads the lines above the numbers of a table that begins with `head`.
+    ///
+    /// ```text
+    /// # Channel: Topography          h=650 w=650
+    /// # Width: 10.00 um              pixel size=3.7e-007 m
+    /// # Height: 5.00 um              data unit=rad
+    /// # Value units: nm              height conversion factor (-> m)=6.3e-008
+    /// ```
+    ///
+    /// The comments on the left are those of Gwyddion, whose names but the last are in the language of its
+    /// user; the lines on the right are those of a microscope.
+    fn of(path: &Path, head: &[u8]) -> Result<Self, ArrayError> {
         let text = Encoding::of(head).text(head);
-        let comments = text.lines().map_while(|line| line.trim().strip_prefix('#'));
-        let comments: Vec<(&str, &str)> = comments.filter_map(|line| line.split_once(':')).collect();
-        let value = |name: &str| {
-            let of_name = comments.iter().find(|(key, _)| key.trim() == name);
-            of_name.map(|(_, value)| value.trim())
-        };
-        if value("Channel").is_none() && (value("Width").is_none() || value("Height").is_none()) {
-            return Ok(None);
-        }
         let length = |name: &str, text: &str| {
             let length = text.replace(',', ".").parse::<Length>();
             length.map(|length| length.si()).map_err(|error| {
-                contents_error(
-                    path,
-                    format!("has `{name}: {}` in its comments: {error}", truncated(text)),
-                )
+                let text = truncated(text);
+                contents_error(path, format!("has `{name}` = {text} above its heights: {error}"))
             })
         };
-        let side = |name: &str| value(name).map(|text| length(name, text)).transpose();
-        let unit = |unit: &str| length("Value units", &format!("1 {unit}"));
-        Ok(Some(Self {
-            size: side("Width")?
-                .zip(side("Height")?)
-                .map(|(width, height)| [width, height]),
-            height_unit: value("Value units").map(unit).transpose()?,
-        }))
+        let comments = text.lines().map_while(|line| line.trim().strip_prefix('#'));
+        let comments: Vec<(&str, &str)> = comments.filter_map(|line| line.split_once(':')).collect();
+        let unit = comments.iter().find(|(name, _)| name.trim() == "Value units");
+        let is_gwyddion = unit.is_some() || comments.iter().any(|(name, _)| name.trim() == "Channel");
+        if is_gwyddion {
+            let side = |at: usize| {
+                comments
+                    .get(at)
+                    .map(|(name, text)| length(name.trim(), text.trim()))
+            };
+            return Ok(Self {
+                top_first: true,
+                size: side(1)
+                    .transpose()?
+                    .zip(side(2).transpose()?)
+                    .map(|(x, y)| [x, y]),
+                height_unit: unit
+                    .map(|(name, unit)| length(name.trim(), &format!("1 {}", unit.trim())))
+                    .transpose()?,
+                ..Self::default()
+            });
+        }
+        let stated = |name: &str| {
+            let lines = text
+                .lines()
+                .take(STATEMENTS_MAX)
+                .filter_map(|line| line.split_once('='));
+            let mut of_name = lines.filter(|(key, _)| key.trim().eq_ignore_ascii_case(name));
+            of_name.next().map(|(_, value)| value.trim())
+        };
+        let pixel = stated("pixel size").map(|text| length("pixel size", text));
+        let factor = "height conversion factor (-> m)";
+        let height_unit = stated(factor).map(|text| length(factor, &format!("{text} m")));
+        Ok(Self {
+            pixel: pixel.transpose()?,
+            height_unit: height_unit.transpose()?,
+            ..Self::default()
+        })
     }
 }
+
+/// Number of lines in which statements are looked for.
+const STATEMENTS_MAX: usize = 64;
 
 /// The coordinates of a list of points that form a regular grid.
 struct PointList {
@@ -196,6 +242,23 @@ mod tests {
         assert!(grid.top_first);
         assert_eq!((grid.pixel, grid.height_unit), (Some([5e-6, 2.5e-6]), Some(1e-9)));
         assert_eq!(points, [(0, 0, 1.0), (0, 1, 2.0), (1, 0, 3.0), (1, 1, 4.0)]);
+    }
+
+    #[test]
+    fn names_of_the_export_are_in_the_language_of_its_user() {
+        let text = "# Kanal: Topographie\n# Breite: 10.00 \u{b5}m\n# H\u{f6}he: 5,00 \u{b5}m\n# Value units: nm\n1\t2\n3\t4\n";
+        let (grid, _) = read_text(text);
+        assert!(grid.top_first);
+        assert_eq!((grid.pixel, grid.height_unit), (Some([5e-6, 2.5e-6]), Some(1e-9)));
+    }
+
+    #[test]
+    fn statements_of_a_microscope_are_taken() {
+        let text = "h=2 w=3\npixel size=3.5e-007 m\ndata unit=rad\nheight conversion factor (-> m)=6.25e-008\n1 2 4\n3 4 9\n";
+        let (grid, points) = read_text(text);
+        assert_eq!((grid.pixel, grid.height_unit), (Some([3.5e-7; 2]), Some(6.25e-8)));
+        assert_eq!((grid.points, points.len()), ([3, 2], 6));
+        assert!(grid.notes[0].contains("4 lines above ignored"));
     }
 
     #[test]

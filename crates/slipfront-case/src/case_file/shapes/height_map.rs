@@ -25,7 +25,7 @@ key_rows! {
     #[serde(try_from = "HeightMapKeys", into = "HeightMapKeys")]
     pub struct HeightMap from HeightMapKeys {
         /// Measured heights, stretched over the slider.
-        pub file: String = key("", KeyKind::File(&["npy", "csv", "txt", "dat", "asc", "gsf", "x3p", "png", "tif", "tiff"])),
+        pub file: String = key("", KeyKind::File(&["npy", "csv", "txt", "dat", "asc", "xyz", "gsf", "x3p", "png", "tif", "tiff"])),
         [
             /// Heights that touch: `bearing_percent` or `depth`.
             pub bearing: Bearing or "a height map needs what touches: `bearing_percent = 60` (percent of the area, the highest parts) or \
