@@ -161,7 +161,7 @@ pub struct MeasuredRecord {
 /// Where two columns stand, and what their numbers are multiplied by to be in SI units.
 struct Found {
     places: [usize; 2],
-    /// Of abscissae; or why their unit is not known, which does not matter to times of the day.
+    /// Factor of abscissae; or why their unit is not known, which does not matter to times of the day.
     x_factor: Result<f64, MeasuredError>,
     y_factor: f64,
 }

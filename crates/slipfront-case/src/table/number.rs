@@ -23,9 +23,12 @@ pub fn number(field: &str, decimal: char) -> Option<f64> {
     }
 }
 
-/// Seconds from midnight of a time of the day, such as `10:04:31`, `10:04:31,250` or `1:04:31 PM`; behind a
-/// date, such as `2024-01-31T10:04:31` or `31.01.2024 10:04:31`, seconds from the first midnight of 2000. Of
-/// a date with slashes whose year stands last nobody knows which number is the month: it counts for nothing.
+/// Seconds of a time of the day.
+///
+/// - From midnight: `10:04:31`, `10:04:31,250` or `1:04:31 PM`.
+/// - From the first midnight of 2000, behind a date: `2024-01-31T10:04:31` or `31.01.2024 10:04:31`.
+/// - From midnight too, behind a date with slashes whose year stands last: nobody knows which number of it is the
+///   month.
 ///
 /// ```
 /// use slipfront_case::table::clock_time;

@@ -969,7 +969,7 @@ fn points_that_an_x3p_leaves_out_may_be_missing() {
 #[test_case("h=2 w=3\n1,2,4\n3,5,9\n", "rows of numbers begin in line 2; 1 line above ignored, \"h=2 w=3\""; "size")]
 #[test_case("Width,3\nUnit,um\n\n1,2,4\n3,5,9\n", "rows of numbers begin in line 4; 2 lines above ignored, \"Width,3\""; "instrument")]
 fn lines_above_a_matrix_are_passed_over_and_told(text: &str, note: &str) {
-    let map = prepared(&text[..], Preparation::default()).unwrap();
+    let map = prepared(text, Preparation::default()).unwrap();
     assert_eq!(map.points, [3, 2]);
     assert_eq!(map.notes[0], note);
 }

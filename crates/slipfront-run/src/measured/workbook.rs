@@ -29,7 +29,7 @@ pub(super) fn is_workbook(head: &[u8]) -> bool {
 pub(super) struct Sheet {
     /// Name of the sheet.
     pub(super) name: String,
-    /// Its rows as lines, of which the first is row 1, with tabs between columns.
+    /// Rows of the sheet as lines, of which the first is row 1, with tabs between columns.
     pub(super) text: String,
     /// Rows that are complete, and columns and numbers of the one that is not.
     at: [usize; 2],

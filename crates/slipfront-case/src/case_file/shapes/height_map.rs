@@ -45,7 +45,7 @@ key_rows! {
         pub height_unit: Option<Length> = key("", SIZE),
         /// Distance of neighbouring points, if the file does not have it.
         pub pixel_size: Option<Pitch> = key("", PITCH),
-        /// What is subtracted before heights are compared: the plane of least squares.
+        /// Surface that is subtracted from the heights first: the plane of least squares.
         #[serde(default, deserialize_with = "some_word")]
         pub level: Option<Level> = key("", KeyKind::Words(names_of::<Level>)),
         /// Value of points that were not measured, a number or `"nan"`: a block has the mean of its others.
@@ -53,7 +53,7 @@ key_rows! {
     }
 }
 
-/// The key `level`: what is subtracted from heights.
+/// The key `level`: the surface that is subtracted from heights.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Level {
@@ -65,7 +65,7 @@ pub enum Level {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "WordOrNumber", into = "WordOrNumber")]
 pub enum Missing {
-    /// This number.
+    /// A number.
     Value(f64),
     /// The word `"nan"`: whatever is no number.
     Nan,
