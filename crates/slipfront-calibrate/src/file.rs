@@ -10,10 +10,11 @@ use slipfront_case::case_file::{CaseError, KeyKind, Override, key, names_of, who
 use slipfront_case::key_rows;
 use slipfront_case::table::{DecimalSign, FieldSeparator, TableOptions};
 use slipfront_run::folder_error::FolderError;
-use slipfront_run::measured::{Measure, MeasuredRecord};
+use slipfront_run::measured::{Correction, Measure, MeasuredRecord};
 use slipfront_run::run_curve::steps_to;
 use toml::{Table, Value};
 
+use crate::doubts::doubts;
 use crate::sample_points::SamplePoints;
 use crate::set_up::{Conditions, SetUp};
 use crate::summaries::{MIN_VALUES, n_summaries};
@@ -77,8 +78,20 @@ key_rows! {
         /// Quantity of the first column: time, or displacement of the drive. Both begin at 0 where the drive
         /// does.
         against: Against = key("\"time\"", KeyKind::Words(names_of::<Against>)),
-        /// A list of tables `{ set = { ... } }`, one for each record, with the keys whose values differ from
-        /// those of the case, such as `{ set = { drive.speed = "2 um/s" } }`.
+        /// Factor of friction: -1 turns its sign.
+        y_factor: Option<f64> = key("", KeyKind::Special("")).without("1"),
+        /// Number that is added to friction after that, in N or 1: the zero of the load cell.
+        y_offset: Option<f64> = key("", KeyKind::Special("")).without("0"),
+        /// Time or displacement that is added to those of the record, such as `"-1.5 s"`, so that the drive
+        /// begins at 0.
+        shift: Option<String> = key("", KeyKind::Special("")).without("0"),
+        /// Time or displacement after the shift with which the part begins that counts, such as `"2 s"`.
+        from: Option<String> = key("", KeyKind::Special("")).without("that of the first line"),
+        /// Time or displacement after the shift with which the part ends that counts.
+        to: Option<String> = key("", KeyKind::Special("")).without("that of the last line"),
+        /// A list of tables, one for each record: `set` has the keys whose values differ from those of the
+        /// case, such as `{ set = { drive.speed = "2 um/s" } }`; `y_factor`, `y_offset`, `shift`, `from` and
+        /// `to` are of this record alone.
         records: Vec<RecordKeys> = key("[]", KeyKind::Special("")),
         /// Runs of the training. Of six unknowns, intervals of 90 % hold 88 to 92 % of the values with 2500
         /// runs and 85 to 92 % with 200 or 400; with 100, which are refused, 75 to 91 %.
@@ -104,7 +117,13 @@ enum Against {
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct RecordKeys {
+    #[serde(default)]
     set: Table,
+    y_factor: Option<f64>,
+    y_offset: Option<f64>,
+    shift: Option<String>,
+    from: Option<String>,
+    to: Option<String>,
 }
 
 /// The range of an unknown.
@@ -143,6 +162,8 @@ enum Number {
 pub struct SampledRecord {
     pub(crate) measured: MeasuredRecord,
     pub(crate) grid: SamplePoints,
+    /// Sentences on what makes it doubtful that the record is one of the model.
+    doubts: Vec<String>,
     /// Ending of the name of its file.
     pub(crate) ending: String,
     /// Content of its file.
@@ -150,9 +171,9 @@ pub struct SampledRecord {
 }
 
 impl SampledRecord {
-    /// Sentences on how the record was read, and on lines that were passed over.
+    /// Sentences on how the record was read, on lines that were passed over, and on what makes it doubtful.
     pub fn notes(&self) -> impl Iterator<Item = String> {
-        self.measured.notes()
+        self.measured.notes().chain(self.doubts.iter().cloned())
     }
 }
 
@@ -283,10 +304,40 @@ impl CalibrationFile {
             );
             return Err(self.project.error("records", sentence).into());
         }
-        paths.iter().map(|path| self.read_record(path)).collect()
+        let numbered = paths.iter().enumerate();
+        numbered
+            .map(|(number, path)| self.read_record(number, path))
+            .collect()
     }
 
-    fn read_record(&self, path: &Path) -> Result<SampledRecord, StudyError> {
+    /// The correction of the record of this number, by its own keys or by those of all records.
+    fn correction(&self, number: usize, along: Measure) -> Result<Correction, CaseError> {
+        let keys = &self.keys;
+        let own = keys.records.get(number);
+        let place = |key: &str, own: Option<&String>, of_all: &Option<String>| {
+            let text = own.or(of_all.as_ref());
+            let place = text.map(|text| along.parse(text)).transpose();
+            place.map_err(|why| self.project.error(key, format!("`{key}`: {why}")))
+        };
+        let shift = place("shift", own.and_then(|own| own.shift.as_ref()), &keys.shift)?;
+        let from = place("from", own.and_then(|own| own.from.as_ref()), &keys.from)?;
+        let to = place("to", own.and_then(|own| own.to.as_ref()), &keys.to)?;
+        let plain = Correction::default();
+        Ok(Correction {
+            y_factor: own
+                .and_then(|own| own.y_factor)
+                .or(keys.y_factor)
+                .unwrap_or(plain.y_factor),
+            y_offset: own
+                .and_then(|own| own.y_offset)
+                .or(keys.y_offset)
+                .unwrap_or(plain.y_offset),
+            shift: shift.unwrap_or(plain.shift),
+            part: [from.unwrap_or(plain.part[0]), to.unwrap_or(plain.part[1])],
+        })
+    }
+
+    fn read_record(&self, number: usize, path: &Path) -> Result<SampledRecord, StudyError> {
         let keys = &self.keys;
         let columns = MeasuredColumns::new(keys.columns(), [&keys.x_unit, &keys.y_unit], keys.table());
         let along = match keys.against {
@@ -295,7 +346,8 @@ impl CalibrationFile {
         };
         let bytes = read_limited(path, TEXT_MAX_BYTES).map_err(FolderError::read(path))?;
         let measured = columns.parse(&bytes, path, along);
-        let measured = measured.map_err(|sentence| self.project.error("x", sentence))?;
+        let mut measured = measured.map_err(|sentence| self.project.error("x", sentence))?;
+        measured.correct(&self.correction(number, along)?);
         let grid = SamplePoints::of(&measured).ok_or_else(|| {
             let sentence = format!(
                 "{} has {} values: a record needs {MIN_VALUES} at the least, which do not all stand at one place",
@@ -309,6 +361,7 @@ impl CalibrationFile {
         }
         let ending = path.extension().and_then(|ending| ending.to_str());
         Ok(SampledRecord {
+            doubts: doubts(&measured, &grid, keys.noise, path),
             measured,
             grid,
             ending: ending.unwrap_or("csv").to_owned(),
@@ -430,7 +483,7 @@ impl CalibrationFile {
         };
         let sentence = format!(
             "{} ends at {}, before the drive begins: {places} count from the beginning of the drive, at 0. Add a number to all {places} of the \
-             record, so that the drive begins at 0",
+             record by `shift`, so that the drive begins at 0",
             path.display(),
             with_si_prefix(grid.end(), grid.along().unit())
         );
@@ -485,6 +538,39 @@ mod tests {
         );
         let file = CalibrationFile::parse(&text, "fit.toml", "fit", Path::new("")).unwrap();
         file.memory(&file.read(&[record]).unwrap()).unwrap()
+    }
+
+    /// A record of 80 values, of which the last 60 count: they are those of the record that the model makes.
+    #[test]
+    fn records_are_corrected_by_keys_of_all_and_of_their_own() {
+        let folder = tempfile::tempdir().unwrap();
+        let record = folder.path().join("record.csv");
+        let rows: String = (0..80).map(|k| format!("{k},{}\n", 2 * (20 - k))).collect();
+        std::fs::write(&record, format!("t (ms),F (N)\n{rows}")).unwrap();
+        let read = |keys: &str, records: &[PathBuf]| {
+            let text = format!(
+                "[base]\nslider.blocks = [8, 8]\n[calibrate]\nx = 't'\ny = 'F'\nnoise = 0.01\n{keys}\n\
+                 unknowns = {{ 'friction.r_star' = [0.3, 0.9] }}"
+            );
+            let file = CalibrationFile::parse(&text, "fit.toml", "fit", Path::new("")).unwrap();
+            file.read(records).map_err(|error| error.to_string())
+        };
+        let of_all = "y_factor = -0.5\nshift = '-20 ms'\nfrom = '0 s'\nto = '0.0595 s'";
+        let own =
+            "y_factor = 3\nrecords = [{ y_factor = -0.5, y_offset = 1, shift = '-20 ms', from = '0 s' }]";
+        for (keys, zero) in [(of_all, 0.0), (own, 1.0)] {
+            let found = &read(keys, std::slice::from_ref(&record)).unwrap()[0].measured;
+            assert_eq!(found.x.len(), 60, "{keys}");
+            for (k, (x, y)) in found.x.iter().zip(&found.y).enumerate() {
+                // Milliseconds and the shift are rounded once each.
+                assert!(
+                    (x - 1e-3 * k as f64).abs() < 1e-16 && *y == zero + k as f64,
+                    "{x} {y}"
+                );
+            }
+        }
+        let refused = read("shift = '2 N'", &[record]).unwrap_err();
+        assert!(refused.contains("`shift`: "), "{refused}");
     }
 
     #[test]

@@ -9,6 +9,7 @@
 //! `intervals` are those that hold the truth for runs that the prediction has not seen.
 
 mod calibration;
+mod doubts;
 mod file;
 mod findings;
 mod folder;

@@ -1,5 +1,6 @@
 //! A measured record: two columns of a table, such as force against time.
 
+mod correction;
 mod workbook;
 
 use std::io::Read;
@@ -13,6 +14,8 @@ use slipfront_case::table::{
     HEAD_BYTES, TableError, TableLayout, TableOptions, TableRows, clock_time, number,
 };
 use thiserror::Error;
+
+pub use self::correction::Correction;
 
 /// A column as a user names it.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -174,6 +177,23 @@ impl Measure {
             Self::Displacement => "m",
             Self::Force => "N",
             Self::Coefficient => "1",
+        }
+    }
+
+    /// The value of a quantity with its unit, such as `1.5 s`, in SI units.
+    ///
+    /// # Errors
+    /// A sentence on why the text is none.
+    pub fn parse(self, text: &str) -> Result<f64, String> {
+        let (number, unit) = text.trim().split_once(' ').unwrap_or((text, ""));
+        let number = number.parse::<f64>().ok().filter(|number| number.is_finite());
+        match (number, self.factor(unit.trim())) {
+            (Some(number), Some(factor)) => Ok(number * factor),
+            (Some(_), None) => Err(self.no_such_unit(unit.trim())),
+            (None, _) => Err(format!(
+                "{text:?} is no number with a unit, such as 2 {}",
+                self.unit()
+            )),
         }
     }
 

@@ -165,7 +165,7 @@ impl TableLayout {
     pub fn took(&self) -> Option<String> {
         let mut took = Vec::new();
         match &self.names {
-            Some(names) if names.line != 1 => {
+            Some(names) if self.above.is_some() => {
                 took.push(format!(
                     "line {} names {}",
                     names.line,

@@ -27,8 +27,8 @@ pub fn number(field: &str, decimal: char) -> Option<f64> {
 ///
 /// - From midnight: `10:04:31`, `10:04:31,250` or `1:04:31 PM`.
 /// - From the first midnight of 2000, behind a date: `2024-01-31T10:04:31` or `31.01.2024 10:04:31`.
-/// - From midnight too, behind a date with slashes whose year stands last: nobody knows which number of it is the
-///   month.
+/// - From midnight too, behind a date with slashes whose year stands last: which number is the month is not
+///   known.
 ///
 /// ```
 /// use slipfront_case::table::clock_time;

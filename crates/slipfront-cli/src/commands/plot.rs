@@ -11,7 +11,7 @@ use slipfront_case::arrays::extension;
 use slipfront_case::case::PROGRAM;
 use slipfront_case::field_info::{FIELDS, field_info, field_named};
 use slipfront_plot::{Picture, PictureSize};
-use slipfront_run::measured::{Column, Measure, MeasuredError, MeasuredRecord};
+use slipfront_run::measured::{Column, Correction, Measure, MeasuredError, MeasuredRecord};
 use slipfront_run::names::MANIFEST;
 use slipfront_run::pictures;
 use slipfront_run::pictures::friction::{
@@ -307,9 +307,11 @@ impl PlotCommand {
             Some(Against::Time) | None => Measure::Time,
         };
         let mut record = MeasuredRecord::read(path, [&x, &y], along, self.table.options())?;
-        for y in &mut record.y {
-            *y = self.y_factor * *y + self.y_offset;
-        }
+        record.correct(&Correction {
+            y_factor: self.y_factor,
+            y_offset: self.y_offset,
+            ..Correction::default()
+        });
         Ok(OverlaidRecord {
             label: path.display().to_string(),
             record,

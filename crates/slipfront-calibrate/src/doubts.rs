@@ -1,0 +1,160 @@
+//! Properties of a record that no run of the model has, and what mends each.
+
+use std::path::Path;
+
+use slipfront_base::number_format::with_si_prefix;
+use slipfront_base::text::display_path;
+use slipfront_run::measured::MeasuredRecord;
+
+use crate::sample_points::SamplePoints;
+
+/// Share of the largest friction above which a record that begins at 0 does not begin with loose springs.
+const LOOSE: f64 = 0.25;
+/// Number of standard deviations of its noise within which friction is taken for constant.
+const STILL: f64 = 5.0;
+
+/// Sentences on what makes it doubtful that a record is one of the model, with noise as a share of its mean
+/// friction:
+///
+/// - a negative mean;
+/// - rest behind the beginning of the drive, at 0: the line through the first points at a quarter and at half
+///   of the rise to the largest friction crosses the first friction after more than the time between both,
+///   and up to there friction is constant within [`STILL`] standard deviations;
+/// - a record that begins at 0 with more than [`LOOSE`] of its largest friction, where the springs of a run
+///   are loose.
+pub(crate) fn doubts(record: &MeasuredRecord, grid: &SamplePoints, noise: f64, path: &Path) -> Vec<String> {
+    let (places, values) = (grid.places(), grid.record(record));
+    let mean = values.iter().sum::<f64>() / values.len() as f64;
+    let path = display_path(path);
+    if mean < 0.0 {
+        return vec![format!(
+            "the mean friction of {path} is negative: `y_factor = -1` turns its sign"
+        )];
+    }
+    let (first, largest) = (values[0], values.iter().copied().fold(values[0], f64::max));
+    let unit = grid.along().unit();
+    let bound = STILL * noise * mean * grid.noise_share();
+    let rises = |share: f64| {
+        let crossed = values
+            .iter()
+            .position(|value| *value >= first + share * (largest - first));
+        crossed.map_or(f64::NAN, |at| places[at])
+    };
+    let (quarter, half) = (rises(0.25), rises(0.5));
+    let rest_ends = quarter - (half - quarter);
+    let rest = rest_ends - places[0].max(0.0);
+    let still = places
+        .iter()
+        .zip(&values)
+        .take_while(|(place, _)| **place < rest_ends);
+    let is_still = still.clone().all(|(_, value)| (value - first).abs() < bound);
+    if rest > half - quarter && still.count() >= 3 && is_still && first.abs() < 0.5 * largest {
+        let zero = match first.abs() > bound {
+            true => format!(
+                ", and `y_offset` takes away the {} there",
+                with_si_prefix(first, grid.friction().unit())
+            ),
+            false => String::new(),
+        };
+        return vec![format!(
+            "{path} begins with {} of rest, and the drive of the model begins at 0: `shift = \"{}\"` moves the record there{zero}",
+            with_si_prefix(rest, unit),
+            with_si_prefix(-rest_ends, unit)
+        )];
+    }
+    let begins_loose = record.x[0] != 0.0 || record.y[0] < LOOSE * largest;
+    if begins_loose {
+        return Vec::new();
+    }
+    vec![format!(
+        "{path} begins at 0 with {:.0} % of its largest friction, where the springs of the model are loose: if it begins within a slide, \
+         `shift` adds the {} of the drive up to there; if its zero is not that of the load cell, `y_offset` corrects it",
+        100.0 * record.y[0] / largest,
+        match unit {
+            "s" => "time",
+            _ => "displacement",
+        }
+    )]
+}
+
+#[cfg(test)]
+mod tests {
+    use slipfront_run::measured::Measure;
+    use test_case::test_case;
+
+    use super::*;
+
+    /// Doubts about a record of 200 values that rises to 1 and falls to 0.8, with pseudorandom noise of 1 %.
+    fn doubts_of(start: f64, y: impl Fn(f64) -> f64) -> Vec<String> {
+        let x: Vec<f64> = (0..200).map(|k| start + 0.01 * f64::from(k)).collect();
+        let noise = |k: usize| 0.01 * ((k * 7919 % 200) as f64 / 100.0 - 1.0);
+        let curve = |x: f64| if x < 0.2 { 5.0 * x.max(0.0) } else { 0.8 };
+        let record = MeasuredRecord {
+            y: x.iter()
+                .enumerate()
+                .map(|(k, x)| y(curve(*x) + noise(k)))
+                .collect(),
+            x,
+            along: Measure::Time,
+            of: Measure::Coefficient,
+            took: None,
+            footer: None,
+            averaged: None,
+        };
+        let grid = SamplePoints::of(&record).unwrap();
+        doubts(&record, &grid, 0.01, Path::new("r.csv"))
+    }
+
+    #[test_case(0.0; "loading")]
+    #[test_case(-0.5; "rest before the drive begins")]
+    #[test_case(0.5; "a part of the slide")]
+    fn records_of_the_model_are_not_doubtful(start: f64) {
+        assert!(doubts_of(start, |y| y).is_empty());
+    }
+
+    #[test]
+    fn the_other_sign_is_told() {
+        assert!(doubts_of(0.0, |y| -y)[0].contains("`y_factor = -1`"));
+    }
+
+    #[test]
+    fn a_slide_that_begins_at_0_is_told() {
+        let told = doubts_of(0.0, |y| 0.5 * y + 0.4);
+        assert!(
+            told[0].starts_with("`r.csv` begins at 0 with 4")
+                || told[0].starts_with("r.csv begins at 0 with 4"),
+            "{told:?}"
+        );
+    }
+
+    /// Rest of half a second, with the zero of the load cell and without.
+    #[test_case(0.0, ""; "zero")]
+    #[test_case(0.2, ", and `y_offset` takes away the "; "offset")]
+    fn rest_is_told(offset: f64, words: &str) {
+        let x: Vec<f64> = (0..200).map(|k| 0.01 * f64::from(k)).collect();
+        let noise = |k: usize| 0.005 * ((k * 7919 % 200) as f64 / 100.0 - 1.0);
+        let curve = |x: f64| if x < 0.7 { 5.0 * (x - 0.5).max(0.0) } else { 0.8 };
+        let record = MeasuredRecord {
+            y: x.iter()
+                .enumerate()
+                .map(|(k, x)| offset + curve(*x) + noise(k))
+                .collect(),
+            x,
+            along: Measure::Time,
+            of: Measure::Coefficient,
+            took: None,
+            footer: None,
+            averaged: None,
+        };
+        let grid = SamplePoints::of(&record).unwrap();
+        let told = doubts(&record, &grid, 0.01, Path::new("r.csv"));
+        assert!(
+            told[0].contains(" of rest, and the drive of the model begins at 0: `shift = \"-"),
+            "{told:?}"
+        );
+        assert!(
+            told[0].contains(words) && told[0].contains("y_offset") == (offset > 0.0),
+            "{told:?}"
+        );
+    }
+}

@@ -1,0 +1,46 @@
+//! Corrections of a measured record.
+
+use super::MeasuredRecord;
+
+/// Corrections of a record, in SI units.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Correction {
+    /// Factor of friction: -1 turns its sign.
+    pub y_factor: f64,
+    /// Number that is added to friction after that.
+    pub y_offset: f64,
+    /// Time or displacement that is added to those of the record.
+    pub shift: f64,
+    /// First and last time or displacement that count, after the shift.
+    pub part: [f64; 2],
+}
+
+impl Default for Correction {
+    fn default() -> Self {
+        Self {
+            y_factor: 1.0,
+            y_offset: 0.0,
+            shift: 0.0,
+            part: [f64::NEG_INFINITY, f64::INFINITY],
+        }
+    }
+}
+
+impl MeasuredRecord {
+    /// Corrects the record:
+    ///
+    /// ```text
+    /// x' = x + shift,   y' = y_factor y + y_offset,   where x' lies in the part
+    /// ```
+    pub fn correct(&mut self, correction: &Correction) {
+        let Correction {
+            y_factor,
+            y_offset,
+            shift,
+            part: [from, to],
+        } = *correction;
+        let points = self.x.iter().map(|x| x + shift).zip(&self.y);
+        let counting = points.filter(|(x, _)| (from..=to).contains(x));
+        (self.x, self.y) = counting.map(|(x, y)| (x, y_factor * y + y_offset)).unzip();
+    }
+}
