@@ -9,7 +9,7 @@ import os
 import warnings
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import Any, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -23,11 +23,20 @@ from ._simulation import _threads
 from ._study import _as_base
 from ._temporary import TemporaryFolder
 
-Record: TypeAlias = str | os.PathLike[str] | Mapping[str, npt.ArrayLike]
-"""A record: the path of a table of text, or its columns by their names."""
+if TYPE_CHECKING:
+    import pandas as pd
+
+Record: TypeAlias = "str | os.PathLike[str] | Mapping[str, npt.ArrayLike] | pd.DataFrame | tuple[npt.ArrayLike, npt.ArrayLike]"
+"""A record: the path of a table of text or of a workbook; its columns by their names, which are found as in such a table, with or without
+their units; or two arrays, of the columns `x` and `y`."""
 
 Range: TypeAlias = Sequence[float] | Sequence[str] | Mapping[str, Any]
 """Both ends of a range, as numbers or texts with a unit, or ``{"from": 0.03, "to": 0.5, "scale": "log"}``."""
+
+
+def _without_folder(text: str, folder: Path) -> str:
+    """A sentence that names a record that was given in memory, and not the file in which it was handed on."""
+    return text.replace(f"{folder}{os.sep}", "").replace(".csv", "") if str(folder) in text else text
 
 
 @dataclasses.dataclass(frozen=True)
@@ -161,7 +170,7 @@ class Calibration:
         """
         shown, watch = parted(progress)
         temporary = TemporaryFolder()
-        paths = [self._path(record, temporary.path / f"given-{number}.csv") for number, record in enumerate(records)]
+        paths = [self._path(record, temporary.path / f"record {number}.csv") for number, record in enumerate(records, 1)]
         path = temporary.path / self.name if folder is None else Path(folder)
         if training is None and folder is None:
             training = self._training.path
@@ -173,26 +182,31 @@ class Calibration:
                 bar.show(done, total)
 
             kept = None if training is None else Path(training)
-            notes = self._native.execute((path, force), kept, paths, _threads(threads), show)
+            try:
+                notes = self._native.execute((path, force), kept, paths, _threads(threads), show)
+            except _slipfront.CaseError as error:
+                error.args = (_without_folder(str(error), temporary.path),)
+                raise
             results = CalibrationResults.read(path, None if folder is None else path)
         if results.is_refused:
             notes.append("the model does not make such records, and the intervals promise nothing: `text` says why, and what to look at")
         for note in notes:
-            warnings.warn(note, stacklevel=2)
+            warnings.warn(_without_folder(note, temporary.path), stacklevel=2)
         return results
 
     def _path(self, record: Record, path: Path) -> Path:
         """Path of a record; a record that is given as columns is written there."""
         if isinstance(record, (str, os.PathLike)):
             return Path(record)
-        names = [name for name in self._native.columns if name in record]
-        if len(names) < 2:
-            raise ValueError(f"a record has the columns {' and '.join(self._native.columns)}, not {', '.join(record)}")
-        columns = [np.asarray(record[name], dtype=np.float64).tolist() for name in names]
+        columns = dict(zip(self._native.columns, record, strict=True)) if isinstance(record, tuple) else {name: record[name] for name in record}
+        arrays = {str(name): np.asarray(column) for name, column in columns.items()}
+        lengths = {len(array) for array in arrays.values() if array.ndim == 1}
+        if len(lengths) != 1:
+            raise ValueError(f"the columns of a record are as long as each other: {', '.join(arrays)} have {sorted(lengths)} values")
         with path.open("w", newline="", encoding="utf-8") as file:
             table = csv.writer(file)
-            table.writerow(names)
-            table.writerows(zip(*columns, strict=True))
+            table.writerow(name for name, array in arrays.items() if array.ndim == 1)
+            table.writerows(zip(*(array.tolist() for array in arrays.values() if array.ndim == 1), strict=True))
         return path
 
     def __repr__(self) -> str:

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pandas as pd
 import pytest
 import slipfront as sf
 
@@ -84,7 +85,7 @@ def test_what_is_wrong_is_said(tmp_path: Path) -> None:
         sf.Calibration(SLIDER, UNKNOWNS, noise=2)
     with pytest.raises(sf.CaseError, match="did you mean `runs`"):
         calibration(rums=3)
-    with pytest.raises(ValueError, match="columns time_s and force_n, not time_s"):
+    with pytest.raises(sf.CaseError, match="has no column `force_n`"):
         calibration().fit({"time_s": [1, 2, 3]})
     with pytest.raises(sf.CaseError, match="has 3 values"):
         calibration().fit({"time_s": [1, 2, 3], "force_n": [1, 2, 3]})
@@ -92,3 +93,26 @@ def test_what_is_wrong_is_said(tmp_path: Path) -> None:
         sf.Calibration(SLIDER, {"friction.mu_sttic": (0.3, 0.9)}, noise=0.01).fit(record())
     with pytest.raises(sf.CaseError, match="drive"):
         calibration(next=[{"drive": {"v_star": -1}}]).fit(record(), folder=tmp_path / "found")
+
+
+def test_records_are_tables_arrays_and_frames() -> None:
+    made, measured = calibration(), record()
+    fit = made.fit(measured, progress=False)
+    frame = pd.DataFrame({"n": range(len(measured["time_s"])), "Zeit [ns]": 1e9 * measured["time_s"], "Kraft in mN": 1e3 * measured["force_n"]})
+    by_name = calibration(x="Zeit", y="Kraft").fit(frame, progress=False)
+    by_place = made.fit((measured["time_s"], measured["force_n"]), progress=False)
+    assert by_place.to_dict() == fit.to_dict()
+    for key, interval in by_name.intervals.items():
+        # Times and forces are rounded by their units.
+        assert interval.median == pytest.approx(fit.intervals[key].median, rel=1e-6)
+
+
+def test_errors_name_no_hidden_file() -> None:
+    measured = record()
+    with pytest.raises(sf.CaseError, match="record 1 has no column `force_n`") as error:
+        calibration().fit({"time_s": measured["time_s"], "load_n": measured["force_n"]}, progress=False)
+    assert "tmp" not in str(error.value) and ".csv" not in str(error.value)
+    with pytest.raises(ValueError, match="as long as each other"):
+        calibration().fit({"time_s": measured["time_s"], "force_n": measured["force_n"][1:]}, progress=False)
+    with pytest.warns(UserWarning, match="the mean friction of record 1 is negative: `y_factor = -1`"):
+        calibration().fit({**measured, "force_n": -measured["force_n"]}, progress=False)

@@ -11,7 +11,7 @@ use slipfront_base::number_format::{count, with_si_prefix};
 use slipfront_base::text::{display_path, truncated};
 use slipfront_case::quantity::{Duration, Force, Length};
 use slipfront_case::table::{
-    HEAD_BYTES, TableError, TableLayout, TableOptions, TableRows, clock_time, number,
+    HEAD_BYTES, TableError, TableLayout, TableOptions, TableRows, clock_time, has_thousands, number,
 };
 use thiserror::Error;
 
@@ -90,7 +90,8 @@ pub enum MeasuredError {
         column: String,
     },
     #[error(
-        "line {line} of {}: the time or displacement falls, from {before} to {value} in SI units; a record goes forwards",
+        "line {line} of {}: the time or displacement falls, from {before} to {value} in SI units; a record goes forwards: \
+         keep the lines of one step of a test",
         display_path(path)
     )]
     Falls {
@@ -345,6 +346,12 @@ impl MeasuredRecord {
             };
             let (Some(x), Some(y)) = (value(0), value(1)) else {
                 let without = usize::from(value(0).is_some());
+                // Such numbers often stand at the end alone, where they are not passed over.
+                let wanted = places.iter().filter_map(|place| fields.get(*place));
+                if let Some(field) = { wanted }.find(|field| has_thousands(field, decimal)) {
+                    let text = field.to_string();
+                    return Err(failed(TableError::Thousands { line, text }));
+                }
                 let first = || NoNumber {
                     line,
                     text: truncated(&fields.join(&layout.separator.to_string())),
@@ -811,6 +818,7 @@ mod tests {
     #[test_case("t (s),COF\n0,0.5\n1,0.5\n", ["t", "COF"], "such as `--y-unit 1`"; "coefficient without unit")]
     #[test_case("t (s);F_max (N)\n0;1\n1;2\n", ["t", "F"], "has no column `F`"; "the beginning of a name")]
     #[test_case("t (s);F (N)\n1;997\n2;1,050\n", ["t", "F"], "can be read in two ways: \"1,050\" in line 3"; "thousands")]
+    #[test_case("time_s,force_n\n0,998.5\n1,999.5\n2,\"1,000.5\"\n3,\"1,001.5\"\n", ["time", "force"], "has a thousands separator in line 4, \"1,000.5\""; "thousands at the end")]
     #[test_case("time_s,force_n\n1,1\n", ["time", "force"], "has 1 lines of numbers"; "short")]
     #[test_case("time_s,force_n\n", ["time", "force"], "has 0 lines of numbers"; "header alone")]
     fn what_is_wrong_is_said(text: &str, names: [&str; 2], sentence: &str) {

@@ -68,6 +68,7 @@ replay! {
     mask_png
     height_map
     measured
+    workbook
     run_journal
     figure_cache
     checkpoint

@@ -394,14 +394,12 @@ fn best(readings: Vec<Reading>, text: &str, options: TableOptions) -> Result<Tab
     let rows = text.lines().zip(1..).skip(layout.first_line as usize - 1);
     let rows = rows.filter(|(line, _)| !line.trim_start().starts_with('#'));
     let mut grouped = None;
-    let (mut is_decimal, mut has_whole, mut doubled, mut n_rows) =
-        (options.decimal.is_some(), false, 0, 0_usize);
+    let (mut is_decimal, mut doubled, mut n_rows) = (options.decimal.is_some(), 0, 0_usize);
     for (line, at) in rows {
         let fields = trimmed(fields(line, layout.separator).unwrap_or_default());
         for field in &fields {
             let has_sign = field.contains(layout.decimal);
             is_decimal |= has_sign && !has_groups(field, layout.decimal);
-            has_whole |= !has_sign && field.parse::<i64>().is_ok();
             if layout.decimal == ',' && has_groups(field, ',') {
                 grouped.get_or_insert_with(|| (at, field.to_string()));
             }
@@ -409,7 +407,7 @@ fn best(readings: Vec<Reading>, text: &str, options: TableOptions) -> Result<Tab
         n_rows += usize::from(!fields.is_empty());
         doubled += usize::from(is_doubled(&fields));
     }
-    if let Some((line, field)) = grouped.filter(|_| has_whole || !is_decimal)
+    if let Some((line, field)) = grouped.filter(|_| !is_decimal)
         && options.decimal.is_none()
     {
         let plain = field.replace(',', "");
@@ -479,9 +477,10 @@ const UNIT_MAX_CHARS: usize = 10;
 
 /// Whether a text can be the unit of a column, such as `N`, `(mm)`, `[-]`, `m/s^2` or nothing.
 fn is_unit(text: &str) -> bool {
-    const WORDS: [&str; 26] = [
+    const WORDS: [&str; 39] = [
         "s", "sec", "ms", "us", "min", "h", "m", "mm", "um", "nm", "cm", "n", "mn", "kn", "gf", "kgf", "g",
-        "kg", "v", "mv", "%", "1", "-", "rpm", "c", "k",
+        "kg", "in", "inch", "ft", "lbf", "lb", "psi", "v", "mv", "%", "1", "-", "rpm", "c", "k", "hz", "bar",
+        "pa", "kpa", "mpa", "deg", "rad",
     ];
     let bare = text.trim_matches(['(', ')', '[', ']']).trim();
     let is_bracketed = bare.len() + 2 <= text.len();
@@ -539,6 +538,8 @@ mod tests {
     #[test_case("sep=;\nt;F\n0;1\n1;2\n", (';', '.', [Some(2), None], 3); "separator stated")]
     #[test_case("t;F\n(s);[N]\n0;1,5\n1;2,5\n", (';', ',', [Some(1), Some(2)], 3); "units")]
     #[test_case("Speed;5\nDate;2024-01-01\n\nt;F\ns;N\n\n0;1,5\n1;2,5\n", (';', ',', [Some(4), Some(5)], 6); "instrument")]
+    #[test_case("t;F;n\n0,5;997;1\n1,0;1,050;2\n", (';', ',', [Some(1), None], 2); "a decimal comma that is none between thousands")]
+    #[test_case("u\tF\nin\tlbf\n0.5\t1\n1.0\t2\n", ('\t', '.', [Some(1), Some(2)], 3); "units of inches")]
     #[test_case("A: x\nB\n0 1\n1 2\n", (' ', '.', [Some(1), None], 2); "names in two words are names")]
     #[test_case("X\tY\tComment\n0\t1\n1\t2\n", ('\t', '.', [Some(1), None], 2); "more names than fields")]
     #[test_case("t,F\n0,1\n", (',', '.', [Some(1), None], 2); "one row")]

@@ -19,5 +19,5 @@ mod rows;
 pub use encoding::Encoding;
 pub use error::TableError;
 pub use layout::{DecimalSign, FieldSeparator, HEAD_BYTES, NamedLine, TableLayout, TableOptions};
-pub use number::{clock_time, number};
+pub use number::{clock_time, has_thousands, number};
 pub use rows::TableRows;

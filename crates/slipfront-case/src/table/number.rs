@@ -78,6 +78,23 @@ fn day(date: &str) -> Option<i64> {
     Some(day + (153 * month + 2) / 5 + 365 * year + year / 4 - year / 100 + year / 400 - 32_045 - 2_451_545)
 }
 
+/// Whether a field is a number with thousands separators beside its decimal sign, such as `1,000.5` or `1 000`.
+///
+/// ```
+/// use slipfront_case::table::has_thousands;
+///
+/// assert!(has_thousands("1,000.12", '.') && has_thousands("-12.345,6", ',') && has_thousands("1,000,292", ','));
+/// assert!(!has_thousands("1000.12", '.') && !has_thousands("2024-01-01", '.'));
+/// ```
+pub fn has_thousands(field: &str, decimal: char) -> bool {
+    let (whole, decimals) = field.split_once(decimal).unwrap_or((field, ""));
+    let is_other = |separator: char| separator != decimal && has_groups(whole, separator);
+    [',', '.', '\'', ' ', '\u{a0}', '\u{202f}']
+        .into_iter()
+        .any(is_other)
+        || (decimals.contains(decimal) && has_groups(field, decimal))
+}
+
 /// Whether a field can be a number with a thousands separator: groups of three digits behind one to three, of
 /// which the first is not 0.
 pub(super) fn has_groups(field: &str, separator: char) -> bool {

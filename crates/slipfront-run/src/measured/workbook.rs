@@ -147,13 +147,14 @@ fn office_open(archive: &ZipSliceArchive<&[u8]>) -> Result<Vec<Sheet>, String> {
         };
         // Rows and cells need not say where they stand: they then follow the ones before.
         let mut row_at = 0;
-        for row in elements(document.root_element(), "row") {
+        let data = elements(document.root_element(), "sheetData").next();
+        for row in data.iter().flat_map(|data| children(*data, "row")) {
             let stated = row
                 .attribute("r")
                 .and_then(|row| row.parse::<usize>().ok()?.checked_sub(1));
             row_at = stated.unwrap_or(row_at);
             let mut at = [row_at, 0];
-            for cell in elements(row, "c") {
+            for cell in children(row, "c") {
                 at = cell.attribute("r").and_then(place).unwrap_or(at);
                 sheet.add(at, office_cell(cell, &strings, &styles))?;
                 at[1] += 1;
@@ -172,7 +173,7 @@ fn office_cell(cell: Node<'_, '_>, strings: &[String], styles: &[bool]) -> Optio
     if kind == "inlineStr" {
         return Some(Cell::Text(text_of(cell)));
     }
-    let value = elements(cell, "v").next().and_then(|value| value.text())?.trim();
+    let value = children(cell, "v").next().and_then(|value| value.text())?.trim();
     let is_time = || {
         let style = cell.attribute("s").and_then(|style| style.parse::<usize>().ok());
         styles.get(style.unwrap_or(0)).copied().unwrap_or(false)
@@ -237,7 +238,8 @@ fn shows_time(format: &str) -> bool {
 fn open_document(content: &str) -> Result<Vec<Sheet>, String> {
     let document = parse("content.xml", content)?;
     let mut sheets = Vec::new();
-    for table in elements(document.root_element(), "table") {
+    let spreadsheet = elements(document.root_element(), "spreadsheet").next();
+    for table in spreadsheet.iter().flat_map(|all| children(*all, "table")) {
         let mut sheet = Sheet {
             name: attribute(table, "name").unwrap_or_default().to_owned(),
             ..Sheet::default()
@@ -247,8 +249,8 @@ fn open_document(content: &str) -> Result<Vec<Sheet>, String> {
                 .and_then(|times| times.parse::<usize>().ok())
                 .unwrap_or(1)
         });
-        for row in elements(table, "table-row") {
-            let is_empty = elements(row, "table-cell").all(|cell| open_cell(cell).is_none());
+        for row in rows_of(table) {
+            let is_empty = children(row, "table-cell").all(|cell| open_cell(cell).is_none());
             let rows = times_of(row, "number-rows-repeated");
             // Empty rows and cells behind all others are repeated up to the end of the sheet.
             for k in 0..if is_empty { 0 } else { rows } {
@@ -273,6 +275,21 @@ fn open_document(content: &str) -> Result<Vec<Sheet>, String> {
         sheets.push(sheet);
     }
     Ok(sheets)
+}
+
+/// The rows of a table of an `.ods`, also those in groups and headings; a cell may have tables of its own.
+fn rows_of<'a, 'x>(table: Node<'a, 'x>) -> Vec<Node<'a, 'x>> {
+    let (mut rows, mut rest) = (Vec::new(), vec![table]);
+    while let Some(node) = rest.pop() {
+        match node.tag_name().name() {
+            "table-row" => rows.push(node),
+            "table" | "table-rows" | "table-row-group" | "table-header-rows" => {
+                rest.extend(node.children().rev())
+            }
+            _ => {}
+        }
+    }
+    rows
 }
 
 /// A cell of an `.ods`.
@@ -332,6 +349,12 @@ fn parse<'x>(name: &str, text: &'x str) -> Result<Document<'x>, String> {
 /// Elements of this name within a node, in whatever namespace: those of both formats differ by their version.
 fn elements<'a, 'x>(node: Node<'a, 'x>, name: &str) -> impl Iterator<Item = Node<'a, 'x>> {
     node.descendants()
+        .filter(move |element| element.is_element() && element.tag_name().name() == name)
+}
+
+/// Elements of this name that are children of a node, in whatever namespace.
+fn children<'a, 'x>(node: Node<'a, 'x>, name: &str) -> impl Iterator<Item = Node<'a, 'x>> {
+    node.children()
         .filter(move |element| element.is_element() && element.tag_name().name() == name)
 }
 

@@ -498,11 +498,7 @@ fn height_map(input: &[u8]) {
             missing: Some(f64::NAN),
             is_levelled: true,
         };
-        for (units, preparation) in [
-            (HeightMapUnits::default(), plain),
-            (UNITS, plain),
-            (UNITS, treated),
-        ] {
+        for (units, preparation) in [(HeightMapUnits::default(), plain), (UNITS, treated)] {
             let mut source = Cursor::new(input);
             match arrays::height_map(Path::new(&path), &mut source, &units, &preparation, &room) {
                 Err(error) => readable(&error),

@@ -14,11 +14,12 @@ mod requests;
 mod run_journal;
 mod series;
 mod study;
+mod workbook;
 
 use crate::target::Target;
 
 /// All targets, in the order in which a run reads and writes their files.
-pub const TARGETS: [Target; 21] = [
+pub const TARGETS: [Target; 22] = [
     case::CASE_FILE,
     case::CASE,
     study::STUDY_FILE,
@@ -28,6 +29,7 @@ pub const TARGETS: [Target; 21] = [
     arrays::MASK_PNG,
     arrays::HEIGHT_MAP,
     measured::MEASURED,
+    workbook::WORKBOOK,
     run_journal::RUN_JOURNAL,
     figure_cache::FIGURE_CACHE,
     checkpoint::CHECKPOINTS,
