@@ -1,6 +1,7 @@
 //! XML of files that may be broken or made to break their reader.
 
 use roxmltree::{Document, ParsingOptions};
+use slipfront_base::text::single_line;
 
 /// Most namespaces of a document, and most attributes of one of its elements. Height maps and workbooks take
 /// some ten.
@@ -17,7 +18,8 @@ pub fn parse<'x>(name: &str, xml: &'x str, nodes_max: u32) -> Result<Document<'x
         nodes_limit: nodes_max,
         ..ParsingOptions::default()
     };
-    Document::parse_with_options(xml, options).map_err(|error| format!("`{name}` is no XML ({error})"))
+    Document::parse_with_options(xml, options)
+        .map_err(|error| format!("`{name}` is no XML ({})", single_line(&error.to_string())))
 }
 
 /// Refuses XML with many namespaces or attributes: the parser compares each with all others of its element,

@@ -29,6 +29,8 @@ export interface Texture {
   reference?: string;
   height_unit?: string;
   pixel_size?: string | string[];
+  level?: string;
+  missing?: number | string;
   pitch?: string | string[];
   array?: string | number[];
   lattice?: string;

@@ -431,6 +431,23 @@ impl MeasuredRecord {
         Some(())
     }
 
+    /// Corrects the record:
+    ///
+    /// ```text
+    /// x' = x + shift,   y' = y_factor y + y_offset,   where x' lies in the part
+    /// ```
+    pub fn correct(&mut self, correction: &Correction) {
+        let Correction {
+            y_factor,
+            y_offset,
+            shift,
+            part: [from, to],
+        } = *correction;
+        let points = self.x.iter().map(|x| x + shift).zip(&self.y);
+        let counting = points.filter(|(x, _)| (from..=to).contains(x));
+        (self.x, self.y) = counting.map(|(x, y)| (x, y_factor * y + y_offset)).unzip();
+    }
+
     /// Sentences for a reader of the record: how the table was read, and which lines were passed over.
     pub fn notes(&self) -> impl Iterator<Item = String> {
         let footer = self

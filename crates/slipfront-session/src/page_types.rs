@@ -390,6 +390,7 @@ fn texture_values(key: &Key) -> Vec<Value> {
         KeyKind::Switch => vec![json!(true)],
         KeyKind::Table(..) | KeyKind::Special(_) => match key.name {
             "w" => vec![json!(0.1)],
+            "missing" => vec![json!(-9999), json!("nan")],
             "center" | "pitch" | "pixel_size" => vec![json!("1 um"), json!(["1 um", "1 um"])],
             "array" => vec![json!("auto"), json!([3, 3])],
             "points" => vec![json!([["0 um", "0 um"], ["1 um", "0 um"], ["0 um", "1 um"]])],

@@ -78,7 +78,7 @@ fn day(date: &str) -> Option<i64> {
     Some(day + (153 * month + 2) / 5 + 365 * year + year / 4 - year / 100 + year / 400 - 32_045 - 2_451_545)
 }
 
-/// Whether a field is a number with thousands separators beside its decimal sign, such as `1,000.5` or `1 000`.
+/// Whether a field is a number with thousands separators beside its decimal sign, such as `1,000.5`.
 ///
 /// ```
 /// use slipfront_case::table::has_thousands;

@@ -1,7 +1,5 @@
 //! Corrections of a measured record.
 
-use super::MeasuredRecord;
-
 /// Corrections of a record, in SI units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Correction {
@@ -23,24 +21,5 @@ impl Default for Correction {
             shift: 0.0,
             part: [f64::NEG_INFINITY, f64::INFINITY],
         }
-    }
-}
-
-impl MeasuredRecord {
-    /// Corrects the record:
-    ///
-    /// ```text
-    /// x' = x + shift,   y' = y_factor y + y_offset,   where x' lies in the part
-    /// ```
-    pub fn correct(&mut self, correction: &Correction) {
-        let Correction {
-            y_factor,
-            y_offset,
-            shift,
-            part: [from, to],
-        } = *correction;
-        let points = self.x.iter().map(|x| x + shift).zip(&self.y);
-        let counting = points.filter(|(x, _)| (from..=to).contains(x));
-        (self.x, self.y) = counting.map(|(x, y)| (x, y_factor * y + y_offset)).unzip();
     }
 }

@@ -12,12 +12,14 @@ use rawzip::{CompressionMethod, ZipArchive, ZipSliceArchive};
 use roxmltree::{Document, Node};
 use slipfront_case::xml;
 
-/// Largest size of a workbook, of its XML, and of its sheet as text, bytes.
+/// Largest size of a workbook and of its XML, bytes.
 pub(super) const MOST_BYTES: u64 = 1 << 28;
+/// Largest size of a sheet as text, bytes: some five million numbers.
+const SHEET_MAX_BYTES: u64 = 1 << 26;
 /// Most nodes of the XML of a sheet; a number takes three.
 const NODES_MAX: u32 = 1 << 23;
-/// Most columns of a sheet that are read; an empty one takes a byte in every row.
-const COLUMNS_MAX: usize = 1 << 14;
+/// Most rows and columns of a sheet, those of both formats; an empty one takes a byte.
+const PLACES_MAX: [usize; 2] = [1 << 20, 1 << 14];
 
 /// Whether a file that begins with `head` may be a workbook: a zip archive.
 pub(super) fn is_workbook(head: &[u8]) -> bool {
@@ -68,7 +70,7 @@ pub(super) fn sheet(bytes: &[u8]) -> Result<Sheet, String> {
 
 fn sheets(bytes: &[u8]) -> Result<Vec<Sheet>, String> {
     if bytes.len() as u64 > MOST_BYTES {
-        return Err(too_large("it"));
+        return Err(too_large("it", MOST_BYTES));
     }
     let archive = ZipArchive::from_slice(bytes).map_err(|error| format!("it is no zip archive ({error})"))?;
     match part(&archive, "content.xml")? {
@@ -77,8 +79,8 @@ fn sheets(bytes: &[u8]) -> Result<Vec<Sheet>, String> {
     }
 }
 
-fn too_large(what: &str) -> String {
-    format!("{what} has more than {} MiB", MOST_BYTES >> 20)
+fn too_large(what: &str, most: u64) -> String {
+    format!("{what} has more than {} MiB", most >> 20)
 }
 
 /// The text of a file of an archive, if there is one of this name.
@@ -100,7 +102,7 @@ fn part(archive: &ZipSliceArchive<&[u8]>, name: &str) -> Result<Option<String>, 
         let read = stored.take(MOST_BYTES + 1).read_to_string(&mut text);
         read.map_err(|error| format!("`{name}` of its archive: {error}"))?;
         return match text.len() as u64 > MOST_BYTES {
-            true => Err(too_large(&format!("`{name}`"))),
+            true => Err(too_large(&format!("`{name}`"), MOST_BYTES)),
             false => Ok(Some(text)),
         };
     }
@@ -284,7 +286,7 @@ fn rows_of<'a, 'x>(table: Node<'a, 'x>) -> Vec<Node<'a, 'x>> {
         match node.tag_name().name() {
             "table-row" => rows.push(node),
             "table" | "table-rows" | "table-row-group" | "table-header-rows" => {
-                rest.extend(node.children().rev())
+                rest.extend(node.children().rev());
             }
             _ => {}
         }
@@ -310,11 +312,11 @@ fn open_cell(cell: Node<'_, '_>) -> Option<Cell> {
 impl Sheet {
     /// Adds a cell behind all that were added, in a row and column from 0.
     fn add(&mut self, [row, column]: [usize; 2], cell: Option<Cell>) -> Result<(), String> {
-        if [row, column] < self.at || column >= COLUMNS_MAX {
+        if [row, column] < self.at || row >= PLACES_MAX[0] || column >= PLACES_MAX[1] {
             return Err(format!("sheet {:?} has its cells in disorder", self.name));
         }
-        if self.text.len() as u64 + (row - self.at[0]) as u64 > MOST_BYTES {
-            return Err(too_large(&format!("sheet {:?}", self.name)));
+        if self.text.len() as u64 + (row - self.at[0]) as u64 > SHEET_MAX_BYTES {
+            return Err(too_large(&format!("sheet {:?}", self.name), SHEET_MAX_BYTES));
         }
         while self.at[0] < row {
             self.end_row();

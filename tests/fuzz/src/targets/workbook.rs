@@ -20,10 +20,10 @@ pub(crate) const WORKBOOK: Target = Target {
     files: &[],
     dictionary: Some("table.dict"),
     max_bytes: 4096,
-    // A node of XML takes some 100 bytes, and `<a/>` has four; an empty row or column that a number skips takes
-    // a byte, and a sheet has 2^28 at most.
+    // A node of XML takes some 100 bytes, and `<a/>` has four; an empty row or column that a number skips
+    // takes a byte, and a sheet has 2^26 at most, in memory twice as it grows.
     memory: Memory {
-        bytes: 600 << 20,
+        bytes: 200 << 20,
         per_byte: 256,
     },
     time: Time::DRAWN,
