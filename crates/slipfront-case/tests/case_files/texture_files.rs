@@ -510,7 +510,7 @@ fn dimples_over_periodic_edges_are_closed_lines() {
     let text = fs::read_to_string(folder.join("hexagonal_dimples.toml")).unwrap();
     let [shapes, _] = drawn(&text);
     let count = |kind: &str| shapes.iter().filter(|(other, _)| other == kind).count();
-    // Of one row in two the first dimple is cut, and goes on at the opposite edge.
+    // A dimple of each of the four rows is cut, and goes on at the opposite edge.
     assert_eq!((shapes.len(), count("CIRCLE"), count("LWPOLYLINE")), (20, 12, 8));
     let all: f64 = shapes.iter().map(|(_, line)| area(line)).sum();
     // Sixteen dimples, in all.

@@ -46,9 +46,18 @@ pub fn clip(contour: &Contour, region: &[Contour]) -> Vec<Contour> {
         let middle = chain[chain.len() / 2].at(0.5);
         !is_on(&own, middle) && holds(&own, middle)
     };
-    let (mut kept, lost): (Vec<_>, Vec<_>) = chains(&own, &edge).into_iter().partition(is_within);
-    let across = edges.iter().flat_map(|edge| chains(edge, &own)).filter(is_across);
-    let across: Vec<_> = across.collect();
+    let bounds = bounds(&own);
+    let close: Vec<Piece> = edge
+        .iter()
+        .filter(|piece| is_close(bounds, piece.bounds()))
+        .copied()
+        .collect();
+    let (mut kept, lost): (Vec<_>, Vec<_>) = chains(&own, &close).into_iter().partition(is_within);
+    let mut across = Vec::new();
+    // Most curves are far from all edges.
+    if !close.is_empty() {
+        across.extend(edges.iter().flat_map(|edge| chains(edge, &own)).filter(is_across));
+    }
     let is_filled = |pieces: &Vec<Piece>| {
         let mut sides = pieces.iter().flat_map(Piece::sides);
         sides.any(|side| holds(pieces, side))
@@ -110,6 +119,25 @@ fn chains(curve: &[Piece], others: &[Piece]) -> Vec<Vec<Piece>> {
     }
     chains.retain(|chain| !chain.is_empty());
     chains
+}
+
+/// Smallest and largest (x, y) of pieces, or somewhat less and more.
+fn bounds(pieces: &[Piece]) -> [Point; 2] {
+    let all = pieces.iter().map(Piece::bounds);
+    all.fold(
+        [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]],
+        |[low, high], [other_low, other_high]| {
+            [
+                [0, 1].map(|axis| low[axis].min(other_low[axis])),
+                [0, 1].map(|axis| high[axis].max(other_high[axis])),
+            ]
+        },
+    )
+}
+
+/// Whether two rectangles between their smallest and largest (x, y) have points in common.
+fn is_close([low, high]: [Point; 2], [other_low, other_high]: [Point; 2]) -> bool {
+    (0..2).all(|axis| low[axis] < other_high[axis] + NEAR && other_low[axis] < high[axis] + NEAR)
 }
 
 /// Closed lines of chains that end where others begin or end.
@@ -275,12 +303,9 @@ impl Piece {
 
     /// Where the piece meets others, in order along it.
     fn meetings(&self, others: &[Self]) -> Vec<Point> {
-        let [low, high] = self.bounds();
-        let is_close = |other: &&Self| {
-            let [other_low, other_high] = other.bounds();
-            (0..2).all(|axis| low[axis] < other_high[axis] + NEAR && other_low[axis] < high[axis] + NEAR)
-        };
-        let meetings = others.iter().filter(is_close).flat_map(|other| self.meets(other));
+        let bounds = self.bounds();
+        let close = others.iter().filter(|other| is_close(bounds, other.bounds()));
+        let meetings = close.flat_map(|other| self.meets(other));
         let mut points: Vec<Point> = meetings.collect();
         points.sort_by(|p, q| self.share(*p).total_cmp(&self.share(*q)));
         points
