@@ -195,7 +195,7 @@ fn arc(from: [f64; 2], to: [f64; 2], [a, b]: [f64; 2], angle: f64) -> Part {
 }
 
 /// The entities of a layer of a DXF: each the kind, and the codes with their values.
-fn entities<'a>(text: &'a str, has_layer: impl Fn(&str) -> bool) -> Vec<(&'a str, Vec<(u16, &'a str)>)> {
+fn entities(text: &str, has_layer: impl Fn(&str) -> bool) -> Vec<(&str, Vec<(u16, &str)>)> {
     let (_, text) = text.split_once("\nENTITIES\n").unwrap();
     let (text, _) = text.split_once("0\nENDSEC\n").unwrap();
     let lines: Vec<&str> = text.lines().collect();
@@ -407,7 +407,8 @@ fn circles_and_ellipses_are_written_as_such_and_cavities_as_4096_corners() {
     assert!(written(square, "a.svg").contains("width=\"0.04mm\" height=\"0.03mm\""));
 }
 
-/// What a closed line encloses, in square blocks: the polygon of its corners and the segments beyond its chords.
+/// The area within a closed line, in square blocks: the polygon of its corners and the segments beyond its
+/// chords.
 fn area(line: &Element) -> f64 {
     let part = |part: &Part| {
         let [[x_0, y_0], [x, y]] = part.ends();
@@ -436,7 +437,7 @@ fn drawn(text: &str) -> [Vec<(String, Element)>; 2] {
     })
 }
 
-/// Of a circle around the origin, the area right of `x` and above `y`, of a point inside of it.
+/// The area of a circle around the origin that lies right of `x` and above `y`, a point inside of it.
 fn right_of_and_above(radius: f64, x: f64, y: f64) -> f64 {
     let [beside, above] = [x, y].map(|length| (radius * radius - length * length).sqrt());
     let angle = (x / radius).acos() - (y / radius).asin();

@@ -33,25 +33,20 @@ pub fn clip(contour: &Contour, region: &[Contour]) -> Vec<Contour> {
     let edge = edges.concat();
     let is_within = |chain: &Vec<Piece>| {
         let middle = &chain[chain.len() / 2];
-        if is_on(&edge, middle.at(0.5)) {
-            // A line that both have is a part's edge if both lie on one side of it.
-            return middle
-                .sides()
-                .iter()
-                .all(|&side| holds(&own, side) == holds(&edge, side));
+        if !is_on(&edge, middle.at(0.5)) {
+            return holds(&edge, middle.at(0.5));
         }
-        holds(&edge, middle.at(0.5))
+        // A line that both have bounds a part if both lie on the same side of it.
+        let mut sides = middle.sides().into_iter();
+        sides.all(|side| holds(&own, side) == holds(&edge, side))
     };
     let is_across = |chain: &Vec<Piece>| {
         let middle = chain[chain.len() / 2].at(0.5);
         !is_on(&own, middle) && holds(&own, middle)
     };
-    let bounds = bounds(&own);
-    let close: Vec<Piece> = edge
-        .iter()
-        .filter(|piece| is_close(bounds, piece.bounds()))
-        .copied()
-        .collect();
+    let bounds = bounds(own.iter().flat_map(Piece::bounds));
+    let mut close = edge.clone();
+    close.retain(|piece| is_close(bounds, piece.bounds()));
     let (mut kept, lost): (Vec<_>, Vec<_>) = chains(&own, &close).into_iter().partition(is_within);
     let mut across = Vec::new();
     // Most curves are far from all edges.
@@ -66,11 +61,8 @@ pub fn clip(contour: &Contour, region: &[Contour]) -> Vec<Contour> {
         return Vec::from_iter(is_filled(&own).then(|| contour.clone()));
     }
     kept.extend(across);
-    joined(kept)
-        .into_iter()
-        .filter(is_filled)
-        .map(contour_of)
-        .collect()
+    let parts = joined(kept).into_iter().filter(is_filled);
+    parts.map(contour_of).collect()
 }
 
 /// The pieces of a curve, lines and arcs of circles alone.
@@ -94,45 +86,36 @@ fn contour_of(pieces: Vec<Piece>) -> Contour {
 
 /// The parts of a closed curve between the points where it meets others.
 fn chains(curve: &[Piece], others: &[Piece]) -> Vec<Vec<Piece>> {
-    let mut chains = vec![Vec::new()];
-    let extend = |chains: &mut Vec<Vec<Piece>>, piece: Piece| {
-        let chain = chains.last_mut();
-        chain
-            .into_iter()
-            .for_each(|chain| chain.extend((!piece.is_short()).then_some(piece)));
-    };
+    let (mut chains, mut chain) = (Vec::new(), Vec::new());
+    let long = |piece: Piece| (!piece.is_short()).then_some(piece);
     for piece in curve {
         let mut rest = *piece;
         for point in piece.meetings(others) {
             let [before, after] = rest.split(point);
-            extend(&mut chains, before);
-            chains.push(Vec::new());
+            chain.extend(long(before));
+            chains.push(std::mem::take(&mut chain));
             rest = after;
         }
-        extend(&mut chains, rest);
+        chain.extend(long(rest));
     }
-    // The last chain goes on where the curve begins.
-    let first = chains.swap_remove(0);
-    match chains.first_mut() {
-        Some(last) => last.extend(first),
-        None => chains.push(first),
+    // The curve ends where it begins.
+    if let Some(first) = chains.first_mut() {
+        chain.append(first);
     }
+    chains.push(chain);
     chains.retain(|chain| !chain.is_empty());
     chains
 }
 
-/// Smallest and largest (x, y) of pieces, or somewhat less and more.
-fn bounds(pieces: &[Piece]) -> [Point; 2] {
-    let all = pieces.iter().map(Piece::bounds);
-    all.fold(
-        [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]],
-        |[low, high], [other_low, other_high]| {
-            [
-                [0, 1].map(|axis| low[axis].min(other_low[axis])),
-                [0, 1].map(|axis| high[axis].max(other_high[axis])),
-            ]
-        },
-    )
+/// Smallest and largest (x, y) of points.
+fn bounds(points: impl IntoIterator<Item = Point>) -> [Point; 2] {
+    let none = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
+    points.into_iter().fold(none, |[low, high], point| {
+        [
+            [0, 1].map(|axis| low[axis].min(point[axis])),
+            [0, 1].map(|axis| high[axis].max(point[axis])),
+        ]
+    })
 }
 
 /// Whether two rectangles between their smallest and largest (x, y) have points in common.
@@ -174,8 +157,8 @@ fn is_on(curve: &[Piece], point: Point) -> bool {
 fn holds(curves: &[Piece], point: Point) -> bool {
     let changes = |piece: &&Piece| {
         let [from, to] = piece.ends();
-        // The ray to the right crosses a rising chord of which the point lies on the left, and a falling one of
-        // which it lies on the right.
+        // The ray to the right crosses a rising chord of which the point lies on the left, and a falling one
+        // of which it lies on the right.
         let is_right = cross(minus(to, from), minus(point, from)) <= 0.0;
         let crosses = match (from[1] <= point[1], to[1] <= point[1]) {
             (true, false) => !is_right,
@@ -213,8 +196,8 @@ fn direction(from: Point, to: Point) -> Point {
     minus(to, from).map(|part| part / length)
 }
 
-/// The points of a circle on a line, of which `foot` is the point nearest to the centre; a line that touches the
-/// circle has two that are the same, so that curves are divided there, too.
+/// The points of a circle on a line, of which `foot` is the point nearest to the centre; a line that touches
+/// the circle has two that are the same, so that curves are divided there, too.
 fn on_circle(circle: &Ellipse, foot: Point, direction: Point) -> Vec<Point> {
     let (radius, apart) = (circle.semi_axes[0], distance(circle.center, foot));
     if apart > radius + NEAR {
@@ -289,24 +272,19 @@ impl Piece {
 
     /// Smallest and largest (x, y) of the piece, or of the circle that it is a part of.
     fn bounds(&self) -> [Point; 2] {
-        match self {
-            Self::Line([p, q]) => [
-                [0, 1].map(|axis| p[axis].min(q[axis])),
-                [0, 1].map(|axis| p[axis].max(q[axis])),
-            ],
+        bounds(match self {
+            Self::Line(ends) => *ends,
             Self::Arc(circle, _) => {
-                let reach = circle.semi_axes[0];
-                [-reach, reach].map(|reach| circle.center.map(|center| center + reach))
+                [-1.0, 1.0].map(|sign| circle.center.map(|center| center + sign * circle.semi_axes[0]))
             }
-        }
+        })
     }
 
     /// Where the piece meets others, in order along it.
     fn meetings(&self, others: &[Self]) -> Vec<Point> {
         let bounds = self.bounds();
         let close = others.iter().filter(|other| is_close(bounds, other.bounds()));
-        let meetings = close.flat_map(|other| self.meets(other));
-        let mut points: Vec<Point> = meetings.collect();
+        let mut points: Vec<Point> = close.flat_map(|other| self.meets(other)).collect();
         points.sort_by(|p, q| self.share(*p).total_cmp(&self.share(*q)));
         points
     }
@@ -318,9 +296,8 @@ impl Piece {
             (Self::Line(one), Self::Line(two)) => {
                 let (way, other_way) = (minus(one[1], one[0]), minus(two[1], two[0]));
                 let turn = cross(way, other_way);
-                if turn.abs()
-                    < NEAR * libm::hypot(way[0], way[1]).max(libm::hypot(other_way[0], other_way[1]))
-                {
+                let longer = distance(one[0], one[1]).max(distance(two[0], two[1]));
+                if turn.abs() < NEAR * longer {
                     [*one, *two].concat()
                 } else {
                     let share = cross(minus(two[0], one[0]), other_way) / turn;

@@ -1,5 +1,5 @@
-//! Outlines of textures as closed curves; what lies beyond a periodic edge returns at the opposite one. Lengths
-//! are in blocks.
+//! Outlines of textures as closed curves; what lies beyond a periodic edge returns at the opposite one.
+//! Lengths are in blocks.
 
 use std::f64::consts::FRAC_PI_2;
 
