@@ -454,14 +454,15 @@ fn lens(a: f64, b: f64, apart: f64) -> f64 {
 }
 
 /// Circles of 9 blocks on a slider of 40 blocks by 30, or on a disc of 40.
-#[test_case("blocks = [40, 30]", [3, 15], &[right_of_and_above(9.0, -3.0, 0.0) * 2.0]; "cut by an edge")]
-#[test_case("blocks = [40, 30]", [3, 4], &[right_of_and_above(9.0, -3.0, -4.0)]; "cut by a corner")]
-#[test_case("blocks = [40, 30]", [40, 0], &[81.0 * PI / 4.0]; "around a corner")]
-#[test_case("blocks = [40, 30]", [49, 15], &[]; "beside an edge")]
-#[test_case("blocks = [40, 40]\noutline = 'disc'", [35, 20], &[lens(9.0, 20.0, 15.0)]; "cut by a disc")]
-#[test_case("blocks = [40, 40]\noutline = 'disc'", [3, 3], &[lens(9.0, 20.0, 17.0 * 2_f64.sqrt())]; "in the corner of a disc")]
-#[test_case("blocks = [40, 40]\noutline = 'disc'", [48, 40], &[]; "beside a disc")]
-fn circles_are_cut_exactly(slider: &str, center: [u32; 2], areas: &[f64]) {
+#[test_case("blocks = [40, 30]", [3.0, 15.0], &[right_of_and_above(9.0, -3.0, 0.0) * 2.0]; "cut by an edge")]
+#[test_case("blocks = [40, 30]", [0.0, 38.0 / 3.0], &[81.0 * PI / 2.0]; "around an edge")]
+#[test_case("blocks = [40, 30]", [3.0, 4.0], &[right_of_and_above(9.0, -3.0, -4.0)]; "cut by a corner")]
+#[test_case("blocks = [40, 30]", [40.0, 0.0], &[81.0 * PI / 4.0]; "around a corner")]
+#[test_case("blocks = [40, 30]", [49.0, 15.0], &[]; "beside an edge")]
+#[test_case("blocks = [40, 40]\noutline = 'disc'", [35.0, 20.0], &[lens(9.0, 20.0, 15.0)]; "cut by a disc")]
+#[test_case("blocks = [40, 40]\noutline = 'disc'", [3.0, 3.0], &[lens(9.0, 20.0, 17.0 * 2_f64.sqrt())]; "in the corner of a disc")]
+#[test_case("blocks = [40, 40]\noutline = 'disc'", [48.0, 40.0], &[]; "beside a disc")]
+fn circles_are_cut_exactly(slider: &str, center: [f64; 2], areas: &[f64]) {
     let [x, y] = center;
     let texture = format!("[[texture]]\nshape = 'cavity'\nlambda = '9 um'\ncenter = ['{x} um', '{y} um']\n");
     let [shapes, edge] = drawn(&format!("[slider]\n{slider}\n{texture}"));

@@ -133,6 +133,7 @@ fn joined(mut chains: Vec<Vec<Piece>>) -> Vec<Vec<Piece>> {
         while !meet(start, end) {
             let next = |chain: &Vec<Piece>| ends(chain).iter().any(|&other| meet(other, end));
             let Some(next) = chains.iter().position(next) else {
+                line.push(Piece::Line([end, start]));
                 break;
             };
             let chain = chains.swap_remove(next);

@@ -1,7 +1,7 @@
 //! Outlines of textures as closed curves; what lies beyond a periodic edge returns at the opposite one.
 //! Lengths are in blocks.
 
-use std::f64::consts::FRAC_PI_2;
+use std::f64::consts::{FRAC_PI_2, TAU};
 
 use super::outline::{Curve, Outlines};
 use super::pattern::grids;
@@ -70,6 +70,8 @@ impl Ellipse {
     /// assert_eq!(ellipse.at(0.0), [1.0, 3.0]);
     /// ```
     pub fn at(&self, parameter: f64) -> [f64; 2] {
+        // The point after a whole turn is the first one to the last bit, so that no curve is open.
+        let parameter = parameter.rem_euclid(TAU);
         let along = self.semi_axes[0] * libm::cos(parameter);
         let aside = self.semi_axes[1] * libm::sin(parameter);
         let [c, s] = self.axis;
