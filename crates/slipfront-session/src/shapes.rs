@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use serde::Serialize;
-use slipfront::surface::{Contour, Ellipse, Piece, contours};
+use slipfront::surface::{Contour, Ellipse, Piece, clip, contours};
 use slipfront_case::case::Case;
 
 /// The outlines of one texture, in blocks.
@@ -33,9 +33,15 @@ pub(crate) fn outlines(case: &Case) -> Vec<ShapeOutlines> {
     }
     // A mask that cannot be read any more has no outline either.
     let textures = case.textures_in_blocks().unwrap_or_default();
+    let lattice = &case.model.lattice;
+    let slider = [Contour::rectangle(
+        [0.0; 2],
+        [lattice.nx, lattice.ny].map(|blocks| blocks as f64),
+    )];
     let mut left = MAX_OUTLINES;
     let drawn = textures.iter().enumerate().filter_map(|(index, texture)| {
-        let contours = contours(&case.model.lattice, texture)?;
+        let shapes = contours(lattice, texture)?;
+        let contours: Vec<Contour> = shapes.iter().flat_map(|shape| clip(shape, &slider)).collect();
         left = left.checked_sub(contours.len())?;
         let outlines = contours.iter().map(points).collect();
         Some(ShapeOutlines { index, outlines })

@@ -1,10 +1,12 @@
 //! The outlines of the textures of a case, layer by layer.
 
-use slipfront::surface::{Contour, Texture, contours, copies_overlap, mask_outline, mesh};
+use slipfront::surface::{
+    Contour, Ellipse, Shape, Texture, clip, contours, copies_overlap, mask_outline, mesh,
+};
 
 use super::error::TextureFileError;
-use super::textured_blocks::textured_blocks;
 use crate::case::Case;
+use crate::case_file::Outline;
 
 /// Largest number of corners of all outlines: a file of about a gigabyte.
 const MAX_CORNERS: usize = 1 << 24;
@@ -16,7 +18,9 @@ pub struct OutlineDrawing {
     pub size: [usize; 2],
     /// Edge of a block, mm.
     pub block: f64,
-    /// Outlines in blocks, a layer for each texture; a block is textured if any layer fills it.
+    /// The edge of the slider, in blocks: one line, or several if it has holes or islands.
+    pub slider: Vec<Contour>,
+    /// Outlines in blocks, a layer for each texture that has any; a block is textured if any layer fills it.
     pub layers: Vec<Layer>,
     /// Notes about the drawing.
     pub notes: Vec<String>,
@@ -50,16 +54,10 @@ impl OutlineDrawing {
         let mut drawing = Self {
             size,
             block: case.scales.block_size * 1e3,
+            slider: edge(case, size),
             layers: Vec::new(),
             notes: Vec::new(),
         };
-        if (0..lattice.n_blocks()).any(|block| !case.model.slider().exists(block)) {
-            let contours = block_edges(&textured_blocks(case), size);
-            drawing.add("TEXTURE".to_owned(), Fill::EvenOdd, contours);
-            let note = "the outlines are the edges of blocks, since the slider has an outline of its own";
-            drawing.notes.push(note.to_owned());
-            return Ok(drawing);
-        }
         let textures = case.textures_in_blocks()?;
         let corners = textures.iter().map(corners).sum();
         if corners > MAX_CORNERS {
@@ -68,21 +66,29 @@ impl OutlineDrawing {
         }
         for (texture, number) in textures.iter().zip(1..) {
             let name = format!("TEXTURE_{number}");
-            let overlaps = texture.inverted && copies_overlap(lattice, texture);
-            match contours(lattice, texture).filter(|_| !overlaps) {
-                Some(contours) if !texture.inverted => drawing.add(name, Fill::Each, contours),
-                Some(pillars) => {
-                    let [x, y] = size.map(|blocks| blocks as f64);
-                    let slider = Contour::Polygon(vec![[0.0, 0.0], [x, 0.0], [x, y], [0.0, y]]);
-                    let contours = std::iter::once(slider).chain(pillars).collect();
-                    drawing.add(name, Fill::EvenOdd, contours);
+            let parts = |shape: &Contour| clip(shape, &drawing.slider);
+            let shapes: Option<Vec<Vec<Contour>>> =
+                contours(lattice, texture).map(|shapes| shapes.iter().map(parts).collect());
+            // Parts of one shape may lie around each other, if it crosses itself or the slider has holes.
+            let may_nest = matches!(texture.shape, Shape::Polygon(_)) || drawing.slider.len() > 1;
+            let nests = may_nest && shapes.iter().flatten().any(|parts| parts.len() > 1);
+            let is_even_odd = texture.inverted || nests;
+            let overlaps = is_even_odd && copies_overlap(lattice, texture);
+            match shapes.filter(|_| !overlaps) {
+                Some(shapes) if !is_even_odd => drawing.add(name, Fill::Each, shapes.concat()),
+                Some(mut shapes) => {
+                    if texture.inverted {
+                        shapes.push(drawing.slider.clone());
+                    }
+                    drawing.add(name, Fill::EvenOdd, shapes.concat());
                 }
                 None => {
                     let blocks = mesh(lattice, std::slice::from_ref(texture)).textured;
-                    drawing.add(name, Fill::EvenOdd, block_edges(&blocks, size));
+                    let edges = block_edges(&blocks, size);
+                    drawing.add(name, Fill::EvenOdd, edges.iter().flat_map(parts).collect());
                     if overlaps {
                         drawing.notes.push(format!(
-                            "the outlines of texture {number} are the edges of blocks, since its pillars overlap"
+                            "the outlines of texture {number} are the edges of blocks, since its copies overlap and are filled together"
                         ));
                     }
                 }
@@ -96,7 +102,26 @@ impl OutlineDrawing {
             Fill::Each => name,
             Fill::EvenOdd => name + "_EVEN_ODD",
         };
-        self.layers.push(Layer { name, fill, contours });
+        if !contours.is_empty() {
+            self.layers.push(Layer { name, fill, contours });
+        }
+    }
+}
+
+/// The edge of the slider.
+fn edge(case: &Case, size: [usize; 2]) -> Vec<Contour> {
+    let [x, y] = size.map(|blocks| blocks as f64);
+    match case.file.slider.outline {
+        Outline::Rectangle => vec![Contour::rectangle([0.0, 0.0], [x, y])],
+        Outline::Disc => vec![Contour::Ellipse(Ellipse {
+            center: [0.5 * x, 0.5 * y],
+            semi_axes: [0.5 * x.min(y); 2],
+            axis: [1.0, 0.0],
+        })],
+        Outline::Mask => {
+            let exists = (0..size[0] * size[1]).map(|block| case.model.slider().exists(block));
+            block_edges(&exists.collect::<Vec<bool>>(), size)
+        }
     }
 }
 
@@ -106,11 +131,11 @@ fn corners(texture: &Texture) -> usize {
     copies.saturating_mul(texture.shape.n_corners())
 }
 
-/// The lines around blocks that are textured, holes among them.
-fn block_edges(textured: &[bool], [nx, ny]: [usize; 2]) -> Vec<Contour> {
+/// The lines around some blocks, holes among them.
+fn block_edges(chosen: &[bool], [nx, ny]: [usize; 2]) -> Vec<Contour> {
     // A frame of other blocks closes the lines along the slider's edges.
     let mut framed = vec![false; (nx + 2) * (ny + 2)];
-    for (row, blocks) in textured.chunks(nx).enumerate() {
+    for (row, blocks) in chosen.chunks(nx).enumerate() {
         framed[(row + 1) * (nx + 2) + 1..][..nx].copy_from_slice(blocks);
     }
     let chains = mask_outline(&framed, nx + 2, ny + 2).into_iter();

@@ -1,10 +1,10 @@
 //! Outlines as DXF of AutoCAD 2000, the oldest version that has ellipses, in millimetres. A layer for each
 //! texture, and one for the slider.
 
-use std::f64::consts::{FRAC_PI_2, TAU};
+use std::f64::consts::TAU;
 use std::fmt::Display;
 
-use slipfront::surface::{Contour, Ellipse, Piece};
+use slipfront::surface::{Contour, Piece};
 
 use super::drawing::OutlineDrawing;
 
@@ -19,11 +19,13 @@ const SPACES: [(&str, u64); 2] = [("*Model_Space", MODEL_SPACE), ("*Paper_Space"
 pub(super) fn text(drawing: &OutlineDrawing) -> String {
     let layers: Vec<&str> = drawing.layers.iter().map(|layer| layer.name.as_str()).collect();
     let mut entities = File::new();
-    let [x, y] = drawing.size.map(|blocks| blocks as f64 * drawing.block);
-    entities.polygon("SLIDER", [[0.0, 0.0], [x, 0.0], [x, y], [0.0, y]].into_iter());
-    for layer in &drawing.layers {
-        for contour in &layer.contours {
-            entities.contour(&layer.name, contour, drawing.block);
+    let outlines = drawing
+        .layers
+        .iter()
+        .map(|layer| (layer.name.as_str(), &layer.contours));
+    for (layer, contours) in std::iter::once(("SLIDER", &drawing.slider)).chain(outlines) {
+        for contour in contours {
+            entities.contour(layer, contour, drawing.block);
         }
     }
     let mut tables = File {
@@ -125,73 +127,47 @@ impl File {
         ]);
     }
 
+    /// A closed line, of edges in blocks of this length.
     fn contour(&mut self, layer: &str, contour: &Contour, block: f64) {
-        match contour {
-            Contour::Polygon(corners) => {
-                self.polygon(
-                    layer,
-                    corners.iter().map(|corner| corner.map(|length| length * block)),
-                );
-            }
-            Contour::Ellipse(ellipse) => self.ellipse(layer, ellipse, None, block),
-            Contour::Pieces(pieces) => {
-                for piece in pieces {
-                    match piece {
-                        Piece::Arc(ellipse, parameters) => {
-                            self.ellipse(layer, ellipse, Some(*parameters), block);
-                        }
-                        Piece::Line(ends) => {
-                            let [[x_0, y_0], [x, y]] = ends.map(|end| end.map(|length| length * block));
-                            self.entity("LINE", "AcDbLine", MODEL_SPACE, layer);
-                            self.pairs(&[(10, &x_0), (20, &y_0), (30, &0), (11, &x), (21, &y), (31, &0)]);
-                        }
-                    }
-                }
-            }
-        }
-    }
-
-    fn polygon(&mut self, layer: &str, corners: impl ExactSizeIterator<Item = [f64; 2]>) {
-        self.entity("LWPOLYLINE", "AcDbPolyline", MODEL_SPACE, layer);
-        // Closed.
-        self.pairs(&[(90, &corners.len()), (70, &1)]);
-        for [x, y] in corners {
-            self.pairs(&[(10, &x), (20, &y)]);
-        }
-    }
-
-    /// An ellipse, or a part of it between two parameters.
-    fn ellipse(&mut self, layer: &str, ellipse: &Ellipse, parameters: Option<[f64; 2]>, block: f64) {
+        let Contour::Ellipse(ellipse) = contour else {
+            return self.polyline(layer, &contour.pieces(), block);
+        };
         let [x, y] = ellipse.center.map(|length| length * block);
         let [a, b] = ellipse.semi_axes.map(|length| length * block);
-        let [c, s] = ellipse.axis;
-        if a != b {
-            self.entity("ELLIPSE", "AcDbEllipse", MODEL_SPACE, layer);
-            // The first axis of a file is the longer one.
-            let (major, ratio, later) = if a > b {
-                ([a * c, a * s], b / a, 0.0)
-            } else {
-                ([-b * s, b * c], a / b, FRAC_PI_2)
-            };
-            let [from, to] =
-                parameters.map_or([0.0, TAU], |ends| ends.map(|end| (end - later).rem_euclid(TAU)));
-            self.pairs(&[
-                (10, &x),
-                (20, &y),
-                (30, &0),
-                (11, &major[0]),
-                (21, &major[1]),
-                (31, &0),
-            ]);
-            self.pairs(&[(40, &ratio), (41, &from), (42, &to)]);
-            return;
+        if a == b {
+            self.entity("CIRCLE", "AcDbCircle", MODEL_SPACE, layer);
+            return self.pairs(&[(10, &x), (20, &y), (30, &0), (40, &a)]);
         }
-        let kind = if parameters.is_some() { "ARC" } else { "CIRCLE" };
-        self.entity(kind, "AcDbCircle", MODEL_SPACE, layer);
-        self.pairs(&[(10, &x), (20, &y), (30, &0), (40, &a)]);
-        if let Some(ends) = parameters {
-            let [from, to] = ends.map(|end| (end + libm::atan2(s, c)).to_degrees().rem_euclid(360.0));
-            self.pairs(&[(100, &"AcDbArc"), (50, &from), (51, &to)]);
+        let [c, s] = ellipse.axis;
+        self.entity("ELLIPSE", "AcDbEllipse", MODEL_SPACE, layer);
+        // The first axis of a file is the longer one.
+        let (major, ratio) = if a > b {
+            ([a * c, a * s], b / a)
+        } else {
+            ([-b * s, b * c], a / b)
+        };
+        self.pairs(&[
+            (10, &x),
+            (20, &y),
+            (30, &0),
+            (11, &major[0]),
+            (21, &major[1]),
+            (31, &0),
+        ]);
+        self.pairs(&[(40, &ratio), (41, &0), (42, &TAU)]);
+    }
+
+    /// A closed line of lines and arcs of circles: an arc of the angle `t` bulges by `tan(t/4)`.
+    fn polyline(&mut self, layer: &str, pieces: &[Piece], block: f64) {
+        self.entity("LWPOLYLINE", "AcDbPolyline", MODEL_SPACE, layer);
+        // Closed.
+        self.pairs(&[(90, &pieces.len()), (70, &1)]);
+        for piece in pieces {
+            let [x, y] = piece.ends()[0].map(|length| length * block);
+            self.pairs(&[(10, &x), (20, &y)]);
+            if let Piece::Arc(_, [from, to]) = piece {
+                self.pairs(&[(42, &libm::tan(0.25 * (to - from)))]);
+            }
         }
     }
 

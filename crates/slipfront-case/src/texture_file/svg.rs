@@ -5,7 +5,7 @@ use std::fmt::Write;
 
 use slipfront::surface::{Contour, Ellipse, Piece};
 
-use super::drawing::{Fill, Layer, OutlineDrawing};
+use super::drawing::{Fill, OutlineDrawing};
 
 /// Width of the slider's edge over the edge of a block; a program that cuts takes its middle.
 const EDGE_WIDTH: f64 = 0.05;
@@ -19,30 +19,24 @@ pub(super) fn text(drawing: &OutlineDrawing) -> String {
     for layer in &drawing.layers {
         let name = &layer.name;
         svg += &format!("<g id=\"{name}\" fill=\"black\" fill-rule=\"evenodd\">\n");
-        svg += &elements(drawing, layer);
+        svg += &elements(drawing, layer.fill, &layer.contours);
         svg += "</g>\n";
     }
     let stroke = EDGE_WIDTH * drawing.block;
-    svg += &format!(
-        "<rect id=\"SLIDER\" width=\"{width}\" height=\"{height}\" fill=\"none\" stroke=\"black\" stroke-width=\"{stroke}\"/>\n"
-    );
-    svg + "</svg>\n"
+    svg += &format!("<g id=\"SLIDER\" fill=\"none\" stroke=\"black\" stroke-width=\"{stroke}\">\n");
+    svg += &elements(drawing, Fill::Each, &drawing.slider);
+    svg + "</g>\n</svg>\n"
 }
 
-fn elements(drawing: &OutlineDrawing, layer: &Layer) -> String {
+fn elements(drawing: &OutlineDrawing, fill: Fill, contours: &[Contour]) -> String {
     let page = SvgPage(drawing);
-    match layer.fill {
+    match fill {
         // Holes need one path for all.
         Fill::EvenOdd => {
-            let paths = layer.contours.iter().map(|contour| page.path(contour));
-            let path: Vec<String> = paths.collect();
+            let path: Vec<String> = contours.iter().map(|contour| page.path(contour)).collect();
             format!("<path d=\"{}\"/>\n", path.join(" "))
         }
-        Fill::Each => layer
-            .contours
-            .iter()
-            .map(|contour| page.element(contour))
-            .collect(),
+        Fill::Each => contours.iter().map(|contour| page.element(contour)).collect(),
     }
 }
 
@@ -73,41 +67,26 @@ impl SvgPage<'_> {
 
     fn path(&self, contour: &Contour) -> String {
         let mut path = String::new();
-        // A string takes every text.
-        match contour {
-            Contour::Polygon(corners) => {
-                for (corner, letter) in corners.iter().zip("M".chars().chain(std::iter::repeat('L'))) {
-                    let [x, y] = self.point(*corner);
-                    let _ = write!(path, "{letter}{x} {y}");
-                }
-            }
-            Contour::Ellipse(ellipse) => {
-                let quarter = |k: u32| std::f64::consts::FRAC_PI_2 * f64::from(k);
-                let pieces: Vec<Piece> = (0..4)
-                    .map(|k| Piece::Arc(*ellipse, [quarter(k), quarter(k + 1)]))
-                    .collect();
-                self.add_pieces(&mut path, &pieces);
-            }
-            Contour::Pieces(pieces) => self.add_pieces(&mut path, pieces),
-        }
-        path + "Z"
-    }
-
-    fn add_pieces(&self, path: &mut String, pieces: &[Piece]) {
+        let pieces = contour.pieces();
         for (at, piece) in pieces.iter().enumerate() {
             let [[x_0, y_0], [x, y]] = piece.ends().map(|end| self.point(end));
+            // A string takes every text.
             if at == 0 {
                 let _ = write!(path, "M{x_0} {y_0}");
             }
             let _ = match piece {
+                // The end of the path draws the last line.
+                Piece::Line(_) if at + 1 == pieces.len() => Ok(()),
                 Piece::Line(_) => write!(path, "L{x} {y}"),
-                Piece::Arc(ellipse, _) => {
+                Piece::Arc(ellipse, [from, to]) => {
                     let [a, b] = ellipse.semi_axes.map(|axis| axis * self.0.block);
-                    // Counterclockwise, and never more than a quarter.
-                    write!(path, "A{a} {b} {} 0 0 {x} {y}", turn(ellipse))
+                    // Never more than a quarter; y points down, so that a sweep of 1 is clockwise.
+                    let sweep = u8::from(from > to);
+                    write!(path, "A{a} {b} {} 0 {sweep} {x} {y}", turn(ellipse))
                 }
             };
         }
+        path + "Z"
     }
 }
 

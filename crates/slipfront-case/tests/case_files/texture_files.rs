@@ -105,7 +105,9 @@ fn svg(text: &str, [nx, ny]: [usize; 2]) -> Vec<Element> {
     assert!((number_of(head, "height").unwrap() / block - ny as f64).abs() < 1e-9);
     let point = |x: f64, y: f64| [x / block, ny as f64 - y / block];
     let mut elements = Vec::new();
-    for line in text.lines() {
+    // All but the edge of the slider.
+    let (textures, _) = text.split_once("<g id=\"SLIDER\"").unwrap();
+    for line in textures.lines() {
         let number = |name: &str| number_of(line, name);
         if line.starts_with("<circle") {
             let r = number("r").unwrap() / block;
@@ -151,9 +153,10 @@ fn svg_path(path: &str, point: &dyn Fn(f64, f64) -> [f64; 2], block: f64) -> Ele
                 here = point(x, y);
             }
             ('A', &[a, b, degrees, large, sweep, x, y]) => {
-                assert_eq!((large, sweep), (0.0, 0.0));
+                assert_eq!(large, 0.0);
                 let to = point(x, y);
-                parts.push(arc(here, to, [a / block, b / block], -degrees.to_radians()));
+                let [from, end] = if sweep == 0.0 { [here, to] } else { [to, here] };
+                parts.push(arc(from, end, [a / block, b / block], -degrees.to_radians()));
                 here = to;
             }
             ('Z', []) => {
@@ -191,88 +194,94 @@ fn arc(from: [f64; 2], to: [f64; 2], [a, b]: [f64; 2], angle: f64) -> Part {
     Part::Arc(center, [a, b], angle, [t, u])
 }
 
-/// Parameters of an arc such that its end comes after its start.
-fn counterclockwise([from, to]: [f64; 2]) -> [f64; 2] {
-    [from, if to > from { to } else { to + TAU }]
+/// The entities of a layer of a DXF: each the kind, and the codes with their values.
+fn entities(text: &str, has_layer: impl Fn(&str) -> bool) -> Vec<(&str, Vec<(u16, &str)>)> {
+    let (_, text) = text.split_once("\nENTITIES\n").unwrap();
+    let (text, _) = text.split_once("0\nENDSEC\n").unwrap();
+    let lines: Vec<&str> = text.lines().collect();
+    let mut entities: Vec<(&str, Vec<(u16, &str)>)> = Vec::new();
+    for pair in lines.chunks(2) {
+        match (pair[0].parse().unwrap(), pair[1]) {
+            (0, kind) => entities.push((kind, Vec::new())),
+            other => entities.last_mut().unwrap().1.push(other),
+        }
+    }
+    entities.retain(|(_, pairs)| pairs.iter().any(|(code, layer)| *code == 8 && has_layer(layer)));
+    entities
+}
+
+/// The closed line of an entity of a DXF, in blocks.
+fn closed_line(kind: &str, pairs: &[(u16, &str)], block: f64) -> Element {
+    let value = |code: u16| pairs.iter().find(|pair| pair.0 == code).unwrap().1.parse::<f64>();
+    let number = |code: u16| value(code).unwrap();
+    let length = |code: u16| number(code) / block;
+    match kind {
+        "LWPOLYLINE" => {
+            let mut corners: Vec<([f64; 2], f64)> = Vec::new();
+            for (code, value) in pairs {
+                match (code, value.parse::<f64>()) {
+                    (10, Ok(x)) => corners.push(([x / block, 0.0], 0.0)),
+                    (20, Ok(y)) => corners.last_mut().unwrap().0[1] = y / block,
+                    (42, Ok(bulge)) => corners.last_mut().unwrap().1 = bulge,
+                    _ => (),
+                }
+            }
+            assert_eq!((number(90) as usize, number(70)), (corners.len(), 1.0));
+            let edges = corners.iter().zip(corners.iter().cycle().skip(1));
+            edges.map(|(&(p, bulge), &(q, _))| bulged(p, q, bulge)).collect()
+        }
+        "CIRCLE" => vec![Part::Arc(
+            [length(10), length(20)],
+            [length(40); 2],
+            0.0,
+            [0.0, TAU],
+        )],
+        "ELLIPSE" => {
+            let major = [length(11), length(21)];
+            let a = major[0].hypot(major[1]);
+            assert!(number(40) <= 1.0);
+            assert_eq!([number(41), number(42)], [0.0, TAU]);
+            let angle = major[1].atan2(major[0]);
+            vec![Part::Arc(
+                [length(10), length(20)],
+                [a, a * number(40)],
+                angle,
+                [0.0, TAU],
+            )]
+        }
+        other => panic!("{other}"),
+    }
+}
+
+/// The line from one corner to the next one, or the arc of a circle of the angle `4 atan(bulge)`.
+fn bulged(p: [f64; 2], q: [f64; 2], bulge: f64) -> Part {
+    let radius = (q[0] - p[0]).hypot(q[1] - p[1]) * (1.0 + bulge * bulge) / (4.0 * bulge.abs());
+    if bulge == 0.0 {
+        Part::Line([p, q])
+    } else if bulge > 0.0 {
+        arc(p, q, [radius; 2], 0.0)
+    } else {
+        arc(q, p, [radius; 2], 0.0)
+    }
 }
 
 /// The elements of a DXF, in blocks: each closed line, or all of a layer that is filled by the even-odd rule.
 fn dxf(text: &str, block: f64) -> Vec<Element> {
-    let lines: Vec<&str> = text.lines().collect();
-    let pairs: Vec<(u16, &str)> = lines
-        .chunks(2)
-        .map(|pair| (pair[0].trim().parse().unwrap(), pair[1]))
-        .collect();
-    let begin = pairs.iter().position(|pair| *pair == (2, "ENTITIES")).unwrap();
-    let pairs = &pairs[begin + 1..];
-    let end = pairs.iter().position(|pair| *pair == (0, "ENDSEC")).unwrap();
-    let starts = (0..=end).filter(|&at| pairs[at].0 == 0).collect::<Vec<_>>();
     let mut elements: Vec<Element> = Vec::new();
-    let mut even_odd: Vec<(String, usize)> = Vec::new();
-    let mut open: Element = Vec::new();
-    for span in starts.windows(2) {
-        let entity = &pairs[span[0]..span[1]];
-        let text = |code: u16| entity.iter().find(|pair| pair.0 == code).unwrap().1;
-        let number = |code: u16| text(code).parse::<f64>().unwrap();
-        let length = |code: u16| number(code) / block;
-        let layer = text(8);
-        if layer == "SLIDER" {
-            continue;
-        }
-        match entity[0].1 {
-            "LWPOLYLINE" => {
-                let all = |code: u16| {
-                    entity
-                        .iter()
-                        .filter(move |pair| pair.0 == code)
-                        .map(|pair| pair.1.parse::<f64>().unwrap() / block)
-                };
-                let corners: Vec<[f64; 2]> = all(10).zip(all(20)).map(|(x, y)| [x, y]).collect();
-                assert_eq!(number(90) as usize, corners.len());
-                let next = corners.iter().cycle().skip(1);
-                open.extend(corners.iter().zip(next).map(|(p, q)| Part::Line([*p, *q])));
-            }
-            "LINE" => open.push(Part::Line([[length(10), length(20)], [length(11), length(21)]])),
-            "CIRCLE" => open.push(Part::Arc(
-                [length(10), length(20)],
-                [length(40); 2],
-                0.0,
-                [0.0, TAU],
-            )),
-            "ARC" => {
-                let ends = counterclockwise([50, 51].map(|code| number(code).to_radians()));
-                open.push(Part::Arc([length(10), length(20)], [length(40); 2], 0.0, ends));
-            }
-            "ELLIPSE" => {
-                let major = [length(11), length(21)];
-                let a = major[0].hypot(major[1]);
-                assert!(number(40) <= 1.0);
-                let ends = counterclockwise([number(41), number(42)]);
-                open.push(Part::Arc(
-                    [length(10), length(20)],
-                    [a, a * number(40)],
-                    major[1].atan2(major[0]),
-                    ends,
-                ));
-            }
-            other => panic!("{other}"),
-        }
-        let (first, last) = (open[0].ends()[0], open[open.len() - 1].ends()[1]);
-        if (first[0] - last[0]).hypot(first[1] - last[1]) > 1e-6 {
-            continue;
-        }
-        let element = std::mem::take(&mut open);
-        match even_odd.iter().find(|(name, _)| name == layer) {
+    let mut even_odd: Vec<(&str, usize)> = Vec::new();
+    for (kind, pairs) in entities(text, |layer| layer != "SLIDER") {
+        let element = closed_line(kind, &pairs, block);
+        let layer = pairs.iter().find(|pair| pair.0 == 8).unwrap().1;
+        match even_odd.iter().find(|(name, _)| *name == layer) {
             Some((_, at)) => elements[*at].extend(element),
             None => {
                 if layer.ends_with("EVEN_ODD") {
-                    even_odd.push((layer.to_owned(), elements.len()));
+                    even_odd.push((layer, elements.len()));
                 }
                 elements.push(element);
             }
         }
     }
-    assert!(open.is_empty(), "an outline is open");
     elements
 }
 
@@ -280,8 +289,9 @@ fn dxf(text: &str, block: f64) -> Vec<Element> {
 fn expect_filled(elements: &[Element], textured: &[bool], nx: usize, what: &str) {
     for (b, textured) in textured.iter().enumerate() {
         let center = [(b % nx) as f64 + 0.5, (b / nx) as f64 + 0.5];
-        let odd =
-            |element: &Element| element.iter().map(|part| part.crossings(center)).sum::<usize>() % 2 == 1;
+        // Not at the height of the ends of arcs, which are rounded.
+        let ray = [center[0], center[1] + 1e-10];
+        let odd = |element: &Element| element.iter().map(|part| part.crossings(ray)).sum::<usize>() % 2 == 1;
         if elements.iter().any(odd) != *textured {
             let nearest = elements
                 .iter()
@@ -321,13 +331,25 @@ const SHAPES: &[&str] = &[
     "[slider]\nblocks = [40, 30]\nblock_size = '1.7 nm'\n",
     &["[[texture]]\nshape = 'cavity'\ncoverage = 10\nw = 0.3"]
 )]
-#[test_case("[slider]\nblocks = [31, 31]\noutline = 'disc'\n", &SHAPES[..2])]
+#[test_case("[slider]\nblocks = [34, 34]\noutline = 'disc'\n", SHAPES)]
+#[test_case(
+    "[slider]\nblocks = [40, 30]\noutline = 'mask'\noutline_file = 'holes.png'\n",
+    SHAPES
+)]
 fn outlines_fill_the_blocks_of_the_mask(slider: &str, shapes: &[&str]) {
     let folder = tempfile::tempdir().unwrap();
     let mask: Vec<bool> = (0..30).map(|b| b % 7 < 2 || b == 12).collect();
     std::fs::write(
         folder.path().join("mask.png"),
         slipfront_case::arrays::png_of_mask(6, 5, &mask).unwrap(),
+    )
+    .unwrap();
+    // Corners that touch, narrow teeth, holes, and islands within them.
+    let holes = |b: usize| (b % 40 / 7 + b / 40 / 5) % 4 != 1 || b % 5 == 2;
+    let exists: Vec<bool> = (0..1200).map(holes).collect();
+    fs::write(
+        folder.path().join("holes.png"),
+        slipfront_case::arrays::png_of_mask(40, 30, &exists).unwrap(),
     )
     .unwrap();
     for shape in shapes {
@@ -376,18 +398,125 @@ fn circles_and_ellipses_are_written_as_such_and_cavities_as_4096_corners() {
     let svg = written(square, "a.svg");
     let path = svg.lines().find(|line| line.starts_with("<path")).unwrap();
     assert_eq!(count(path, "L"), 4095);
-    // The edge of the slider, for registration, in both.
-    assert!(
-        svg.contains("<rect id=\"SLIDER\" width=\"0.04\" height=\"0.03\" fill=\"none\" stroke=\"black\" "),
-        "{svg:.300}"
-    );
-    assert_eq!(
-        count(&written(square, "a.dxf"), "\nSLIDER\n"),
-        count(&written(ellipse, "b.dxf"), "\nSLIDER\n")
-    );
+    // The edge of the slider, for registration.
+    let edge = "<g id=\"SLIDER\" fill=\"none\" stroke=\"black\" stroke-width=\"0.00005\">\n\
+                <path d=\"M0 0.03L0.04 0.03L0.04 0L0 0Z\"/>\n</g>\n</svg>\n";
+    assert!(svg.ends_with(edge), "{svg}");
     assert!(written(square, "a.dxf").contains("\n90\n4096\n70\n1\n"));
     // In true size: 40 blocks of 1 um.
     assert!(written(square, "a.svg").contains("width=\"0.04mm\" height=\"0.03mm\""));
+}
+
+/// The area within a closed line, in square blocks: the polygon of its corners and the segments beyond its
+/// chords.
+fn area(line: &Element) -> f64 {
+    let part = |part: &Part| {
+        let [[x_0, y_0], [x, y]] = part.ends();
+        let segment = match part {
+            Part::Line(_) => 0.0,
+            Part::Arc(_, [a, b], _, [from, to]) => a * b * (to - from - (to - from).sin()),
+        };
+        0.5 * (x_0 * y - x * y_0 + segment)
+    };
+    line.iter().map(part).sum()
+}
+
+/// The texture of a case, and its edge, as closed lines of DXF in blocks.
+fn drawn(text: &str) -> [Vec<(String, Element)>; 2] {
+    let case = Case::parse(text, "case", "", &[]).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.dxf");
+    write(&case, &path, None).unwrap();
+    let dxf = fs::read_to_string(path).unwrap();
+    [false, true].map(|is_edge| {
+        let found = entities(&dxf, |layer| (layer == "SLIDER") == is_edge).into_iter();
+        let line = |pairs: &[_], kind| closed_line(kind, pairs, 1e3 * case.scales.block_size);
+        found
+            .map(|(kind, pairs)| (kind.to_owned(), line(&pairs, kind)))
+            .collect()
+    })
+}
+
+/// The area of a circle around the origin that lies right of `x` and above `y`, a point inside of it.
+fn right_of_and_above(radius: f64, x: f64, y: f64) -> f64 {
+    let [beside, above] = [x, y].map(|length| (radius * radius - length * length).sqrt());
+    let angle = (x / radius).acos() - (y / radius).asin();
+    0.5 * (radius * radius * angle - x * (beside - y) - y * (above - x))
+}
+
+/// The area that two circles of these radii have in common, their centres this far apart.
+fn lens(a: f64, b: f64, apart: f64) -> f64 {
+    let half = |a: f64, b: f64| {
+        let chord = (apart * apart + a * a - b * b) / (2.0 * apart);
+        a * a * (chord / a).acos() - chord * (a * a - chord * chord).sqrt()
+    };
+    half(a, b) + half(b, a)
+}
+
+/// Circles of 9 blocks on a slider of 40 blocks by 30, or on a disc of 40.
+#[test_case("blocks = [40, 30]", [3.0, 15.0], &[right_of_and_above(9.0, -3.0, 0.0) * 2.0]; "cut by an edge")]
+#[test_case("blocks = [40, 30]", [0.0, 38.0 / 3.0], &[81.0 * PI / 2.0]; "around an edge")]
+#[test_case("blocks = [40, 30]", [3.0, 4.0], &[right_of_and_above(9.0, -3.0, -4.0)]; "cut by a corner")]
+#[test_case("blocks = [40, 30]", [40.0, 0.0], &[81.0 * PI / 4.0]; "around a corner")]
+#[test_case("blocks = [40, 30]", [49.0, 15.0], &[]; "beside an edge")]
+#[test_case("blocks = [40, 40]\noutline = 'disc'", [35.0, 20.0], &[lens(9.0, 20.0, 15.0)]; "cut by a disc")]
+#[test_case("blocks = [40, 40]\noutline = 'disc'", [3.0, 3.0], &[lens(9.0, 20.0, 17.0 * 2_f64.sqrt())]; "in the corner of a disc")]
+#[test_case("blocks = [40, 40]\noutline = 'disc'", [48.0, 40.0], &[]; "beside a disc")]
+fn circles_are_cut_exactly(slider: &str, center: [f64; 2], areas: &[f64]) {
+    let [x, y] = center;
+    let texture = format!("[[texture]]\nshape = 'cavity'\nlambda = '9 um'\ncenter = ['{x} um', '{y} um']\n");
+    let [shapes, edge] = drawn(&format!("[slider]\n{slider}\n{texture}"));
+    assert_eq!(shapes.len(), areas.len());
+    for ((kind, line), wanted) in shapes.iter().zip(areas) {
+        assert_eq!(kind, "LWPOLYLINE");
+        // Some twenty roundings of numbers up to four times as large.
+        assert!(
+            (area(line) / wanted - 1.0).abs() < 1e-12,
+            "{} {wanted}",
+            area(line)
+        );
+    }
+    let (kind, size) = if slider.contains("disc") {
+        ("CIRCLE", 400.0 * PI)
+    } else {
+        ("LWPOLYLINE", 1200.0)
+    };
+    assert_eq!(edge[0].0, kind);
+    assert!(edge.len() == 1 && (area(&edge[0].1) / size - 1.0).abs() < 1e-12);
+}
+
+/// No line without an inside is written: neither of a polygon that has none, nor of a groove or a copy that
+/// touches the edge from outside.
+#[test_case(
+    "edges = 'free'",
+    "shape = 'polygon'\npoints = [['1 um', '1 um'], ['9 um', '9 um'], ['5 um', '5 um']]"
+)]
+#[test_case("edges = 'free'", "shape = 'groove'\nwidth = '10 um'\noffset = '25 um'")]
+#[test_case("edges = 'periodic'", "shape = 'groove'\nwidth = '10 um'\noffset = '15 um'")]
+#[test_case(
+    "edges = 'free'",
+    "shape = 'cavity'\nlambda = '9 um'\ncenter = ['-9 um', '15 um']"
+)]
+fn nothing_empty_is_drawn(edges: &str, texture: &str) {
+    let [shapes, _] = drawn(&format!(
+        "[slider]\nblocks = [40, 30]\n{edges}\n[[texture]]\n{texture}\n"
+    ));
+    let filled = usize::from(edges.contains("periodic"));
+    assert_eq!(shapes.len(), filled);
+    assert!(shapes.iter().all(|(_, line)| area(line) > 1.0));
+}
+
+#[test]
+fn dimples_over_periodic_edges_are_closed_lines() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases");
+    let text = fs::read_to_string(folder.join("hexagonal_dimples.toml")).unwrap();
+    let [shapes, _] = drawn(&text);
+    let count = |kind: &str| shapes.iter().filter(|(other, _)| other == kind).count();
+    // A dimple of each of the four rows is cut, and goes on at the opposite edge.
+    assert_eq!((shapes.len(), count("CIRCLE"), count("LWPOLYLINE")), (20, 12, 8));
+    let all: f64 = shapes.iter().map(|(_, line)| area(line)).sum();
+    // Sixteen dimples, in all.
+    assert!((all / (256.0 * PI) - 1.0).abs() < 1e-12, "{all}");
 }
 
 #[test]

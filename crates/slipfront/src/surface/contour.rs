@@ -1,5 +1,5 @@
-//! Outlines of textures as closed curves within the slider, for files that other programs read. Free edges
-//! cut them, and beyond periodic ones they go on at the opposite edge. Lengths are in blocks.
+//! Outlines of textures as closed curves; what lies beyond a periodic edge returns at the opposite one.
+//! Lengths are in blocks.
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 
@@ -15,7 +15,7 @@ pub enum Contour {
     Ellipse(Ellipse),
     /// The corners of a polygon, in order; its inside follows from the even-odd rule.
     Polygon(Vec<[f64; 2]>),
-    /// The parts of an ellipse within the edges: each piece begins where the one before ends.
+    /// Straight lines and arcs of circles: each piece begins where the one before ends.
     Pieces(Vec<Piece>),
 }
 
@@ -35,9 +35,29 @@ pub struct Ellipse {
 pub enum Piece {
     /// A straight line between two points.
     Line([[f64; 2]; 2]),
-    /// The ellipse from one parameter to a larger one, a quarter of a turn later at most: see
+    /// The ellipse from one parameter to another one, a quarter of a turn away at most: see
     /// [`Ellipse::at`].
     Arc(Ellipse, [f64; 2]),
+}
+
+impl Contour {
+    /// The rectangle between its smallest and its largest (x, y).
+    pub fn rectangle(low: [f64; 2], high: [f64; 2]) -> Self {
+        Self::Polygon(vec![low, [high[0], low[1]], high, [low[0], high[1]]])
+    }
+
+    /// The pieces of the curve, in order: the quarters of an ellipse, or the edges of a polygon.
+    pub fn pieces(&self) -> Vec<Piece> {
+        let quarter = |k: i32| [k, k + 1].map(|quarters| f64::from(quarters) * FRAC_PI_2);
+        match self {
+            Self::Ellipse(ellipse) => (0..4).map(|k| Piece::Arc(*ellipse, quarter(k))).collect(),
+            Self::Polygon(corners) => {
+                let edges = corners.iter().zip(corners.iter().cycle().skip(1));
+                edges.map(|(&from, &to)| Piece::Line([from, to])).collect()
+            }
+            Self::Pieces(pieces) => pieces.clone(),
+        }
+    }
 }
 
 impl Ellipse {
@@ -50,6 +70,8 @@ impl Ellipse {
     /// assert_eq!(ellipse.at(0.0), [1.0, 3.0]);
     /// ```
     pub fn at(&self, parameter: f64) -> [f64; 2] {
+        // The point after a whole turn is the first one to the last bit, so that no curve is open.
+        let parameter = parameter.rem_euclid(TAU);
         let along = self.semi_axes[0] * libm::cos(parameter);
         let aside = self.semi_axes[1] * libm::sin(parameter);
         let [c, s] = self.axis;
@@ -57,22 +79,6 @@ impl Ellipse {
             self.center[0] + along * c - aside * s,
             self.center[1] + along * s + aside * c,
         ]
-    }
-
-    /// The two parameters from 0 to a turn at which a coordinate has this value, if there are any.
-    fn crossings(&self, axis: usize, value: f64) -> Option<[f64; 2]> {
-        let [c, s] = self.axis;
-        let [cosine, sine] = match axis {
-            0 => [self.semi_axes[0] * c, -self.semi_axes[1] * s],
-            _ => [self.semi_axes[0] * s, self.semi_axes[1] * c],
-        };
-        let reach = libm::hypot(cosine, sine);
-        let share = (value - self.center[axis]) / reach;
-        if share.abs() >= 1.0 {
-            return None;
-        }
-        let (middle, half) = (libm::atan2(sine, cosine), libm::acos(share));
-        Some([middle - half, middle + half].map(|parameter| parameter.rem_euclid(TAU)))
     }
 }
 
@@ -87,7 +93,8 @@ impl Piece {
 }
 
 /// The outlines of all copies of a texture's shape, whether it is inverted or not; none for a mask, whose
-/// outlines are the edges of its blocks. A groove is a rectangle as long as the slider.
+/// outlines are the edges of its blocks. They may reach beyond the slider, or lie there. A groove is a
+/// rectangle as long as the slider.
 pub fn contours(lattice: &Lattice, texture: &Texture) -> Option<Vec<Contour>> {
     let grids = grids(&texture.arrays);
     let outlines = match &texture.shape {
@@ -96,17 +103,15 @@ pub fn contours(lattice: &Lattice, texture: &Texture) -> Option<Vec<Contour>> {
         Shape::Groove(groove) => {
             let strips = groove.shifts(&grids).into_iter();
             let rectangles = strips.flat_map(|shift| {
-                let [low, high] = groove.rectangle(lattice, shift);
-                let corners =
-                    |low: [f64; 2], high: [f64; 2]| vec![low, [high[0], low[1]], high, [low[0], high[1]]];
+                let bounds = groove.rectangle(lattice, shift);
+                let [low, high] = bounds;
                 placed(lattice, [[low[0], high[0]], [low[1], high[1]]])
                     .into_iter()
-                    .map(move |[x, y]| corners([low[0] + x, low[1] + y], [high[0] + x, high[1] + y]))
-                    .collect::<Vec<_>>()
+                    .map(move |[x, y]| bounds.map(|corner| [corner[0] + x, corner[1] + y]))
             });
             return Some(
                 rectangles
-                    .filter_map(|corners| within(lattice, Contour::Polygon(corners)))
+                    .map(|[low, high]| Contour::rectangle(low, high))
                     .collect(),
             );
         }
@@ -118,7 +123,7 @@ pub fn contours(lattice: &Lattice, texture: &Texture) -> Option<Vec<Contour>> {
             for &x in columns {
                 let bounds = [outlines.bounds(0, x), outlines.bounds(1, y)];
                 for [shift_x, shift_y] in placed(lattice, bounds) {
-                    let contour = match &outlines.curve {
+                    contours.push(match &outlines.curve {
                         Curve::Ellipse { semi_axes, axis } => Contour::Ellipse(Ellipse {
                             center: [x + shift_x, y + shift_y],
                             semi_axes: *semi_axes,
@@ -133,8 +138,7 @@ pub fn contours(lattice: &Lattice, texture: &Texture) -> Option<Vec<Contour>> {
                                 })
                                 .collect(),
                         ),
-                    };
-                    contours.extend(within(lattice, contour));
+                    });
                 }
             }
         }
@@ -155,131 +159,4 @@ fn placed(lattice: &Lattice, bounds: [[f64; 2]; 2]) -> Vec<[f64; 2]> {
     };
     let (x, y) = (along(0), along(1));
     y.iter().flat_map(|&y| x.iter().map(move |&x| [x, y])).collect()
-}
-
-/// The part of a curve that lies on the slider, if any.
-fn within(lattice: &Lattice, contour: Contour) -> Option<Contour> {
-    let mut pieces = match contour {
-        Contour::Ellipse(ellipse) => {
-            let quarter =
-                |k: i32| Piece::Arc(ellipse, [f64::from(k) * FRAC_PI_2, f64::from(k + 1) * FRAC_PI_2]);
-            (0..4).map(quarter).collect()
-        }
-        Contour::Polygon(ref corners) => {
-            let next = corners.iter().cycle().skip(1);
-            corners
-                .iter()
-                .zip(next)
-                .map(|(&from, &to)| Piece::Line([from, to]))
-                .collect()
-        }
-        Contour::Pieces(ref pieces) => pieces.clone(),
-    };
-    let mut is_whole = true;
-    for axis in [0, 1] {
-        let size = [lattice.nx, lattice.ny][axis] as f64;
-        for (limit, side) in [(0.0, 1.0), (size, -1.0)] {
-            let half = HalfPlane { axis, limit, side };
-            // An ellipse may lie beyond between the ends of its quarters.
-            let is_inside = match &contour {
-                Contour::Ellipse(ellipse) => {
-                    ellipse.crossings(axis, limit).is_none() && half.holds(ellipse.center)
-                }
-                _ => pieces
-                    .iter()
-                    .all(|piece| piece.ends().iter().all(|end| half.holds(*end))),
-            };
-            if !is_inside {
-                pieces = half.cut(&pieces);
-                is_whole = false;
-            }
-        }
-    }
-    if is_whole {
-        return Some(contour);
-    }
-    if pieces.is_empty() {
-        return None;
-    }
-    let corners = |piece: &Piece| match piece {
-        Piece::Line([from, _]) => Some(*from),
-        Piece::Arc(..) => None,
-    };
-    let polygon: Option<Vec<[f64; 2]>> = pieces.iter().map(corners).collect();
-    Some(polygon.map_or(Contour::Pieces(pieces), Contour::Polygon))
-}
-
-/// The points whose coordinate is not beyond a limit.
-struct HalfPlane {
-    axis: usize,
-    limit: f64,
-    /// Sign of the half-plane: 1 if its points lie above the limit, else -1.
-    side: f64,
-}
-
-impl HalfPlane {
-    fn holds(&self, point: [f64; 2]) -> bool {
-        self.side * (point[self.axis] - self.limit) >= 0.0
-    }
-
-    /// The part of a closed curve in the half-plane, closed again by lines along the limit (Sutherland and
-    /// Hodgman).
-    fn cut(&self, pieces: &[Piece]) -> Vec<Piece> {
-        let mut kept: Vec<Piece> = Vec::new();
-        for piece in pieces {
-            for part in self.parts(piece) {
-                if let Some(last) = kept.last().map(|last| last.ends()[1]) {
-                    let start = part.ends()[0];
-                    if last != start {
-                        kept.push(Piece::Line([last, start]));
-                    }
-                }
-                kept.push(part);
-            }
-        }
-        if let (Some(first), Some(last)) = (kept.first(), kept.last()) {
-            let (start, end) = (first.ends()[0], last.ends()[1]);
-            if start != end {
-                kept.push(Piece::Line([end, start]));
-            }
-        }
-        kept
-    }
-
-    /// The parts of a piece that lie in the half-plane, in order.
-    fn parts(&self, piece: &Piece) -> Vec<Piece> {
-        match *piece {
-            Piece::Line([from, to]) => {
-                let crossing = || {
-                    let share = (self.limit - from[self.axis]) / (to[self.axis] - from[self.axis]);
-                    let mut point = [0, 1].map(|axis| from[axis] + share * (to[axis] - from[axis]));
-                    point[self.axis] = self.limit;
-                    point
-                };
-                match (self.holds(from), self.holds(to)) {
-                    (true, true) => vec![*piece],
-                    (true, false) => vec![Piece::Line([from, crossing()])],
-                    (false, true) => vec![Piece::Line([crossing(), to])],
-                    (false, false) => Vec::new(),
-                }
-            }
-            Piece::Arc(ellipse, [from, to]) => {
-                let mut ends = vec![from, to];
-                let crossings = ellipse.crossings(self.axis, self.limit);
-                ends.extend(
-                    crossings
-                        .into_iter()
-                        .flatten()
-                        .filter(|at| (from..to).contains(at)),
-                );
-                ends.sort_by(f64::total_cmp);
-                let parts = ends.windows(2).filter(|pair| pair[0] < pair[1]);
-                let is_here = |pair: &&[f64]| self.holds(ellipse.at(0.5 * (pair[0] + pair[1])));
-                parts
-                    .filter(is_here)
-                    .map(|pair| Piece::Arc(ellipse, [pair[0], pair[1]]))
-                    .collect()
-            }
-        }
-    }
 }

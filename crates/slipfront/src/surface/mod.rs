@@ -6,6 +6,7 @@
 //! holds.
 
 mod clearance;
+mod clip;
 mod closest;
 mod coefficients;
 mod contour;
@@ -19,6 +20,7 @@ mod texture;
 mod whole;
 
 pub use clearance::{Clearance, clearance};
+pub use clip::clip;
 pub use coefficients::{Coefficients, Distribution, STREAMS};
 pub use contour::{Contour, Ellipse, Piece, contours};
 pub use correlation::{CorrelatedField, deviation_along};

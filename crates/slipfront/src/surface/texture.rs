@@ -215,7 +215,7 @@ impl Groove {
 /// Number of vertices of a semi-polygon's outline. The vertices lie on the curve, and the chords between them
 /// differ from it by less than `lambda (1 + s) (2 pi/4096)^2/8`, a ten-thousandth of a block at `lambda` =
 /// 100.
-const OUTLINE_VERTICES: usize = 4096;
+pub(super) const OUTLINE_VERTICES: usize = 4096;
 
 impl Cavity {
     pub(super) fn outlines(&self, grids: &[Crossings]) -> Outlines {
