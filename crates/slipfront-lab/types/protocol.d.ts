@@ -30,6 +30,8 @@ export interface Texture {
   height_unit?: string;
   pixel_size?: string | string[];
   level?: string;
+  decimal?: string;
+  separator?: string;
   missing?: number | string;
   pitch?: string | string[];
   array?: string | number[];

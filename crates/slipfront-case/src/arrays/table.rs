@@ -107,8 +107,12 @@ fn layout_of(path: &Path, source: &mut (impl BufRead + Seek)) -> Result<(u64, Ta
 }
 
 /// How a table is written that begins with `head`, and may have lines above its numbers.
-pub(super) fn layout_of_map(path: &Path, head: &[u8]) -> Result<TableLayout, ArrayError> {
-    let layout = TableLayout::find(head, TableOptions::default()).map_err(table_error(path))?;
+pub(super) fn layout_of_map(
+    path: &Path,
+    head: &[u8],
+    options: TableOptions,
+) -> Result<TableLayout, ArrayError> {
+    let layout = TableLayout::find(head, options).map_err(table_error(path))?;
     Ok(layout.without_names())
 }
 

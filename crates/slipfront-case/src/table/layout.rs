@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 use slipfront_base::number_format::count;
 use slipfront_base::text::truncated;
 
@@ -18,7 +18,7 @@ pub const HEAD_BYTES: u64 = 1 << 20;
 const SEPARATORS: [char; 4] = [';', '\t', ',', ' '];
 
 /// Decimal sign of numbers, as files name it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum DecimalSign {
     /// `0.5`.
@@ -28,7 +28,7 @@ pub enum DecimalSign {
 }
 
 /// Separator of fields, as files name it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum FieldSeparator {
     /// `1,2`.
@@ -414,7 +414,7 @@ fn best(readings: Vec<Reading>, text: &str, options: TableOptions) -> Result<Tab
         let decimal = field.replace(',', ".");
         return Err(TableError::Ambiguous(format!(
             "{field:?} in line {line} is {plain} with a comma between thousands and {decimal} with a decimal comma; \
-             say which, or write the numbers without it"
+             say which, as `decimal` = \"comma\" does, or write the numbers without it"
         )));
     }
     // Without names nothing tells that `0,500,0,0175` has two numbers and not four.

@@ -1016,3 +1016,23 @@ fn a_list_may_leave_points_out_and_has_none_twice() {
     let twice = list("0,0,1\n1,0,2\n0,1,6\n0,0,1\n", None).unwrap_err();
     assert!(twice.contains("has the point 0, 0 twice"), "{twice}");
 }
+
+#[test]
+fn a_map_that_can_be_read_in_two_ways_is_refused_until_its_case_says_which() {
+    let text = "1,050 1,051\n1,052 1,054\n";
+    let said = prepared(text, Preparation::default()).unwrap_err();
+    assert!(
+        said.contains("can be read in two ways: \"1,050\" in line 1"),
+        "{said}"
+    );
+    let mut preparation = Preparation::default();
+    preparation.table.decimal = Some(',');
+    let room = Room {
+        blocks: [1, 1],
+        is_place: false,
+    };
+    let mut source = Cursor::new(text);
+    let map = height_map(Path::new("a.csv"), &mut source, &OF_CASE, &preparation, &room).unwrap();
+    // The mean of four numbers in micrometres, rounded once.
+    assert!((map.blocks[0] - 1.05175e-6).abs() < 1e-21);
+}

@@ -12,6 +12,7 @@ use slipfront_case::case_file::{
     SlipWeakeningLength, Snapshots, Source, SpeedSegment, Texture, Time, TimeStep, Velocity, VelocityLaw,
 };
 use slipfront_case::quantity::{Kind, Length, Quantity};
+use slipfront_case::table::{DecimalSign, FieldSeparator};
 
 /// Quantities of many sizes, some as a user writes them and some printed from their value.
 fn quantity<K: Kind + 'static>(
@@ -359,9 +360,16 @@ fn height_map() -> impl Strategy<Value = Shape> {
     let units = (prop::option::of(length()), prop::option::of(pixel_size));
     let file = file(&["npy", "csv", "gsf", "x3p", "png", "tif", "tiff"]);
     let missing = prop_oneof![Just(Missing::Nan), (-1e9..1e9).prop_map(Missing::Value)];
-    let preparation = (prop::option::of(Just(Level::Plane)), prop::option::of(missing));
+    let decimals = select(vec![DecimalSign::Point, DecimalSign::Comma]);
+    let separators = select(vec![FieldSeparator::Tab, FieldSeparator::Semicolon]);
+    let preparation = (
+        prop::option::of(Just(Level::Plane)),
+        prop::option::of(missing),
+        prop::option::of(decimals),
+        prop::option::of(separators),
+    );
     (file, bearing, units, preparation).prop_map(
-        |(file, (bearing, reference), (height_unit, pixel_size), (level, missing))| {
+        |(file, (bearing, reference), (height_unit, pixel_size), (level, missing, decimal, separator))| {
             Shape::HeightMap(HeightMap {
                 file,
                 bearing,
@@ -369,6 +377,8 @@ fn height_map() -> impl Strategy<Value = Shape> {
                 height_unit,
                 pixel_size,
                 level,
+                decimal,
+                separator,
                 missing,
             })
         },

@@ -497,6 +497,7 @@ fn height_map(input: &[u8]) {
         let treated = Preparation {
             missing: Some(f64::NAN),
             is_levelled: true,
+            ..plain
         };
         for (units, preparation) in [(HeightMapUnits::default(), plain), (UNITS, treated)] {
             let mut source = Cursor::new(input);

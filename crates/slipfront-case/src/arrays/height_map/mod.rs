@@ -26,6 +26,7 @@ use self::quantum::Quantum;
 use self::roughness::{HeightRange, Mean, Moments, Plane, PlaneSums};
 use super::error::{ArrayError, contents_error, extension, unknown_extension};
 use super::npy;
+use crate::table::TableOptions;
 use slipfront_base::number_format::{four_digits, with_si_prefix};
 
 /// Units of a height map that the case states, m; a unit that the file states too is refused.
@@ -44,6 +45,8 @@ pub struct Preparation {
     pub missing: Option<f64>,
     /// Whether the plane of least squares is subtracted.
     pub is_levelled: bool,
+    /// How a table of text is written, where it should not be found.
+    pub table: TableOptions,
 }
 
 impl Preparation {
@@ -272,7 +275,7 @@ fn read_file(
     let take_line = |[row, column]: [usize; 2], heights: &[f64]| take(&Line { row, column, heights });
     let [nx, ny] = match extension(path).as_str() {
         "npy" => npy::rows(path, source, take_line)?,
-        "csv" | "txt" | "dat" | "asc" | "xyz" => return text::read(path, source, take),
+        "csv" | "txt" | "dat" | "asc" | "xyz" => return text::read(path, source, preparation.table, take),
         "gsf" => return gsf::read(path, source, take),
         "x3p" => return x3p::read(path, source, preparation.is_missing(f64::NAN), take),
         "png" => return image::read(path, source, take),

@@ -12,16 +12,17 @@ use crate::arrays::error::{ArrayError, contents_error};
 use crate::arrays::head::length_and_head;
 use crate::arrays::table;
 use crate::quantity::Length;
-use crate::table::{Encoding, HEAD_BYTES, TableLayout};
+use crate::table::{Encoding, HEAD_BYTES, TableLayout, TableOptions};
 
 pub(super) fn read(
     path: &Path,
     source: &mut (impl BufRead + Seek),
+    options: TableOptions,
     take: &mut Take,
 ) -> Result<HeightGrid, ArrayError> {
     let (_, head) = length_and_head(path, source, HEAD_BYTES)?;
     let stated = Stated::of(path, &head)?;
-    let layout = table::layout_of_map(path, &head)?;
+    let layout = table::layout_of_map(path, &head, options)?;
     let mut notes = Vec::from_iter(layout.took());
     if let Some((pixel, unit)) = stated.pixel.zip(stated.height_unit) {
         let [pixel, unit] = [pixel, unit].map(|length| with_si_prefix(length, "m"));
@@ -227,11 +228,16 @@ mod tests {
 
     fn read_text(text: &str) -> (HeightGrid, Vec<(usize, usize, f64)>) {
         let mut points = Vec::new();
-        let grid = read(Path::new("m.csv"), &mut Cursor::new(text), &mut |line| {
-            let heights = line.heights.iter().enumerate();
-            points.extend(heights.map(|(k, &height)| (line.row, line.column + k, height)));
-            Ok(())
-        });
+        let grid = read(
+            Path::new("m.csv"),
+            &mut Cursor::new(text),
+            TableOptions::default(),
+            &mut |line| {
+                let heights = line.heights.iter().enumerate();
+                points.extend(heights.map(|(k, &height)| (line.row, line.column + k, height)));
+                Ok(())
+            },
+        );
         (grid.unwrap(), points)
     }
 

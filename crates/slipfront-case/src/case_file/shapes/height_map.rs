@@ -10,6 +10,7 @@ use crate::case_file::probe::names_of;
 use crate::case_file::values::{WordOrNumber, some_word};
 use crate::key_rows;
 use crate::quantity::Length;
+use crate::table::{DecimalSign, FieldSeparator};
 
 pub(super) const SYNONYMS: &[(&str, &str)] = &[
     ("topography", HEIGHT_MAP),
@@ -48,6 +49,12 @@ key_rows! {
         /// Surface that is subtracted from the heights first: the plane of least squares.
         #[serde(default, deserialize_with = "some_word")]
         pub level: Option<Level> = key("", KeyKind::Words(names_of::<Level>)),
+        /// Decimal sign of a table of text.
+        #[serde(default, deserialize_with = "some_word")]
+        pub decimal: Option<DecimalSign> = key("", KeyKind::Words(names_of::<DecimalSign>)).without("found"),
+        /// Separator of the numbers of a table of text.
+        #[serde(default, deserialize_with = "some_word")]
+        pub separator: Option<FieldSeparator> = key("", KeyKind::Words(names_of::<FieldSeparator>)).without("found"),
         /// Value of points that were not measured, a number or `"nan"`: a block has the mean of its others.
         pub missing: Option<Missing> = key("", KeyKind::Special("a number or `\"nan\"`")),
     }
