@@ -23,7 +23,7 @@ type Point = [f64; 2];
 /// # use slipfront::surface::{Contour, clip};
 /// let square = |from: f64, to: f64| Contour::rectangle([from, 0.0], [to, 1.0]);
 /// assert_eq!(clip(&square(0.0, 2.0), &[square(0.0, 4.0)]), [square(0.0, 2.0)]);
-/// assert_eq!(clip(&square(4.0, 5.0), &[square(0.0, 4.0)]), []);
+/// assert!(clip(&square(4.0, 5.0), &[square(0.0, 4.0)]).is_empty());
 /// let Contour::Polygon(corners) = &clip(&square(3.0, 5.0), &[square(0.0, 4.0)])[0] else { panic!() };
 /// assert!(corners.len() == 4 && corners.contains(&[4.0, 1.0]));
 /// ```
