@@ -189,6 +189,8 @@ export const textures = [
   {"shape":"height_map","pixel_size":"1 um"},
   {"shape":"height_map","pixel_size":["1 um","1 um"]},
   {"shape":"height_map","level":"text"},
+  {"shape":"height_map","decimal":"text"},
+  {"shape":"height_map","separator":"text"},
   {"shape":"height_map","missing":-9999},
   {"shape":"height_map","missing":"nan"},
   {"shape":"height_map","pitch":"1 um"},
