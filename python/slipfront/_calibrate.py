@@ -198,7 +198,7 @@ class Calibration:
         """Path of a record; a record that is given as columns is written there."""
         if isinstance(record, (str, os.PathLike)):
             return Path(record)
-        columns = dict(zip(self._native.columns, record, strict=True)) if isinstance(record, tuple) else {name: record[name] for name in record}
+        columns = dict(zip(self._native.columns, record, strict=True)) if isinstance(record, tuple) else record
         arrays = {str(name): np.asarray(column) for name, column in columns.items()}
         lengths = {len(array) for array in arrays.values() if array.ndim == 1}
         if len(lengths) != 1:
