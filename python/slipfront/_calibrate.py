@@ -7,9 +7,9 @@ import dataclasses
 import json
 import os
 import warnings
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import Any, Protocol, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -23,10 +23,15 @@ from ._simulation import _threads
 from ._study import _as_base
 from ._temporary import TemporaryFolder
 
-if TYPE_CHECKING:
-    import pandas as pd
 
-Record: TypeAlias = "str | os.PathLike[str] | Mapping[str, npt.ArrayLike] | pd.DataFrame | tuple[npt.ArrayLike, npt.ArrayLike]"
+class Columns(Protocol):
+    """Columns by their names: a mapping of arrays, or a DataFrame."""
+
+    def items(self) -> Iterable[tuple[Any, Any]]:
+        """Names and columns."""
+
+
+Record: TypeAlias = str | os.PathLike[str] | Columns | tuple[npt.ArrayLike, npt.ArrayLike]
 """A record: the path of a table of text or of a workbook; its columns by their names, which are found as in such a table, with or without
 their units; or two arrays, of the columns `x` and `y`."""
 
