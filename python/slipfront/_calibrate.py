@@ -6,6 +6,7 @@ import csv
 import dataclasses
 import json
 import os
+import re
 import warnings
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
@@ -41,7 +42,8 @@ Range: TypeAlias = Sequence[float] | Sequence[str] | Mapping[str, Any]
 
 def _without_folder(text: str, folder: Path) -> str:
     """A sentence that names a record that was given in memory, and not the file in which it was handed on."""
-    return text.replace(f"{folder}{os.sep}", "").replace(".csv", "") if str(folder) in text else text
+    hidden = re.escape(f"{folder}{os.sep}")
+    return re.sub(hidden, "", re.sub(rf"{hidden}(record \d+)\.csv", r"\1", text))
 
 
 @dataclasses.dataclass(frozen=True)

@@ -185,11 +185,7 @@ impl CalibrationKeys {
 
     /// How the tables of records are written, as far as the file says.
     fn table(&self) -> TableOptions {
-        TableOptions {
-            header_line: self.header_line,
-            decimal: self.decimal.map(DecimalSign::sign),
-            separator: self.separator.map(FieldSeparator::sign),
-        }
+        TableOptions::stated(self.header_line, self.decimal, self.separator)
     }
 }
 

@@ -33,18 +33,16 @@ enum Separator {
 
 impl TableArgs {
     pub(crate) fn options(&self) -> TableOptions {
-        TableOptions {
-            header_line: self.header_line,
-            decimal: self.decimal.map(|decimal| match decimal {
-                Decimal::Point => DecimalSign::Point.sign(),
-                Decimal::Comma => DecimalSign::Comma.sign(),
-            }),
-            separator: self.separator.map(|separator| match separator {
-                Separator::Comma => FieldSeparator::Comma.sign(),
-                Separator::Semicolon => FieldSeparator::Semicolon.sign(),
-                Separator::Tab => FieldSeparator::Tab.sign(),
-                Separator::Blank => FieldSeparator::Blank.sign(),
-            }),
-        }
+        let decimal = self.decimal.map(|decimal| match decimal {
+            Decimal::Point => DecimalSign::Point,
+            Decimal::Comma => DecimalSign::Comma,
+        });
+        let separator = self.separator.map(|separator| match separator {
+            Separator::Comma => FieldSeparator::Comma,
+            Separator::Semicolon => FieldSeparator::Semicolon,
+            Separator::Tab => FieldSeparator::Tab,
+            Separator::Blank => FieldSeparator::Blank,
+        });
+        TableOptions::stated(self.header_line, decimal, separator)
     }
 }

@@ -326,23 +326,17 @@ impl MeasuredRecord {
                 let clock = clock_time(field).filter(|_| k == 0 && along == Measure::Time);
                 if let Some(clock) = clock {
                     let (first, last) = clocks.get_or_insert((clock, clock));
-                    // A clock that goes back by more than half a day has passed midnight.
-                    while clock + midnights < *last - 0.5 * DAY {
+                    // A clock without a date that goes back by more than half a day has passed midnight.
+                    if last.max(clock) < DAY && clock < *last - 0.5 * DAY {
                         midnights += DAY;
                     }
-                    *last = clock + midnights;
-                    return Some(*last - *first);
+                    *last = clock;
+                    return Some(clock + midnights - *first);
                 }
                 let value = number(field, decimal).filter(|value| value.is_finite())?;
                 has_numbers |= k == 0;
-                Some(
-                    value
-                        * if k == 0 {
-                            *x_factor.as_ref().unwrap_or(&1.0)
-                        } else {
-                            y_factor
-                        },
-                )
+                let factors = [*x_factor.as_ref().unwrap_or(&1.0), y_factor];
+                Some(factors[k] * value)
             };
             let (Some(x), Some(y)) = (value(0), value(1)) else {
                 let without = usize::from(value(0).is_some());
@@ -787,6 +781,14 @@ mod tests {
         }
         let took = record.took.unwrap();
         assert!(took.ends_with("; sheet \"Daten\" of the workbook"), "{took}");
+    }
+
+    /// A date tells the day, so that times that go back are out of order, and none of the next day.
+    #[test]
+    fn times_with_a_date_do_not_pass_midnight_backwards() {
+        let text = "t,F (N)\n2024-01-03 10:00:00,1\n2024-01-01 10:00:00,2\n";
+        let error = read(text, ["t", "F"], [None; 2]).unwrap_err().to_string();
+        assert!(error.contains("falls, from 0 to -172800 in SI units"), "{error}");
     }
 
     #[test]

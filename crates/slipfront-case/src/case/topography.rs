@@ -10,7 +10,7 @@ use super::inputs::Inputs;
 use crate::arrays::{self, HeightMapUnits, Preparation, Room, Roughness, Slab};
 use crate::case_file::{Bearing, CaseError, CaseFile, HeightMap, Level, Missing, Pitch};
 use crate::quantity::Length;
-use crate::table::{DecimalSign, FieldSeparator, TableOptions};
+use crate::table::TableOptions;
 
 /// A height map as it was read and laid over blocks.
 #[derive(Clone, Debug, PartialEq)]
@@ -71,11 +71,7 @@ impl Ground<'_> {
         let preparation = Preparation {
             missing: map.missing.map(Missing::value),
             is_levelled: map.level == Some(Level::Plane),
-            table: TableOptions {
-                decimal: map.decimal.map(DecimalSign::sign),
-                separator: map.separator.map(FieldSeparator::sign),
-                header_line: None,
-            },
+            table: TableOptions::stated(None, map.decimal, map.separator),
         };
         let key = format!("texture.{index}.file");
         let read = inputs.read_height_map(file, &key, &map.file, watch, |path, source| {

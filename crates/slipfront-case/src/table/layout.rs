@@ -43,7 +43,7 @@ pub enum FieldSeparator {
 
 impl DecimalSign {
     /// The sign itself.
-    pub fn sign(self) -> char {
+    fn sign(self) -> char {
         match self {
             Self::Point => '.',
             Self::Comma => ',',
@@ -53,7 +53,7 @@ impl DecimalSign {
 
 impl FieldSeparator {
     /// The separator itself.
-    pub fn sign(self) -> char {
+    fn sign(self) -> char {
         match self {
             Self::Comma => ',',
             Self::Semicolon => ';',
@@ -72,6 +72,21 @@ pub struct TableOptions {
     pub decimal: Option<char>,
     /// Separator of fields: a comma, a semicolon, a tab or blanks.
     pub separator: Option<char>,
+}
+
+impl TableOptions {
+    /// The options as files and commands state them.
+    pub fn stated(
+        header_line: Option<u64>,
+        decimal: Option<DecimalSign>,
+        separator: Option<FieldSeparator>,
+    ) -> Self {
+        Self {
+            header_line,
+            decimal: decimal.map(DecimalSign::sign),
+            separator: separator.map(FieldSeparator::sign),
+        }
+    }
 }
 
 /// A line with a text for each column.

@@ -825,7 +825,7 @@ fn the_text_export_of_gwyddion_is_its_simple_field() {
     assert!((text.size[0] - 1e-5).abs() < 1e-18);
 }
 
-/// The same numbers with decimal commas between semicolons, and as UTF-16.
+/// The table has decimal commas between semicolons in one file, and is UTF-16 in the other.
 #[test]
 fn tables_of_any_encoding_and_decimal_sign_are_one_map() {
     let [commas, utf_16] = ["decimal_comma.csv", "utf16.csv"].map(|name| read_here(name, OF_CASE, [20, 20]));

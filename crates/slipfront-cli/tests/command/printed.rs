@@ -113,14 +113,9 @@ fn check_in(workspace: &Workspace, name: &str, runs_all: bool) -> usize {
         match info.split_whitespace().collect::<Vec<_>>()[..] {
             ["text", file] => workspace.write(file, lines.join("\n")),
             ["text", file, "utf-16"] => {
-                let units = "\u{feff}".encode_utf16().collect::<Vec<_>>().into_iter();
-                let units = units.chain(
-                    lines
-                        .iter()
-                        .flat_map(|line| line.encode_utf16().chain([0xa]))
-                        .collect::<Vec<_>>(),
-                );
-                workspace.write(file, units.flat_map(u16::to_le_bytes).collect::<Vec<u8>>());
+                let text = format!("\u{feff}{}\n", lines.join("\n"));
+                let bytes: Vec<u8> = text.encode_utf16().flat_map(u16::to_le_bytes).collect();
+                workspace.write(file, bytes);
             }
             _ => {}
         }
